@@ -1,0 +1,8 @@
+//! City models: files become one plain [`CityModel`] and a list of warnings; nothing of the GPU in it.
+
+pub mod build;
+pub mod model;
+pub mod warning;
+
+pub use model::*;
+pub use warning::{WarningCode, Warnings};

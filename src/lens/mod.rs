@@ -1,0 +1,84 @@
+//! What to show where: a lens = shapes + effects + order (V §3).
+
+use std::collections::BTreeMap;
+
+use crate::geom::Shape;
+
+/// A lens (L1).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lens {
+    /// Its name, unique.
+    pub name: String,
+    /// What kind of lens it is.
+    pub kind: LensKind,
+    /// `false`: keeps its place and its mask bit, acts on nothing.
+    pub enabled: bool,
+    /// Its own colour, sRGB 0..1: outline, legend, halo.
+    pub color: [f32; 3],
+    /// Its focus areas: inside where any of them is (L1).
+    pub shapes: Vec<Shape>,
+    /// What it does, in order (K1: at most one scene style).
+    pub effects: Vec<EffectUse>,
+    /// How the lens body itself is drawn (L5).
+    pub body: LensBody,
+    /// Pixels of its depth sprite along the longer side of the picture; `None`: as many as the picture has.
+    pub sprite_resolution: Option<u32>,
+}
+
+/// Kinds of lenses this version has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum LensKind {
+    /// Restyles what is in it (K1).
+    #[default]
+    Color,
+}
+
+/// How a lens body is drawn (L5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum LensBody {
+    /// Not at all.
+    None,
+    /// A line around its silhouette, in the lens colour.
+    #[default]
+    Outline,
+}
+
+/// One use of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectUse {
+    /// Its name in the table of effects ([`crate::lens::effect`]).
+    pub effect: String,
+    /// What it acts on, seen along the pixel's ray (L4).
+    pub class: Class,
+    /// Its parameters; the table has the defaults.
+    pub parameters: BTreeMap<String, Parameter>,
+}
+
+/// Where the shown surface is with regard to a lens (L4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Class {
+    /// D_F ≤ D < D_B.
+    #[default]
+    Inside,
+    /// D < D_F.
+    Front,
+    /// D ≥ D_B.
+    Behind,
+    /// The ray misses the lens.
+    Rest,
+}
+
+/// An effect parameter's value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Parameter {
+    /// Yes or no.
+    Boolean(bool),
+    /// A number, in the unit the effect states.
+    Number(f64),
+    /// A word, a colour ramp, an attribute name.
+    Text(String),
+    /// Numbers: class breaks, a colour.
+    Numbers(Vec<f64>),
+    /// Words: categories.
+    Texts(Vec<String>),
+}

@@ -1,0 +1,26 @@
+//! **Veduta** looks at 3D city models through *information lenses*: focus + context for cities.
+//!
+//! A city is looked at through lenses; a lens is made of handlers; handlers become one shader;
+//! passes draw the frame; a figure is a frame written down; measurement compares figures.
+//!
+//! The way of a picture, from the ground floor up (imports go down only, `tests/floors.rs`):
+//!
+//! 1. [`geom`]: shapes and numbers; exact predicates, triangulation, the BVH.
+//! 2. [`city`]: files become one plain [`city::CityModel`] and a list of warnings.
+//! 3. [`view`]: the eye. [`shader`]: WGSL text. [`gpu`]: wgpu, and nothing that knows a city.
+//! 4. [`lens`]: what to show where: shapes, effects, depth sprites and their CPU twins.
+//! 5. [`scene`]: plain data: city + view + lenses + POIs + styles, edited by commands.
+//! 6. [`render`]: a scene becomes a frame: a readable list of passes.
+//! 7. [`figure`]: scene files and back, pictures and their metadata.
+//! 8. [`cli`]: what people type.
+
+pub mod city;
+pub mod cli;
+pub mod figure;
+pub mod geom;
+pub mod gpu;
+pub mod lens;
+pub mod render;
+pub mod scene;
+pub mod shader;
+pub mod view;
