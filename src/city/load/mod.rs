@@ -1,0 +1,270 @@
+//! From paths to one city: finds out what each file is, reads it into one [`ModelBuilder`], builds.
+//!
+//! ```text
+//! path ─ input (read, gunzip, BOM) ─ sniff (what is it?) ─ cityjson | gltf | obj ─> ModelBuilder ─ finish ─> CityModel
+//! ```
+
+pub mod input;
+mod sniff;
+
+use std::{
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+pub use input::Input;
+
+use crate::city::{CityModel, WarningCode, build::ModelBuilder, load::sniff::Format};
+
+/// What a loader may do.
+#[derive(Clone, Debug, Default)]
+pub struct LoadOptions {
+    /// Whether paths inside a model (textures, buffers) may leave [`Self::roots`].
+    pub allow_outside: bool,
+    /// Folders the user named; the folder of each loaded file and `${VEDUTA_DATA}` are added by [`load`].
+    pub roots: Vec<PathBuf>,
+}
+
+/// Where a path that stands inside a model file leads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Sibling {
+    /// A regular file that may be read.
+    Found(PathBuf),
+    /// Nothing readable there.
+    Missing(PathBuf),
+    /// It leaves the folders the user named: note [`WarningCode::OutsidePath`] and do not open it.
+    Outside(PathBuf),
+}
+
+impl LoadOptions {
+    /// Follows `reference` as it stands in `file` (relative to its folder), inside the allowed folders.
+    pub fn sibling(&self, file: &Path, reference: &str) -> Sibling {
+        let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let path = folder.join(reference.replace('\\', "/"));
+        // An unresolvable folder can only hold missing files, but a path that climbs out is named as such first.
+        let climbs = !self.allow_outside && !self.admits(&lexical(&absolute(&path)));
+        if climbs {
+            return Sibling::Outside(path);
+        }
+        match path.canonicalize() {
+            Ok(real) if !self.allow_outside && !self.admits(&real) => Sibling::Outside(path),
+            Ok(real) if real.is_file() => Sibling::Found(path),
+            _ => Sibling::Missing(path),
+        }
+    }
+
+    /// Whether a normalised absolute path is inside one of the roots.
+    fn admits(&self, path: &Path) -> bool {
+        self.roots.iter().any(|root| {
+            path.starts_with(lexical(&absolute(root))) || root.canonicalize().is_ok_and(|real| path.starts_with(real))
+        })
+    }
+}
+
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// The path without `.` and `..`, by its text alone.
+fn lexical(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for part in path.components() {
+        match part {
+            std::path::Component::ParentDir => {
+                out.pop();
+            }
+            std::path::Component::CurDir => {}
+            other => out.push(other),
+        }
+    }
+    out
+}
+
+/// Why a file could not be loaded: file, place in it, what would be right.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}{}{place}: {message}", file.display(), if place.is_empty() { "" } else { ", " })]
+pub struct LoadError {
+    /// The file, as the user named it.
+    pub file: PathBuf,
+    /// Line and column, object id or JSON path; may be empty.
+    pub place: String,
+    /// What is wrong and what would be right.
+    pub message: String,
+}
+
+impl LoadError {
+    /// An error about a file as a whole.
+    pub fn new(file: &Path, message: impl Into<String>) -> Self {
+        Self { file: file.to_owned(), place: String::new(), message: message.into() }
+    }
+
+    /// An error at a place in a file.
+    pub fn at(file: &Path, place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { file: file.to_owned(), place: place.into(), message: message.into() }
+    }
+}
+
+/// What loading is busy with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Bytes come from the disk, and are decompressed.
+    Read,
+    /// Text becomes objects and polygons.
+    Parse,
+    /// Polygons become triangles, tiles and planes.
+    Build,
+}
+
+impl Stage {
+    /// As it stands in statistics and on the progress bar.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Read => "read",
+            Self::Parse => "parse",
+            Self::Build => "build",
+        }
+    }
+}
+
+/// Is told how far loading got; a progress bar, or nothing ([`Quiet`]).
+pub trait Progress: Sync {
+    /// `file` (0-based) of `files` entered `stage`; for [`Stage::Build`] `file == files`.
+    fn enter(&self, stage: Stage, file: usize, files: usize, path: &Path);
+}
+
+/// No progress bar.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Quiet;
+
+impl Progress for Quiet {
+    fn enter(&self, _: Stage, _: usize, _: usize, _: &Path) {}
+}
+
+/// How long loading took, by stage, over all files; `load.ms` of `--stats`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LoadStats {
+    /// Reading and decompressing.
+    pub read: Duration,
+    /// Parsing.
+    pub parse: Duration,
+    /// Triangulation, tiles, planes.
+    pub build: Duration,
+    /// Bytes parsed, after decompression.
+    pub bytes: u64,
+}
+
+/// Loads files and folders as one city.
+pub fn load(paths: &[PathBuf], options: &LoadOptions, progress: &dyn Progress) -> Result<CityModel, LoadError> {
+    load_with_stats(paths, options, progress).map(|(model, _)| model)
+}
+
+/// [`load`], and how long it took.
+pub fn load_with_stats(
+    paths: &[PathBuf],
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<(CityModel, LoadStats), LoadError> {
+    let (builder, mut stats) = load_raw(paths, options, progress)?;
+    progress.enter(Stage::Build, paths.len(), paths.len(), Path::new(""));
+    let start = Instant::now();
+    let model = builder.model;
+    stats.build = start.elapsed();
+    Ok((model, stats))
+}
+
+/// Everything up to [`ModelBuilder::finish`].
+pub fn load_raw(
+    paths: &[PathBuf],
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<(ModelBuilder, LoadStats), LoadError> {
+    let files = expand(paths)?;
+    let mut options = options.clone();
+    options.roots.extend(files.iter().map(|f| folder_of(&f.path).to_owned()));
+    options.roots.extend(std::env::var_os("VEDUTA_DATA").filter(|v| !v.is_empty()).map(PathBuf::from));
+    options.roots.sort();
+    options.roots.dedup();
+    let mut builder = ModelBuilder::default();
+    let mut stats = LoadStats::default();
+    let mut refusals = Vec::new();
+    for (i, file) in files.iter().enumerate() {
+        let enter = |stage| progress.enter(stage, i, files.len(), &file.path);
+        match read_file(&mut builder, &file.path, &options, &enter, &mut stats) {
+            Ok(()) => {}
+            Err(error) if file.from_folder => {
+                builder.model.warnings.add(WarningCode::Unsupported, "", || format!("{error}; skipped"));
+                refusals.push(error.to_string());
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    if builder.model.sources.is_empty() {
+        let folder = paths.first().map(PathBuf::as_path).unwrap_or(Path::new(""));
+        let why = refusals.first().map(|r| format!(" ({r})")).unwrap_or_default();
+        return Err(LoadError::new(folder, format!("no city model that can be read{why}; {}", sniff::READABLE)));
+    }
+    Ok((builder, stats))
+}
+
+/// Reads and parses one file.
+fn read_file(
+    builder: &mut ModelBuilder,
+    path: &Path,
+    options: &LoadOptions,
+    enter: &dyn Fn(Stage),
+    stats: &mut LoadStats,
+) -> Result<(), LoadError> {
+    enter(Stage::Read);
+    let start = Instant::now();
+    let input = input::read(path);
+    stats.read += start.elapsed();
+    let input = input?;
+    stats.bytes += input.bytes.len() as u64;
+    enter(Stage::Parse);
+    let start = Instant::now();
+    let result = read_input(builder, &input, options);
+    stats.parse += start.elapsed();
+    result
+}
+
+/// Gives bytes to the loader of their format; what a fuzzer calls.
+pub fn read_input(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) -> Result<(), LoadError> {
+    match sniff::format(input) {
+        Format::Known(name) => {
+            Err(LoadError::new(&input.path, format!("{name} cannot be read yet; {}", sniff::READABLE)))
+        }
+        Format::Not(what) => Err(LoadError::new(&input.path, what)),
+        Format::CityJson | Format::Gltf | Format::Obj => {
+            let _ = (builder, options);
+            Err(LoadError::new(&input.path, "cannot be read yet"))
+        }
+    }
+}
+
+/// A file to load, and whether the user named it or its folder.
+struct Found {
+    path: PathBuf,
+    from_folder: bool,
+}
+
+/// Files as named; folders as their files that look like city models, by name.
+fn expand(paths: &[PathBuf]) -> Result<Vec<Found>, LoadError> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(Found { path: path.clone(), from_folder: false });
+            continue;
+        }
+        let failed = |e: std::io::Error| LoadError::new(path, format!("this folder cannot be listed: {e}"));
+        let entries: Result<Vec<_>, _> = std::fs::read_dir(path).map_err(failed)?.collect();
+        let mut inside: Vec<PathBuf> = entries.map_err(failed)?.into_iter().map(|e| e.path()).collect();
+        inside.retain(|p| p.is_file() && sniff::looks_like_a_city(p));
+        inside.sort();
+        files.extend(inside.into_iter().map(|path| Found { path, from_folder: true }));
+    }
+    Ok(files)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
