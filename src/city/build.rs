@@ -7,7 +7,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::city::{Attribute, CityModel, Lod, ObjectClass, Source, StringId, Surface, SurfaceDetail};
+use crate::{
+    city::{Attribute, CityModel, Lod, ObjectClass, Source, StringId, Surface, SurfaceDetail},
+    geom::Aabb,
+};
 
 /// How a pool's integers become metres, per axis: `origin + step × integer`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +86,24 @@ pub struct RawGeometry {
     pub polygons: Polygons,
 }
 
+impl RawGeometry {
+    /// Box around the vertices its polygons use, metres: taken on the integers, so corners are exactly as read.
+    pub fn extent(&self) -> Aabb {
+        let used = self.polygons.indices.iter().filter_map(|&i| self.pool.points.get(i as usize));
+        let (mut min, mut max) = ([i64::MAX; 3], [i64::MIN; 3]);
+        for point in used {
+            for axis in 0..3 {
+                min[axis] = min[axis].min(point[axis]);
+                max[axis] = max[axis].max(point[axis]);
+            }
+        }
+        if min[0] > max[0] {
+            return Aabb::EMPTY;
+        }
+        Aabb { min: self.pool.lattice.to_world(min), max: self.pool.lattice.to_world(max) }
+    }
+}
+
 /// An object as read; links by id are resolved in [`ModelBuilder::finish`], within the object's own file.
 #[derive(Clone, Debug, Default)]
 pub struct RawObject {
@@ -140,6 +161,7 @@ impl ModelBuilder {
 
     /// Adds a geometry of an object.
     pub fn add_geometry(&mut self, geometry: RawGeometry) {
+        self.model.extent_as_read = self.model.extent_as_read.union(geometry.extent());
         self.raw_geometries.push(geometry);
     }
 

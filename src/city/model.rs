@@ -59,6 +59,11 @@ pub struct CityModel {
     pub indices: Vec<u32>,
     /// One per triangle: 0, or a number shared by all triangles of exactly one plane (two polygons at least).
     pub planes: Vec<u32>,
+    /// Box around the vertices that any geometry as read uses (dropped faces, points and lines too), metres:
+    /// grown by [`crate::city::build::ModelBuilder::add_geometry`], and by loaders for points and lines.
+    pub extent_as_read: Aabb,
+    /// Faces that are in the files but not drawn because something is wrong with them; each also has a warning.
+    pub faces_dropped: u64,
     /// Members of the file nobody here reads, kept as JSON: (where, text).
     pub unknown: Vec<(String, String)>,
     /// What was wrong and lived with.
