@@ -1,7 +1,10 @@
 //! Shapes and numbers. Nothing here knows what a city is.
 
 pub mod aabb;
+pub mod exact;
+pub mod plane;
 pub mod shape;
+pub mod triangulate;
 
 pub use aabb::Aabb;
 pub use shape::Shape;
