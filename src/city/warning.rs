@@ -34,7 +34,7 @@ warning_codes! {
     CyclicParents = "cyclic-parents",
     /// A vertex index points past the vertex list; the face is dropped.
     VertexIndex = "vertex-index-out-of-range",
-    /// A coordinate is NaN, infinite or farther than 1e9 m from the origin; faces that use it are dropped.
+    /// A coordinate is NaN, infinite or farther than 1e9 m (height: 1e6 m) from the origin; its faces are dropped.
     BadCoordinate = "bad-coordinate",
     /// A ring has fewer than three distinct points; the ring (and the face, if outer) is dropped.
     ShortRing = "short-ring",

@@ -152,7 +152,7 @@ impl Triangulator {
             if backwards {
                 self.ring.reverse();
             }
-            let first = least_rotation(&self.ring);
+            let first = least_rotation(self.ring.len(), |i| self.ring[i].key());
             self.ring.rotate_left(first);
             clean(&mut self.ring);
             if self.ring.len() >= 3 {
@@ -306,14 +306,11 @@ fn flatness(points: &[[i64; 3]], low: [i64; 3], extent: i64, normal: [i128; 3]) 
     }
 }
 
-/// Where the lexicographically smallest rotation of the ring starts (linear, also for repeated corners).
-fn least_rotation(ring: &[Corner]) -> usize {
-    let n = ring.len();
+/// Where the lexicographically smallest rotation of a ring of `n` keys starts (linear, also for repeated keys).
+pub fn least_rotation<K: Ord>(n: usize, key: impl Fn(usize) -> K) -> usize {
     let (mut best, mut rival, mut matched) = (0, 1, 0);
     while best < n && rival < n && matched < n {
-        let ours = ring[(best + matched) % n].key();
-        let theirs = ring[(rival + matched) % n].key();
-        match ours.cmp(&theirs) {
+        match key((best + matched) % n).cmp(&key((rival + matched) % n)) {
             std::cmp::Ordering::Equal => {
                 matched += 1;
                 continue;

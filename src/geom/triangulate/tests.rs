@@ -1,6 +1,8 @@
 use super::*;
 
-fn run(rings: &[&[[i64; 3]]]) -> Result<(Face, Vec<[[i64; 3]; 3]>), Refusal> {
+type Corners = [[i64; 3]; 3];
+
+fn run(rings: &[&[[i64; 3]]]) -> Result<(Face, Vec<Corners>), Refusal> {
     let points: Vec<_> = rings.concat();
     let mut end = 0;
     let ends: Vec<u32> = rings

@@ -1,0 +1,244 @@
+//! One job: some objects' geometries become triangles in tiles.
+
+use std::{ops::Range, sync::Arc};
+
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+use super::{
+    Polygons, RawGeometry,
+    metric::{Grid, is_trusted},
+    planes::PlaneKey,
+    repeats, tiles,
+};
+use crate::{
+    city::{CityObject, Geometry, Surface, Tile, Vertex, WarningCode, Warnings, encode_normal},
+    geom::{
+        exact::newell,
+        plane::ExactPlane,
+        triangulate::{Refusal, Triangulator},
+    },
+};
+
+/// Faces bent by less than this are not reported as non-planar: float formats are all bent by a little.
+const FLAT_M: f64 = 1e-3;
+
+/// What all jobs read.
+pub(super) struct Context<'a> {
+    pub(super) objects: &'a [CityObject],
+    pub(super) surfaces: &'a [Surface],
+    /// Grids by the address of the pool.
+    grids: FxHashMap<usize, Grid>,
+}
+
+impl<'a> Context<'a> {
+    pub(super) fn new(objects: &'a [CityObject], surfaces: &'a [Surface], raws: &[RawGeometry]) -> Self {
+        let mut classes = Vec::new();
+        let mut grids = FxHashMap::default();
+        for raw in raws {
+            grids.entry(Arc::as_ptr(&raw.pool).addr()).or_insert_with(|| Grid::new(raw.pool.lattice, &mut classes));
+        }
+        Self { objects, surfaces, grids }
+    }
+
+    pub(super) fn grid(&self, raw: &RawGeometry) -> &Grid {
+        &self.grids[&Arc::as_ptr(&raw.pool).addr()]
+    }
+}
+
+/// What a job makes; ranges and geometry numbers start at 0.
+#[derive(Debug, Default)]
+pub(super) struct Chunk {
+    pub(super) geometries: Vec<Geometry>,
+    pub(super) tiles: Vec<Tile>,
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) texcoords: Vec<[f32; 2]>,
+    pub(super) indices: Vec<u32>,
+    /// Per triangle: 1 + index into `plane_keys`, or 0.
+    pub(super) planes: Vec<u32>,
+    /// Planes and the polygon on each, counted within the chunk.
+    pub(super) plane_keys: Vec<(PlaneKey, u32)>,
+    pub(super) polygons: u32,
+    pub(super) warnings: Warnings,
+}
+
+/// A triangulated polygon.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// Flat normal, packed.
+    pub(super) normal: u32,
+    pub(super) surface: u32,
+}
+
+/// A triangle: three corners (positions in the geometry's `indices`) of one face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Triangle {
+    pub(super) corners: [u32; 3],
+    pub(super) face: u32,
+    /// As in [`Chunk::planes`].
+    pub(super) plane: u32,
+}
+
+/// Buffers kept between geometries.
+#[derive(Default)]
+pub(super) struct Scratch {
+    triangulator: Triangulator,
+    repeats: repeats::Scratch,
+    repeated: Vec<Vec<bool>>,
+    /// One polygon's points, ring ends and triangles.
+    points: Vec<[i64; 3]>,
+    ring_ends: Vec<u32>,
+    found: Vec<[u32; 3]>,
+    /// One geometry's faces and triangles.
+    pub(super) faces: Vec<Face>,
+    pub(super) triangles: Vec<Triangle>,
+    pub(super) tiles: tiles::Scratch,
+}
+
+/// The corners of a polygon's rings, as ranges of `indices`.
+pub(super) fn corner_ranges(polygons: &Polygons, polygon: usize) -> impl Iterator<Item = Range<usize>> {
+    let end_before = |ends: &[u32], i: usize| i.checked_sub(1).map_or(0, |i| ends[i] as usize);
+    let rings = end_before(&polygons.polygon_ends, polygon)..polygons.polygon_ends[polygon] as usize;
+    rings.map_while(move |ring| {
+        let end = *polygons.ring_ends.get(ring)? as usize;
+        Some(end_before(&polygons.ring_ends, ring)..end)
+    })
+}
+
+/// Does a job: geometries sorted by object and LoD.
+pub(super) fn run(job: Vec<RawGeometry>, context: &Context<'_>, scratch: &mut Scratch) -> Chunk {
+    let mut chunk = Chunk::default();
+    let mut same_shape: Vec<RawGeometry> = Vec::new();
+    let mut job = job.into_iter().peekable();
+    while let Some(raw) = job.next() {
+        let ends_here = job.peek().is_none_or(|next| (next.object, next.lod) != (raw.object, raw.lod));
+        same_shape.push(raw);
+        if ends_here {
+            let mut repeated = std::mem::take(&mut scratch.repeated);
+            repeats::mark(&same_shape, context, &mut scratch.repeats, &mut repeated);
+            for (raw, repeated) in same_shape.drain(..).zip(&repeated) {
+                add_geometry(raw, repeated, context, scratch, &mut chunk);
+            }
+            scratch.repeated = repeated;
+        }
+    }
+    chunk
+}
+
+fn add_geometry(raw: RawGeometry, repeated: &[bool], context: &Context<'_>, scratch: &mut Scratch, chunk: &mut Chunk) {
+    let grid = context.grid(&raw);
+    let first_triangle = chunk.planes.len();
+    let mut dropped = 0;
+    scratch.faces.clear();
+    scratch.triangles.clear();
+    for (polygon, &repeated) in repeated.iter().enumerate() {
+        let id = &context.objects[raw.object as usize].id;
+        let place = || format!("object {id:?}, LoD {}, face {polygon}", raw.lod);
+        if repeated {
+            chunk
+                .warnings
+                .add(WarningCode::DuplicateShape, id, || format!("{}: the object has this face already", place()));
+            continue;
+        }
+        let polygon_number = chunk.polygons + polygon as u32;
+        if let Err((code, why)) = add_face(&raw, polygon, polygon_number, grid, scratch, chunk, (id, &place)) {
+            dropped += 1;
+            chunk.warnings.add(code, id, || format!("{}: {why}; the face is dropped", place()));
+        }
+    }
+    chunk.polygons += repeated.len() as u32;
+    let bounds = raw.extent_by(|p| grid.world(p));
+    let tiles = tiles::emit(&raw, grid, bounds, scratch, chunk);
+    chunk.geometries.push(Geometry {
+        object: raw.object,
+        lod: raw.lod,
+        solid: raw.solid,
+        polygons: repeated.len() as u32,
+        triangles: (chunk.planes.len() - first_triangle) as u32,
+        dropped,
+        tiles,
+        bounds,
+    });
+}
+
+/// Triangulates one polygon into `scratch.faces` and `scratch.triangles`, or says why not.
+fn add_face(
+    raw: &RawGeometry,
+    polygon: usize,
+    polygon_number: u32,
+    grid: &Grid,
+    scratch: &mut Scratch,
+    chunk: &mut Chunk,
+    (id, place): (&str, &dyn Fn() -> String),
+) -> Result<(), (WarningCode, &'static str)> {
+    let first_corner = gather(raw, polygon, grid, scratch)?;
+    let Scratch { triangulator, points, ring_ends, found, faces, triangles, .. } = scratch;
+    found.clear();
+    let face = triangulator.triangulate(points, ring_ends, found).map_err(explain)?;
+    if face.deviation > 1.0 && face.deviation * grid.coarsest_step() > FLAT_M {
+        chunk.warnings.add(WarningCode::NonPlanar, id, || {
+            format!("{}: corners lie up to {:.3} m off its plane", place(), face.deviation * grid.coarsest_step())
+        });
+    }
+    for _ in 0..face.holes_dropped {
+        chunk.warnings.add(WarningCode::ShortRing, id, || format!("{}: a hole without area is left out", place()));
+    }
+    let plane_of = |normal: [i128; 3], point: [i64; 3], keys: &mut Vec<(PlaneKey, u32)>| {
+        ExactPlane::new(normal, grid.absolute(point)).map_or(0, |plane| {
+            keys.push((PlaneKey { plane, class: grid.class }, polygon_number));
+            keys.len() as u32
+        })
+    };
+    let whole = if face.planar { plane_of(face.normal, points[0], &mut chunk.plane_keys) } else { 0 };
+    let face_number = faces.len() as u32;
+    for corners in found.iter() {
+        let plane = if face.planar {
+            whole
+        } else {
+            let [a, b, c] = corners.map(|corner| points[corner as usize]);
+            plane_of(newell(&[a, b, c]), a, &mut chunk.plane_keys)
+        };
+        triangles.push(Triangle { corners: corners.map(|c| c + first_corner), face: face_number, plane });
+    }
+    let surface = raw.polygons.surfaces.get(polygon).copied().unwrap_or(0);
+    faces.push(Face { normal: encode_normal(grid.normal(face.normal)), surface });
+    Ok(())
+}
+
+/// Copies a polygon's points and ring ends; returns the position of its first corner.
+fn gather(
+    raw: &RawGeometry,
+    polygon: usize,
+    grid: &Grid,
+    scratch: &mut Scratch,
+) -> Result<u32, (WarningCode, &'static str)> {
+    scratch.points.clear();
+    scratch.ring_ends.clear();
+    let mut first = None;
+    for ring in corner_ranges(&raw.polygons, polygon) {
+        first.get_or_insert(ring.start as u32);
+        for &index in raw.polygons.indices.get(ring).unwrap_or_default() {
+            let Some(&point) = raw.pool.points.get(index as usize) else {
+                return Err((WarningCode::VertexIndex, "a vertex index points past the vertex list"));
+            };
+            let world: DVec3 = grid.world(point);
+            if !is_trusted(world) {
+                return Err((WarningCode::BadCoordinate, "a coordinate is no number or too far from the origin"));
+            }
+            scratch.points.push(point);
+        }
+        scratch.ring_ends.push(scratch.points.len() as u32);
+    }
+    Ok(first.unwrap_or(0))
+}
+
+/// A refusal as a warning.
+fn explain(refusal: Refusal) -> (WarningCode, &'static str) {
+    match refusal {
+        Refusal::ShortRing => (WarningCode::ShortRing, "its outer ring has fewer than three distinct points"),
+        Refusal::ZeroArea => (WarningCode::ZeroArea, "its points lie on one line"),
+        Refusal::SelfCrossing => (WarningCode::SelfCrossing, "its rings cross or overlap"),
+        Refusal::AreaMismatch => (WarningCode::AreaMismatch, "no triangulation has exactly its area"),
+        Refusal::TooLarge => (WarningCode::BadCoordinate, "it extends over more than 2^50 lattice units"),
+    }
+}

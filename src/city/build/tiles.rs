@@ -1,0 +1,125 @@
+//! Triangles into tiles: vertices relative to an origin that depends on the geometry alone.
+
+use std::ops::Range;
+
+use glam::{DVec3, IVec3, Vec3};
+
+use super::{
+    RawGeometry,
+    job::{Chunk, Triangle},
+    metric::Grid,
+};
+use crate::{
+    city::{NONE, Tile, Vertex, encode_normal},
+    geom::Aabb,
+};
+
+/// Edge of a tile, metres. Geometries no larger are one tile.
+pub const TILE_M: f64 = 64.0;
+
+/// Buffers kept between geometries.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    /// Per triangle of a geometry of many tiles: its cell, its number.
+    cells: Vec<([i32; 3], u32)>,
+    /// Per corner: its vertex in the chunk; of this tile if not below the tile's first.
+    vertex_of: Vec<u32>,
+    order: Vec<u32>,
+}
+
+/// Appends the geometry's triangles to the chunk, tile by tile.
+///
+/// The grid of tiles starts at the whole metre below the geometry's smallest coordinates. A triangle belongs whole to
+/// the tile that holds its lexicographically smallest corner, so it may reach out of it; [`Tile::bounds`] says how far.
+pub(super) fn emit(
+    raw: &RawGeometry,
+    grid: &Grid,
+    bounds: Aabb,
+    scratch: &mut super::job::Scratch,
+    chunk: &mut Chunk,
+) -> Range<u32> {
+    let first = chunk.tiles.len() as u32;
+    let super::job::Scratch { faces, triangles, tiles: own, .. } = scratch;
+    if triangles.is_empty() {
+        return first..first;
+    }
+    let origin = bounds.min.floor();
+    let world = |corner: u32| grid.world(raw.pool.points[raw.polygons.indices[corner as usize] as usize]);
+    own.vertex_of.clear();
+    own.vertex_of.resize(raw.polygons.indices.len(), NONE);
+    own.order.clear();
+    own.order.extend(0..triangles.len() as u32);
+    let mut emitter = Emitter { raw, faces, triangles, vertex_of: &mut own.vertex_of, chunk };
+    if (bounds.max - bounds.min).max_element() <= TILE_M {
+        emitter.tile(&own.order, origin, &world);
+        return first..first + 1;
+    }
+    own.cells.clear();
+    own.cells.extend(triangles.iter().enumerate().map(|(number, triangle)| {
+        let [a, b, c] = triangle.corners.map(world);
+        let less = |p: DVec3, q: DVec3| if p.to_array() < q.to_array() { p } else { q };
+        let cell = ((less(less(a, b), c) - origin) / TILE_M).floor().as_ivec3();
+        (cell.to_array(), number as u32)
+    }));
+    own.cells.sort_unstable();
+    for same in own.cells.chunk_by(|a, b| a.0 == b.0) {
+        own.order.clear();
+        own.order.extend(same.iter().map(|&(_, number)| number));
+        emitter.tile(&own.order, origin + TILE_M * IVec3::from(same[0].0).as_dvec3(), &world);
+    }
+    first..emitter.chunk.tiles.len() as u32
+}
+
+struct Emitter<'a> {
+    raw: &'a RawGeometry,
+    faces: &'a [super::job::Face],
+    triangles: &'a [Triangle],
+    vertex_of: &'a mut [u32],
+    chunk: &'a mut Chunk,
+}
+
+impl Emitter<'_> {
+    /// Appends one tile with the triangles of these numbers.
+    fn tile(&mut self, numbers: &[u32], origin: DVec3, world: &dyn Fn(u32) -> DVec3) {
+        let chunk = &mut *self.chunk;
+        let polygons = &self.raw.polygons;
+        let (first_vertex, first_index) = (chunk.vertices.len() as u32, chunk.indices.len() as u32);
+        let has_texcoords = polygons.texcoords.len() == polygons.indices.len() && !polygons.texcoords.is_empty();
+        let texcoords = if has_texcoords { chunk.texcoords.len() as u32 } else { NONE };
+        let mut bounds = Aabb::EMPTY;
+        for &number in numbers {
+            let triangle = self.triangles[number as usize];
+            let face = self.faces[triangle.face as usize];
+            for corner in triangle.corners {
+                let known = &mut self.vertex_of[corner as usize];
+                if *known == NONE || *known < first_vertex {
+                    *known = chunk.vertices.len() as u32;
+                    let position = (world(corner) - origin).as_vec3();
+                    bounds = bounds.grown(origin + position.as_dvec3());
+                    let normal = smooth_normal(&polygons.normals, corner).unwrap_or(face.normal);
+                    chunk.vertices.push(Vertex { position: position.to_array(), normal, surface: face.surface });
+                    if has_texcoords {
+                        chunk.texcoords.push(polygons.texcoords[corner as usize]);
+                    }
+                }
+                chunk.indices.push(*known - first_vertex);
+            }
+            chunk.planes.push(triangle.plane);
+        }
+        chunk.tiles.push(Tile {
+            origin: origin.as_ivec3(),
+            geometry: chunk.geometries.len() as u32,
+            vertices: first_vertex..chunk.vertices.len() as u32,
+            indices: first_index..chunk.indices.len() as u32,
+            texcoords,
+            bounds,
+        });
+    }
+}
+
+/// The corner's own normal, packed, if the file has one with a direction.
+fn smooth_normal(normals: &[[f32; 3]], corner: u32) -> Option<u32> {
+    let normal = Vec3::from(*normals.get(corner as usize)?).as_dvec3();
+    let unit = normal.try_normalize()?;
+    Some(encode_normal(unit))
+}
