@@ -3,6 +3,9 @@
 pub mod build;
 pub mod load;
 pub mod model;
+pub mod spatial;
+#[cfg(test)]
+pub(crate) mod test_city;
 pub mod warning;
 
 pub use model::*;

@@ -1,8 +1,10 @@
 //! Shapes and numbers. Nothing here knows what a city is.
 
 pub mod aabb;
+pub mod bvh;
 pub mod exact;
 pub mod plane;
+pub mod ray;
 pub mod shape;
 pub mod triangulate;
 

@@ -1,0 +1,308 @@
+//! A bounding volume hierarchy over boxes: built by `obvhs`, walked here.
+//!
+//! Boxes are kept as f32 around an origin of the hierarchy's own, rounded outwards; all tests are in f64 and pad by
+//! what the change of origin can lose: a query may visit too much, never too little. What is in a leaf is the caller's.
+
+use glam::{DVec3, Vec3A};
+use obvhs::{
+    BvhBuildParams,
+    bvh2::{Bvh2, builder::build_bvh2, node::Bvh2Node},
+};
+
+use crate::geom::{Aabb, ray::Ray};
+
+/// `normal · p + offset ≥ 0`: one side of a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfSpace {
+    /// Points into the half-space; any length but zero.
+    pub normal: DVec3,
+    /// Metres, times the length of `normal`.
+    pub offset: f64,
+}
+
+impl HalfSpace {
+    /// The half-space in front of a plane through `point`.
+    pub fn through(point: DVec3, normal: DVec3) -> Self {
+        Self { normal, offset: -normal.dot(point) }
+    }
+
+    /// The signed distance of a point, times the length of the normal.
+    pub fn distance(&self, point: DVec3) -> f64 {
+        self.normal.dot(point) + self.offset
+    }
+}
+
+/// Boxes that can be asked by box, by convex region and along rays. Items are numbered as the boxes were given.
+#[derive(Clone)]
+pub struct Bvh {
+    tree: Bvh2,
+    /// Middle of all boxes: f32 is finest around it.
+    origin: DVec3,
+    /// Largest absolute coordinate of the origin, metres.
+    origin_size: f64,
+}
+
+impl std::fmt::Debug for Bvh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Bvh").field("nodes", &self.tree.nodes.len()).field("origin", &self.origin).finish()
+    }
+}
+
+/// Error of a sum or product of f64, with room for a few of them.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+impl Bvh {
+    /// Builds the hierarchy, in parallel; empty boxes are kept but never found.
+    pub fn build(boxes: &[Aabb]) -> Self {
+        let all = boxes.iter().filter(|b| !b.is_empty()).fold(Aabb::EMPTY, |all, b| all.union(*b));
+        let origin = if all.is_empty() { DVec3::ZERO } else { all.center() };
+        let numbered = boxes.iter().zip(0_u32..).filter(|(b, _)| !b.is_empty());
+        let (rounded, numbers): (Vec<_>, Vec<_>) = numbered.map(|(b, i)| (round_outwards(*b, origin), i)).unzip();
+        let mut tree = if rounded.is_empty() {
+            Bvh2::default()
+        } else {
+            build_bvh2(&rounded, BvhBuildParams::fast_build(), &mut std::time::Duration::default())
+        };
+        for index in &mut tree.primitive_indices {
+            *index = numbers[*index as usize];
+        }
+        Self { tree, origin, origin_size: origin.abs().max_element() }
+    }
+
+    /// Visits all items whose boxes meet `region`, in no particular order.
+    pub fn in_box(&self, region: &Aabb, mut visit: impl FnMut(u32)) {
+        let pad = ROUNDING * (self.origin_size + region.min.abs().max(region.max.abs()).max_element());
+        let region = Aabb { min: region.min - self.origin - pad, max: region.max - self.origin + pad };
+        self.walk(|node| bounds(node).meets(&region).then_some(()), |item, ()| visit(item));
+    }
+
+    /// Visits all items whose boxes may meet the intersection of half-spaces; `true`: the box lies wholly in it.
+    ///
+    /// Boxes near an edge of the region may be visited although they lie outside: each plane is tested alone.
+    pub fn in_half_spaces(&self, planes: &[HalfSpace], mut visit: impl FnMut(u32, bool)) {
+        let local: Vec<(DVec3, f64, f64)> = planes
+            .iter()
+            .map(|plane| {
+                let offset = plane.distance(self.origin);
+                let size = plane.normal.abs().element_sum() * self.origin_size + plane.offset.abs();
+                (plane.normal, offset, ROUNDING * size)
+            })
+            .collect();
+        let test = |node: &Bvh2Node| {
+            let bounds = bounds(node);
+            let (center, half) = (bounds.center(), 0.5 * bounds.size());
+            let mut inside = true;
+            for &(normal, offset, pad) in &local {
+                let reach = normal.abs().dot(half) * (1.0 + ROUNDING) + pad;
+                let distance = normal.dot(center) + offset;
+                if distance < -reach {
+                    return None;
+                }
+                inside &= distance >= reach;
+            }
+            Some(inside)
+        };
+        self.walk(test, &mut visit);
+    }
+
+    /// Visits the items whose boxes a ray meets before `t_max`, roughly from near to far. `visit` gets the item and the
+    /// current end of the ray and returns the new one (the same, or a nearer hit).
+    pub fn along_ray(&self, ray: &Ray, t_max: f64, mut visit: impl FnMut(u32, f64) -> f64) {
+        let Some(root) = self.tree.nodes.first() else { return };
+        let slabs = Slabs::new(self, ray);
+        let mut end = t_max;
+        let mut stack: Vec<(f64, &Bvh2Node)> = Vec::with_capacity(64);
+        stack.extend(slabs.entry(root, end).map(|t| (t, root)));
+        while let Some((entry, node)) = stack.pop() {
+            if entry > end {
+                continue;
+            }
+            if node.is_leaf() {
+                for &item in self.items(node) {
+                    end = visit(item, end);
+                }
+                continue;
+            }
+            let children = self.children(node);
+            let mut entries = children.map(|child| slabs.entry(child, end).map(|t| (t, child)));
+            // The nearer child is pushed last.
+            if let [Some((left, _)), Some((right, _))] = entries
+                && left < right
+            {
+                entries.swap(0, 1);
+            }
+            stack.extend(entries.into_iter().flatten());
+        }
+    }
+
+    /// Visits the items of all leaves that `test` lets pass, with what it said of the leaf.
+    fn walk<T: Copy>(&self, test: impl Fn(&Bvh2Node) -> Option<T>, mut visit: impl FnMut(u32, T)) {
+        let mut stack: Vec<&Bvh2Node> = self.tree.nodes.first().into_iter().collect();
+        while let Some(node) = stack.pop() {
+            let Some(answer) = test(node) else { continue };
+            if node.is_leaf() {
+                self.items(node).iter().for_each(|&item| visit(item, answer));
+            } else {
+                stack.extend(self.children(node));
+            }
+        }
+    }
+
+    fn items(&self, leaf: &Bvh2Node) -> &[u32] {
+        let first = leaf.first_index as usize;
+        &self.tree.primitive_indices[first..first + leaf.prim_count as usize]
+    }
+
+    fn children(&self, node: &Bvh2Node) -> [&Bvh2Node; 2] {
+        let first = node.first_index as usize;
+        [&self.tree.nodes[first], &self.tree.nodes[first + 1]]
+    }
+}
+
+/// A ray made ready for the boxes of one hierarchy.
+struct Slabs {
+    origin: DVec3,
+    direction: DVec3,
+    /// What the change of origin may have moved the ray by, metres.
+    pad: f64,
+}
+
+impl Slabs {
+    fn new(bvh: &Bvh, ray: &Ray) -> Self {
+        let pad = ROUNDING * (bvh.origin_size + ray.origin.abs().max_element());
+        Self { origin: ray.origin - bvh.origin, direction: ray.direction, pad }
+    }
+
+    /// Where the ray enters the node's box, if it does before `end`. Divides only where there is a direction: a ray
+    /// within a slab's plane is in it (hard case 10).
+    fn entry(&self, node: &Bvh2Node, end: f64) -> Option<f64> {
+        let bounds = bounds(node);
+        let (mut near, mut far) = (0.0_f64, end);
+        for axis in 0..3 {
+            let low = bounds.min[axis] - self.pad - self.origin[axis];
+            let high = bounds.max[axis] + self.pad - self.origin[axis];
+            let along = self.direction[axis];
+            if along == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (t0, t1) = if along > 0.0 { (low / along, high / along) } else { (high / along, low / along) };
+            near = near.max(t0 - ROUNDING * t0.abs());
+            far = far.min(t1 + ROUNDING * t1.abs());
+        }
+        (near <= far).then_some(near)
+    }
+}
+
+fn bounds(node: &Bvh2Node) -> Aabb {
+    let bounds = node.aabb();
+    Aabb { min: bounds.min.as_dvec3(), max: bounds.max.as_dvec3() }
+}
+
+/// The box around `origin` in f32, no smaller on any side.
+fn round_outwards(bounds: Aabb, origin: DVec3) -> obvhs::aabb::Aabb {
+    let down = |x: f64| if f64::from(x as f32) > x { (x as f32).next_down() } else { x as f32 };
+    let up = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
+    let (min, max) = (bounds.min - origin, bounds.max - origin);
+    obvhs::aabb::Aabb {
+        min: Vec3A::new(down(min.x), down(min.y), down(min.z)),
+        max: Vec3A::new(up(max.x), up(max.y), up(max.z)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn boxes(count: u32) -> Vec<Aabb> {
+        // Far from the origin of the world, as cities are.
+        let at = |seed: u32| f64::from(seed.wrapping_mul(2_654_435_761) >> 16) / 65536.0;
+        (0..count)
+            .map(|i| {
+                let min = DVec3::new(85_000.0 + 900.0 * at(i), 447_000.0 + 900.0 * at(i + 7), 40.0 * at(i + 13));
+                Aabb { min, max: min + 9.0 * DVec3::new(at(i + 1), at(i + 2), if i % 5 == 0 { 0.0 } else { 1.0 }) }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn nothing_and_one_box_work() {
+        let none = Bvh::build(&[]);
+        none.in_box(&Aabb { min: DVec3::MIN, max: DVec3::MAX }, |_| panic!("nothing is there"));
+        let ray = Ray { origin: DVec3::ZERO, direction: DVec3::X };
+        none.along_ray(&ray, f64::INFINITY, |_, _| panic!("nothing is there"));
+        let unit = Aabb { min: DVec3::ZERO, max: DVec3::ONE };
+        let one = Bvh::build(&[Aabb::EMPTY, unit]);
+        let mut found = Vec::new();
+        one.along_ray(&ray, f64::INFINITY, |item, end| {
+            found.push(item);
+            end
+        });
+        assert_eq!(found, [1]);
+    }
+
+    #[test]
+    fn box_queries_find_what_brute_force_finds() {
+        let boxes = boxes(1000);
+        let bvh = Bvh::build(&boxes);
+        for i in 0..50 {
+            let center = boxes[i * 17].center();
+            let region = Aabb { min: center - 40.0, max: center + 40.0 };
+            let mut found = Vec::new();
+            bvh.in_box(&region, |item| found.push(item));
+            found.sort_unstable();
+            // Leaves hold several boxes: all that meet the region are there, and not everything else.
+            let expected = (0..1000_u32).filter(|&b| boxes[b as usize].meets(&region));
+            assert!(expected.clone().all(|b| found.binary_search(&b).is_ok()));
+            assert!(found.len() < expected.count() + 100);
+        }
+    }
+
+    #[test]
+    fn convex_queries_never_lose_a_box_and_only_call_inside_what_is() {
+        let boxes = boxes(1000);
+        let bvh = Bvh::build(&boxes);
+        let eye = DVec3::new(85_450.0, 447_450.0, 30.0);
+        let planes = [
+            HalfSpace::through(eye, DVec3::new(1.0, 0.5, 0.0)),
+            HalfSpace::through(eye, DVec3::new(1.0, -0.5, 0.1)),
+            HalfSpace::through(eye + DVec3::new(0.0, 0.0, 3.0), DVec3::new(0.0, 0.0, -2.0)),
+        ];
+        let mut found = vec![None; 1000];
+        bvh.in_half_spaces(&planes, |item, inside| found[item as usize] = Some(inside));
+        for (bounds, found) in boxes.iter().zip(&found) {
+            let corners = bounds.corners();
+            let meets = planes.iter().all(|p| corners.iter().any(|&c| p.distance(c) >= 0.0));
+            let inside = corners.iter().all(|&c| planes.iter().all(|p| p.distance(c) >= -1e-6));
+            assert!(!meets || found.is_some(), "a box that meets every half-space is found");
+            assert!(*found != Some(true) || inside, "a box called inside is inside");
+        }
+        assert!(found.contains(&Some(true)) && found.iter().any(Option::is_none));
+    }
+
+    #[test]
+    fn axis_parallel_rays_through_flat_boxes_and_along_their_faces_miss_none() {
+        let flat = |z: f64| Aabb { min: DVec3::new(0.1, 0.1, z), max: DVec3::new(1.1, 1.1, z) };
+        let boxes: Vec<_> = (0..100).map(|i| flat(f64::from(i) * 0.1)).collect();
+        let bvh = Bvh::build(&boxes);
+        let count = |origin: [f64; 3], direction: [f64; 3]| {
+            let mut hits = std::collections::BTreeSet::new();
+            let ray = Ray { origin: origin.into(), direction: direction.into() };
+            bvh.along_ray(&ray, f64::INFINITY, |item, end| {
+                hits.insert(item);
+                end
+            });
+            hits
+        };
+        assert_eq!(count([0.5, 0.5, -1.0], [0.0, 0.0, 1.0]).len(), 100);
+        assert_eq!(count([0.1, 1.1, -1.0], [0.0, 0.0, 1e-300]).len(), 100, "along the corners");
+        for i in 0..100 {
+            let z = f64::from(i) * 0.1;
+            assert!(count([-5.0, 0.5, z], [1.0, 0.0, 0.0]).contains(&(i as u32)), "in the plane of box {i}");
+            assert!(count([-5.0, 0.1, z], [1.0, -0.0, 0.0]).contains(&(i as u32)), "along an edge of box {i}");
+        }
+        assert_eq!(count([1.2, 0.5, -1.0], [0.0, 0.0, 1.0]).len(), 0);
+    }
+}
