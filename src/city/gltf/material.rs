@@ -1,0 +1,218 @@
+//! glTF materials as [`Material`]s: made when first used, once per (material, textured, vertex colour).
+
+use gltf::json::{
+    Root,
+    material::{AlphaMode, Material as Json},
+    texture::{Info, WrappingMode},
+    validation::Checked,
+};
+use rustc_hash::FxHashMap;
+
+use super::buffers::{self, Buffers, Surroundings};
+use crate::city::{CityModel, Material, NONE, Texture, WarningCode, Wrap};
+
+/// Vertex colours are kept as materials; a file with more different ones than this gets means per primitive.
+pub(super) const MAX_TINTS: usize = 4096;
+/// What a tint counts in: 10 bits per channel.
+const TINT_STEPS: f64 = 1023.0;
+
+/// A vertex colour, linear RGB and opacity in 1/1023.
+pub(super) type Tint = [u16; 4];
+
+/// No vertex colour.
+pub(super) const UNTINTED: Tint = [TINT_STEPS as u16; 4];
+
+/// The tint nearest to a linear colour.
+pub(super) fn tint(color: [f64; 4]) -> Tint {
+    color.map(|c| (c.clamp(0.0, 1.0) * TINT_STEPS).round() as u16)
+}
+
+/// Which material a triangle asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Key {
+    /// Index in the file; `None` is the default material.
+    pub material: Option<usize>,
+    /// Whether its texture applies: the primitive has the texture coordinates it wants.
+    pub textured: bool,
+    /// The vertex colour it is multiplied with.
+    pub tint: Tint,
+}
+
+/// How texture coordinates of a material are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mapping {
+    /// Which `TEXCOORD_n`.
+    pub set: u32,
+    /// `KHR_texture_transform` as rows: u' = m₀·(u, v, 1), v' = m₁·(u, v, 1).
+    pub rows: [[f64; 3]; 2],
+}
+
+/// The materials of one file.
+#[derive(Debug)]
+pub(super) struct Materials {
+    made: FxHashMap<Key, u32>,
+    textures: FxHashMap<usize, u32>,
+    /// Vertex colours seen.
+    pub tints: usize,
+    /// Bytes that embedded images may still take.
+    image_budget: u64,
+}
+
+/// What materials are read from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Palette<'a> {
+    pub root: &'a Root,
+    pub buffers: &'a Buffers<'a>,
+    pub around: Surroundings<'a>,
+}
+
+impl Materials {
+    pub fn new(buffers: &Buffers<'_>) -> Self {
+        let image_budget = buffers.total.saturating_mul(2).saturating_add(1 << 20);
+        Self { made: FxHashMap::default(), textures: FxHashMap::default(), tints: 0, image_budget }
+    }
+
+    /// The city's index of the material of `key`.
+    pub fn get(&mut self, key: Key, from: Palette<'_>, city: &mut CityModel) -> u32 {
+        if let Some(made) = self.made.get(&key) {
+            return *made;
+        }
+        let material = self.make(key, from, city);
+        city.materials.push(material);
+        let index = (city.materials.len() - 1) as u32;
+        self.made.insert(key, index);
+        index
+    }
+
+    /// Whether another vertex colour may become a material.
+    pub fn admits(&mut self, key: Key) -> bool {
+        if self.made.contains_key(&key) {
+            return true;
+        }
+        self.tints += 1;
+        self.tints <= MAX_TINTS
+    }
+
+    fn make(&mut self, key: Key, from: Palette<'_>, city: &mut CityModel) -> Material {
+        let json = key.material.and_then(|m| from.root.materials.get(m));
+        // glTF 2.0, 5.19: the default material is white; a city in pure white hides its edges, so ours is used.
+        let mut material = json.map_or_else(Material::default, |json| colors(json, from, city));
+        if let (Some(info), true) = (json.and_then(color_texture), key.textured) {
+            material.texture = self.texture(info.index.value(), from, city);
+        }
+        if key.tint != UNTINTED && json.is_none() {
+            material.base_color = [1.0; 4];
+        }
+        for (channel, tint) in material.base_color.iter_mut().zip(key.tint) {
+            *channel *= (f64::from(tint) / TINT_STEPS) as f32;
+        }
+        match json.map(|j| j.alpha_mode) {
+            Some(Checked::Valid(AlphaMode::Blend)) => {}
+            Some(Checked::Valid(AlphaMode::Mask)) => {
+                // The texel's share of the test `texel × factor < cutoff`; nothing is left where the factor is 0.
+                let cutoff = json.and_then(|j| j.alpha_cutoff).map_or(0.5, |c| c.0);
+                let alpha = material.base_color[3];
+                material.alpha_cutoff = if alpha > 0.0 { (cutoff / alpha).max(0.0) } else { f32::MAX };
+                material.base_color[3] = 1.0;
+            }
+            _ => material.base_color[3] = 1.0,
+        }
+        material
+    }
+
+    /// The city's index of texture `index`, or [`NONE`].
+    fn texture(&mut self, index: usize, from: Palette<'_>, city: &mut CityModel) -> u32 {
+        if let Some(made) = self.textures.get(&index) {
+            return *made;
+        }
+        let root = from.root;
+        let texture = root.textures.get(index);
+        let image = texture.and_then(|t| root.images.get(t.source.value()).map(|image| (t.source.value(), image)));
+        let made = match (texture, image) {
+            (Some(texture), Some((at, image))) => {
+                let sampler = texture.sampler.and_then(|s| root.samplers.get(s.value()));
+                let wrap = sampler.map_or([Wrap::Repeat; 2], |s| [s.wrap_s, s.wrap_t].map(wrap));
+                let budget = &mut self.image_budget;
+                let image = buffers::image(at, image, (root, from.buffers), from.around, budget, &mut city.warnings);
+                city.textures.push(Texture { image, wrap });
+                (city.textures.len() - 1) as u32
+            }
+            _ => {
+                city.warnings.add(WarningCode::AppearanceIndex, "", || {
+                    format!("{}, textures[{index}]: it or its image does not exist", from.around.path.display())
+                });
+                NONE
+            }
+        };
+        self.textures.insert(index, made);
+        made
+    }
+}
+
+/// How the base colour texture of a material is mapped, if it has one.
+pub(super) fn mapping(root: &Root, material: Option<usize>) -> Option<Mapping> {
+    let info = color_texture(root.materials.get(material?)?)?;
+    let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
+    let Some(t) = transform else {
+        return Some(Mapping { set: info.tex_coord, rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] });
+    };
+    // KHR_texture_transform: translation × rotation × scale.
+    let (sin, cos) = f64::from(t.rotation.0).sin_cos();
+    let [sx, sy] = t.scale.0.map(f64::from);
+    let [ox, oy] = t.offset.0.map(f64::from);
+    let rows = [[cos * sx, sin * sy, ox], [-sin * sx, cos * sy, oy]];
+    Some(Mapping { set: t.tex_coord.unwrap_or(info.tex_coord), rows })
+}
+
+/// The texture that colours the material, of either workflow.
+fn color_texture(json: &Json) -> Option<Info> {
+    json.pbr_metallic_roughness.base_color_texture.clone().or_else(|| {
+        let glossy = json.extensions.as_ref()?.others.get("KHR_materials_pbrSpecularGlossiness")?;
+        serde_json::from_value(glossy.get("diffuseTexture")?.clone()).ok()
+    })
+}
+
+/// Everything of a material but its texture.
+fn colors(json: &Json, from: Palette<'_>, city: &mut CityModel) -> Material {
+    let pbr = &json.pbr_metallic_roughness;
+    let extension = |name: &str| json.extensions.as_ref().and_then(|e| e.others.get(name));
+    let mut base_color = pbr.base_color_factor.0;
+    let mut roughness = pbr.roughness_factor.0;
+    if let Some(glossy) = extension("KHR_materials_pbrSpecularGlossiness") {
+        let factor = glossy.get("diffuseFactor").and_then(|f| serde_json::from_value(f.clone()).ok());
+        base_color = factor.unwrap_or([1.0; 4]);
+        roughness = 1.0 - glossy.get("glossinessFactor").and_then(serde_json::Value::as_f64).unwrap_or(1.0) as f32;
+    }
+    let strength = extension("KHR_materials_emissive_strength").and_then(|e| e.get("emissiveStrength")?.as_f64());
+    let mut emissive = json.emissive_factor.0.map(|c| sane(c * strength.unwrap_or(1.0) as f32, f32::MAX));
+    if json.emissive_texture.is_some() && emissive != [0.0; 3] {
+        // Without its picture the light would flood the whole surface.
+        emissive = [0.0; 3];
+        city.warnings.add(WarningCode::Unsupported, "", || {
+            let name = json.name.as_deref().unwrap_or("unnamed");
+            format!("{}, material {name:?}: emissive textures are not drawn", from.around.path.display())
+        });
+    }
+    Material {
+        name: json.name.clone().unwrap_or_default(),
+        base_color: base_color.map(|c| sane(c, 1.0)),
+        emissive,
+        roughness: sane(roughness, 1.0),
+        unlit: json.extensions.as_ref().is_some_and(|e| e.unlit.is_some()),
+        alpha_cutoff: 0.0,
+        texture: NONE,
+    }
+}
+
+/// Between 0 and `most`; NaN is 0.
+fn sane(value: f32, most: f32) -> f32 {
+    if value.is_nan() { 0.0 } else { value.clamp(0.0, most) }
+}
+
+fn wrap(mode: Checked<WrappingMode>) -> Wrap {
+    match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    }
+}
