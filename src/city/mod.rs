@@ -7,6 +7,7 @@ pub mod model;
 pub mod spatial;
 #[cfg(test)]
 pub(crate) mod test_city;
+pub mod obj;
 pub mod warning;
 
 pub use model::*;

@@ -18,7 +18,6 @@ use rustc_hash::FxHashMap;
 
 use self::{
     buffers::{Buffers, Surroundings},
-    container::Placement,
     material::{Materials, Palette},
     mesh::{Gathered, Placed},
 };
@@ -48,7 +47,6 @@ pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) ->
     let corners = FREE_CORNERS.saturating_add(bytes.saturating_mul(CORNERS_PER_BYTE)).min(MAX_CORNERS);
     let mut reader = Reader {
         from,
-        placements: &container.placements,
         materials: Materials::new(&buffers),
         ids: FxHashMap::default(),
         corners,
@@ -72,7 +70,6 @@ pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) ->
 /// The state of reading one file.
 struct Reader<'a> {
     from: Palette<'a>,
-    placements: &'a [Placement],
     materials: Materials,
     /// How often each id was used.
     ids: FxHashMap<String, u32>,

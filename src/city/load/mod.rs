@@ -167,7 +167,7 @@ pub fn load_with_stats(
     let (builder, mut stats) = load_raw(paths, options, progress)?;
     progress.enter(Stage::Build, paths.len(), paths.len(), Path::new(""));
     let start = Instant::now();
-    let model = builder.model;
+    let model = builder.finish();
     stats.build = start.elapsed();
     Ok((model, stats))
 }
@@ -234,10 +234,9 @@ pub fn read_input(builder: &mut ModelBuilder, input: &Input, options: &LoadOptio
             Err(LoadError::new(&input.path, format!("{name} cannot be read yet; {}", sniff::READABLE)))
         }
         Format::Not(what) => Err(LoadError::new(&input.path, what)),
-        Format::CityJson | Format::Gltf | Format::Obj => {
-            let _ = (builder, options);
-            Err(LoadError::new(&input.path, "cannot be read yet"))
-        }
+        Format::Gltf => crate::city::gltf::read(builder, input, options),
+        Format::Obj => crate::city::obj::read(builder, input, options),
+        Format::CityJson => Err(LoadError::new(&input.path, "cannot be read yet")),
     }
 }
 

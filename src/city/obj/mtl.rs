@@ -1,0 +1,217 @@
+//! MTL libraries: [`tobj`] reads them, once the lines it would panic or give up on are set aside.
+
+use std::path::Path;
+
+use rustc_hash::FxHashMap;
+
+use super::lines::{Lines, number, statement, text, words};
+use crate::city::{
+    CityModel, Material, NONE, Texture, TextureImage, WarningCode, Warnings, Wrap,
+    load::{LoadOptions, Sibling},
+};
+
+/// A material as the city holds it, with and without its texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Look {
+    /// For faces with texture coordinates.
+    pub textured: u32,
+    /// For faces without; the same where the material has no texture.
+    pub plain: u32,
+}
+
+/// The largest library; a longer one is no hand-written or exported list of materials.
+const MAX_BYTES: u64 = 256 << 20;
+
+/// Reads the library `name` that stands in the model file `obj` into `looks`.
+pub(super) fn read(
+    city: &mut CityModel,
+    looks: &mut FxHashMap<String, Look>,
+    obj: &Path,
+    name: &str,
+    options: &LoadOptions,
+) -> Result<(), String> {
+    let path = match options.sibling(obj, name) {
+        Sibling::Found(path) => path,
+        Sibling::Missing(path) => return Err(format!("{} does not exist", path.display())),
+        Sibling::Outside(path) => {
+            let message = format!("{} is outside the folders you named", path.display());
+            city.warnings.add(WarningCode::OutsidePath, "", || {
+                format!("{}: {message}; --allow-outside reads it", obj.display())
+            });
+            return Err(message);
+        }
+    };
+    let failed = |what: String| format!("{} cannot be read: {what}", path.display());
+    let size = std::fs::metadata(&path).map_err(|e| failed(e.to_string()))?.len();
+    if size > MAX_BYTES {
+        return Err(failed(format!("{size} bytes are too many for a list of materials")));
+    }
+    let bytes = std::fs::read(&path).map_err(|e| failed(e.to_string()))?;
+    let clean = cleaned(&bytes, &path, &mut city.warnings);
+    let (materials, _) = tobj::load_mtl_buf(&mut clean.as_bytes()).map_err(|e| failed(e.to_string()))?;
+    for material in materials {
+        let look = add(city, &material, &path, options);
+        looks.insert(material.name, look);
+    }
+    Ok(())
+}
+
+/// The lines that tobj can read, one statement each, in UTF-8.
+fn cleaned(bytes: &[u8], path: &Path, warnings: &mut Warnings) -> String {
+    let mut clean = String::with_capacity(bytes.len());
+    let mut named = false;
+    for (line_number, line) in Lines::new(bytes) {
+        let Some((keyword, arguments)) = statement(&line) else { continue };
+        let numbers: Vec<f64> = words(arguments).map_while(number).filter(|n| n.is_finite()).take(3).collect();
+        let statement = match keyword {
+            b"newmtl" if !arguments.is_empty() => Some(format!("newmtl {}", text(arguments))),
+            b"Kd" | b"Ke" => match numbers[..] {
+                [r, g, b] => Some(format!("{} {r} {g} {b}", text(keyword))),
+                // Green and blue may be left out (MTL specification): all are the same then.
+                [grey, ..] => Some(format!("{} {grey} {grey} {grey}", text(keyword))),
+                [] => None,
+            },
+            b"Ns" => numbers.first().map(|n| format!("Ns {n}")),
+            b"d" => {
+                let halo = words(arguments).filter_map(number).next();
+                halo.filter(|n| n.is_finite()).map(|n| format!("d {n}"))
+            }
+            b"Tr" => numbers.first().map(|n| format!("d {}", 1.0 - n)),
+            b"map_Kd" | b"map_d" if !arguments.is_empty() => Some(format!("{} {}", text(keyword), text(arguments))),
+            // The rest changes nothing that is drawn here.
+            b"newmtl" | b"map_Kd" | b"map_d" => None,
+            _ => continue,
+        };
+        named |= keyword == b"newmtl";
+        match statement.filter(|_| named) {
+            Some(statement) => {
+                clean.push_str(&statement);
+                clean.push('\n');
+            }
+            None => warnings.add(WarningCode::Malformed, "", || {
+                let keyword = text(keyword);
+                let right = if named { "numbers or a name after it" } else { "a newmtl before it" };
+                format!("{}, line {line_number}: {keyword} needs {right}", path.display())
+            }),
+        }
+    }
+    clean
+}
+
+/// Adds a material, and its untextured twin where it has a texture.
+fn add(city: &mut CityModel, mtl: &tobj::Material, path: &Path, options: &LoadOptions) -> Look {
+    let linear = |c: f64| srgb_to_linear(c.clamp(0.0, 1.0)) as f32;
+    let kd = mtl.diffuse.unwrap_or([0.8; 3]).map(linear);
+    let opacity = mtl.dissolve.unwrap_or(1.0).clamp(0.0, 1.0) as f32;
+    let plain = Material {
+        name: mtl.name.clone(),
+        base_color: [kd[0], kd[1], kd[2], opacity],
+        emissive: mtl.emissive.unwrap_or_default().map(linear),
+        // Blinn-Phong exponent to roughness, so that both highlights are as wide.
+        roughness: mtl.shininess.map_or(0.9, |ns| (2.0 / (ns.max(0.0) + 2.0)).sqrt() as f32),
+        ..Material::default()
+    };
+    if mtl.dissolve_texture.is_some() {
+        city.warnings.add(WarningCode::Unsupported, "", || {
+            format!("{}, material {:?}: opacity textures (map_d) are not drawn", path.display(), mtl.name)
+        });
+    }
+    let texture = mtl.diffuse_texture.as_deref().map(|t| texture(city, &mtl.name, t, path, options));
+    city.materials.push(plain.clone());
+    let untextured = (city.materials.len() - 1) as u32;
+    let Some(texture) = texture else { return Look { textured: untextured, plain: untextured } };
+    // Kd multiplies the texture (MTL specification), but exporters that mean "as it is" write 0.
+    let shade = if kd == [0.0; 3] { [1.0; 3] } else { kd };
+    city.materials.push(Material { base_color: [shade[0], shade[1], shade[2], opacity], texture, ..plain });
+    Look { textured: untextured + 1, plain: untextured }
+}
+
+/// Adds the texture of a `map_Kd` statement: options, then a file name that may hold spaces.
+fn texture(city: &mut CityModel, material: &str, statement: &str, path: &Path, options: &LoadOptions) -> u32 {
+    let (name, wrap, moved) = map_options(statement);
+    if moved {
+        city.warnings.add(WarningCode::Unsupported, "", || {
+            format!("{}, material {material:?}: -o, -s and -t of map_Kd are not applied", path.display())
+        });
+    }
+    let image = match options.sibling(path, name) {
+        Sibling::Found(file) => TextureImage::File(file),
+        Sibling::Missing(file) => {
+            city.warnings.add(WarningCode::MissingTexture, "", || {
+                format!("{}, material {material:?}: {} does not exist", path.display(), file.display())
+            });
+            TextureImage::Missing
+        }
+        Sibling::Outside(file) => {
+            city.warnings.add(WarningCode::OutsidePath, "", || {
+                let file = file.display();
+                format!("{}: {file} is outside the folders you named; --allow-outside reads it", path.display())
+            });
+            TextureImage::Missing
+        }
+    };
+    let known = city.textures.iter().rposition(|t| t.image == image && t.wrap == [wrap; 2]);
+    match known.filter(|_| image != TextureImage::Missing) {
+        Some(known) => known as u32,
+        None => {
+            city.textures.push(Texture { image, wrap: [wrap; 2] });
+            u32::try_from(city.textures.len() - 1).unwrap_or(NONE)
+        }
+    }
+}
+
+/// File name, addressing, and whether the picture is moved or scaled.
+fn map_options(statement: &str) -> (&str, Wrap, bool) {
+    let (mut rest, mut wrap, mut moved) = (statement.trim(), Wrap::Repeat, false);
+    let next = |text: &str| text.split_whitespace().next().map(str::to_owned);
+    let after = |text: &'_ str, word: &str| -> usize { text.len() - text[word.len()..].trim_start().len() };
+    while let Some(option) = next(rest).filter(|w| w.starts_with('-')) {
+        let (least, most) = match option.as_str() {
+            "-o" | "-s" | "-t" => (1, 3),
+            "-mm" => (2, 2),
+            "-blendu" | "-blendv" | "-boost" | "-cc" | "-clamp" | "-texres" | "-bm" | "-imfchan" | "-type" => (1, 1),
+            _ => break,
+        };
+        moved |= matches!(option.as_str(), "-o" | "-s" | "-t");
+        rest = &rest[after(rest, &option)..];
+        for i in 0..most {
+            let Some(word) = next(rest).filter(|w| i < least || w.parse::<f64>().is_ok()) else { break };
+            if option == "-clamp" && word == "on" {
+                wrap = Wrap::Clamp;
+            }
+            rest = &rest[after(rest, &word)..];
+        }
+    }
+    (rest, wrap, moved)
+}
+
+/// Display value to light (IEC 61966-2-1): people pick `Kd` on screens.
+fn srgb_to_linear(c: f64) -> f64 {
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_of_a_map_come_before_its_name() {
+        assert_eq!(map_options("brick wall.png"), ("brick wall.png", Wrap::Repeat, false));
+        assert_eq!(map_options("-clamp on -s 2 2 1 a.png"), ("a.png", Wrap::Clamp, true));
+        assert_eq!(map_options("-o 0.5 tex 1.png"), ("tex 1.png", Wrap::Repeat, true));
+        assert_eq!(map_options("-s"), ("", Wrap::Repeat, true));
+        assert_eq!(map_options("-dash.png"), ("-dash.png", Wrap::Repeat, false));
+    }
+
+    #[test]
+    fn lines_that_break_tobj_are_set_aside() {
+        let mut warnings = Warnings::default();
+        let clean = cleaned(
+            b"Kd 1 1 1\nnewmtl\nnewmtl a\nKd 0.5\nKd x\nKe nan 0 0\nd -halo 0.5\nTr 0.25\nmap_Kd\nillum 900\n",
+            Path::new("m.mtl"),
+            &mut warnings,
+        );
+        assert_eq!(clean, "newmtl a\nKd 0.5 0.5 0.5\nd 0.5\nd 0.75\n");
+        assert_eq!(warnings.count(WarningCode::Malformed), 5);
+    }
+}
