@@ -4,10 +4,10 @@ pub mod build;
 pub mod gltf;
 pub mod load;
 pub mod model;
+pub mod obj;
 pub mod spatial;
 #[cfg(test)]
 pub(crate) mod test_city;
-pub mod obj;
 pub mod warning;
 
 pub use model::*;
