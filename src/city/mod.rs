@@ -1,6 +1,7 @@
 //! City models: files become one plain [`CityModel`] and a list of warnings; nothing of the GPU in it.
 
 pub mod build;
+pub mod coplanar;
 pub mod gltf;
 pub mod load;
 pub mod model;

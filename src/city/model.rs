@@ -14,7 +14,10 @@ use std::{ops::Range, path::PathBuf, sync::Arc};
 
 use glam::{DVec3, IVec3};
 
-use crate::{city::warning::Warnings, geom::Aabb};
+use crate::{
+    city::warning::Warnings,
+    geom::{Aabb, plane::Plane},
+};
 
 /// Index into [`CityModel::strings`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -59,6 +62,8 @@ pub struct CityModel {
     pub indices: Vec<u32>,
     /// One per triangle: 0, or a number shared by all triangles of exactly one plane (two polygons at least).
     pub planes: Vec<u32>,
+    /// The planes that `planes` numbers: number k stands at k - 1.
+    pub plane_equations: Vec<Plane>,
     /// Box around the vertices that any geometry as read uses (dropped faces, points and lines too), metres:
     /// grown by [`crate::city::build::ModelBuilder::add_geometry`], and by loaders for points and lines.
     pub extent_as_read: Aabb,

@@ -1,5 +1,16 @@
 //! Exact planes: equal exactly when they hold the same points.
 
+use glam::DVec3;
+
+/// A plane in the world: all p with `normal · p = offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Unit length; which side it shows to says nothing.
+    pub normal: DVec3,
+    /// Metres.
+    pub offset: f64,
+}
+
 /// A plane `normal · p = offset` through integer points, in lowest terms; the first non-zero component of `normal`
 /// is positive, so both sides of a wall lie on an equal plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -39,6 +50,15 @@ impl ExactPlane {
         Some(Self { normal: reduced, offset: [offset as u64, (offset >> 64) as u64] })
     }
 
+    /// The plane in the world where integers p mean `origin + step × p`; `None` if its numbers are beyond f64.
+    pub fn in_world(&self, step: DVec3, origin: DVec3) -> Option<Plane> {
+        let [x, y, z] = self.normal.map(|n| n as f64);
+        let normal = DVec3::new(x, y, z) / step;
+        let length = normal.length();
+        let unit = normal.try_normalize()?;
+        Some(Plane { normal: unit, offset: self.offset() as f64 / length + unit.dot(origin) })
+    }
+
     /// `normal · p` of every point of the plane.
     pub fn offset(&self) -> i128 {
         (i128::from(self.offset[1] as i64) << 64) | i128::from(self.offset[0])
@@ -70,6 +90,18 @@ mod tests {
         assert_eq!(plane.offset(), 9);
         assert_eq!(ExactPlane::new([0, 300, -200], [-50, 3, 0]), Some(plane));
         assert_ne!(ExactPlane::new([0, 3, -2], [7, 1, -2]), Some(plane));
+    }
+
+    #[test]
+    fn planes_in_the_world_hold_the_points() {
+        let (step, origin) = (DVec3::new(0.001, 0.001, 0.01), DVec3::new(85_000.0, 447_000.0, -3.0));
+        let points = [[1234, -500, 77], [9000, 123, 5], [-777, 4000, 100]];
+        let normal = crate::geom::exact::newell(&points);
+        let plane = ExactPlane::new(normal, points[0]).unwrap().in_world(step, origin).unwrap();
+        for p in points {
+            let world = origin + step * DVec3::new(p[0] as f64, p[1] as f64, p[2] as f64);
+            assert!((plane.normal.dot(world) - plane.offset).abs() < 1e-9);
+        }
     }
 
     #[test]

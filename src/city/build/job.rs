@@ -6,7 +6,7 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::{
-    Polygons, RawGeometry,
+    Lattice, Polygons, RawGeometry,
     metric::{Grid, is_trusted},
     planes::PlaneKey,
     repeats, tiles,
@@ -29,6 +29,8 @@ pub(super) struct Context<'a> {
     pub(super) surfaces: &'a [Surface],
     /// Grids by the address of the pool.
     grids: FxHashMap<usize, Grid>,
+    /// Lattices by grid class.
+    pub(super) classes: Vec<Lattice>,
 }
 
 impl<'a> Context<'a> {
@@ -38,7 +40,7 @@ impl<'a> Context<'a> {
         for raw in raws {
             grids.entry(Arc::as_ptr(&raw.pool).addr()).or_insert_with(|| Grid::new(raw.pool.lattice, &mut classes));
         }
-        Self { objects, surfaces, grids }
+        Self { objects, surfaces, grids, classes }
     }
 
     pub(super) fn grid(&self, raw: &RawGeometry) -> &Grid {

@@ -291,7 +291,7 @@ fn finish_geometries(model: &mut CityModel, raws: Vec<RawGeometry>) {
         ready = next;
     }
     let Built { mut chunk, planes, .. } = built;
-    planes.finish(&mut chunk.planes);
+    let plane_equations = planes.finish(&mut chunk.planes, &context.classes);
     chunk.vertices.shrink_to_fit();
     chunk.indices.shrink_to_fit();
     chunk.planes.shrink_to_fit();
@@ -302,6 +302,7 @@ fn finish_geometries(model: &mut CityModel, raws: Vec<RawGeometry>) {
     model.texcoords = chunk.texcoords;
     model.indices = chunk.indices;
     model.planes = chunk.planes;
+    model.plane_equations = plane_equations;
     model.warnings.append(chunk.warnings);
 }
 

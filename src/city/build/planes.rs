@@ -1,8 +1,10 @@
 //! Numbers for planes that several polygons share.
 
+use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use crate::geom::plane::ExactPlane;
+use super::Lattice;
+use crate::geom::plane::{ExactPlane, Plane};
 
 /// A plane in the integers of one class of grids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -36,8 +38,9 @@ impl PlaneTable {
     }
 
     /// Renumbers `planes`: planes of a single polygon become 0, the others 1, 2, ... in the order they were met.
-    pub(super) fn finish(self, planes: &mut [u32]) {
-        drop(self.numbers);
+    /// Returns those others in the world; `classes` are the lattices of the grid classes.
+    pub(super) fn finish(self, planes: &mut [u32], classes: &[Lattice]) -> Vec<Plane> {
+        let nowhere = Plane { normal: DVec3::ZERO, offset: 0.0 };
         let mut count = 0;
         let final_numbers: Vec<u32> = std::iter::once(0)
             .chain(self.polygons.iter().map(|&(_, shared)| {
@@ -45,9 +48,17 @@ impl PlaneTable {
                 if shared { count } else { 0 }
             }))
             .collect();
+        let mut equations = vec![nowhere; count as usize];
+        for (key, number) in self.numbers {
+            if let Some(place) = final_numbers[number as usize + 1].checked_sub(1) {
+                let lattice = classes[key.class as usize];
+                equations[place as usize] = key.plane.in_world(lattice.step, lattice.origin).unwrap_or(nowhere);
+            }
+        }
         for plane in planes {
             *plane = final_numbers[*plane as usize];
         }
+        equations
     }
 }
 
@@ -69,7 +80,10 @@ mod tests {
             table.add(key(2, 1), 14),
             table.add(key(2, 0), 15),
         ];
-        table.finish(&mut planes);
+        let millimetres = Lattice { step: DVec3::splat(0.001), origin: DVec3::ZERO };
+        let equations = table.finish(&mut planes, &[millimetres, Lattice::FINE]);
         assert_eq!(planes, [0, 0, 1, 0, 2, 1, 0, 2]);
+        assert_eq!(equations.iter().map(|plane| plane.normal).collect::<Vec<_>>(), [DVec3::Z; 2]);
+        assert_eq!(equations.iter().map(|plane| plane.offset).collect::<Vec<_>>(), [0.001, 0.002]);
     }
 }

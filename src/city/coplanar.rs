@@ -1,0 +1,311 @@
+//! Triangles that lie in one plane and cover each other: party walls, doors in walls, floors on the ground.
+//!
+//! Depth cannot tell them apart, so a fixed order does: the same triangle wins in every frame, from every side (hard
+//! case 3). Which planes are the same is known exactly from load ([`CityModel::planes`]).
+
+use std::cmp::Reverse;
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::{
+    city::{CityModel, NONE, ObjectClass, StringId},
+    geom::{Aabb, bvh::Bvh},
+};
+
+/// Triangles that overlap on less than this do not cover each other, square metres.
+const LEAST_AREA_M2: f64 = 1e-6;
+/// Nor do those whose overlap is narrower than this, metres: the f32 positions of neighbours differ by some 10⁻⁵.
+const LEAST_WIDTH_M: f64 = 5e-5;
+/// Planes of more triangles than this use a hierarchy, fewer are tried pair by pair.
+const PAIRWISE: usize = 32;
+
+/// A triangle that shares its place with another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CoplanarTriangle {
+    /// Its tile, by index.
+    pub tile: u32,
+    /// Index into [`CityModel::planes`].
+    pub triangle: u32,
+    /// Number of its plane: [`CityModel::plane_equations`] at `group - 1`.
+    pub group: u32,
+    /// Within the group, 0 and up, no two alike; of triangles at one place the highest is seen.
+    pub priority: u32,
+}
+
+/// All triangles of the geometries `shown` that another shown triangle covers, whatever side they face: by group, then
+/// by priority.
+///
+/// The priority: what stands on the ground is above it; doors and windows are above roofs, roofs above walls, walls
+/// above other surfaces, these above ground surfaces; then the object whose id comes first in byte order; then what was
+/// read first.
+pub fn coplanar_triangles(model: &CityModel, shown: &[u32]) -> Vec<CoplanarTriangle> {
+    let mut members: Vec<CoplanarTriangle> = Vec::new();
+    for geometry in shown.iter().filter_map(|&geometry| model.geometries.get(geometry as usize)) {
+        for number in geometry.tiles.clone() {
+            let indices = &model.tiles[number as usize].indices;
+            for triangle in indices.start / 3..indices.end / 3 {
+                let group = model.planes[triangle as usize];
+                if group != 0 {
+                    members.push(CoplanarTriangle { tile: number, triangle, group, priority: 0 });
+                }
+            }
+        }
+    }
+    members.par_sort_unstable_by_key(|member| (member.group, member.triangle));
+    let ranks: FxHashMap<StringId, u8> = surface_ranks(model);
+    let groups: Vec<&[CoplanarTriangle]> =
+        members.chunk_by(|a, b| a.group == b.group).filter(|group| group.len() > 1).collect();
+    groups.into_par_iter().flat_map_iter(|group| covered(model, group, &ranks)).collect()
+}
+
+/// The members of one plane that cover another one, by priority.
+fn covered(model: &CityModel, group: &[CoplanarTriangle], ranks: &FxHashMap<StringId, u8>) -> Vec<CoplanarTriangle> {
+    let corners: Vec<[DVec3; 3]> = group.iter().map(|member| world_corners(model, member)).collect();
+    let flat = flatten(&corners, model.plane_equations[group[0].group as usize - 1].normal);
+    let mut covers = vec![false; group.len()];
+    let mut try_pair = |i: usize, j: usize| {
+        if !(covers[i] && covers[j]) && overlap(&flat[i], &flat[j]) {
+            covers[i] = true;
+            covers[j] = true;
+        }
+    };
+    if group.len() <= PAIRWISE {
+        for i in 1..group.len() {
+            (0..i).for_each(|j| try_pair(i, j));
+        }
+    } else {
+        let boxes: Vec<Aabb> = corners.iter().map(|&corners| Aabb::from_points(corners)).collect();
+        let bvh = Bvh::build(&boxes);
+        for (i, region) in boxes.iter().enumerate() {
+            bvh.in_box(region, |j| {
+                if (j as usize) < i {
+                    try_pair(i, j as usize);
+                }
+            });
+        }
+    }
+    let mut found: Vec<CoplanarTriangle> =
+        group.iter().zip(covers).filter_map(|(member, covers)| covers.then_some(*member)).collect();
+    found.sort_by_cached_key(|member| {
+        let surface = model.surfaces[first_vertex_surface(model, member) as usize];
+        let object = &model.objects[surface.object as usize];
+        let rank = ranks.get(&surface.kind).copied().unwrap_or(OTHER_SURFACE);
+        (class_rank(object.class), rank, Reverse(&object.id), Reverse(member.triangle))
+    });
+    for (member, priority) in found.iter_mut().zip(0..) {
+        member.priority = priority;
+    }
+    found
+}
+
+/// What stands on the ground above it; among the ground, what is laid on what.
+fn class_rank(class: ObjectClass) -> u8 {
+    match class {
+        ObjectClass::Terrain => 0,
+        ObjectClass::Land => 1,
+        ObjectClass::Water => 2,
+        ObjectClass::Road => 3,
+        _ => 4,
+    }
+}
+
+/// Rank of surfaces that are not in the table.
+const OTHER_SURFACE: u8 = 2;
+
+/// Semantic surface types (CityJSON, CityGML 2 and 3) by rank, as far as the model has them.
+fn surface_ranks(model: &CityModel) -> FxHashMap<StringId, u8> {
+    let table = [
+        ("GroundSurface", 0),
+        ("ClosureSurface", 1),
+        ("InteriorWallSurface", 1),
+        ("FloorSurface", 1),
+        ("CeilingSurface", 1),
+        ("WallSurface", 3),
+        ("OuterFloorSurface", 3),
+        ("OuterCeilingSurface", 3),
+        ("RoofSurface", 4),
+        ("Window", 5),
+        ("WindowSurface", 5),
+        ("Door", 6),
+        ("DoorSurface", 6),
+    ];
+    let known = table.into_iter().filter_map(|(name, rank)| Some((model.strings.find(name)?, rank)));
+    known.chain([(StringId(NONE), OTHER_SURFACE)]).collect()
+}
+
+fn first_vertex_surface(model: &CityModel, member: &CoplanarTriangle) -> u32 {
+    let tile = &model.tiles[member.tile as usize];
+    model.vertices[(tile.vertices.start + model.indices[3 * member.triangle as usize]) as usize].surface
+}
+
+fn world_corners(model: &CityModel, member: &CoplanarTriangle) -> [DVec3; 3] {
+    let tile = &model.tiles[member.tile as usize];
+    [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + model.indices[3 * member.triangle as usize + k]))
+}
+
+/// Triangles in two coordinates of their plane (undistorted), counter-clockwise, around the first corner of all.
+fn flatten(triangles: &[[DVec3; 3]], normal: DVec3) -> Vec<[DVec2; 3]> {
+    let (u, v) = normal.any_orthonormal_pair();
+    let base = triangles[0][0];
+    triangles
+        .iter()
+        .map(|triangle| {
+            let [a, b, c] = triangle.map(|corner| DVec2::new(u.dot(corner - base), v.dot(corner - base)));
+            if (b - a).perp_dot(c - a) < 0.0 { [a, c, b] } else { [a, b, c] }
+        })
+        .collect()
+}
+
+/// Whether two counter-clockwise triangles share more than a border.
+fn overlap(a: &[DVec2; 3], b: &[DVec2; 3]) -> bool {
+    let low = |t: &[DVec2; 3]| t[0].min(t[1]).min(t[2]);
+    let high = |t: &[DVec2; 3]| t[0].max(t[1]).max(t[2]);
+    if (high(a).min(high(b)) - low(a).max(low(b))).min_element() <= 0.0 {
+        return false;
+    }
+    let (area, border) = clipped(a, b);
+    area > LEAST_AREA_M2 && 2.0 * area > LEAST_WIDTH_M * border
+}
+
+/// Area and perimeter of the intersection of two counter-clockwise triangles (Sutherland–Hodgman).
+fn clipped(a: &[DVec2; 3], b: &[DVec2; 3]) -> (f64, f64) {
+    // A triangle cut by three lines has at most six corners.
+    let mut polygon = [DVec2::ZERO; 8];
+    polygon[..3].copy_from_slice(a);
+    let mut count = 3;
+    for i in 0..3 {
+        let (from, to) = (b[i], b[(i + 1) % 3]);
+        let side = |p: DVec2| (to - from).perp_dot(p - from);
+        let mut next = [DVec2::ZERO; 8];
+        let mut kept = 0;
+        for k in 0..count {
+            let (p, q) = (polygon[k], polygon[(k + 1) % count]);
+            let (at_p, at_q) = (side(p), side(q));
+            if at_p >= 0.0 && kept < 8 {
+                next[kept] = p;
+                kept += 1;
+            }
+            if (at_p > 0.0 && at_q < 0.0 || at_p < 0.0 && at_q > 0.0) && kept < 8 {
+                next[kept] = p + (q - p) * (at_p / (at_p - at_q));
+                kept += 1;
+            }
+        }
+        (polygon, count) = (next, kept);
+    }
+    let base = polygon[0];
+    let (mut area, mut border) = (0.0, 0.0);
+    for k in 0..count {
+        let (p, q) = (polygon[k], polygon[(k + 1) % count]);
+        area += 0.5 * (p - base).perp_dot(q - base);
+        border += p.distance(q);
+    }
+    (area, border)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::city::test_city::{add, add_box, builder, grid_of_cubes};
+
+    fn all(model: &CityModel) -> Vec<u32> {
+        (0..model.geometries.len() as u32).collect()
+    }
+
+    fn object_of(model: &CityModel, triangle: &CoplanarTriangle) -> String {
+        let geometry = model.tiles[triangle.tile as usize].geometry;
+        model.objects[model.geometries[geometry as usize].object as usize].id.to_string()
+    }
+
+    #[test]
+    fn intersections_have_the_known_area() {
+        let p = |x: f64, y: f64| DVec2::new(x, y);
+        let a = [p(0.0, 0.0), p(4.0, 0.0), p(0.0, 4.0)];
+        assert_eq!(clipped(&a, &a).0, 8.0);
+        assert_eq!(clipped(&a, &[p(1.0, 1.0), p(2.0, 1.0), p(1.0, 2.0)]).0, 0.5);
+        assert_eq!(clipped(&[p(1.0, 1.0), p(2.0, 1.0), p(1.0, 2.0)], &a).0, 0.5);
+        assert_eq!(clipped(&a, &[p(0.0, 2.0), p(4.0, 2.0), p(4.0, 6.0)]).0, 1.0);
+        assert!(!overlap(&a, &[p(4.0, 0.0), p(4.0, 4.0), p(0.0, 4.0)]), "neighbours");
+        assert!(!overlap(&a, &[p(4.0 - 4e-6, 0.0), p(4.0, 4.0), p(-4e-6, 4.0)]), "neighbours, rounded");
+    }
+
+    #[test]
+    fn party_walls_are_a_group_and_neighbouring_roofs_are_none() {
+        let mut b = builder();
+        add_box(&mut b, "west", [0, 0, 0], [10_000, 10_000, 9_000]);
+        add_box(&mut b, "east", [10_000, 2_000, 0], [20_000, 10_000, 9_000]);
+        let model = b.finish();
+        let found = coplanar_triangles(&model, &all(&model));
+        assert_eq!(found.len(), 4, "two triangles on either side: roofs, floors and backs are neighbours only");
+        assert!(found.windows(2).all(|w| w[0].group == w[1].group));
+        let owners: Vec<_> = found.iter().map(|t| object_of(&model, t)).collect();
+        assert_eq!(owners, ["west", "west", "east", "east"], "the id that comes first wins");
+        assert_eq!(found.iter().map(|t| t.priority).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        let plane = model.plane_equations[found[0].group as usize - 1];
+        assert_eq!((plane.normal, plane.offset), (DVec3::X, 85_010.0));
+        assert!(coplanar_triangles(&model, &[0]).is_empty(), "nothing to cover when the neighbour is hidden");
+    }
+
+    #[test]
+    fn doors_win_over_walls_and_buildings_over_the_ground() {
+        let rectangle = |x0, x1, z0, z1| vec![[x0, 0, z0], [x1, 0, z0], [x1, 0, z1], [x0, 0, z1]];
+        let ground = |size: i64| vec![[-size, -size, 0], [size, -size, 0], [size, size, 0], [-size, size, 0]];
+        let face = [vec![0, 1, 2, 3]];
+        let mut b = builder();
+        add(&mut b, "a terrain", ObjectClass::Terrain, None, ground(90_000), &face);
+        add(&mut b, "b wall", ObjectClass::Building, Some("WallSurface"), rectangle(0, 9_000, 0, 9_000), &face);
+        add(&mut b, "c door", ObjectClass::Building, Some("Door"), rectangle(1_000, 2_000, 0, 2_000), &face);
+        add(&mut b, "d floor", ObjectClass::Building, Some("GroundSurface"), ground(4_000), &face);
+        let model = b.finish();
+        let found = coplanar_triangles(&model, &all(&model));
+        let mut winners: FxHashMap<u32, String> = FxHashMap::default();
+        for triangle in &found {
+            winners.insert(triangle.group, object_of(&model, triangle));
+        }
+        let mut winners: Vec<_> = winners.into_values().collect();
+        winners.sort();
+        assert_eq!(winners, ["c door", "d floor"]);
+    }
+
+    #[test]
+    fn many_neighbours_in_one_plane_cover_nothing() {
+        let model = grid_of_cubes(60, 60);
+        assert!(model.planes.iter().filter(|&&plane| plane == model.planes[0]).count() >= 7200);
+        assert!(coplanar_triangles(&model, &all(&model)).is_empty());
+    }
+
+    #[test]
+    fn large_planes_find_the_same_as_pair_by_pair() {
+        // Strips that overlap their next but one neighbour only.
+        let mut b = builder();
+        for i in 0..100_i64 {
+            let points = vec![[i * 1000, 0, 0], [i * 1000 + 1500, 0, 0], [i * 1000 + 1500, 500, 0], [i * 1000, 500, 0]];
+            let shift = (i % 3) * 600;
+            let points = points.into_iter().map(|[x, y, z]| [x, y + shift, z]).collect();
+            add(&mut b, &i.to_string(), ObjectClass::Building, None, points, &[vec![0, 1, 2, 3]]);
+        }
+        let model = b.finish();
+        let everything: Vec<_> = model
+            .tiles
+            .iter()
+            .zip(0_u32..)
+            .flat_map(|(tile, number)| {
+                (tile.indices.start / 3..tile.indices.end / 3).map(move |triangle| (number, triangle))
+            })
+            .collect();
+        let corners: Vec<[DVec3; 3]> = everything
+            .iter()
+            .map(|&(tile, triangle)| world_corners(&model, &CoplanarTriangle { tile, triangle, group: 1, priority: 0 }))
+            .collect();
+        let flat = flatten(&corners, DVec3::Z);
+        let mut expected: Vec<u32> = (0..flat.len())
+            .filter(|&i| (0..flat.len()).any(|j| i != j && overlap(&flat[i], &flat[j])))
+            .map(|i| everything[i].1)
+            .collect();
+        let mut found: Vec<u32> = coplanar_triangles(&model, &all(&model)).iter().map(|t| t.triangle).collect();
+        expected.sort_unstable();
+        found.sort_unstable();
+        assert_eq!(found, expected);
+    }
+}
