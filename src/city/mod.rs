@@ -2,11 +2,13 @@
 
 pub mod build;
 pub mod coplanar;
+pub mod facts;
 pub mod gltf;
 pub mod load;
 pub mod model;
 pub mod obj;
 pub mod spatial;
+pub mod synth;
 #[cfg(test)]
 pub(crate) mod test_city;
 pub mod warning;

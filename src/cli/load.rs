@@ -1,0 +1,52 @@
+//! City files as the commands load them: with a progress line on a terminal and readable failures.
+
+use std::path::{Path, PathBuf};
+
+use crate::{
+    city::{
+        CityModel,
+        load::{self, LoadOptions, LoadStats, Stage},
+    },
+    cli::{Failure, GlobalArguments, Outcome, terminal},
+};
+
+/// Shows which file loading is at.
+struct Shown {
+    line: terminal::Progress,
+}
+
+impl load::Progress for Shown {
+    fn enter(&self, stage: Stage, file: usize, files: usize, path: &Path) {
+        let verb = match stage {
+            Stage::Read => "reading",
+            Stage::Parse => "parsing",
+            Stage::Build => "triangulating",
+        };
+        let which = if files > 1 && file < files { format!(" ({}/{files})", file + 1) } else { String::new() };
+        let message = format!("{verb} {}{which}", path.display());
+        log::debug!("{message}");
+        self.line.says(message);
+    }
+}
+
+/// Loads `files` as one city, with how long each stage took.
+pub fn load(files: &[PathBuf], global: &GlobalArguments) -> Outcome<(CityModel, LoadStats)> {
+    let options = LoadOptions { allow_outside: global.allow_outside, roots: named_folders(files) };
+    let shown = Shown { line: terminal::Progress::spinning("loading", global) };
+    let (city, stats) = load::load_with_stats(files, &options, &shown).map_err(Failure::failed)?;
+    drop(shown);
+    log::info!(
+        "{} objects, {} triangles: read {:.0?}, parsed {:.0?}, built {:.0?}",
+        city.objects.len(),
+        city.indices.len() / 3,
+        stats.read,
+        stats.parse,
+        stats.build
+    );
+    Ok((city, stats))
+}
+
+/// Folders among what was named on the command line: paths in models may lead anywhere inside them.
+fn named_folders(files: &[PathBuf]) -> Vec<PathBuf> {
+    files.iter().filter(|path| path.is_dir()).cloned().collect()
+}

@@ -1,0 +1,85 @@
+//! `veduta synth`: the synthetic city generator.
+
+use std::{io::Write, path::PathBuf};
+
+use clap::{Args, ValueEnum};
+use flate2::{Compression, write::GzEncoder};
+
+use crate::{
+    city::synth::{self, SynthOptions},
+    cli::{Failure, GlobalArguments, Outcome, output, terminal::Progress},
+};
+
+const EXAMPLES: &str = "\
+Examples:
+  veduta synth --buildings 1000 --seed 7 -o town.city.json
+  veduta synth --buildings 100000 --seed 1 -o city.city.jsonl.gz
+  veduta synth --buildings 50 --seed 2 -o - | veduta info -
+
+The ending of FILE chooses the format: .json is CityJSON 2.0, .jsonl CityJSONSeq, each also .gz;
+`-` writes CityJSON to stdout. The same numbers give the same bytes on every machine.";
+
+/// Arguments of `veduta synth`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// How many buildings
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=SynthOptions::MAX_BUILDINGS))]
+    pub buildings: u64,
+    /// Which of all such cities, any whole number
+    #[arg(long, value_name = "S")]
+    pub seed: u64,
+    /// How much each building has
+    #[arg(long, value_enum, default_value = "plain")]
+    pub detail: Detail,
+    /// The file to write, `-` for stdout
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+}
+
+/// How much each building has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Detail {
+    /// LoD2 shells, three attributes, streets
+    Plain,
+    /// Everything a city has (not in this version)
+    Full,
+}
+
+/// Writes the city.
+pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
+    if arguments.detail == Detail::Full {
+        return Err(Failure::failed("synth: --detail full is not in this version; --detail plain is"));
+    }
+    let options = SynthOptions { buildings: arguments.buildings, seed: arguments.seed };
+    let name = arguments.output.to_string_lossy().to_lowercase();
+    let (plain_name, is_compressed) = match name.strip_suffix(".gz") {
+        Some(inner) => (inner, true),
+        None => (&*name, false),
+    };
+    let is_sequence = plain_name.ends_with(".jsonl");
+    if !is_sequence && !plain_name.ends_with(".json") && plain_name != "-" {
+        return Err(Failure::usage(format!(
+            "{}: this ending names no format that synth writes; .json, .jsonl, .json.gz or .jsonl.gz would be right",
+            arguments.output.display()
+        )));
+    }
+    let progress = Progress::counting(options.buildings, "building", "buildings", global);
+    let city = |out: &mut dyn Write| {
+        let mut at = |done| progress.at(done);
+        if is_sequence {
+            synth::write_cityjsonseq(&options, out, &mut at)
+        } else {
+            synth::write_cityjson(&options, out, &mut at)
+        }
+    };
+    output::write(&arguments.output, |out| {
+        if !is_compressed {
+            return city(out);
+        }
+        // Small writes are gathered before they are compressed.
+        let mut gathered = std::io::BufWriter::with_capacity(1 << 16, GzEncoder::new(out, Compression::default()));
+        city(&mut gathered)?;
+        gathered.into_inner().map_err(std::io::IntoInnerError::into_error)?.finish().map(drop)
+    })
+}
