@@ -1,12 +1,16 @@
 //! City models: files become one plain [`CityModel`] and a list of warnings; nothing of the GPU in it.
 
 pub mod build;
+pub mod cityjson;
 pub mod coplanar;
+pub mod crs;
 pub mod facts;
 pub mod gltf;
+pub mod json;
 pub mod load;
 pub mod model;
 pub mod obj;
+pub mod shown;
 pub mod spatial;
 pub mod synth;
 #[cfg(test)]

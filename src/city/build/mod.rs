@@ -156,6 +156,8 @@ pub struct RawObject {
 pub struct ModelBuilder {
     /// The model so far; loaders fill `sources`, `crs`, `materials`, `textures`, `unknown`, `warnings` directly.
     pub model: CityModel,
+    /// The metric frame of a city in degrees, once its first vertex is known.
+    pub zone: Option<crate::city::crs::UtmZone>,
     raw_objects: Vec<RawObject>,
     /// First object of each file.
     file_starts: Vec<u32>,

@@ -200,7 +200,8 @@ pub fn load_raw(
     }
     if builder.model.sources.is_empty() {
         let folder = paths.first().map(PathBuf::as_path).unwrap_or(Path::new(""));
-        let why = refusals.first().map(|r| format!(" ({r})")).unwrap_or_default();
+        let more = if refusals.len() > 1 { format!("; {} more", refusals.len() - 1) } else { String::new() };
+        let why = refusals.first().map(|first| format!(" ({first}{more})")).unwrap_or_default();
         return Err(LoadError::new(folder, format!("no city model that can be read{why}; {}", sniff::READABLE)));
     }
     Ok((builder, stats))
@@ -230,13 +231,11 @@ fn read_file(
 /// Gives bytes to the loader of their format; what a fuzzer calls.
 pub fn read_input(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) -> Result<(), LoadError> {
     match sniff::format(input) {
-        Format::Known(name) => {
-            Err(LoadError::new(&input.path, format!("{name} cannot be read yet; {}", sniff::READABLE)))
-        }
+        Format::Known(name) => Err(LoadError::new(&input.path, format!("{name} cannot be read yet"))),
         Format::Not(what) => Err(LoadError::new(&input.path, what)),
+        Format::CityJson => crate::city::cityjson::read(builder, input, options),
         Format::Gltf => crate::city::gltf::read(builder, input, options),
         Format::Obj => crate::city::obj::read(builder, input, options),
-        Format::CityJson => Err(LoadError::new(&input.path, "cannot be read yet")),
     }
 }
 

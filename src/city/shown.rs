@@ -1,0 +1,149 @@
+//! Which geometries are shown: the default rule for levels of detail.
+
+use crate::city::{CityModel, Lod};
+
+/// Geometries to show, as sorted indices into [`CityModel::geometries`].
+///
+/// Per root object the finest LoD that any of its geometry-bearing descendants (itself included) has, not finer than
+/// `cap`; each object shows its own finest LoD that is not finer than that; a parent's geometry is hidden where a
+/// descendant shows some. As the root's LoD is the finest of its family, each object's own finest is never finer:
+/// what is left to do is the cap and the hiding. Geometry without a level of detail passes any cap and is shown where
+/// its object has no other.
+pub fn shown_geometries(model: &CityModel, cap: Option<Lod>) -> Vec<u32> {
+    let own: Vec<Option<Lod>> = (0..model.objects.len()).map(|object| finest(model, object, cap)).collect();
+    let covered = covered_by_descendants(model, &own);
+    let mut shown = Vec::new();
+    for (object, lod) in model.objects.iter().zip(&own).zip(covered).filter(|(_, covered)| !covered).map(|(o, _)| o) {
+        let fits = |i: &u32| Some(model.geometries[*i as usize].lod) == *lod;
+        shown.extend(object.geometries.clone().filter(fits));
+    }
+    shown.sort_unstable();
+    shown
+}
+
+/// The finest LoD of an object's own drawable geometry, not finer than `cap`.
+fn finest(model: &CityModel, object: usize, cap: Option<Lod>) -> Option<Lod> {
+    let geometries = &model.geometries[as_range(&model.objects[object].geometries)];
+    let allowed = |lod: &Lod| *lod == Lod::NONE || cap.is_none_or(|cap| *lod <= cap);
+    let lods = geometries.iter().filter(|g| g.triangles > 0).map(|g| g.lod).filter(allowed);
+    lods.max_by_key(|lod| (*lod != Lod::NONE, *lod))
+}
+
+/// Per object, whether a descendant has something to show. Walks up from each such object; an ancestor already
+/// marked has marked its own ancestors, so every link is followed once.
+fn covered_by_descendants(model: &CityModel, own: &[Option<Lod>]) -> Vec<bool> {
+    let mut covered = vec![false; model.objects.len()];
+    let mut open: Vec<u32> = Vec::new();
+    for object in (0..model.objects.len()).filter(|o| own[*o].is_some()) {
+        open.extend(&model.objects[object].parents);
+        while let Some(parent) = open.pop() {
+            if !std::mem::replace(&mut covered[parent as usize], true) {
+                open.extend(&model.objects[parent as usize].parents);
+            }
+        }
+    }
+    covered
+}
+
+fn as_range(range: &std::ops::Range<u32>) -> std::ops::Range<usize> {
+    range.start as usize..range.end as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        city::{CityObject, Geometry, ObjectClass, StringId},
+        geom::Aabb,
+    };
+
+    /// A model of objects given as (parents, lods).
+    fn model(objects: &[(&[u32], &[&str])]) -> CityModel {
+        let mut model = CityModel::default();
+        for (object, (parents, lods)) in objects.iter().enumerate() {
+            let start = model.geometries.len() as u32;
+            for lod in *lods {
+                model.geometries.push(Geometry {
+                    object: object as u32,
+                    lod: Lod::parse(lod).unwrap_or(Lod::NONE),
+                    solid: false,
+                    polygons: 1,
+                    triangles: 1,
+                    dropped: 0,
+                    tiles: 0..0,
+                    bounds: Aabb::EMPTY,
+                });
+            }
+            model.objects.push(CityObject {
+                id: object.to_string().into(),
+                kind: StringId(0),
+                class: ObjectClass::Building,
+                parents: parents.to_vec(),
+                children: Vec::new(),
+                attributes: 0..0,
+                geometries: start..model.geometries.len() as u32,
+            });
+        }
+        model
+    }
+
+    /// What is shown, as (object, lod).
+    fn shown(objects: &[(&[u32], &[&str])], cap: Option<&str>) -> Vec<(u32, String)> {
+        let model = model(objects);
+        let cap = cap.map(|c| Lod::parse(c).unwrap());
+        let list = shown_geometries(&model, cap);
+        assert!(list.is_sorted());
+        list.iter().map(|g| &model.geometries[*g as usize]).map(|g| (g.object, g.lod.to_string())).collect()
+    }
+
+    fn pairs(list: &[(u32, &str)]) -> Vec<(u32, String)> {
+        list.iter().map(|(o, l)| (*o, (*l).to_owned())).collect()
+    }
+
+    #[test]
+    fn the_finest_of_each_object() {
+        assert_eq!(shown(&[(&[], &["0", "1.2", "2.2", "1.3"])], None), pairs(&[(0, "2.2")]));
+        assert_eq!(shown(&[(&[], &["0", "1.2", "2.2", "1.3"])], Some("1.3")), pairs(&[(0, "1.3")]));
+        assert_eq!(shown(&[(&[], &["2.2"])], Some("1.3")), []);
+        assert_eq!(shown(&[(&[], &["1"]), (&[], &["2"])], None), pairs(&[(0, "1"), (1, "2")]));
+    }
+
+    #[test]
+    fn a_footprint_gives_way_to_its_parts() {
+        // 3DBAG: the building has LoD 0, its part the rest.
+        let family: &[(&[u32], &[&str])] = &[(&[], &["0"]), (&[0], &["1.2", "2.2"])];
+        assert_eq!(shown(family, None), pairs(&[(1, "2.2")]));
+        assert_eq!(shown(family, Some("1.2")), pairs(&[(1, "1.2")]));
+        assert_eq!(shown(family, Some("0")), pairs(&[(0, "0")]), "under this cap only the footprint is left");
+    }
+
+    #[test]
+    fn parts_of_different_detail_stay_together() {
+        let family: &[(&[u32], &[&str])] = &[(&[], &["2"]), (&[0], &["1"]), (&[0], &["1", "2"])];
+        assert_eq!(shown(family, None), pairs(&[(1, "1"), (2, "2")]));
+    }
+
+    #[test]
+    fn grandchildren_and_second_parents_count() {
+        let family: &[(&[u32], &[&str])] =
+            &[(&[], &["1"]), (&[0], &[]), (&[1], &["2"]), (&[], &["1"]), (&[1, 3], &["2"])];
+        assert_eq!(shown(family, None), pairs(&[(2, "2"), (4, "2")]));
+    }
+
+    #[test]
+    fn two_shapes_of_one_level_are_both_shown() {
+        assert_eq!(shown(&[(&[], &["2", "2"])], None), pairs(&[(0, "2"), (0, "2")]));
+    }
+
+    #[test]
+    fn shapes_without_level_yield_to_those_with_one() {
+        assert_eq!(shown(&[(&[], &["none", "1"]), (&[], &["none"])], Some("1")), pairs(&[(0, "1"), (1, "none")]));
+    }
+
+    #[test]
+    fn what_is_not_drawn_hides_nothing() {
+        let mut model = model(&[(&[], &["1"]), (&[0], &["2"])]);
+        model.geometries[1].triangles = 0;
+        assert_eq!(shown_geometries(&model, None), [0]);
+    }
+}
