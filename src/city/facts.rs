@@ -190,7 +190,7 @@ pub fn facts(city: &CityModel, list: bool) -> Facts {
             declared: city.textures.len() as u64,
             found: city.textures.iter().filter(|t| t.image != TextureImage::Missing).count() as u64,
         },
-        faces_dropped: city.faces_dropped,
+        faces_dropped: city.faces_dropped + city.geometries.iter().map(|g| u64::from(g.dropped)).sum::<u64>(),
         warnings: warning_facts(city),
         tree: type_tree(city),
         semantics: semantic_facts(city),
@@ -665,6 +665,7 @@ mod tests {
                 lod: Lod::parse(lod).unwrap(),
                 solid: true,
                 polygons: 5,
+                dropped: 1,
                 triangles: 10,
                 tiles: 0..0,
                 bounds: Aabb::EMPTY,
@@ -676,6 +677,7 @@ mod tests {
         let two = LodFacts { objects: 2, polygons: 15, triangles: 30 };
         assert_eq!(facts.lods[1], ("2".to_owned(), two));
         assert_eq!(facts.lods[0].0, "1.2");
+        assert_eq!(facts.faces_dropped, 4);
         assert_eq!(facts.objects.list.unwrap()[0].lods, ["1.2", "2"]);
     }
 

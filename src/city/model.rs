@@ -67,7 +67,7 @@ pub struct CityModel {
     /// Box around the vertices that any geometry as read uses (dropped faces, points and lines too), metres:
     /// grown by [`crate::city::build::ModelBuilder::add_geometry`], and by loaders for points and lines.
     pub extent_as_read: Aabb,
-    /// Faces that are in the files but not drawn because something is wrong with them; each also has a warning.
+    /// Faces that loaders could not even hand over, each with a warning; [`Geometry::dropped`] counts the others.
     pub faces_dropped: u64,
     /// Members of the file nobody here reads, kept as JSON: (where, text).
     pub unknown: Vec<(String, String)>,
