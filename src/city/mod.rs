@@ -6,6 +6,7 @@ pub mod coplanar;
 pub mod crs;
 pub mod facts;
 pub mod gltf;
+pub mod ground;
 pub mod json;
 pub mod load;
 pub mod model;

@@ -423,6 +423,25 @@ impl CityModel {
         at
     }
 
+    /// [`CityModel::root`] of every object, in linear time however deep families are.
+    pub fn roots(&self) -> Vec<u32> {
+        let mut roots = vec![NONE; self.objects.len()];
+        let mut path = Vec::new();
+        for object in 0..self.objects.len() as u32 {
+            let mut at = object;
+            while roots[at as usize] == NONE {
+                path.push(at);
+                match self.objects[at as usize].parents.first() {
+                    Some(&parent) => at = parent,
+                    None => roots[at as usize] = at,
+                }
+            }
+            let root = roots[at as usize];
+            path.drain(..).for_each(|member| roots[member as usize] = root);
+        }
+        roots
+    }
+
     /// An object's own attributes.
     pub fn attributes_of(&self, object: u32) -> &[Attribute] {
         let range = &self.objects[object as usize].attributes;
