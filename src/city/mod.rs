@@ -16,6 +16,7 @@ pub mod spatial;
 pub mod synth;
 #[cfg(test)]
 pub(crate) mod test_city;
+pub mod texture;
 pub mod warning;
 
 pub use model::*;

@@ -62,14 +62,15 @@ fn cleaned(bytes: &[u8], path: &Path, warnings: &mut Warnings) -> String {
     let mut named = false;
     for (line_number, line) in Lines::new(bytes) {
         let Some((keyword, arguments)) = statement(&line) else { continue };
-        let numbers: Vec<f64> = words(arguments).map_while(number).filter(|n| n.is_finite()).take(3).collect();
+        let numbers: Vec<f64> =
+            words(arguments).take(3).map_while(number).map_while(|n| n.is_finite().then_some(n)).collect();
         let statement = match keyword {
             b"newmtl" if !arguments.is_empty() => Some(format!("newmtl {}", text(arguments))),
             b"Kd" | b"Ke" => match numbers[..] {
                 [r, g, b] => Some(format!("{} {r} {g} {b}", text(keyword))),
                 // Green and blue may be left out (MTL specification): all are the same then.
-                [grey, ..] => Some(format!("{} {grey} {grey} {grey}", text(keyword))),
-                [] => None,
+                [grey] => Some(format!("{} {grey} {grey} {grey}", text(keyword))),
+                _ => None,
             },
             b"Ns" => numbers.first().map(|n| format!("Ns {n}")),
             b"d" => {
@@ -82,7 +83,7 @@ fn cleaned(bytes: &[u8], path: &Path, warnings: &mut Warnings) -> String {
             b"newmtl" | b"map_Kd" | b"map_d" => None,
             _ => continue,
         };
-        named |= keyword == b"newmtl";
+        named |= keyword == b"newmtl" && statement.is_some();
         match statement.filter(|_| named) {
             Some(statement) => {
                 clean.push_str(&statement);
