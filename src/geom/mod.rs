@@ -9,4 +9,5 @@ pub mod shape;
 pub mod triangulate;
 
 pub use aabb::Aabb;
-pub use shape::Shape;
+pub use ray::Ray;
+pub use shape::{Shape, Volume};

@@ -12,6 +12,14 @@ pub struct Ray {
     pub direction: DVec3,
 }
 
+impl Ray {
+    /// The point at `t`. Rays of a [`crate::view::View`] advance one metre along the view axis per unit of `t`, so that
+    /// `t` is the distance D of the lens maths.
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + t * self.direction
+    }
+}
+
 /// A ray made ready for many triangles (Woop, Benthin, Wald: *Watertight Ray/Triangle Intersection*, JCGT 2013): a shear
 /// turns it into an axis, so that the test is about the signs of three edges seen from a point in the plane. The signs
 /// are exact, and each corner is sheared alike for every triangle that has it: two triangles that share an edge can
