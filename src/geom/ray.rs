@@ -13,7 +13,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The point at `t`. Rays of a [`crate::view::View`] advance one metre along the view axis per unit of `t`, so that
+    /// The point at `t`. Rays of a a view advance one metre along the view axis per unit of `t`, so that
     /// `t` is the distance D of the lens maths.
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.direction
