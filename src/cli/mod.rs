@@ -11,9 +11,9 @@ pub mod report;
 pub mod synth;
 pub mod terminal;
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{ffi::OsString, path::PathBuf, process::ExitCode};
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub use failure::{Failure, Outcome};
 
@@ -25,22 +25,22 @@ pub use failure::{Failure, Outcome};
     about = "Looks at 3D city models through information lenses",
     after_help = EXAMPLES,
     disable_help_subcommand = true,
-    args_conflicts_with_subcommands = true,
-    subcommand_negates_reqs = true,
-    subcommand_value_name = "COMMAND",
-    override_usage = "veduta COMMAND [OPTIONS]\n       veduta [FILE...]"
+    allow_external_subcommands = true,
+    override_usage = "veduta COMMAND [OPTIONS]\n       veduta [FILE...] [--scene S.toml]"
 )]
 pub struct Cli {
     /// What to do; nothing means `view`.
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// What to view when no command is named.
-    #[command(flatten)]
-    pub view: ViewArguments,
+    /// A scene to view, when no command is named
+    #[arg(long, value_name = "S.toml", hide = true)]
+    pub scene: Option<PathBuf>,
     /// What holds for every command.
     #[command(flatten)]
     pub global: GlobalArguments,
 }
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 const EXAMPLES: &str = "\
 Examples:
@@ -74,6 +74,9 @@ pub enum Command {
     Info(info::Arguments),
     /// Makes a synthetic city
     Synth(synth::Arguments),
+    /// Files to view, or a word that is no command.
+    #[command(external_subcommand)]
+    Other(Vec<OsString>),
 }
 
 /// `veduta view`.
@@ -93,11 +96,8 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are no errors, and a closed pipe is none either.
-            let code = u8::from(error.use_stderr()) * 2;
-            return match error.print() {
-                Ok(()) => ExitCode::from(code),
-                Err(_) => ExitCode::from(code),
-            };
+            let _ = error.print();
+            return ExitCode::from(u8::from(error.use_stderr()) * 2);
         }
     };
     terminal::start_log(&cli.global);
@@ -113,7 +113,8 @@ fn run(cli: Cli) -> Outcome {
         Some(Command::View(arguments)) => view(&arguments),
         Some(Command::Info(arguments)) => info::run(&arguments, global),
         Some(Command::Synth(arguments)) => synth::run(&arguments, global),
-        None => no_command(&cli.view),
+        Some(Command::Other(words)) => other(&words),
+        None => view(&ViewArguments { files: Vec::new(), scene: cli.scene }),
     }
 }
 
@@ -123,32 +124,23 @@ fn view(arguments: &ViewArguments) -> Outcome {
         _ => "FILE".to_owned(),
     };
     Err(Failure::failed(format!(
-        "view: this version ({}) has no window yet; `veduta render {file} -o picture.png` makes a picture",
-        env!("CARGO_PKG_VERSION")
+        "view: this version ({VERSION}) has no window yet; `veduta render {file} -o picture.png` makes a picture"
     )))
 }
 
 /// `veduta WORD...`: files to view, or a command that is spelt wrong or that this version lacks.
-fn no_command(arguments: &ViewArguments) -> Outcome {
-    use clap::CommandFactory;
-    let Some(word) = arguments.files.first() else { return view(arguments) };
-    if word.exists() || word.extension().is_some() || word.as_os_str() == "-" {
-        return view(arguments);
+fn other(words: &[OsString]) -> Outcome {
+    let Some(first) = words.first().map(PathBuf::from) else { return view(&ViewArguments::default()) };
+    if first.exists() || first.extension().is_some() || first.as_os_str() == "-" {
+        return view(&ViewArguments { files: vec![first], scene: None });
     }
-    let word = word.display().to_string();
+    let word = first.display().to_string();
     let command = Cli::command();
     let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
-    let near = names
-        .iter()
-        .map(|name| (strsim::osa_distance(name, &word), *name))
-        .min()
-        .filter(|(distance, name)| *distance <= 2 && *distance < name.len());
-    let hint = match near {
+    let near = names.iter().map(|name| (strsim::osa_distance(name, &word), *name)).min();
+    let hint = match near.filter(|(distance, _)| *distance <= 2) {
         Some((_, name)) => format!("did you mean `veduta {name}`?"),
         None => format!("the commands are {}", names.join(", ")),
     };
-    Err(Failure::usage(format!(
-        "{word}: no such file, and no command of version {}; {hint}",
-        env!("CARGO_PKG_VERSION")
-    )))
+    Err(Failure::usage(format!("{word}: no such file, and no command of version {VERSION}; {hint}")))
 }

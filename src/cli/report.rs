@@ -172,7 +172,7 @@ impl Report {
             Table::new(&[&columns[..], &[("distinct", Align::Right), ("range or values", Align::Left)]].concat());
         for (name, attribute) in &facts.attributes {
             table.row([
-                cut(&clean(name), 34),
+                cut(&clean(name), 40),
                 attribute.kind.unwrap_or("null").to_owned(),
                 percent(attribute.count, facts.objects.total),
                 count(attribute.distinct),
@@ -263,6 +263,7 @@ fn bar(part: u64, most: u64, width: usize) -> String {
 /// The range of numbers and dates, the most frequent of other values.
 fn values(attribute: &AttributeFacts) -> String {
     let plain = |value: &serde_json::Value| match value {
+        serde_json::Value::String(text) if text.trim().is_empty() => format!("{text:?}"),
         serde_json::Value::String(text) => clean(text),
         serde_json::Value::Number(n) => n.as_f64().filter(|_| n.is_f64()).map_or_else(|| n.to_string(), number),
         other => clean(&other.to_string()),

@@ -17,6 +17,8 @@ use crate::city::synth::{
 /// Houses stand this far from the street.
 const PAVEMENT: i64 = 3_000;
 const STOREY: i64 = 3_000;
+/// The year of the newest house.
+const NEWEST: i64 = 2025;
 
 const COLUMN_SALT: u64 = 1;
 const ROW_SALT: u64 = 2;
@@ -91,6 +93,7 @@ impl Iterator for Layout {
             },
         };
         let mut houses = ground.build(&mut random);
+        houses.iter_mut().for_each(|house| house.year = house.year.min(NEWEST));
         houses.truncate(usize::try_from(self.options.buildings - self.made).unwrap_or(usize::MAX));
         let first_building = self.made;
         self.made += houses.len() as u64;
@@ -361,7 +364,8 @@ impl Ground {
             width,
             depth,
             eaves: (storeys + random.range(-1, 1)) * STOREY,
-            inset: random.decimetres(9_000, 12_000),
+            // A yard of 6 m at least.
+            inset: random.decimetres(9_000, 12_000).min((width.min(depth) - 6_000) / 200 * 100),
             function: random.pick(&[(40, "public"), (40, "office"), (20, "commercial")]),
             year: self.year + random.range(0, 30),
             ..Row::NOWHERE.house(Shape::Court, 0)

@@ -56,10 +56,18 @@ fn area(points: &[[i128; 3]], ring: &[usize]) -> [i128; 3] {
 
 #[test]
 fn shells_are_closed_outward_and_exactly_planar() {
-    let city = written(3000, 7);
-    let points = vertices(&city);
     let mut shapes = HashSet::new();
-    for (id, object) in buildings(&city) {
+    for seed in 1..=8 {
+        check_shells(&written(3000, seed), &mut shapes);
+    }
+    // Flat and shed share a topology; gable, hip, mansard, corner, court and tower have their own.
+    assert_eq!(shapes.len(), 7, "{shapes:?}");
+}
+
+/// Checks every building; gathers what tells the shapes apart: numbers of faces and of roofs.
+fn check_shells(city: &Value, shapes: &mut HashSet<(usize, usize)>) {
+    let points = vertices(city);
+    for (id, object) in buildings(city) {
         let faces = shell(object);
         let mut edges: HashMap<(usize, usize), i32> = HashMap::new();
         let mut six_volumes = 0;
@@ -89,8 +97,6 @@ fn shells_are_closed_outward_and_exactly_planar() {
         }
         shapes.insert((faces.len(), values.iter().filter(|v| **v == 2).count()));
     }
-    // Flat and shed share a topology; gable, hip, mansard, corner, court and tower have their own.
-    assert_eq!(shapes.len(), 7, "{shapes:?}");
 }
 
 #[test]
@@ -144,7 +150,7 @@ fn the_seed_alone_decides() {
     // FNV-1a of the bytes: the same on every machine and in every version that does not announce a change.
     let hash =
         bytes(300, 1).iter().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3));
-    assert_eq!(hash, 0x3687_93e7_9d45_9c49, "{hash:#x}");
+    assert_eq!(hash, 0xff1e_c269_a022_accb, "{hash:#x}");
 }
 
 #[test]

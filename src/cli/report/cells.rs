@@ -146,7 +146,7 @@ pub fn percent(part: u64, all: u64) -> String {
 pub fn length(metres: f64) -> String {
     match metres {
         m if m >= 10_000.0 => format!("{:.1} km", m / 1000.0),
-        m if m >= 100.0 => format!("{m:.0} m"),
+        m if m >= 100.0 => format!("{} m", count(m.round() as u64)),
         m if m >= 1.0 => format!("{m:.1} m"),
         m => format!("{m:.3} m"),
     }
@@ -175,7 +175,7 @@ mod tests {
             assert_eq!(percent(part, all), text);
         }
         assert_eq!(length(12_345.0), "12.3 km");
-        assert_eq!(length(512.4), "512 m");
+        assert_eq!(length(1512.4), "1,512 m");
         assert_eq!(length(3.25), "3.2 m");
         assert_eq!(bytes(4_100_000), "4.1 MB");
     }

@@ -1,0 +1,248 @@
+//! The program as people and scripts meet it: the binary itself, its exit codes and its two streams.
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+};
+
+use serde_json::{Value, json};
+
+fn veduta(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_veduta"));
+    command.args(arguments).env_remove("NO_COLOR").env_remove("VEDUTA_DATA").stdin(Stdio::null());
+    command
+}
+
+fn run(arguments: &[&str]) -> Output {
+    veduta(arguments).output().unwrap()
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn err(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("the program was killed")
+}
+
+/// A folder of one test, removed at its end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("veduta-cli-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str, content: &str) -> String {
+        let path = self.0.join(name);
+        std::fs::write(&path, content).unwrap();
+        path.to_str().unwrap().to_owned()
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().unwrap().to_owned()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Two houses and a part; 10 × 20 × 3 m.
+const CITY: &str = r#"{"type":"CityJSON","version":"2.0","transform":{"scale":[0.001,0.001,0.001],"translate":[100.0,200.0,0.0]},
+"metadata":{"referenceSystem":"https://www.opengis.net/def/crs/EPSG/0/7415"},
+"CityObjects":{
+"a":{"type":"Building","attributes":{"year":1900,"name":"old"},"children":["a1"]},
+"a1":{"type":"BuildingPart","parents":["a"],"geometry":[{"type":"MultiSurface","lod":"2.0","boundaries":[[[0,1,2,3]],[[0,1,4]]],
+"semantics":{"surfaces":[{"type":"RoofSurface"}],"values":[0,null]}}]},
+"b":{"type":"Building","attributes":{"year":2000,"name":null}}},
+"vertices":[[0,0,0],[10000,0,0],[10000,20000,0],[0,20000,0],[10000,0,3000],[99000,99000,99000]]}"#;
+
+#[test]
+fn help_and_version_are_no_failures() {
+    for arguments in [&["--help"][..], &["--version"], &["info", "--help"], &["synth", "--help"]] {
+        let output = run(arguments);
+        assert_eq!(code(&output), 0, "{arguments:?}");
+        assert!(!out(&output).is_empty() && err(&output).is_empty(), "{arguments:?}");
+    }
+    for command in ["info", "synth"] {
+        let help = out(&run(&[command, "--help"]));
+        assert!(help.contains("Examples:"), "veduta {command} --help has no examples:\n{help}");
+    }
+}
+
+#[test]
+fn wrong_usage_is_code_two() {
+    for arguments in [
+        &["info"][..],
+        &["info", "--no-such-option", "x.json"],
+        &["synth", "--buildings", "many", "--seed", "1", "-o", "x.json"],
+        &["synth", "--buildings", "5", "--seed", "1", "-o", "x.doc"],
+        &["-v", "-q", "info", "x.json"],
+        &["inof", "x.json"],
+        &["nonsense"],
+    ] {
+        let output = run(arguments);
+        assert_eq!(code(&output), 2, "{arguments:?}: {}", err(&output));
+        assert!(out(&output).is_empty(), "{arguments:?}");
+        assert!(!err(&output).contains("panicked"), "{arguments:?}");
+    }
+    assert!(err(&run(&["inof", "x.json"])).contains("veduta info"), "a near miss is named");
+    assert!(err(&run(&["nonsense"])).contains("info, synth"), "else the commands are listed");
+}
+
+#[test]
+fn failures_are_code_one_and_one_message() {
+    let folder = Folder::new("failures");
+    let empty = folder.file("empty.json", "");
+    let cut = folder.file("cut.json", &CITY[..CITY.len() / 3]);
+    let picture = folder.file("picture.json", "\u{89}PNG\r\n\u{1a}\n");
+    for (file, named) in [("/no/such/file.json", "file.json"), (&empty, "empty.json"), (&picture, "picture.json")] {
+        let output = run(&["info", file]);
+        assert_eq!(code(&output), 1, "{file}");
+        assert!(out(&output).is_empty(), "{file}");
+        let message = err(&output);
+        assert!(message.starts_with("error: ") && message.contains(named), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+    }
+    // What of a damaged file can be read is shown, or the place of the damage named.
+    let output = run(&["info", &cut]);
+    assert!(!err(&output).contains("panicked"), "{}", err(&output));
+    assert!(code(&output) == 0 && out(&output).contains("truncated") || err(&output).contains("cut.json"));
+}
+
+#[test]
+fn the_window_says_that_it_is_not_here_yet() {
+    for arguments in [&["view"][..], &["view", "a.json"], &["a.json"], &[]] {
+        let output = run(arguments);
+        assert_eq!(code(&output), 1, "{arguments:?}");
+        assert!(err(&output).contains("veduta render"), "{arguments:?}: {}", err(&output));
+    }
+}
+
+#[test]
+fn info_as_json_is_the_object_of_the_contract() {
+    let folder = Folder::new("json");
+    let output = run(&["info", "--json", "--list", &folder.file("a.city.json", CITY)]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let facts: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let keys: Vec<_> = facts.as_object().unwrap().keys().map(String::as_str).collect();
+    let expected = ["format", "version", "crs", "crs_raw", "extent", "objects", "lods", "attributes", "textures"];
+    assert_eq!(keys, [&expected[..], &["faces_dropped", "warnings"]].concat());
+    assert_eq!(facts["crs"], "EPSG:7415");
+    assert_eq!(facts["extent"], json!({"min": [100.0, 200.0, 0.0], "max": [110.0, 220.0, 3.0]}));
+    assert_eq!(facts["objects"]["by_type"], json!({"Building": 2, "BuildingPart": 1}));
+    let part = json!({"id": "a1", "type": "BuildingPart", "parents": ["a"], "lods": ["2"]});
+    assert_eq!(facts["objects"]["list"][1], part);
+    assert_eq!(facts["lods"], json!({"2": {"objects": 1, "polygons": 2, "triangles": 3}}));
+    let year =
+        json!({"count": 2, "nulls": 0, "type": "integer", "min": 1900, "max": 2000, "values": [[1900, 1], [2000, 1]]});
+    assert_eq!(facts["attributes"]["year"], year);
+    assert_eq!(facts["attributes"]["name"]["nulls"], 1);
+}
+
+#[test]
+fn info_as_text_fits_and_names_what_is_there() {
+    let folder = Folder::new("text");
+    let file = folder.file("a.city.json", CITY);
+    let text = out(&run(&["info", &file]));
+    for part in ["EPSG:7415", "└ BuildingPart", "RoofSurface", "1900 … 2000", "Warnings"] {
+        assert!(text.contains(part), "{part} is missing in:\n{text}");
+    }
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    assert!(!text.contains('\u{1b}'), "no colours in a pipe");
+    assert!(
+        out(&run(&["info", "--list", &file])).lines().any(|line| line.contains("a1") && line.contains("BuildingPart"))
+    );
+}
+
+#[test]
+fn several_files_make_one_city() {
+    let folder = Folder::new("several");
+    let (a, b) = (folder.file("a.city.json", CITY), folder.file("b.city.json", CITY));
+    let facts: Value = serde_json::from_slice(&run(&["info", "--json", "--list", &a, &b]).stdout).unwrap();
+    assert_eq!(facts["objects"]["total"], 6);
+    assert_eq!(facts["objects"]["list"][3]["id"], "a#2");
+    assert_eq!(facts["objects"]["list"][4]["parents"], json!(["a#2"]), "links stay within their file");
+    assert_eq!(facts["warnings"][0]["code"], "duplicate-id");
+    assert_eq!(facts["warnings"][0]["count"], 3);
+}
+
+#[test]
+fn a_dash_is_stdin_and_stdout() {
+    let made = run(&["synth", "--buildings", "20", "--seed", "4", "-o", "-"]);
+    assert_eq!(code(&made), 0);
+    let mut child = veduta(&["info", "--json", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(&made.stdout).unwrap();
+    let facts: Value = serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
+    assert_eq!(facts["objects"]["by_type"]["Building"], 20);
+    assert_eq!(facts["warnings"], json!([]));
+}
+
+#[test]
+fn synth_writes_every_format_by_its_ending() {
+    let folder = Folder::new("endings");
+    let facts = |name: &str| -> Value {
+        let file = folder.path(name);
+        let output = run(&["synth", "--buildings", "60", "--seed", "9", "-o", &file]);
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        serde_json::from_slice(&run(&["info", "--json", &file]).stdout).unwrap()
+    };
+    let plain = facts("a.city.json");
+    for name in ["a.city.json.gz", "a.city.jsonl", "a.city.jsonl.gz"] {
+        let other = facts(name);
+        for key in ["extent", "objects", "lods", "attributes", "warnings"] {
+            assert_eq!(other[key], plain[key], "{name}: {key}");
+        }
+    }
+    assert_eq!(&std::fs::read(folder.path("a.city.json.gz")).unwrap()[..2], [0x1f, 0x8b]);
+}
+
+#[test]
+fn a_reader_that_leaves_is_no_failure() {
+    let mut child = veduta(&["synth", "--buildings", "5000", "--seed", "1", "-o", "-"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((code(&output), err(&output).as_str()), (0, ""));
+}
+
+#[test]
+fn what_cannot_be_written_leaves_nothing() {
+    let folder = Folder::new("unwritable");
+    let output = run(&["synth", "--buildings", "5", "--seed", "1", "-o", &folder.path("no/such/folder/a.json")]);
+    assert_eq!(code(&output), 1);
+    assert!(err(&output).contains("folder"), "{}", err(&output));
+    let full = run(&["synth", "--detail", "full", "--buildings", "5", "--seed", "1", "-o", &folder.path("a.json")]);
+    assert_eq!(code(&full), 1);
+    assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 0);
+}
+
+#[test]
+fn quiet_is_quiet_and_verbose_says_what_it_does() {
+    let folder = Folder::new("levels");
+    let file = folder.file("a.city.json", CITY);
+    assert_eq!(err(&run(&["-q", "info", &file])), "");
+    assert_eq!(err(&run(&["info", &file])), "");
+    assert!(err(&run(&["info", "-v", &file])).contains("3 objects"));
+    let colourless = veduta(&["info", "-v", &file]).env("NO_COLOR", "1").output().unwrap();
+    assert!(!err(&colourless).contains('\u{1b}'));
+}
+
+#[test]
+fn messages_do_not_name_the_build() {
+    let output = run(&["info", Path::new("x").join("missing.json").to_str().unwrap()]);
+    assert!(!err(&output).contains("src/"), "{}", err(&output));
+}
