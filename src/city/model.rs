@@ -111,6 +111,11 @@ impl Strings {
         self.index.get(text).copied()
     }
 
+    /// All texts, in the order of their ids.
+    pub fn iter(&self) -> impl Iterator<Item = &str> {
+        self.list.iter().map(|text| &**text)
+    }
+
     /// The text of `id`.
     pub fn get(&self, id: StringId) -> &str {
         &self.list[id.0 as usize]
