@@ -61,7 +61,8 @@ fn every_model_is_what_its_line_says() {
                 continue;
             }
         };
-        let triangles: u32 = shown_geometries(&model, None).iter().map(|g| model.geometries[*g as usize].triangles).sum();
+        let triangles: u32 =
+            shown_geometries(&model, None).iter().map(|g| model.geometries[*g as usize].triangles).sum();
         let warnings: BTreeSet<String> = model.warnings.iter().map(|(code, _)| code.code().to_owned()).collect();
         if (model.objects.len(), triangles, &warnings) != (row.objects, row.triangles, &row.warnings) {
             let file = &row.file;
