@@ -1,6 +1,16 @@
 //! What to show where: a lens = shapes + effects + order (V §3).
 
+pub mod classify;
+pub mod color;
+pub mod effect;
+pub mod nearest;
+pub mod ramp;
+pub mod sprite;
+pub mod thematic;
+
 use std::collections::BTreeMap;
+
+pub use classify::classify;
 
 use crate::geom::Shape;
 
