@@ -8,12 +8,17 @@ use crate::city::{CityModel, Lod};
 /// `cap`; each object shows its own finest LoD that is not finer than that; a parent's geometry is hidden where a
 /// descendant shows some. As the root's LoD is the finest of its family, each object's own finest is never finer:
 /// what is left to do is the cap and the hiding. Geometry without a level of detail passes any cap and is shown where
-/// its object has no other.
+/// its object has no other; it is hidden by levels only: nested meshes of glTF stand beside each other.
 pub fn shown_geometries(model: &CityModel, cap: Option<Lod>) -> Vec<u32> {
     let own: Vec<Option<Lod>> = (0..model.objects.len()).map(|object| finest(model, object, cap)).collect();
-    let covered = covered_by_descendants(model, &own);
+    let covered = covered_by_descendants(model, |object| own[object].is_some());
+    let covered_by_levels = covered_by_descendants(model, |object| own[object].is_some_and(|lod| lod != Lod::NONE));
     let mut shown = Vec::new();
-    for (object, lod) in model.objects.iter().zip(&own).zip(covered).filter(|(_, covered)| !covered).map(|(o, _)| o) {
+    for (i, (object, lod)) in model.objects.iter().zip(&own).enumerate() {
+        let hidden = if *lod == Some(Lod::NONE) { &covered_by_levels } else { &covered };
+        if hidden[i] {
+            continue;
+        }
         let fits = |i: &u32| Some(model.geometries[*i as usize].lod) == *lod;
         shown.extend(object.geometries.clone().filter(fits));
     }
@@ -29,12 +34,12 @@ fn finest(model: &CityModel, object: usize, cap: Option<Lod>) -> Option<Lod> {
     lods.max_by_key(|lod| (*lod != Lod::NONE, *lod))
 }
 
-/// Per object, whether a descendant has something to show. Walks up from each such object; an ancestor already
+/// Per object, whether a descendant is one that covers. Walks up from each such object; an ancestor already
 /// marked has marked its own ancestors, so every link is followed once.
-fn covered_by_descendants(model: &CityModel, own: &[Option<Lod>]) -> Vec<bool> {
+fn covered_by_descendants(model: &CityModel, covers: impl Fn(usize) -> bool) -> Vec<bool> {
     let mut covered = vec![false; model.objects.len()];
     let mut open: Vec<u32> = Vec::new();
-    for object in (0..model.objects.len()).filter(|o| own[*o].is_some()) {
+    for object in (0..model.objects.len()).filter(|o| covers(*o)) {
         open.extend(&model.objects[object].parents);
         while let Some(parent) = open.pop() {
             if !std::mem::replace(&mut covered[parent as usize], true) {
@@ -128,6 +133,14 @@ mod tests {
         let family: &[(&[u32], &[&str])] =
             &[(&[], &["1"]), (&[0], &[]), (&[1], &["2"]), (&[], &["1"]), (&[1, 3], &["2"])];
         assert_eq!(shown(family, None), pairs(&[(2, "2"), (4, "2")]));
+    }
+
+    #[test]
+    fn meshes_without_levels_do_not_hide_each_other() {
+        let nested: &[(&[u32], &[&str])] = &[(&[], &["none"]), (&[0], &["none"])];
+        assert_eq!(shown(nested, None), pairs(&[(0, "none"), (1, "none")]));
+        let detailed: &[(&[u32], &[&str])] = &[(&[], &["none"]), (&[0], &["none"]), (&[1], &["2"])];
+        assert_eq!(shown(detailed, None), pairs(&[(2, "2")]));
     }
 
     #[test]

@@ -49,6 +49,7 @@ pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) ->
     file.adopt_crs(header.crs.as_deref());
     file.adopt_transform(&header, &version);
     file.warn_damage(&header);
+    file.warn_encoding();
     file.add(header);
     if is_sequence {
         file.read_features(json.offset());
@@ -124,6 +125,17 @@ impl<'a> File<'a> {
             templates: Templates::default(),
             instanced: 0,
             is_damaged: false,
+        }
+    }
+
+    /// JSON is UTF-8; an old code page shows as `\u{fffd}` in names, and that is said once.
+    fn warn_encoding(&mut self) {
+        let input = self.input;
+        if let Err(e) = std::str::from_utf8(&input.bytes) {
+            self.warn(WarningCode::Malformed, || {
+                let place = json::place(&input.bytes, e.valid_up_to());
+                format!(", {place}: this is not UTF-8; what cannot be read stands as \u{fffd}")
+            });
         }
     }
 

@@ -22,6 +22,8 @@ pub struct Input {
     pub path: PathBuf,
     /// The content, decompressed, without UTF-8 byte order mark.
     pub bytes: Vec<u8>,
+    /// Whether compressed content ends early: the loader shows what is there, [`super::read_input`] says so.
+    pub is_cut: bool,
 }
 
 impl Input {
@@ -61,8 +63,9 @@ pub fn from_bytes(path: &Path, mut bytes: Vec<u8>) -> Result<Input, LoadError> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(path));
     }
+    let mut is_cut = false;
     if bytes.starts_with(&[0x1f, 0x8b]) {
-        bytes = gunzip(path, &bytes)?;
+        (bytes, is_cut) = gunzip(path, &bytes)?;
         if bytes.starts_with(&[0x1f, 0x8b]) {
             return Err(LoadError::new(path, "is gzip inside gzip; unpack it once"));
         }
@@ -70,15 +73,15 @@ pub fn from_bytes(path: &Path, mut bytes: Vec<u8>) -> Result<Input, LoadError> {
     if bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
         bytes.drain(..3);
     }
-    Ok(Input { path: path.to_owned(), bytes })
+    Ok(Input { path: path.to_owned(), bytes, is_cut })
 }
 
 fn too_large(path: &Path) -> LoadError {
     LoadError::new(path, "is larger than 4 GiB; cut it into tiles and name several files")
 }
 
-/// Decompresses every member of a gzip file. A cut-off end is given to the loader, which shows what is there.
-fn gunzip(path: &Path, packed: &[u8]) -> Result<Vec<u8>, LoadError> {
+/// Decompresses every member of a gzip file; and whether its end is cut off.
+fn gunzip(path: &Path, packed: &[u8]) -> Result<(Vec<u8>, bool), LoadError> {
     let limit = MAX_BYTES.min(FREE_BYTES.max(packed.len() as u64 * MAX_RATIO));
     let mut bytes = Vec::new();
     let result = flate2::read::MultiGzDecoder::new(packed).take(limit + 1).read_to_end(&mut bytes);
@@ -95,6 +98,6 @@ fn gunzip(path: &Path, packed: &[u8]) -> Result<Vec<u8>, LoadError> {
         Err(e) if bytes.is_empty() || e.kind() != std::io::ErrorKind::UnexpectedEof => {
             Err(LoadError::new(path, format!("is damaged gzip: {e}")))
         }
-        _ => Ok(bytes),
+        result => Ok((bytes, result.is_err())),
     }
 }

@@ -230,6 +230,11 @@ fn read_file(
 
 /// Gives bytes to the loader of their format; what a fuzzer calls.
 pub fn read_input(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) -> Result<(), LoadError> {
+    if input.is_cut {
+        builder.model.warnings.add(WarningCode::TruncatedFile, "", || {
+            format!("{}: the compressed file ends early; is the download complete?", input.path.display())
+        });
+    }
     match sniff::format(input) {
         Format::Known(name) => Err(LoadError::new(&input.path, format!("{name} cannot be read yet"))),
         Format::Not(what) => Err(LoadError::new(&input.path, what)),
