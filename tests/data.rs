@@ -1,0 +1,28 @@
+//! Tests on the shared data sets, named by `VEDUTA_DATA`; without it every trial reads *ignored*, never *ok*.
+//!
+//! One module per room below `tests/data/`; each gives its trials, which are made even without the data.
+
+#[path = "data/info.rs"]
+mod info;
+
+use std::path::PathBuf;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+
+/// The folder of the shared data sets, if there is one.
+fn root() -> Option<PathBuf> {
+    std::env::var_os("VEDUTA_DATA").filter(|value| !value.is_empty()).map(PathBuf::from)
+}
+
+/// A trial that needs the data.
+fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 'static) -> Trial {
+    let root = root();
+    let is_absent = root.is_none();
+    Trial::test(name, move || run(root.expect("the trial is ignored without the data"))).with_ignored_flag(is_absent)
+}
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let trials = info::trials();
+    libtest_mimic::run(&arguments, trials).exit();
+}
