@@ -18,6 +18,8 @@ use crate::{
 const LEAST_AREA_M2: f64 = 1e-6;
 /// Nor do those whose overlap is narrower than this, metres: the f32 positions of neighbours differ by some 10⁻⁵.
 const LEAST_WIDTH_M: f64 = 5e-5;
+/// Positions in different tiles differ by less than this where they are meant to be the same, metres.
+const ROUNDING_M: f64 = 1e-3;
 /// Planes of more triangles than this use a hierarchy, fewer are tried pair by pair.
 const PAIRWISE: usize = 32;
 
@@ -53,7 +55,7 @@ pub fn coplanar_triangles(model: &CityModel, shown: &[u32]) -> Vec<CoplanarTrian
             }
         }
     }
-    members.par_sort_unstable_by_key(|member| (member.group, member.triangle));
+    members.par_sort_unstable_by_key(|member| u64::from(member.group) << 32 | u64::from(member.triangle));
     let ranks: FxHashMap<StringId, u8> = surface_ranks(model);
     let groups: Vec<&[CoplanarTriangle]> =
         members.chunk_by(|a, b| a.group == b.group).filter(|group| group.len() > 1).collect();
@@ -64,28 +66,21 @@ pub fn coplanar_triangles(model: &CityModel, shown: &[u32]) -> Vec<CoplanarTrian
 fn covered(model: &CityModel, group: &[CoplanarTriangle], ranks: &FxHashMap<StringId, u8>) -> Vec<CoplanarTriangle> {
     let corners: Vec<[DVec3; 3]> = group.iter().map(|member| world_corners(model, member)).collect();
     let flat = flatten(&corners, model.plane_equations[group[0].group as usize - 1].normal);
-    let mut covers = vec![false; group.len()];
-    let mut try_pair = |i: usize, j: usize| {
-        if !(covers[i] && covers[j]) && overlap(&flat[i], &flat[j]) {
-            covers[i] = true;
-            covers[j] = true;
-        }
-    };
-    if group.len() <= PAIRWISE {
-        for i in 1..group.len() {
-            (0..i).for_each(|j| try_pair(i, j));
-        }
+    let covers: Vec<bool> = if group.len() <= PAIRWISE {
+        let covers_any = |i: usize| (0..group.len()).any(|j| i != j && overlap(&flat[i], &flat[j]));
+        (0..group.len()).map(covers_any).collect()
     } else {
-        let boxes: Vec<Aabb> = corners.iter().map(|&corners| Aabb::from_points(corners)).collect();
+        // Flat boxes of one plane may lie apart by the rounding of their tiles.
+        let grown = |bounds: Aabb| Aabb { min: bounds.min - ROUNDING_M, max: bounds.max + ROUNDING_M };
+        let boxes: Vec<Aabb> = corners.iter().map(|&corners| grown(Aabb::from_points(corners))).collect();
         let bvh = Bvh::build(&boxes);
-        for (i, region) in boxes.iter().enumerate() {
-            bvh.in_box(region, |j| {
-                if (j as usize) < i {
-                    try_pair(i, j as usize);
-                }
-            });
-        }
-    }
+        let covers_any = |i: usize| {
+            let mut found = false;
+            bvh.in_box(&boxes[i], |j| found = found || j as usize != i && overlap(&flat[i], &flat[j as usize]));
+            found
+        };
+        (0..group.len()).into_par_iter().map(covers_any).collect()
+    };
     let mut found: Vec<CoplanarTriangle> =
         group.iter().zip(covers).filter_map(|(member, covers)| covers.then_some(*member)).collect();
     found.sort_by_cached_key(|member| {
@@ -231,6 +226,26 @@ mod tests {
     }
 
     #[test]
+    fn covering_is_mutual() {
+        let mut x = 1_u32;
+        let mut next = |below: u32| {
+            x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from((x >> 8) % below)
+        };
+        let mut met = 0;
+        for _ in 0..20_000 {
+            let mut triangle = || {
+                let [a, b, c] = [0; 3].map(|_| DVec2::new(3000.0 + next(5) * 0.75, next(4) * 1.1));
+                if (b - a).perp_dot(c - a) < 0.0 { [a, c, b] } else { [a, b, c] }
+            };
+            let (a, b) = (triangle(), triangle());
+            assert_eq!(overlap(&a, &b), overlap(&b, &a), "{a:?} {b:?}: {:?} {:?}", clipped(&a, &b), clipped(&b, &a));
+            met += u32::from(overlap(&a, &b));
+        }
+        assert!(met > 1000);
+    }
+
+    #[test]
     fn party_walls_are_a_group_and_neighbouring_roofs_are_none() {
         let mut b = builder();
         add_box(&mut b, "west", [0, 0, 0], [10_000, 10_000, 9_000]);
@@ -266,6 +281,21 @@ mod tests {
         let mut winners: Vec<_> = winners.into_values().collect();
         winners.sort();
         assert_eq!(winners, ["c door", "d floor"]);
+    }
+
+    #[test]
+    fn party_walls_meet_although_their_tiles_round_differently() {
+        // All in one plane, x = 10.123 m, which no f32 holds; every building has an origin of its own.
+        let mut b = builder();
+        for i in 0..40_i64 {
+            let (y, z) = (i * 15_301, i * 377);
+            add_box(&mut b, &format!("west {i}"), [i * 131 - 9_000, y, z], [10_123, y + 10_000, z + 9_000]);
+            add_box(&mut b, &format!("east {i}"), [10_123, y, z + 1_000], [30_777 + i * 57, y + 9_000, z + 7_000]);
+        }
+        let model = b.finish();
+        let found = coplanar_triangles(&model, &all(&model));
+        assert_eq!(found.len(), 160);
+        assert!(found.iter().all(|triangle| triangle.group == found[0].group));
     }
 
     #[test]

@@ -272,6 +272,7 @@ fn finish_geometries(model: &mut CityModel, raws: Vec<RawGeometry>) {
     built.chunk.indices.reserve_exact(3 * triangles);
     built.chunk.planes.reserve_exact(triangles);
     built.chunk.geometries.reserve_exact(raws.len());
+    built.planes.reserve(raws.iter().map(|raw| raw.polygons.polygon_ends.len()).sum());
 
     let mut jobs = Jobs { raws: raws.into_iter().peekable() };
     let mut ready: Vec<Chunk> = Vec::new();
@@ -288,12 +289,12 @@ fn finish_geometries(model: &mut CityModel, raws: Vec<RawGeometry>) {
                     .map_init(job::Scratch::default, |scratch, job| job::run(job, &context, scratch))
                     .collect()
             },
-            || ready.drain(..).for_each(|chunk| built.append(chunk)),
+            || ready.drain(..).for_each(|chunk| built.append(chunk, &context.classes)),
         );
         ready = next;
     }
     let Built { mut chunk, planes, .. } = built;
-    let plane_equations = planes.finish(&mut chunk.planes, &context.classes);
+    let plane_equations = planes.finish(&mut chunk.planes);
     chunk.vertices.shrink_to_fit();
     chunk.indices.shrink_to_fit();
     chunk.planes.shrink_to_fit();
@@ -341,7 +342,7 @@ struct Built {
 }
 
 impl Built {
-    fn append(&mut self, chunk: Chunk) {
+    fn append(&mut self, chunk: Chunk, classes: &[Lattice]) {
         let all = &mut self.chunk;
         let (vertices, indices) = (all.vertices.len() as u32, all.indices.len() as u32);
         let (tiles, texcoords) = (all.tiles.len() as u32, all.texcoords.len() as u32);
@@ -362,8 +363,11 @@ impl Built {
             geometry.tiles = geometry.tiles.start + tiles..geometry.tiles.end + tiles;
             geometry
         }));
-        let numbers: Vec<u32> =
-            chunk.plane_keys.iter().map(|&(key, polygon)| self.planes.add(key, self.polygons + polygon)).collect();
+        let numbers: Vec<u32> = chunk
+            .plane_keys
+            .iter()
+            .map(|&(key, polygon)| self.planes.add(key, self.polygons + polygon, classes))
+            .collect();
         all.planes.extend(chunk.planes.iter().map(|&local| if local == 0 { 0 } else { numbers[local as usize - 1] }));
         self.polygons += chunk.polygons;
         all.warnings.append(chunk.warnings);

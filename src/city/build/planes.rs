@@ -15,51 +15,72 @@ pub(super) struct PlaneKey {
 }
 
 /// Every plane met so far.
+///
+/// Planes are told apart by 128-bit fingerprints of their exact integers: a third of the memory of the integers, and
+/// two of a million planes would be confused with a chance of some 10⁻²⁷.
 #[derive(Debug, Default)]
 pub(super) struct PlaneTable {
-    numbers: FxHashMap<PlaneKey, u32>,
-    /// Per number: the polygon that was on it last, and whether another one was before.
-    polygons: Vec<(u32, bool)>,
+    numbers: FxHashMap<[u64; 2], u32>,
+    /// Per number: the polygon that was on it last, and the plane in the world if another one was before.
+    uses: Vec<(u32, u32)>,
+    shared: Vec<Plane>,
 }
 
+/// In [`PlaneTable::uses`]: one polygon so far.
+const ALONE: u32 = u32::MAX;
+
 impl PlaneTable {
-    /// The number of `key`, 1 or more; `polygon` lies on it.
-    pub(super) fn add(&mut self, key: PlaneKey, polygon: u32) -> u32 {
-        let next = self.polygons.len() as u32;
-        let number = *self.numbers.entry(key).or_insert(next);
-        match self.polygons.get_mut(number as usize) {
+    /// Makes room for as many polygons.
+    pub(super) fn reserve(&mut self, polygons: usize) {
+        self.uses.reserve_exact(polygons);
+    }
+
+    /// The number of `key`, 1 or more; `polygon` lies on it. `classes` are the lattices of the grid classes.
+    pub(super) fn add(&mut self, key: PlaneKey, polygon: u32, classes: &[Lattice]) -> u32 {
+        let next = self.uses.len() as u32;
+        let number = *self.numbers.entry(key.fingerprint()).or_insert(next);
+        match self.uses.get_mut(number as usize) {
             Some((last, shared)) => {
-                *shared |= *last != polygon;
+                if *last != polygon && *shared == ALONE {
+                    *shared = self.shared.len() as u32;
+                    let lattice = classes[key.class as usize];
+                    let nowhere = Plane { normal: DVec3::ZERO, offset: 0.0 };
+                    self.shared.push(key.plane.in_world(lattice.step, lattice.origin).unwrap_or(nowhere));
+                }
                 *last = polygon;
             }
-            None => self.polygons.push((polygon, false)),
+            None => self.uses.push((polygon, ALONE)),
         }
         number + 1
     }
 
-    /// Renumbers `planes`: planes of a single polygon become 0, the others 1, 2, ... in the order they were met.
-    /// Returns those others in the world; `classes` are the lattices of the grid classes.
-    pub(super) fn finish(self, planes: &mut [u32], classes: &[Lattice]) -> Vec<Plane> {
-        let nowhere = Plane { normal: DVec3::ZERO, offset: 0.0 };
-        let mut count = 0;
-        let final_numbers: Vec<u32> = std::iter::once(0)
-            .chain(self.polygons.iter().map(|&(_, shared)| {
-                count += u32::from(shared);
-                if shared { count } else { 0 }
-            }))
-            .collect();
-        let mut equations = vec![nowhere; count as usize];
-        for (key, number) in self.numbers {
-            if let Some(place) = final_numbers[number as usize + 1].checked_sub(1) {
-                let lattice = classes[key.class as usize];
-                equations[place as usize] = key.plane.in_world(lattice.step, lattice.origin).unwrap_or(nowhere);
-            }
-        }
+    /// Renumbers `planes`: planes of a single polygon become 0, the others 1, 2, ... in the order in which their second
+    /// polygon was met. Returns those others in the world.
+    pub(super) fn finish(self, planes: &mut [u32]) -> Vec<Plane> {
+        drop(self.numbers);
         for plane in planes {
-            *plane = final_numbers[*plane as usize];
+            // `ALONE` wraps around to 0, and so do triangles without a plane.
+            *plane = plane.checked_sub(1).map_or(0, |number| self.uses[number as usize].1.wrapping_add(1));
         }
-        equations
+        self.shared
     }
+}
+
+impl PlaneKey {
+    /// Two different mixes of all its numbers.
+    fn fingerprint(&self) -> [u64; 2] {
+        let offset = self.plane.offset();
+        let [x, y, z] = self.plane.normal.map(|n| n as u64);
+        let words = [x, y, z, offset as u64, (offset >> 64) as u64, u64::from(self.class)];
+        [0x9e37_79b9_7f4a_7c15, 0xc2b2_ae3d_27d4_eb4f].map(|seed: u64| words.iter().fold(seed, |h, &w| mix(h, w, seed)))
+    }
+}
+
+/// A round of a multiply-and-fold hash: every bit of `h` and `word` reaches every bit of the result.
+fn mix(h: u64, word: u64, seed: u64) -> u64 {
+    let product = u128::from(h ^ word.rotate_left(31)) * u128::from((word ^ seed) | 1);
+    let folded = (product as u64) ^ ((product >> 64) as u64) ^ h.rotate_left(17);
+    (folded ^ (folded >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9)
 }
 
 #[cfg(test)]
@@ -69,19 +90,21 @@ mod tests {
     #[test]
     fn only_planes_of_two_polygons_keep_a_number() {
         let key = |z: i64, class| PlaneKey { plane: ExactPlane::new([0, 0, 1], [0, 0, z]).unwrap(), class };
-        let mut table = PlaneTable::default();
-        let mut planes = vec![
-            table.add(key(0, 0), 10),
-            table.add(key(0, 0), 10),
-            table.add(key(1, 0), 11),
-            0,
-            table.add(key(2, 0), 12),
-            table.add(key(1, 0), 13),
-            table.add(key(2, 1), 14),
-            table.add(key(2, 0), 15),
-        ];
         let millimetres = Lattice { step: DVec3::splat(0.001), origin: DVec3::ZERO };
-        let equations = table.finish(&mut planes, &[millimetres, Lattice::FINE]);
+        let classes = [millimetres, Lattice::FINE];
+        let mut table = PlaneTable::default();
+        let mut add = |key, polygon| table.add(key, polygon, &classes);
+        let mut planes = vec![
+            add(key(0, 0), 10),
+            add(key(0, 0), 10),
+            add(key(1, 0), 11),
+            0,
+            add(key(2, 0), 12),
+            add(key(1, 0), 13),
+            add(key(2, 1), 14),
+            add(key(2, 0), 15),
+        ];
+        let equations = table.finish(&mut planes);
         assert_eq!(planes, [0, 0, 1, 0, 2, 1, 0, 2]);
         assert_eq!(equations.iter().map(|plane| plane.normal).collect::<Vec<_>>(), [DVec3::Z; 2]);
         assert_eq!(equations.iter().map(|plane| plane.offset).collect::<Vec<_>>(), [0.001, 0.002]);
