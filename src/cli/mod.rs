@@ -7,6 +7,7 @@ pub mod failure;
 pub mod info;
 pub mod load;
 pub mod output;
+pub mod render;
 pub mod report;
 pub mod synth;
 pub mod terminal;

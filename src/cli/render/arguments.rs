@@ -1,0 +1,242 @@
+//! What `veduta render` can be asked, and how each value is spelt.
+
+use std::{path::PathBuf, str::FromStr};
+
+use clap::Args;
+
+use crate::cli::{Failure, Outcome};
+
+const EXAMPLES: &str = "\
+Examples:
+  veduta render city.city.json -o city.png
+  veduta render tiles/*.city.jsonl -o city.png --size 1920x1080 --samples 16
+  veduta render scene.toml -o figure.png --set lens.0.shape.radius=80 --set lens.b.enabled=false
+  veduta render scene.toml -o figure.png --aov depth=depth.exr --aov object-id=ids.png --stats stats.json
+
+A FILE that ends in .toml is a scene (docs/scene.md); city files get a good first view.
+AOVs: depth (.exr metres, .png 16 bit), object-id (.png), normal (.exr, .png), lens-mask (.png, .exr); KIND:displayed
+includes image-space lenses. The same input on the same adapter gives the same bytes.";
+
+/// Pixels on a side at most.
+const MAX_SIDE: u32 = 16_384;
+/// Samples per pixel at most.
+const MAX_SAMPLES: i64 = 1024;
+
+/// Arguments of `veduta render`.
+#[derive(Args, Clone, Debug, Default)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// One scene (.toml), or city files
+    #[arg(required = true, value_name = "SCENE|FILE")]
+    pub files: Vec<PathBuf>,
+    /// The picture to write: a PNG file, `-` for stdout
+    #[arg(short, long, value_name = "OUT.png")]
+    pub output: PathBuf,
+    /// Width and height in pixels [default: the scene's, else 1280x720]
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Samples per pixel [default: the scene's, else 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_SAMPLES))]
+    pub samples: Option<u32>,
+    /// Change the scene: lens.0.shape.radius=80, lens.NAME.enabled=false; repeatable, in order
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub settings: Vec<Setting>,
+    /// Write what it cost and what the lenses did, as one JSON object
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+    /// Write what each pixel shows: depth, object-id, normal or lens-mask; repeatable
+    #[arg(long = "aov", value_name = "KIND=FILE")]
+    pub aovs: Vec<AovRequest>,
+    /// Leave out sky and background: straight alpha
+    #[arg(long)]
+    pub transparent: bool,
+}
+
+impl Arguments {
+    /// Whether what is asked fits together; clap has checked each value by itself.
+    pub fn check(&self) -> Outcome {
+        let is_scene = |path: &PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+        if self.files.iter().any(is_scene) && self.files.len() > 1 {
+            return Err(Failure::usage(
+                "render: one scene (.toml) or any number of city files; a scene names its files itself",
+            ));
+        }
+        let extension = self.output.extension().map(|e| e.to_string_lossy().to_lowercase());
+        if self.output.as_os_str() != "-" && extension.as_deref() != Some("png") {
+            return Err(Failure::usage(format!("{}: pictures are PNG; OUT.png would be right", self.output.display())));
+        }
+        let mut outputs: Vec<&PathBuf> = self.aovs.iter().map(|aov| &aov.file).collect();
+        outputs.extend(self.stats.iter().chain([&self.output]));
+        outputs.sort();
+        match outputs.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(twice) => Err(Failure::usage(format!("{}: two results cannot go to one file", twice[0].display()))),
+            None => Ok(()),
+        }
+    }
+
+    /// The scene file, when one is named; else `files` are city files.
+    pub fn scene(&self) -> Option<&PathBuf> {
+        self.files.first().filter(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")))
+    }
+}
+
+/// A picture's size, `1280x720`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size(pub [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |side: &str| side.parse().ok().filter(|n| (1..=MAX_SIDE).contains(n));
+        text.split_once('x')
+            .and_then(|(width, height)| Some(Self([side(width)?, side(height)?])))
+            .ok_or_else(|| format!("width and height of 1 to {MAX_SIDE} pixels would be right, as 1280x720"))
+    }
+}
+
+/// A change of the scene, `lens.0.shape.radius=80`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// Where in the scene file.
+    pub path: String,
+    /// The new value, as TOML; a bare word is a text.
+    pub value: String,
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((path, value)) if !path.trim().is_empty() && !path.split('.').any(|key| key.trim().is_empty()) => {
+                Ok(Self { path: path.trim().to_owned(), value: value.trim().to_owned() })
+            }
+            _ => Err("PATH=VALUE would be right, as lens.0.shape.radius=80".to_owned()),
+        }
+    }
+}
+
+/// What an AOV holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum AovKind {
+    /// Metres along the view axis.
+    Depth,
+    /// Object index + 1.
+    ObjectId,
+    /// Unit normals.
+    Normal,
+    /// Membership in each lens.
+    LensMask,
+}
+
+impl AovKind {
+    const NAMES: [(&'static str, Self); 4] = [
+        ("depth", Self::Depth),
+        ("object-id", Self::ObjectId),
+        ("normal", Self::Normal),
+        ("lens-mask", Self::LensMask),
+    ];
+
+    fn formats(self) -> &'static [AovFormat] {
+        match self {
+            Self::ObjectId => &[AovFormat::Png],
+            _ => &[AovFormat::Png, AovFormat::Exr],
+        }
+    }
+}
+
+/// How an AOV is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AovFormat {
+    /// Integers.
+    Png,
+    /// Floats or 32-bit integers.
+    Exr,
+}
+
+/// One `--aov`: `depth=depth.exr`, `object-id:displayed=ids.png`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AovRequest {
+    /// What.
+    pub kind: AovKind,
+    /// Whether image-space lenses are included.
+    pub is_displayed: bool,
+    /// How.
+    pub format: AovFormat,
+    /// Where to.
+    pub file: PathBuf,
+}
+
+impl FromStr for AovRequest {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let names = AovKind::NAMES.map(|(name, _)| name).join(", ");
+        let usage = || format!("KIND=FILE would be right, with KIND one of {names}");
+        let (kind, file) = text.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(usage)?;
+        let (kind, is_displayed) = match kind.split_once(':') {
+            Some((kind, "displayed")) => (kind, true),
+            Some((_, other)) => return Err(format!("':{other}' is unknown; ':displayed' would be right")),
+            None => (kind, false),
+        };
+        let (name, kind) = *AovKind::NAMES.iter().find(|(name, _)| *name == kind).ok_or_else(usage)?;
+        let file = PathBuf::from(file);
+        let format = match file.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
+            Some("png") => AovFormat::Png,
+            Some("exr") => AovFormat::Exr,
+            _ => return Err(format!("{}: .png or .exr would be right", file.display())),
+        };
+        if !kind.formats().contains(&format) {
+            return Err(format!("{name} is written as .png only"));
+        }
+        Ok(Self { kind, is_displayed, format, file })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!("1280x720".parse(), Ok(Size([1280, 720])));
+        for wrong in ["", "1280", "0x5", "5x0", "16385x1", "-1x5", "axb", "1x2x3", "1280X720", "4294967297x1"] {
+            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn settings_split_at_the_first_equals_sign() {
+        let setting: Setting = "lens.a.name=x=y".parse().unwrap();
+        assert_eq!((setting.path.as_str(), setting.value.as_str()), ("lens.a.name", "x=y"));
+        for wrong in ["", "lens.0.enabled", "=5", "lens..radius=5"] {
+            assert!(wrong.parse::<Setting>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn aovs_name_kind_format_and_file() {
+        let aov: AovRequest = "depth:displayed=a/b=c.EXR".parse().unwrap();
+        let expected =
+            AovRequest { kind: AovKind::Depth, is_displayed: true, format: AovFormat::Exr, file: "a/b=c.EXR".into() };
+        assert_eq!(aov, expected);
+        for wrong in ["depth", "depth=", "depht=a.png", "depth=a.jpg", "object-id=a.exr", "depth:shown=a.png"] {
+            assert!(wrong.parse::<AovRequest>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_together_is_refused() {
+        let check = |files: &[&str], output: &str, aov: &str| {
+            let aovs = vec![aov.parse().unwrap()];
+            let files = files.iter().map(PathBuf::from).collect();
+            Arguments { files, output: output.into(), aovs, ..Default::default() }.check()
+        };
+        assert!(check(&["a.json", "b.json"], "a.png", "depth=d.png").is_ok());
+        assert!(check(&["a.toml", "b.json"], "a.png", "depth=d.png").is_err());
+        assert!(check(&["a.json"], "a.jpg", "depth=d.png").is_err());
+        assert!(check(&["a.json"], "d.png", "depth=d.png").is_err());
+        assert!(check(&["a.json"], "-", "depth=d.png").is_ok());
+    }
+}

@@ -1,0 +1,3 @@
+//! `veduta render`: one picture, no window.
+
+pub mod arguments;
