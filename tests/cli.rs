@@ -74,7 +74,7 @@ fn help_and_version_are_no_failures() {
         assert_eq!(code(&output), 0, "{arguments:?}");
         assert!(!out(&output).is_empty() && err(&output).is_empty(), "{arguments:?}");
     }
-    for command in ["info", "synth"] {
+    for command in ["info", "synth", "effects"] {
         let help = out(&run(&[command, "--help"]));
         assert!(help.contains("Examples:"), "veduta {command} --help has no examples:\n{help}");
     }
@@ -245,4 +245,16 @@ fn quiet_is_quiet_and_verbose_says_what_it_does() {
 fn messages_do_not_name_the_build() {
     let output = run(&["info", Path::new("x").join("missing.json").to_str().unwrap()]);
     assert!(!err(&output).contains("src/"), "{}", err(&output));
+}
+
+#[test]
+fn effects_are_listed() {
+    let listed: Value = serde_json::from_slice(&run(&["effects", "--json"]).stdout).unwrap();
+    let names: Vec<_> = listed.as_array().unwrap().iter().map(|effect| effect["name"].as_str().unwrap()).collect();
+    for name in ["greyscale", "sepia", "thematic"] {
+        assert!(names.contains(&name), "{name}");
+    }
+    let thematic = out(&run(&["effects", "thematic"]));
+    assert!(thematic.contains("attribute") && !thematic.contains("sepia"), "{thematic}");
+    assert_eq!(code(&run(&["effects", "sepai"])), 2);
 }

@@ -3,6 +3,7 @@
 //! One file per command: a clap struct of its arguments and a `run` that gives `Ok` or one readable [`Failure`].
 //! What a command prints goes through [`output`], what it says meanwhile through [`terminal`].
 
+pub mod effects;
 pub mod failure;
 pub mod info;
 pub mod load;
@@ -75,6 +76,8 @@ pub enum Command {
     Info(info::Arguments),
     /// Makes a synthetic city
     Synth(synth::Arguments),
+    /// Lists what lenses can do to what they show
+    Effects(effects::Arguments),
     /// Files to view, or a word that is no command.
     #[command(external_subcommand)]
     Other(Vec<OsString>),
@@ -114,6 +117,7 @@ fn run(cli: Cli) -> Outcome {
         Some(Command::View(arguments)) => view(&arguments),
         Some(Command::Info(arguments)) => info::run(&arguments, global),
         Some(Command::Synth(arguments)) => synth::run(&arguments, global),
+        Some(Command::Effects(arguments)) => effects::run(&arguments, global),
         Some(Command::Other(words)) => other(&words),
         None => view(&ViewArguments { files: Vec::new(), scene: cli.scene }),
     }

@@ -13,10 +13,12 @@ use crate::{
         facts::{AttributeFacts, Facts, TreeLine},
     },
     cli::{
-        report::cells::{Align, Table, bytes, clean, count, cut, length, percent, wrap},
+        report::cells::{Align, Table, bytes, clean, count, cut, length, percent},
         terminal::Paint,
     },
 };
+
+pub use cells::wrap;
 
 /// Columns at most.
 const WIDTH: usize = 100;
