@@ -2,6 +2,8 @@
 //!
 //! One module per room below `tests/data/`; each gives its trials, which are made even without the data.
 
+#[path = "data/faces.rs"]
+mod faces;
 #[path = "data/info.rs"]
 mod info;
 
@@ -23,6 +25,6 @@ fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 's
 
 fn main() {
     let arguments = Arguments::from_args();
-    let trials = info::trials();
+    let trials = [faces::trials(), info::trials()].into_iter().flatten().collect();
     libtest_mimic::run(&arguments, trials).exit();
 }
