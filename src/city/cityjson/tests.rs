@@ -53,7 +53,7 @@ fn area_vector(corners: &[DVec3; 3]) -> DVec3 {
 /// The material of the faces whose normal points along `normal`, if they have one.
 fn material(model: &CityModel, id: &str, normal: DVec3) -> Option<Material> {
     let faces = triangles(model, id);
-    let face = faces.iter().find(|(corners, _)| area_vector(corners).normalize().dot(normal) > 0.99).unwrap();
+    let face = faces.iter().find(|(corners, _)| area_vector(corners).normalize_or_zero().dot(normal) > 0.99).unwrap();
     model.materials.get(face.1.material as usize).cloned()
 }
 
