@@ -17,6 +17,7 @@ pub mod synth;
 #[cfg(test)]
 pub(crate) mod test_city;
 pub mod texture;
+pub mod validate;
 pub mod warning;
 
 pub use model::*;

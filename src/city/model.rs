@@ -116,6 +116,16 @@ impl Strings {
         self.list.iter().map(|text| &**text)
     }
 
+    /// How many strings there are.
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
     /// The text of `id`.
     pub fn get(&self, id: StringId) -> &str {
         &self.list[id.0 as usize]
