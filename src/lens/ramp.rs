@@ -39,6 +39,7 @@ pub fn ramp(name: &str, t: f64) -> Srgb {
         "purple-orange" => PURPLE_ORANGE,
         _ => VIRIDIS,
     };
+    #[expect(clippy::manual_clamp, reason = "`clamp` keeps NaN, `max` makes it 0")]
     let at = t.max(0.0).min(1.0) * (entries.len() - 1) as f64;
     let below = (at as usize).min(entries.len() - 2);
     mixed(srgb(entries[below]), srgb(entries[below + 1]), (at - below as f64) as f32)

@@ -129,10 +129,11 @@ proptest! {
         prop_assert!((here.signed_distance(origin) - there.signed_distance(origin + shift)).abs() < 1e-6);
         let a = here.entry_exit(&Ray { origin, direction });
         let b = there.entry_exit(&Ray { origin: origin + shift, direction });
-        if let (Some(a), Some(b)) = (a, b) {
-            if a.1 - a.0 > 0.1 && direction.length() > 0.1 {
-                prop_assert!((a.0 - b.0).abs() < 1e-4 && (a.1 - b.1).abs() < 1e-4);
-            }
+        if let (Some(a), Some(b)) = (a, b)
+            && a.1 - a.0 > 0.1
+            && direction.length() > 0.1
+        {
+            prop_assert!((a.0 - b.0).abs() < 1e-4 && (a.1 - b.1).abs() < 1e-4);
         }
     }
 
