@@ -1,0 +1,296 @@
+//! The device and everything that is made on it.
+//!
+//! Every allocation and upload goes through [`Gpu`], so that "nothing is allocated or uploaded while
+//! nothing changes" is a number one can read and not a promise.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use wgpu::util::DeviceExt;
+
+/// What can go wrong between here and the graphics card.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No adapter at all, or none of the wanted name.
+    #[error("{0}")]
+    NoAdapter(String),
+    /// The device was refused.
+    #[error("graphics adapter {adapter}: {message}")]
+    NoDevice { adapter: String, message: String },
+    /// An allocation that would not fit.
+    #[error("{what} needs {needed} of graphics memory in one piece, but {adapter} allows {allowed}; {advice}")]
+    TooLarge { what: String, needed: String, allowed: String, adapter: String, advice: String },
+    /// Something the driver reported while working.
+    #[error("graphics adapter {adapter}: {message}")]
+    Failed { adapter: String, message: String },
+}
+
+/// A device with its queue, and counters of what was made on it.
+#[derive(Debug)]
+pub struct Gpu {
+    /// wgpu's device.
+    pub device: wgpu::Device,
+    /// Its only queue.
+    pub queue: wgpu::Queue,
+    /// Name, backend, kind.
+    pub info: wgpu::AdapterInfo,
+    allocations: AtomicU64,
+    uploads: AtomicU64,
+    allocated_bytes: AtomicU64,
+}
+
+/// Features used where the adapter has them; nothing here is required.
+fn wanted_features() -> wgpu::Features {
+    wgpu::Features::TIMESTAMP_QUERY
+        | wgpu::Features::PIPELINE_STATISTICS_QUERY
+        | wgpu::Features::FLOAT32_BLENDABLE
+        | wgpu::Features::FLOAT32_FILTERABLE
+}
+
+impl Gpu {
+    /// Opens an adapter: the one whose name contains `VEDUTA_ADAPTER`, else hardware first, else software.
+    pub fn open() -> Result<Self, GpuError> {
+        let wanted = std::env::var("VEDUTA_ADAPTER").ok().filter(|w| !w.is_empty());
+        pollster::block_on(Self::open_async(wanted.as_deref()))
+    }
+
+    async fn open_async(wanted: Option<&str>) -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+        let names: Vec<String> = adapters.iter().map(|a| describe(&a.get_info())).collect();
+        if let Some(wanted) = wanted {
+            let needle = wanted.to_lowercase();
+            adapters.retain(|a| describe(&a.get_info()).to_lowercase().contains(&needle));
+            if adapters.is_empty() {
+                let found = if names.is_empty() { "none".to_owned() } else { names.join("; ") };
+                return Err(GpuError::NoAdapter(format!(
+                    "VEDUTA_ADAPTER=\"{wanted}\" matches no graphics adapter; found: {found}"
+                )));
+            }
+        }
+        adapters.sort_by_key(|a| rank(&a.get_info()));
+        let mut refusal = GpuError::NoAdapter(
+            "no graphics adapter found; on Debian and Ubuntu the package mesa-vulkan-drivers gives a software one"
+                .to_owned(),
+        );
+        for adapter in adapters {
+            match Self::on(&adapter).await {
+                Ok(gpu) => return Ok(gpu),
+                Err(error) => refusal = error,
+            }
+        }
+        Err(refusal)
+    }
+
+    async fn on(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let info = adapter.get_info();
+        let limits = adapter.limits();
+        if limits.max_storage_buffers_per_shader_stage < 6 || limits.max_compute_workgroups_per_dimension == 0 {
+            return Err(GpuError::NoDevice {
+                adapter: describe(&info),
+                message: "it has too few storage buffers or no compute shaders; on Debian and Ubuntu the package \
+                          mesa-vulkan-drivers gives a software Vulkan adapter that has them"
+                    .to_owned(),
+            });
+        }
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("veduta"),
+            required_features: adapter.features() & wanted_features(),
+            required_limits: limits,
+            experimental_features: wgpu::ExperimentalFeatures::disabled(),
+            memory_hints: wgpu::MemoryHints::default(),
+            trace: wgpu::Trace::Off,
+        };
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
+            .map_err(|error| GpuError::NoDevice { adapter: describe(&info), message: error.to_string() })?;
+        let gpu = Self {
+            device,
+            queue,
+            info,
+            allocations: AtomicU64::new(0),
+            uploads: AtomicU64::new(0),
+            allocated_bytes: AtomicU64::new(0),
+        };
+        if gpu.is_software() {
+            log::info!("software graphics adapter in use: {}", gpu.name());
+        }
+        Ok(gpu)
+    }
+
+    /// The adapter's name and backend.
+    pub fn name(&self) -> String {
+        describe(&self.info)
+    }
+
+    /// Whether the adapter is a program, not a card.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// `hardware`, `integrated`, `virtual`, `software` or `other`.
+    pub fn kind(&self) -> &'static str {
+        match self.info.device_type {
+            wgpu::DeviceType::DiscreteGpu => "hardware",
+            wgpu::DeviceType::IntegratedGpu => "integrated",
+            wgpu::DeviceType::VirtualGpu => "virtual",
+            wgpu::DeviceType::Cpu => "software",
+            wgpu::DeviceType::Other => "other",
+        }
+    }
+
+    /// Allocations so far.
+    pub fn allocations(&self) -> u64 {
+        self.allocations.load(Relaxed)
+    }
+
+    /// Uploads (buffer and texture writes) so far.
+    pub fn uploads(&self) -> u64 {
+        self.uploads.load(Relaxed)
+    }
+
+    /// Bytes ever allocated through this device.
+    pub fn allocated_bytes(&self) -> u64 {
+        self.allocated_bytes.load(Relaxed)
+    }
+
+    fn count_allocation(&self, bytes: u64) {
+        self.allocations.fetch_add(1, Relaxed);
+        self.allocated_bytes.fetch_add(bytes, Relaxed);
+    }
+
+    /// Refuses what the adapter cannot hold in one buffer or bind at once.
+    fn check_buffer(&self, what: &str, bytes: u64, usage: wgpu::BufferUsages) -> Result<(), GpuError> {
+        let limits = self.device.limits();
+        let mut allowed = limits.max_buffer_size;
+        if usage.contains(wgpu::BufferUsages::STORAGE) {
+            allowed = allowed.min(u64::from(limits.max_storage_buffer_binding_size));
+        }
+        if bytes <= allowed {
+            return Ok(());
+        }
+        Err(GpuError::TooLarge {
+            what: what.to_owned(),
+            needed: mebibytes(bytes),
+            allowed: mebibytes(allowed),
+            adapter: self.name(),
+            advice: "load fewer files or cap the level of detail ([city] lod)".to_owned(),
+        })
+    }
+
+    /// A buffer holding `data` (at least 16 bytes, so that it can always be bound).
+    pub fn buffer<T: bytemuck::NoUninit>(
+        &self,
+        label: &str,
+        usage: wgpu::BufferUsages,
+        data: &[T],
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        self.check_buffer(label, bytes.len() as u64, usage)?;
+        let padded;
+        let contents = if bytes.len() >= 16 && bytes.len().is_multiple_of(4) {
+            bytes
+        } else {
+            padded = [bytes, &vec![0; bytes.len().next_multiple_of(16).max(16) - bytes.len()]].concat();
+            &padded
+        };
+        self.count_allocation(contents.len() as u64);
+        self.uploads.fetch_add(1, Relaxed);
+        Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage }))
+    }
+
+    /// A buffer of `bytes` zeros (at least 16).
+    pub fn empty_buffer(&self, label: &str, usage: wgpu::BufferUsages, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
+        let size = bytes.max(16).next_multiple_of(16);
+        self.check_buffer(label, size, usage)?;
+        self.count_allocation(size);
+        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage,
+            mapped_at_creation: false,
+        }))
+    }
+
+    /// Replaces the start of a buffer.
+    pub fn write<T: bytemuck::NoUninit>(&self, buffer: &wgpu::Buffer, data: &[T]) {
+        self.uploads.fetch_add(1, Relaxed);
+        self.queue.write_buffer(buffer, 0, bytemuck::cast_slice(data));
+    }
+
+    /// A 2D texture (array), one sample per texel.
+    pub fn texture(
+        &self,
+        label: &str,
+        [width, height, layers]: [u32; 3],
+        mip_level_count: u32,
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        let texel = u64::from(format.block_copy_size(None).unwrap_or(4));
+        self.count_allocation(u64::from(width) * u64::from(height) * u64::from(layers) * texel);
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
+            mip_level_count,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    /// Fills one mip level of a texture's first layer; `rgba` is tightly packed, 4 bytes per texel.
+    pub fn write_texture_level(&self, texture: &wgpu::Texture, level: u32, rgba: &[u8]) {
+        self.uploads.fetch_add(1, Relaxed);
+        let size = texture.size().mip_level_size(level, wgpu::TextureDimension::D2);
+        self.queue.write_texture(
+            wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
+            rgba,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.width * 4), rows_per_image: None },
+            wgpu::Extent3d { depth_or_array_layers: 1, ..size },
+        );
+    }
+
+    /// Waits until everything submitted is done.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        match self.device.poll(wgpu::PollType::wait_indefinitely()) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(GpuError::Failed { adapter: self.name(), message: error.to_string() }),
+        }
+    }
+
+    /// Runs `work` and turns what the driver complains about meanwhile into an error.
+    pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let result = work();
+        let failures = [pollster::block_on(validation.pop()), pollster::block_on(memory.pop())];
+        match failures.into_iter().flatten().next() {
+            Some(error) => Err(GpuError::Failed { adapter: self.name(), message: error.to_string() }),
+            None => result,
+        }
+    }
+}
+
+fn describe(info: &wgpu::AdapterInfo) -> String {
+    format!("{} ({:?})", info.name, info.backend)
+}
+
+/// Hardware first; among equals the backend with full features.
+fn rank(info: &wgpu::AdapterInfo) -> (u8, u8) {
+    let kind = match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Cpu => 3,
+        // GL reports "other" for software and hardware alike: prefer a Vulkan one of known kind.
+        wgpu::DeviceType::Other => 4,
+    };
+    (kind, u8::from(info.backend == wgpu::Backend::Gl))
+}
+
+fn mebibytes(bytes: u64) -> String {
+    format!("{:.0} MiB", bytes as f64 / f64::from(1 << 20))
+}
