@@ -1,1 +1,2 @@
-//! (room being built)
+//! A scene becomes a frame.
+pub mod layout;

@@ -1,0 +1,60 @@
+// Sun, sky and what the ground throws back. Linear light; a white wall in full sun comes out just below 1.
+
+struct Light {
+    to_sun: vec3f,              // unit, world axes
+    shadow_texel: f32,          // metres per shadow-map texel; 0 = no shadow map
+    sun: vec3f,
+    shadow_depth_step: f32,     // metres that one unit of shadow depth spans
+    sky: vec3f,
+    reserved_0: f32,
+    ground: vec3f,
+    reserved_1: f32,
+    // Shadow map from positions relative to the eye: u, v in 0..1, depth as the map stores it.
+    shadow_from_relative: mat4x4f,
+    zenith: vec3f,              // the sky picture, linear
+    background: u32,            // 0 sky, 1 one colour (in `zenith`), 2 transparent
+    horizon: vec3f,
+    scene_radius: f32,          // metres
+}
+
+@group(1) @binding(3) var<uniform> light: Light;
+@group(1) @binding(4) var shadow_map: texture_depth_2d;
+@group(1) @binding(5) var shadow_sampler: sampler_comparison;
+
+// Share of the sun that arrives, 0..1: 3 x 3 bilinear comparisons, pushed along the normal so that a
+// surface does not shade itself; the filter turns from sample to sample, which softens the border.
+fn sun_share(relative: vec3f, normal: vec3f) -> f32 {
+    if light.shadow_texel == 0.0 {
+        return 1.0;
+    }
+    let slant = 1.0 - max(dot(normal, light.to_sun), 0.0);
+    let start = relative + normal * light.shadow_texel * (0.6 + 1.8 * slant);
+    let at = light.shadow_from_relative * vec4f(start, 1.0);
+    if any(at.xy < vec2f(0.0)) || any(at.xy > vec2f(1.0)) {
+        return 1.0;
+    }
+    let texel = 1.0 / vec2f(textureDimensions(shadow_map));
+    let depth = at.z + 0.35 * light.shadow_texel / light.shadow_depth_step;
+    let angle = 2.399963 * f32(view.sample_index);
+    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
+    var share = 0.0;
+    for (var j = -1; j <= 1; j++) {
+        for (var i = -1; i <= 1; i++) {
+            let offset = turn * vec2f(f32(i), f32(j)) * 0.9;
+            share += textureSampleCompareLevel(shadow_map, shadow_sampler, at.xy + offset * texel, depth);
+        }
+    }
+    return share / 9.0;
+}
+
+// Light that falls on a surface (irradiance over pi), without its own colour.
+fn irradiance(normal: vec3f, sun: f32) -> vec3f {
+    let up = 0.5 + 0.5 * normal.z;
+    let ambient = mix(light.ground, light.sky, up);
+    return ambient + light.sun * (max(dot(normal, light.to_sun), 0.0) * sun);
+}
+
+fn sky_color(direction: vec3f) -> vec3f {
+    let height = clamp(normalize(direction).z, 0.0, 1.0);
+    return mix(light.horizon, light.zenith, 1.0 - pow(1.0 - height, 2.2));
+}

@@ -1,0 +1,121 @@
+// Lens volumes along a ray, in view space (L3, S1). The host computes every figure relative to the
+// eye in f64 before it rounds to f32; `crate::geom::Shape` is the f64 twin of the functions here.
+
+struct Shape {
+    center: vec3f,              // metres
+    kind: u32,                  // SPHERE, BOX, ...
+    axis_x: vec3f,              // unit; box: its x edge
+    size_x: f32,                // sphere, cylinder: radius; box: half edge along axis_x
+    axis_y: vec3f,              // box: its y edge
+    size_y: f32,
+    axis_z: vec3f,              // box: its z edge; cylinder: its axis
+    size_z: f32,                // box: half edge; cylinder: half height
+    first_plane: u32,           // convex: its planes
+    plane_count: u32,
+    lens: u32,                  // which lens it belongs to, from 0
+    reserved: u32,
+}
+
+const SPHERE: u32 = 0u;
+const BOX: u32 = 1u;
+const CYLINDER: u32 = 2u;
+const CONVEX: u32 = 3u;
+
+// Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
+struct Span {
+    enter: f32,
+    exit: f32,
+}
+
+const EMPTY_SPAN = Span(1.0, -1.0);
+// "For ever": beyond any city, far below f32's overflow.
+const FAR_AWAY: f32 = 1e30;
+
+// The closest approach to the centre is subtracted as a vector, so the discriminant does not cancel
+// however far the sphere is (Hearn & Baker's form, cf. Ray Tracing Gems, ch. 7).
+fn span_of_sphere(ray: Ray, center: vec3f, radius: f32) -> Span {
+    let to_center = center - ray.origin;
+    let inv = 1.0 / dot(ray.direction, ray.direction);
+    let middle = dot(to_center, ray.direction) * inv;
+    let miss = to_center - middle * ray.direction;
+    let discriminant = radius * radius - dot(miss, miss);
+    if discriminant < 0.0 {
+        return EMPTY_SPAN;
+    }
+    let half = sqrt(discriminant * inv);
+    return Span(middle - half, middle + half);
+}
+
+// Between two parallel planes at -size and +size from the centre. A direction along the planes is
+// replaced by 2^-80, which keeps the answer of the ray's side.
+fn span_of_slab(offset: f32, slope: f32, size: f32) -> Span {
+    let s = select(slope, select(-8.271806e-25, 8.271806e-25, slope >= 0.0), abs(slope) < 8.271806e-25);
+    let a = (-size - offset) / s;
+    let b = (size - offset) / s;
+    return Span(min(a, b), max(a, b));
+}
+
+fn meet(a: Span, b: Span) -> Span {
+    return Span(max(a.enter, b.enter), min(a.exit, b.exit));
+}
+
+fn span_of_box(ray: Ray, s: Shape) -> Span {
+    let o = ray.origin - s.center;
+    return meet(
+        span_of_slab(dot(o, s.axis_x), dot(ray.direction, s.axis_x), s.size_x),
+        meet(span_of_slab(dot(o, s.axis_y), dot(ray.direction, s.axis_y), s.size_y),
+             span_of_slab(dot(o, s.axis_z), dot(ray.direction, s.axis_z), s.size_z)));
+}
+
+fn span_of_cylinder(ray: Ray, s: Shape) -> Span {
+    let o = ray.origin - s.center;
+    let ends = span_of_slab(dot(o, s.axis_z), dot(ray.direction, s.axis_z), s.size_z);
+    let across = ray.direction - dot(ray.direction, s.axis_z) * s.axis_z;
+    let o_across = o - dot(o, s.axis_z) * s.axis_z;
+    let steepness = dot(across, across);
+    if steepness < 1e-14 * dot(ray.direction, ray.direction) {
+        // Along the axis: inside for the whole way or not at all.
+        if dot(o_across, o_across) > s.size_x * s.size_x {
+            return EMPTY_SPAN;
+        }
+        return ends;
+    }
+    let middle = -dot(o_across, across) / steepness;
+    let miss = o_across + middle * across;
+    let discriminant = s.size_x * s.size_x - dot(miss, miss);
+    if discriminant < 0.0 {
+        return EMPTY_SPAN;
+    }
+    let half = sqrt(discriminant / steepness);
+    return meet(ends, Span(middle - half, middle + half));
+}
+
+@group(1) @binding(1) var<storage, read> planes: array<vec4f>; // n, d: inside where n.p <= d
+
+fn span_of_planes(ray: Ray, first: u32, count: u32) -> Span {
+    var span = Span(-FAR_AWAY, FAR_AWAY);
+    for (var i = first; i < first + count; i++) {
+        let plane = planes[i];
+        let slope = dot(plane.xyz, ray.direction);
+        let room = plane.w - dot(plane.xyz, ray.origin);
+        if abs(slope) < 8.271806e-25 {
+            if room < 0.0 {
+                return EMPTY_SPAN;
+            }
+        } else if slope > 0.0 {
+            span.exit = min(span.exit, room / slope);
+        } else {
+            span.enter = max(span.enter, room / slope);
+        }
+    }
+    return span;
+}
+
+fn span_of_shape(ray: Ray, s: Shape) -> Span {
+    switch s.kind {
+        case SPHERE: { return span_of_sphere(ray, s.center, s.size_x); }
+        case BOX: { return span_of_box(ray, s); }
+        case CYLINDER: { return span_of_cylinder(ray, s); }
+        default: { return span_of_planes(ray, s.first_plane, s.plane_count); }
+    }
+}

@@ -1,0 +1,66 @@
+// The eye. View space: x right, y up, -z forward; D = -z is the distance along the view axis, metres.
+//
+// Positions reach the shader as whole metres (i32, exact) plus an f32 offset; the eye likewise, so a
+// position relative to the eye is right to 2^-23 of (distance + tile), however far the city is from
+// the origin of its coordinates.
+
+struct View {
+    view_from_world: mat3x3f,   // rotation only
+    projection: vec4f,          // scale x, y; offset x, y (sub-pixel jitter and picture tiles included)
+    near: f32,                  // metres
+    far: f32,                   // metres; used by orthographic views only
+    orthographic: u32,          // 0 perspective, 1 orthographic
+    sample_index: u32,          // which sample of the picture this is, from 0
+    eye_whole: vec3i,           // metres
+    eye_fraction: vec3f,        // metres, -0.5..0.5
+    size: vec2f,                // of the target, pixels
+    haze: f32,                  // 1 / metres; 0 = none
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+
+// A world position relative to the eye, world axes.
+fn relative_to_eye(whole: vec3i, offset: vec3f) -> vec3f {
+    return (vec3f(whole - view.eye_whole) - view.eye_fraction) + offset;
+}
+
+fn clip_from_relative(relative: vec3f) -> vec4f {
+    let p = view.view_from_world * relative;
+    let distance = -p.z;
+    if view.orthographic == 1u {
+        return vec4f(p.xy * view.projection.xy + view.projection.zw,
+                     (view.far - distance) / (view.far - view.near), 1.0);
+    }
+    return vec4f(p.xy * view.projection.xy + view.projection.zw * distance, view.near, distance);
+}
+
+// A pixel's ray: the points origin + D * direction, in view space.
+struct Ray {
+    origin: vec3f,
+    direction: vec3f,           // z = -1
+}
+
+fn ray_of_pixel(pixel: vec2f) -> Ray {
+    let ndc = vec2f(2.0, -2.0) * pixel / view.size + vec2f(-1.0, 1.0);
+    let across = (ndc - view.projection.zw) / view.projection.xy;
+    if view.orthographic == 1u {
+        return Ray(vec3f(across, 0.0), vec3f(0.0, 0.0, -1.0));
+    }
+    return Ray(vec3f(0.0), vec3f(across, -1.0));
+}
+
+// Stored depth of distance D: reversed, 1 at the near plane, 0 at the far end.
+fn depth_of_distance(distance: f32) -> f32 {
+    if view.orthographic == 1u {
+        return clamp((view.far - distance) / (view.far - view.near), 0.0, 1.0);
+    }
+    return clamp(view.near / distance, 0.0, 1.0);
+}
+
+// Distance of a stored depth, which must not be 0 (nothing there).
+fn distance_of_depth(depth: f32) -> f32 {
+    if view.orthographic == 1u {
+        return view.far - depth * (view.far - view.near);
+    }
+    return view.near / depth;
+}

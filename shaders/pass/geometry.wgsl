@@ -1,0 +1,135 @@
+// The one opaque geometry pass: what is there, which way it faces, how far it is.
+//
+// target 0  rg32uint    x: octahedral normal, y: surface + 1 (0 = nothing)
+// target 1  rgba8unorm  sRGB base colour; only in cities that have textures
+
+override SMOOTH: bool = false;  // whether some faces have a normal per vertex
+
+struct Varying {
+    @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat, either) code: vec2u,
+    @location(1) normal: vec3f,
+    @location(2) texcoord: vec2f,
+    @location(3) @interpolate(flat, either) plane: vec4f,
+}
+
+fn placed(position: vec3f, normal: u32, surface: u32) -> Varying {
+    var out: Varying;
+    out.clip = clip_from_relative(relative_to_eye(surfaces[surface].origin, position));
+    out.code = vec2u(normal, surface + 1u);
+    if SMOOTH {
+        out.normal = decode_normal(normal);
+    }
+    return out;
+}
+
+@vertex
+fn vertex(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32) -> Varying {
+    return placed(position, normal, surface);
+}
+
+fn code_of(in: Varying) -> vec2u {
+    if SMOOTH {
+        return vec2u(encode_normal(in.normal), in.code.y);
+    }
+    return in.code;
+}
+
+@fragment
+fn plain(in: Varying) -> @location(0) vec2u {
+    return code_of(in);
+}
+
+struct Colored {
+    @location(0) code: vec2u,
+    @location(1) color: vec4f,
+}
+
+@fragment
+fn colored(in: Varying) -> Colored {
+    return Colored(code_of(in), unpack4x8unorm(surfaces[in.code.y - 1u].color));
+}
+
+// ---- textured surfaces
+
+@group(2) @binding(0) var image: texture_2d<f32>;
+@group(2) @binding(1) var image_sampler: sampler;
+override ALPHA_CUTOFF: f32 = 0.0;
+
+@vertex
+fn vertex_textured(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32,
+                   @location(3) texcoord: vec2f) -> Varying {
+    var out = placed(position, normal, surface);
+    out.texcoord = texcoord;
+    return out;
+}
+
+@fragment
+fn textured(in: Varying) -> Colored {
+    let texel = textureSample(image, image_sampler, in.texcoord);
+    if texel.a < ALPHA_CUTOFF {
+        discard;
+    }
+    let base = unpack4x8unorm(surfaces[in.code.y - 1u].color);
+    return Colored(code_of(in), vec4f(texel.rgb * base.rgb, 1.0));
+}
+
+// ---- faces of exactly one plane that overlap (hard case 3)
+//
+// Every face of the group takes its depth from the group's plane, by the same arithmetic, so their
+// depths are equal to the bit and the draw order (their fixed priority) decides in every frame.
+
+struct Plane {
+    normal: vec3f,              // unit
+    reserved: f32,
+    origin: vec3i,              // whole metres
+    offset: f32,                // normal . (any point of the plane - origin), metres
+}
+
+@group(1) @binding(1) var<storage, read> shared_planes: array<Plane>;
+
+@vertex
+fn vertex_coplanar(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32,
+                   @location(4) plane_index: u32) -> Varying {
+    var out = placed(position, normal, surface);
+    let plane = shared_planes[plane_index];
+    let distance = dot(plane.normal, relative_to_eye(plane.origin, vec3f(0.0))) + plane.offset;
+    out.plane = vec4f(view.view_from_world * plane.normal, distance);
+    return out;
+}
+
+fn depth_on_plane(in: Varying) -> f32 {
+    let ray = ray_of_pixel(in.clip.xy);
+    let slope = dot(in.plane.xyz, ray.direction);
+    let room = in.plane.w - dot(in.plane.xyz, ray.origin);
+    // The eye is in the plane, or the plane is seen edge on: the interpolated depth will do.
+    if abs(room) < 1e-4 || abs(slope) < 1e-6 {
+        return in.clip.z;
+    }
+    let distance = room / slope;
+    if distance <= view.near {
+        return in.clip.z;
+    }
+    return depth_of_distance(distance);
+}
+
+struct CoplanarPlain {
+    @location(0) code: vec2u,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn plain_coplanar(in: Varying) -> CoplanarPlain {
+    return CoplanarPlain(code_of(in), depth_on_plane(in));
+}
+
+struct CoplanarColored {
+    @location(0) code: vec2u,
+    @location(1) color: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn colored_coplanar(in: Varying) -> CoplanarColored {
+    return CoplanarColored(code_of(in), unpack4x8unorm(surfaces[in.code.y - 1u].color), depth_on_plane(in));
+}
