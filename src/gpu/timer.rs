@@ -35,6 +35,13 @@ pub struct Slot {
     count: Option<u32>,
 }
 
+impl Slot {
+    /// The place of its results in [`Timer::read`]'s list.
+    pub fn index(self) -> usize {
+        self.time as usize
+    }
+}
+
 impl Timer {
     /// A timer for one frame.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {

@@ -1,2 +1,23 @@
 //! A scene becomes a frame.
+//!
+//! [`picture::render`] makes a picture, its AOVs and its statistics of a scene and a city;
+//! [`frame`] lists the passes of one sample; [`renderer`] holds what stays on the graphics card.
+//! This room knows no files and no commands.
+
+pub mod city;
+pub mod eye;
+pub mod frame;
 pub mod layout;
+pub mod light;
+pub mod operations;
+pub mod palette;
+pub mod picture;
+pub mod pipelines;
+pub mod renderer;
+pub mod stats;
+pub mod targets;
+mod synced;
+mod textures;
+pub mod volume;
+
+pub use renderer::Renderer;

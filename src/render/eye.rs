@@ -1,0 +1,116 @@
+//! A view as the shaders read it, and what it can see.
+
+use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
+
+use crate::{render::layout, view::View};
+
+/// A rectangle of the whole picture, pixels; pictures larger than a target are drawn rectangle by rectangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureTile {
+    /// Left, top.
+    pub origin: [u32; 2],
+    /// Width, height.
+    pub size: [u32; 2],
+}
+
+impl PictureTile {
+    /// The whole picture.
+    pub fn whole(size: [u32; 2]) -> Self {
+        Self { origin: [0, 0], size }
+    }
+}
+
+/// An eye position split so that subtracting it from whole metres is exact.
+pub fn split_eye(eye: DVec3) -> ([i32; 3], [f32; 3]) {
+    let whole = eye.round();
+    ([whole.x as i32, whole.y as i32, whole.z as i32], (eye - whole).as_vec3().to_array())
+}
+
+/// `layout::View` of a tile of a picture, sampled `jitter_px` beside the pixels' centres.
+pub fn view_uniform(view: &View, tile: PictureTile, jitter_px: DVec2, sample_index: u32, haze: f64) -> layout::View {
+    let whole = DVec2::new(view.size[0].into(), view.size[1].into());
+    let size = DVec2::new(tile.size[0].into(), tile.size[1].into());
+    let origin = DVec2::new(tile.origin[0].into(), tile.origin[1].into());
+    // ndc of the tile = ndc of the picture · zoom + shift; rows go down, so y is measured from the bottom.
+    let zoom = whole / size;
+    let from_bottom = DVec2::new(origin.x, whole.y - origin.y - size.y);
+    let shift = zoom - 1.0 - 2.0 * from_bottom / size;
+    let jitter = DVec2::new(-2.0, 2.0) * jitter_px / size;
+    let scale = zoom / view.half_extent();
+    let (eye_whole, eye_fraction) = split_eye(view.camera.eye);
+    layout::View {
+        view_from_world: padded(view.basis.view_from_world()),
+        projection: [
+            scale.x as f32,
+            scale.y as f32,
+            (shift.x + jitter.x) as f32,
+            (shift.y + jitter.y) as f32,
+        ],
+        near: view.camera.near_m as f32,
+        far: if view.is_orthographic() { view.far_m as f32 } else { 0.0 },
+        orthographic: u32::from(view.is_orthographic()),
+        sample_index,
+        eye_whole,
+        pad_0: 0,
+        eye_fraction,
+        pad_1: 0,
+        size: [tile.size[0] as f32, tile.size[1] as f32],
+        haze: haze as f32,
+        pad_2: 0,
+    }
+}
+
+/// Columns of a 3×3 matrix at WGSL's stride.
+pub fn padded(m: DMat3) -> [[f32; 4]; 3] {
+    [m.x_axis, m.y_axis, m.z_axis].map(|c| c.as_vec3().extend(0.0).to_array())
+}
+
+/// Shadow-map coordinates (u, v in 0..1 with v down, depth as stored) from positions relative to `eye`.
+pub fn shadow_from_relative(sun: &View, eye: DVec3) -> DMat4 {
+    let to_map = DMat4::from_translation(DVec3::new(0.5, 0.5, 0.0)) * DMat4::from_scale(DVec3::new(0.5, -0.5, 1.0));
+    to_map * sun.clip_from_relative(DVec2::ZERO) * DMat4::from_translation(eye - sun.camera.eye)
+}
+
+/// CPU twin of `relative_to_eye` in `lib/view.wgsl`, in the same f32 steps (hard case 1).
+pub fn relative_to_eye(whole: [i32; 3], offset: [f32; 3], eye_whole: [i32; 3], eye_fraction: [f32; 3]) -> [f32; 3] {
+    std::array::from_fn(|i| {
+        ((whole[i].wrapping_sub(eye_whole[i])) as f32 - eye_fraction[i]) + offset[i]
+    })
+}
+
+/// A world position relative to the eye, rounded once.
+pub fn relative(world: DVec3, eye: DVec3) -> Vec3 {
+    (world - eye).as_vec3()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{geom::Aabb, view::Camera};
+
+    /// ndc of a world point by the uniform's own figures, in f64.
+    fn pixel_by_uniform(view: &View, uniform: &layout::View, world: DVec3) -> DVec2 {
+        let p = view.basis.view_from_world() * (world - view.camera.eye);
+        let scale = DVec2::new(uniform.projection[0].into(), uniform.projection[1].into());
+        let shift = DVec2::new(uniform.projection[2].into(), uniform.projection[3].into());
+        let ndc = p.truncate() * scale / -p.z + shift;
+        DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y)
+            * DVec2::new(uniform.size[0].into(), uniform.size[1].into())
+    }
+
+    #[test]
+    fn tiles_and_jitter_only_shift_pixels() {
+        let eye = DVec3::new(85_000.25, 446_000.5, 30.0);
+        let view = View::new(Camera::looking(eye, eye + DVec3::new(3.0, 9.0, -2.0), 0.8), [1000, 600], &Aabb::EMPTY)
+            .unwrap();
+        let world = eye + DVec3::new(40.0, 100.0, -20.0);
+        let expected = view.pixel(world).unwrap().truncate();
+        for (origin, size) in [([0, 0], [1000, 600]), ([512, 0], [488, 256]), ([100, 300], [64, 32])] {
+            let jitter = DVec2::new(0.25, -0.375);
+            let uniform = view_uniform(&view, PictureTile { origin, size }, jitter, 0, 0.0);
+            let found = pixel_by_uniform(&view, &uniform, world);
+            let moved = expected - DVec2::new(origin[0].into(), origin[1].into()) - jitter;
+            assert!((found - moved).length() < 1e-3, "{found} is not {moved}");
+        }
+    }
+}

@@ -1,0 +1,601 @@
+//! One sample of one view: the frame as a readable list of passes.
+//!
+//! ```text
+//! shadow map          if the sun casts shadows and the map does not hold this view yet
+//! geometry            once, for everything
+//! per lens volume     sprite entry, sprite exit, volumetric depth test
+//! shade               outside the lenses' screen bounds without them, inside with them
+//! ```
+//!
+//! A pass that the scene does not call for is not in the list (U3).
+
+use glam::DVec2;
+
+use crate::{
+    gpu::{GpuError, Slot, Timer},
+    render::{
+        city::{CityBuffers, Draw, SectionKind},
+        eye::{PictureTile, view_uniform},
+        layout,
+        light,
+        operations::Operations,
+        pipelines::{GeometryKind, Key},
+        renderer::{Renderer, STAGE_STRIDE},
+        targets::Needs,
+        volume::Volume,
+    },
+    scene::{Background, BaseStyle, Sun},
+    view::{Frustum, View},
+};
+
+/// Everything a sample is drawn from.
+#[derive(Clone, Debug)]
+pub struct FrameInput<'a> {
+    /// The eye and the whole picture.
+    pub view: View,
+    /// The part of the picture that is drawn.
+    pub tile: PictureTile,
+    /// Light.
+    pub sun: Sun,
+    /// Colours to start from.
+    pub base: BaseStyle,
+    /// What is behind the city.
+    pub background: Background,
+    /// Nothing is behind the city.
+    pub transparent: bool,
+    /// How far the air begins to show, as a share of the scene's radius; 0 = never.
+    pub haze: f64,
+    /// Volumes of enabled lenses, bottom to top.
+    pub volumes: &'a [Volume],
+    /// How many lenses the scene has, disabled ones included.
+    pub lens_count: u32,
+    /// Sprite resolution of each volume's lens: texels along the longer side, `None` = one per pixel.
+    pub sprite_resolution: &'a [Option<u32>],
+    /// What the context and the lenses do.
+    pub operations: &'a Operations,
+    /// Which sample this is.
+    pub sample: u32,
+    /// How many there will be.
+    pub samples: u32,
+}
+
+/// One pass that ran.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassRecord {
+    /// What it does.
+    pub name: &'static str,
+    /// Which view it drew.
+    pub view: &'static str,
+    /// The lens it served, or `None`: the scene.
+    pub lens: Option<u32>,
+    /// Draw calls or dispatches.
+    pub draws: u32,
+    /// Triangles handed to the rasteriser.
+    pub triangles: u64,
+    /// Where its measures stand.
+    pub slot: Option<usize>,
+}
+
+/// A volume that may be seen, with its place among the stages.
+struct SeenVolume {
+    index: usize,
+    lens: u32,
+    bounds: PictureTile,
+    sprite_bounds: PictureTile,
+}
+
+/// Notes passes while they are recorded.
+struct Recorder<'a> {
+    timer: Option<&'a mut Timer>,
+    passes: Vec<PassRecord>,
+}
+
+impl Recorder<'_> {
+    fn begin(&mut self, name: &'static str, view: &'static str, lens: Option<u32>, shades: bool) -> Option<Slot> {
+        let slot = self.timer.as_mut().and_then(|t| t.slot(shades));
+        let index = slot.map(|s| s.index());
+        self.passes.push(PassRecord { name, view, lens, draws: 0, triangles: 0, slot: index });
+        slot
+    }
+
+    fn count(&mut self, draws: u32, triangles: u64) {
+        if let Some(pass) = self.passes.last_mut() {
+            pass.draws += draws;
+            pass.triangles += triangles;
+        }
+    }
+}
+
+impl Renderer {
+    /// Draws one sample into the targets; the picture stands in `targets.picture` after the last one.
+    pub fn draw(&mut self, input: &FrameInput, timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {
+        if self.city.is_none() {
+            return Ok(Vec::new());
+        }
+        let mut recorder = Recorder { timer, passes: Vec::new() };
+        let seen = seen_volumes(input);
+        let sun_view = self.sun_view(input);
+        self.fit_targets(needs(input, self.colored(), sun_view.is_some()));
+        self.upload(input, sun_view.as_ref(), &seen)?;
+        self.fit_groups();
+        let keys = self.prepare(input, &seen, sun_view.is_some());
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        if let Some(sun_view) = &sun_view {
+            self.shadow_pass(&mut encoder, &mut recorder, sun_view);
+        }
+        self.geometry_pass(&mut encoder, &mut recorder, input);
+        if !seen.is_empty() {
+            self.clear_masks(&mut encoder, &mut recorder);
+            for (stage, volume) in seen.iter().enumerate() {
+                self.sprite_passes(&mut encoder, &mut recorder, volume, stage);
+                self.mask_pass(&mut encoder, &mut recorder, volume, stage);
+            }
+        }
+        self.shade_pass(&mut encoder, &mut recorder, input, &seen, &keys);
+        if input.samples > 1 && input.sample + 1 == input.samples {
+            self.resolve_pass(&mut encoder, &mut recorder);
+        }
+        if let Some(timer) = &recorder.timer {
+            timer.resolve(&mut encoder);
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(recorder.passes)
+    }
+
+    fn colored(&self) -> bool {
+        self.city.as_ref().is_some_and(|c| {
+            c.buffers.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { .. }))
+        })
+    }
+
+    /// The sun's view where shadows are wanted.
+    fn sun_view(&self, input: &FrameInput) -> Option<View> {
+        let city = &self.city.as_ref()?.buffers;
+        if !light::casts_shadows(&input.sun) {
+            return None;
+        }
+        let frustum = input.view.frustum(1.0);
+        let receivers = city
+            .sections
+            .iter()
+            .flat_map(|s| &s.chunks)
+            .filter(|c| frustum.meets(&c.bounds))
+            .fold(crate::geom::Aabb::EMPTY, |all, c| all.union(c.bounds));
+        light::sun_view(&input.sun, &receivers, &city.bounds)
+    }
+
+    /// Brings the small buffers up to date.
+    fn upload(&mut self, input: &FrameInput, sun: Option<&View>, seen: &[SeenVolume]) -> Result<(), GpuError> {
+        let Some(city) = &self.city else { return Ok(()) };
+        let radius = light::radius_of(&city.buffers.bounds);
+        let jitter = crate::view::jitter_px(input.sample);
+        let jitter = if input.samples > 1 { jitter } else { DVec2::ZERO };
+        let haze = if input.view.is_orthographic() { 0.0 } else { input.haze / radius };
+        let view = view_uniform(&input.view, input.tile, jitter, input.sample, haze);
+        let light = light::uniform(
+            &input.sun, input.background, input.transparent, sun, input.view.camera.eye, radius,
+        );
+        let (mut shapes, mut planes) = (Vec::new(), Vec::new());
+        let (mut sprites, mut masks) = (Vec::new(), Vec::new());
+        for (stage, volume) in seen.iter().enumerate() {
+            input.volumes[volume.index].push(&input.view, &mut shapes, &mut planes);
+            let scale = |i: usize| sprite_size(input, volume.lens)[i] as f32 / input.tile.size[i] as f32;
+            let sprite = layout::SpriteStage {
+                shape: stage as u32,
+                pad_0: 0,
+                pixels_per_texel: [1.0 / scale(0), 1.0 / scale(1)],
+            };
+            let mask = layout::MaskStage {
+                origin: volume.bounds.origin,
+                size: volume.bounds.size,
+                texels_per_pixel: [scale(0), scale(1)],
+                lens: volume.lens,
+                pad_0: 0,
+            };
+            sprites.extend(strided(&sprite));
+            masks.extend(strided(&mask));
+        }
+        let (gpu, b) = (&self.gpu, &mut self.buffers);
+        let mut stale = b.view.sync(gpu, &[view])?;
+        stale |= b.light.sync(gpu, &[light])?;
+        if let Some(sun) = sun {
+            let whole = PictureTile::whole(sun.size);
+            stale |= b.sun_view.sync(gpu, &[view_uniform(sun, whole, DVec2::ZERO, 0, 0.0)])?;
+        }
+        stale |= b.shapes.sync(gpu, &shapes)?;
+        stale |= b.planes.sync(gpu, &planes)?;
+        stale |= b.sprite_stages.sync(gpu, &sprites)?;
+        stale |= b.mask_stages.sync(gpu, &masks)?;
+        stale |= b.operations.sync(gpu, &input.operations.bytes)?;
+        stale |= b.object_colors.sync(gpu, &input.operations.object_colors)?;
+        stale |= b.resolve.sync(gpu, &[input.samples as f32])?;
+        if stale {
+            self.groups = None;
+        }
+        Ok(())
+    }
+
+    /// Makes the pipelines this frame calls for, and no other.
+    fn prepare(&mut self, input: &FrameInput, seen: &[SeenVolume], shadows: bool) -> ShadeKeys {
+        let Some(city) = &self.city else { return ShadeKeys::default() };
+        let colored = self.colored();
+        let mut keys: Vec<Key> = Vec::new();
+        if shadows {
+            keys.push(Key::Shadow);
+        }
+        for section in &city.buffers.sections {
+            keys.push(geometry_key(section.kind, colored, city.buffers.smooth));
+        }
+        if !seen.is_empty() {
+            keys.extend([Key::SpriteEntry, Key::SpriteExit, Key::LensMask]);
+        }
+        let clay = input.base == BaseStyle::Clay;
+        let shade = |effects: &[u32], lenses| Key::Shade {
+            effects: effects.to_vec(),
+            lenses,
+            textured: colored && !clay,
+            clay,
+            encode: input.samples == 1,
+        };
+        let shade_keys = ShadeKeys {
+            context: Some(shade(&input.operations.context_effects, false)),
+            lenses: (!seen.is_empty()).then(|| shade(&input.operations.effects, true)),
+        };
+        keys.extend(shade_keys.context.clone());
+        keys.extend(shade_keys.lenses.clone());
+        if input.samples > 1 {
+            keys.push(Key::Resolve);
+        }
+        self.pipelines.begin_frame();
+        for key in &keys {
+            self.pipelines.prepare(&self.gpu, key);
+        }
+        shade_keys
+    }
+
+    fn shadow_pass(&mut self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, sun: &View) {
+        let wanted = view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0);
+        if self.shadow_of == Some(wanted) {
+            return;
+        }
+        self.shadow_of = Some(wanted);
+        let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
+        let slot = recorder.begin("shadow map", "sun", None, false);
+        let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadow map"),
+            depth_stencil_attachment: Some(depth_attachment(&targets.shadow.view, 0.0)),
+            timestamp_writes: writes,
+            ..Default::default()
+        });
+        pass.set_pipeline(self.pipelines.render(&Key::Shadow));
+        pass.set_bind_group(0, &groups.sun_view, &[]);
+        pass.set_bind_group(1, &city.group, &[]);
+        // Casters may stand before the picture's edge, never behind the sun.
+        let frustum = sun.frustum(1.0);
+        let mut draws = Vec::new();
+        for section in &city.buffers.sections {
+            let triangles = CityBuffers::visible(section, &frustum, &mut draws);
+            pass.set_vertex_buffer(0, section.vertices.slice(..));
+            draw_ranges(&mut pass, section.indices.as_ref(), &draws);
+            recorder.count(draws.len() as u32, triangles);
+        }
+    }
+
+    fn geometry_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, input: &FrameInput) {
+        let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
+        let colored = self.colored();
+        let slot = recorder.begin("geometry", "main", None, true);
+        let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
+        let colors = [
+            Some(color_attachment(&targets.codes.view, wgpu::Color::TRANSPARENT)),
+            colored.then(|| color_attachment(&targets.colors.view, wgpu::Color::TRANSPARENT)),
+        ];
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("geometry"),
+            color_attachments: &colors[..1 + usize::from(colored)],
+            depth_stencil_attachment: Some(depth_attachment(&targets.depth.view, 0.0)),
+            timestamp_writes: writes,
+            ..Default::default()
+        });
+        if let Some(timer) = &recorder.timer {
+            timer.begin_count(&mut pass, slot);
+        }
+        pass.set_bind_group(0, &groups.view, &[]);
+        pass.set_bind_group(1, &city.group, &[]);
+        let frustum: Frustum = input.view.frustum(1.0);
+        let mut draws = Vec::new();
+        let mut counted = (0, 0);
+        for (section, image) in city.buffers.sections.iter().zip(&city.images) {
+            let triangles = CityBuffers::visible(section, &frustum, &mut draws);
+            if draws.is_empty() {
+                continue;
+            }
+            pass.set_pipeline(self.pipelines.render(&geometry_key(section.kind, colored, city.buffers.smooth)));
+            pass.set_vertex_buffer(0, section.vertices.slice(..));
+            if let Some(extra) = &section.extra {
+                pass.set_vertex_buffer(1, extra.slice(..));
+            }
+            if let Some(image) = image {
+                pass.set_bind_group(2, image, &[]);
+            }
+            draw_ranges(&mut pass, section.indices.as_ref(), &draws);
+            counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
+        }
+        if let Some(timer) = &recorder.timer {
+            timer.end_count(&mut pass, slot);
+        }
+        recorder.count(counted.0, counted.1);
+    }
+
+    fn clear_masks(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
+        let Some(targets) = &self.targets else { return };
+        for three in targets.masks.layers.chunks(3) {
+            let slot = recorder.begin("clear lens masks", "main", None, false);
+            let attachments: Vec<_> =
+                three.iter().map(|view| Some(color_attachment(view, wgpu::Color::TRANSPARENT))).collect();
+            encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("clear lens masks"),
+                color_attachments: &attachments,
+                timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
+                ..Default::default()
+            });
+        }
+    }
+
+    /// The two stages of a volumetric depth sprite (S1).
+    fn sprite_passes(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        volume: &SeenVolume,
+        stage: usize,
+    ) {
+        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
+        let stages = [
+            ("sprite entry", &targets.entry, Key::SpriteEntry, 0.0),
+            ("sprite exit", &targets.exit, Key::SpriteExit, 1.0),
+        ];
+        for (name, target, key, clear) in stages {
+            let slot = recorder.begin(name, "main", Some(volume.lens), true);
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some(name),
+                depth_stencil_attachment: Some(depth_attachment(&target.view, clear)),
+                timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
+                ..Default::default()
+            });
+            if let Some(timer) = &recorder.timer {
+                timer.begin_count(&mut pass, slot);
+            }
+            pass.set_pipeline(self.pipelines.render(&key));
+            pass.set_bind_group(0, &groups.view, &[]);
+            pass.set_bind_group(1, &groups.shapes, &[]);
+            pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
+            scissor(&mut pass, volume.sprite_bounds);
+            pass.draw(0..3, 0..1);
+            if let Some(timer) = &recorder.timer {
+                timer.end_count(&mut pass, slot);
+            }
+            recorder.count(1, 1);
+        }
+    }
+
+    /// The volumetric depth test (S5) over the lens' screen bounds.
+    fn mask_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, volume: &SeenVolume, stage: usize) {
+        let Some(groups) = &self.groups else { return };
+        let slot = recorder.begin("lens mask", "main", Some(volume.lens), false);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("lens mask"),
+            timestamp_writes: recorder.timer.as_ref().and_then(|t| t.compute_writes(slot)),
+        });
+        pass.set_pipeline(self.pipelines.compute(&Key::LensMask));
+        pass.set_bind_group(0, &groups.view, &[]);
+        pass.set_bind_group(1, &groups.mask, &[]);
+        pass.set_bind_group(2, &groups.mask_stage, &[stage as u32 * STAGE_STRIDE as u32]);
+        let [w, h] = volume.bounds.size;
+        pass.dispatch_workgroups(w.div_ceil(8), h.div_ceil(8), 1);
+        recorder.count(1, 0);
+    }
+
+    fn shade_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        input: &FrameInput,
+        seen: &[SeenVolume],
+        keys: &ShadeKeys,
+    ) {
+        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
+        let slot = recorder.begin("shade", "main", None, true);
+        let target = if input.samples > 1 { &targets.sums } else { &targets.picture };
+        let load = if input.sample == 0 { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load };
+        let mut attachment = color_attachment(&target.view, wgpu::Color::TRANSPARENT);
+        attachment.ops.load = load;
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shade"),
+            color_attachments: &[Some(attachment)],
+            timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
+            ..Default::default()
+        });
+        if let Some(timer) = &recorder.timer {
+            timer.begin_count(&mut pass, slot);
+        }
+        pass.set_bind_group(0, &groups.view, &[]);
+        pass.set_bind_group(1, &groups.shade, &[]);
+        pass.set_bind_group(2, &groups.lenses, &[]);
+        let mut drawn = 0;
+        let mut fill = |key: &Option<Key>, parts: &[PictureTile]| {
+            let Some(key) = key else { return };
+            let mut set = false;
+            for part in parts.iter().filter(|p| p.size[0] > 0 && p.size[1] > 0) {
+                if !set {
+                    pass.set_pipeline(self.pipelines.render(key));
+                    set = true;
+                }
+                scissor(&mut pass, *part);
+                pass.draw(0..3, 0..1);
+                drawn += 1;
+            }
+        };
+        let (inside, outside) = split(input.tile.size, seen.iter().map(|v| v.bounds));
+        fill(&keys.context, &outside);
+        fill(&keys.lenses, inside.as_slice());
+        if let Some(timer) = &recorder.timer {
+            timer.end_count(&mut pass, slot);
+        }
+        drop(pass);
+        recorder.count(drawn, u64::from(drawn));
+    }
+
+    fn resolve_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
+        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
+        let slot = recorder.begin("resolve", "main", None, true);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("resolve"),
+            color_attachments: &[Some(color_attachment(&targets.picture.view, wgpu::Color::TRANSPARENT))],
+            timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
+            ..Default::default()
+        });
+        pass.set_pipeline(self.pipelines.render(&Key::Resolve));
+        pass.set_bind_group(0, &groups.resolve, &[]);
+        pass.draw(0..3, 0..1);
+        recorder.count(1, 1);
+    }
+}
+
+/// The pipelines of the shade pass: outside the lenses' bounds, and inside.
+#[derive(Clone, Debug, Default)]
+struct ShadeKeys {
+    context: Option<Key>,
+    lenses: Option<Key>,
+}
+
+fn geometry_key(kind: SectionKind, colored: bool, smooth: bool) -> Key {
+    let section = match kind {
+        SectionKind::Plain => GeometryKind::Plain,
+        SectionKind::Textured { alpha_cutoff, .. } => GeometryKind::Textured(alpha_cutoff.to_bits()),
+        SectionKind::Coplanar => GeometryKind::Coplanar,
+    };
+    Key::Geometry { section, colored, smooth }
+}
+
+/// Texels of a lens' sprite.
+fn sprite_size(input: &FrameInput, lens: u32) -> [u32; 2] {
+    let size = input.tile.size;
+    let wanted = input.sprite_resolution.get(lens as usize).copied().flatten();
+    let Some(longer) = wanted else { return size };
+    // The resolution is one of the whole picture; a tile of it has its share.
+    let scale = f64::from(longer) / f64::from(input.view.size[0].max(input.view.size[1]));
+    size.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, 16_384))
+}
+
+fn seen_volumes(input: &FrameInput) -> Vec<SeenVolume> {
+    let mut seen = Vec::new();
+    for (index, volume) in input.volumes.iter().enumerate() {
+        let Some(bounds) = volume.screen_bounds(&input.view, input.tile) else { continue };
+        let sprite = sprite_size(input, volume.lens);
+        let to_texel = |i: usize, pixel: u32| f64::from(pixel) * f64::from(sprite[i]) / f64::from(input.tile.size[i]);
+        let low: [u32; 2] = std::array::from_fn(|i| to_texel(i, bounds.origin[i]).floor() as u32);
+        let high: [u32; 2] = std::array::from_fn(|i| {
+            (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i])
+        });
+        let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
+        seen.push(SeenVolume { index, lens: volume.lens, bounds, sprite_bounds });
+    }
+    seen
+}
+
+fn needs(input: &FrameInput, colors: bool, shadows: bool) -> Needs {
+    let sprite = input.volumes.iter().map(|v| sprite_size(input, v.lens)).fold([0, 0], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+    Needs {
+        size: input.tile.size,
+        colors,
+        sums: input.samples > 1,
+        lenses: if input.volumes.is_empty() { 0 } else { input.lens_count },
+        sprite,
+        shadow: if shadows { light::SHADOW_SIZE } else { 0 },
+    }
+}
+
+/// The bounds of all lenses, if any, and the up to four rectangles around them.
+fn split(size: [u32; 2], bounds: impl Iterator<Item = PictureTile>) -> (Option<PictureTile>, Vec<PictureTile>) {
+    let [w, h] = size;
+    let all = bounds.fold(None, |all: Option<[u32; 4]>, b| {
+        let [x0, y0, x1, y1] = [b.origin[0], b.origin[1], b.origin[0] + b.size[0], b.origin[1] + b.size[1]];
+        Some(all.map_or([x0, y0, x1, y1], |a| [a[0].min(x0), a[1].min(y0), a[2].max(x1), a[3].max(y1)]))
+    });
+    let rect = |x0: u32, y0: u32, x1: u32, y1: u32| PictureTile { origin: [x0, y0], size: [x1 - x0, y1 - y0] };
+    match all {
+        None => (None, vec![rect(0, 0, w, h)]),
+        Some([x0, y0, x1, y1]) => (
+            Some(rect(x0, y0, x1, y1)),
+            vec![rect(0, 0, w, y0), rect(0, y1, w, h), rect(0, y0, x0, y1), rect(x1, y0, w, y1)],
+        ),
+    }
+}
+
+fn strided<T: bytemuck::Pod>(value: &T) -> Vec<u8> {
+    let mut bytes = bytemuck::bytes_of(value).to_vec();
+    bytes.resize(STAGE_STRIDE as usize, 0);
+    bytes
+}
+
+fn scissor(pass: &mut wgpu::RenderPass, part: PictureTile) {
+    pass.set_scissor_rect(part.origin[0], part.origin[1], part.size[0], part.size[1]);
+}
+
+fn draw_ranges(pass: &mut wgpu::RenderPass, indices: Option<&wgpu::Buffer>, draws: &[Draw]) {
+    match indices {
+        Some(indices) => {
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+            for draw in draws {
+                pass.draw_indexed(draw.clone(), 0, 0..1);
+            }
+        }
+        None => {
+            for draw in draws {
+                pass.draw(draw.clone(), 0..1);
+            }
+        }
+    }
+}
+
+fn color_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {
+    wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+    }
+}
+
+fn depth_attachment(view: &wgpu::TextureView, clear: f32) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store }),
+        stencil_ops: None,
+    }
+}
+
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_parts_of_a_picture_cover_it_once() {
+        let tile = |x, y, w, h| PictureTile { origin: [x, y], size: [w, h] };
+        for bounds in [vec![], vec![tile(0, 0, 9, 7)], vec![tile(2, 1, 3, 3), tile(4, 3, 4, 4)], vec![tile(8, 6, 1, 1)]] {
+            let (inside, outside) = split([9, 7], bounds.into_iter());
+            let mut hits = [[0; 9]; 7];
+            for part in outside.iter().chain(&inside) {
+                for y in part.origin[1]..part.origin[1] + part.size[1] {
+                    for x in part.origin[0]..part.origin[0] + part.size[0] {
+                        hits[y as usize][x as usize] += 1;
+                    }
+                }
+            }
+            assert!(hits.iter().flatten().all(|&h| h == 1), "{hits:?}");
+        }
+    }
+}

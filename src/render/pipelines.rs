@@ -1,0 +1,429 @@
+//! Pipelines by canonical key, made when first needed; how many were made and met again is counted.
+
+use rustc_hash::FxHashMap;
+
+use crate::{gpu::Gpu, shader::Module};
+
+/// Depth everywhere: reversed, f32.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Packed normal and surface number.
+pub const CODES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+/// sRGB base colours, only in cities with textures.
+pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// One bit per lens and class.
+pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// The picture: sRGB bytes, encoded by the shader.
+pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// What makes a pipeline the one it is.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Key {
+    /// Opaque triangles.
+    Geometry {
+        /// How vertices are laid out and where depth comes from.
+        section: GeometryKind,
+        /// Whether base colours are written.
+        colored: bool,
+        /// Whether normals are interpolated.
+        smooth: bool,
+    },
+    /// Depth from the sun.
+    Shadow,
+    /// Nearest entry into a lens.
+    SpriteEntry,
+    /// Farthest exit from it.
+    SpriteExit,
+    /// The depth test.
+    LensMask,
+    /// Shading.
+    Shade {
+        /// Effect numbers, ascending.
+        effects: Vec<u32>,
+        /// For the part of the picture that meets a lens.
+        lenses: bool,
+        /// Base colours come from a target.
+        textured: bool,
+        /// One clay colour.
+        clay: bool,
+        /// sRGB bytes, or linear sums.
+        encode: bool,
+    },
+    /// The mean of samples.
+    Resolve,
+}
+
+/// Kinds of geometry sections, as far as pipelines differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum GeometryKind {
+    /// Ordinary.
+    Plain,
+    /// Textured, with the bits of the alpha cutoff.
+    Textured(u32),
+    /// Depth from the shared plane.
+    Coplanar,
+}
+
+/// A render or compute pipeline.
+#[derive(Debug)]
+pub enum Pipeline {
+    /// Draws.
+    Render(wgpu::RenderPipeline),
+    /// Computes.
+    Compute(wgpu::ComputePipeline),
+}
+
+/// All pipelines and the layouts they share.
+#[derive(Debug)]
+pub struct Pipelines {
+    /// Group 0 everywhere: the view.
+    pub view: wgpu::BindGroupLayout,
+    /// Geometry and shadow, group 1: surfaces, shared planes.
+    pub city: wgpu::BindGroupLayout,
+    /// Geometry, group 2: a texture.
+    pub image: wgpu::BindGroupLayout,
+    /// Sprite, group 1: shapes, planes.
+    pub shapes: wgpu::BindGroupLayout,
+    /// Sprite and mask, group 2: the stage, at a dynamic offset.
+    pub stage: wgpu::BindGroupLayout,
+    /// Mask, group 1: depths and masks.
+    pub mask: wgpu::BindGroupLayout,
+    /// Shade, group 1: surfaces, light, targets.
+    pub shade: wgpu::BindGroupLayout,
+    /// Shade, group 2: masks, operations, colours.
+    pub lenses: wgpu::BindGroupLayout,
+    /// Resolve, group 0.
+    pub resolve: wgpu::BindGroupLayout,
+    /// Where samples are summed: f32 where it can be blended, else f16.
+    pub sums: wgpu::TextureFormat,
+    modules: FxHashMap<Module, wgpu::ShaderModule>,
+    made: FxHashMap<Key, Pipeline>,
+    /// Pipelines made since the last [`Pipelines::begin_frame`].
+    pub compiled: u32,
+    /// Keys of the pipelines used since then, in order of first use.
+    pub used: Vec<Key>,
+}
+
+use wgpu::{BindingType as B, ShaderStages as S};
+
+fn buffer(ty: wgpu::BufferBindingType, has_dynamic_offset: bool) -> B {
+    B::Buffer { ty, has_dynamic_offset, min_binding_size: None }
+}
+
+fn uniform() -> B {
+    buffer(wgpu::BufferBindingType::Uniform, false)
+}
+
+fn storage() -> B {
+    buffer(wgpu::BufferBindingType::Storage { read_only: true }, false)
+}
+
+fn image(sample_type: wgpu::TextureSampleType, view_dimension: wgpu::TextureViewDimension) -> B {
+    B::Texture { sample_type, view_dimension, multisampled: false }
+}
+
+fn layout(gpu: &Gpu, label: &str, entries: &[(u32, S, B)]) -> wgpu::BindGroupLayout {
+    let entries: Vec<_> = entries
+        .iter()
+        .map(|&(binding, visibility, ty)| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None })
+        .collect();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}
+
+impl Pipelines {
+    /// The layouts; no pipeline yet.
+    pub fn new(gpu: &Gpu) -> Self {
+        use wgpu::{TextureSampleType as T, TextureViewDimension as D};
+        let float = image(T::Float { filterable: false }, D::D2);
+        let depth = image(T::Depth, D::D2);
+        let masks = B::StorageTexture {
+            access: wgpu::StorageTextureAccess::ReadWrite,
+            format: MASKS,
+            view_dimension: D::D2Array,
+        };
+        let sums = if gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
+            wgpu::TextureFormat::Rgba32Float
+        } else {
+            wgpu::TextureFormat::Rgba16Float
+        };
+        let all = S::VERTEX | S::FRAGMENT | S::COMPUTE;
+        let dynamic = buffer(wgpu::BufferBindingType::Uniform, true);
+        let filtered = B::Sampler(wgpu::SamplerBindingType::Filtering);
+        let compared = B::Sampler(wgpu::SamplerBindingType::Comparison);
+        Self {
+            view: layout(gpu, "view", &[(0, all, uniform())]),
+            city: layout(gpu, "city", &[(0, S::VERTEX | S::FRAGMENT, storage()), (1, S::VERTEX, storage())]),
+            image: layout(
+                gpu,
+                "image",
+                &[(0, S::FRAGMENT, image(T::Float { filterable: true }, D::D2)), (1, S::FRAGMENT, filtered)],
+            ),
+            shapes: layout(gpu, "shapes", &[(0, S::FRAGMENT, storage()), (1, S::FRAGMENT, storage())]),
+            stage: layout(gpu, "stage", &[(0, S::FRAGMENT | S::COMPUTE, dynamic)]),
+            mask: layout(
+                gpu,
+                "mask",
+                &[(0, S::COMPUTE, depth), (1, S::COMPUTE, depth), (2, S::COMPUTE, depth), (3, S::COMPUTE, masks)],
+            ),
+            shade: layout(
+                gpu,
+                "shade",
+                &[
+                    (0, S::FRAGMENT, storage()),
+                    (3, S::FRAGMENT, uniform()),
+                    (4, S::FRAGMENT, depth),
+                    (5, S::FRAGMENT, compared),
+                    (6, S::FRAGMENT, image(T::Uint, D::D2)),
+                    (7, S::FRAGMENT, depth),
+                    (8, S::FRAGMENT, float),
+                ],
+            ),
+            lenses: layout(
+                gpu,
+                "lenses",
+                &[
+                    (0, S::FRAGMENT, image(T::Uint, D::D2Array)),
+                    (1, S::FRAGMENT, storage()),
+                    (2, S::FRAGMENT, storage()),
+                ],
+            ),
+            resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
+            sums,
+            modules: FxHashMap::default(),
+            made: FxHashMap::default(),
+            compiled: 0,
+            used: Vec::new(),
+        }
+    }
+
+    /// Starts counting anew.
+    pub fn begin_frame(&mut self) {
+        self.compiled = 0;
+        self.used.clear();
+    }
+
+    /// Makes a pipeline if it is not there yet.
+    pub fn prepare(&mut self, gpu: &Gpu, key: &Key) {
+        if !self.made.contains_key(key) {
+            let pipeline = self.make(gpu, key);
+            self.made.insert(key.clone(), pipeline);
+            self.compiled += 1;
+        }
+        if !self.used.contains(key) {
+            self.used.push(key.clone());
+        }
+    }
+
+    /// A prepared render pipeline.
+    pub fn render(&self, key: &Key) -> &wgpu::RenderPipeline {
+        match self.made.get(key) {
+            Some(Pipeline::Render(pipeline)) => pipeline,
+            _ => unreachable!("{key:?} was not prepared as a render pipeline"),
+        }
+    }
+
+    /// A prepared compute pipeline.
+    pub fn compute(&self, key: &Key) -> &wgpu::ComputePipeline {
+        match self.made.get(key) {
+            Some(Pipeline::Compute(pipeline)) => pipeline,
+            _ => unreachable!("{key:?} was not prepared as a compute pipeline"),
+        }
+    }
+
+    fn module(&mut self, gpu: &Gpu, module: Module) -> wgpu::ShaderModule {
+        let make = |m: &Module| {
+            gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(&m.name()),
+                source: wgpu::ShaderSource::Wgsl(m.source().into()),
+            })
+        };
+        self.modules.entry(module.clone()).or_insert_with(|| make(&module)).clone()
+    }
+
+    fn make(&mut self, gpu: &Gpu, key: &Key) -> Pipeline {
+        let module = self.module(gpu, key.module());
+        let groups: Vec<Option<&wgpu::BindGroupLayout>> = match key {
+            Key::Geometry { section: GeometryKind::Textured(_), .. } => {
+                vec![Some(&self.view), Some(&self.city), Some(&self.image)]
+            }
+            Key::Geometry { .. } | Key::Shadow => vec![Some(&self.view), Some(&self.city)],
+            Key::SpriteEntry | Key::SpriteExit => vec![Some(&self.view), Some(&self.shapes), Some(&self.stage)],
+            Key::LensMask => vec![Some(&self.view), Some(&self.mask), Some(&self.stage)],
+            Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
+            Key::Resolve => vec![Some(&self.resolve)],
+        };
+        let name = key.name();
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(&name),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        });
+        let constants = key.constants();
+        let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        if *key == Key::LensMask {
+            return Pipeline::Compute(gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(&name),
+                layout: Some(&layout),
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: options,
+                cache: None,
+            }));
+        }
+        let (vertex_entry, fragment_entry) = key.entry_points();
+        let targets = key.targets(self.sums);
+        let buffers = key.vertex_buffers();
+        Pipeline::Render(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(&name),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(vertex_entry),
+                compilation_options: options.clone(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: key.depth_test(),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: fragment_entry.map(|entry| wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: options,
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        }))
+    }
+}
+
+const VERTEX: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32, 2 => Uint32];
+const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![3 => Float32x2];
+const PLANE_NUMBER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Uint32];
+
+fn per_vertex(array_stride: u64, attributes: &[wgpu::VertexAttribute]) -> Option<wgpu::VertexBufferLayout<'_>> {
+    Some(wgpu::VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes })
+}
+
+impl Key {
+    fn module(&self) -> Module {
+        match self {
+            Self::Geometry { .. } => Module::Geometry,
+            Self::Shadow => Module::Shadow,
+            Self::SpriteEntry | Self::SpriteExit => Module::Sprite,
+            Self::LensMask => Module::LensMask,
+            Self::Shade { effects, .. } => Module::Shade(effects.clone()),
+            Self::Resolve => Module::Resolve,
+        }
+    }
+
+    /// A name for people and statistics.
+    pub fn name(&self) -> String {
+        let flags = |list: &[(bool, &str)]| -> String {
+            list.iter().filter(|(on, _)| *on).map(|(_, name)| format!(" {name}")).collect()
+        };
+        match self {
+            Self::Geometry { section, colored, smooth } => {
+                let kind = match section {
+                    GeometryKind::Plain => "geometry",
+                    GeometryKind::Textured(0) => "geometry textured",
+                    GeometryKind::Textured(_) => "geometry textured with holes",
+                    GeometryKind::Coplanar => "geometry coplanar",
+                };
+                format!("{kind}{}", flags(&[(*colored, "colored"), (*smooth, "smooth")]))
+            }
+            Self::Shadow => "shadow".to_owned(),
+            Self::SpriteEntry => "sprite entry".to_owned(),
+            Self::SpriteExit => "sprite exit".to_owned(),
+            Self::LensMask => "lens mask".to_owned(),
+            Self::Shade { lenses, textured, clay, encode, .. } => {
+                let list = [(*lenses, "lenses"), (*textured, "textured"), (*clay, "clay"), (!*encode, "summed")];
+                format!("{}{}", self.module().name(), flags(&list))
+            }
+            Self::Resolve => "resolve".to_owned(),
+        }
+    }
+
+    fn constants(&self) -> Vec<(&'static str, f64)> {
+        let flag = |on: bool| f64::from(u8::from(on));
+        match self {
+            Self::Geometry { section, smooth, .. } => {
+                let mut list = vec![("SMOOTH", flag(*smooth))];
+                if let GeometryKind::Textured(cutoff) = section {
+                    list.push(("ALPHA_CUTOFF", f64::from(f32::from_bits(*cutoff))));
+                }
+                list
+            }
+            Self::Shade { lenses, textured, clay, encode, .. } => vec![
+                ("LENSES", flag(*lenses)),
+                ("TEXTURED", flag(*textured)),
+                ("CLAY", flag(*clay)),
+                ("ENCODE", flag(*encode)),
+            ],
+            _ => Vec::new(),
+        }
+    }
+
+    fn entry_points(&self) -> (&'static str, Option<&'static str>) {
+        match self {
+            Self::Geometry { section: GeometryKind::Plain, colored, .. } => {
+                ("vertex", Some(if *colored { "colored" } else { "plain" }))
+            }
+            Self::Geometry { section: GeometryKind::Textured(_), .. } => ("vertex_textured", Some("textured")),
+            Self::Geometry { section: GeometryKind::Coplanar, colored, .. } => {
+                ("vertex_coplanar", Some(if *colored { "colored_coplanar" } else { "plain_coplanar" }))
+            }
+            Self::Shadow => ("vertex", None),
+            Self::SpriteEntry => ("vertex", Some("entry")),
+            Self::SpriteExit => ("vertex", Some("exit")),
+            _ => ("vertex", Some("fragment")),
+        }
+    }
+
+    fn vertex_buffers(&self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
+        let vertex = per_vertex(size_of::<crate::city::Vertex>() as u64, VERTEX);
+        match self {
+            Self::Geometry { section: GeometryKind::Textured(_), .. } => vec![vertex, per_vertex(8, TEXCOORD)],
+            Self::Geometry { section: GeometryKind::Coplanar, .. } => vec![vertex, per_vertex(4, PLANE_NUMBER)],
+            Self::Geometry { .. } | Self::Shadow => vec![vertex],
+            _ => Vec::new(),
+        }
+    }
+
+    fn targets(&self, sums: wgpu::TextureFormat) -> Vec<Option<wgpu::ColorTargetState>> {
+        match self {
+            Self::Geometry { colored: true, .. } => vec![Some(CODES.into()), Some(COLORS.into())],
+            Self::Geometry { .. } => vec![Some(CODES.into())],
+            Self::Shade { encode: false, .. } => {
+                let add = wgpu::BlendComponent {
+                    src_factor: wgpu::BlendFactor::One,
+                    dst_factor: wgpu::BlendFactor::One,
+                    operation: wgpu::BlendOperation::Add,
+                };
+                vec![Some(wgpu::ColorTargetState {
+                    format: sums,
+                    blend: Some(wgpu::BlendState { color: add, alpha: add }),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })]
+            }
+            Self::Shade { .. } | Self::Resolve => vec![Some(PICTURE.into())],
+            _ => Vec::new(),
+        }
+    }
+
+    fn depth_test(&self) -> Option<wgpu::DepthStencilState> {
+        use wgpu::CompareFunction as C;
+        let compare = match self {
+            Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
+            Self::Geometry { .. } | Self::Shadow | Self::SpriteEntry => C::Greater,
+            Self::SpriteExit => C::Less,
+            _ => return None,
+        };
+        Some(wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(compare),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        })
+    }
+}

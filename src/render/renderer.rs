@@ -1,0 +1,240 @@
+//! The renderer: what lives on the graphics card between frames, and how it is kept up to date.
+//!
+//! It refuses to know files, commands and windows. Between two equal frames it allocates and uploads
+//! nothing; [`Gpu::allocations`] and [`Gpu::uploads`] prove it.
+
+use crate::{
+    gpu::{Gpu, GpuError},
+    render::{
+        city::{CityBuffers, SectionKind, Shown},
+        layout,
+        pipelines::Pipelines,
+        synced::Synced,
+        targets::{Needs, Target, Targets},
+    },
+};
+
+/// Bytes between two dynamic offsets: what every adapter accepts.
+pub(super) const STAGE_STRIDE: u64 = 256;
+
+/// A renderer on one device.
+#[derive(Debug)]
+pub struct Renderer {
+    /// The device.
+    pub gpu: Gpu,
+    pub(super) pipelines: Pipelines,
+    pub(super) city: Option<CityOnGpu>,
+    pub(super) targets: Option<Targets>,
+    pub(super) buffers: Buffers,
+    pub(super) groups: Option<Groups>,
+    pub(super) shadow_sampler: wgpu::Sampler,
+    /// What the shadow map holds; drawn again when it should hold something else.
+    pub(super) shadow_of: Option<layout::View>,
+    /// Counts cities, so that the shadow of an old one is not taken for the new one's.
+    generation: u32,
+}
+
+/// The city's buffers and the groups that bind them.
+#[derive(Debug)]
+pub(super) struct CityOnGpu {
+    pub buffers: CityBuffers,
+    pub group: wgpu::BindGroup,
+    /// One per section: its texture's group.
+    pub images: Vec<Option<wgpu::BindGroup>>,
+}
+
+/// Small buffers that follow the scene.
+#[derive(Debug)]
+pub(super) struct Buffers {
+    pub view: Synced,
+    pub sun_view: Synced,
+    pub light: Synced,
+    pub shapes: Synced,
+    pub planes: Synced,
+    pub sprite_stages: Synced,
+    pub mask_stages: Synced,
+    pub operations: Synced,
+    pub object_colors: Synced,
+    pub resolve: Synced,
+}
+
+/// Bind groups over buffers and targets; made anew when one of them was replaced.
+#[derive(Debug)]
+pub(super) struct Groups {
+    pub view: wgpu::BindGroup,
+    pub sun_view: wgpu::BindGroup,
+    pub shapes: wgpu::BindGroup,
+    pub sprite_stage: wgpu::BindGroup,
+    pub mask_stage: wgpu::BindGroup,
+    pub mask: wgpu::BindGroup,
+    pub shade: wgpu::BindGroup,
+    pub lenses: wgpu::BindGroup,
+    pub resolve: wgpu::BindGroup,
+}
+
+impl Renderer {
+    /// A renderer without a city.
+    pub fn new(gpu: Gpu) -> Result<Self, GpuError> {
+        use wgpu::BufferUsages as U;
+        let uniform = |label| Synced::new(&gpu, label, U::UNIFORM);
+        let storage = |label| Synced::new(&gpu, label, U::STORAGE);
+        let buffers = Buffers {
+            view: uniform("view")?,
+            sun_view: uniform("sun's view")?,
+            light: uniform("light")?,
+            shapes: storage("lens shapes")?,
+            planes: storage("lens planes")?,
+            sprite_stages: uniform("sprite stages")?,
+            mask_stages: uniform("mask stages")?,
+            operations: storage("operations")?,
+            object_colors: storage("object colours")?,
+            resolve: uniform("resolve")?,
+        };
+        let shadow_sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("shadow"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            compare: Some(wgpu::CompareFunction::GreaterEqual),
+            ..Default::default()
+        });
+        Ok(Self {
+            pipelines: Pipelines::new(&gpu),
+            city: None,
+            targets: None,
+            buffers,
+            groups: None,
+            shadow_sampler,
+            shadow_of: None,
+            generation: 0,
+            gpu,
+        })
+    }
+
+    /// Puts a city on the card in place of the last one.
+    pub fn set_city(&mut self, shown: &Shown) -> Result<(), GpuError> {
+        self.city = None;
+        let gpu = &self.gpu;
+        let buffers = CityBuffers::new(gpu, shown)?;
+        let group = group(gpu, "city", &self.pipelines.city, &[(0, whole(&buffers.surfaces)), (1, whole(&buffers.planes))]);
+        let images = buffers.sections.iter().map(|section| match section.kind {
+            SectionKind::Textured { texture, .. } => buffers.textures.get(texture).map(|(view, sampler)| {
+                let entries =
+                    [(0, wgpu::BindingResource::TextureView(view)), (1, wgpu::BindingResource::Sampler(sampler))];
+                self::group(gpu, "image", &self.pipelines.image, &entries)
+            }),
+            _ => None,
+        });
+        let images = images.collect();
+        self.city = Some(CityOnGpu { group, images, buffers });
+        self.groups = None;
+        self.shadow_of = None;
+        self.generation += 1;
+        Ok(())
+    }
+
+    /// The city's buffers.
+    pub fn city(&self) -> Option<&CityBuffers> {
+        self.city.as_ref().map(|c| &c.buffers)
+    }
+
+    /// The targets of the last frame.
+    pub fn targets(&self) -> Option<&Targets> {
+        self.targets.as_ref()
+    }
+
+    /// The pipelines.
+    pub fn pipelines(&self) -> &Pipelines {
+        &self.pipelines
+    }
+
+    /// Makes the targets fit; what is there is kept where it does.
+    pub(super) fn fit_targets(&mut self, needs: Needs) {
+        if self.targets.as_ref().is_none_or(|t| t.needs != needs) {
+            self.targets = None;
+            self.targets = Some(Targets::new(&self.gpu, needs, self.pipelines.sums));
+            self.groups = None;
+            self.shadow_of = None;
+        }
+    }
+
+    /// Makes the bind groups if something they bind was replaced.
+    pub(super) fn fit_groups(&mut self) {
+        if self.groups.is_some() {
+            return;
+        }
+        let (Some(targets), Some(city)) = (&self.targets, &self.city) else { return };
+        let (gpu, p, b) = (&self.gpu, &self.pipelines, &self.buffers);
+        let stage_group = |label, buffer: &Synced, size: usize| {
+            let binding = wgpu::BufferBinding {
+                buffer: buffer.buffer(),
+                offset: 0,
+                size: wgpu::BufferSize::new(size as u64),
+            };
+            group(gpu, label, &p.stage, &[(0, wgpu::BindingResource::Buffer(binding))])
+        };
+        self.groups = Some(Groups {
+            view: group(gpu, "view", &p.view, &[(0, whole(b.view.buffer()))]),
+            sun_view: group(gpu, "sun's view", &p.view, &[(0, whole(b.sun_view.buffer()))]),
+            shapes: group(gpu, "shapes", &p.shapes, &[(0, whole(b.shapes.buffer())), (1, whole(b.planes.buffer()))]),
+            sprite_stage: stage_group("sprite stage", &b.sprite_stages, size_of::<layout::SpriteStage>()),
+            mask_stage: stage_group("mask stage", &b.mask_stages, size_of::<layout::MaskStage>()),
+            mask: group(
+                gpu,
+                "mask",
+                &p.mask,
+                &[
+                    (0, all_of(&targets.depth)),
+                    (1, all_of(&targets.entry)),
+                    (2, all_of(&targets.exit)),
+                    (3, all_of(&targets.masks)),
+                ],
+            ),
+            shade: group(
+                gpu,
+                "shade",
+                &p.shade,
+                &[
+                    (0, whole(&city.buffers.surfaces)),
+                    (3, whole(b.light.buffer())),
+                    (4, all_of(&targets.shadow)),
+                    (5, wgpu::BindingResource::Sampler(&self.shadow_sampler)),
+                    (6, all_of(&targets.codes)),
+                    (7, all_of(&targets.depth)),
+                    (8, all_of(&targets.colors)),
+                ],
+            ),
+            lenses: group(
+                gpu,
+                "lenses",
+                &p.lenses,
+                &[
+                    (0, all_of(&targets.masks)),
+                    (1, whole(b.operations.buffer())),
+                    (2, whole(b.object_colors.buffer())),
+                ],
+            ),
+            resolve: group(gpu, "resolve", &p.resolve, &[(0, whole(b.resolve.buffer())), (1, all_of(&targets.sums))]),
+        });
+    }
+}
+
+fn all_of(target: &Target) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::TextureView(&target.view)
+}
+
+fn whole(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
+    buffer.as_entire_binding()
+}
+
+fn group(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    entries: &[(u32, wgpu::BindingResource)],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = entries
+        .iter()
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}

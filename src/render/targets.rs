@@ -1,0 +1,99 @@
+//! What a view draws into: allocated once per size, and only what the scene needs.
+
+use crate::{
+    gpu::Gpu,
+    render::pipelines::{CODES, COLORS, DEPTH, MASKS, PICTURE},
+};
+
+/// What a frame needs beside codes, depth and the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Width, height, pixels.
+    pub size: [u32; 2],
+    /// Base colours, in cities with textures.
+    pub colors: bool,
+    /// Sums of samples.
+    pub sums: bool,
+    /// Lenses: mask layers are three per 32 of them.
+    pub lenses: u32,
+    /// Width and height of the depth sprites, 0 for none.
+    pub sprite: [u32; 2],
+    /// Side of the shadow map, 0 for none.
+    pub shadow: u32,
+}
+
+/// A texture and the view of all of it.
+#[derive(Debug)]
+pub struct Target {
+    /// The texture.
+    pub texture: wgpu::Texture,
+    /// All of it.
+    pub view: wgpu::TextureView,
+    /// Its layers one by one, where there are several.
+    pub layers: Vec<wgpu::TextureView>,
+}
+
+/// All targets of a view.
+#[derive(Debug)]
+pub struct Targets {
+    /// What they were made for.
+    pub needs: Needs,
+    /// Packed normal, surface number + 1.
+    pub codes: Target,
+    /// Reversed depth.
+    pub depth: Target,
+    /// sRGB base colours (1×1 where not needed).
+    pub colors: Target,
+    /// The picture, sRGB, straight alpha.
+    pub picture: Target,
+    /// Sums of samples, linear (1×1 where not needed).
+    pub sums: Target,
+    /// One bit per lens; layers 3w inside, 3w+1 in front, 3w+2 behind (1×1×3 where not needed).
+    pub masks: Target,
+    /// Nearest entries of the sprite at work.
+    pub entry: Target,
+    /// Farthest exits of it.
+    pub exit: Target,
+    /// Depth from the sun (1×1 where not needed).
+    pub shadow: Target,
+}
+
+impl Targets {
+    /// Allocates what is needed.
+    pub fn new(gpu: &Gpu, needs: Needs, sums: wgpu::TextureFormat) -> Self {
+        use wgpu::TextureUsages as U;
+        let drawn = U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC;
+        let make = |label: &str, size: [u32; 3], format, usage| {
+            let size = [size[0].max(1), size[1].max(1), size[2]];
+            let texture = gpu.texture(label, size, 1, format, usage);
+            let array = (format == MASKS).then_some(wgpu::TextureViewDimension::D2Array);
+            let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension: array, ..Default::default() });
+            let layer = |i| {
+                texture.create_view(&wgpu::TextureViewDescriptor {
+                    dimension: Some(wgpu::TextureViewDimension::D2),
+                    base_array_layer: i,
+                    array_layer_count: Some(1),
+                    ..Default::default()
+                })
+            };
+            let layers = if size[2] > 1 { (0..size[2]).map(layer).collect() } else { Vec::new() };
+            Target { view, layers, texture }
+        };
+        let [w, h] = needs.size;
+        let full = |on: bool| if on { [w, h, 1] } else { [1, 1, 1] };
+        let [sw, sh] = needs.sprite;
+        let mask_size = if needs.lenses > 0 { [w, h, 3 * needs.lenses.div_ceil(32)] } else { [1, 1, 3] };
+        Self {
+            needs,
+            codes: make("codes", [w, h, 1], CODES, drawn),
+            depth: make("depth", [w, h, 1], DEPTH, drawn),
+            colors: make("colors", full(needs.colors), COLORS, drawn),
+            picture: make("picture", [w, h, 1], PICTURE, drawn),
+            sums: make("sums", full(needs.sums), sums, drawn),
+            masks: make("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING),
+            entry: make("sprite entry", [sw, sh, 1], DEPTH, drawn),
+            exit: make("sprite exit", [sw, sh, 1], DEPTH, drawn),
+            shadow: make("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn),
+        }
+    }
+}
