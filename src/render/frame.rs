@@ -28,6 +28,9 @@ use crate::{
     view::{Frustum, View},
 };
 
+/// Name of the pass that empties the lens masks; where it ran, they hold this frame's classes.
+pub const CLEAR_MASKS: &str = "clear lens masks";
+
 /// Everything a sample is drawn from.
 #[derive(Clone, Debug)]
 pub struct FrameInput<'a> {
@@ -246,7 +249,6 @@ impl Renderer {
         if input.samples > 1 {
             keys.push(Key::Resolve);
         }
-        self.pipelines.begin_frame();
         for key in &keys {
             self.pipelines.prepare(&self.gpu, key);
         }
@@ -331,11 +333,11 @@ impl Renderer {
     fn clear_masks(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
         let Some(targets) = &self.targets else { return };
         for three in targets.masks.layers.chunks(3) {
-            let slot = recorder.begin("clear lens masks", "main", None, false);
+            let slot = recorder.begin(CLEAR_MASKS, "main", None, false);
             let attachments: Vec<_> =
                 three.iter().map(|view| Some(color_attachment(view, wgpu::Color::TRANSPARENT))).collect();
             encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("clear lens masks"),
+                label: Some(CLEAR_MASKS),
                 color_attachments: &attachments,
                 timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
                 ..Default::default()

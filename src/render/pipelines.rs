@@ -97,7 +97,7 @@ pub struct Pipelines {
     pub sums: wgpu::TextureFormat,
     modules: FxHashMap<Module, wgpu::ShaderModule>,
     made: FxHashMap<Key, Pipeline>,
-    /// Pipelines made since the last [`Pipelines::begin_frame`].
+    /// Pipelines made since the last [`Pipelines::begin_picture`].
     pub compiled: u32,
     /// Keys of the pipelines used since then, in order of first use.
     pub used: Vec<Key>,
@@ -196,7 +196,7 @@ impl Pipelines {
     }
 
     /// Starts counting anew.
-    pub fn begin_frame(&mut self) {
+    pub fn begin_picture(&mut self) {
         self.compiled = 0;
         self.used.clear();
     }

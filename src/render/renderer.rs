@@ -142,6 +142,11 @@ impl Renderer {
         self.targets.as_ref()
     }
 
+    /// Starts counting pipelines anew.
+    pub fn begin_picture(&mut self) {
+        self.pipelines.begin_picture();
+    }
+
     /// The pipelines.
     pub fn pipelines(&self) -> &Pipelines {
         &self.pipelines

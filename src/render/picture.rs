@@ -1,0 +1,543 @@
+//! A picture, its AOVs and its statistics, from a scene and a city: the shown surface written down.
+
+use std::{sync::Arc, time::Instant};
+
+use crate::{
+    city::{CityModel, Lod, coplanar::coplanar_triangles, decode_normal, ground::{Ground, plain_ground}, shown::shown_geometries},
+    geom::Aabb,
+    gpu::{Gpu, GpuError, Timer},
+    lens::EffectUse,
+    render::{
+        Renderer,
+        city::Shown,
+        eye::PictureTile,
+        frame::{CLEAR_MASKS, FrameInput, PassRecord},
+        operations::Operations,
+        stats::{self, Statistics},
+        volume::Volume,
+    },
+    scene::{CitySpec, Scene},
+    view::{Camera, CameraError, View, first_view},
+};
+
+/// Longest side of a target; larger pictures are drawn in tiles.
+const TILE: u32 = 4096;
+/// Pixels by which tiles overlap, so that what looks at neighbours (outlines) has them.
+const OVERLAP: u32 = 8;
+
+/// What can go wrong while drawing.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The graphics card.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The camera.
+    #[error("camera: {0}")]
+    Camera(#[from] CameraError),
+    /// Something a scene says that the city cannot answer.
+    #[error("{0}")]
+    Scene(String),
+}
+
+/// Which AOVs a picture brings along; all of the unjittered sample at the pixel's centre.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Aovs {
+    /// Metres along the view axis.
+    pub depth: bool,
+    /// Object index + 1.
+    pub object_id: bool,
+    /// Unit normals.
+    pub normal: bool,
+    /// Lens membership.
+    pub lens_mask: bool,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// Width, height, pixels.
+    pub size: [u32; 2],
+    /// Samples per pixel, at least 1.
+    pub samples: u32,
+    /// Nothing behind the city.
+    pub transparent: bool,
+    /// AOVs.
+    pub aovs: Aovs,
+    /// Whether passes are timed and lenses counted.
+    pub statistics: bool,
+}
+
+/// A finished picture; row 0 at the top.
+#[derive(Clone, Debug, Default)]
+pub struct Picture {
+    /// Width, height.
+    pub size: [u32; 2],
+    /// sRGB, straight alpha.
+    pub rgba: Vec<[u8; 4]>,
+    /// Metres along the view axis, +∞ = nothing.
+    pub depth: Option<Vec<f32>>,
+    /// Object index + 1, 0 = nothing.
+    pub object_id: Option<Vec<u32>>,
+    /// Unit, model axes, towards the eye; 0,0,0 = nothing.
+    pub normal: Option<Vec<[f32; 3]>>,
+    /// One bit per lens, 32 lenses per plane.
+    pub lens_mask: Option<Vec<Vec<u32>>>,
+    /// Class bits as the card holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
+    classes: Vec<Vec<u32>>,
+    /// What it cost.
+    pub statistics: Statistics,
+}
+
+/// A city on the graphics card, ready for any number of pictures.
+#[derive(Debug)]
+pub struct Studio {
+    /// The renderer.
+    pub renderer: Renderer,
+    /// The city.
+    pub model: Arc<CityModel>,
+    /// Its geometries that are shown.
+    pub geometries: Vec<u32>,
+    /// The plain ground under it.
+    pub ground: Option<Ground>,
+    /// Objects with something to show.
+    pub objects: u64,
+    /// How long loading took, filled by whoever loaded.
+    pub load: stats::Load,
+}
+
+/// Everything of a scene that does not depend on the eye.
+struct Prepared {
+    volumes: Vec<Volume>,
+    operations: Operations,
+    sprite_resolution: Vec<Option<u32>>,
+}
+
+impl Studio {
+    /// Chooses what is shown and puts it on the card.
+    pub fn new(gpu: Gpu, model: Arc<CityModel>, spec: &CitySpec) -> Result<Self, RenderError> {
+        let cap = match &spec.lod {
+            None => None,
+            Some(text) => Some(Lod::parse(text).ok_or_else(|| {
+                RenderError::Scene(format!("city.lod: \"{text}\" is no level of detail; expected e.g. \"1.3\" or \"2\""))
+            })?),
+        };
+        let geometries = shown_geometries(&model, cap);
+        let ground = spec.ground.then(|| plain_ground(&model, &geometries)).flatten();
+        let coplanar = coplanar_triangles(&model, &geometries);
+        let mut renderer = Renderer::new(gpu)?;
+        let shown =
+            Shown { model: &model, geometries: &geometries, coplanar: &coplanar, ground: ground.as_ref() };
+        renderer.set_city(&shown)?;
+        let mut objects: Vec<u32> = geometries.iter().map(|&g| model.geometries[g as usize].object).collect();
+        objects.sort_unstable();
+        objects.dedup();
+        Ok(Self { renderer, objects: objects.len() as u64, model, geometries, ground, load: stats::Load::default() })
+    }
+
+    /// Box around the shown city, without the plain ground; empty for an empty city.
+    pub fn extent(&self) -> Aabb {
+        self.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(self.model.geometries[g as usize].bounds))
+    }
+
+    /// The scene's camera, or a good first view of the city.
+    pub fn camera(&self, scene: &Scene, size: [u32; 2]) -> Camera {
+        scene.camera.unwrap_or_else(|| {
+            let boxes: Vec<Aabb> =
+                self.geometries.iter().map(|&g| self.model.geometries[g as usize].bounds).collect();
+            first_view(&self.extent(), &boxes, f64::from(size[0]) / f64::from(size[1]))
+        })
+    }
+
+    /// Draws a picture.
+    pub fn render(&mut self, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
+        let started = Instant::now();
+        let (allocations, uploads) = (self.renderer.gpu.allocations(), self.renderer.gpu.uploads());
+        let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
+        let prepared = self.prepare(scene);
+        let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
+        let view = View::new(self.camera(scene, request.size), request.size, &reach)?;
+        let mut picture = Picture::empty(request, scene.lenses.len());
+        let mut passes: Vec<stats::Pass> = Vec::new();
+        self.renderer.begin_picture();
+        for part in parts(request.size) {
+            self.render_part(scene, request, &prepared, &view, part, &mut picture, &mut passes)?;
+        }
+        if request.statistics {
+            picture.statistics = self.statistics(scene, request, &prepared, &view, &picture, passes);
+            let frame = &mut picture.statistics.frame;
+            frame.cpu_ms = started.elapsed().as_secs_f64() * 1e3;
+            frame.allocations = self.renderer.gpu.allocations() - allocations;
+            frame.uploads = self.renderer.gpu.uploads() - uploads;
+        }
+        picture.lens_mask = request.aovs.lens_mask.then(|| {
+            std::mem::take(&mut picture.classes).into_iter().step_by(3).collect()
+        });
+        Ok(picture)
+    }
+
+    fn prepare(&self, scene: &Scene) -> Prepared {
+        let mut volumes = Vec::new();
+        for (i, lens) in scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
+            // A lens without volume shows nothing and costs nothing.
+            for shape in lens.shapes.iter().filter(|s| !s.is_empty()) {
+                volumes.push(Volume {
+                    lens: i as u32,
+                    planes: shape.planes(),
+                    bounds: shape.bounds(),
+                    shape: shape.clone(),
+                });
+            }
+        }
+        let mut present = vec![false; scene.lenses.len()];
+        for volume in &volumes {
+            present[volume.lens as usize] = true;
+        }
+        let colors = |effect: &EffectUse| crate::lens::thematic::object_colors(&self.model, effect);
+        let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, colors);
+        let sprite_resolution = scene.lenses.iter().map(|l| l.sprite_resolution).collect();
+        Prepared { volumes, operations, sprite_resolution }
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "one part of a picture; the arguments are the picture's own")]
+    fn render_part(
+        &mut self,
+        scene: &Scene,
+        request: &Request,
+        prepared: &Prepared,
+        view: &View,
+        part: Part,
+        picture: &mut Picture,
+        passes: &mut Vec<stats::Pass>,
+    ) -> Result<(), RenderError> {
+        let mut input = FrameInput {
+            view: *view,
+            tile: part.drawn,
+            sun: scene.sun,
+            base: scene.style.base,
+            background: scene.style.background,
+            transparent: request.transparent,
+            haze: 0.08,
+            volumes: &prepared.volumes,
+            lens_count: scene.lenses.len() as u32,
+            sprite_resolution: &prepared.sprite_resolution,
+            operations: &prepared.operations,
+            sample: 0,
+            samples: request.samples.max(1),
+        };
+        for sample in 0..input.samples {
+            input.sample = sample;
+            let mut timer =
+                if request.statistics && sample == 0 { Some(Timer::new(&self.renderer.gpu)?) } else { None };
+            let records = self.renderer.draw(&input, timer.as_mut())?;
+            if sample == 0 {
+                self.read_aovs(request, view, part, picture)?;
+                if records.iter().any(|r| r.name == CLEAR_MASKS) {
+                    self.read_masks(part, picture)?;
+                }
+            }
+            if request.statistics {
+                let measures = timer.map(|t| t.read(&self.renderer.gpu)).transpose()?.unwrap_or_default();
+                collect(passes, &records, &measures);
+            }
+        }
+        let Some(targets) = self.renderer.targets() else { return Ok(()) };
+        let rgba = self.renderer.gpu.read_texture(&targets.picture.texture, 0, wgpu::TextureAspect::All)?;
+        put(&mut picture.rgba, request.size, part, bytemuck::cast_slice::<u8, [u8; 4]>(&rgba));
+        Ok(())
+    }
+
+    /// Reads what the unjittered sample left in the targets.
+    fn read_aovs(
+        &self,
+        request: &Request,
+        view: &View,
+        part: Part,
+        picture: &mut Picture,
+    ) -> Result<(), RenderError> {
+        let gpu = &self.renderer.gpu;
+        let (Some(targets), Some(city)) = (self.renderer.targets(), self.renderer.city()) else { return Ok(()) };
+        if let Some(out) = &mut picture.depth {
+            let stored = gpu.read_texture(&targets.depth.texture, 0, wgpu::TextureAspect::DepthOnly)?;
+            let near = view.camera.near_m as f32;
+            let far = view.far_m as f32;
+            let metres: Vec<f32> = bytemuck::cast_slice(&stored)
+                .iter()
+                .map(|&depth: &f32| match depth {
+                    0.0 => f32::INFINITY,
+                    depth if view.is_orthographic() => far - depth * (far - near),
+                    depth => near / depth,
+                })
+                .collect();
+            put(out, request.size, part, &metres);
+        }
+        if picture.object_id.is_none() && picture.normal.is_none() {
+            return Ok(());
+        }
+        let codes = gpu.read_texture(&targets.codes.texture, 0, wgpu::TextureAspect::All)?;
+        let codes: &[[u32; 2]] = bytemuck::cast_slice(&codes);
+        if let Some(out) = &mut picture.object_id {
+            // The plain ground is no object: its NO_OBJECT wraps to 0.
+            let object = |surface: u32| city.surface_table[surface as usize].object.wrapping_add(1);
+            let ids: Vec<u32> = codes.iter().map(|&[_, code]| code.checked_sub(1).map_or(0, object)).collect();
+            put(out, request.size, part, &ids);
+        }
+        if let Some(out) = &mut picture.normal {
+            let width = part.drawn.size[0];
+            let normal = |(i, &[normal, code]): (usize, &[u32; 2])| {
+                if code == 0 {
+                    return [0.0; 3];
+                }
+                let n = decode_normal(normal);
+                let [x, y] = [i as u32 % width + part.drawn.origin[0], i as u32 / width + part.drawn.origin[1]];
+                let away = n.dot(view.pixel_ray(x, y).direction) > 0.0;
+                (if away { -n } else { n }).as_vec3().to_array()
+            };
+            let normals: Vec<[f32; 3]> = codes.iter().enumerate().map(normal).collect();
+            put(out, request.size, part, &normals);
+        }
+        Ok(())
+    }
+
+    /// Reads the class bits of all lenses.
+    fn read_masks(&self, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
+        let Some(targets) = self.renderer.targets() else { return Ok(()) };
+        let size = picture.size;
+        for (layer, plane) in picture.classes.iter_mut().enumerate() {
+            let bytes =
+                self.renderer.gpu.read_texture(&targets.masks.texture, layer as u32, wgpu::TextureAspect::All)?;
+            put(plane, size, part, bytemuck::cast_slice::<u8, u32>(&bytes));
+        }
+        Ok(())
+    }
+
+    fn statistics(
+        &self,
+        scene: &Scene,
+        request: &Request,
+        prepared: &Prepared,
+        view: &View,
+        picture: &Picture,
+        passes: Vec<stats::Pass>,
+    ) -> Statistics {
+        let gpu = &self.renderer.gpu;
+        let pipelines = self.renderer.pipelines();
+        let city = self.renderer.city();
+        let ran = passes.iter().any(|p| p.name == "shade");
+        let handlers = if !ran { &[] as &[u32] } else { &prepared.operations.effects };
+        let lens_seen = |i: usize| {
+            prepared.volumes.iter().any(|v| v.lens as usize == i && v.screen_bounds(view, whole(request.size)).is_some())
+        };
+        let any_seen = (0..scene.lenses.len()).any(lens_seen);
+        let handlers = handlers
+            .iter()
+            .filter(|e| any_seen || prepared.operations.context_effects.contains(e))
+            .map(|&e| crate::shader::EFFECTS[e as usize].name.to_owned())
+            .collect();
+        Statistics {
+            adapter: stats::Adapter {
+                name: gpu.info.name.clone(),
+                backend: format!("{:?}", gpu.info.backend).to_lowercase(),
+                kind: gpu.kind().to_owned(),
+            },
+            load: stats::Load { peak_bytes: stats::peak_memory(), ..self.load.clone() },
+            city: stats::City {
+                objects: self.objects,
+                triangles: city.map_or(0, |c| c.triangles),
+                vertices: city.map_or(0, |c| c.vertices),
+                gpu_bytes: city.map_or(0, |c| c.bytes),
+            },
+            frame: stats::Frame {
+                gpu_ms: passes.iter().map(|p| p.gpu_ms).sum(),
+                samples: request.samples,
+                peak_gpu_bytes: gpu.allocated_bytes(),
+                ..Default::default()
+            },
+            pipelines: stats::Pipelines {
+                compiled: pipelines.compiled,
+                reused: pipelines.used.len() as u32 - pipelines.compiled,
+                names: pipelines.used.iter().map(crate::render::pipelines::Key::name).collect(),
+            },
+            handlers,
+            lenses: (0..scene.lenses.len())
+                .map(|i| lens_figures(self, scene, prepared, picture, i, lens_seen(i)))
+                .collect(),
+            overlays: Vec::new(),
+            warnings: self.warnings(),
+            passes,
+        }
+    }
+
+    fn warnings(&self) -> Vec<serde_json::Value> {
+        let warning = |(code, w): (crate::city::WarningCode, &crate::city::warning::Warning)| {
+            serde_json::json!({ "code": code.code(), "count": w.count, "objects": w.objects, "message": w.message })
+        };
+        self.model.warnings.iter().map(warning).collect()
+    }
+}
+
+fn lens_figures(
+    studio: &Studio,
+    scene: &Scene,
+    prepared: &Prepared,
+    picture: &Picture,
+    index: usize,
+    visible: bool,
+) -> stats::LensFigures {
+    let lens = &scene.lenses[index];
+    let volumes: Vec<&Volume> = prepared.volumes.iter().filter(|v| v.lens as usize == index).collect();
+    let planes = &picture.classes[3 * (index / 32)..3 * (index / 32) + 3];
+    let bit = |plane: &[u32], i: usize| plane[i] >> (index % 32) & 1 == 1;
+    let (mut front, mut inside, mut behind, mut rest) = (0, 0, 0, 0);
+    for i in 0..planes[0].len() {
+        match (bit(&planes[0], i), bit(&planes[1], i), bit(&planes[2], i)) {
+            (true, ..) => inside += 1,
+            (_, true, false) => front += 1,
+            (_, false, true) => behind += 1,
+            _ => rest += 1,
+        }
+    }
+    let acts_inside = lens.effects.iter().any(|e| e.class == crate::lens::Class::Inside);
+    stats::LensFigures {
+        id: index as u32,
+        name: lens.name.clone(),
+        kind: "color".to_owned(),
+        visible,
+        objects: objects_meeting(studio, &volumes),
+        covered: inside,
+        pixels: if acts_inside { inside } else { 0 },
+        classified: if volumes.is_empty() {
+            stats::Classified::default()
+        } else {
+            stats::Classified { front: Some(front), inside: Some(inside), behind: Some(behind), rest: Some(rest) }
+        },
+    }
+}
+
+/// City objects of which a shown triangle meets one of the volumes; exact in f64.
+fn objects_meeting(studio: &Studio, volumes: &[&Volume]) -> u64 {
+    let model = &studio.model;
+    let mut met = rustc_hash::FxHashSet::default();
+    for &g in &studio.geometries {
+        let geometry = &model.geometries[g as usize];
+        if met.contains(&geometry.object) {
+            continue;
+        }
+        let near: Vec<_> = volumes.iter().filter(|v| v.bounds.meets(&geometry.bounds)).collect();
+        let hit = |tile: &crate::city::Tile| {
+            (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
+                let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + model.indices[i + k]));
+                near.iter().any(|v| v.shape.meets_triangle(&corners))
+            })
+        };
+        if !near.is_empty() && model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {
+            met.insert(geometry.object);
+        }
+    }
+    met.len() as u64
+}
+
+impl Picture {
+    fn empty(request: &Request, lens_count: usize) -> Self {
+        let pixels = request.size[0] as usize * request.size[1] as usize;
+        let Aovs { depth, object_id, normal, lens_mask } = request.aovs;
+        let planes = if lens_mask || request.statistics { 3 * lens_count.max(1).div_ceil(32) } else { 0 };
+        Self {
+            size: request.size,
+            rgba: vec![[0; 4]; pixels],
+            depth: depth.then(|| vec![f32::INFINITY; pixels]),
+            object_id: object_id.then(|| vec![0; pixels]),
+            normal: normal.then(|| vec![[0.0; 3]; pixels]),
+            lens_mask: None,
+            classes: vec![vec![0; pixels]; planes],
+            statistics: Statistics::default(),
+        }
+    }
+}
+
+/// A rectangle that is drawn, and the part of it that is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Part {
+    drawn: PictureTile,
+    kept: PictureTile,
+}
+
+fn whole(size: [u32; 2]) -> PictureTile {
+    PictureTile::whole(size)
+}
+
+/// Cuts a picture into parts that fit a target.
+fn parts(size: [u32; 2]) -> Vec<Part> {
+    let cuts = |side: u32| -> Vec<[u32; 4]> {
+        if side <= TILE {
+            return vec![[0, side, 0, side]];
+        }
+        let step = TILE - 2 * OVERLAP;
+        (0..side.div_ceil(step))
+            .map(|i| {
+                let (from, to) = (i * step, ((i + 1) * step).min(side));
+                [from.saturating_sub(OVERLAP), (to + OVERLAP).min(side), from, to]
+            })
+            .collect()
+    };
+    let mut parts = Vec::new();
+    for y in cuts(size[1]) {
+        for x in cuts(size[0]) {
+            let rect = |k: usize| PictureTile {
+                origin: [x[k], y[k]],
+                size: [x[k + 1] - x[k], y[k + 1] - y[k]],
+            };
+            parts.push(Part { drawn: rect(0), kept: rect(2) });
+        }
+    }
+    parts
+}
+
+/// Copies the kept part of a drawn rectangle into the picture.
+fn put<T: Copy>(out: &mut [T], size: [u32; 2], part: Part, drawn: &[T]) {
+    let Part { drawn: d, kept: k } = part;
+    let width = k.size[0] as usize;
+    for y in k.origin[1]..k.origin[1] + k.size[1] {
+        let to = y as usize * size[0] as usize + k.origin[0] as usize;
+        let from = (y - d.origin[1]) as usize * d.size[0] as usize + (k.origin[0] - d.origin[0]) as usize;
+        out[to..to + width].copy_from_slice(&drawn[from..from + width]);
+    }
+}
+
+fn collect(passes: &mut Vec<stats::Pass>, records: &[PassRecord], measures: &[crate::gpu::PassMeasure]) {
+    for record in records {
+        let measure = record.slot.and_then(|slot| measures.get(slot)).copied().unwrap_or_default();
+        passes.push(stats::Pass {
+            name: record.name.to_owned(),
+            view: record.view.to_owned(),
+            serves: match record.lens {
+                Some(lens) => serde_json::json!([lens]),
+                None => serde_json::json!("scene"),
+            },
+            draws: record.draws,
+            triangles: record.triangles,
+            pixels: measure.pixels,
+            gpu_ms: measure.gpu_ms,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_keep_every_pixel_once() {
+        for size in [[1, 1], [4096, 17], [4097, 9], [12_000, 4100]] {
+            let mut hits = vec![0_u8; size[0] as usize * size[1] as usize];
+            for part in parts(size) {
+                assert!(part.drawn.size.iter().all(|&s| s <= TILE));
+                let ones = vec![1; part.drawn.size[0] as usize * part.drawn.size[1] as usize];
+                let before: u64 = hits.iter().map(|&h| u64::from(h)).sum();
+                put(&mut hits, size, part, &ones);
+                let after: u64 = hits.iter().map(|&h| u64::from(h)).sum();
+                assert_eq!(after - before, u64::from(part.kept.size[0]) * u64::from(part.kept.size[1]));
+            }
+            assert!(hits.iter().all(|&h| h == 1));
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! What a picture cost and what its lenses did (contract, "Statistics"). Counts are counted, not declared.
+
+use serde::Serialize;
+
+/// One statistics object, as `--stats` writes it.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Statistics {
+    /// Where it was drawn.
+    pub adapter: Adapter,
+    /// How the city was read.
+    pub load: Load,
+    /// What the city holds on the graphics card.
+    pub city: City,
+    /// The frame as a whole.
+    pub frame: Frame,
+    /// Passes in order, all samples and tiles of the picture; measures are those of the first sample.
+    pub passes: Vec<Pass>,
+    /// Pipelines.
+    pub pipelines: Pipelines,
+    /// Names of the handlers that ran.
+    pub handlers: Vec<String>,
+    /// Every lens of the scene, disabled ones included.
+    pub lenses: Vec<LensFigures>,
+    /// Overlays.
+    pub overlays: Vec<serde_json::Value>,
+    /// What was wrong and lived with.
+    pub warnings: Vec<serde_json::Value>,
+}
+
+/// Where it was drawn.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Adapter {
+    /// As the driver calls it.
+    pub name: String,
+    /// `vulkan`, `metal`, `dx12`, `gl`.
+    pub backend: String,
+    /// `hardware`, `integrated`, `virtual`, `software`, `other`.
+    pub kind: String,
+}
+
+/// How the city was read.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Load {
+    /// Milliseconds by stage.
+    pub ms: std::collections::BTreeMap<String, f64>,
+    /// Largest memory of the process so far, where the system tells.
+    pub peak_bytes: Option<u64>,
+}
+
+/// What the city holds on the graphics card.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct City {
+    /// City objects with something to show.
+    pub objects: u64,
+    /// Triangles that can be drawn, the plain ground included.
+    pub triangles: u64,
+    /// Their vertices.
+    pub vertices: u64,
+    /// Buffers and textures.
+    pub gpu_bytes: u64,
+}
+
+/// The frame as a whole.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Frame {
+    /// From the first command to the finished picture, milliseconds.
+    pub cpu_ms: f64,
+    /// Sum of the passes' times; `null` without timestamps.
+    pub gpu_ms: Option<f64>,
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Bytes ever allocated on the card: an upper bound of what was held at once.
+    pub peak_gpu_bytes: u64,
+    /// GPU allocations while drawing.
+    pub allocations: u64,
+    /// GPU uploads while drawing.
+    pub uploads: u64,
+}
+
+/// One pass.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Pass {
+    /// What it does.
+    pub name: String,
+    /// Which view it drew.
+    pub view: String,
+    /// Lens ids it served, or `"scene"`.
+    #[serde(rename = "for")]
+    pub serves: serde_json::Value,
+    /// Draw calls or dispatches.
+    pub draws: u32,
+    /// Triangles handed to the rasteriser.
+    pub triangles: u64,
+    /// Fragment shader invocations; `null` where the adapter does not count them.
+    pub pixels: Option<u64>,
+    /// Milliseconds on the card; `null` without timestamps.
+    pub gpu_ms: Option<f64>,
+}
+
+/// Pipelines.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Pipelines {
+    /// Made for this picture.
+    pub compiled: u32,
+    /// Met again.
+    pub reused: u32,
+    /// All that were used.
+    pub names: Vec<String>,
+}
+
+/// What a lens did.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct LensFigures {
+    /// Its number, from 0.
+    pub id: u32,
+    /// Its name.
+    pub name: String,
+    /// Its kind.
+    pub kind: String,
+    /// Whether its bounds met the picture.
+    pub visible: bool,
+    /// City objects of which a triangle meets its volume.
+    pub objects: u64,
+    /// Pixels whose shown surface is inside.
+    pub covered: u64,
+    /// Those of them on which an effect ran.
+    pub pixels: u64,
+    /// Pixels by class (L4).
+    pub classified: Classified,
+}
+
+/// Pixels by class; `null` where a class does not exist.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Classified {
+    /// D < D_F.
+    pub front: Option<u64>,
+    /// D_F ≤ D < D_B.
+    pub inside: Option<u64>,
+    /// D ≥ D_B.
+    pub behind: Option<u64>,
+    /// The ray misses the lens, or is between two of its volumes.
+    pub rest: Option<u64>,
+}
+
+/// Largest resident memory of this process so far, bytes; `None` where the system does not tell.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kibibytes * 1024)
+}
