@@ -56,5 +56,6 @@ fn irradiance(normal: vec3f, sun: f32) -> vec3f {
 
 fn sky_color(direction: vec3f) -> vec3f {
     let height = clamp(normalize(direction).z, 0.0, 1.0);
-    return mix(light.horizon, light.zenith, 1.0 - pow(1.0 - height, 2.2));
+    let low = 1.0 - height;
+    return mix(light.horizon, light.zenith, 1.0 - low * low);
 }

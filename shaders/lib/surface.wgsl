@@ -3,17 +3,20 @@
 struct Surface {
     origin: vec3i,              // of its tile, whole metres
     object: u32,                // city object, or NO_OBJECT (the plain ground)
-    color: u32,                 // natural colour, sRGB, 4 x unorm8
+    color_rg: u32,              // natural colour, linear, 4 x float16
+    color_ba: u32,
     flags: u32,                 // SURFACE_*
     model_surface: u32,         // index in the city model
-    reserved: u32,
 }
 
 const NO_OBJECT: u32 = 0xffffffffu;
 const SURFACE_UNLIT: u32 = 1u;
-const SURFACE_WATER: u32 = 2u;
 
 @group(1) @binding(0) var<storage, read> surfaces: array<Surface>;
+
+fn natural_color(surface: u32) -> vec3f {
+    return vec3f(unpack2x16float(surfaces[surface].color_rg), unpack2x16float(surfaces[surface].color_ba).x);
+}
 
 // Octahedral, 2 x snorm16: the inverse of the host's `encode_normal`.
 fn decode_normal(code: u32) -> vec3f {

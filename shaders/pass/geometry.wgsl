@@ -1,7 +1,7 @@
 // The one opaque geometry pass: what is there, which way it faces, how far it is.
 //
 // target 0  rg32uint    x: octahedral normal, y: surface + 1 (0 = nothing)
-// target 1  rgba8unorm  sRGB base colour; only in cities that have textures
+// target 1  rgba8unorm-srgb  base colour; only in cities that have textures
 
 override SMOOTH: bool = false;  // whether some faces have a normal per vertex
 
@@ -47,7 +47,7 @@ struct Colored {
 
 @fragment
 fn colored(in: Varying) -> Colored {
-    return Colored(code_of(in), unpack4x8unorm(surfaces[in.code.y - 1u].color));
+    return Colored(code_of(in), vec4f(natural_color(in.code.y - 1u), 1.0));
 }
 
 // ---- textured surfaces
@@ -70,8 +70,7 @@ fn textured(in: Varying) -> Colored {
     if texel.a < ALPHA_CUTOFF {
         discard;
     }
-    let base = unpack4x8unorm(surfaces[in.code.y - 1u].color);
-    return Colored(code_of(in), vec4f(texel.rgb * base.rgb, 1.0));
+    return Colored(code_of(in), vec4f(texel.rgb * natural_color(in.code.y - 1u), 1.0));
 }
 
 // ---- faces of exactly one plane that overlap (hard case 3)
@@ -131,5 +130,5 @@ struct CoplanarColored {
 
 @fragment
 fn colored_coplanar(in: Varying) -> CoplanarColored {
-    return CoplanarColored(code_of(in), unpack4x8unorm(surfaces[in.code.y - 1u].color), depth_on_plane(in));
+    return CoplanarColored(code_of(in), vec4f(natural_color(in.code.y - 1u), 1.0), depth_on_plane(in));
 }

@@ -1,4 +1,4 @@
-// The mean of all samples, as straight-alpha sRGB.
+// The mean of all samples, with straight alpha; the target encodes sRGB.
 
 struct Resolve {
     sample_count: f32,
@@ -15,5 +15,5 @@ fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let mean = textureLoad(sums, vec2i(at.xy), 0) / resolve.sample_count;
-    return vec4f(srgb_from_linear(mean.rgb / max(mean.a, 1e-6)), mean.a);
+    return vec4f(mean.rgb / max(mean.a, 1e-6), mean.a);
 }

@@ -6,7 +6,7 @@
 override LENSES: bool = false;      // whether this part of the picture meets a lens
 override TEXTURED: bool = false;    // whether base colours are in a target of their own
 override CLAY: bool = false;        // one colour for everything
-override ENCODE: bool = true;       // sRGB bytes; else linear, to be summed over samples
+override SUMMED: bool = false;      // weighted by coverage, to be summed over samples
 
 struct Parameters {
     a: vec4f,
@@ -107,9 +107,9 @@ fn base_color(point: Point, pixel: vec2i) -> vec3f {
         return vec3f(0.62, 0.585, 0.54);
     }
     if TEXTURED {
-        return linear_from_srgb(textureLoad(colors, pixel, 0).rgb);
+        return textureLoad(colors, pixel, 0).rgb;
     }
-    return linear_from_srgb(unpack4x8unorm(surfaces[point.surface].color).rgb);
+    return natural_color(point.surface);
 }
 
 fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
@@ -177,8 +177,8 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
             }
         }
     }
-    if ENCODE {
-        return vec4f(srgb_from_linear(color), alpha);
+    if SUMMED {
+        return vec4f(color * alpha, alpha);
     }
-    return vec4f(color * alpha, alpha);
+    return vec4f(color, alpha);
 }

@@ -121,36 +121,40 @@ impl SurfaceTable<'_> {
 
 fn entry(model: &CityModel, textures: &Textures, surface: u32, origin: IVec3) -> layout::Surface {
     let Some(found) = model.surfaces.get(surface as usize) else {
+        let [color_rg, color_ba] = packed(palette::linear_bytes(palette::PLAIN_GROUND));
         return layout::Surface {
             origin: origin.to_array(),
             object: layout::NO_OBJECT,
-            color: packed(palette::PLAIN_GROUND),
+            color_rg,
+            color_ba,
             flags: 0,
             model_surface: NONE,
-            reserved: 0,
         };
     };
     let material = model.materials.get(found.material as usize);
     let color = match material {
         // A texture brings the colour; the material's own only tints it.
         Some(m) if m.texture == NONE || textures.has(m.texture) => {
-            palette::srgb_bytes([m.base_color[0], m.base_color[1], m.base_color[2]])
+            [m.base_color[0], m.base_color[1], m.base_color[2]]
         }
         // A declared texture that is missing: most files say plain white beside it, so the quiet colours are better.
-        _ => palette::natural(model, found),
+        _ => palette::linear_bytes(palette::natural(model, found)),
     };
+    let [color_rg, color_ba] = packed(color);
     layout::Surface {
         origin: origin.to_array(),
         object: found.object,
-        color: packed(color),
+        color_rg,
+        color_ba,
         flags: if material.is_some_and(|m| m.unlit) { layout::SURFACE_UNLIT } else { 0 },
         model_surface: surface,
-        reserved: 0,
     }
 }
 
-fn packed([r, g, b]: [u8; 3]) -> u32 {
-    u32::from_le_bytes([r, g, b, 255])
+/// Linear light as four half floats.
+fn packed(linear: [f32; 3]) -> [u32; 2] {
+    let [r, g, b] = linear.map(|c| u32::from(palette::half(c)));
+    [r | g << 16, b | u32::from(palette::half(1.0)) << 16]
 }
 
 /// Triangles gathered for one section.

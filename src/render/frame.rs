@@ -22,7 +22,7 @@ use crate::{
         pipelines::{GeometryKind, Key},
         renderer::{Renderer, STAGE_STRIDE},
         targets::Needs,
-        volume::Volume,
+        volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun},
     view::{Frustum, View},
@@ -49,7 +49,7 @@ pub struct FrameInput<'a> {
     /// How far the air begins to show, as a share of the scene's radius; 0 = never.
     pub haze: f64,
     /// Volumes of enabled lenses, bottom to top.
-    pub volumes: &'a [Volume],
+    pub volumes: &'a [LensVolume],
     /// How many lenses the scene has, disabled ones included.
     pub lens_count: u32,
     /// Sprite resolution of each volume's lens: texels along the longer side, `None` = one per pixel.
@@ -83,6 +83,7 @@ pub struct PassRecord {
 struct SeenVolume {
     index: usize,
     lens: u32,
+    kind: u32,
     bounds: PictureTile,
     sprite_bounds: PictureTile,
 }
@@ -229,8 +230,8 @@ impl Renderer {
         for section in &city.buffers.sections {
             keys.push(geometry_key(section.kind, colored, city.buffers.smooth));
         }
-        if !seen.is_empty() {
-            keys.extend([Key::SpriteEntry, Key::SpriteExit, Key::LensMask]);
+        for volume in seen {
+            keys.extend([Key::SpriteEntry(volume.kind), Key::SpriteExit(volume.kind), Key::LensMask]);
         }
         let clay = input.base == BaseStyle::Clay;
         let shade = |effects: &[u32], lenses| Key::Shade {
@@ -238,7 +239,7 @@ impl Renderer {
             lenses,
             textured: colored && !clay,
             clay,
-            encode: input.samples == 1,
+            summed: input.samples > 1,
         };
         let shade_keys = ShadeKeys {
             context: Some(shade(&input.operations.context_effects, false)),
@@ -355,8 +356,8 @@ impl Renderer {
     ) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
         let stages = [
-            ("sprite entry", &targets.entry, Key::SpriteEntry, 0.0),
-            ("sprite exit", &targets.exit, Key::SpriteExit, 1.0),
+            ("sprite entry", &targets.entry, Key::SpriteEntry(volume.kind), 0.0),
+            ("sprite exit", &targets.exit, Key::SpriteExit(volume.kind), 1.0),
         ];
         for (name, target, key, clear) in stages {
             let slot = recorder.begin(name, "main", Some(volume.lens), true);
@@ -502,7 +503,7 @@ fn seen_volumes(input: &FrameInput) -> Vec<SeenVolume> {
             (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i])
         });
         let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
-        seen.push(SeenVolume { index, lens: volume.lens, bounds, sprite_bounds });
+        seen.push(SeenVolume { index, lens: volume.lens, kind: volume.kind(), bounds, sprite_bounds });
     }
     seen
 }

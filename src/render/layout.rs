@@ -1,5 +1,6 @@
 //! Every struct that is shared with WGSL, in one place; `tests` compares each, member by member, with
-//! the WGSL struct of the same name.
+//! the WGSL struct of the same name. What the members mean stands there.
+#![expect(missing_docs, reason = "each member is documented once, in its WGSL file")]
 
 use bytemuck::{Pod, Zeroable};
 
@@ -28,10 +29,10 @@ pub struct View {
 pub struct Surface {
     pub origin: [i32; 3],
     pub object: u32,
-    pub color: u32,
+    pub color_rg: u32,
+    pub color_ba: u32,
     pub flags: u32,
     pub model_surface: u32,
-    pub reserved: u32,
 }
 
 /// `lib/surface.wgsl`: no city object.
@@ -66,6 +67,15 @@ pub struct Shape {
     pub lens: u32,
     pub reserved: u32,
 }
+
+/// `lib/shape.wgsl`: kinds of shapes.
+pub const SPHERE: u32 = 0;
+/// `lib/shape.wgsl`.
+pub const BOX: u32 = 1;
+/// `lib/shape.wgsl`.
+pub const CYLINDER: u32 = 2;
+/// `lib/shape.wgsl`.
+pub const CONVEX: u32 = 3;
 
 /// `lib/light.wgsl`.
 #[repr(C)]
@@ -176,7 +186,7 @@ mod tests {
         let checks = [
             (&Module::Geometry, host!(View { view_from_world, projection, near, far, orthographic, sample_index,
                 eye_whole, pad_0, eye_fraction, pad_1, size, haze, pad_2 })),
-            (&Module::Geometry, host!(Surface { origin, object, color, flags, model_surface, reserved })),
+            (&Module::Geometry, host!(Surface { origin, object, color_rg, color_ba, flags, model_surface })),
             (&Module::Geometry, host!(Plane { normal, reserved, origin, offset })),
             (&Module::Sprite, host!(Shape { center, kind, axis_x, size_x, axis_y, size_y, axis_z, size_z,
                 first_plane, plane_count, lens, reserved })),

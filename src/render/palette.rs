@@ -62,9 +62,35 @@ pub fn linear(srgb: [f32; 3]) -> [f32; 3] {
     srgb.map(|c| if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) })
 }
 
+/// Linear light of sRGB bytes.
+pub fn linear_bytes(srgb: [u8; 3]) -> [f32; 3] {
+    linear(srgb.map(|c| f32::from(c) / 255.0))
+}
+
+/// The half float nearest to a colour between 0 and 1 (error ≤ 2⁻¹² of it; below 2⁻¹⁴, zero).
+pub fn half(value: f32) -> u16 {
+    let value = value.clamp(0.0, 1.0);
+    if value < 1.0 / 16_384.0 {
+        return 0;
+    }
+    // f32: 8 bits of exponent (bias 127), 23 of mantissa; f16: 5 (bias 15), 10. Rounded, ties away from zero.
+    let bits = value.to_bits() + (1 << 12);
+    ((bits >> 13) - ((127 - 15) << 10)) as u16
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn halves_are_near() {
+        let value = |h: u16| 2_f32.powi(i32::from(h >> 10) - 15) * (1.0 + f32::from(h & 0x3ff) / 1024.0);
+        for i in 1..=1000 {
+            let c = i as f32 / 1000.0;
+            assert!((value(half(c)) - c).abs() <= c / 2048.0, "{c}");
+        }
+        assert_eq!(half(0.0), 0);
+    }
 
     #[test]
     fn bytes_survive_linear_light() {

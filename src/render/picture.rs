@@ -14,7 +14,7 @@ use crate::{
         frame::{CLEAR_MASKS, FrameInput, PassRecord},
         operations::Operations,
         stats::{self, Statistics},
-        volume::Volume,
+        volume::LensVolume,
     },
     scene::{CitySpec, Scene},
     view::{Camera, CameraError, View, first_view},
@@ -107,7 +107,7 @@ pub struct Studio {
 
 /// Everything of a scene that does not depend on the eye.
 struct Prepared {
-    volumes: Vec<Volume>,
+    volumes: Vec<LensVolume>,
     operations: Operations,
     sprite_resolution: Vec<Option<u32>>,
 }
@@ -153,7 +153,7 @@ impl Studio {
         let started = Instant::now();
         let (allocations, uploads) = (self.renderer.gpu.allocations(), self.renderer.gpu.uploads());
         let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let prepared = self.prepare(scene);
+        let prepared = self.prepare(scene)?;
         let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
         let view = View::new(self.camera(scene, request.size), request.size, &reach)?;
         let mut picture = Picture::empty(request, scene.lenses.len());
@@ -175,17 +175,17 @@ impl Studio {
         Ok(picture)
     }
 
-    fn prepare(&self, scene: &Scene) -> Prepared {
+    fn prepare(&self, scene: &Scene) -> Result<Prepared, RenderError> {
         let mut volumes = Vec::new();
         for (i, lens) in scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
             // A lens without volume shows nothing and costs nothing.
-            for shape in lens.shapes.iter().filter(|s| !s.is_empty()) {
-                volumes.push(Volume {
-                    lens: i as u32,
-                    planes: shape.planes(),
-                    bounds: shape.bounds(),
-                    shape: shape.clone(),
-                });
+            for shape in &lens.shapes {
+                let volume = shape
+                    .volume()
+                    .map_err(|error| RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name)))?;
+                if !volume.is_empty() {
+                    volumes.push(LensVolume { lens: i as u32, bounds: volume.bounds(), volume });
+                }
             }
         }
         let mut present = vec![false; scene.lenses.len()];
@@ -195,7 +195,7 @@ impl Studio {
         let colors = |effect: &EffectUse| crate::lens::thematic::object_colors(&self.model, effect);
         let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, colors);
         let sprite_resolution = scene.lenses.iter().map(|l| l.sprite_resolution).collect();
-        Prepared { volumes, operations, sprite_resolution }
+        Ok(Prepared { volumes, operations, sprite_resolution })
     }
 
     #[allow(clippy::too_many_arguments, reason = "one part of a picture; the arguments are the picture's own")]
@@ -384,7 +384,7 @@ fn lens_figures(
     visible: bool,
 ) -> stats::LensFigures {
     let lens = &scene.lenses[index];
-    let volumes: Vec<&Volume> = prepared.volumes.iter().filter(|v| v.lens as usize == index).collect();
+    let volumes: Vec<&LensVolume> = prepared.volumes.iter().filter(|v| v.lens as usize == index).collect();
     let planes = &picture.classes[3 * (index / 32)..3 * (index / 32) + 3];
     let bit = |plane: &[u32], i: usize| plane[i] >> (index % 32) & 1 == 1;
     let (mut front, mut inside, mut behind, mut rest) = (0, 0, 0, 0);
@@ -414,7 +414,7 @@ fn lens_figures(
 }
 
 /// City objects of which a shown triangle meets one of the volumes; exact in f64.
-fn objects_meeting(studio: &Studio, volumes: &[&Volume]) -> u64 {
+fn objects_meeting(studio: &Studio, volumes: &[&LensVolume]) -> u64 {
     let model = &studio.model;
     let mut met = rustc_hash::FxHashSet::default();
     for &g in &studio.geometries {
@@ -426,7 +426,7 @@ fn objects_meeting(studio: &Studio, volumes: &[&Volume]) -> u64 {
         let hit = |tile: &crate::city::Tile| {
             (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
                 let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + model.indices[i + k]));
-                near.iter().any(|v| v.shape.meets_triangle(&corners))
+                near.iter().any(|v| v.volume.meets_triangle(&corners))
             })
         };
         if !near.is_empty() && model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {

@@ -2,18 +2,18 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::{gpu::Gpu, shader::Module};
+use crate::{gpu::Gpu, render::layout, shader::Module};
 
 /// Depth everywhere: reversed, f32.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Packed normal and surface number.
 pub const CODES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// sRGB base colours, only in cities with textures.
-pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// One bit per lens and class.
 pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// The picture: sRGB bytes, encoded by the shader.
-pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// The picture: sRGB bytes.
+pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
 /// What makes a pipeline the one it is.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -30,9 +30,9 @@ pub enum Key {
     /// Depth from the sun.
     Shadow,
     /// Nearest entry into a lens.
-    SpriteEntry,
-    /// Farthest exit from it.
-    SpriteExit,
+    SpriteEntry(u32),
+    /// Farthest exit from it; both by the kind of shape (`layout::Shape::kind`).
+    SpriteExit(u32),
     /// The depth test.
     LensMask,
     /// Shading.
@@ -45,8 +45,8 @@ pub enum Key {
         textured: bool,
         /// One clay colour.
         clay: bool,
-        /// sRGB bytes, or linear sums.
-        encode: bool,
+        /// Weighted by coverage, for the sum of samples.
+        summed: bool,
     },
     /// The mean of samples.
     Resolve,
@@ -246,7 +246,7 @@ impl Pipelines {
                 vec![Some(&self.view), Some(&self.city), Some(&self.image)]
             }
             Key::Geometry { .. } | Key::Shadow => vec![Some(&self.view), Some(&self.city)],
-            Key::SpriteEntry | Key::SpriteExit => vec![Some(&self.view), Some(&self.shapes), Some(&self.stage)],
+            Key::SpriteEntry(_) | Key::SpriteExit(_) => vec![Some(&self.view), Some(&self.shapes), Some(&self.stage)],
             Key::LensMask => vec![Some(&self.view), Some(&self.mask), Some(&self.stage)],
             Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
             Key::Resolve => vec![Some(&self.resolve)],
@@ -296,6 +296,15 @@ impl Pipelines {
     }
 }
 
+fn shape_name(kind: u32) -> &'static str {
+    match kind {
+        layout::SPHERE => "sphere",
+        layout::BOX => "box",
+        layout::CYLINDER => "cylinder",
+        _ => "convex body",
+    }
+}
+
 const VERTEX: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32, 2 => Uint32];
 const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![3 => Float32x2];
 const PLANE_NUMBER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Uint32];
@@ -309,7 +318,7 @@ impl Key {
         match self {
             Self::Geometry { .. } => Module::Geometry,
             Self::Shadow => Module::Shadow,
-            Self::SpriteEntry | Self::SpriteExit => Module::Sprite,
+            Self::SpriteEntry(_) | Self::SpriteExit(_) => Module::Sprite,
             Self::LensMask => Module::LensMask,
             Self::Shade { effects, .. } => Module::Shade(effects.clone()),
             Self::Resolve => Module::Resolve,
@@ -332,11 +341,11 @@ impl Key {
                 format!("{kind}{}", flags(&[(*colored, "colored"), (*smooth, "smooth")]))
             }
             Self::Shadow => "shadow".to_owned(),
-            Self::SpriteEntry => "sprite entry".to_owned(),
-            Self::SpriteExit => "sprite exit".to_owned(),
+            Self::SpriteEntry(kind) => format!("sprite entry of a {}", shape_name(*kind)),
+            Self::SpriteExit(kind) => format!("sprite exit of a {}", shape_name(*kind)),
             Self::LensMask => "lens mask".to_owned(),
-            Self::Shade { lenses, textured, clay, encode, .. } => {
-                let list = [(*lenses, "lenses"), (*textured, "textured"), (*clay, "clay"), (!*encode, "summed")];
+            Self::Shade { lenses, textured, clay, summed, .. } => {
+                let list = [(*lenses, "lenses"), (*textured, "textured"), (*clay, "clay"), (*summed, "summed")];
                 format!("{}{}", self.module().name(), flags(&list))
             }
             Self::Resolve => "resolve".to_owned(),
@@ -353,12 +362,13 @@ impl Key {
                 }
                 list
             }
-            Self::Shade { lenses, textured, clay, encode, .. } => vec![
+            Self::Shade { lenses, textured, clay, summed, .. } => vec![
                 ("LENSES", flag(*lenses)),
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
-                ("ENCODE", flag(*encode)),
+                ("SUMMED", flag(*summed)),
             ],
+            Self::SpriteEntry(kind) | Self::SpriteExit(kind) => vec![("KIND", f64::from(*kind))],
             _ => Vec::new(),
         }
     }
@@ -373,8 +383,8 @@ impl Key {
                 ("vertex_coplanar", Some(if *colored { "colored_coplanar" } else { "plain_coplanar" }))
             }
             Self::Shadow => ("vertex", None),
-            Self::SpriteEntry => ("vertex", Some("entry")),
-            Self::SpriteExit => ("vertex", Some("exit")),
+            Self::SpriteEntry(_) => ("vertex", Some("entry")),
+            Self::SpriteExit(_) => ("vertex", Some("exit")),
             _ => ("vertex", Some("fragment")),
         }
     }
@@ -393,7 +403,7 @@ impl Key {
         match self {
             Self::Geometry { colored: true, .. } => vec![Some(CODES.into()), Some(COLORS.into())],
             Self::Geometry { .. } => vec![Some(CODES.into())],
-            Self::Shade { encode: false, .. } => {
+            Self::Shade { summed: true, .. } => {
                 let add = wgpu::BlendComponent {
                     src_factor: wgpu::BlendFactor::One,
                     dst_factor: wgpu::BlendFactor::One,
@@ -414,8 +424,8 @@ impl Key {
         use wgpu::CompareFunction as C;
         let compare = match self {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
-            Self::Geometry { .. } | Self::Shadow | Self::SpriteEntry => C::Greater,
-            Self::SpriteExit => C::Less,
+            Self::Geometry { .. } | Self::Shadow | Self::SpriteEntry(_) => C::Greater,
+            Self::SpriteExit(_) => C::Less,
             _ => return None,
         };
         Some(wgpu::DepthStencilState {

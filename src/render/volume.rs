@@ -3,74 +3,73 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::{
-    geom::{Aabb, Shape},
+    geom::{Aabb, Volume},
     render::{eye::PictureTile, layout},
     view::View,
 };
-
-/// `lib/shape.wgsl`.
-const SPHERE: u32 = 0;
-const BOX: u32 = 1;
-const CYLINDER: u32 = 2;
-const CONVEX: u32 = 3;
 
 /// Pixels around a volume's projection that may still show its outline.
 const MARGIN_PX: f64 = 4.0;
 
 /// A volume of one lens.
 #[derive(Clone, Debug)]
-pub struct Volume {
+pub struct LensVolume {
     /// Which lens, from 0.
     pub lens: u32,
-    /// The volume, model coordinates.
-    pub shape: Shape,
-    /// Its faces where it is convex: unit normal and offset in model coordinates, inside where n·p ≤ d.
-    pub planes: Vec<(DVec3, f64)>,
+    /// The volume, model coordinates; not empty.
+    pub volume: Volume,
     /// Box around it, metres.
     pub bounds: Aabb,
 }
 
-impl Volume {
+impl LensVolume {
     /// Appends the volume's figures, and its planes, for an eye.
     pub fn push(&self, view: &View, shapes: &mut Vec<layout::Shape>, planes: &mut Vec<[f32; 4]>) {
         let view_from_world = view.basis.view_from_world();
         let eye = view.camera.eye;
         let place = |p: DVec3| (view_from_world * (p - eye)).as_vec3().to_array();
         let turn = |v: DVec3| (view_from_world * v).as_vec3().to_array();
-        let mut out = layout::Shape { lens: self.lens, ..Default::default() };
-        match &self.shape {
-            Shape::Sphere { center, radius } => {
-                out.kind = SPHERE;
+        let mut out = layout::Shape { lens: self.lens, kind: self.kind(), ..Default::default() };
+        match &self.volume {
+            Volume::Sphere { center, radius } => {
                 out.center = place(*center);
                 out.size_x = *radius as f32;
             }
-            Shape::Box { center, size, rotation } => {
+            Volume::Box { center, half, rotation } => {
                 let axes = DMat3::from_quat(*rotation);
-                out.kind = BOX;
                 out.center = place(*center);
                 out.axis_x = turn(axes.x_axis);
                 out.axis_y = turn(axes.y_axis);
                 out.axis_z = turn(axes.z_axis);
-                [out.size_x, out.size_y, out.size_z] = (*size * 0.5).as_vec3().to_array();
+                [out.size_x, out.size_y, out.size_z] = half.as_vec3().to_array();
             }
-            Shape::Cylinder { center, radius, height, axis } => {
-                out.kind = CYLINDER;
+            Volume::Cylinder { center, radius, half, axis } => {
                 out.center = place(*center);
                 out.axis_z = turn(*axis);
                 out.size_x = *radius as f32;
-                out.size_z = (0.5 * height) as f32;
+                out.size_z = *half as f32;
             }
-            Shape::Convex { .. } => {
-                out.kind = CONVEX;
+            Volume::Convex(hull) => {
+                let (center, faces) = hull.planes();
                 out.first_plane = planes.len() as u32;
-                out.plane_count = self.planes.len() as u32;
-                planes.extend(self.planes.iter().map(|&(normal, offset)| {
+                out.plane_count = faces.len() as u32;
+                planes.extend(faces.iter().map(|&(normal, offset)| {
                     let [x, y, z] = turn(normal);
-                    [x, y, z, (offset - normal.dot(eye)) as f32]
+                    [x, y, z, (offset + normal.dot(center - eye)) as f32]
                 }));
             }
         }
         shapes.push(out);
+    }
+
+    /// The kind of shape, as the shader numbers it.
+    pub fn kind(&self) -> u32 {
+        match &self.volume {
+            Volume::Sphere { .. } => layout::SPHERE,
+            Volume::Box { .. } => layout::BOX,
+            Volume::Cylinder { .. } => layout::CYLINDER,
+            Volume::Convex(_) => layout::CONVEX,
+        }
     }
 
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.

@@ -89,7 +89,7 @@ impl Module {
             Self::Sprite => &[VIEW, SHAPE, SPRITE],
             Self::LensMask => &[VIEW, LENS_MASK],
             Self::Shade(_) => &[VIEW, SURFACE, COLOR, LIGHT, SHADE],
-            Self::Resolve => &[COLOR, RESOLVE],
+            Self::Resolve => &[RESOLVE],
         };
         let mut text = String::new();
         for (path, source) in files {
@@ -166,7 +166,7 @@ mod tests {
             };
             let mut validator = wgpu::naga::valid::Validator::new(
                 wgpu::naga::valid::ValidationFlags::all(),
-                wgpu::naga::valid::Capabilities::default(),
+                wgpu::naga::valid::Capabilities::default() | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,
             );
             if let Err(error) = validator.validate(&parsed) {
                 panic!("{}: {}", module.name(), error.emit_to_string(&source));

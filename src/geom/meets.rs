@@ -1,0 +1,171 @@
+//! Whether a triangle and a lens volume share a point (C1), in f64: also where the triangle spans the
+//! volume with no corner and no edge inside.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use crate::geom::Volume;
+
+impl Volume {
+    /// Whether the closed triangle and the closed volume share a point.
+    pub fn meets_triangle(&self, corners: &[DVec3; 3]) -> bool {
+        if self.is_empty() {
+            return false;
+        }
+        match self {
+            Self::Sphere { center, radius } => {
+                let [a, b, c] = corners.map(|p| p - *center);
+                nearest_to_origin(a, b, c).length_squared() <= radius * radius
+            }
+            Self::Box { center, half, rotation } => {
+                let back = DMat3::from_quat(rotation.conjugate());
+                let local = corners.map(|p| back * (p - *center));
+                let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+                let planes = axes.into_iter().zip(half.to_array()).flat_map(|(n, h)| [(n, h), (-n, h)]);
+                !clipped(&local, planes).is_empty()
+            }
+            Self::Cylinder { center, radius, half, axis } => {
+                let local = corners.map(|p| p - *center);
+                let part = clipped(&local, [(*axis, *half), (-*axis, *half)]);
+                let (u, v) = axis.any_orthonormal_pair();
+                let flat: Vec<DVec2> = part.iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect();
+                distance_to_origin(&flat) <= *radius
+            }
+            Self::Convex(hull) => {
+                let (center, planes) = hull.planes();
+                let local = corners.map(|p| p - center);
+                !clipped(&local, planes.iter().copied()).is_empty()
+            }
+        }
+    }
+}
+
+/// The point of a triangle that is nearest to the origin (Ericson, *Real-Time Collision Detection*, 5.1.5).
+fn nearest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
+    let (ab, ac) = (b - a, c - a);
+    let (d1, d2) = (-ab.dot(a), -ac.dot(a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return a;
+    }
+    let (d3, d4) = (-ab.dot(b), -ac.dot(b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return b;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let (d5, d6) = (-ab.dot(c), -ac.dot(c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return c;
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    let sum = va + vb + vc;
+    a + ab * (vb / sum) + ac * (vc / sum)
+}
+
+/// What is left of a triangle inside all half spaces n·p ≤ d (Sutherland & Hodgman).
+fn clipped(corners: &[DVec3; 3], planes: impl IntoIterator<Item = (DVec3, f64)>) -> Vec<DVec3> {
+    let mut polygon = corners.to_vec();
+    let mut next = Vec::with_capacity(8);
+    for (normal, offset) in planes {
+        let depth = |p: DVec3| offset - normal.dot(p);
+        next.clear();
+        for (i, &p) in polygon.iter().enumerate() {
+            let q = polygon[(i + 1) % polygon.len()];
+            let (dp, dq) = (depth(p), depth(q));
+            if dp >= 0.0 {
+                next.push(p);
+            }
+            if (dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0) {
+                next.push(p + (q - p) * (dp / (dp - dq)));
+            }
+        }
+        std::mem::swap(&mut polygon, &mut next);
+    }
+    polygon
+}
+
+/// Distance of a convex polygon (also a point or a segment) to the origin; ∞ for none.
+fn distance_to_origin(polygon: &[DVec2]) -> f64 {
+    let edges = || (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]));
+    let around = edges().map(|(p, q)| p.perp_dot(q));
+    let (mut left, mut right) = (0, 0);
+    for side in around {
+        left += u32::from(side >= 0.0);
+        right += u32::from(side <= 0.0);
+    }
+    let count = polygon.len() as u32;
+    let to_edges = edges().map(|(p, q)| {
+        let along = q - p;
+        let t = if along == DVec2::ZERO { 0.0 } else { (-p.dot(along) / along.length_squared()).clamp(0.0, 1.0) };
+        (p + along * t).length()
+    });
+    let nearest = to_edges.fold(f64::INFINITY, f64::min);
+    // The origin is on the same side of every edge, and the polygon has an area: it is inside.
+    if count >= 3 && (left == count) != (right == count) { 0.0 } else { nearest }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::geom::Shape;
+
+    fn shapes() -> Vec<Volume> {
+        let cube: Vec<DVec3> = (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * 4.0).collect();
+        [
+            Shape::Sphere { center: DVec3::ONE, radius: 3.0 },
+            Shape::Box {
+                center: DVec3::ONE,
+                size: DVec3::new(6.0, 2.0, 4.0),
+                rotation: glam::DQuat::from_rotation_z(0.4) * glam::DQuat::from_rotation_x(0.3),
+            },
+            Shape::Cylinder { center: DVec3::ONE, radius: 2.0, height: 5.0, axis: DVec3::new(0.48, 0.6, 0.64) },
+            Shape::Convex { points: cube },
+        ]
+        .iter()
+        .map(|s| s.volume().unwrap())
+        .collect()
+    }
+
+    proptest! {
+        /// Against points spread over the triangle: a point inside must be found, and where the triangle meets the
+        /// volume some point of it is at most as far from the volume as the spread's spacing.
+        #[test]
+        fn agrees_with_points_of_the_triangle(raw in prop::array::uniform9(-8.0..8.0f64)) {
+            let corners = [0, 3, 6].map(|i| DVec3::new(raw[i], raw[i + 1], raw[i + 2]));
+            let n = 60;
+            let spacing = (0..3).map(|i| corners[i].distance(corners[(i + 1) % 3])).fold(0.0, f64::max) / f64::from(n);
+            for volume in shapes() {
+                let mut least = f64::INFINITY;
+                for i in 0..=n {
+                    for j in 0..=n - i {
+                        let (s, t) = (f64::from(i) / f64::from(n), f64::from(j) / f64::from(n));
+                        let p = corners[0] + (corners[1] - corners[0]) * s + (corners[2] - corners[0]) * t;
+                        least = least.min(volume.signed_distance(p));
+                    }
+                }
+                let meets = volume.meets_triangle(&corners);
+                prop_assert!(meets || least > -1e-9, "{volume:?} holds a point of {corners:?} at {least}");
+                prop_assert!(!meets || least < spacing, "{volume:?} is {least} from {corners:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_triangle_that_spans_a_volume_meets_it() {
+        let wide = [DVec3::new(-90.0, -90.0, 1.0), DVec3::new(90.0, -90.0, 1.0), DVec3::new(0.0, 120.0, 1.0)];
+        for volume in shapes() {
+            assert!(volume.meets_triangle(&wide), "{volume:?}");
+            assert!(!volume.meets_triangle(&wide.map(|p| p + DVec3::Z * 50.0)), "{volume:?}");
+        }
+    }
+}
