@@ -1,1 +1,3 @@
-//! (room being built)
+//! A figure is a frame written down: scene files and back, pictures and their metadata.
+
+pub mod picture;

@@ -3,6 +3,7 @@
 pub mod aabb;
 pub mod bvh;
 pub mod exact;
+mod meets;
 pub mod plane;
 pub mod ray;
 pub mod shape;

@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 
 use crate::{
     city::{CityModel, NONE, Tile, Vertex, coplanar::CoplanarTriangle, ground::Ground},
-    geom::Aabb,
+    geom::{Aabb, plane::Plane},
     gpu::{Gpu, GpuError},
     render::{layout, palette, textures::Textures},
     view::Frustum,
@@ -392,7 +392,7 @@ fn gather_coplanar(shown: &Shown, table: &mut SurfaceTable, known: &mut FxHashMa
                 out.chunks.push(Chunk { range: start as u32..out.vertices.len() as u32, bounds });
                 (start, bounds) = (out.vertices.len(), Aabb::EMPTY);
             }
-            out.planes.push(plane_of(corners, tile.origin));
+            out.planes.push(plane_of(&model.plane_equations[c.group as usize - 1], tile.origin));
         }
         let surface = *known.entry((c.tile, corners[0].surface)).or_insert_with(|| {
             table.entries.push(entry(model, table.textures, corners[0].surface, tile.origin));
@@ -410,15 +410,16 @@ fn gather_coplanar(shown: &Shown, table: &mut SurfaceTable, known: &mut FxHashMa
     out
 }
 
-/// The plane through a triangle, relative to its tile's origin; any triangle of the group would do, one is taken for all.
-fn plane_of(corners: [&Vertex; 3], origin: IVec3) -> layout::Plane {
-    let [a, b, c] = corners.map(|v| Vec3::from(v.position).as_dvec3());
-    let normal = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Z);
+/// A group's plane, relative to a whole-metre origin near it.
+fn plane_of(plane: &Plane, near: IVec3) -> layout::Plane {
+    let normal = plane.normal.as_vec3();
+    // The offset belongs to the rounded normal, measured at the foot of `near` on the exact plane.
+    let foot = near.as_dvec3() + plane.normal * (plane.offset - plane.normal.dot(near.as_dvec3()));
     layout::Plane {
-        normal: normal.as_vec3().to_array(),
+        normal: normal.to_array(),
         reserved: 0.0,
-        origin: origin.to_array(),
-        offset: normal.as_vec3().as_dvec3().dot((a + b + c) / 3.0) as f32,
+        origin: near.to_array(),
+        offset: normal.as_dvec3().dot(foot - near.as_dvec3()) as f32,
     }
 }
 

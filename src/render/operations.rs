@@ -1,7 +1,8 @@
 //! What the context and the lenses do, as one list for the shader: bottom lens first (L6).
 
 use crate::{
-    lens::{Class, EffectUse, Lens, LensBody},
+    city::CityModel,
+    lens::{Class, EffectUse, Lens, LensBody, thematic::{ThematicError, ThematicScale}},
     render::{layout, palette},
     shader,
 };
@@ -24,23 +25,23 @@ pub struct Operations {
 
 impl Operations {
     /// The operations of the context's effects and of the enabled lenses that have a volume; `visible[i]` says
-    /// whether lens i has one. `object_colors` gives, for a thematic effect, one colour per object.
+    /// whether lens i has one. Thematic colours are those of `model`'s objects.
     pub fn new(
         context: &[EffectUse],
         lenses: &[Lens],
         visible: &[bool],
-        mut object_colors: impl FnMut(&EffectUse) -> Vec<u32>,
-    ) -> Self {
+        model: &CityModel,
+    ) -> Result<Self, ThematicError> {
         let mut out = Self::default();
         let mut list = Vec::new();
         for effect in context {
-            list.extend(out.operation(effect, layout::CONTEXT, &mut object_colors));
+            list.extend(out.operation(effect, layout::CONTEXT, model)?);
         }
         out.context_effects = out.effects.clone();
         let active = || lenses.iter().enumerate().filter(|(i, _)| visible.get(*i) == Some(&true));
         for (i, lens) in active() {
             for effect in &lens.effects {
-                list.extend(out.operation(effect, i as u32, &mut object_colors));
+                list.extend(out.operation(effect, i as u32, model)?);
             }
         }
         for (i, lens) in active().filter(|(_, lens)| lens.body == LensBody::Outline) {
@@ -57,27 +58,31 @@ impl Operations {
         out.bytes.extend_from_slice(bytemuck::cast_slice(&header));
         list.resize(list.len().max(1), layout::Operation::default());
         out.bytes.extend_from_slice(bytemuck::cast_slice(&list));
-        out
+        Ok(out)
     }
 
     fn operation(
         &mut self,
         effect: &EffectUse,
         lens: u32,
-        object_colors: &mut impl FnMut(&EffectUse) -> Vec<u32>,
-    ) -> Option<layout::Operation> {
-        let number = shader::effect_number(&effect.effect)?;
+        model: &CityModel,
+    ) -> Result<Option<layout::Operation>, ThematicError> {
+        let Some(number) = shader::effect_number(&effect.effect) else { return Ok(None) };
         if let Err(place) = self.effects.binary_search(&number) {
             self.effects.insert(place, number);
         }
         let mut parameters = layout::Parameters::default();
         if effect.effect == "thematic" {
             parameters.a[0] = self.object_colors.len() as f32;
-            self.object_colors.extend(object_colors(effect));
+            let colors = ThematicScale::new(model, effect)?.object_colors(model);
+            self.object_colors.extend(colors.iter().map(|c| {
+                let [r, g, b] = c.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8);
+                u32::from_le_bytes([r, g, b, 255])
+            }));
         } else {
-            parameters.a[0] = effect.number("amount") as f32;
+            parameters.a[0] = effect.amount();
         }
-        Some(layout::Operation { effect: number, lens, class_: class_number(effect.class), parameters, reserved: 0 })
+        Ok(Some(layout::Operation { effect: number, lens, class_: class_number(effect.class), parameters, reserved: 0 }))
     }
 }
 

@@ -6,7 +6,6 @@ use crate::{
     city::{CityModel, Lod, coplanar::coplanar_triangles, decode_normal, ground::{Ground, plain_ground}, shown::shown_geometries},
     geom::Aabb,
     gpu::{Gpu, GpuError, Timer},
-    lens::EffectUse,
     render::{
         Renderer,
         city::Shown,
@@ -192,8 +191,8 @@ impl Studio {
         for volume in &volumes {
             present[volume.lens as usize] = true;
         }
-        let colors = |effect: &EffectUse| crate::lens::thematic::object_colors(&self.model, effect);
-        let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, colors);
+        let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, &self.model)
+            .map_err(|error| RenderError::Scene(error.to_string()))?;
         let sprite_resolution = scene.lenses.iter().map(|l| l.sprite_resolution).collect();
         Ok(Prepared { volumes, operations, sprite_resolution })
     }

@@ -1,0 +1,305 @@
+//! Pictures and AOVs as files (contract, "Shown surface"): PNG and EXR, written beside and then renamed.
+
+use std::{
+    fs,
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+/// What can go wrong while writing.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The file system.
+    #[error("{path}: cannot be written: {error}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// The format cannot hold it.
+    #[error("{path}: {message}")]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what would be right.
+        message: String,
+    },
+}
+
+/// Writes a file whole or not at all: beside it first, then renamed. `-` is standard output.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    let failed = |error| WriteError::Io { path: path.to_owned(), error };
+    if path.as_os_str() == "-" {
+        let mut out = io::stdout().lock();
+        return out.write_all(bytes).and_then(|()| out.flush()).map_err(failed);
+    }
+    let Some(name) = path.file_name() else {
+        return Err(WriteError::Format { path: path.to_owned(), message: "names no file".to_owned() });
+    };
+    let mut beside = std::ffi::OsString::from(".");
+    beside.push(name);
+    beside.push(format!(".{}.part", std::process::id()));
+    let beside = path.with_file_name(beside);
+    let written = fs::File::create(&beside)
+        .and_then(|file| {
+            let mut out = BufWriter::new(file);
+            out.write_all(bytes)?;
+            out.flush()
+        })
+        .and_then(|()| fs::rename(&beside, path));
+    written.map_err(|error| {
+        // Nothing half-written stays behind; the first error is the one worth telling.
+        let _ = fs::remove_file(&beside);
+        failed(error)
+    })
+}
+
+/// Text that goes into a picture: keyword and value.
+pub type Note = (&'static str, String);
+
+/// The notes every picture carries: program version and hash of the scene.
+pub fn notes(scene_hash: Option<u64>) -> Vec<Note> {
+    let mut notes = vec![("Software", concat!("Veduta ", env!("CARGO_PKG_VERSION")).to_owned())];
+    if let Some(hash) = scene_hash {
+        notes.push(("veduta:scene", format!("{hash:016x}")));
+    }
+    notes
+}
+
+/// FNV-1a of a text: names a scene; not a defence against anybody.
+pub fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+}
+
+fn png(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, notes: &[Note], data: &[u8]) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.set_compression(png::Compression::Balanced);
+    for (keyword, value) in notes {
+        encoder.add_text_chunk((*keyword).to_owned(), value.clone()).map_err(io::Error::other)?;
+    }
+    if color != png::ColorType::Grayscale {
+        encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+    }
+    let mut writer = encoder.write_header().map_err(io::Error::other)?;
+    writer.write_image_data(data).map_err(io::Error::other)?;
+    writer.finish().map_err(io::Error::other)?;
+    Ok(bytes)
+}
+
+fn save_png(
+    path: &Path,
+    size: [u32; 2],
+    color: png::ColorType,
+    depth: png::BitDepth,
+    notes: &[Note],
+    data: &[u8],
+) -> Result<(), WriteError> {
+    let bytes =
+        png(size, color, depth, notes, data).map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
+    write_whole(path, &bytes)
+}
+
+/// A picture: sRGB, straight alpha; without alpha where `opaque`.
+pub fn save_picture(
+    path: &Path,
+    size: [u32; 2],
+    rgba: &[[u8; 4]],
+    opaque: bool,
+    notes: &[Note],
+) -> Result<(), WriteError> {
+    if opaque {
+        let rgb: Vec<u8> = rgba.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
+        save_png(path, size, png::ColorType::Rgb, png::BitDepth::Eight, notes, &rgb)
+    } else {
+        save_png(path, size, png::ColorType::Rgba, png::BitDepth::Eight, notes, bytemuck::cast_slice(rgba))
+    }
+}
+
+/// Whether a path asks for EXR (else PNG); anything else is refused.
+fn is_exr(path: &Path) -> Result<bool, WriteError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        Some("exr") => Ok(true),
+        Some("png") => Ok(false),
+        _ => Err(WriteError::Format {
+            path: path.to_owned(),
+            message: "an AOV is written as .exr or .png; name one of them".to_owned(),
+        }),
+    }
+}
+
+/// Refuses what [`save_depth`] and its neighbours would refuse, before anything is drawn.
+pub fn check_aov_path(path: &Path) -> Result<(), WriteError> {
+    is_exr(path).map(|_| ())
+}
+
+/// Depth: metres along the view axis, +∞ = nothing. EXR: one f32 channel `Z`. PNG: 16 bit, 0 = nothing,
+/// 1..65535 = min..max linearly, both in the note `veduta:depth_m`.
+pub fn save_depth(path: &Path, size: [u32; 2], metres: &[f32], notes: &[Note]) -> Result<(), WriteError> {
+    if is_exr(path)? {
+        return save_exr(path, size, vec![("Z".to_owned(), exr::prelude::FlatSamples::F32(metres.to_vec()))]);
+    }
+    let finite = || metres.iter().copied().filter(|d| d.is_finite());
+    let (min, max) = finite().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
+    let span = f64::from(max) - f64::from(min);
+    let code = |d: f32| -> u16 {
+        if !d.is_finite() {
+            return 0;
+        }
+        let share = if span > 0.0 { (f64::from(d) - f64::from(min)) / span } else { 0.0 };
+        1 + (share * 65_534.0).round() as u16
+    };
+    let data: Vec<u8> = metres.iter().flat_map(|&d| code(d).to_be_bytes()).collect();
+    let mut notes = notes.to_vec();
+    let range = if min <= max { format!("{min} {max}") } else { "nothing".to_owned() };
+    notes.push(("veduta:depth_m", range));
+    save_png(path, size, png::ColorType::Grayscale, png::BitDepth::Sixteen, &notes, &data)
+}
+
+/// Object ids: index + 1 as 24 bits, R the high byte; 0 = nothing. PNG only.
+pub fn save_object_id(path: &Path, size: [u32; 2], ids: &[u32], notes: &[Note]) -> Result<(), WriteError> {
+    if is_exr(path)? {
+        return save_exr(path, size, vec![("id".to_owned(), exr::prelude::FlatSamples::U32(ids.to_vec()))]);
+    }
+    if let Some(id) = ids.iter().find(|&&id| id > 0xff_ffff) {
+        let message = format!("object number {id} does not fit the 24 bits of a PNG; write .exr instead");
+        return Err(WriteError::Format { path: path.to_owned(), message });
+    }
+    let data: Vec<u8> = ids
+        .iter()
+        .flat_map(|id| {
+            let [_, r, g, b] = id.to_be_bytes();
+            [r, g, b]
+        })
+        .collect();
+    save_png(path, size, png::ColorType::Rgb, png::BitDepth::Eight, notes, &data)
+}
+
+/// Normals: unit, model axes, towards the eye; 0,0,0 = nothing. EXR: f32 channels `X`, `Y`, `Z`. PNG: round(255(½+½n)).
+pub fn save_normal(path: &Path, size: [u32; 2], normals: &[[f32; 3]], notes: &[Note]) -> Result<(), WriteError> {
+    if is_exr(path)? {
+        let channel = |i: usize| exr::prelude::FlatSamples::F32(normals.iter().map(|n| n[i]).collect());
+        let channels = ["X", "Y", "Z"].iter().enumerate().map(|(i, name)| ((*name).to_owned(), channel(i)));
+        return save_exr(path, size, channels.collect());
+    }
+    let code = |n: f32| (255.0 * (0.5 + 0.5 * n)).round() as u8;
+    let data: Vec<u8> = normals.iter().flat_map(|n| n.map(code)).collect();
+    save_png(path, size, png::ColorType::Rgb, png::BitDepth::Eight, notes, &data)
+}
+
+/// Lens masks: bit i = lens i. PNG: 16 bit, at most 16 lenses. EXR: u32 channels `m0`, `m1`, ... of 32 lenses each.
+pub fn save_lens_mask(
+    path: &Path,
+    size: [u32; 2],
+    planes: &[Vec<u32>],
+    lens_count: usize,
+    notes: &[Note],
+) -> Result<(), WriteError> {
+    let nothing = vec![0; size[0] as usize * size[1] as usize];
+    if is_exr(path)? {
+        let count = lens_count.max(1).div_ceil(32);
+        let channel = |i: usize| {
+            (format!("m{i}"), exr::prelude::FlatSamples::U32(planes.get(i).unwrap_or(&nothing).clone()))
+        };
+        return save_exr(path, size, (0..count).map(channel).collect());
+    }
+    if lens_count > 16 {
+        let message = format!("a PNG lens mask holds 16 lenses and the scene has {lens_count}; write .exr instead");
+        return Err(WriteError::Format { path: path.to_owned(), message });
+    }
+    let data: Vec<u8> =
+        planes.first().unwrap_or(&nothing).iter().flat_map(|&m| (m as u16).to_be_bytes()).collect();
+    save_png(path, size, png::ColorType::Grayscale, png::BitDepth::Sixteen, notes, &data)
+}
+
+fn save_exr(path: &Path, size: [u32; 2], channels: Vec<(String, exr::prelude::FlatSamples)>) -> Result<(), WriteError> {
+    use exr::prelude::*;
+    let list = channels.into_iter().map(|(name, samples)| AnyChannel::new(Text::from(name.as_str()), samples));
+    let mut attributes = LayerAttributes::named("veduta");
+    attributes.software_name = Some(Text::from(concat!("Veduta ", env!("CARGO_PKG_VERSION"))));
+    let layer = Layer::new(
+        (size[0] as usize, size[1] as usize),
+        attributes,
+        Encoding { compression: Compression::ZIP16, ..Encoding::default() },
+        AnyChannels::sort(list.collect()),
+    );
+    let mut bytes = io::Cursor::new(Vec::new());
+    // One thread: the bytes must not depend on how many there are.
+    Image::from_layer(layer)
+        .write()
+        .non_parallel()
+        .to_buffered(&mut bytes)
+        .map_err(|error| WriteError::Format { path: path.to_owned(), message: error.to_string() })?;
+    write_whole(path, bytes.get_ref())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("veduta-{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        folder
+    }
+
+    #[test]
+    fn depth_survives_both_formats() {
+        let folder = folder("depth");
+        let metres = [1.5, f32::INFINITY, 100.25, 7.0, 2.0, 1.5];
+        save_depth(&folder.join("d.exr"), [3, 2], &metres, &[]).unwrap();
+        let read = exr::prelude::read_first_flat_layer_from_file(folder.join("d.exr")).unwrap();
+        let channel = &read.layer_data.channel_data.list[0];
+        assert_eq!(channel.name.to_string(), "Z");
+        assert_eq!(channel.sample_data.values_as_f32().collect::<Vec<_>>(), metres);
+        save_depth(&folder.join("d.png"), [3, 2], &metres, &notes(Some(7))).unwrap();
+        let decoder = png::Decoder::new(io::BufReader::new(fs::File::open(folder.join("d.png")).unwrap()));
+        let mut reader = decoder.read_info().unwrap();
+        let text: Vec<_> =
+            reader.info().uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone())).collect();
+        assert!(text.contains(&("veduta:depth_m".into(), "1.5 100.25".into())), "{text:?}");
+        assert!(text.contains(&("veduta:scene".into(), "0000000000000007".into())), "{text:?}");
+        let mut data = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut data).unwrap();
+        let codes: Vec<u16> = data.chunks(2).map(|c| u16::from_be_bytes([c[0], c[1]])).collect();
+        assert_eq!((codes[0], codes[1], codes[2], codes[5]), (1, 0, 65_535, 1));
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn ids_and_masks_are_bits_not_colours() {
+        let folder = folder("ids");
+        save_object_id(&folder.join("i.png"), [2, 1], &[0x0001_0203, 0], &[]).unwrap();
+        let read = image::open(folder.join("i.png")).unwrap().into_rgb8();
+        assert_eq!(read.get_pixel(0, 0).0, [1, 2, 3]);
+        save_lens_mask(&folder.join("m.png"), [2, 1], &[vec![0x8001, 2]], 16, &[]).unwrap();
+        let read = image::open(folder.join("m.png")).unwrap().into_luma16();
+        assert_eq!(read.into_raw(), [0x8001, 2]);
+        let refused = save_lens_mask(&folder.join("m.png"), [2, 1], &[vec![0, 0]], 17, &[]).unwrap_err();
+        assert!(refused.to_string().contains("write .exr"), "{refused}");
+        let planes = [vec![1, 2], vec![3, 4_000_000_000]];
+        save_lens_mask(&folder.join("m.exr"), [2, 1], &planes, 40, &[]).unwrap();
+        let read = exr::prelude::read_first_flat_layer_from_file(folder.join("m.exr")).unwrap();
+        for (i, channel) in read.layer_data.channel_data.list.iter().enumerate() {
+            assert_eq!(channel.name.to_string(), format!("m{i}"));
+            let exr::prelude::FlatSamples::U32(values) = &channel.sample_data else { panic!("not u32") };
+            assert_eq!(values, &planes[i]);
+        }
+        assert!(save_normal(&folder.join("n.jpg"), [1, 1], &[[0.0; 3]], &[]).is_err());
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn what_cannot_be_written_leaves_nothing_behind() {
+        let folder = folder("nowhere");
+        let target = folder.join("taken");
+        fs::create_dir_all(target.join("inner")).unwrap();
+        assert!(write_whole(&target, b"x").is_err());
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+        fs::remove_dir_all(folder).unwrap();
+    }
+}
