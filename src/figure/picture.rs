@@ -72,7 +72,13 @@ pub fn hash(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
-fn png(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, notes: &[Note], data: &[u8]) -> io::Result<Vec<u8>> {
+fn png(
+    size: [u32; 2],
+    color: png::ColorType,
+    depth: png::BitDepth,
+    notes: &[Note],
+    data: &[u8],
+) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
     encoder.set_color(color);
@@ -202,17 +208,15 @@ pub fn save_lens_mask(
     let nothing = vec![0; size[0] as usize * size[1] as usize];
     if is_exr(path)? {
         let count = lens_count.max(1).div_ceil(32);
-        let channel = |i: usize| {
-            (format!("m{i}"), exr::prelude::FlatSamples::U32(planes.get(i).unwrap_or(&nothing).clone()))
-        };
+        let channel =
+            |i: usize| (format!("m{i}"), exr::prelude::FlatSamples::U32(planes.get(i).unwrap_or(&nothing).clone()));
         return save_exr(path, size, (0..count).map(channel).collect());
     }
     if lens_count > 16 {
         let message = format!("a PNG lens mask holds 16 lenses and the scene has {lens_count}; write .exr instead");
         return Err(WriteError::Format { path: path.to_owned(), message });
     }
-    let data: Vec<u8> =
-        planes.first().unwrap_or(&nothing).iter().flat_map(|&m| (m as u16).to_be_bytes()).collect();
+    let data: Vec<u8> = planes.first().unwrap_or(&nothing).iter().flat_map(|&m| (m as u16).to_be_bytes()).collect();
     save_png(path, size, png::ColorType::Grayscale, png::BitDepth::Sixteen, notes, &data)
 }
 

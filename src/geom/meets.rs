@@ -120,7 +120,8 @@ mod tests {
     use crate::geom::Shape;
 
     fn shapes() -> Vec<Volume> {
-        let cube: Vec<DVec3> = (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * 4.0).collect();
+        let cube: Vec<DVec3> =
+            (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * 4.0).collect();
         [
             Shape::Sphere { center: DVec3::ONE, radius: 3.0 },
             Shape::Box {

@@ -15,13 +15,34 @@ pub enum GpuError {
     NoAdapter(String),
     /// The device was refused.
     #[error("graphics adapter {adapter}: {message}")]
-    NoDevice { adapter: String, message: String },
+    NoDevice {
+        /// Its name.
+        adapter: String,
+        /// What it said.
+        message: String,
+    },
     /// An allocation that would not fit.
     #[error("{what} needs {needed} of graphics memory in one piece, but {adapter} allows {allowed}; {advice}")]
-    TooLarge { what: String, needed: String, allowed: String, adapter: String, advice: String },
+    TooLarge {
+        /// What was to be made.
+        what: String,
+        /// Its size.
+        needed: String,
+        /// The largest the adapter takes.
+        allowed: String,
+        /// Its name.
+        adapter: String,
+        /// What would help.
+        advice: String,
+    },
     /// Something the driver reported while working.
     #[error("graphics adapter {adapter}: {message}")]
-    Failed { adapter: String, message: String },
+    Failed {
+        /// Its name.
+        adapter: String,
+        /// What it said.
+        message: String,
+    },
 }
 
 /// A device with its queue, and counters of what was made on it.
@@ -37,6 +58,9 @@ pub struct Gpu {
     uploads: AtomicU64,
     allocated_bytes: AtomicU64,
 }
+
+/// No buffer is smaller: any one structure of the shaders fits, so an empty list can be bound too.
+const LEAST_BYTES: usize = 256;
 
 /// Features used where the adapter has them; nothing here is required.
 fn wanted_features() -> wgpu::Features {
@@ -54,8 +78,11 @@ impl Gpu {
     }
 
     async fn open_async(wanted: Option<&str>) -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+        // GL is asked only where nothing better answers: its libraries complain on stderr where there is no display.
+        let mut adapters = adapters_of(wgpu::Backends::PRIMARY).await;
+        if adapters.is_empty() {
+            adapters = adapters_of(wgpu::Backends::SECONDARY).await;
+        }
         let names: Vec<String> = adapters.iter().map(|a| describe(&a.get_info())).collect();
         if let Some(wanted) = wanted {
             let needle = wanted.to_lowercase();
@@ -178,7 +205,7 @@ impl Gpu {
         })
     }
 
-    /// A buffer holding `data` (at least 16 bytes, so that it can always be bound).
+    /// A buffer holding `data` (at least [`LEAST_BYTES`], so that it can always be bound).
     pub fn buffer<T: bytemuck::NoUninit>(
         &self,
         label: &str,
@@ -188,10 +215,10 @@ impl Gpu {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         self.check_buffer(label, bytes.len() as u64, usage)?;
         let padded;
-        let contents = if bytes.len() >= 16 && bytes.len().is_multiple_of(4) {
+        let contents = if bytes.len() >= LEAST_BYTES && bytes.len().is_multiple_of(4) {
             bytes
         } else {
-            padded = [bytes, &vec![0; bytes.len().next_multiple_of(16).max(16) - bytes.len()]].concat();
+            padded = [bytes, &vec![0; bytes.len().next_multiple_of(16).max(LEAST_BYTES) - bytes.len()]].concat();
             &padded
         };
         self.count_allocation(contents.len() as u64);
@@ -199,9 +226,9 @@ impl Gpu {
         Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage }))
     }
 
-    /// A buffer of `bytes` zeros (at least 16).
+    /// A buffer of `bytes` zeros (at least [`LEAST_BYTES`]).
     pub fn empty_buffer(&self, label: &str, usage: wgpu::BufferUsages, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
-        let size = bytes.max(16).next_multiple_of(16);
+        let size = bytes.max(LEAST_BYTES as u64).next_multiple_of(16);
         self.check_buffer(label, size, usage)?;
         self.count_allocation(size);
         Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -272,6 +299,12 @@ impl Gpu {
             None => result,
         }
     }
+}
+
+async fn adapters_of(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    descriptor.backends &= backends;
+    wgpu::Instance::new(descriptor).enumerate_adapters(backends).await
 }
 
 fn describe(info: &wgpu::AdapterInfo) -> String {

@@ -1,7 +1,7 @@
 //! Textures and buffers back to the CPU, tightly packed, row 0 at the top.
 
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::{Gpu, GpuError};
 

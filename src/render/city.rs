@@ -134,9 +134,7 @@ fn entry(model: &CityModel, textures: &Textures, surface: u32, origin: IVec3) ->
     let material = model.materials.get(found.material as usize);
     let color = match material {
         // A texture brings the colour; the material's own only tints it.
-        Some(m) if m.texture == NONE || textures.has(m.texture) => {
-            [m.base_color[0], m.base_color[1], m.base_color[2]]
-        }
+        Some(m) if m.texture == NONE || textures.has(m.texture) => [m.base_color[0], m.base_color[1], m.base_color[2]],
         // A declared texture that is missing: most files say plain white beside it, so the quiet colours are better.
         _ => palette::linear_bytes(palette::natural(model, found)),
     };
@@ -208,9 +206,7 @@ impl Gathered {
 
 /// Interleaves the low 21 bits of x and y: near numbers are near places.
 fn morton(x: u32, y: u32) -> u64 {
-    (0..21).fold(0, |code, bit| {
-        code | u64::from(x >> bit & 1) << (2 * bit) | u64::from(y >> bit & 1) << (2 * bit + 1)
-    })
+    (0..21).fold(0, |code, bit| code | u64::from(x >> bit & 1) << (2 * bit) | u64::from(y >> bit & 1) << (2 * bit + 1))
 }
 
 /// The shown tiles in Morton order of their centres.
@@ -235,11 +231,14 @@ impl CityBuffers {
     pub fn new(gpu: &Gpu, shown: &Shown) -> Result<Self, GpuError> {
         let textures = Textures::new(gpu, shown)?;
         let bytes_before = gpu.allocated_bytes();
-        let extent = shown.geometries.iter().fold(Aabb::EMPTY, |all, &g| {
-            all.union(shown.model.geometries[g as usize].bounds)
-        });
-        let mut table =
-            SurfaceTable { model: shown.model, textures: &textures, entries: Vec::new(), in_tile: FxHashMap::default() };
+        let extent =
+            shown.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(shown.model.geometries[g as usize].bounds));
+        let mut table = SurfaceTable {
+            model: shown.model,
+            textures: &textures,
+            entries: Vec::new(),
+            in_tile: FxHashMap::default(),
+        };
         let apart = shown.coplanar.iter().map(|c| c.triangle).collect::<std::collections::HashSet<_>>();
         let mut plain = Gathered::default();
         let mut textured: FxHashMap<(u32, u32), Gathered> = FxHashMap::default();
@@ -377,8 +376,7 @@ fn gather_coplanar(shown: &Shown, table: &mut SurfaceTable, known: &mut FxHashMa
     let mut order: Vec<&CoplanarTriangle> = shown.coplanar.iter().collect();
     // Within a group the higher priority is drawn later and wins at equal depth.
     order.sort_by_key(|c| (c.group, c.priority, c.triangle));
-    let mut out =
-        Coplanar { vertices: Vec::new(), plane_numbers: Vec::new(), planes: Vec::new(), chunks: Vec::new() };
+    let mut out = Coplanar { vertices: Vec::new(), plane_numbers: Vec::new(), planes: Vec::new(), chunks: Vec::new() };
     let mut group = None;
     let (mut start, mut bounds) = (0, Aabb::EMPTY);
     for c in order {

@@ -40,12 +40,7 @@ pub fn view_uniform(view: &View, tile: PictureTile, jitter_px: DVec2, sample_ind
     let (eye_whole, eye_fraction) = split_eye(view.camera.eye);
     layout::View {
         view_from_world: padded(view.basis.view_from_world()),
-        projection: [
-            scale.x as f32,
-            scale.y as f32,
-            (shift.x + jitter.x) as f32,
-            (shift.y + jitter.y) as f32,
-        ],
+        projection: [scale.x as f32, scale.y as f32, (shift.x + jitter.x) as f32, (shift.y + jitter.y) as f32],
         near: view.camera.near_m as f32,
         far: if view.is_orthographic() { view.far_m as f32 } else { 0.0 },
         orthographic: u32::from(view.is_orthographic()),
@@ -73,9 +68,7 @@ pub fn shadow_from_relative(sun: &View, eye: DVec3) -> DMat4 {
 
 /// CPU twin of `relative_to_eye` in `lib/view.wgsl`, in the same f32 steps (hard case 1).
 pub fn relative_to_eye(whole: [i32; 3], offset: [f32; 3], eye_whole: [i32; 3], eye_fraction: [f32; 3]) -> [f32; 3] {
-    std::array::from_fn(|i| {
-        ((whole[i].wrapping_sub(eye_whole[i])) as f32 - eye_fraction[i]) + offset[i]
-    })
+    std::array::from_fn(|i| ((whole[i].wrapping_sub(eye_whole[i])) as f32 - eye_fraction[i]) + offset[i])
 }
 
 /// A world position relative to the eye, rounded once.
@@ -94,15 +87,14 @@ mod tests {
         let scale = DVec2::new(uniform.projection[0].into(), uniform.projection[1].into());
         let shift = DVec2::new(uniform.projection[2].into(), uniform.projection[3].into());
         let ndc = p.truncate() * scale / -p.z + shift;
-        DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y)
-            * DVec2::new(uniform.size[0].into(), uniform.size[1].into())
+        DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * DVec2::new(uniform.size[0].into(), uniform.size[1].into())
     }
 
     #[test]
     fn tiles_and_jitter_only_shift_pixels() {
         let eye = DVec3::new(85_000.25, 446_000.5, 30.0);
-        let view = View::new(Camera::looking(eye, eye + DVec3::new(3.0, 9.0, -2.0), 0.8), [1000, 600], &Aabb::EMPTY)
-            .unwrap();
+        let view =
+            View::new(Camera::looking(eye, eye + DVec3::new(3.0, 9.0, -2.0), 0.8), [1000, 600], &Aabb::EMPTY).unwrap();
         let world = eye + DVec3::new(40.0, 100.0, -20.0);
         let expected = view.pixel(world).unwrap().truncate();
         for (origin, size) in [([0, 0], [1000, 600]), ([512, 0], [488, 256]), ([100, 300], [64, 32])] {

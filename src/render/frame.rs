@@ -16,8 +16,7 @@ use crate::{
     render::{
         city::{CityBuffers, Draw, SectionKind},
         eye::{PictureTile, view_uniform},
-        layout,
-        light,
+        layout, light,
         operations::Operations,
         pipelines::{GeometryKind, Key},
         renderer::{Renderer, STAGE_STRIDE},
@@ -123,7 +122,8 @@ impl Renderer {
         self.upload(input, sun_view.as_ref(), &seen)?;
         self.fit_groups();
         let keys = self.prepare(input, &seen, sun_view.is_some());
-        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        let mut encoder =
+            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         if let Some(sun_view) = &sun_view {
             self.shadow_pass(&mut encoder, &mut recorder, sun_view);
         }
@@ -147,9 +147,9 @@ impl Renderer {
     }
 
     fn colored(&self) -> bool {
-        self.city.as_ref().is_some_and(|c| {
-            c.buffers.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { .. }))
-        })
+        self.city
+            .as_ref()
+            .is_some_and(|c| c.buffers.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { .. })))
     }
 
     /// The sun's view where shadows are wanted.
@@ -176,9 +176,7 @@ impl Renderer {
         let jitter = if input.samples > 1 { jitter } else { DVec2::ZERO };
         let haze = if input.view.is_orthographic() { 0.0 } else { input.haze / radius };
         let view = view_uniform(&input.view, input.tile, jitter, input.sample, haze);
-        let light = light::uniform(
-            &input.sun, input.background, input.transparent, sun, input.view.camera.eye, radius,
-        );
+        let light = light::uniform(&input.sun, input.background, input.transparent, sun, input.view.camera.eye, radius);
         let (mut shapes, mut planes) = (Vec::new(), Vec::new());
         let (mut sprites, mut masks) = (Vec::new(), Vec::new());
         for (stage, volume) in seen.iter().enumerate() {
@@ -384,7 +382,13 @@ impl Renderer {
     }
 
     /// The volumetric depth test (S5) over the lens' screen bounds.
-    fn mask_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, volume: &SeenVolume, stage: usize) {
+    fn mask_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        volume: &SeenVolume,
+        stage: usize,
+    ) {
         let Some(groups) = &self.groups else { return };
         let slot = recorder.begin("lens mask", "main", Some(volume.lens), false);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -499,9 +503,8 @@ fn seen_volumes(input: &FrameInput) -> Vec<SeenVolume> {
         let sprite = sprite_size(input, volume.lens);
         let to_texel = |i: usize, pixel: u32| f64::from(pixel) * f64::from(sprite[i]) / f64::from(input.tile.size[i]);
         let low: [u32; 2] = std::array::from_fn(|i| to_texel(i, bounds.origin[i]).floor() as u32);
-        let high: [u32; 2] = std::array::from_fn(|i| {
-            (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i])
-        });
+        let high: [u32; 2] =
+            std::array::from_fn(|i| (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i]));
         let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
         seen.push(SeenVolume { index, lens: volume.lens, kind: volume.kind(), bounds, sprite_bounds });
     }
@@ -509,7 +512,8 @@ fn seen_volumes(input: &FrameInput) -> Vec<SeenVolume> {
 }
 
 fn needs(input: &FrameInput, colors: bool, shadows: bool) -> Needs {
-    let sprite = input.volumes.iter().map(|v| sprite_size(input, v.lens)).fold([0, 0], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+    let sprite =
+        input.volumes.iter().map(|v| sprite_size(input, v.lens)).fold([0, 0], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
     Needs {
         size: input.tile.size,
         colors,
@@ -580,7 +584,6 @@ fn depth_attachment(view: &wgpu::TextureView, clear: f32) -> wgpu::RenderPassDep
     }
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -588,7 +591,8 @@ mod tests {
     #[test]
     fn the_parts_of_a_picture_cover_it_once() {
         let tile = |x, y, w, h| PictureTile { origin: [x, y], size: [w, h] };
-        for bounds in [vec![], vec![tile(0, 0, 9, 7)], vec![tile(2, 1, 3, 3), tile(4, 3, 4, 4)], vec![tile(8, 6, 1, 1)]] {
+        for bounds in [vec![], vec![tile(0, 0, 9, 7)], vec![tile(2, 1, 3, 3), tile(4, 3, 4, 4)], vec![tile(8, 6, 1, 1)]]
+        {
             let (inside, outside) = split([9, 7], bounds.into_iter());
             let mut hits = [[0; 9]; 7];
             for part in outside.iter().chain(&inside) {

@@ -184,14 +184,61 @@ mod tests {
     fn host_and_wgsl_structs_are_the_same() {
         let shade = Module::Shade(vec![]);
         let checks = [
-            (&Module::Geometry, host!(View { view_from_world, projection, near, far, orthographic, sample_index,
-                eye_whole, pad_0, eye_fraction, pad_1, size, haze, pad_2 })),
+            (
+                &Module::Geometry,
+                host!(View {
+                    view_from_world,
+                    projection,
+                    near,
+                    far,
+                    orthographic,
+                    sample_index,
+                    eye_whole,
+                    pad_0,
+                    eye_fraction,
+                    pad_1,
+                    size,
+                    haze,
+                    pad_2
+                }),
+            ),
             (&Module::Geometry, host!(Surface { origin, object, color_rg, color_ba, flags, model_surface })),
             (&Module::Geometry, host!(Plane { normal, reserved, origin, offset })),
-            (&Module::Sprite, host!(Shape { center, kind, axis_x, size_x, axis_y, size_y, axis_z, size_z,
-                first_plane, plane_count, lens, reserved })),
-            (&shade, host!(Light { to_sun, shadow_texel, sun, shadow_depth_step, sky, reserved_0, ground, reserved_1,
-                shadow_from_relative, zenith, background, horizon, scene_radius })),
+            (
+                &Module::Sprite,
+                host!(Shape {
+                    center,
+                    kind,
+                    axis_x,
+                    size_x,
+                    axis_y,
+                    size_y,
+                    axis_z,
+                    size_z,
+                    first_plane,
+                    plane_count,
+                    lens,
+                    reserved
+                }),
+            ),
+            (
+                &shade,
+                host!(Light {
+                    to_sun,
+                    shadow_texel,
+                    sun,
+                    shadow_depth_step,
+                    sky,
+                    reserved_0,
+                    ground,
+                    reserved_1,
+                    shadow_from_relative,
+                    zenith,
+                    background,
+                    horizon,
+                    scene_radius
+                }),
+            ),
             (&Module::Sprite, host!(SpriteStage { shape, pad_0, pixels_per_texel })),
             (&Module::LensMask, host!(MaskStage { origin, size, texels_per_pixel, lens, pad_0 })),
             (&shade, host!(Parameters { a, b })),

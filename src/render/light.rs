@@ -4,11 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     geom::Aabb,
-    render::{
-        eye::shadow_from_relative,
-        layout,
-        palette,
-    },
+    render::{eye::shadow_from_relative, layout, palette},
     scene::{Background, Sun},
     view::{Camera, Projection, View},
 };
@@ -45,9 +41,10 @@ pub fn sun_view(sun: &Sun, receivers: &Aabb, casters: &Aabb) -> Option<View> {
         near_m: 1.0,
     };
     let basis = probe.basis().ok()?;
-    let half = receivers.corners().into_iter().fold(0.0_f64, |half, c| {
-        half.max((c - center).dot(basis.right).abs()).max((c - center).dot(basis.up).abs())
-    });
+    let half = receivers
+        .corners()
+        .into_iter()
+        .fold(0.0_f64, |half, c| half.max((c - center).dot(basis.right).abs()).max((c - center).dot(basis.up).abs()));
     // A texel's width more on each side, so that filters never look past the border.
     let height_m = (2.0 * half * (1.0 + 4.0 / f64::from(SHADOW_SIZE))).clamp(1.0, 1e7);
     let camera = Camera { projection: Projection::Orthographic { height_m }, ..probe };

@@ -15,8 +15,8 @@ pub mod picture;
 pub mod pipelines;
 pub mod renderer;
 pub mod stats;
-pub mod targets;
 mod synced;
+pub mod targets;
 mod textures;
 pub mod volume;
 

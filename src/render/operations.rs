@@ -2,7 +2,10 @@
 
 use crate::{
     city::CityModel,
-    lens::{Class, EffectUse, Lens, LensBody, thematic::{ThematicError, ThematicScale}},
+    lens::{
+        Class, EffectUse, Lens, LensBody,
+        thematic::{ThematicError, ThematicScale},
+    },
     render::{layout, palette},
     shader,
 };
@@ -82,7 +85,13 @@ impl Operations {
         } else {
             parameters.a[0] = effect.amount();
         }
-        Ok(Some(layout::Operation { effect: number, lens, class_: class_number(effect.class), parameters, reserved: 0 }))
+        Ok(Some(layout::Operation {
+            effect: number,
+            lens,
+            class_: class_number(effect.class),
+            parameters,
+            reserved: 0,
+        }))
     }
 }
 

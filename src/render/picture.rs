@@ -3,9 +3,16 @@
 use std::{sync::Arc, time::Instant};
 
 use crate::{
-    city::{CityModel, Lod, coplanar::coplanar_triangles, decode_normal, ground::{Ground, plain_ground}, shown::shown_geometries},
+    city::{
+        CityModel, Lod,
+        coplanar::coplanar_triangles,
+        decode_normal,
+        ground::{Ground, plain_ground},
+        shown::shown_geometries,
+    },
     geom::Aabb,
     gpu::{Gpu, GpuError, Timer},
+    lens::Class,
     render::{
         Renderer,
         city::Shown,
@@ -83,6 +90,8 @@ pub struct Picture {
     pub lens_mask: Option<Vec<Vec<u32>>>,
     /// Class bits as the card holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
     classes: Vec<Vec<u32>>,
+    /// GPU allocations and uploads while drawing (reading back not counted).
+    made: (u64, u64),
     /// What it cost.
     pub statistics: Statistics,
 }
@@ -117,15 +126,16 @@ impl Studio {
         let cap = match &spec.lod {
             None => None,
             Some(text) => Some(Lod::parse(text).ok_or_else(|| {
-                RenderError::Scene(format!("city.lod: \"{text}\" is no level of detail; expected e.g. \"1.3\" or \"2\""))
+                RenderError::Scene(format!(
+                    "city.lod: \"{text}\" is no level of detail; expected e.g. \"1.3\" or \"2\""
+                ))
             })?),
         };
         let geometries = shown_geometries(&model, cap);
         let ground = spec.ground.then(|| plain_ground(&model, &geometries)).flatten();
         let coplanar = coplanar_triangles(&model, &geometries);
         let mut renderer = Renderer::new(gpu)?;
-        let shown =
-            Shown { model: &model, geometries: &geometries, coplanar: &coplanar, ground: ground.as_ref() };
+        let shown = Shown { model: &model, geometries: &geometries, coplanar: &coplanar, ground: ground.as_ref() };
         renderer.set_city(&shown)?;
         let mut objects: Vec<u32> = geometries.iter().map(|&g| model.geometries[g as usize].object).collect();
         objects.sort_unstable();
@@ -141,8 +151,7 @@ impl Studio {
     /// The scene's camera, or a good first view of the city.
     pub fn camera(&self, scene: &Scene, size: [u32; 2]) -> Camera {
         scene.camera.unwrap_or_else(|| {
-            let boxes: Vec<Aabb> =
-                self.geometries.iter().map(|&g| self.model.geometries[g as usize].bounds).collect();
+            let boxes: Vec<Aabb> = self.geometries.iter().map(|&g| self.model.geometries[g as usize].bounds).collect();
             first_view(&self.extent(), &boxes, f64::from(size[0]) / f64::from(size[1]))
         })
     }
@@ -150,7 +159,6 @@ impl Studio {
     /// Draws a picture.
     pub fn render(&mut self, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
         let started = Instant::now();
-        let (allocations, uploads) = (self.renderer.gpu.allocations(), self.renderer.gpu.uploads());
         let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
         let prepared = self.prepare(scene)?;
         let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
@@ -165,12 +173,10 @@ impl Studio {
             picture.statistics = self.statistics(scene, request, &prepared, &view, &picture, passes);
             let frame = &mut picture.statistics.frame;
             frame.cpu_ms = started.elapsed().as_secs_f64() * 1e3;
-            frame.allocations = self.renderer.gpu.allocations() - allocations;
-            frame.uploads = self.renderer.gpu.uploads() - uploads;
+            (frame.allocations, frame.uploads) = picture.made;
         }
-        picture.lens_mask = request.aovs.lens_mask.then(|| {
-            std::mem::take(&mut picture.classes).into_iter().step_by(3).collect()
-        });
+        picture.lens_mask =
+            request.aovs.lens_mask.then(|| std::mem::take(&mut picture.classes).into_iter().step_by(3).collect());
         Ok(picture)
     }
 
@@ -183,7 +189,8 @@ impl Studio {
                     .volume()
                     .map_err(|error| RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name)))?;
                 if !volume.is_empty() {
-                    volumes.push(LensVolume { lens: i as u32, bounds: volume.bounds(), volume });
+                    let everywhere = lens.effects.iter().any(|e| e.class == Class::Rest);
+                    volumes.push(LensVolume { lens: i as u32, bounds: volume.bounds(), volume, everywhere });
                 }
             }
         }
@@ -227,7 +234,10 @@ impl Studio {
             input.sample = sample;
             let mut timer =
                 if request.statistics && sample == 0 { Some(Timer::new(&self.renderer.gpu)?) } else { None };
+            let before = (self.renderer.gpu.allocations(), self.renderer.gpu.uploads());
             let records = self.renderer.draw(&input, timer.as_mut())?;
+            picture.made.0 += self.renderer.gpu.allocations() - before.0;
+            picture.made.1 += self.renderer.gpu.uploads() - before.1;
             if sample == 0 {
                 self.read_aovs(request, view, part, picture)?;
                 if records.iter().any(|r| r.name == CLEAR_MASKS) {
@@ -246,13 +256,7 @@ impl Studio {
     }
 
     /// Reads what the unjittered sample left in the targets.
-    fn read_aovs(
-        &self,
-        request: &Request,
-        view: &View,
-        part: Part,
-        picture: &mut Picture,
-    ) -> Result<(), RenderError> {
+    fn read_aovs(&self, request: &Request, view: &View, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
         let gpu = &self.renderer.gpu;
         let (Some(targets), Some(city)) = (self.renderer.targets(), self.renderer.city()) else { return Ok(()) };
         if let Some(out) = &mut picture.depth {
@@ -324,7 +328,10 @@ impl Studio {
         let ran = passes.iter().any(|p| p.name == "shade");
         let handlers = if !ran { &[] as &[u32] } else { &prepared.operations.effects };
         let lens_seen = |i: usize| {
-            prepared.volumes.iter().any(|v| v.lens as usize == i && v.screen_bounds(view, whole(request.size)).is_some())
+            prepared
+                .volumes
+                .iter()
+                .any(|v| v.lens as usize == i && v.screen_bounds(view, whole(request.size)).is_some())
         };
         let any_seen = (0..scene.lenses.len()).any(lens_seen);
         let handlers = handlers
@@ -367,9 +374,7 @@ impl Studio {
     }
 
     fn warnings(&self) -> Vec<serde_json::Value> {
-        let warning = |(code, w): (crate::city::WarningCode, &crate::city::warning::Warning)| {
-            serde_json::json!({ "code": code.code(), "count": w.count, "objects": w.objects, "message": w.message })
-        };
+        let warning = |(code, w): (crate::city::WarningCode, &crate::city::warning::Warning)| serde_json::json!({ "code": code.code(), "count": w.count, "objects": w.objects, "message": w.message });
         self.model.warnings.iter().map(warning).collect()
     }
 }
@@ -395,7 +400,7 @@ fn lens_figures(
             _ => rest += 1,
         }
     }
-    let acts_inside = lens.effects.iter().any(|e| e.class == crate::lens::Class::Inside);
+    let acts_inside = lens.effects.iter().any(|e| e.class == Class::Inside);
     stats::LensFigures {
         id: index as u32,
         name: lens.name.clone(),
@@ -448,6 +453,7 @@ impl Picture {
             normal: normal.then(|| vec![[0.0; 3]; pixels]),
             lens_mask: None,
             classes: vec![vec![0; pixels]; planes],
+            made: (0, 0),
             statistics: Statistics::default(),
         }
     }
@@ -481,10 +487,7 @@ fn parts(size: [u32; 2]) -> Vec<Part> {
     let mut parts = Vec::new();
     for y in cuts(size[1]) {
         for x in cuts(size[0]) {
-            let rect = |k: usize| PictureTile {
-                origin: [x[k], y[k]],
-                size: [x[k + 1] - x[k], y[k + 1] - y[k]],
-            };
+            let rect = |k: usize| PictureTile { origin: [x[k], y[k]], size: [x[k + 1] - x[k], y[k + 1] - y[k]] };
             parts.push(Part { drawn: rect(0), kept: rect(2) });
         }
     }

@@ -115,7 +115,8 @@ impl Renderer {
         self.city = None;
         let gpu = &self.gpu;
         let buffers = CityBuffers::new(gpu, shown)?;
-        let group = group(gpu, "city", &self.pipelines.city, &[(0, whole(&buffers.surfaces)), (1, whole(&buffers.planes))]);
+        let group =
+            group(gpu, "city", &self.pipelines.city, &[(0, whole(&buffers.surfaces)), (1, whole(&buffers.planes))]);
         let images = buffers.sections.iter().map(|section| match section.kind {
             SectionKind::Textured { texture, .. } => buffers.textures.get(texture).map(|(view, sampler)| {
                 let entries =
@@ -170,11 +171,8 @@ impl Renderer {
         let (Some(targets), Some(city)) = (&self.targets, &self.city) else { return };
         let (gpu, p, b) = (&self.gpu, &self.pipelines, &self.buffers);
         let stage_group = |label, buffer: &Synced, size: usize| {
-            let binding = wgpu::BufferBinding {
-                buffer: buffer.buffer(),
-                offset: 0,
-                size: wgpu::BufferSize::new(size as u64),
-            };
+            let binding =
+                wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size: wgpu::BufferSize::new(size as u64) };
             group(gpu, label, &p.stage, &[(0, wgpu::BindingResource::Buffer(binding))])
         };
         self.groups = Some(Groups {
@@ -212,11 +210,7 @@ impl Renderer {
                 gpu,
                 "lenses",
                 &p.lenses,
-                &[
-                    (0, all_of(&targets.masks)),
-                    (1, whole(b.operations.buffer())),
-                    (2, whole(b.object_colors.buffer())),
-                ],
+                &[(0, all_of(&targets.masks)), (1, whole(b.operations.buffer())), (2, whole(b.object_colors.buffer()))],
             ),
             resolve: group(gpu, "resolve", &p.resolve, &[(0, whole(b.resolve.buffer())), (1, all_of(&targets.sums))]),
         });

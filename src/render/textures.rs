@@ -24,8 +24,8 @@ impl Textures {
         let model = shown.model;
         let mut used = vec![false; model.textures.len()];
         for &g in shown.geometries {
-            for tile in &model.tiles[model.geometries[g as usize].tiles.start as usize
-                ..model.geometries[g as usize].tiles.end as usize]
+            for tile in &model.tiles
+                [model.geometries[g as usize].tiles.start as usize..model.geometries[g as usize].tiles.end as usize]
             {
                 if tile.texcoords == crate::city::NONE {
                     continue;
@@ -79,8 +79,7 @@ fn upload(gpu: &Gpu, pixels: &texture::Pixels, declared: &Texture) -> (wgpu::Tex
     let size = [pixels.width, pixels.height, 1];
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     // Kept as sRGB bytes: the geometry target holds sRGB too, so no precision is lost on the way.
-    let texture =
-        gpu.texture("city texture", size, pixels.levels.len() as u32, wgpu::TextureFormat::Rgba8Unorm, usage);
+    let texture = gpu.texture("city texture", size, pixels.levels.len() as u32, wgpu::TextureFormat::Rgba8Unorm, usage);
     for (level, rgba) in pixels.levels.iter().enumerate() {
         gpu.write_texture_level(&texture, level as u32, rgba);
     }

@@ -20,6 +20,8 @@ pub struct LensVolume {
     pub volume: Volume,
     /// Box around it, metres.
     pub bounds: Aabb,
+    /// Whether its lens acts where rays miss it (class *rest*): then all of the picture is its business.
+    pub everywhere: bool,
 }
 
 impl LensVolume {
@@ -74,6 +76,9 @@ impl LensVolume {
 
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
     pub fn screen_bounds(&self, view: &View, tile: PictureTile) -> Option<PictureTile> {
+        if self.everywhere {
+            return Some(PictureTile::whole(tile.size));
+        }
         if self.bounds.is_empty() || !view.frustum(MARGIN_PX).meets(&self.bounds) {
             return None;
         }
@@ -96,9 +101,7 @@ impl LensVolume {
         let low = (low - origin - MARGIN_PX).floor().clamp(DVec2::ZERO, size);
         let high = (high - origin + MARGIN_PX).ceil().clamp(DVec2::ZERO, size);
         let extent = high - low;
-        (extent.x > 0.0 && extent.y > 0.0).then(|| PictureTile {
-            origin: [low.x as u32, low.y as u32],
-            size: [extent.x as u32, extent.y as u32],
-        })
+        (extent.x > 0.0 && extent.y > 0.0)
+            .then(|| PictureTile { origin: [low.x as u32, low.y as u32], size: [extent.x as u32, extent.y as u32] })
     }
 }

@@ -114,11 +114,7 @@ fn apply(effects: &[u32]) -> String {
         text.push_str(effect.source);
         text.push('\n');
         let call = format!("color = {}(color, point, operation.parameters);", effect.name);
-        let guarded = if effect.surfaces_only {
-            format!("if point.surface != NO_SURFACE {{ {call} }}")
-        } else {
-            call
-        };
+        let guarded = if effect.surfaces_only { format!("if point.surface != NO_SURFACE {{ {call} }}") } else { call };
         cases.push_str(&format!("            case {number}u: {{ {guarded} }}\n"));
     }
     text.push_str(&format!(
@@ -148,8 +144,7 @@ mod tests {
     use super::*;
 
     fn all_modules() -> Vec<Module> {
-        let mut modules =
-            vec![Module::Geometry, Module::Shadow, Module::Sprite, Module::LensMask, Module::Resolve];
+        let mut modules = vec![Module::Geometry, Module::Shadow, Module::Sprite, Module::LensMask, Module::Resolve];
         for set in 0..1_u32 << EFFECTS.len() {
             modules.push(Module::Shade((0..EFFECTS.len() as u32).filter(|e| set >> e & 1 == 1).collect()));
         }

@@ -1,0 +1,134 @@
+//! What tests that draw share: a studio over files or over the synthetic city, and lenses by one line.
+#![allow(dead_code, reason = "every test binary uses its own part")]
+
+use std::{
+    collections::BTreeMap,
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicU32, Ordering::Relaxed},
+    },
+};
+
+use glam::{DQuat, DVec3};
+use veduta::{
+    city::{
+        load::{LoadOptions, Quiet, load},
+        synth,
+    },
+    geom::Shape,
+    gpu::Gpu,
+    lens::{Class, EffectUse, Lens, LensBody, LensKind},
+    render::picture::{Aovs, Picture, Request, Studio},
+    scene::{CitySpec, Scene, Sun},
+    view::{Camera, Projection},
+};
+
+/// All AOVs.
+pub const ALL: Aovs = Aovs { depth: true, object_id: true, normal: true, lens_mask: true };
+
+/// A file of `citydata/`.
+pub fn citydata(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("citydata").join(name)
+}
+
+/// A studio over files, without the plain ground.
+pub fn studio(files: &[PathBuf]) -> Studio {
+    let model = load(files, &LoadOptions::default(), &Quiet).expect("the files load");
+    let spec = CitySpec { ground: false, ..CitySpec::default() };
+    Studio::new(Gpu::open().expect("an adapter, hardware or software"), Arc::new(model), &spec).expect("a studio")
+}
+
+/// A studio over the synthetic city.
+pub fn synthetic(buildings: u64) -> Studio {
+    static MADE: AtomicU32 = AtomicU32::new(0);
+    let number = MADE.fetch_add(1, Relaxed);
+    let path = std::env::temp_dir().join(format!("veduta-synth-{}-{number}.city.json", std::process::id()));
+    let mut file = std::fs::File::create(&path).expect("a temporary file");
+    let options = synth::SynthOptions { buildings, seed: 7 };
+    synth::write_cityjson(&options, &mut file, &mut |_| ()).expect("a synthetic city");
+    let made = studio(std::slice::from_ref(&path));
+    std::fs::remove_file(path).expect("the temporary file");
+    made
+}
+
+/// A scene without shadows, seen by `camera`.
+pub fn scene(camera: Camera, lenses: Vec<Lens>) -> Scene {
+    Scene { camera: Some(camera), lenses, sun: Sun { shadows: false, ..Sun::default() }, ..Scene::default() }
+}
+
+/// A colour lens with one effect, without outline.
+pub fn lens(name: &str, shapes: Vec<Shape>, effect: &str) -> Lens {
+    Lens {
+        name: name.into(),
+        kind: LensKind::Color,
+        enabled: true,
+        color: [0.8, 0.1, 0.1],
+        shapes,
+        effects: vec![used(effect)],
+        body: LensBody::None,
+        sprite_resolution: None,
+    }
+}
+
+/// An effect with its defaults.
+pub fn used(effect: &str) -> EffectUse {
+    EffectUse { effect: effect.into(), class: Class::Inside, parameters: BTreeMap::new() }
+}
+
+/// One of each shape around a point, about `r` metres in size.
+pub fn shapes(at: DVec3, r: f64) -> Vec<Shape> {
+    let turn = DQuat::from_rotation_z(0.6) * DQuat::from_rotation_x(0.35);
+    let points = (0..24)
+        .map(|i| {
+            let t = f64::from(i);
+            at + r * DVec3::new((t * 1.7).sin(), (t * 2.9).cos(), (t * 0.8).sin())
+        })
+        .collect();
+    vec![
+        Shape::Sphere { center: at, radius: r },
+        Shape::Box { center: at, size: DVec3::new(1.6, 1.1, 0.9) * r, rotation: turn },
+        Shape::Cylinder { center: at, radius: 0.7 * r, height: 1.3 * r, axis: turn * DVec3::Z },
+        Shape::Convex { points },
+    ]
+}
+
+/// An orthographic camera.
+pub fn orthographic(eye: DVec3, target: DVec3, height_m: f64) -> Camera {
+    Camera { projection: Projection::Orthographic { height_m }, ..Camera::looking(eye, target, 1.0) }
+}
+
+/// One unjittered sample with all AOVs and statistics.
+pub fn picture(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Picture {
+    let request = Request { size, samples: 1, transparent: false, aovs: ALL, statistics: true };
+    studio.render(scene, &request).expect("a picture")
+}
+
+/// Whether the lens' bit is set, per pixel.
+pub fn bits(picture: &Picture, lens: usize) -> Vec<bool> {
+    let planes = picture.lens_mask.as_ref().expect("masks were asked for");
+    planes[lens / 32].iter().map(|word| word >> (lens % 32) & 1 == 1).collect()
+}
+
+/// Pixels of the lens' mask that are wrong against f64, by how far the shown point is from the border; `slack_px`
+/// pixels around the border are the sprite's own (S7).
+pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, bit: usize, slack_px: f64) -> usize {
+    let volumes: Vec<_> = lens.shapes.iter().map(|s| s.volume().expect("a volume")).collect();
+    let depth = picture.depth.as_ref().expect("depth was asked for");
+    let inside = bits(picture, bit);
+    let [w, h] = picture.size;
+    let mut wrong = 0;
+    for (i, (x, y)) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))).enumerate() {
+        let d = f64::from(depth[i]);
+        if !d.is_finite() {
+            wrong += usize::from(inside[i]);
+            continue;
+        }
+        let p = view.pixel_ray(x, y).at(d);
+        let distance = volumes.iter().map(|v| v.signed_distance(p)).fold(f64::INFINITY, f64::min);
+        if distance.abs() > slack_px * view.pixel_m(d) {
+            wrong += usize::from(inside[i] != (distance < 0.0));
+        }
+    }
+    wrong
+}
