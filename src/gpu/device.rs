@@ -191,7 +191,7 @@ impl Gpu {
         let limits = self.device.limits();
         let mut allowed = limits.max_buffer_size;
         if usage.contains(wgpu::BufferUsages::STORAGE) {
-            allowed = allowed.min(u64::from(limits.max_storage_buffer_binding_size));
+            allowed = allowed.min(limits.max_storage_buffer_binding_size);
         }
         if bytes <= allowed {
             return Ok(());

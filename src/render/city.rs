@@ -54,7 +54,12 @@ pub enum SectionKind {
     /// Ordinary opaque triangles.
     Plain,
     /// Triangles with a texture: index of it, and the opacity below which texels are holes.
-    Textured { texture: u32, alpha_cutoff: f32 },
+    Textured {
+        /// Its number in the model.
+        texture: u32,
+        /// Opacity below which texels are holes; 0 = none.
+        alpha_cutoff: f32,
+    },
     /// Overlapping triangles of shared planes.
     Coplanar,
 }

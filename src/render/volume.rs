@@ -102,6 +102,6 @@ impl LensVolume {
         let high = (high - origin + MARGIN_PX).ceil().clamp(DVec2::ZERO, size);
         let extent = high - low;
         (extent.x > 0.0 && extent.y > 0.0)
-            .then(|| PictureTile { origin: [low.x as u32, low.y as u32], size: [extent.x as u32, extent.y as u32] })
+            .then_some(PictureTile { origin: [low.x as u32, low.y as u32], size: [extent.x as u32, extent.y as u32] })
     }
 }
