@@ -1,6 +1,7 @@
 //! City models: files become one plain [`CityModel`] and a list of warnings; nothing of the GPU in it.
 
 pub mod build;
+pub mod builtin;
 pub mod cityjson;
 pub mod coplanar;
 pub mod crs;

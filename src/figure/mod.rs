@@ -1,3 +1,4 @@
 //! A figure is a frame written down: scene files and back, pictures and their metadata.
 
 pub mod picture;
+pub mod scene_file;

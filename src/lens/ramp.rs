@@ -40,7 +40,8 @@ pub fn ramp(name: &str, t: f64) -> Srgb {
         _ => VIRIDIS,
     };
     #[expect(clippy::manual_clamp, reason = "`clamp` keeps NaN, `max` makes it 0")]
-    let at = t.max(0.0).min(1.0) * (entries.len() - 1) as f64;
+    let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
+    let at = t * (entries.len() - 1) as f64;
     let below = (at as usize).min(entries.len() - 2);
     mixed(srgb(entries[below]), srgb(entries[below + 1]), (at - below as f64) as f32)
 }

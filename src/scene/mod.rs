@@ -2,6 +2,9 @@
 //!
 //! Everything is in model coordinates, metres and radians; edits are commands.
 
+pub mod check;
+pub mod command;
+
 use std::path::PathBuf;
 
 use glam::DVec3;
@@ -10,6 +13,9 @@ use crate::{
     lens::{EffectUse, Lens},
     view::Camera,
 };
+
+pub use check::{SceneProblem, check_against};
+pub use command::{Command, History};
 
 /// All of a scene.
 #[derive(Clone, Debug, PartialEq, Default)]

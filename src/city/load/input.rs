@@ -43,6 +43,9 @@ pub(super) fn extension(path: &Path) -> String {
 /// Reads a file, or standard input for `-`.
 pub fn read(path: &Path) -> Result<Input, LoadError> {
     let failed = |e: std::io::Error| LoadError::new(path, format!("cannot be read: {e}"));
+    if let Some(bytes) = crate::city::builtin::read(path) {
+        return from_bytes(path, bytes);
+    }
     let mut bytes = Vec::new();
     if path == Path::new("-") {
         std::io::stdin().lock().take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;

@@ -53,6 +53,12 @@ impl LoadOptions {
         }
     }
 
+    /// Whether a path may be read: inside the roots by its text and, where it exists, by what it really is.
+    pub fn allows(&self, path: &Path) -> bool {
+        self.allow_outside
+            || (self.admits(&lexical(&absolute(path))) && path.canonicalize().map_or(true, |real| self.admits(&real)))
+    }
+
     /// Whether a normalised absolute path is inside one of the roots.
     fn admits(&self, path: &Path) -> bool {
         self.roots.iter().any(|root| {

@@ -1,0 +1,243 @@
+//! Holds a table of a file against the table of keys; gathers everything that is wrong.
+
+use std::{collections::BTreeMap, fmt};
+
+use glam::DVec3;
+
+use crate::{
+    city::Lod,
+    figure::scene_file::{
+        keys::{FAR_M, Key, Kind, Table},
+        node::{Data, Node},
+    },
+    lens::{color::parse_hex, nearest::did_you_mean},
+};
+
+/// One thing that is wrong: `[lens.0] shape.radius: must be ...`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// Line in the file, from 1.
+    pub line: u32,
+    /// The table, `lens.0`; empty at the top.
+    pub table: String,
+    /// The way from the table to the key, `shape.radius`; may be empty.
+    pub key: String,
+    /// What is wrong, and what would be right.
+    pub message: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.table.is_empty(), self.key.is_empty()) {
+            (true, true) => write!(f, "{}", self.message),
+            (true, false) => write!(f, "{}: {}", self.key, self.message),
+            (false, true) => write!(f, "[{}] {}", self.table, self.message),
+            (false, false) => write!(f, "[{}] {}: {}", self.table, self.key, self.message),
+        }
+    }
+}
+
+/// Where in the file a table is.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// `lens.0`.
+    pub table: String,
+    /// `shape.`, or empty.
+    pub prefix: String,
+    /// Its line.
+    pub line: u32,
+}
+
+impl Place {
+    /// A table within this one, `key` being its name or `shapes.1`.
+    pub fn within(&self, key: &str, line: u32) -> Self {
+        Self { table: self.table.clone(), prefix: format!("{}{key}.", self.prefix), line }
+    }
+}
+
+/// Gathers problems.
+#[derive(Debug, Default)]
+pub struct Checker {
+    /// So far.
+    pub problems: Vec<Problem>,
+}
+
+/// A table whose values have been checked: only good ones are left.
+#[derive(Debug)]
+pub struct Fields<'a> {
+    /// Where it is.
+    pub place: Place,
+    good: BTreeMap<&'static str, &'a Node>,
+    bad: Vec<&'static str>,
+}
+
+impl Checker {
+    /// Notes a problem with a key of a table.
+    pub fn note(&mut self, place: &Place, key: &str, line: u32, message: impl Into<String>) {
+        let key = format!("{}{key}", place.prefix).trim_end_matches('.').to_owned();
+        self.problems.push(Problem { line, table: place.table.clone(), key, message: message.into() });
+    }
+
+    /// Checks all keys of a table; `later` are keys of later versions.
+    pub fn fields<'a>(&mut self, node: &'a Node, table: &Table, later: &[&str], place: Place) -> Fields<'a> {
+        let mut fields = Fields { place, good: BTreeMap::new(), bad: Vec::new() };
+        let Data::Table(entries) = &node.data else {
+            self.note(&fields.place, "", node.line, format!("must be a table, is {}", node.quoted()));
+            fields.bad = table.keys.iter().map(|k| k.name).collect();
+            return fields;
+        };
+        for (name, line, value) in entries {
+            let Some(key) = table.keys.iter().find(|k| k.name == name) else {
+                let message = if later.contains(&name.as_str()) {
+                    "is not available yet".to_owned()
+                } else {
+                    format!("unknown key{}", did_you_mean(name, table.keys.iter().map(|k| k.name)))
+                };
+                self.note(&fields.place, name, *line, message);
+                continue;
+            };
+            match wrong(&key.kind, value) {
+                None => {
+                    fields.good.insert(key.name, value);
+                }
+                Some(message) => {
+                    self.note(&fields.place, name, *line, message);
+                    fields.bad.push(key.name);
+                }
+            }
+        }
+        for key in table.keys.iter().filter(|k| k.default.is_empty() && k.name != "shape") {
+            if !fields.given(key.name) {
+                self.note(&fields.place, key.name, fields.place.line, missing(key));
+            }
+        }
+        fields
+    }
+}
+
+fn missing(key: &Key) -> String {
+    format!("is missing: {} For example {} = {}", key.doc, key.name, key.example)
+}
+
+impl<'a> Fields<'a> {
+    /// Whether the key stands in the file, good or bad.
+    pub fn given(&self, key: &str) -> bool {
+        self.good.contains_key(key) || self.bad.contains(&key)
+    }
+
+    /// The value of a key, if good.
+    pub fn node(&self, key: &str) -> Option<&'a Node> {
+        self.good.get(key).copied()
+    }
+
+    /// The line of a key's value, else the table's.
+    pub fn line(&self, key: &str) -> u32 {
+        self.node(key).map_or(self.place.line, |n| n.line)
+    }
+
+    /// A number.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        self.node(key)?.number()
+    }
+
+    /// A whole number that passed its range.
+    pub fn integer(&self, key: &str) -> Option<u32> {
+        match self.node(key)?.data {
+            Data::Integer(i) => u32::try_from(i).ok(),
+            _ => None,
+        }
+    }
+
+    /// Yes or no.
+    pub fn boolean(&self, key: &str) -> Option<bool> {
+        match self.node(key)?.data {
+            Data::Boolean(b) => Some(b),
+            _ => None,
+        }
+    }
+
+    /// A text or word.
+    pub fn text(&self, key: &str) -> Option<&'a str> {
+        self.node(key)?.text()
+    }
+
+    /// A point or direction.
+    pub fn point(&self, key: &str) -> Option<DVec3> {
+        self.node(key)?.numbers::<3>().map(DVec3::from)
+    }
+
+    /// A colour.
+    pub fn color(&self, key: &str) -> Option<[f32; 3]> {
+        color(self.node(key)?)
+    }
+}
+
+/// The colour a value means, sRGB.
+pub fn color(node: &Node) -> Option<[f32; 3]> {
+    match &node.data {
+        Data::Text(text) => parse_hex(text),
+        _ => node.numbers::<3>().filter(|c| c.iter().all(|c| (0.0..=1.0).contains(c))).map(|c| c.map(|c| c as f32)),
+    }
+}
+
+/// What is wrong with a value, if anything. Tables, shapes and effects are looked into later.
+fn wrong(kind: &Kind, node: &Node) -> Option<String> {
+    let each =
+        |range: std::ops::RangeInclusive<f64>| node.numbers::<3>().is_some_and(|v| v.iter().all(|c| range.contains(c)));
+    let ok = match kind {
+        Kind::Integer { min, max } => matches!(node.data, Data::Integer(i) if (*min..=*max).contains(&i)),
+        Kind::Number { min, max } => node.number().is_some_and(|n| (*min..=*max).contains(&n)),
+        Kind::Boolean => matches!(node.data, Data::Boolean(_)),
+        Kind::Text => node.text().is_some_and(|t| !t.is_empty()),
+        Kind::Texts => node.list().is_some_and(|l| l.iter().all(|n| n.text().is_some_and(|t| !t.is_empty()))),
+        Kind::Word { now, later } => return wrong_word(kind, now, later, node),
+        Kind::Point => each(-FAR_M..=FAR_M),
+        Kind::Lengths => each(0.0..=FAR_M),
+        Kind::Direction => {
+            each(-FAR_M..=FAR_M) && node.numbers::<3>().and_then(|v| DVec3::from(v).try_normalize()).is_some()
+        }
+        Kind::Angles => each(-360.0..=360.0),
+        Kind::Points => return wrong_points(kind, node),
+        Kind::Color => color(node).is_some(),
+        Kind::Background => node.text() == Some("sky") || color(node).is_some(),
+        Kind::Lod => lod(node).is_some(),
+        Kind::Size => {
+            node.list().is_some_and(|l| l.len() == 2 && l.iter().all(|n| matches!(n.data, Data::Integer(1..=16_384))))
+        }
+        Kind::Table(_) | Kind::Shape => matches!(node.data, Data::Table(_)),
+        Kind::Shapes => node.list().is_some_and(|l| !l.is_empty()),
+        Kind::Tables(_) | Kind::Effects => node.list().is_some(),
+    };
+    (!ok).then(|| format!("must be {}, is {}", kind.describe(), node.quoted()))
+}
+
+fn wrong_word(kind: &Kind, now: &[&str], later: &[&str], node: &Node) -> Option<String> {
+    match node.text() {
+        Some(word) if now.contains(&word) => None,
+        Some(word) if later.contains(&word) => {
+            Some(format!("\"{word}\" is not available yet; available: {}", now.join(", ")))
+        }
+        Some(word) => {
+            let hint = did_you_mean(word, now.iter().chain(later).copied());
+            Some(format!("must be {}, is \"{word}\"{hint}", kind.describe()))
+        }
+        None => Some(format!("must be {}, is {}", kind.describe(), node.quoted())),
+    }
+}
+
+fn wrong_points(kind: &Kind, node: &Node) -> Option<String> {
+    let Some(list) = node.list() else { return Some(format!("must be {}, is {}", kind.describe(), node.quoted())) };
+    let bad = |n: &Node| !n.numbers::<3>().is_some_and(|v| v.iter().all(|c| c.abs() <= FAR_M));
+    let at = list.iter().position(bad)?;
+    Some(format!("point {at} must be [x, y, z], three finite numbers, is {}", list[at].quoted()))
+}
+
+/// A level of detail, as a text or a number.
+pub fn lod(node: &Node) -> Option<Lod> {
+    match &node.data {
+        Data::Text(text) => Lod::parse(text),
+        Data::Integer(i) => Lod::parse(&i.to_string()),
+        Data::Number(n) => Lod::parse(&n.to_string()),
+        _ => None,
+    }
+}

@@ -1,0 +1,260 @@
+//! The docs' tables and the JSON schema for editors, both made from the table of keys and the table of effects.
+
+use std::fmt::Write;
+
+use serde_json::{Map, Value, json};
+
+use crate::{
+    figure::scene_file::keys::{self, CLASSES, Key, Kind, LATER_SHAPES, LATER_TABLES, SHAPES, TABLES, Table},
+    lens::effect::{EFFECTS, EffectKind, LATER, ParameterKind},
+};
+
+/// The reference part of `docs/scene.md`: every key with what it takes, unit, default and an example.
+pub fn reference() -> String {
+    let mut out = String::new();
+    for (head, table) in TABLES {
+        section(&mut out, head, table);
+    }
+    let _ = write!(out, "## Shapes\n\nThe tables `shape` and the elements of `shapes` of a lens.\n\n");
+    for table in SHAPES {
+        let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
+        rows(&mut out, table.keys);
+    }
+    let _ = write!(out, "Not available yet: {}.\n\n", words(LATER_SHAPES));
+    out += "## Effects\n\n`effects` is a list; each element is a name (`\"sepia\"`) or a table of `effect` (the name), `class` and parameters.\n\
+            `class` says which part of the sight line it acts on: `\"inside\"` the lens (default), in `\"front\"` of it, `\"behind\"` it,\n\
+            or the `\"rest\"`, where the sight line misses the lens. It has a meaning only in a lens.\n\n";
+    for effect in EFFECTS {
+        let _ = write!(out, "### {}\n\n{} ({}, {})\n\n", effect.name, effect.doc, effect.kind.name(), effect.spec);
+        out += "| parameter | takes | unit | default | meaning |\n| --- | --- | --- | --- | --- |\n";
+        for p in effect.parameters {
+            let default = if p.required { "must be given" } else { p.default };
+            let _ =
+                writeln!(out, "| `{}` | {} | {} | {default} | {} |", p.name, cell(&p.kind.describe()), p.unit, p.doc);
+        }
+        out.push('\n');
+    }
+    let _ = write!(out, "Not available yet: {}.\n\n", words(LATER));
+    let _ = writeln!(out, "Tables of later versions: {}.", words(LATER_TABLES));
+    out
+}
+
+fn words(list: &[&str]) -> String {
+    list.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>().join(", ")
+}
+
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+fn section(out: &mut String, head: &str, table: &Table) {
+    let _ = write!(out, "## {head}\n\n{}\n\n", table.doc);
+    rows(out, table.keys);
+}
+
+fn rows(out: &mut String, keys: &[Key]) {
+    *out += "| key | takes | unit | default | meaning | example |\n| --- | --- | --- | --- | --- | --- |\n";
+    for key in keys {
+        let default = if key.default.is_empty() { "must be given" } else { key.default };
+        let takes = match key.kind {
+            Kind::Word { later, .. } if !later.is_empty() => {
+                format!("{}; later: {}", key.kind.describe(), later.join(", "))
+            }
+            _ => key.kind.describe(),
+        };
+        let _ = writeln!(
+            out,
+            "| `{}` | {} | {} | {} | {} | `{}` |",
+            key.name,
+            cell(&takes),
+            key.unit,
+            cell(default),
+            cell(key.doc),
+            cell(key.example)
+        );
+    }
+    out.push('\n');
+}
+
+/// The JSON schema (draft 2020-12) of scene files, for editors that check TOML with one.
+pub fn schema() -> Value {
+    let mut schema = object(&keys::ROOT);
+    schema.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
+    schema.insert("title".into(), "Veduta scene".into());
+    Value::Object(schema)
+}
+
+/// The schema as the file `docs/scene.schema.json` holds it.
+pub fn schema_text() -> String {
+    format!("{:#}\n", schema())
+}
+
+fn object(table: &Table) -> Map<String, Value> {
+    let mut properties = Map::new();
+    for key in table.keys {
+        let mut of_key = of_kind(&key.kind);
+        if let Value::Object(map) = &mut of_key {
+            let unit = if key.unit.is_empty() { String::new() } else { format!(" Unit: {}.", key.unit) };
+            let default = if key.default.is_empty() { String::new() } else { format!(" Default: {}.", key.default) };
+            map.insert("description".into(), format!("{}{unit}{default}", key.doc).into());
+        }
+        properties.insert(key.name.into(), of_key);
+    }
+    let mut map = Map::new();
+    map.insert("type".into(), "object".into());
+    map.insert("description".into(), table.doc.into());
+    map.insert("properties".into(), properties.into());
+    let required: Vec<&str> =
+        table.keys.iter().filter(|k| k.default.is_empty() && k.name != "shape").map(|k| k.name).collect();
+    if !required.is_empty() {
+        map.insert("required".into(), required.into());
+    }
+    if table.keys.iter().any(|k| k.name == "shapes") {
+        map.insert("oneOf".into(), json!([{ "required": ["shape"] }, { "required": ["shapes"] }]));
+    }
+    map.insert("additionalProperties".into(), false.into());
+    map
+}
+
+fn of_kind(kind: &Kind) -> Value {
+    let three = |min: f64, max: f64| json!({ "type": "array", "items": { "type": "number", "minimum": min, "maximum": max }, "minItems": 3, "maxItems": 3 });
+    match kind {
+        Kind::Integer { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        Kind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
+        Kind::Boolean => json!({ "type": "boolean" }),
+        Kind::Text => json!({ "type": "string", "minLength": 1 }),
+        Kind::Texts => json!({ "type": "array", "items": { "type": "string", "minLength": 1 } }),
+        Kind::Word { now, .. } => json!({ "enum": now }),
+        Kind::Point | Kind::Direction => three(-keys::FAR_M, keys::FAR_M),
+        Kind::Lengths => three(0.0, keys::FAR_M),
+        Kind::Angles => three(-360.0, 360.0),
+        Kind::Points => {
+            json!({ "type": "array", "items": three(-keys::FAR_M, keys::FAR_M), "minItems": 4, "maxItems": 4096 })
+        }
+        Kind::Color => color(),
+        Kind::Background => json!({ "anyOf": [{ "const": "sky" }, color()] }),
+        Kind::Lod => json!({ "type": ["string", "number"], "pattern": "^ *[0-9](\\.[0-9]0*)? *$" }),
+        Kind::Size => {
+            json!({ "type": "array", "items": { "type": "integer", "minimum": 1, "maximum": 16384 }, "minItems": 2, "maxItems": 2 })
+        }
+        Kind::Table(table) => Value::Object(object(table)),
+        Kind::Tables(table) => json!({ "type": "array", "items": object(table) }),
+        Kind::Shape => shapes(),
+        Kind::Shapes => json!({ "type": "array", "items": shapes(), "minItems": 1 }),
+        Kind::Effects => json!({ "type": "array", "items": { "anyOf": effects() } }),
+    }
+}
+
+fn color() -> Value {
+    json!({ "anyOf": [
+        { "type": "string", "pattern": "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$" },
+        { "type": "array", "items": { "type": "number", "minimum": 0, "maximum": 1 }, "minItems": 3, "maxItems": 3 },
+    ] })
+}
+
+fn shapes() -> Value {
+    let each: Vec<Value> = SHAPES
+        .iter()
+        .map(|table| {
+            let mut map = object(table);
+            if let Some(kind) = map.get_mut("properties").and_then(|p| p.get_mut("kind")) {
+                *kind = json!({ "const": table.name });
+            }
+            Value::Object(map)
+        })
+        .collect();
+    json!({ "oneOf": each })
+}
+
+fn effects() -> Vec<Value> {
+    let alone: Vec<&str> =
+        EFFECTS.iter().filter(|e| !e.parameters.iter().any(|p| p.required)).map(|e| e.name).collect();
+    let mut all = vec![json!({ "enum": alone })];
+    for effect in EFFECTS {
+        let mut properties = Map::new();
+        properties.insert("effect".into(), json!({ "const": effect.name }));
+        properties.insert("class".into(), json!({ "enum": CLASSES }));
+        for p in effect.parameters {
+            let mut value = of_parameter(&p.kind);
+            if let Value::Object(map) = &mut value {
+                map.insert("description".into(), p.doc.into());
+            }
+            properties.insert(p.name.into(), value);
+        }
+        let required: Vec<&str> =
+            ["effect"].into_iter().chain(effect.parameters.iter().filter(|p| p.required).map(|p| p.name)).collect();
+        let style = if effect.kind == EffectKind::SceneStyle { "Scene style" } else { "Post style" };
+        all.push(json!({
+            "type": "object",
+            "description": format!("{style}. {}", effect.doc),
+            "properties": properties,
+            "required": required,
+            "additionalProperties": false,
+        }));
+    }
+    all
+}
+
+fn of_parameter(kind: &ParameterKind) -> Value {
+    match kind {
+        ParameterKind::Boolean => json!({ "type": "boolean" }),
+        ParameterKind::Number { min, max } if *max == f64::MAX && *min == f64::MIN => json!({ "type": "number" }),
+        ParameterKind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
+        ParameterKind::Text => json!({ "type": "string" }),
+        ParameterKind::Word(words) => json!({ "enum": words }),
+        ParameterKind::Color => color(),
+        ParameterKind::Numbers => {
+            json!({ "type": "array", "items": { "type": "number" }, "minItems": 1, "maxItems": 256 })
+        }
+        ParameterKind::Texts => {
+            json!({ "type": "array", "items": { "type": "string" }, "minItems": 1, "maxItems": 256 })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Compares with the committed file; `VEDUTA_UPDATE=docs` writes it instead.
+    fn committed(name: &str, made: impl Fn(&str) -> String) {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name);
+        let old = std::fs::read_to_string(&path).unwrap_or_default();
+        let new = made(&old);
+        if std::env::var_os("VEDUTA_UPDATE").is_some_and(|v| v == "docs") {
+            std::fs::write(&path, &new).unwrap();
+        } else {
+            assert!(old == new, "docs/{name} is not what the tables say: VEDUTA_UPDATE=docs cargo test document");
+        }
+    }
+
+    #[test]
+    fn the_schema_is_committed() {
+        committed("scene.schema.json", |_| schema_text());
+    }
+
+    #[test]
+    fn the_reference_is_committed() {
+        const MARK: &str =
+            "<!-- From here on made from the tables in src/figure/scene_file/keys.rs and src/lens/effect.rs. -->\n";
+        committed("scene.md", |old| {
+            let prose = old.split(MARK).next().unwrap_or_default();
+            format!("{prose}{MARK}\n{}", reference())
+        });
+    }
+
+    #[test]
+    fn every_key_is_documented_with_an_example_that_is_right() {
+        let text = reference();
+        for (_, table) in TABLES.iter().copied().chain(SHAPES.iter().map(|s| ("", s))) {
+            for key in table.keys {
+                assert!(text.contains(&format!("| `{}` |", key.name)), "{}", key.name);
+                assert!(key.doc.ends_with('.') && !key.example.is_empty(), "{}", key.name);
+                format!("v = {}", key.example).parse::<toml::Table>().unwrap_or_else(|e| panic!("{}: {e}", key.name));
+            }
+        }
+        for effect in EFFECTS {
+            assert!(text.contains(&format!("### {}\n", effect.name)));
+        }
+    }
+}

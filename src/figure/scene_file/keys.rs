@@ -1,0 +1,514 @@
+//! The one table of scene-file keys: it drives the checks, the messages, `docs/scene.md` and the JSON schema.
+
+use crate::lens::ramp;
+
+/// What a key takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// A whole number within the closed range.
+    Integer {
+        /// Smallest.
+        min: i64,
+        /// Largest.
+        max: i64,
+    },
+    /// A finite number within the closed range.
+    Number {
+        /// Smallest.
+        min: f64,
+        /// Largest.
+        max: f64,
+    },
+    /// `true` or `false`.
+    Boolean,
+    /// Text that is not empty.
+    Text,
+    /// Texts that are not empty.
+    Texts,
+    /// One of `now`; those of `later` are known but not available yet.
+    Word {
+        /// Words of this version.
+        now: &'static [&'static str],
+        /// Words of later ones.
+        later: &'static [&'static str],
+    },
+    /// `[x, y, z]`, each within ± [`FAR_M`].
+    Point,
+    /// `[x, y, z]`, each 0 to [`FAR_M`].
+    Lengths,
+    /// `[x, y, z]` of which one is not 0.
+    Direction,
+    /// `[yaw, pitch, roll]` in degrees, each within ±360.
+    Angles,
+    /// At least four points.
+    Points,
+    /// `"#rrggbb"` or `[r, g, b]`.
+    Color,
+    /// `"sky"` or a colour.
+    Background,
+    /// A level of detail, `"2"` or `"1.3"`.
+    Lod,
+    /// `[width, height]` in pixels.
+    Size,
+    /// A table.
+    Table(&'static Table),
+    /// Tables, `[[key]]`.
+    Tables(&'static Table),
+    /// One shape: a table of [`SHAPES`].
+    Shape,
+    /// Shapes.
+    Shapes,
+    /// Names of effects, or tables `{ effect = NAME, ... }`.
+    Effects,
+}
+
+/// Farthest a coordinate may lie from the origin, metres; beyond it f64 is coarser than a micrometre.
+pub const FAR_M: f64 = 1e9;
+
+/// One key.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Its name.
+    pub name: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+    /// What holds without it; empty: it must be given.
+    pub default: &'static str,
+    /// Unit, or empty.
+    pub unit: &'static str,
+    /// What it means.
+    pub doc: &'static str,
+    /// A good value, as TOML.
+    pub example: &'static str,
+}
+
+/// A table of keys.
+#[derive(Clone, Copy, Debug)]
+pub struct Table {
+    /// Its name as messages and docs give it.
+    pub name: &'static str,
+    /// What it is for.
+    pub doc: &'static str,
+    /// Its keys.
+    pub keys: &'static [Key],
+}
+
+const fn key(
+    name: &'static str,
+    kind: Kind,
+    default: &'static str,
+    unit: &'static str,
+    doc: &'static str,
+    example: &'static str,
+) -> Key {
+    Key { name, kind, default, unit, doc, example }
+}
+
+/// The whole file.
+pub const ROOT: Table = Table {
+    name: "",
+    doc: "The top of the file.",
+    keys: &[
+        key("veduta", Kind::Integer { min: 1, max: 1 }, "", "", "Version of the format.", "1"),
+        key(
+            "city",
+            Kind::Table(&CITY),
+            "no city",
+            "",
+            "Which city, and how much of it.",
+            "{ files = [\"a.city.json\"] }",
+        ),
+        key(
+            "camera",
+            Kind::Table(&CAMERA),
+            "a good first view",
+            "",
+            "The eye.",
+            "{ eye = [0, -90, 60], target = [0, 0, 5] }",
+        ),
+        key("sun", Kind::Table(&SUN), "from the south-west", "", "Light.", "{ azimuth_deg = 215.0 }"),
+        key("style", Kind::Table(&STYLE), "natural", "", "How the context looks.", "{ base = \"clay\" }"),
+        key("poi", Kind::Tables(&POI), "none", "", "Points of interest.", "[{ name = \"hall\", object = \"ID\" }]"),
+        key("lens", Kind::Tables(&LENS), "none", "", "Lenses, bottom to top: the last is the top lens.", "[]"),
+        key(
+            "figure",
+            Kind::Table(&FIGURE),
+            "1280x720, 1 sample",
+            "",
+            "How a picture is made.",
+            "{ size = [1920, 1080] }",
+        ),
+    ],
+};
+
+/// Top tables of later versions.
+pub const LATER_TABLES: &[&str] = &["time", "overlay", "trajectory"];
+
+/// `[city]`.
+pub const CITY: Table = Table {
+    name: "city",
+    doc: "Which city to load, and how much of it to show.",
+    keys: &[
+        key(
+            "files",
+            Kind::Texts,
+            "none",
+            "",
+            "City files or folders, relative to the scene file; several make one city. `${VEDUTA_DATA}` stands for the folder that variable names, `builtin:town` for the built-in city.",
+            "[\"city.city.json\"]",
+        ),
+        key("lod", Kind::Lod, "the finest there is", "", "Shows no level of detail finer than this.", "\"1.3\""),
+        key("ground", Kind::Boolean, "true", "", "Puts a plain ground under a city without terrain.", "false"),
+    ],
+};
+
+/// `[camera]`.
+pub const CAMERA: Table = Table {
+    name: "camera",
+    doc: "The eye, in model coordinates (x east, y north, z up).",
+    keys: &[
+        key("eye", Kind::Point, "", "m", "Where the eye is.", "[78500.0, 457800.0, 150.0]"),
+        key("target", Kind::Point, "", "m", "What it looks at: any point but `eye`.", "[78600.0, 458000.0, 10.0]"),
+        key(
+            "up",
+            Kind::Direction,
+            "[0, 0, 1]",
+            "",
+            "What is up in the picture. Where it is parallel to the view, north takes its place, and east where that is parallel too.",
+            "[0, 0, 1]",
+        ),
+        key(
+            "projection",
+            Kind::Word { now: &["perspective", "orthographic"], later: &[] },
+            "\"perspective\"",
+            "",
+            "Whether far things look smaller.",
+            "\"orthographic\"",
+        ),
+        key("fov_deg", Kind::Number { min: 0.01, max: 179.0 }, "45.0", "degrees", "Vertical field of view.", "60.0"),
+        key(
+            "height_m",
+            Kind::Number { min: 0.001, max: 1e7 },
+            "what `fov_deg` shows at the target",
+            "m",
+            "Height of an orthographic picture.",
+            "250.0",
+        ),
+        key(
+            "near_m",
+            Kind::Number { min: 1e-4, max: 1e6 },
+            "a 512th of the way to the target, 0.125 to 1",
+            "m",
+            "What is nearer along the view axis is not drawn.",
+            "0.5",
+        ),
+    ],
+};
+
+/// `[sun]`.
+pub const SUN: Table = Table {
+    name: "sun",
+    doc: "Where the light comes from.",
+    keys: &[
+        key(
+            "azimuth_deg",
+            Kind::Number { min: -360.0, max: 360.0 },
+            "215.0",
+            "degrees",
+            "Clockwise from north.",
+            "135.0",
+        ),
+        key("elevation_deg", Kind::Number { min: -90.0, max: 90.0 }, "48.0", "degrees", "Above the horizon.", "30.0"),
+        key("shadows", Kind::Boolean, "true", "", "Whether it casts shadows.", "false"),
+    ],
+};
+
+/// `[style]`.
+pub const STYLE: Table = Table {
+    name: "style",
+    doc: "How everything looks that no lens changes.",
+    keys: &[
+        key(
+            "base",
+            Kind::Word { now: &["natural", "clay"], later: &[] },
+            "\"natural\"",
+            "",
+            "The colours surfaces start from: the file's materials and textures, or one clay.",
+            "\"clay\"",
+        ),
+        key("effects", Kind::Effects, "none", "", "Effects on the context, in order; see Effects.", "[\"greyscale\"]"),
+        key(
+            "background",
+            Kind::Background,
+            "\"sky\"",
+            "",
+            "What is behind the city: a quiet sky, or one colour.",
+            "\"#ffffff\"",
+        ),
+    ],
+};
+
+/// `[[poi]]`.
+pub const POI: Table = Table {
+    name: "poi",
+    doc: "A point of interest: a city object or a place; exactly one of `object` and `at`.",
+    keys: &[
+        key("name", Kind::Text, "`poi-N`, N its place in the file", "", "Its name, unique.", "\"hall\""),
+        key("object", Kind::Text, "none", "", "Id of a city object.", "\"NL.IMBAG.Pand.0503100000031316\""),
+        key("at", Kind::Point, "none", "m", "A point.", "[10.0, 20.0, 3.0]"),
+    ],
+};
+
+/// `[[lens]]`.
+pub const LENS: Table = Table {
+    name: "lens",
+    doc: "A lens: where it acts (`shape`, or `shapes` for several) and what it does (`effects`).",
+    keys: &[
+        key("name", Kind::Text, "`lens-N`, N its place in the file", "", "Its name, unique.", "\"old town\""),
+        key(
+            "kind",
+            Kind::Word {
+                now: &["color"],
+                later: &[
+                    "content",
+                    "occlusion",
+                    "deformation",
+                    "best-view",
+                    "map-view",
+                    "annotation",
+                    "worldlet",
+                    "see-through",
+                    "portal",
+                    "time",
+                    "magnifier",
+                    "feature",
+                    "sampling",
+                    "fisheye",
+                ],
+            },
+            "\"color\"",
+            "",
+            "What kind of lens it is; `color` restyles what is in it.",
+            "\"color\"",
+        ),
+        key(
+            "enabled",
+            Kind::Boolean,
+            "true",
+            "",
+            "`false`: it keeps its place and its bit in the lens mask, and does nothing.",
+            "false",
+        ),
+        key(
+            "color",
+            Kind::Color,
+            "a colour of its own by its place",
+            "",
+            "Its own colour: its outline, its line in a legend.",
+            "\"#0072b2\"",
+        ),
+        key(
+            "shape",
+            Kind::Shape,
+            "",
+            "",
+            "Its focus area; see Shapes. Or `shapes`.",
+            "{ kind = \"sphere\", center = [0, 0, 0], radius = 60.0 }",
+        ),
+        key(
+            "shapes",
+            Kind::Shapes,
+            "none",
+            "",
+            "Several focus areas: it acts inside any of them.",
+            "[{ kind = \"sphere\", center = [0, 0, 0], radius = 60.0 }]",
+        ),
+        key(
+            "effects",
+            Kind::Effects,
+            "none",
+            "",
+            "What it does, in order: names, or tables with parameters; see Effects. At most one scene style.",
+            "[\"sepia\"]",
+        ),
+        key(
+            "space",
+            Kind::Word { now: &["displayed"], later: &["rest"] },
+            "\"displayed\"",
+            "",
+            "Which position of a surface counts.",
+            "\"displayed\"",
+        ),
+        key(
+            "body",
+            Kind::Word { now: &["outline", "none"], later: &["shell", "halo"] },
+            "\"outline\"",
+            "",
+            "How the lens body itself is drawn.",
+            "\"none\"",
+        ),
+        key(
+            "sprite",
+            Kind::Table(&SPRITE),
+            "as fine as the picture",
+            "",
+            "Its volumetric depth sprite.",
+            "{ resolution = 512 }",
+        ),
+    ],
+};
+
+/// `sprite` of a lens.
+pub const SPRITE: Table = Table {
+    name: "sprite",
+    doc: "The volumetric depth sprite that a lens is tested with.",
+    keys: &[key(
+        "resolution",
+        Kind::Integer { min: 16, max: 16_384 },
+        "the picture's",
+        "texels",
+        "Texels along the longer side of the picture.",
+        "512",
+    )],
+};
+
+/// `[figure]`.
+pub const FIGURE: Table = Table {
+    name: "figure",
+    doc: "How a picture is made of the scene.",
+    keys: &[
+        key("size", Kind::Size, "[1280, 720]", "pixels", "Width and height, each 1 to 16384.", "[1920, 1080]"),
+        key(
+            "samples",
+            Kind::Integer { min: 1, max: 1024 },
+            "1",
+            "per pixel",
+            "Samples that are averaged: 1 is fast, 16 is smooth.",
+            "16",
+        ),
+    ],
+};
+
+const SHAPE_KIND: Key = key("kind", Kind::Text, "", "", "Which shape.", "\"sphere\"");
+const CENTER: Key = key("center", Kind::Point, "", "m", "The middle of the body.", "[78600.0, 457950.0, 10.0]");
+const RADIUS: Key = key("radius", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "Radius; 0 holds nothing.", "60.0");
+
+/// Shapes of lenses.
+pub const SHAPES: &[Table] = &[
+    Table { name: "sphere", doc: "A ball.", keys: &[SHAPE_KIND, CENTER, RADIUS] },
+    Table {
+        name: "box",
+        doc: "A box.",
+        keys: &[
+            SHAPE_KIND,
+            CENTER,
+            key("size", Kind::Lengths, "", "m", "Full edges along its own x, y, z.", "[40.0, 20.0, 30.0]"),
+            key(
+                "rotation_deg",
+                Kind::Angles,
+                "[0, 0, 0]",
+                "degrees",
+                "`[yaw, pitch, roll]`: yaw turns it counter-clockwise seen from above (0: its x is east), pitch then lifts its x end, roll then turns it about its own x.",
+                "[30.0, 0.0, 0.0]",
+            ),
+        ],
+    },
+    Table {
+        name: "cylinder",
+        doc: "A cylinder.",
+        keys: &[
+            SHAPE_KIND,
+            CENTER,
+            RADIUS,
+            key("height", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "From end to end.", "80.0"),
+            key("axis", Kind::Direction, "[0, 0, 1]", "", "Its direction, of any length but 0.", "[0, 0, 1]"),
+        ],
+    },
+    Table {
+        name: "convex",
+        doc: "The convex hull of points.",
+        keys: &[
+            SHAPE_KIND,
+            key(
+                "points",
+                Kind::Points,
+                "",
+                "m",
+                "At least four, not all on one plane; at most 4096.",
+                "[[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]]",
+            ),
+        ],
+    },
+];
+
+/// Shapes of later versions.
+pub const LATER_SHAPES: &[&str] = &[
+    "ellipsoid",
+    "cone",
+    "frustum",
+    "polytope",
+    "mesh",
+    "mask",
+    "mask3d",
+    "corridor",
+    "objects",
+    "thematic",
+    "union",
+    "intersection",
+    "difference",
+    "flat",
+];
+
+/// Classes of an effect's use.
+pub const CLASSES: &[&str] = &["inside", "front", "behind", "rest"];
+
+impl Kind {
+    /// What it takes, as people read it.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Integer { min, max } if min == max => format!("{min}"),
+            Self::Integer { min, max } => format!("a whole number {min} to {max}"),
+            Self::Number { min, max } if *max >= FAR_M => format!("a number ≥ {min}"),
+            Self::Number { min, max } => format!("a number {min} to {max}"),
+            Self::Boolean => "true or false".into(),
+            Self::Text => "a text that is not empty".into(),
+            Self::Texts => "a list of texts that are not empty".into(),
+            Self::Word { now, .. } => now.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(" or "),
+            Self::Point => "[x, y, z], three finite numbers".into(),
+            Self::Lengths => "[x, y, z], three numbers ≥ 0".into(),
+            Self::Direction => "[x, y, z], not all 0".into(),
+            Self::Angles => "[yaw, pitch, roll], three numbers -360 to 360".into(),
+            Self::Points => "a list of at least four points [x, y, z]".into(),
+            Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
+            Self::Background => "\"sky\" or a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
+            Self::Lod => "a level of detail like \"2\" or \"1.3\"".into(),
+            Self::Size => "[width, height], two whole numbers 1 to 16384".into(),
+            Self::Table(_) => "a table".into(),
+            Self::Tables(_) => "a list of tables".into(),
+            Self::Shape => "a table { kind = ..., ... }".into(),
+            Self::Shapes => "a list of at least one shape".into(),
+            Self::Effects => "a list of effects: names or tables { effect = NAME, ... }".into(),
+        }
+    }
+}
+
+/// All tables of the file with the way to them, for the docs and for tests.
+pub const TABLES: &[(&str, &Table)] = &[
+    ("top level", &ROOT),
+    ("[city]", &CITY),
+    ("[camera]", &CAMERA),
+    ("[sun]", &SUN),
+    ("[style]", &STYLE),
+    ("[[poi]]", &POI),
+    ("[[lens]]", &LENS),
+    ("sprite of a lens", &SPRITE),
+    ("[figure]", &FIGURE),
+];
+
+/// The names of a table's keys.
+pub fn names(table: &Table) -> impl Iterator<Item = &'static str> + use<> {
+    table.keys.iter().map(|k| k.name)
+}
+
+/// Ramp names, for the docs.
+pub const RAMPS: &[&str] = ramp::NAMES;

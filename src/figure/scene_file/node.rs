@@ -1,0 +1,139 @@
+//! TOML as a tree that remembers lines.
+
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
+
+/// A value and where it stands.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Line, from 1.
+    pub line: u32,
+    /// What it is.
+    pub data: Data,
+}
+
+/// A TOML value.
+#[derive(Clone, Debug)]
+pub enum Data {
+    /// `true`.
+    Boolean(bool),
+    /// `1`.
+    Integer(i64),
+    /// `1.0`, `nan`, `inf`.
+    Number(f64),
+    /// `"a"`.
+    Text(String),
+    /// `[...]` or `[[...]]`.
+    List(Vec<Node>),
+    /// `{...}` or `[...]`, each key with its line.
+    Table(Vec<(String, u32, Node)>),
+    /// A date or time, as written.
+    Date(String),
+}
+
+/// Why a text is no TOML: line and message.
+pub type SyntaxError = (u32, String);
+
+/// Reads TOML.
+pub fn parse(text: &str) -> Result<Node, SyntaxError> {
+    let lines = Lines(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i).collect());
+    let table =
+        DeTable::parse(text).map_err(|e| (lines.at(e.span().map_or(0, |s| s.start)), e.message().to_owned()))?;
+    lines.table(table.get_ref(), 1)
+}
+
+/// Ends of lines, byte offsets.
+struct Lines(Vec<usize>);
+
+impl Lines {
+    fn at(&self, byte: usize) -> u32 {
+        self.0.partition_point(|end| *end < byte) as u32 + 1
+    }
+
+    fn table(&self, table: &DeTable, line: u32) -> Result<Node, SyntaxError> {
+        let mut entries = Vec::with_capacity(table.len());
+        for (key, value) in table {
+            entries.push((key.get_ref().to_string(), self.at(key.span().start), self.value(value)?));
+        }
+        // In the order of the file, so that messages come in that order.
+        entries.sort_by_key(|(_, line, _)| *line);
+        Ok(Node { line, data: Data::Table(entries) })
+    }
+
+    fn value(&self, value: &Spanned<DeValue>) -> Result<Node, SyntaxError> {
+        let line = self.at(value.span().start);
+        let data = match value.get_ref() {
+            DeValue::Boolean(b) => Data::Boolean(*b),
+            DeValue::String(s) => Data::Text(s.to_string()),
+            DeValue::Integer(i) => match i64::from_str_radix(i.as_str(), i.radix()) {
+                Ok(i) => Data::Integer(i),
+                Err(_) => return Err((line, format!("{} does not fit 64 bits", i.as_str()))),
+            },
+            DeValue::Float(f) => match f.as_str().parse() {
+                Ok(f) => Data::Number(f),
+                Err(_) => return Err((line, format!("{} is not a number", f.as_str()))),
+            },
+            DeValue::Datetime(d) => Data::Date(d.to_string()),
+            DeValue::Array(list) => Data::List(list.iter().map(|v| self.value(v)).collect::<Result<_, _>>()?),
+            DeValue::Table(table) => return self.table(table, line),
+        };
+        Ok(Node { line, data })
+    }
+}
+
+impl Node {
+    /// A number, whole or not.
+    pub fn number(&self) -> Option<f64> {
+        match self.data {
+            Data::Integer(i) => Some(i as f64),
+            Data::Number(n) => Some(n),
+            _ => None,
+        }
+    }
+
+    /// A text.
+    pub fn text(&self) -> Option<&str> {
+        match &self.data {
+            Data::Text(t) => Some(t),
+            _ => None,
+        }
+    }
+
+    /// A list.
+    pub fn list(&self) -> Option<&[Node]> {
+        match &self.data {
+            Data::List(l) => Some(l),
+            _ => None,
+        }
+    }
+
+    /// Exactly `N` numbers.
+    pub fn numbers<const N: usize>(&self) -> Option<[f64; N]> {
+        let list = self.list()?;
+        let numbers: Vec<f64> =
+            if list.len() == N { list.iter().filter_map(Node::number).collect() } else { return None };
+        numbers.try_into().ok()
+    }
+
+    /// The value as a message quotes it, shortened.
+    pub fn quoted(&self) -> String {
+        let text = match &self.data {
+            Data::Boolean(b) => b.to_string(),
+            Data::Integer(i) => i.to_string(),
+            Data::Number(n) => n.to_string(),
+            Data::Text(t) => format!("{t:?}"),
+            Data::Date(d) => d.clone(),
+            Data::List(l) => {
+                let some: Vec<String> = l.iter().take(4).map(Node::quoted).collect();
+                format!("[{}{}]", some.join(", "), if l.len() > 4 { ", ..." } else { "" })
+            }
+            Data::Table(t) => {
+                let keys: Vec<&str> = t.iter().take(3).map(|(k, ..)| k.as_str()).collect();
+                format!("a table ({})", keys.join(", "))
+            }
+        };
+        if text.chars().count() <= 80 { text } else { text.chars().take(77).collect::<String>() + "..." }
+    }
+}

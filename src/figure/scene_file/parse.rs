@@ -1,0 +1,413 @@
+//! From a checked tree to a [`Scene`].
+
+use std::collections::BTreeMap;
+
+use glam::{DQuat, DVec3};
+
+use crate::{
+    figure::scene_file::{
+        check::{Checker, Fields, Place, lod},
+        keys::{self, CLASSES, Kind},
+        node::{Data, Node},
+        paths::{Options, PathProblem},
+    },
+    geom::Shape,
+    lens::{
+        Class, EffectUse, Lens, LensBody, LensKind, Parameter,
+        effect::{self, EffectKind},
+        nearest::did_you_mean,
+        ramp::{MAX_CATEGORIES, category},
+    },
+    scene::{Background, BaseStyle, CitySpec, Figure, Poi, PoiPlace, Scene, Style, Sun},
+    view::{Camera, CameraError, Projection, default_near_m},
+};
+
+/// Vertical field of view where none is given, degrees.
+pub const DEFAULT_FOV_DEG: f64 = 45.0;
+
+/// The rotation of a box: yaw counter-clockwise from above, pitch lifts its x end, roll about its own x; degrees.
+pub fn rotation([yaw, pitch, roll]: [f64; 3]) -> DQuat {
+    DQuat::from_rotation_z(yaw.to_radians())
+        * DQuat::from_rotation_y(-pitch.to_radians())
+        * DQuat::from_rotation_x(roll.to_radians())
+}
+
+/// The colour of a lens that names none, by its place.
+pub fn lens_color(index: usize) -> [f32; 3] {
+    category(index % MAX_CATEGORIES)
+}
+
+/// Reads the scene; problems go to the checker, and what they touch gets its default.
+pub struct SceneReader<'o> {
+    /// What is wrong so far.
+    pub checker: Checker,
+    /// Whether a path needs `${VEDUTA_DATA}` and it is not set.
+    pub lacks_data: bool,
+    options: &'o Options,
+}
+
+impl<'o> SceneReader<'o> {
+    /// A reader of paths by `options`.
+    pub fn new(options: &'o Options) -> Self {
+        Self { checker: Checker::default(), lacks_data: false, options }
+    }
+
+    /// Reads a whole file.
+    pub fn scene(&mut self, root: &Node) -> Scene {
+        let place = Place { table: String::new(), prefix: String::new(), line: 1 };
+        let top = self.checker.fields(root, &keys::ROOT, keys::LATER_TABLES, place);
+        let mut scene = Scene::default();
+        for key in keys::ROOT.keys {
+            let Some(node) = top.node(key.name) else { continue };
+            match key.kind {
+                Kind::Table(table) => {
+                    let place = Place { table: key.name.into(), prefix: String::new(), line: node.line };
+                    let fields = self.checker.fields(node, table, &[], place);
+                    self.top_table(key.name, &fields, &mut scene);
+                }
+                Kind::Tables(table) => {
+                    for (i, element) in node.list().unwrap_or_default().iter().enumerate() {
+                        let place =
+                            Place { table: format!("{}.{i}", key.name), prefix: String::new(), line: element.line };
+                        let fields = self.checker.fields(element, table, &[], place);
+                        match key.name {
+                            "poi" => scene.pois.extend(self.poi(&fields, i)),
+                            _ => scene.lenses.push(self.lens(&fields, i)),
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        let lists = |key| top.node(key).and_then(Node::list).unwrap_or_default();
+        self.unique("lens", lists("lens"), scene.lenses.iter().map(|l| l.name.as_str()));
+        self.unique("poi", lists("poi"), scene.pois.iter().map(|p| p.name.as_str()));
+        scene
+    }
+
+    fn top_table(&mut self, name: &str, fields: &Fields, scene: &mut Scene) {
+        match name {
+            "city" => scene.city = self.city(fields),
+            "camera" => scene.camera = self.camera(fields),
+            "sun" => scene.sun = sun(fields),
+            "style" => scene.style = self.style(fields),
+            "figure" => scene.figure = figure(fields),
+            _ => {}
+        }
+    }
+
+    fn unique<'a>(&mut self, table: &str, nodes: &[Node], names: impl Iterator<Item = &'a str>) {
+        let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
+        for (i, name) in names.enumerate() {
+            if let Some(first) = seen.insert(name, i) {
+                let line = nodes.get(i).map_or(1, |n| n.line);
+                let place = Place { table: format!("{table}.{i}"), prefix: String::new(), line };
+                let message = format!("\"{name}\" is the name of {table}.{first} already; names must differ");
+                self.checker.note(&place, "name", line, message);
+            }
+        }
+    }
+
+    fn city(&mut self, fields: &Fields) -> CitySpec {
+        let mut files = Vec::new();
+        for (i, node) in fields.node("files").and_then(Node::list).unwrap_or_default().iter().enumerate() {
+            match self.options.resolve(node.text().unwrap_or_default()) {
+                Ok(path) => files.push(path),
+                Err(PathProblem::NoData) => {
+                    self.lacks_data = true;
+                    let message =
+                        format!("{} needs the environment variable VEDUTA_DATA, which is not set", node.quoted());
+                    self.checker.note(&fields.place, &format!("files.{i}"), node.line, message);
+                }
+                Err(PathProblem::Wrong(message)) => {
+                    self.checker.note(&fields.place, &format!("files.{i}"), node.line, message);
+                }
+            }
+        }
+        let lod = fields.node("lod").and_then(lod).map(|l| l.to_string());
+        CitySpec { files, lod, ground: fields.boolean("ground").unwrap_or(true) }
+    }
+
+    fn camera(&mut self, fields: &Fields) -> Option<Camera> {
+        let (eye, target) = (fields.point("eye")?, fields.point("target")?);
+        let up = fields.point("up").unwrap_or(DVec3::Z);
+        let fov_y = fields.number("fov_deg").unwrap_or(DEFAULT_FOV_DEG).to_radians();
+        let distance = eye.distance(target);
+        let projection = if fields.text("projection") == Some("orthographic") {
+            let seen = 2.0 * distance * (0.5 * fov_y).tan();
+            Projection::Orthographic { height_m: fields.number("height_m").unwrap_or(seen) }
+        } else {
+            if fields.given("height_m") && !(fields.given("projection") && fields.text("projection").is_none()) {
+                let message = "has a meaning only with projection = \"orthographic\"";
+                self.checker.note(&fields.place, "height_m", fields.line("height_m"), message);
+            }
+            Projection::Perspective { fov_y }
+        };
+        let near_m = fields.number("near_m").unwrap_or_else(|| default_near_m(distance));
+        let camera = Camera { eye, target, up, projection, near_m };
+        if let Err(error) = camera.check() {
+            let key = match error {
+                CameraError::EyeIsTarget(..) => "target",
+                CameraError::FieldOfView(_) => "fov_deg",
+                CameraError::Height(_) => "height_m",
+                CameraError::Near(_) => "near_m",
+                CameraError::NotFinite(_) | CameraError::Size(..) => "eye",
+            };
+            self.checker.note(&fields.place, key, fields.line(key), error.to_string());
+        }
+        Some(camera)
+    }
+
+    fn style(&mut self, fields: &Fields) -> Style {
+        let effects = self.effects(fields, false);
+        let base = if fields.text("base") == Some("clay") { BaseStyle::Clay } else { BaseStyle::Natural };
+        let background = fields.color("background").map_or(Background::Sky, Background::Color);
+        Style { base, effects, background }
+    }
+
+    fn poi(&mut self, fields: &Fields, index: usize) -> Option<Poi> {
+        let name = fields.text("name").map_or_else(|| format!("poi-{index}"), str::to_owned);
+        let place = match (fields.text("object"), fields.point("at")) {
+            (Some(id), None) if !fields.given("at") => PoiPlace::Object(id.to_owned()),
+            (None, Some(at)) if !fields.given("object") => PoiPlace::At(at),
+            (None, None) if fields.given("object") || fields.given("at") => return None,
+            (both, _) => {
+                let message = if both.is_some() {
+                    "is given together with object: a point of interest is one of them"
+                } else {
+                    "is missing: give object = \"ID\" or at = [x, y, z]"
+                };
+                self.checker.note(&fields.place, "at", fields.line("at"), message);
+                return None;
+            }
+        };
+        Some(Poi { name, place })
+    }
+
+    fn lens(&mut self, fields: &Fields, index: usize) -> Lens {
+        let shapes = self.shapes(fields);
+        let effects = self.effects(fields, true);
+        let sprite = fields
+            .node("sprite")
+            .map(|node| self.checker.fields(node, &keys::SPRITE, &[], fields.place.within("sprite", node.line)));
+        Lens {
+            name: fields.text("name").map_or_else(|| format!("lens-{index}"), str::to_owned),
+            kind: LensKind::Color,
+            enabled: fields.boolean("enabled").unwrap_or(true),
+            color: fields.color("color").unwrap_or_else(|| lens_color(index)),
+            shapes,
+            effects,
+            body: if fields.text("body") == Some("none") { LensBody::None } else { LensBody::Outline },
+            sprite_resolution: sprite.and_then(|s| s.integer("resolution")),
+        }
+    }
+
+    fn shapes(&mut self, fields: &Fields) -> Vec<Shape> {
+        match (fields.given("shape"), fields.given("shapes")) {
+            (true, true) => {
+                let message = "is given together with shape: put all of them into shapes";
+                self.checker.note(&fields.place, "shapes", fields.line("shapes"), message);
+            }
+            (false, false) => {
+                let message = "is missing: a lens acts somewhere. For example shape = { kind = \"sphere\", center = [x, y, z], radius = 60.0 }";
+                self.checker.note(&fields.place, "shape", fields.place.line, message);
+            }
+            _ => {}
+        }
+        let one = fields.node("shape").map(|n| ("shape".to_owned(), n));
+        let many = fields.node("shapes").and_then(Node::list).unwrap_or_default();
+        let many = many.iter().enumerate().map(|(i, n)| (format!("shapes.{i}"), n));
+        one.into_iter()
+            .chain(many)
+            .filter_map(|(key, node)| self.shape(node, &fields.place.within(&key, node.line)))
+            .collect()
+    }
+
+    fn shape(&mut self, node: &Node, place: &Place) -> Option<Shape> {
+        let Data::Table(entries) = &node.data else {
+            self.checker.note(
+                place,
+                "",
+                node.line,
+                format!("must be a table {{ kind = ..., ... }}, is {}", node.quoted()),
+            );
+            return None;
+        };
+        let kind = entries.iter().find(|(k, ..)| k == "kind").map(|(.., n)| n);
+        let names = || keys::SHAPES.iter().map(|s| s.name);
+        let all = names().collect::<Vec<_>>().join(", ");
+        let Some(table) = kind.and_then(Node::text).and_then(|k| keys::SHAPES.iter().find(|s| s.name == k)) else {
+            let (line, message) = match kind {
+                None => (node.line, format!("is missing: one of {all}")),
+                Some(n) => match n.text() {
+                    Some(k) if keys::LATER_SHAPES.contains(&k) => {
+                        (n.line, format!("kind = \"{k}\" is not available yet; available: {all}"))
+                    }
+                    _ => {
+                        let hint = did_you_mean(
+                            n.text().unwrap_or_default(),
+                            names().chain(keys::LATER_SHAPES.iter().copied()),
+                        );
+                        (n.line, format!("must be one of {all}, is {}{hint}", n.quoted()))
+                    }
+                },
+            };
+            self.checker.note(place, "kind", line, message);
+            return None;
+        };
+        let fields = self.checker.fields(node, table, &[], place.clone());
+        let shape = built_shape(table.name, &fields)?;
+        if let Err(error) = shape.volume() {
+            let key = if table.name == "convex" { "points" } else { "" };
+            self.checker.note(place, key, node.line, error.to_string());
+        }
+        Some(shape)
+    }
+
+    fn effects(&mut self, fields: &Fields, in_lens: bool) -> Vec<EffectUse> {
+        let mut effects = Vec::new();
+        let mut scene_style: Option<String> = None;
+        for (i, node) in fields.node("effects").and_then(Node::list).unwrap_or_default().iter().enumerate() {
+            let place = fields.place.within(&format!("effects.{i}"), node.line);
+            let Some(used) = self.effect(node, &place, in_lens) else { continue };
+            let is_scene_style = effect::find(&used.effect).is_some_and(|e| e.kind == EffectKind::SceneStyle);
+            match &scene_style {
+                Some(first) if is_scene_style => {
+                    let message =
+                        format!("\"{}\" is a second scene style beside \"{first}\"; only one is possible", used.effect);
+                    self.checker.note(&place, "", node.line, message);
+                }
+                None if is_scene_style => scene_style = Some(used.effect.clone()),
+                _ => {}
+            }
+            effects.push(used);
+        }
+        effects
+    }
+
+    fn effect(&mut self, node: &Node, place: &Place, in_lens: bool) -> Option<EffectUse> {
+        let mut used = EffectUse { effect: String::new(), class: Class::Inside, parameters: BTreeMap::new() };
+        let mut lines: BTreeMap<&str, u32> = BTreeMap::new();
+        match &node.data {
+            Data::Text(name) => used.effect.clone_from(name),
+            Data::Table(entries) => {
+                for (key, line, value) in entries {
+                    lines.insert(key, *line);
+                    match (key.as_str(), value.text()) {
+                        ("effect", Some(name)) => name.clone_into(&mut used.effect),
+                        ("class", _) if !in_lens => {
+                            self.checker.note(
+                                place,
+                                key,
+                                *line,
+                                "has a meaning only in a lens: the context is everything",
+                            );
+                        }
+                        ("class", Some("inside")) => used.class = Class::Inside,
+                        ("class", Some("front")) => used.class = Class::Front,
+                        ("class", Some("behind")) => used.class = Class::Behind,
+                        ("class", Some("rest")) => used.class = Class::Rest,
+                        ("effect" | "class", text) => {
+                            let what = if key == "class" { CLASSES.join(", ") } else { "the name of an effect".into() };
+                            let hint = text.map_or_else(String::new, |t| did_you_mean(t, CLASSES.iter().copied()));
+                            self.checker.note(
+                                place,
+                                key,
+                                *line,
+                                format!("must be one of {what}, is {}{hint}", value.quoted()),
+                            );
+                        }
+                        _ => match parameter(value) {
+                            Some(value) => {
+                                used.parameters.insert(key.clone(), value);
+                            }
+                            None => self.checker.note(
+                                place,
+                                key,
+                                *line,
+                                format!("{} is no value of a parameter", value.quoted()),
+                            ),
+                        },
+                    }
+                }
+                if used.effect.is_empty() {
+                    if !lines.contains_key("effect") {
+                        self.checker.note(place, "effect", node.line, "is missing: the name of an effect");
+                    }
+                    return None;
+                }
+            }
+            _ => {
+                let message = format!("must be a name or a table {{ effect = NAME, ... }}, is {}", node.quoted());
+                self.checker.note(place, "", node.line, message);
+                return None;
+            }
+        }
+        for problem in effect::check(&used) {
+            let line = lines.get(problem.key.as_str()).copied().unwrap_or(node.line);
+            let key = if problem.key == "effect" && lines.is_empty() { "" } else { &problem.key };
+            self.checker.note(place, key, line, problem.message);
+        }
+        Some(used)
+    }
+}
+
+fn built_shape(kind: &str, fields: &Fields) -> Option<Shape> {
+    let center = fields.point("center");
+    Some(match kind {
+        "sphere" => Shape::Sphere { center: center?, radius: fields.number("radius")? },
+        "box" => {
+            let angles = fields.node("rotation_deg").and_then(Node::numbers::<3>).unwrap_or([0.0; 3]);
+            Shape::Box { center: center?, size: fields.point("size")?, rotation: rotation(angles) }
+        }
+        "cylinder" => {
+            let axis = fields.point("axis").unwrap_or(DVec3::Z);
+            // A unit axis stays as it is, to the bit: written and read again it must not drift.
+            let axis = if (axis.length_squared() - 1.0).abs() < 1e-15 { axis } else { axis.try_normalize()? };
+            Shape::Cylinder {
+                center: center?,
+                radius: fields.number("radius")?,
+                height: fields.number("height")?,
+                axis,
+            }
+        }
+        _ => {
+            let points = fields.node("points").and_then(Node::list)?;
+            Shape::Convex { points: points.iter().filter_map(|p| p.numbers::<3>().map(DVec3::from)).collect() }
+        }
+    })
+}
+
+fn parameter(node: &Node) -> Option<Parameter> {
+    match &node.data {
+        Data::Boolean(b) => Some(Parameter::Boolean(*b)),
+        Data::Integer(_) | Data::Number(_) => node.number().map(Parameter::Number),
+        Data::Text(t) => Some(Parameter::Text(t.clone())),
+        Data::List(list) => {
+            let numbers: Vec<f64> = list.iter().filter_map(Node::number).collect();
+            let texts: Vec<String> = list.iter().filter_map(|n| n.text().map(str::to_owned)).collect();
+            match list.len() {
+                n if n == numbers.len() => Some(Parameter::Numbers(numbers)),
+                n if n == texts.len() => Some(Parameter::Texts(texts)),
+                _ => None,
+            }
+        }
+        Data::Table(_) | Data::Date(_) => None,
+    }
+}
+
+fn sun(fields: &Fields) -> Sun {
+    let default = Sun::default();
+    let radians = |key, default: f64| fields.number(key).map_or(default, f64::to_radians);
+    Sun {
+        azimuth: radians("azimuth_deg", default.azimuth),
+        elevation: radians("elevation_deg", default.elevation),
+        shadows: fields.boolean("shadows").unwrap_or(default.shadows),
+    }
+}
+
+fn figure(fields: &Fields) -> Figure {
+    let default = Figure::default();
+    let size = fields.node("size").and_then(Node::numbers::<2>).map_or(default.size, |s| s.map(|side| side as u32));
+    Figure { size, samples: fields.integer("samples").unwrap_or(default.samples) }
+}

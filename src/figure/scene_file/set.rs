@@ -1,0 +1,278 @@
+//! `--set PATH=VALUE`: one value of a scene, as a command.
+//!
+//! The path is walked on the scene's own TOML, which is then read again: the same checks, the same messages.
+
+use toml::{Table, Value};
+
+use crate::{
+    figure::scene_file::{
+        Options, SceneFileError,
+        check::Problem,
+        keys::{self, Kind},
+        parse, to_toml,
+    },
+    lens::nearest::did_you_mean,
+    scene::{Command, Scene},
+};
+
+/// What as a value takes a key, or an element of a list, away.
+const UNSET: &str = "unset";
+
+/// The command for `assignment`, `PATH=VALUE`.
+///
+/// A path is keys and, in lists, places from 0 or names: `lens.0.shape.radius`, `lens.NAME.enabled`,
+/// `lens."a.b".color`; the place after the last adds an element. The value is TOML, or a bare word, which is a text;
+/// `unset` takes the key or element away.
+pub fn set(scene: &Scene, assignment: &str) -> Result<Command, SceneFileError> {
+    let name = format!("--set {assignment}");
+    let fail = |key: &str, message: String| SceneFileError {
+        name: name.clone(),
+        problems: vec![Problem { line: 0, table: String::new(), key: key.to_owned(), message }],
+        has_lines: false,
+        is_data_absent: false,
+    };
+    let (path, value) =
+        split(assignment).ok_or_else(|| fail("", "must be PATH=VALUE, for example lens.0.shape.radius=80".into()))?;
+    let segments = segments(path).map_err(|message| fail(path, message))?;
+    let value = value_of(value.trim()).map_err(|message| fail(path, message))?;
+    let mut root: Table = to_toml(scene).parse().map_err(|e: toml::de::Error| fail(path, e.message().to_owned()))?;
+    assign(&mut root, &segments, value).map_err(|message| fail(path, message))?;
+    let text = toml::to_string(&root).map_err(|e| fail(path, e.to_string()))?;
+    let after = parse(&text, &name, &Options::for_command_line())
+        .map_err(|error| SceneFileError { has_lines: false, ..error })?;
+    Ok(Command::new(format!("set {path}"), scene.clone(), after))
+}
+
+/// Splits at the first `=` outside quotes.
+fn split(assignment: &str) -> Option<(&str, &str)> {
+    let mut is_quoted = false;
+    let at = assignment.find(|c: char| {
+        is_quoted ^= c == '"';
+        c == '=' && !is_quoted
+    })?;
+    let (path, value) = (assignment[..at].trim(), &assignment[at + 1..]);
+    (!path.is_empty()).then_some((path, value))
+}
+
+/// `a."b.c".d` → a, b.c, d.
+fn segments(path: &str) -> Result<Vec<String>, String> {
+    let mut segments = vec![String::new()];
+    let mut is_quoted = false;
+    for c in path.chars() {
+        match c {
+            '"' => is_quoted = !is_quoted,
+            '.' if !is_quoted => segments.push(String::new()),
+            c => segments.last_mut().into_iter().for_each(|s| s.push(c)),
+        }
+    }
+    match segments.iter().position(String::is_empty) {
+        _ if is_quoted => Err("a quote is not closed".into()),
+        Some(_) => Err("has an empty part between its dots".into()),
+        None => Ok(segments),
+    }
+}
+
+/// TOML, or a bare word; `None` for [`UNSET`].
+fn value_of(text: &str) -> Result<Option<Value>, String> {
+    if text == UNSET {
+        return Ok(None);
+    }
+    if text.is_empty() {
+        return Err("has no value after the =".into());
+    }
+    let parsed = format!("v = {text}").parse::<Table>();
+    match parsed.ok().filter(|t| t.len() == 1).and_then(|mut t| t.remove("v")) {
+        Some(value) => Ok(Some(value)),
+        // What begins like TOML was meant as TOML.
+        None if text.starts_with(['[', '{', '"', '\'']) => {
+            Err(format!("{text} is not a TOML value; texts and lists need their closing quotes and brackets"))
+        }
+        None => Ok(Some(Value::String(text.to_owned()))),
+    }
+}
+
+fn assign(root: &mut Table, segments: &[String], value: Option<Value>) -> Result<(), String> {
+    let (first, rest) = segments.split_first().ok_or("is empty")?;
+    if let Some(key) = keys::ROOT.keys.iter().find(|k| k.name == first) {
+        // A first lens or point of interest has no list to stand in yet.
+        if matches!(key.kind, Kind::Tables(_)) && !rest.is_empty() {
+            root.entry(first.clone()).or_insert_with(|| Value::Array(Vec::new()));
+        }
+    } else if !keys::LATER_TABLES.contains(&first.as_str()) {
+        return Err(format!("there is no \"{first}\" in a scene{}", did_you_mean(first, keys::names(&keys::ROOT))));
+    }
+    in_table(root, first, rest, value)
+}
+
+fn in_table(table: &mut Table, key: &str, rest: &[String], value: Option<Value>) -> Result<(), String> {
+    // One shape is written as `shape`, but may be called `shapes.0` as well.
+    if key == "shapes"
+        && !rest.is_empty()
+        && !table.contains_key("shapes")
+        && let Some(one) = table.remove("shape")
+    {
+        table.insert("shapes".into(), Value::Array(vec![one]));
+    }
+    // Giving the one form takes the other away.
+    if rest.is_empty() && value.is_some() && (key == "shape" || key == "shapes") {
+        table.remove("shape");
+        table.remove("shapes");
+    }
+    match (rest.split_first(), value) {
+        (None, Some(value)) => {
+            table.insert(key.to_owned(), value);
+            Ok(())
+        }
+        (None, None) => {
+            table.remove(key);
+            Ok(())
+        }
+        (Some((next, rest)), value) => {
+            let child = table.entry(key.to_owned()).or_insert_with(|| match next.as_str() {
+                "0" => Value::Array(Vec::new()),
+                _ => Value::Table(Table::new()),
+            });
+            within(child, key, next, rest, value)
+        }
+    }
+}
+
+/// Goes one step down into `parent`, which is called `name`.
+fn within(parent: &mut Value, name: &str, key: &str, rest: &[String], value: Option<Value>) -> Result<(), String> {
+    match parent {
+        Value::Table(table) => in_table(table, key, rest, value),
+        Value::Array(list) => in_list(list, name, key, rest, value),
+        // An effect without parameters is written as its name.
+        Value::String(effect) if key == "effect" || name == "effects" => {
+            let mut table = Table::from_iter([("effect".to_owned(), Value::String(effect.clone()))]);
+            in_table(&mut table, key, rest, value)?;
+            *parent = Value::Table(table);
+            Ok(())
+        }
+        other => Err(format!("\"{name}\" is {other}: there is no \"{key}\" in it")),
+    }
+}
+
+fn in_list(list: &mut Vec<Value>, name: &str, key: &str, rest: &[String], value: Option<Value>) -> Result<(), String> {
+    let called = |v: &Value| v.get("name").and_then(Value::as_str).map(str::to_owned);
+    let index = match key.parse::<usize>() {
+        Ok(index) => index,
+        Err(_) => list.iter().position(|v| called(v).as_deref() == Some(key)).ok_or_else(|| {
+            let names: Vec<String> = list.iter().filter_map(called).collect();
+            format!("there is no {name} \"{key}\"{}", did_you_mean(key, names.iter().map(String::as_str)))
+        })?,
+    };
+    if index > list.len() || (index == list.len() && value.is_none()) {
+        return Err(format!("there is no {name}.{index}: there are {}, from 0", list.len()));
+    }
+    match (rest.split_first(), value) {
+        (None, Some(value)) if index == list.len() => list.push(value),
+        (None, Some(value)) => list[index] = value,
+        (None, None) => {
+            list.remove(index);
+        }
+        (Some((next, rest)), value) => {
+            if index == list.len() {
+                list.push(Value::Table(Table::new()));
+            }
+            let child_name = if name == "effects" { name.to_owned() } else { format!("{name}.{index}") };
+            within(&mut list[index], &child_name, next, rest, value)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{geom::Shape, scene::BaseStyle, view::Projection};
+
+    const SCENE: &str = r#"
+veduta = 1
+[camera]
+eye = [0, -90, 60]
+target = [0, 0, 5]
+[[lens]]
+name = "old town"
+shape = { kind = "sphere", center = [0, 0, 0], radius = 60.0 }
+effects = ["sepia", { effect = "thematic", attribute = "year" }]
+[[lens]]
+name = "b"
+shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
+"#;
+
+    fn after(assignment: &str) -> Result<Scene, String> {
+        let mut scene = parse(SCENE, "s", &Options::for_command_line()).unwrap();
+        let command = set(&scene, assignment).map_err(|e| e.to_string())?;
+        command.redo(&mut scene);
+        Ok(scene)
+    }
+
+    #[test]
+    fn values_are_set_by_place_and_by_name() {
+        let radius = |s: &Scene| match s.lenses[0].shapes[0] {
+            Shape::Sphere { radius, .. } => radius,
+            _ => f64::NAN,
+        };
+        assert_eq!(radius(&after("lens.0.shape.radius=80").unwrap()), 80.0);
+        assert_eq!(radius(&after("lens.old town.shape.radius = 81.5").unwrap()), 81.5);
+        assert_eq!(radius(&after("lens.\"old town\".shapes.0.radius=82").unwrap()), 82.0);
+        assert!(!after("lens.b.enabled=false").unwrap().lenses[1].enabled);
+        assert_eq!(after("figure.size=[64,48]").unwrap().figure.size, [64, 48]);
+        assert_eq!(after("city.lod=1.3").unwrap().city.lod.as_deref(), Some("1.3"));
+        assert_eq!(after("city.lod=\"2.0\"").unwrap().city.lod.as_deref(), Some("2"));
+        assert!(!after("city.ground=false").unwrap().city.ground);
+        assert_eq!(after("style.base=clay").unwrap().style.base, BaseStyle::Clay);
+        assert_eq!(after("lens.1.color=#ff0000").unwrap().lenses[1].color, [1.0, 0.0, 0.0]);
+        assert_eq!(
+            after("lens.0.effects.1.attribute=height").unwrap().lenses[0].effects[1].text("attribute"),
+            Some("height")
+        );
+        assert_eq!(after("lens.0.effects.0.amount=0.5").unwrap().lenses[0].effects[0].amount(), 0.5);
+        assert_eq!(after("lens.1.effects.0=sepia").unwrap().lenses[1].effects[0].effect, "sepia");
+        assert!((after("sun.azimuth_deg=90").unwrap().sun.azimuth - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+        let camera = after("camera.projection=orthographic").unwrap().camera.unwrap();
+        assert!(matches!(camera.projection, Projection::Orthographic { height_m } if height_m > 10.0));
+    }
+
+    #[test]
+    fn elements_come_and_go() {
+        let added = after("lens.2={name=\"c\", shape={kind=\"sphere\", center=[0,0,0], radius=1}}").unwrap();
+        assert_eq!(added.lenses.iter().map(|l| l.name.as_str()).collect::<Vec<_>>(), ["old town", "b", "c"]);
+        assert_eq!(after("lens.b=unset").unwrap().lenses.len(), 1);
+        assert_eq!(after("poi.0={at=[1,2,3]}").unwrap().pois[0].name, "poi-0");
+        assert_eq!(after("lens.0.effects=unset").unwrap().lenses[0].effects, []);
+        assert_eq!(after("camera=unset").unwrap().camera, None);
+        let both = after(
+            "lens.0.shapes=[{kind=\"sphere\",center=[0,0,0],radius=1},{kind=\"sphere\",center=[9,0,0],radius=1}]",
+        );
+        assert_eq!(both.unwrap().lenses[0].shapes.len(), 2);
+    }
+
+    #[test]
+    fn mistakes_name_the_path_and_the_nearest_key() {
+        for (assignment, expected) in [
+            (
+                "lens.0.shape.raduis=80",
+                "--set lens.0.shape.raduis=80: [lens.0] shape.raduis: unknown key; did you mean \"radius\"?",
+            ),
+            (
+                "lens.0.shape.radius=-3",
+                "--set lens.0.shape.radius=-3: [lens.0] shape.radius: must be a number ≥ 0, is -3",
+            ),
+            ("lens.old twn.enabled=false", "there is no lens \"old twn\"; did you mean \"old town\"?"),
+            ("lens.9.enabled=false", "there is no lens.9: there are 2, from 0"),
+            ("cmaera.eye=[0,0,0]", "there is no \"cmaera\" in a scene; did you mean \"camera\"?"),
+            ("camera.eye=[0,0", "[0,0 is not a TOML value"),
+            ("camera.eye", "must be PATH=VALUE"),
+            ("=3", "must be PATH=VALUE"),
+            ("lens..x=3", "has an empty part"),
+            ("camera.eye=", "has no value after the ="),
+            ("veduta.x=3", "\"veduta\" is 1: there is no \"x\" in it"),
+            ("time.start=3", "time: is not available yet"),
+        ] {
+            let message = after(assignment).unwrap_err();
+            assert!(message.contains(expected), "{assignment}: {message}");
+        }
+    }
+}

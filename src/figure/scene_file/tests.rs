@@ -1,0 +1,369 @@
+use glam::{DQuat, DVec3};
+use proptest::prelude::*;
+
+use super::*;
+use crate::{
+    geom::Shape,
+    lens::{Class, EffectUse, Lens, LensBody, LensKind, Parameter},
+    scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Style, Sun},
+    view::{Camera, Projection},
+};
+
+const MINIMAL: &str = "veduta = 1\n";
+
+fn read_text(text: &str) -> Result<Scene, String> {
+    parse(text, "s.toml", &Options::for_command_line()).map_err(|e| e.to_string())
+}
+
+/// A scene of one lens, with `lines` in its table.
+fn lens_text(lines: &str) -> String {
+    format!("veduta = 1\n[[lens]]\n{lines}\n")
+}
+
+const BALL: &str = "shape = { kind = \"sphere\", center = [1, 2, 3], radius = 60.0 }\n";
+
+#[test]
+fn the_contracts_example_is_read() {
+    let text = r#"
+veduta = 1
+[city]
+files = ["city.city.json"]
+[camera]
+eye = [1.0, -90, 60]
+target = [0, 0, 5]
+up = [0, 0, 1]
+fov_deg = 45.0
+[[poi]]
+name = "hall"
+object = "ID"
+[[lens]]
+name = "a"
+kind = "color"
+enabled = true
+shape = { kind = "sphere", center = [4, 5, 6], radius = 60.0 }
+effects = ["sepia", { effect = "thematic", attribute = "yearOfConstruction", class = "inside" }]
+"#;
+    let scene = read_text(text).unwrap();
+    let camera = scene.camera.unwrap();
+    assert_eq!((camera.eye, camera.target), (DVec3::new(1.0, -90.0, 60.0), DVec3::new(0.0, 0.0, 5.0)));
+    assert_eq!(camera.projection, Projection::Perspective { fov_y: std::f64::consts::FRAC_PI_4 });
+    assert_eq!(scene.city.files, [std::path::PathBuf::from("city.city.json")]);
+    assert_eq!(scene.pois, [Poi { name: "hall".into(), place: PoiPlace::Object("ID".into()) }]);
+    let lens = &scene.lenses[0];
+    assert_eq!(lens.shapes, [Shape::Sphere { center: DVec3::new(4.0, 5.0, 6.0), radius: 60.0 }]);
+    assert_eq!(
+        (lens.effects[0].effect.as_str(), lens.effects[1].text("attribute")),
+        ("sepia", Some("yearOfConstruction"))
+    );
+}
+
+#[test]
+fn an_almost_empty_file_is_a_scene() {
+    assert_eq!(read_text(MINIMAL), Ok(Scene::default()));
+    assert_eq!(read_text("\u{feff}veduta = 1"), Ok(Scene::default()));
+}
+
+#[test]
+fn every_mistake_names_its_line_place_and_remedy() {
+    for (text, expected) in [
+        ("", "s.toml:1: veduta: is missing: Version of the format."),
+        ("veduta = 2", "s.toml:1: veduta: must be 1, is 2"),
+        ("veduta = 1\nx = [", "s.toml:2: "),
+        ("veduta = 1\n\n[camra]\n", "s.toml:3: camra: unknown key; did you mean \"camera\"?"),
+        ("veduta = 1\n[time]\n", "time: is not available yet"),
+        ("veduta = 1\ncity = 3\n", "city: must be a table, is 3"),
+        (
+            "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]",
+            "s.toml:4: [camera] target: eye and target are the same point",
+        ),
+        ("veduta = 1\n[camera]\neye = [0, 0, 0]", "s.toml:2: [camera] target: is missing"),
+        (
+            "veduta = 1\n[camera]\neye = [nan, 0, 0]\ntarget = [0, 0, 1]",
+            "s.toml:3: [camera] eye: must be [x, y, z], three finite numbers, is [NaN, 0, 0]",
+        ),
+        (
+            "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nfov_deg = 180",
+            "[camera] fov_deg: must be a number 0.01 to 179, is 180",
+        ),
+        (
+            "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nup = [0, 0, 0]",
+            "[camera] up: must be [x, y, z], not all 0",
+        ),
+        (
+            "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nheight_m = 9",
+            "height_m: has a meaning only with projection = \"orthographic\"",
+        ),
+        (
+            "veduta = 1\n[figure]\nsize = [16385, 1]",
+            "[figure] size: must be [width, height], two whole numbers 1 to 16384, is [16385, 1]",
+        ),
+        ("veduta = 1\n[figure]\nsize = [0, 100]", "[figure] size: must be"),
+        ("veduta = 1\n[figure]\nsamples = 1.5", "[figure] samples: must be a whole number 1 to 1024, is 1.5"),
+        (
+            "veduta = 1\n[city]\nfiles = [\"a\"]\nlod = \"fine\"",
+            "[city] lod: must be a level of detail like \"2\" or \"1.3\", is \"fine\"",
+        ),
+        ("veduta = 1\n[city]\nfiles = [1]", "[city] files: must be a list of texts"),
+        (
+            "veduta = 1\n[style]\nbase = \"cley\"",
+            "[style] base: must be \"natural\" or \"clay\", is \"cley\"; did you mean \"clay\"?",
+        ),
+        (
+            "veduta = 1\n[style]\neffects = [{ effect = \"sepia\", class = \"front\" }]",
+            "[style] effects.0.class: has a meaning only in a lens",
+        ),
+        ("veduta = 1\n[[poi]]\nname = \"a\"", "[poi.0] at: is missing: give object"),
+        ("veduta = 1\n[[poi]]\nat = [0,0,0]\nobject = \"x\"", "[poi.0] at: is given together with object"),
+        (
+            "veduta = 1\n[[poi]]\nname=\"a\"\nat = [0,0,0]\n[[poi]]\nname=\"a\"\nat = [0,0,0]",
+            "s.toml:5: [poi.1] name: \"a\" is the name of poi.0 already",
+        ),
+        ("veduta = 99999999999999999999", "s.toml:1: 99999999999999999999 does not fit 64 bits"),
+        ("veduta = 1\nveduta = 1", "s.toml:2: duplicate key"),
+    ] {
+        let message = read_text(text).unwrap_err();
+        assert!(message.contains(expected), "{text}\n  gave     {message}\n  expected {expected}");
+    }
+}
+
+#[test]
+fn every_mistake_in_a_lens_is_named() {
+    for (lines, expected) in [
+        ("name = \"a\"", "s.toml:2: [lens.0] shape: is missing"),
+        (
+            "shape = { kind = \"sphere\", center = [0, 0, 0], radius = -3 }",
+            "s.toml:3: [lens.0] shape.radius: must be a number ≥ 0, is -3",
+        ),
+        (
+            "shape = { kind = \"sphere\", center = [0, 0, 0], radius = nan }",
+            "shape.radius: must be a number ≥ 0, is NaN",
+        ),
+        (
+            "shape = { kind = \"sphere\", centre = [0, 0, 0], radius = 3 }",
+            "shape.centre: unknown key; did you mean \"center\"?",
+        ),
+        (
+            "shape = { kind = \"shpere\" }",
+            "shape.kind: must be one of sphere, box, cylinder, convex, is \"shpere\"; did you mean \"sphere\"?",
+        ),
+        (
+            "shape = { kind = \"ellipsoid\" }",
+            "shape.kind: kind = \"ellipsoid\" is not available yet; available: sphere, box, cylinder, convex",
+        ),
+        ("shape = { center = [0, 0, 0] }", "shape.kind: is missing: one of sphere"),
+        ("shape = \"sphere\"", "shape: must be a table { kind = ..., ... }, is \"sphere\""),
+        ("shapes = []", "shapes: must be a list of at least one shape, is []"),
+        (
+            "shapes = [{ kind = \"convex\", points = [[0,0,0],[1,0,0],[0,1,0],[1,1,0]] }]",
+            "shapes.0.points: all 4 points lie on one plane",
+        ),
+        (
+            "shape = { kind = \"convex\", points = [[0,0,0],[1,0],[0,1,0],[1,1,0]] }",
+            "shape.points: point 1 must be [x, y, z]",
+        ),
+        (
+            "shape = { kind = \"cylinder\", center = [0,0,0], radius = 1, height = 1, axis = [0,0,0] }",
+            "shape.axis: must be [x, y, z], not all 0",
+        ),
+        (
+            "shape = { kind = \"box\", center = [0,0,0], size = [1, -1, 1] }",
+            "shape.size: must be [x, y, z], three numbers ≥ 0, is [1, -1, 1]",
+        ),
+        (
+            "shape = { kind = \"sphere\", center = [0, 0, 0], radius = 3 }\nshapes = []",
+            "shapes: is given together with shape",
+        ),
+    ] {
+        let message = read_text(&lens_text(lines)).unwrap_err();
+        assert!(message.contains(expected), "{lines}\n  gave     {message}\n  expected {expected}");
+    }
+    for (lines, expected) in [
+        ("kind = \"occlusion\"", "s.toml:4: [lens.0] kind: \"occlusion\" is not available yet; available: color"),
+        ("kind = \"colour\"", "[lens.0] kind: must be \"color\", is \"colour\"; did you mean \"color\"?"),
+        ("space = \"rest\"", "space: \"rest\" is not available yet"),
+        ("color = \"red\"", "color: must be a colour: \"#rrggbb\" or [r, g, b] of 0 to 1, is \"red\""),
+        (
+            "effects = [\"sepai\"]",
+            "s.toml:4: [lens.0] effects.0: there is no effect \"sepai\"; did you mean \"sepia\"?",
+        ),
+        ("effects = [\"x-ray\"]", "effects.0: effect = \"x-ray\" is not available yet"),
+        ("effects = [{ effect = \"thematic\" }]", "effects.0.attribute: is missing"),
+        (
+            "effects = [{ effect = \"sepia\", amuont = 1 }]",
+            "effects.0.amuont: \"sepia\" has no such parameter; did you mean \"amount\"?",
+        ),
+        (
+            "effects = [{ effect = \"sepia\", class = \"infront\" }]",
+            "effects.0.class: must be one of inside, front, behind, rest, is \"infront\"",
+        ),
+        ("effects = [{ amount = 1 }]", "effects.0.effect: is missing"),
+        ("effects = [3]", "effects.0: must be a name or a table"),
+        (
+            "effects = [{ effect = \"thematic\", attribute = \"a\" }, { effect = \"thematic\", attribute = \"b\" }]",
+            "effects.1: \"thematic\" is a second scene style beside \"thematic\"",
+        ),
+        ("sprite = { resolution = 4 }", "sprite.resolution: must be a whole number 16 to 16384, is 4"),
+        (
+            "[[lens]]\nname = \"lens-0\"\nshape = { kind = \"sphere\", center = [1, 2, 3], radius = 60.0 }",
+            "[lens.1] name: \"lens-0\" is the name of lens.0 already",
+        ),
+    ] {
+        let message = read_text(&lens_text(&format!("{BALL}{lines}"))).unwrap_err();
+        assert!(message.contains(expected), "{lines}\n  gave     {message}\n  expected {expected}");
+    }
+}
+
+#[test]
+fn all_mistakes_are_told_at_once_and_their_number_is_bounded() {
+    let message = read_text("veduta = 1\n[sun]\nazimuth_deg = 999\nshadows = 1\n[figure]\nsamples = 0").unwrap_err();
+    assert_eq!(message.lines().count(), 3);
+    let many = format!("veduta = 1\n{}", (0..100).map(|i| format!("zz{i} = 1\n")).collect::<String>());
+    let message = read_text(&many).unwrap_err();
+    assert!(message.lines().count() == MAX_SHOWN + 1 && message.ends_with("... and 80 more"));
+}
+
+#[test]
+fn deep_nesting_is_an_error_and_not_a_crash() {
+    for (open, close) in [("[", "]"), ("{ a = ", " }")] {
+        let text = format!("veduta = 1\nx = {}1{}", open.repeat(100_000), close.repeat(100_000));
+        assert!(read_text(&text).is_err());
+    }
+}
+
+#[test]
+fn a_zero_size_lens_is_a_lens_that_holds_nothing() {
+    let scene = read_text(&lens_text("shape = { kind = \"sphere\", center = [0, 0, 0], radius = 0 }")).unwrap();
+    assert!(scene.lenses[0].shapes[0].volume().unwrap().is_empty());
+}
+
+#[test]
+fn yaw_turns_counter_clockwise_pitch_lifts_and_roll_turns_about_x() {
+    let close = |a: DVec3, b: DVec3| a.distance(b) < 1e-12;
+    assert!(close(rotation([90.0, 0.0, 0.0]) * DVec3::X, DVec3::Y));
+    assert!(close(rotation([0.0, 90.0, 0.0]) * DVec3::X, DVec3::Z));
+    assert!(close(rotation([0.0, 0.0, 90.0]) * DVec3::Y, DVec3::Z));
+    assert!(close(rotation([90.0, 90.0, 0.0]) * DVec3::X, DVec3::Z));
+    assert_eq!(rotation([0.0; 3]), DQuat::IDENTITY);
+}
+
+#[test]
+fn absent_data_is_told_apart_from_mistakes() {
+    let options = Options { data: None, ..Options::for_file(Path::new("scenes/a.toml")) };
+    let text = "veduta = 1\n[city]\nfiles = [\"${VEDUTA_DATA}/x.json\"]";
+    let error = parse(text, "s", &options).unwrap_err();
+    assert!(error.is_data_absent, "{error}");
+    let error = parse(&format!("{text}\nlodd = 1"), "s", &options).unwrap_err();
+    assert!(!error.is_data_absent);
+}
+
+fn point() -> impl Strategy<Value = DVec3> {
+    prop::array::uniform3(-1e6..1e6f64).prop_map(DVec3::from)
+}
+
+fn shapes() -> impl Strategy<Value = Shape> {
+    let angles = || prop::array::uniform3(-1800..1800i32).prop_map(|a| a.map(|a| f64::from(a) / 10.0));
+    prop_oneof![
+        (point(), 0.0..1e4f64).prop_map(|(center, radius)| Shape::Sphere { center, radius }),
+        (point(), prop::array::uniform3(0.0..1e3f64), angles()).prop_map(|(center, s, a)| Shape::Box {
+            center,
+            size: s.into(),
+            rotation: rotation(a)
+        }),
+        (point(), 0.0..1e3f64, 0.0..1e3f64, point()).prop_filter_map("an axis", |(center, radius, height, a)| {
+            Some(Shape::Cylinder { center, radius, height, axis: a.try_normalize()? })
+        }),
+        prop::collection::vec(point(), 5..9).prop_map(|points| Shape::Convex { points }),
+    ]
+}
+
+fn effects() -> impl Strategy<Value = EffectUse> {
+    let class = prop_oneof![Just(Class::Inside), Just(Class::Front), Just(Class::Behind), Just(Class::Rest)];
+    let used = |effect: &str, class, parameters: Vec<(&str, Parameter)>| EffectUse {
+        effect: effect.into(),
+        class,
+        parameters: parameters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
+    };
+    (class, 0.0..=1.0f64, ".{1,8}", any::<bool>(), any::<bool>()).prop_map(move |(class, amount, text, plain, flag)| {
+        if plain {
+            let parameters = if flag { vec![("amount", Parameter::Number(amount))] } else { vec![] };
+            used("sepia", class, parameters)
+        } else {
+            let list = vec![
+                ("attribute", Parameter::Text(text.clone())),
+                ("reverse", Parameter::Boolean(flag)),
+                ("breaks", Parameter::Numbers(vec![amount, amount + 1.0])),
+                ("categories", Parameter::Texts(vec![text])),
+                ("no_data", Parameter::Text("#123456".into())),
+            ];
+            used("thematic", class, list)
+        }
+    })
+}
+
+prop_compose! {
+    fn lenses()(shapes in prop::collection::vec(shapes(), 1..3), used in prop::collection::vec(effects(), 0..2),
+        enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), outline in any::<bool>(),
+        sprite_resolution in prop::option::of(16..16_384u32)) -> Lens {
+        let body = if outline { LensBody::Outline } else { LensBody::None };
+        Lens { name: String::new(), kind: LensKind::Color, enabled, color, shapes, effects: used, body, sprite_resolution }
+    }
+}
+
+prop_compose! {
+    fn scenes()(eye in point(), target in point(), ortho in any::<bool>(), tenths in 1..1790u32, with_camera in any::<bool>(),
+        near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
+        background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
+        mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
+        lod in prop::option::of(0..99u8), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3)) -> Scene {
+        let fov_y = (f64::from(tenths) / 10.0).to_radians();
+        let projection = if ortho { Projection::Orthographic { height_m: f64::from(tenths) } } else { Projection::Perspective { fov_y } };
+        let up = if clay { DVec3::Z } else { target };
+        for (i, lens) in lenses.iter_mut().enumerate() {
+            lens.name = format!("n\"{i}\\ü");
+        }
+        let mut scene = Scene {
+            camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
+            sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2 },
+            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color) },
+            pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).collect(),
+            lenses,
+            figure: Figure { size, samples },
+            ..Scene::default()
+        };
+        scene.city.files = files.into_iter().filter(|f| !f.contains("${")).map(Into::into).collect();
+        scene.city.lod = lod.map(|tenths| crate::city::Lod { tenths }.to_string());
+        scene.city.ground = ground;
+        scene
+    }
+}
+
+/// Rotations agree within a rounding, all else to the bit.
+fn same(a: &Scene, b: &Scene) -> bool {
+    let mut b = b.clone();
+    for (la, lb) in a.lenses.iter().zip(&mut b.lenses) {
+        for (sa, sb) in la.shapes.iter().zip(&mut lb.shapes) {
+            if let (Shape::Box { rotation: ra, .. }, Shape::Box { rotation: rb, .. }) = (sa, sb)
+                && ra.dot(*rb).abs() > 1.0 - 1e-12
+            {
+                *rb = *ra;
+            }
+        }
+    }
+    *a == b
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_is_read_back(scene in scenes()) {
+        let text = to_toml(&scene);
+        let back = read_text(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        prop_assert!(same(&scene, &back), "{text}\n{scene:?}\n{back:?}");
+        prop_assert_eq!(to_toml(&back), text, "writing again changes nothing");
+    }
+
+    #[test]
+    fn no_text_makes_it_crash(text in "[a-z\\[\\]{}=\", .0-9\n]{0,200}") {
+        let _ = read_text(&text);
+        let _ = read_text(&format!("veduta = 1\n[[lens]]\n{text}"));
+    }
+}

@@ -1,0 +1,255 @@
+//! A [`Scene`] as TOML: stable, readable, and read back as the same scene.
+
+use std::fmt::Write;
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::{
+    figure::scene_file::{
+        parse::{lens_color, rotation},
+        paths::Options,
+    },
+    geom::Shape,
+    lens::{
+        Class, EffectUse, Lens, LensBody, Parameter,
+        color::{parse_hex, to_hex},
+    },
+    scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun},
+    view::{Camera, Projection, default_near_m},
+};
+
+/// The scene as a file that is read with `options`. Keys at their default are left out.
+pub fn write(scene: &Scene, options: &Options) -> String {
+    let mut out = Toml { text: "veduta = 1\n".into() };
+    if scene.city != Default::default() {
+        out.head("[city]");
+        let files: Vec<String> = scene.city.files.iter().map(|f| quoted(&options.written(f))).collect();
+        out.key_if(!files.is_empty(), "files", &list(files));
+        out.key_if(scene.city.lod.is_some(), "lod", &quoted(scene.city.lod.as_deref().unwrap_or_default()));
+        out.key_if(!scene.city.ground, "ground", "false");
+    }
+    if let Some(camera) = &scene.camera {
+        out.camera(camera);
+    }
+    out.sun(&scene.sun);
+    out.style(&scene.style);
+    scene.pois.iter().for_each(|poi| out.poi(poi));
+    scene.lenses.iter().enumerate().for_each(|(i, lens)| out.lens(i, lens));
+    let figure = Figure::default();
+    if scene.figure != figure {
+        out.head("[figure]");
+        let [w, h] = scene.figure.size;
+        out.key_if(scene.figure.size != figure.size, "size", &format!("[{w}, {h}]"));
+        out.key_if(scene.figure.samples != figure.samples, "samples", &scene.figure.samples.to_string());
+    }
+    out.text
+}
+
+struct Toml {
+    text: String,
+}
+
+impl Toml {
+    fn head(&mut self, head: &str) {
+        let _ = write!(self.text, "\n{head}\n");
+    }
+
+    fn key(&mut self, key: &str, value: &str) {
+        let _ = writeln!(self.text, "{key} = {value}");
+    }
+
+    fn key_if(&mut self, wanted: bool, key: &str, value: &str) {
+        if wanted {
+            self.key(key, value);
+        }
+    }
+
+    fn camera(&mut self, camera: &Camera) {
+        self.head("[camera]");
+        self.key("eye", &point(camera.eye));
+        self.key("target", &point(camera.target));
+        self.key_if(camera.up != DVec3::Z, "up", &point(camera.up));
+        match camera.projection {
+            Projection::Perspective { fov_y } => self.key("fov_deg", &number(degrees(fov_y))),
+            Projection::Orthographic { height_m } => {
+                self.key("projection", "\"orthographic\"");
+                self.key("height_m", &number(height_m));
+            }
+        }
+        let default = default_near_m(camera.eye.distance(camera.target));
+        self.key_if(camera.near_m != default, "near_m", &number(camera.near_m));
+    }
+
+    fn sun(&mut self, sun: &Sun) {
+        let default = Sun::default();
+        if *sun == default {
+            return;
+        }
+        self.head("[sun]");
+        self.key_if(sun.azimuth != default.azimuth, "azimuth_deg", &number(degrees(sun.azimuth)));
+        self.key_if(sun.elevation != default.elevation, "elevation_deg", &number(degrees(sun.elevation)));
+        self.key_if(!sun.shadows, "shadows", "false");
+    }
+
+    fn style(&mut self, style: &Style) {
+        if *style == Style::default() {
+            return;
+        }
+        self.head("[style]");
+        self.key_if(style.base == BaseStyle::Clay, "base", "\"clay\"");
+        self.key_if(!style.effects.is_empty(), "effects", &list(style.effects.iter().map(effect)));
+        if let Background::Color(c) = style.background {
+            self.key("background", &color(c));
+        }
+    }
+
+    fn poi(&mut self, poi: &Poi) {
+        self.head("[[poi]]");
+        self.key("name", &quoted(&poi.name));
+        match &poi.place {
+            PoiPlace::Object(id) => self.key("object", &quoted(id)),
+            PoiPlace::At(at) => self.key("at", &point(*at)),
+        }
+    }
+
+    fn lens(&mut self, index: usize, lens: &Lens) {
+        self.head("[[lens]]");
+        self.key("name", &quoted(&lens.name));
+        self.key("kind", "\"color\"");
+        self.key_if(!lens.enabled, "enabled", "false");
+        self.key_if(lens.color != lens_color(index), "color", &color(lens.color));
+        match &lens.shapes[..] {
+            [one] => self.key("shape", &shape(one)),
+            many => self.key("shapes", &list(many.iter().map(shape))),
+        }
+        self.key_if(!lens.effects.is_empty(), "effects", &list(lens.effects.iter().map(effect)));
+        self.key_if(lens.body == LensBody::None, "body", "\"none\"");
+        if let Some(resolution) = lens.sprite_resolution {
+            self.key("sprite", &format!("{{ resolution = {resolution} }}"));
+        }
+    }
+}
+
+fn list(items: impl IntoIterator<Item = String>) -> String {
+    format!("[{}]", items.into_iter().collect::<Vec<_>>().join(", "))
+}
+
+/// The shortest text that reads back as the same f64.
+fn number(n: f64) -> String {
+    format!("{n:?}")
+}
+
+fn point(p: DVec3) -> String {
+    list(p.to_array().map(number))
+}
+
+fn color(c: [f32; 3]) -> String {
+    let hex = to_hex(c);
+    if parse_hex(&hex) == Some(c) { quoted(&hex) } else { list(c.map(|c| format!("{c:?}"))) }
+}
+
+/// A TOML basic string.
+pub fn quoted(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 2);
+    out.push('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            c if c.is_control() => {
+                let _ = write!(out, "\\U{:08X}", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
+/// The degrees with the fewest decimals that read back as the same radians; else the nearest there are.
+fn degrees(radians: f64) -> f64 {
+    let exact = radians.to_degrees();
+    rounded(exact).find(|d| d.to_radians() == radians).unwrap_or(exact)
+}
+
+/// `n` with 0, 1, ... 13 decimals.
+fn rounded(n: f64) -> impl Iterator<Item = f64> {
+    (0..=13).filter_map(move |digits| format!("{n:.digits$}").parse().ok()).map(|d: f64| d + 0.0)
+}
+
+fn shape(shape: &Shape) -> String {
+    match shape {
+        Shape::Sphere { center, radius } => {
+            format!("{{ kind = \"sphere\", center = {}, radius = {} }}", point(*center), number(*radius))
+        }
+        Shape::Box { center, size, rotation: turn } => {
+            let angles = angles(*turn);
+            let turned = if angles == [0.0; 3] {
+                String::new()
+            } else {
+                format!(", rotation_deg = {}", list(angles.map(number)))
+            };
+            format!("{{ kind = \"box\", center = {}, size = {}{turned} }}", point(*center), point(*size))
+        }
+        Shape::Cylinder { center, radius, height, axis } => {
+            let tilted = if *axis == DVec3::Z { String::new() } else { format!(", axis = {}", point(*axis)) };
+            format!(
+                "{{ kind = \"cylinder\", center = {}, radius = {}, height = {}{tilted} }}",
+                point(*center),
+                number(*radius),
+                number(*height)
+            )
+        }
+        Shape::Convex { points } => {
+            format!("{{ kind = \"convex\", points = {} }}", list(points.iter().map(|p| point(*p))))
+        }
+    }
+}
+
+/// Yaw, pitch and roll of a rotation, degrees: the inverse of [`rotation`], with as few decimals as it takes.
+fn angles(turn: DQuat) -> [f64; 3] {
+    let m = DMat3::from_quat(turn.normalize());
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
+    // Looking straight up or down, yaw and roll turn about one axis: all of it is called yaw.
+    let upright = x.x.hypot(x.y) < 1e-9;
+    let yaw = if upright { (-y.x).atan2(y.y) } else { x.y.atan2(x.x) };
+    let pitch = x.z.atan2(x.x.hypot(x.y));
+    let roll = if upright { 0.0 } else { y.z.atan2(z.z) };
+    let exact = [yaw, pitch, roll].map(f64::to_degrees);
+    let same = |a: &[f64; 3]| {
+        let q = rotation(*a);
+        q == turn || -q == turn
+    };
+    let near =
+        |a: &[f64; 3]| rotation(*a).dot(turn).abs() > 1.0 - 1e-15 && (0..3).all(|i| (a[i] - exact[i]).abs() < 1e-9);
+    let candidates = || (0..=13).map(|n: usize| exact.map(|a| rounded(a).nth(n).unwrap_or(a)));
+    candidates().find(same).or_else(|| candidates().find(near)).unwrap_or(exact)
+}
+
+fn effect(used: &EffectUse) -> String {
+    let class = match used.class {
+        Class::Inside => None,
+        Class::Front => Some("front"),
+        Class::Behind => Some("behind"),
+        Class::Rest => Some("rest"),
+    };
+    if class.is_none() && used.parameters.is_empty() {
+        return quoted(&used.effect);
+    }
+    let mut out = format!("{{ effect = {}", quoted(&used.effect));
+    if let Some(class) = class {
+        let _ = write!(out, ", class = \"{class}\"");
+    }
+    for (key, value) in &used.parameters {
+        let bare = !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-');
+        let key = if bare { key.clone() } else { quoted(key) };
+        let value = match value {
+            Parameter::Boolean(b) => b.to_string(),
+            Parameter::Number(n) => number(*n),
+            Parameter::Text(t) => quoted(t),
+            Parameter::Numbers(n) => list(n.iter().map(|n| number(*n))),
+            Parameter::Texts(t) => list(t.iter().map(|t| quoted(t))),
+        };
+        let _ = write!(out, ", {key} = {value}");
+    }
+    out + " }"
+}

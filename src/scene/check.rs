@@ -1,0 +1,98 @@
+//! What a scene names in its city and is not there.
+
+use crate::{
+    city::CityModel,
+    lens::{nearest::did_you_mean, thematic::attribute_names},
+    scene::{PoiPlace, Scene},
+};
+
+/// A name that the city does not have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("[{table}] {key}: {message}")]
+pub struct SceneProblem {
+    /// The table in the scene file: `lens.0`.
+    pub table: String,
+    /// The way from there: `effects.1.attribute`.
+    pub key: String,
+    /// What is wrong, and what is near it.
+    pub message: String,
+}
+
+/// Attributes and objects that the scene names and the loaded city does not have.
+pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
+    let mut problems = Vec::new();
+    let mut names: Option<Vec<&str>> = None;
+    let places = [("style".to_owned(), &scene.style.effects)].into_iter();
+    let lenses = scene.lenses.iter().enumerate().map(|(i, lens)| (format!("lens.{i}"), &lens.effects));
+    for (table, effects) in places.chain(lenses) {
+        for (i, used) in effects.iter().enumerate() {
+            let Some(attribute) = used.text("attribute") else { continue };
+            let names = names.get_or_insert_with(|| attribute_names(model));
+            if !names.contains(&attribute) {
+                let hint = did_you_mean(attribute, names.iter().copied());
+                problems.push(SceneProblem {
+                    table: table.clone(),
+                    key: format!("effects.{i}.attribute"),
+                    message: format!("no object of the city has the attribute \"{attribute}\"{hint}"),
+                });
+            }
+        }
+    }
+    for (i, poi) in scene.pois.iter().enumerate() {
+        let PoiPlace::Object(id) = &poi.place else { continue };
+        if model.find_object(id).is_none() {
+            let hint = did_you_mean(id, model.objects.iter().map(|o| &*o.id));
+            problems.push(SceneProblem {
+                table: format!("poi.{i}"),
+                key: "object".into(),
+                message: format!("the city has no object \"{id}\"{hint}"),
+            });
+        }
+    }
+    problems
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        city::{Attribute, CityObject, Value},
+        lens::{EffectUse, Parameter},
+        scene::Poi,
+    };
+
+    #[test]
+    fn absent_names_get_their_neighbours() {
+        let mut model = CityModel::default();
+        let (kind, name) = (model.strings.intern("Building"), model.strings.intern("yearOfConstruction"));
+        model.attributes.push(Attribute { name, value: Value::Integer(1931) });
+        model.objects.push(CityObject {
+            id: "town-hall".into(),
+            kind,
+            class: Default::default(),
+            parents: vec![],
+            children: vec![],
+            attributes: 0..1,
+            geometries: 0..0,
+        });
+        let mut scene = Scene::default();
+        let used = |attribute: &str| EffectUse {
+            effect: "thematic".into(),
+            class: Default::default(),
+            parameters: [("attribute".to_owned(), Parameter::Text(attribute.into()))].into(),
+        };
+        scene.style.effects.push(used("yearOfConstruction"));
+        scene.pois.push(Poi { name: "a".into(), place: PoiPlace::Object("town-hall".into()) });
+        assert_eq!(check_against(&scene, &model), []);
+        scene.style.effects.push(used("yearOfconstrution"));
+        scene.pois.push(Poi { name: "b".into(), place: PoiPlace::Object("townhall".into()) });
+        let messages: Vec<String> = check_against(&scene, &model).iter().map(ToString::to_string).collect();
+        assert_eq!(
+            messages,
+            [
+                "[style] effects.1.attribute: no object of the city has the attribute \"yearOfconstrution\"; did you mean \"yearOfConstruction\"?",
+                "[poi.1] object: the city has no object \"townhall\"; did you mean \"town-hall\"?",
+            ]
+        );
+    }
+}

@@ -1,0 +1,199 @@
+//! Every edit of a scene is a command with a name that can be undone and redone, whoever issues it (architecture 14).
+
+use crate::{lens::Lens, scene::Scene, view::Camera};
+
+/// One edit. Scenes are small plain data, so a command simply holds both sides of it: undoing cannot drift.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Command {
+    name: String,
+    before: Scene,
+    after: Scene,
+}
+
+impl Command {
+    /// The edit that turns `before` into `after`.
+    pub fn new(name: impl Into<String>, before: Scene, after: Scene) -> Self {
+        Self { name: name.into(), before, after }
+    }
+
+    /// The edit that `change` makes.
+    pub fn of(name: impl Into<String>, scene: &Scene, change: impl FnOnce(&mut Scene)) -> Self {
+        let mut after = scene.clone();
+        change(&mut after);
+        Self::new(name, scene.clone(), after)
+    }
+
+    /// Moves the eye.
+    pub fn look(scene: &Scene, camera: Camera) -> Self {
+        Self::of("move camera", scene, |s| s.camera = Some(camera))
+    }
+
+    /// Puts a lens on top.
+    pub fn add_lens(scene: &Scene, lens: Lens) -> Self {
+        Self::of(format!("add lens {}", lens.name), scene, |s| s.lenses.push(lens))
+    }
+
+    /// Takes a lens away; `None` where there is none at `index`.
+    pub fn remove_lens(scene: &Scene, index: usize) -> Option<Self> {
+        let lens = scene.lenses.get(index)?;
+        Some(Self::of(format!("remove lens {}", lens.name), scene, |s| {
+            s.lenses.remove(index);
+        }))
+    }
+
+    /// Moves a lens to another place in the order (L6); `None` where either place is not.
+    pub fn reorder_lens(scene: &Scene, from: usize, to: usize) -> Option<Self> {
+        let lens = scene.lenses.get(from).filter(|_| to < scene.lenses.len())?;
+        Some(Self::of(format!("reorder lens {}", lens.name), scene, |s| {
+            let lens = s.lenses.remove(from);
+            s.lenses.insert(to, lens);
+        }))
+    }
+
+    /// What it does, for a menu: `set lens.0.shape.radius`.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Whether it changes anything.
+    pub fn is_effective(&self) -> bool {
+        self.before != self.after
+    }
+
+    /// Does it (again).
+    pub fn redo(&self, scene: &mut Scene) {
+        scene.clone_from(&self.after);
+    }
+
+    /// Takes it back.
+    pub fn undo(&self, scene: &mut Scene) {
+        scene.clone_from(&self.before);
+    }
+}
+
+/// A scene and the edits that led to it.
+#[derive(Clone, Debug, Default)]
+pub struct History {
+    scene: Scene,
+    done: Vec<Command>,
+    undone: Vec<Command>,
+}
+
+/// Edits that can be undone; older ones are forgotten.
+const DEPTH: usize = 256;
+
+impl History {
+    /// A scene without a past.
+    pub fn new(scene: Scene) -> Self {
+        Self { scene, done: Vec::new(), undone: Vec::new() }
+    }
+
+    /// The scene as it is now.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Does a command made for the present scene. What was undone before can no longer be redone. A command without
+    /// effect leaves no trace; one made for another scene is refused with `false`.
+    pub fn apply(&mut self, command: Command) -> bool {
+        if command.before != self.scene {
+            return false;
+        }
+        if command.is_effective() {
+            command.redo(&mut self.scene);
+            self.undone.clear();
+            if self.done.len() == DEPTH {
+                self.done.remove(0);
+            }
+            self.done.push(command);
+        }
+        true
+    }
+
+    /// Takes the last edit back; its name, if there was one.
+    pub fn undo(&mut self) -> Option<&str> {
+        let command = self.done.pop()?;
+        command.undo(&mut self.scene);
+        self.undone.push(command);
+        self.undone.last().map(Command::name)
+    }
+
+    /// Does the last edit that was taken back again; its name, if there was one.
+    pub fn redo(&mut self) -> Option<&str> {
+        let command = self.undone.pop()?;
+        command.redo(&mut self.scene);
+        self.done.push(command);
+        self.done.last().map(Command::name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn resized(scene: &Scene, width: u32) -> Command {
+        Command::of(format!("width {width}"), scene, |s| s.figure.size[0] = width)
+    }
+
+    #[test]
+    fn what_is_done_can_be_undone_and_redone() {
+        let mut history = History::default();
+        for width in [10, 20, 30] {
+            assert!(history.apply(resized(&history.scene().clone(), width)));
+        }
+        assert_eq!(history.undo(), Some("width 30"));
+        assert_eq!(history.undo(), Some("width 20"));
+        assert_eq!(history.scene().figure.size[0], 10);
+        assert_eq!(history.redo(), Some("width 20"));
+        assert_eq!(history.scene().figure.size[0], 20);
+        assert!(history.apply(resized(&history.scene().clone(), 99)));
+        assert_eq!(history.redo(), None, "a new edit ends the other future");
+        while history.undo().is_some() {}
+        assert_eq!(*history.scene(), Scene::default());
+    }
+
+    #[test]
+    fn nothing_done_leaves_no_trace_and_strangers_are_refused() {
+        let mut history = History::default();
+        assert!(history.apply(Command::of("nothing", &Scene::default(), |_| ())));
+        assert_eq!(history.undo(), None);
+        let other = Command::of("x", &Scene::default(), |s| s.figure.samples = 4).after;
+        assert!(!history.apply(resized(&other, 3)));
+    }
+
+    #[test]
+    fn the_past_is_bounded() {
+        let mut history = History::default();
+        for width in 1..1000 {
+            history.apply(resized(&history.scene().clone(), width));
+        }
+        assert_eq!(std::iter::from_fn(|| history.undo().map(|_| ())).count(), DEPTH);
+    }
+
+    #[test]
+    fn lenses_come_go_and_change_places() {
+        let lens = |name: &str| Lens {
+            name: name.into(),
+            kind: Default::default(),
+            enabled: true,
+            color: [0.0; 3],
+            shapes: vec![],
+            effects: vec![],
+            body: Default::default(),
+            sprite_resolution: None,
+        };
+        let mut history = History::default();
+        for name in ["a", "b", "c"] {
+            history.apply(Command::add_lens(&history.scene().clone(), lens(name)));
+        }
+        let names = |h: &History| h.scene().lenses.iter().map(|l| l.name.clone()).collect::<String>();
+        history.apply(Command::reorder_lens(history.scene(), 0, 2).unwrap());
+        assert_eq!(names(&history), "bca");
+        history.apply(Command::remove_lens(history.scene(), 1).unwrap());
+        assert_eq!(names(&history), "ba");
+        assert_eq!(Command::remove_lens(history.scene(), 2), None);
+        assert_eq!(Command::reorder_lens(history.scene(), 0, 2), None);
+        history.undo();
+        assert_eq!(names(&history), "bca");
+    }
+}
