@@ -6,6 +6,8 @@
 mod faces;
 #[path = "data/info.rs"]
 mod info;
+#[path = "data/meshes.rs"]
+mod meshes;
 
 use std::path::PathBuf;
 
@@ -25,6 +27,6 @@ fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 's
 
 fn main() {
     let arguments = Arguments::from_args();
-    let trials = [faces::trials(), info::trials()].into_iter().flatten().collect();
+    let trials = [faces::trials(), info::trials(), meshes::trials()].into_iter().flatten().collect();
     libtest_mimic::run(&arguments, trials).exit();
 }
