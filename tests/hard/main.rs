@@ -1,10 +1,15 @@
 //! The hard cases (docs/hard-cases.md): one module per case, each a property with an oracle that does not share the
 //! code under test.
 
+mod case_01_national_coordinates;
 mod case_03_coplanar_faces;
+mod case_03_jitter;
+mod case_04_near_plane;
 mod case_10_axis_parallel_rays;
 mod case_11_rays_through_edges;
 mod case_12_slivers;
 mod case_13_dirty_rings;
 mod case_14_non_planar_faces;
 mod oracle;
+#[path = "../studio/mod.rs"]
+mod studio;
