@@ -173,6 +173,19 @@ fn city_json() -> Vec<Case> {
             Shown(4, &["missing-texture", "appearance-index-out-of-range"]),
         ),
         case(
+            "texture-beyond.json",
+            house(
+                "\"vertices\"",
+                r#""appearance":{"materials":[{"name":"m","diffuseColor":[NaN,1e308,-1]}],"textures":[{"type":"PNG","image":"none.png"}],"vertices-texture":[[1e308,0],[NaN,0],[1,1e999],[0,1]]},"vertices""#,
+            )
+            .replace(
+                "[[0,1,5,4]]]",
+                r#"[[0,1,5,4]]],"texture":{"t":{"values":[[[0,0,1,2,3]],[[0,0,1,2,3]]]}},"material":{"t":{"value":0}}"#,
+            ),
+            Shown(4, &["missing-texture"]),
+        ),
+        case("version-lines.json", house("\"2.0\"", "\"0\\n\\n\\u0007\""), Error(&["version"])),
+        case(
             "outside-texture.json",
             house(
                 "\"vertices\"",
@@ -335,6 +348,9 @@ fn judge(case: &Case, path: &Path) -> Result<(), String> {
         Shown(wanted, codes) => (wanted == triangles, codes),
         Either(codes) | Error(codes) => (true, codes),
     };
+    if let Err(unsound) = model.validate() {
+        return Err(unsound);
+    }
     let unread = model.warnings.iter().find(|(_, w)| w.message.is_empty() || w.count == 0);
     match (right && codes.iter().all(|c| found.contains(c)), unread) {
         (true, None) => Ok(()),

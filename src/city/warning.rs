@@ -79,6 +79,21 @@ warning_codes! {
 /// How many objects a warning names.
 const NAMED_OBJECTS: usize = 8;
 
+/// The longest message: ids and texts of a file may be of any length.
+const MESSAGE_CHARS: usize = 600;
+
+/// A message as people can read it: one line, not endless, whatever text of the file stands in it.
+pub(crate) fn one_line(message: String) -> String {
+    if message.len() <= MESSAGE_CHARS && !message.contains(char::is_control) {
+        return message;
+    }
+    let mut line: String = message.chars().take(MESSAGE_CHARS).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if line.len() < message.len() {
+        line.push('…');
+    }
+    line
+}
+
 /// All occurrences of one code.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warning {
@@ -101,7 +116,7 @@ impl Warnings {
     pub fn add(&mut self, code: WarningCode, object: &str, message: impl FnOnce() -> String) {
         let entry = self.entries.entry(code).or_default();
         if entry.count == 0 {
-            entry.message = message();
+            entry.message = one_line(message());
         }
         entry.count += 1;
         if !object.is_empty() && entry.objects.len() < NAMED_OBJECTS && !entry.objects.iter().any(|o| o == object) {

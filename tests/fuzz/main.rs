@@ -92,6 +92,9 @@ fn read(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
     }
     let model = builder.finish();
     model.validate()?;
+    if let Some((_, w)) = model.warnings.iter().find(|(_, w)| w.message.is_empty() || w.message.contains('\n')) {
+        return Err(format!("an unreadable warning: {:?}", w.message));
+    }
     let shown = shown::shown_geometries(&model, None);
     let index = spatial::SpatialIndex::build(&model, &shown);
     let ground = ground::plain_ground(&model, &shown).is_some();

@@ -205,7 +205,7 @@ impl Appearance {
                 "vertices-texture" if json.peek()? == Kind::Array => json.array(|json| {
                     // CityJSON counts v upwards; row 0 of an image is its top.
                     this.texcoords.push(match attributes::numbers(json)?[..] {
-                        [u, v, ..] if u.is_finite() && v.is_finite() => [u as f32, (1.0 - v) as f32],
+                        [u, v, ..] if u.abs() < 1e30 && v.abs() < 1e30 => [u as f32, (1.0 - v) as f32],
                         _ => [0.0; 2],
                     });
                     Ok(())
@@ -267,5 +267,5 @@ fn scalar(json: &mut Json<'_>) -> Step<Option<f32>> {
 fn color(json: &mut Json<'_>) -> Step<Option<[f32; 3]>> {
     let list = attributes::numbers(json)?;
     let rgb = <[f64; 3]>::try_from(list).ok().filter(|c| c.iter().all(|x| x.is_finite()));
-    Ok(rgb.map(|c| c.map(|x| (x as f32).clamp(0.0, 1.0))))
+    Ok(rgb.map(|c| c.map(|x| if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) as f32 })))
 }

@@ -14,7 +14,7 @@ use std::{
 
 pub use input::Input;
 
-use crate::city::{CityModel, WarningCode, build::ModelBuilder, load::sniff::Format};
+use crate::city::{CityModel, WarningCode, build::ModelBuilder, load::sniff::Format, warning::one_line};
 
 /// What a loader may do.
 #[derive(Clone, Debug, Default)]
@@ -101,12 +101,12 @@ pub struct LoadError {
 impl LoadError {
     /// An error about a file as a whole.
     pub fn new(file: &Path, message: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), place: String::new(), message: message.into() }
+        Self { file: file.to_owned(), place: String::new(), message: one_line(message.into()) }
     }
 
     /// An error at a place in a file.
     pub fn at(file: &Path, place: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), place: place.into(), message: message.into() }
+        Self { file: file.to_owned(), place: one_line(place.into()), message: one_line(message.into()) }
     }
 }
 
