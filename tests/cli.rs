@@ -74,7 +74,7 @@ fn help_and_version_are_no_failures() {
         assert_eq!(code(&output), 0, "{arguments:?}");
         assert!(!out(&output).is_empty() && err(&output).is_empty(), "{arguments:?}");
     }
-    for command in ["info", "synth", "effects"] {
+    for command in ["info", "synth", "effects", "render", "gallery"] {
         let help = out(&run(&[command, "--help"]));
         assert!(help.contains("Examples:"), "veduta {command} --help has no examples:\n{help}");
     }
@@ -257,4 +257,137 @@ fn effects_are_listed() {
     let thematic = out(&run(&["effects", "thematic"]));
     assert!(thematic.contains("attribute") && !thematic.contains("sepia"), "{thematic}");
     assert_eq!(code(&run(&["effects", "sepai"])), 2);
+}
+
+/// Pixels of a PNG, row by row.
+fn pixels(file: &str) -> (u32, u32, Vec<[u8; 4]>) {
+    let image = image::open(file).unwrap().into_rgba8();
+    (image.width(), image.height(), image.pixels().map(|p| p.0).collect())
+}
+
+#[test]
+fn a_picture_with_everything_that_comes_with_it() {
+    let folder = Folder::new("render");
+    let city = folder.file("a.city.json", CITY);
+    let path = |name: &str| folder.path(name);
+    let (ids, depth, mask) = (path("ids.png"), path("depth.exr"), path("mask.png"));
+    let output = run(&[
+        "render",
+        &city,
+        "-o",
+        &path("a.png"),
+        "--size",
+        "96x64",
+        "--aov",
+        &format!("object-id={ids}"),
+        "--aov",
+        &format!("depth={depth}"),
+        "--aov",
+        &format!("lens-mask={mask}"),
+        "--stats",
+        &path("stats.json"),
+        "--set",
+        "lens.0={shape={kind=\"sphere\",center=[105,210,0],radius=100},effects=[\"sepia\"]}",
+    ]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let (width, height, picture) = pixels(&path("a.png"));
+    assert_eq!((width, height), (96, 64));
+    assert!(picture.iter().any(|p| *p != picture[0]), "an empty picture");
+    // The only object with geometry is the second: index 1, written as 2.
+    let ids = pixels(&ids).2;
+    let seen: std::collections::BTreeSet<u32> =
+        ids.iter().map(|[r, g, b, _]| u32::from(*r) << 16 | u32::from(*g) << 8 | u32::from(*b)).collect();
+    assert_eq!(seen.into_iter().collect::<Vec<_>>(), [0, 2]);
+    let object = ids.iter().filter(|p| p[2] == 2).count() as u64;
+    let stats: Value = serde_json::from_slice(&std::fs::read(path("stats.json")).unwrap()).unwrap();
+    assert_eq!(stats["city"]["objects"], 1);
+    let lens = &stats["lenses"][0];
+    assert_eq!(lens["kind"], "color");
+    assert!(lens["covered"].as_u64().unwrap() >= object, "the lens holds the whole object");
+    for key in ["adapter", "load", "city", "frame", "passes", "pipelines", "handlers", "lenses", "overlays", "warnings"]
+    {
+        assert!(!stats[key].is_null(), "{key} is missing");
+    }
+    assert!(std::fs::metadata(&depth).unwrap().len() > 0 && Path::new(&mask).exists());
+    assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 6, "nothing half-written is left");
+}
+
+#[test]
+fn the_same_scene_gives_the_same_bytes() {
+    let folder = Folder::new("bytes");
+    let city = folder.file("a.city.json", CITY);
+    let scene = folder.file("scene.toml", "veduta = 1\ncity.files = [\"a.city.json\"]\nfigure.size = [64, 48]\n");
+    let bytes = |input: &str, name: &str| {
+        let file = folder.path(name);
+        let output = run(&["render", input, "-o", &file, "--size", "64x48"]);
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        std::fs::read(&file).unwrap()
+    };
+    assert_eq!(bytes(&scene, "1.png"), bytes(&scene, "2.png"));
+    bytes(&city, "3.png");
+    assert_eq!(pixels(&folder.path("1.png")), pixels(&folder.path("3.png")), "a scene of the city alone");
+}
+
+#[test]
+fn what_render_cannot_do_is_said_before_it_draws() {
+    let folder = Folder::new("refused");
+    let city = folder.file("a.city.json", CITY);
+    let scene = folder.file("scene.toml", "veduta = 1\ncity.files = [\"a.city.json\"]\n");
+    let picture = folder.path("a.png");
+    let wrong = |extra: &[&str], expected: i32, named: &str| {
+        let output = run(&[&["render"], extra].concat());
+        assert_eq!(code(&output), expected, "{extra:?}: {}", err(&output));
+        assert!(err(&output).contains(named), "{extra:?}: {}", err(&output));
+        assert!(!Path::new(&picture).exists());
+    };
+    wrong(&[&city, "-o", &picture, "--size", "0x9"], 2, "--size");
+    wrong(&[&city, "-o", &picture, "--samples", "0"], 2, "--samples");
+    wrong(&[&city, "-o", &picture, "--aov", "colour=x.png"], 2, "object-id");
+    wrong(&[&city, "-o", &picture, "--set", "lens.0.shape.radius=80"], 2, "lens");
+    wrong(&[&city, "-o", &picture, "--set", "nonsense"], 2, "PATH=VALUE");
+    wrong(&[&scene, &city, "-o", &picture], 2, "scene");
+    wrong(&[&city, "-o", &folder.path("a.jpg")], 2, "PNG");
+    wrong(&["/no/such.toml", "-o", &picture], 1, "such.toml");
+    let misspelt = folder.file("b.toml", "veduta = 1\n[camra]\n");
+    wrong(&[&misspelt, "-o", &picture], 1, "camera");
+    let mut many = vec!["render", city.as_str(), "-o", picture.as_str(), "--aov", "lens-mask=m.png"];
+    let lenses: Vec<String> =
+        (0..17).map(|i| format!("--set=lens.{i}={{shape={{kind=\"sphere\",center=[0,0,0],radius=1}}}}")).collect();
+    many.extend(lenses.iter().map(String::as_str));
+    wrong(&many[1..], 2, "exr");
+}
+
+#[test]
+fn a_picture_goes_to_stdout_too() {
+    let folder = Folder::new("stdout");
+    let output = run(&["render", &folder.file("a.city.json", CITY), "-o", "-", "--size", "8x8"]);
+    assert_eq!(&output.stdout[..8], b"\x89PNG\r\n\x1a\n");
+}
+
+#[test]
+fn the_gallery_draws_or_says_why_not() {
+    let folder = Folder::new("gallery");
+    let output = run(&["gallery", "-o", &folder.path("new/out"), "denhaag-ridges"]);
+    assert_eq!((code(&output), out(&output).trim().contains("skipped: data absent")), (0, true), "{}", err(&output));
+    let output = run(&["gallery", "-o", &folder.path("out"), "no-such-scene"]);
+    assert_eq!(code(&output), 2);
+}
+
+#[test]
+fn every_scene_ships_and_reads() {
+    let listed: Vec<&str> = veduta::cli::gallery::SCENES.iter().map(|(name, _)| *name).collect();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let mut files: Vec<String> = std::fs::read_dir(&folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    files.sort();
+    assert_eq!(listed, files);
+    for name in listed {
+        let file = folder.join(name).with_extension("toml");
+        let mut options = veduta::figure::scene_file::Options::for_file(&file);
+        options.data = Some("/data".into());
+        let scene = veduta::figure::scene_file::read(&file, &options);
+        assert!(scene.is_ok(), "{}", scene.unwrap_err());
+    }
 }

@@ -270,7 +270,8 @@ fn semantic_facts(city: &CityModel) -> Vec<(String, u64)> {
     list
 }
 
-fn warning_facts(city: &CityModel) -> Vec<WarningFacts> {
+/// The warnings of a city as they stand in `info --json` and `--stats`.
+pub fn warning_facts(city: &CityModel) -> Vec<WarningFacts> {
     let fact = |(code, warning): (crate::city::WarningCode, &crate::city::warning::Warning)| WarningFacts {
         code: code.code(),
         count: warning.count,

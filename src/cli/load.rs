@@ -31,7 +31,13 @@ impl load::Progress for Shown {
 
 /// Loads `files` as one city, with how long each stage took.
 pub fn load(files: &[PathBuf], global: &GlobalArguments) -> Outcome<(CityModel, LoadStats)> {
-    let options = LoadOptions { allow_outside: global.allow_outside, roots: named_folders(files) };
+    load_below(files, named_folders(files), global)
+}
+
+/// [`load`], with folders that paths inside the files may lead to; the folders of the files themselves are always
+/// among them.
+pub fn load_below(files: &[PathBuf], roots: Vec<PathBuf>, global: &GlobalArguments) -> Outcome<(CityModel, LoadStats)> {
+    let options = LoadOptions { allow_outside: global.allow_outside, roots };
     let shown = Shown { line: terminal::Progress::spinning("loading", global) };
     let (city, stats) = load::load_with_stats(files, &options, &shown).map_err(Failure::failed)?;
     drop(shown);

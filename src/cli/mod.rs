@@ -5,6 +5,7 @@
 
 pub mod effects;
 pub mod failure;
+pub mod gallery;
 pub mod info;
 pub mod load;
 pub mod output;
@@ -47,6 +48,8 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 const EXAMPLES: &str = "\
 Examples:
   veduta info city.city.json                     what is in a file
+  veduta render city.city.json -o city.png       a picture of it
+  veduta render scene.toml -o figure.png --set lens.0.shape.radius=80
   veduta synth --buildings 1000 --seed 7 -o town.city.json
 
 FILE is CityJSON (.json), CityJSONSeq (.jsonl), glTF (.gltf, .glb) or OBJ (.obj), the JSON ones also .gz,
@@ -72,10 +75,14 @@ pub struct GlobalArguments {
 pub enum Command {
     /// Opens a window on city files or a scene
     View(ViewArguments),
+    /// Draws one picture of a scene or of city files
+    Render(render::arguments::Arguments),
     /// Says what is in city files
     Info(info::Arguments),
     /// Makes a synthetic city
     Synth(synth::Arguments),
+    /// Draws every figure of the docs
+    Gallery(gallery::Arguments),
     /// Lists what lenses can do to what they show
     Effects(effects::Arguments),
     /// Files to view, or a word that is no command.
@@ -115,6 +122,8 @@ fn run(cli: Cli) -> Outcome {
     let global = &cli.global;
     match cli.command {
         Some(Command::View(arguments)) => view(&arguments),
+        Some(Command::Render(arguments)) => render::run(&arguments, global),
+        Some(Command::Gallery(arguments)) => gallery::run(&arguments, global),
         Some(Command::Info(arguments)) => info::run(&arguments, global),
         Some(Command::Synth(arguments)) => synth::run(&arguments, global),
         Some(Command::Effects(arguments)) => effects::run(&arguments, global),

@@ -40,7 +40,7 @@ pub struct Arguments {
     pub samples: Option<u32>,
     /// Change the scene: lens.0.shape.radius=80, lens.NAME.enabled=false; repeatable, in order
     #[arg(long = "set", value_name = "PATH=VALUE")]
-    pub settings: Vec<Setting>,
+    pub settings: Vec<String>,
     /// Write what it cost and what the lenses did, as one JSON object
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
@@ -92,28 +92,6 @@ impl FromStr for Size {
         text.split_once('x')
             .and_then(|(width, height)| Some(Self([side(width)?, side(height)?])))
             .ok_or_else(|| format!("width and height of 1 to {MAX_SIDE} pixels would be right, as 1280x720"))
-    }
-}
-
-/// A change of the scene, `lens.0.shape.radius=80`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Setting {
-    /// Where in the scene file.
-    pub path: String,
-    /// The new value, as TOML; a bare word is a text.
-    pub value: String,
-}
-
-impl FromStr for Setting {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.split_once('=') {
-            Some((path, value)) if !path.trim().is_empty() && !path.split('.').any(|key| key.trim().is_empty()) => {
-                Ok(Self { path: path.trim().to_owned(), value: value.trim().to_owned() })
-            }
-            _ => Err("PATH=VALUE would be right, as lens.0.shape.radius=80".to_owned()),
-        }
     }
 }
 
@@ -203,15 +181,6 @@ mod tests {
         assert_eq!("1280x720".parse(), Ok(Size([1280, 720])));
         for wrong in ["", "1280", "0x5", "5x0", "16385x1", "-1x5", "axb", "1x2x3", "1280X720", "4294967297x1"] {
             assert!(wrong.parse::<Size>().is_err(), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn settings_split_at_the_first_equals_sign() {
-        let setting: Setting = "lens.a.name=x=y".parse().unwrap();
-        assert_eq!((setting.path.as_str(), setting.value.as_str()), ("lens.a.name", "x=y"));
-        for wrong in ["", "lens.0.enabled", "=5", "lens..radius=5"] {
-            assert!(wrong.parse::<Setting>().is_err(), "{wrong}");
         }
     }
 

@@ -1,3 +1,167 @@
 //! `veduta render`: one picture, no window.
 
 pub mod arguments;
+
+use std::{path::PathBuf, sync::Arc};
+
+use arguments::{AovFormat, AovKind, AovRequest, Arguments};
+
+use crate::{
+    city::facts,
+    cli::{Failure, GlobalArguments, Outcome, load, output, terminal},
+    figure::{
+        picture::{self, Note, WriteError},
+        scene_file::{self, Options},
+    },
+    gpu::Gpu,
+    render::{
+        picture::{Aovs, Picture, Request, Studio},
+        stats,
+    },
+    scene::{History, Scene, check_against},
+};
+
+/// Lenses that a PNG mask holds.
+const PNG_LENSES: usize = 16;
+
+/// Draws the picture and everything that comes with it.
+pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
+    arguments.check()?;
+    let options = options_of(arguments, global);
+    let scene = scene_of(arguments, &options)?;
+    check_masks(&arguments.aovs, &scene)?;
+    let (mut studio, warnings) = open(&scene, &options, global)?;
+    let has = |kind| arguments.aovs.iter().any(|aov| aov.kind == kind);
+    let request = Request {
+        size: scene.figure.size,
+        samples: scene.figure.samples,
+        transparent: arguments.transparent,
+        aovs: Aovs {
+            depth: has(AovKind::Depth),
+            object_id: has(AovKind::ObjectId),
+            normal: has(AovKind::Normal),
+            lens_mask: has(AovKind::LensMask),
+        },
+        statistics: arguments.stats.is_some(),
+    };
+    let progress = terminal::Progress::spinning("drawing", global);
+    let mut picture = studio.render(&scene, &request).map_err(Failure::failed)?;
+    drop(progress);
+    let notes = notes(&scene, &options);
+    for aov in &arguments.aovs {
+        write_aov(aov, &picture, scene.lenses.len(), &notes)?;
+    }
+    if let Some(file) = &arguments.stats {
+        picture.statistics.warnings = warnings;
+        output::write(file, |out| {
+            serde_json::to_writer_pretty(&mut *out, &picture.statistics)?;
+            writeln!(out)
+        })?;
+    }
+    // Last, so that a picture that is there means that everything is there.
+    picture::save_picture(&arguments.output, picture.size, &picture.rgba, !arguments.transparent, &notes)
+        .map_err(unwritten)
+}
+
+/// What a picture says about itself: the program's version and a hash of the scene, paths relative to its file.
+pub fn notes(scene: &Scene, options: &Options) -> Vec<Note> {
+    picture::notes(Some(picture::hash(&scene_file::to_toml_for(scene, options))))
+}
+
+/// A reader that leaves is no failure here either.
+pub fn unwritten(error: WriteError) -> Failure {
+    match error {
+        WriteError::Io { path, error } => Failure::io(&path.display().to_string(), &error),
+        format @ WriteError::Format { .. } => Failure::failed(format),
+    }
+}
+
+fn options_of(arguments: &Arguments, global: &GlobalArguments) -> Options {
+    match arguments.scene() {
+        Some(file) => Options { allow_outside: global.allow_outside, ..Options::for_file(file) },
+        None => Options::for_command_line(),
+    }
+}
+
+/// The scene that is drawn: the file's, or one of the city files alone, then every `--set` in order, then the options.
+fn scene_of(arguments: &Arguments, options: &Options) -> Outcome<Scene> {
+    let scene = match arguments.scene() {
+        Some(file) => scene_file::read(file, options).map_err(Failure::failed)?,
+        None => {
+            let mut scene = Scene::default();
+            scene.city.files.clone_from(&arguments.files);
+            scene
+        }
+    };
+    let mut history = History::new(scene);
+    for assignment in &arguments.settings {
+        let command = scene_file::set(history.scene(), assignment).map_err(Failure::usage)?;
+        history.apply(command);
+    }
+    let mut scene = history.scene().clone();
+    if let Some(size) = arguments.size {
+        scene.figure.size = size.0;
+    }
+    if let Some(samples) = arguments.samples {
+        scene.figure.samples = samples;
+    }
+    Ok(scene)
+}
+
+/// Refuses, before anything is drawn, what could not be written afterwards.
+fn check_masks(aovs: &[AovRequest], scene: &Scene) -> Outcome {
+    let is_mask = |aov: &&AovRequest| (aov.kind, aov.format) == (AovKind::LensMask, AovFormat::Png);
+    match aovs.iter().find(is_mask) {
+        Some(aov) if scene.lenses.len() > PNG_LENSES => Err(Failure::usage(format!(
+            "{}: a PNG mask holds {PNG_LENSES} lenses and the scene has {}; .exr would be right",
+            aov.file.display(),
+            scene.lenses.len()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Loads the scene's city and puts it on the graphics card; with what is to be warned of.
+pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outcome<(Studio, Vec<serde_json::Value>)> {
+    if scene.city.files.is_empty() {
+        return Err(Failure::failed("the scene names no city; [city] files = [\"FILE\"] would be right"));
+    }
+    let mut roots: Vec<PathBuf> = options.roots.clone();
+    roots.push(options.base.clone());
+    let (model, load) = load::load_below(&scene.city.files, roots, global)?;
+    let mut warnings: Vec<serde_json::Value> =
+        facts::warning_facts(&model).iter().filter_map(|warning| serde_json::to_value(warning).ok()).collect();
+    if !warnings.is_empty() {
+        log::info!("{} kinds of warnings about the city; `veduta info` lists them", warnings.len());
+    }
+    for problem in check_against(scene, &model) {
+        log::warn!("scene: {problem}");
+        let message = problem.to_string();
+        warnings.push(serde_json::json!({"code": "scene", "count": 1, "objects": [], "message": message}));
+    }
+    let gpu = Gpu::open().map_err(Failure::failed)?;
+    if gpu.is_software() && !global.quiet {
+        terminal::say(&format!("note: drawn in software by {}; the picture is the same, only slower", gpu.name()));
+    }
+    let mut studio = Studio::new(gpu, Arc::new(model), &scene.city).map_err(Failure::failed)?;
+    let ms = |stage: &str, time: std::time::Duration| (stage.to_owned(), time.as_secs_f64() * 1e3);
+    studio.load = stats::Load {
+        ms: [ms("read", load.read), ms("parse", load.parse), ms("build", load.build)].into_iter().collect(),
+        peak_bytes: stats::peak_memory(),
+    };
+    Ok((studio, warnings))
+}
+
+fn write_aov(aov: &AovRequest, picture: &Picture, lens_count: usize, notes: &[Note]) -> Outcome {
+    let (file, size) = (&aov.file, picture.size);
+    // Image-space lenses do not exist in this version: displayed and shown surface are one.
+    let written = match aov.kind {
+        AovKind::Depth => picture.depth.as_ref().map(|depth| picture::save_depth(file, size, depth, notes)),
+        AovKind::ObjectId => picture.object_id.as_ref().map(|ids| picture::save_object_id(file, size, ids, notes)),
+        AovKind::Normal => picture.normal.as_ref().map(|normals| picture::save_normal(file, size, normals, notes)),
+        AovKind::LensMask => {
+            picture.lens_mask.as_ref().map(|masks| picture::save_lens_mask(file, size, masks, lens_count, notes))
+        }
+    };
+    written.expect("every AOV that is asked for is drawn").map_err(unwritten)
+}

@@ -1,0 +1,87 @@
+//! `veduta gallery`: every figure of the docs, from the scenes that ship with the program.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::{
+    cli::{Failure, GlobalArguments, Outcome, output, render, terminal},
+    figure::{
+        picture,
+        scene_file::{self, Options},
+    },
+    render::picture::{Request, Studio},
+    scene::CitySpec,
+};
+
+const EXAMPLES: &str = "\
+Examples:
+  veduta gallery -o out
+  veduta gallery -o out town-sepia              only this one
+  VEDUTA_DATA=/data veduta gallery -o out       also scenes of shared data sets";
+
+/// The scenes, by name; a test holds this against `scenes/`.
+pub const SCENES: &[(&str, &str)] = &[
+    ("denhaag-ridges", include_str!("../../scenes/denhaag-ridges.toml")),
+    ("town", include_str!("../../scenes/town.toml")),
+    ("town-age", include_str!("../../scenes/town-age.toml")),
+    ("town-old-photograph", include_str!("../../scenes/town-old-photograph.toml")),
+];
+
+/// Arguments of `veduta gallery`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Only these scenes
+    #[arg(value_name = "NAME")]
+    pub names: Vec<String>,
+    /// The folder to write to; made where it is missing
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+}
+
+/// Draws the scenes, one picture each.
+pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
+    for name in &arguments.names {
+        if !SCENES.iter().any(|(known, _)| known == name) {
+            let known: Vec<&str> = SCENES.iter().map(|(known, _)| *known).collect();
+            return Err(Failure::usage(format!("gallery: no scene {name}; there are {}", known.join(", "))));
+        }
+    }
+    let folder = &arguments.output;
+    std::fs::create_dir_all(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
+    let is_asked = |name: &str| arguments.names.is_empty() || arguments.names.iter().any(|asked| asked == name);
+    // Scenes of one city follow each other: it is loaded once.
+    let mut last: Option<(CitySpec, Studio)> = None;
+    for (name, text) in SCENES.iter().filter(|(name, _)| is_asked(name)) {
+        let options = Options::for_file(&PathBuf::from("scenes").join(name));
+        let scene = match scene_file::parse(text, &format!("scenes/{name}.toml"), &options) {
+            Ok(scene) => scene,
+            Err(error) if error.is_data_absent => {
+                output::print(&format!("{name}: skipped: data absent (VEDUTA_DATA is not set)\n"))?;
+                continue;
+            }
+            Err(error) => return Err(Failure::failed(error)),
+        };
+        let mut studio = match last.take() {
+            Some((city, studio)) if city == scene.city => studio,
+            _ => render::open(&scene, &options, global)?.0,
+        };
+        let request = Request {
+            size: scene.figure.size,
+            samples: scene.figure.samples,
+            transparent: false,
+            aovs: Default::default(),
+            statistics: false,
+        };
+        let progress = terminal::Progress::spinning(&format!("drawing {name}"), global);
+        let drawn = studio.render(&scene, &request).map_err(|error| Failure::failed(format!("{name}: {error}")))?;
+        drop(progress);
+        let file = folder.join(format!("{name}.png"));
+        picture::save_picture(&file, drawn.size, &drawn.rgba, true, &render::notes(&scene, &options))
+            .map_err(render::unwritten)?;
+        output::print(&format!("{}\n", file.display()))?;
+        last = Some((scene.city, studio));
+    }
+    Ok(())
+}
