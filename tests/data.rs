@@ -8,6 +8,8 @@ mod faces;
 mod info;
 #[path = "data/meshes.rs"]
 mod meshes;
+#[path = "data/scenes.rs"]
+mod scenes;
 
 use std::path::PathBuf;
 
@@ -27,6 +29,6 @@ fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 's
 
 fn main() {
     let arguments = Arguments::from_args();
-    let trials = [faces::trials(), info::trials(), meshes::trials()].into_iter().flatten().collect();
+    let trials = [faces::trials(), info::trials(), meshes::trials(), scenes::trials()].into_iter().flatten().collect();
     libtest_mimic::run(&arguments, trials).exit();
 }

@@ -10,6 +10,7 @@ mod case_11_rays_through_edges;
 mod case_12_slivers;
 mod case_13_dirty_rings;
 mod case_14_non_planar_faces;
+mod case_21_extreme_views;
 mod oracle;
 #[path = "../studio/mod.rs"]
 mod studio;

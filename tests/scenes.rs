@@ -1,0 +1,71 @@
+//! The shipped scenes are right, and say in their first line what they show.
+
+use std::path::{Path, PathBuf};
+
+use veduta::{
+    city::load::{LoadOptions, Quiet, load},
+    figure::scene_file::{self, Options},
+    geom::Volume,
+    scene::{Scene, check_against},
+    view::View,
+};
+
+fn scenes() -> Vec<(PathBuf, Scene)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    paths.sort();
+    let read = |path: PathBuf| {
+        // Data need not be there to read the scene.
+        let data = Some(PathBuf::from("/data"));
+        let scene = scene_file::read(&path, &Options { data, ..Options::for_file(&path) }).unwrap();
+        (path, scene)
+    };
+    paths.into_iter().map(read).collect()
+}
+
+#[test]
+fn all_of_them_are_read_described_and_read_again() {
+    let scenes = scenes();
+    assert!(scenes.len() >= 7);
+    for (path, scene) in scenes {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let first = text.lines().next().unwrap_or_default();
+        assert!(first.starts_with("# ") && first.ends_with('.'), "{}: begin with what it shows", path.display());
+        let again = scene_file::parse(&scene_file::to_toml(&scene), "again", &Options::for_command_line()).unwrap();
+        assert_eq!(again, scene, "{}", path.display());
+        let view = View::new(scene.camera.expect("a camera"), scene.figure.size, &veduta::geom::Aabb::EMPTY).unwrap();
+        for lens in &scene.lenses {
+            for shape in &lens.shapes {
+                let volume: Volume = shape.volume().unwrap();
+                let at = view.pixel(volume.bounds().center()).expect("in front of the eye");
+                assert!(
+                    (0.0..f64::from(scene.figure.size[0])).contains(&at.x),
+                    "{}: {} is seen",
+                    path.display(),
+                    lens.name
+                );
+                assert!(
+                    (0.0..f64::from(scene.figure.size[1])).contains(&at.y),
+                    "{}: {} is seen",
+                    path.display(),
+                    lens.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn those_of_the_built_in_town_name_what_it_has() {
+    let model = load(&["builtin:town".into()], &LoadOptions::default(), &Quiet).unwrap();
+    let built_in = |s: &Scene| s.city.files == [PathBuf::from("builtin:town")];
+    let scenes: Vec<_> = scenes().into_iter().filter(|(_, s)| built_in(s)).collect();
+    assert!(scenes.len() >= 2);
+    for (path, scene) in scenes {
+        assert_eq!(check_against(&scene, &model), [], "{}", path.display());
+        for lens in &scene.lenses {
+            let meets = lens.shapes.iter().any(|s| s.volume().unwrap().bounds().meets(&model.extent()));
+            assert!(meets, "{}: {} acts on nothing", path.display(), lens.name);
+        }
+    }
+}
