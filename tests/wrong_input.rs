@@ -348,9 +348,7 @@ fn judge(case: &Case, path: &Path) -> Result<(), String> {
         Shown(wanted, codes) => (wanted == triangles, codes),
         Either(codes) | Error(codes) => (true, codes),
     };
-    if let Err(unsound) = model.validate() {
-        return Err(unsound);
-    }
+    model.validate()?;
     let unread = model.warnings.iter().find(|(_, w)| w.message.is_empty() || w.count == 0);
     match (right && codes.iter().all(|c| found.contains(c)), unread) {
         (true, None) => Ok(()),
