@@ -39,7 +39,6 @@ pub fn ramp(name: &str, t: f64) -> Srgb {
         "purple-orange" => PURPLE_ORANGE,
         _ => VIRIDIS,
     };
-    #[expect(clippy::manual_clamp, reason = "`clamp` keeps NaN, `max` makes it 0")]
     let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
     let at = t * (entries.len() - 1) as f64;
     let below = (at as usize).min(entries.len() - 2);
