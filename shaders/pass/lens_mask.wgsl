@@ -1,12 +1,14 @@
 // The volumetric depth test (S5): every pixel of a lens' screen bounds gets one bit per class.
 // Several volumes of one lens are ORed: inside any of them is inside the lens.
 //
-// mask layers of lens i, with w = i / 32, bit i % 32:  3w inside | 3w + 1 in front | 3w + 2 behind
+// mask layers of lens i, with w = i / 32, bit i % 32:  3w inside | 3w + 1 in front | 3w + 2 behind;
+// where nobody asks for more than inside, layer w is all there is
 
 struct MaskStage {
     origin: vec2u,              // of the screen bounds, pixels
     size: vec2u,
     texels_per_pixel: vec2f,    // sprite against target
+    sprite_origin: vec2f,       // of the sprite's part that is kept, texels
     lens: u32,
 }
 
@@ -15,6 +17,8 @@ struct MaskStage {
 @group(1) @binding(2) var exit_depth: texture_depth_2d;
 @group(1) @binding(3) var masks: texture_storage_2d_array<r32uint, read_write>;
 @group(2) @binding(0) var<uniform> stage: MaskStage;
+
+override MASK_LAYERS: u32 = 3u;
 
 const INSIDE: u32 = 0u;
 const FRONT: u32 = 1u;
@@ -38,7 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let pixel = stage.origin + id.xy;
-    let texel = vec2u((vec2f(pixel) + 0.5) * stage.texels_per_pixel);
+    let texel = vec2u((vec2f(pixel) + 0.5) * stage.texels_per_pixel - stage.sprite_origin);
     let exit = textureLoad(exit_depth, texel, 0);
     if exit == 1.0 {
         return; // the clear value: the ray misses the lens
@@ -49,7 +53,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let entry = textureLoad(entry_depth, texel, 0);
         class_ = classify(distance_of_depth(stored), entry > 0.0, distance_of_depth(entry), distance_of_depth(exit));
     }
-    let layer = 3u * (stage.lens / 32u) + class_;
+    if MASK_LAYERS == 1u && class_ != INSIDE {
+        return;
+    }
+    let layer = MASK_LAYERS * (stage.lens / 32u) + class_;
     let word = textureLoad(masks, pixel, layer).x;
     textureStore(masks, pixel, layer, vec4u(word | (1u << (stage.lens % 32u)), 0u, 0u, 0u));
 }

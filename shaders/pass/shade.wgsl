@@ -6,6 +6,9 @@
 override LENSES: bool = false;      // whether this part of the picture meets a lens
 override TEXTURED: bool = false;    // whether base colours are in a target of their own
 override CLAY: bool = false;        // one colour for everything
+override OUTLINES: bool = false;    // whether some lens shows its silhouette
+override MASK_LAYERS: u32 = 3u;     // per 32 lenses: 3 = inside, in front, behind; 1 = inside is all that is asked for
+override HAZE: bool = false;        // whether the air shows
 override SUMMED: bool = false;      // weighted by coverage, to be summed over samples
 
 struct Parameters {
@@ -58,7 +61,7 @@ fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
 }
 
 fn mask_bit(pixel: vec2i, lens: u32, class_: u32) -> bool {
-    let word = textureLoad(masks, pixel, 3u * (lens / 32u) + class_, 0).x;
+    let word = textureLoad(masks, pixel, MASK_LAYERS * (lens / 32u) + class_, 0).x;
     return (word >> (lens % 32u) & 1u) == 1u;
 }
 
@@ -67,10 +70,10 @@ fn in_class(pixel: vec2i, lens: u32, class_: u32) -> bool {
     if lens == CONTEXT {
         return true;
     }
-    if class_ == INSIDE {
-        return mask_bit(pixel, lens, INSIDE);
-    }
     let inside = mask_bit(pixel, lens, INSIDE);
+    if MASK_LAYERS == 1u || class_ == INSIDE {
+        return inside;
+    }
     let front = mask_bit(pixel, lens, FRONT);
     let behind = mask_bit(pixel, lens, BEHIND);
     switch class_ {
@@ -154,7 +157,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     if depth > 0.0 {
         point = point_at(pixel, ray, depth);
         color = shade(&point, pixel);
-        if view.haze > 0.0 {
+        if HAZE {
             let air = 1.0 - exp(-max(point.distance - light.scene_radius, 0.0) * view.haze);
             color = mix(color, light.horizon, air);
         }
@@ -166,7 +169,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
         color = sky_color(ray.direction * view.view_from_world);
     }
     color = apply(color, point, pixel);
-    if LENSES {
+    if LENSES && OUTLINES {
         for (var i = 0u; i < operations.count; i++) {
             let operation = operations.list[i];
             if operation.effect == OUTLINE {

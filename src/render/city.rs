@@ -19,7 +19,10 @@ use crate::{
 
 /// Triangles per chunk: few enough to cull a street scene finely, many enough that a draw call's cost
 /// (some microseconds on a software adapter) vanishes beside them.
-const CHUNK_TRIANGLES: usize = 1024;
+const CHUNK_TRIANGLES: usize = 512;
+
+/// Up to this many visible chunks are drawn near to far.
+const SORTED_CHUNKS: usize = 256;
 
 /// A run of the index buffer that is drawn or culled as one.
 #[derive(Clone, Debug)]
@@ -283,18 +286,31 @@ impl CityBuffers {
         Ok(Self { sections, surfaces, surface_table, planes, textures, smooth, triangles, vertices, bytes, bounds })
     }
 
-    /// The draws of one section that a frustum may see, neighbours merged; and how many triangles they hold.
-    pub fn visible(section: &Section, frustum: &Frustum, draws: &mut Vec<Draw>) -> u64 {
+    /// The draws of one section that a frustum may see, and how many triangles they hold.
+    ///
+    /// Few chunks come near ones first, so that they hide the rest before it is shaded; many come in the order of the
+    /// buffer, neighbours merged, because then draw calls cost more than hidden fragments. Coplanar sections always
+    /// keep their order: it decides who wins.
+    pub fn visible(section: &Section, frustum: &Frustum, eye: DVec3, draws: &mut Vec<Draw>) -> u64 {
         draws.clear();
-        let mut vertices = 0;
-        for chunk in section.chunks.iter().filter(|c| frustum.meets(&c.bounds)) {
-            vertices += u64::from(chunk.range.end - chunk.range.start);
-            match draws.last_mut() {
-                Some(last) if last.end == chunk.range.start => last.end = chunk.range.end,
-                _ => draws.push(chunk.range.clone()),
+        let seen: Vec<&Chunk> = section.chunks.iter().filter(|c| frustum.meets(&c.bounds)).collect();
+        if seen.len() <= SORTED_CHUNKS && section.kind != SectionKind::Coplanar {
+            let mut near_first: Vec<(f64, u32)> = Vec::with_capacity(seen.len());
+            for (i, chunk) in seen.iter().enumerate() {
+                let nearest = eye.clamp(chunk.bounds.min, chunk.bounds.max);
+                near_first.push((nearest.distance_squared(eye), i as u32));
+            }
+            near_first.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            draws.extend(near_first.iter().map(|&(_, i)| seen[i as usize].range.clone()));
+        } else {
+            for chunk in &seen {
+                match draws.last_mut() {
+                    Some(last) if last.end == chunk.range.start => last.end = chunk.range.end,
+                    _ => draws.push(chunk.range.clone()),
+                }
             }
         }
-        vertices / 3
+        seen.iter().map(|c| u64::from(c.range.end - c.range.start)).sum::<u64>() / 3
     }
 }
 

@@ -55,6 +55,8 @@ pub struct FrameInput<'a> {
     pub sprite_resolution: &'a [Option<u32>],
     /// What the context and the lenses do.
     pub operations: &'a Operations,
+    /// Whether somebody counts pixels in front of and behind lenses.
+    pub all_classes: bool,
     /// Which sample this is.
     pub sample: u32,
     /// How many there will be.
@@ -118,7 +120,7 @@ impl Renderer {
         let mut recorder = Recorder { timer, passes: Vec::new() };
         let seen = seen_volumes(input);
         let sun_view = self.sun_view(input);
-        self.fit_targets(needs(input, self.colored(), sun_view.is_some()));
+        self.fit_targets(needs(input, &seen, self.colored(), sun_view.is_some()));
         self.upload(input, sun_view.as_ref(), &seen)?;
         self.fit_groups();
         let keys = self.prepare(input, &seen, sun_view.is_some());
@@ -132,7 +134,7 @@ impl Renderer {
             self.clear_masks(&mut encoder, &mut recorder);
             for (stage, volume) in seen.iter().enumerate() {
                 self.sprite_passes(&mut encoder, &mut recorder, volume, stage);
-                self.mask_pass(&mut encoder, &mut recorder, volume, stage);
+                self.mask_pass(&mut encoder, &mut recorder, input, volume, stage);
             }
         }
         self.shade_pass(&mut encoder, &mut recorder, input, &seen, &keys);
@@ -144,6 +146,33 @@ impl Renderer {
         }
         self.gpu.queue.submit([encoder.finish()]);
         Ok(recorder.passes)
+    }
+
+    /// Draws the city in one lit pass over the same buffers and the same visible chunks, into the same targets: what
+    /// the plain frame is measured against. Needs a frame drawn before, for the targets and the view.
+    pub fn draw_bare(&mut self, view: &View) {
+        self.pipelines.prepare(&self.gpu, &Key::Bare);
+        let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
+        let mut encoder =
+            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("bare") });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("bare"),
+            color_attachments: &[Some(color_attachment(&targets.picture.view, wgpu::Color::WHITE))],
+            depth_stencil_attachment: Some(depth_attachment(&targets.depth.view, 0.0)),
+            ..Default::default()
+        });
+        pass.set_pipeline(self.pipelines.render(&Key::Bare));
+        pass.set_bind_group(0, &groups.view, &[]);
+        pass.set_bind_group(1, &city.group, &[]);
+        let frustum = view.frustum(1.0);
+        let mut draws = Vec::new();
+        for section in &city.buffers.sections {
+            CityBuffers::visible(section, &frustum, view.camera.eye, &mut draws);
+            pass.set_vertex_buffer(0, section.vertices.slice(..));
+            draw_ranges(&mut pass, section.indices.as_ref(), &draws);
+        }
+        drop(pass);
+        self.gpu.queue.submit([encoder.finish()]);
     }
 
     fn colored(&self) -> bool {
@@ -174,7 +203,7 @@ impl Renderer {
         let radius = light::radius_of(&city.buffers.bounds);
         let jitter = crate::view::jitter_px(input.sample);
         let jitter = if input.samples > 1 { jitter } else { DVec2::ZERO };
-        let haze = if input.view.is_orthographic() { 0.0 } else { input.haze / radius };
+        let haze = haze(input) / radius;
         let view = view_uniform(&input.view, input.tile, jitter, input.sample, haze);
         let light = light::uniform(&input.sun, input.background, input.transparent, sun, input.view.camera.eye, radius);
         let (mut shapes, mut planes) = (Vec::new(), Vec::new());
@@ -186,11 +215,13 @@ impl Renderer {
                 shape: stage as u32,
                 pad_0: 0,
                 pixels_per_texel: [1.0 / scale(0), 1.0 / scale(1)],
+                origin: volume.sprite_bounds.origin.map(|o| o as f32),
             };
             let mask = layout::MaskStage {
                 origin: volume.bounds.origin,
                 size: volume.bounds.size,
                 texels_per_pixel: [scale(0), scale(1)],
+                sprite_origin: volume.sprite_bounds.origin.map(|o| o as f32),
                 lens: volume.lens,
                 pad_0: 0,
             };
@@ -229,7 +260,8 @@ impl Renderer {
             keys.push(geometry_key(section.kind, colored, city.buffers.smooth));
         }
         for volume in seen {
-            keys.extend([Key::SpriteEntry(volume.kind), Key::SpriteExit(volume.kind), Key::LensMask]);
+            let mask = Key::LensMask(mask_layers(input));
+            keys.extend([Key::SpriteEntry(volume.kind), Key::SpriteExit(volume.kind), mask]);
         }
         let clay = input.base == BaseStyle::Clay;
         let shade = |effects: &[u32], lenses| Key::Shade {
@@ -238,6 +270,10 @@ impl Renderer {
             textured: colored && !clay,
             clay,
             summed: input.samples > 1,
+            shadows,
+            outlines: lenses && input.operations.outlines,
+            mask_layers: if lenses { mask_layers(input) } else { 1 },
+            haze: haze(input) > 0.0,
         };
         let shade_keys = ShadeKeys {
             context: Some(shade(&input.operations.context_effects, false)),
@@ -276,7 +312,7 @@ impl Renderer {
         let frustum = sun.frustum(1.0);
         let mut draws = Vec::new();
         for section in &city.buffers.sections {
-            let triangles = CityBuffers::visible(section, &frustum, &mut draws);
+            let triangles = CityBuffers::visible(section, &frustum, sun.camera.eye, &mut draws);
             pass.set_vertex_buffer(0, section.vertices.slice(..));
             draw_ranges(&mut pass, section.indices.as_ref(), &draws);
             recorder.count(draws.len() as u32, triangles);
@@ -308,7 +344,7 @@ impl Renderer {
         let mut draws = Vec::new();
         let mut counted = (0, 0);
         for (section, image) in city.buffers.sections.iter().zip(&city.images) {
-            let triangles = CityBuffers::visible(section, &frustum, &mut draws);
+            let triangles = CityBuffers::visible(section, &frustum, input.view.camera.eye, &mut draws);
             if draws.is_empty() {
                 continue;
             }
@@ -331,10 +367,10 @@ impl Renderer {
 
     fn clear_masks(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
         let Some(targets) = &self.targets else { return };
-        for three in targets.masks.layers.chunks(3) {
+        for some in targets.masks.layers.chunks(4) {
             let slot = recorder.begin(CLEAR_MASKS, "main", None, false);
             let attachments: Vec<_> =
-                three.iter().map(|view| Some(color_attachment(view, wgpu::Color::TRANSPARENT))).collect();
+                some.iter().map(|view| Some(color_attachment(view, wgpu::Color::TRANSPARENT))).collect();
             encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some(CLEAR_MASKS),
                 color_attachments: &attachments,
@@ -372,7 +408,7 @@ impl Renderer {
             pass.set_bind_group(0, &groups.view, &[]);
             pass.set_bind_group(1, &groups.shapes, &[]);
             pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
-            scissor(&mut pass, volume.sprite_bounds);
+            scissor(&mut pass, PictureTile::whole(volume.sprite_bounds.size));
             pass.draw(0..3, 0..1);
             if let Some(timer) = &recorder.timer {
                 timer.end_count(&mut pass, slot);
@@ -386,6 +422,7 @@ impl Renderer {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
+        input: &FrameInput,
         volume: &SeenVolume,
         stage: usize,
     ) {
@@ -395,7 +432,7 @@ impl Renderer {
             label: Some("lens mask"),
             timestamp_writes: recorder.timer.as_ref().and_then(|t| t.compute_writes(slot)),
         });
-        pass.set_pipeline(self.pipelines.compute(&Key::LensMask));
+        pass.set_pipeline(self.pipelines.compute(&Key::LensMask(mask_layers(input))));
         pass.set_bind_group(0, &groups.view, &[]);
         pass.set_bind_group(1, &groups.mask, &[]);
         pass.set_bind_group(2, &groups.mask_stage, &[stage as u32 * STAGE_STRIDE as u32]);
@@ -486,6 +523,17 @@ fn geometry_key(kind: SectionKind, colored: bool, smooth: bool) -> Key {
     Key::Geometry { section, colored, smooth }
 }
 
+/// Mask layers per 32 lenses: where only *inside* is asked for, one will do.
+fn mask_layers(input: &FrameInput) -> u32 {
+    let all = input.all_classes || input.operations.outlines || input.operations.other_classes;
+    if all { 3 } else { 1 }
+}
+
+/// Haze per radius of the scene; none in orthographic views, which have no distance, nor on clay.
+fn haze(input: &FrameInput) -> f64 {
+    if input.view.is_orthographic() || input.base == BaseStyle::Clay { 0.0 } else { input.haze }
+}
+
 /// Texels of a lens' sprite.
 fn sprite_size(input: &FrameInput, lens: u32) -> [u32; 2] {
     let size = input.tile.size;
@@ -511,14 +559,15 @@ fn seen_volumes(input: &FrameInput) -> Vec<SeenVolume> {
     seen
 }
 
-fn needs(input: &FrameInput, colors: bool, shadows: bool) -> Needs {
-    let sprite =
-        input.volumes.iter().map(|v| sprite_size(input, v.lens)).fold([0, 0], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+fn needs(input: &FrameInput, seen: &[SeenVolume], colors: bool, shadows: bool) -> Needs {
+    // In steps of 64 texels, so that a lens that moves does not have its sprite made anew every frame.
+    let longest = |i: usize| seen.iter().map(|v| v.sprite_bounds.size[i].next_multiple_of(64)).max().unwrap_or(0);
+    let sprite = [longest(0), longest(1)];
     Needs {
         size: input.tile.size,
         colors,
         sums: input.samples > 1,
-        lenses: if input.volumes.is_empty() { 0 } else { input.lens_count },
+        mask_layers: if seen.is_empty() { 0 } else { mask_layers(input) * input.lens_count.div_ceil(32) },
         sprite,
         shadow: if shadows { light::SHADOW_SIZE } else { 0 },
     }

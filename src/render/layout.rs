@@ -103,6 +103,7 @@ pub struct SpriteStage {
     pub shape: u32,
     pub pad_0: u32,
     pub pixels_per_texel: [f32; 2],
+    pub origin: [f32; 2],
 }
 
 /// `pass/lens_mask.wgsl`.
@@ -112,6 +113,7 @@ pub struct MaskStage {
     pub origin: [u32; 2],
     pub size: [u32; 2],
     pub texels_per_pixel: [f32; 2],
+    pub sprite_origin: [f32; 2],
     pub lens: u32,
     pub pad_0: u32,
 }
@@ -239,8 +241,8 @@ mod tests {
                     scene_radius
                 }),
             ),
-            (&Module::Sprite, host!(SpriteStage { shape, pad_0, pixels_per_texel })),
-            (&Module::LensMask, host!(MaskStage { origin, size, texels_per_pixel, lens, pad_0 })),
+            (&Module::Sprite, host!(SpriteStage { shape, pad_0, pixels_per_texel, origin })),
+            (&Module::LensMask, host!(MaskStage { origin, size, texels_per_pixel, sprite_origin, lens, pad_0 })),
             (&shade, host!(Parameters { a, b })),
             (&shade, host!(Operation { effect, lens, class_, reserved, parameters })),
         ];

@@ -24,6 +24,10 @@ pub struct Operations {
     pub effects: Vec<u32>,
     /// Numbers of the context's effects, ascending.
     pub context_effects: Vec<u32>,
+    /// Whether some lens shows its silhouette.
+    pub outlines: bool,
+    /// Whether some lens acts on another class than *inside*.
+    pub other_classes: bool,
 }
 
 impl Operations {
@@ -44,10 +48,12 @@ impl Operations {
         let active = || lenses.iter().enumerate().filter(|(i, _)| visible.get(*i) == Some(&true));
         for (i, lens) in active() {
             for effect in &lens.effects {
+                out.other_classes |= effect.class != Class::Inside;
                 list.extend(out.operation(effect, i as u32, model)?);
             }
         }
         for (i, lens) in active().filter(|(_, lens)| lens.body == LensBody::Outline) {
+            out.outlines = true;
             let [r, g, b] = palette::linear(lens.color);
             list.push(layout::Operation {
                 effect: layout::OUTLINE,

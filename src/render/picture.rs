@@ -26,6 +26,8 @@ use crate::{
     view::{Camera, CameraError, View, first_view},
 };
 
+/// How thick the air is: the share of the horizon's colour that a scene's radius of it adds.
+const HAZE: f64 = 0.08;
 /// Longest side of a target; larger pictures are drawn in tiles.
 const TILE: u32 = 4096;
 /// Pixels by which tiles overlap, so that what looks at neighbours (outlines) has them.
@@ -175,9 +177,22 @@ impl Studio {
             frame.cpu_ms = started.elapsed().as_secs_f64() * 1e3;
             (frame.allocations, frame.uploads) = picture.made;
         }
-        picture.lens_mask =
-            request.aovs.lens_mask.then(|| std::mem::take(&mut picture.classes).into_iter().step_by(3).collect());
+        let per_word = if request.statistics { 3 } else { 1 };
+        let inside = std::mem::take(&mut picture.classes).into_iter().step_by(per_word);
+        picture.lens_mask = request.aovs.lens_mask.then(|| inside.collect());
         Ok(picture)
+    }
+
+    /// Draws one sample of one frame without reading anything back: what a window does, and benchmarks.
+    pub fn redraw(&mut self, scene: &Scene, size: [u32; 2]) -> Result<(), RenderError> {
+        let prepared = self.prepare(scene)?;
+        let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
+        let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
+        let view = View::new(self.camera(scene, size), size, &reach)?;
+        let request = Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false };
+        let input = input(scene, &request, &prepared, view, PictureTile::whole(size));
+        self.renderer.draw(&input, None)?;
+        Ok(())
     }
 
     fn prepare(&self, scene: &Scene) -> Result<Prepared, RenderError> {
@@ -215,21 +230,7 @@ impl Studio {
         picture: &mut Picture,
         passes: &mut Vec<stats::Pass>,
     ) -> Result<(), RenderError> {
-        let mut input = FrameInput {
-            view: *view,
-            tile: part.drawn,
-            sun: scene.sun,
-            base: scene.style.base,
-            background: scene.style.background,
-            transparent: request.transparent,
-            haze: 0.08,
-            volumes: &prepared.volumes,
-            lens_count: scene.lenses.len() as u32,
-            sprite_resolution: &prepared.sprite_resolution,
-            operations: &prepared.operations,
-            sample: 0,
-            samples: request.samples.max(1),
-        };
+        let mut input = input(scene, request, prepared, *view, part.drawn);
         for sample in 0..input.samples {
             input.sample = sample;
             let mut timer =
@@ -241,7 +242,7 @@ impl Studio {
             if sample == 0 {
                 self.read_aovs(request, view, part, picture)?;
                 if records.iter().any(|r| r.name == CLEAR_MASKS) {
-                    self.read_masks(part, picture)?;
+                    self.read_masks(scene.lenses.len(), part, picture)?;
                 }
             }
             if request.statistics {
@@ -302,12 +303,15 @@ impl Studio {
     }
 
     /// Reads the class bits of all lenses.
-    fn read_masks(&self, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
+    fn read_masks(&self, scene_lens_count: usize, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
         let Some(targets) = self.renderer.targets() else { return Ok(()) };
         let size = picture.size;
-        for (layer, plane) in picture.classes.iter_mut().enumerate() {
-            let bytes =
-                self.renderer.gpu.read_texture(&targets.masks.texture, layer as u32, wgpu::TextureAspect::All)?;
+        // The card may hold more classes than were asked for.
+        let words = scene_lens_count.max(1).div_ceil(32);
+        let per_word = [picture.classes.len() / words, targets.needs.mask_layers as usize / words];
+        for (i, plane) in picture.classes.iter_mut().enumerate() {
+            let layer = (i / per_word[0] * per_word[1] + i % per_word[0]) as u32;
+            let bytes = self.renderer.gpu.read_texture(&targets.masks.texture, layer, wgpu::TextureAspect::All)?;
             put(plane, size, part, bytemuck::cast_slice::<u8, u32>(&bytes));
         }
         Ok(())
@@ -379,6 +383,31 @@ impl Studio {
     }
 }
 
+fn input<'a>(
+    scene: &Scene,
+    request: &Request,
+    prepared: &'a Prepared,
+    view: View,
+    tile: PictureTile,
+) -> FrameInput<'a> {
+    FrameInput {
+        view,
+        tile,
+        sun: scene.sun,
+        base: scene.style.base,
+        background: scene.style.background,
+        transparent: request.transparent,
+        haze: HAZE,
+        volumes: &prepared.volumes,
+        lens_count: scene.lenses.len() as u32,
+        sprite_resolution: &prepared.sprite_resolution,
+        operations: &prepared.operations,
+        all_classes: request.statistics,
+        sample: 0,
+        samples: request.samples.max(1),
+    }
+}
+
 fn lens_figures(
     studio: &Studio,
     scene: &Scene,
@@ -444,7 +473,8 @@ impl Picture {
     fn empty(request: &Request, lens_count: usize) -> Self {
         let pixels = request.size[0] as usize * request.size[1] as usize;
         let Aovs { depth, object_id, normal, lens_mask } = request.aovs;
-        let planes = if lens_mask || request.statistics { 3 * lens_count.max(1).div_ceil(32) } else { 0 };
+        let words = lens_count.max(1).div_ceil(32);
+        let planes = if request.statistics { 3 * words } else { usize::from(lens_mask) * words };
         Self {
             size: request.size,
             rgba: vec![[0; 4]; pixels],

@@ -33,8 +33,8 @@ pub enum Key {
     SpriteEntry(u32),
     /// Farthest exit from it; both by the kind of shape (`layout::Shape::kind`).
     SpriteExit(u32),
-    /// The depth test.
-    LensMask,
+    /// The depth test; mask layers per 32 lenses: 3, or 1 where only *inside* is asked for.
+    LensMask(u32),
     /// Shading.
     Shade {
         /// Effect numbers, ascending.
@@ -47,9 +47,19 @@ pub enum Key {
         clay: bool,
         /// Weighted by coverage, for the sum of samples.
         summed: bool,
+        /// There is a shadow map.
+        shadows: bool,
+        /// Some lens shows its silhouette.
+        outlines: bool,
+        /// Mask layers per 32 lenses.
+        mask_layers: u32,
+        /// The air shows.
+        haze: bool,
     },
     /// The mean of samples.
     Resolve,
+    /// One lit pass without anything else: what benchmarks compare with.
+    Bare,
 }
 
 /// Kinds of geometry sections, as far as pipelines differ.
@@ -245,9 +255,9 @@ impl Pipelines {
             Key::Geometry { section: GeometryKind::Textured(_), .. } => {
                 vec![Some(&self.view), Some(&self.city), Some(&self.image)]
             }
-            Key::Geometry { .. } | Key::Shadow => vec![Some(&self.view), Some(&self.city)],
+            Key::Geometry { .. } | Key::Shadow | Key::Bare => vec![Some(&self.view), Some(&self.city)],
             Key::SpriteEntry(_) | Key::SpriteExit(_) => vec![Some(&self.view), Some(&self.shapes), Some(&self.stage)],
-            Key::LensMask => vec![Some(&self.view), Some(&self.mask), Some(&self.stage)],
+            Key::LensMask(_) => vec![Some(&self.view), Some(&self.mask), Some(&self.stage)],
             Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
             Key::Resolve => vec![Some(&self.resolve)],
         };
@@ -259,7 +269,7 @@ impl Pipelines {
         });
         let constants = key.constants();
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
-        if *key == Key::LensMask {
+        if matches!(key, Key::LensMask(_)) {
             return Pipeline::Compute(gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(&name),
                 layout: Some(&layout),
@@ -319,9 +329,10 @@ impl Key {
             Self::Geometry { .. } => Module::Geometry,
             Self::Shadow => Module::Shadow,
             Self::SpriteEntry(_) | Self::SpriteExit(_) => Module::Sprite,
-            Self::LensMask => Module::LensMask,
+            Self::LensMask(_) => Module::LensMask,
             Self::Shade { effects, .. } => Module::Shade(effects.clone()),
             Self::Resolve => Module::Resolve,
+            Self::Bare => Module::Bare,
         }
     }
 
@@ -343,12 +354,19 @@ impl Key {
             Self::Shadow => "shadow".to_owned(),
             Self::SpriteEntry(kind) => format!("sprite entry of a {}", shape_name(*kind)),
             Self::SpriteExit(kind) => format!("sprite exit of a {}", shape_name(*kind)),
-            Self::LensMask => "lens mask".to_owned(),
-            Self::Shade { lenses, textured, clay, summed, .. } => {
-                let list = [(*lenses, "lenses"), (*textured, "textured"), (*clay, "clay"), (*summed, "summed")];
+            Self::LensMask(_) => "lens mask".to_owned(),
+            Self::Shade { lenses, textured, clay, summed, shadows, .. } => {
+                let list = [
+                    (*lenses, "lenses"),
+                    (*textured, "textured"),
+                    (*clay, "clay"),
+                    (*summed, "summed"),
+                    (*shadows, "shadows"),
+                ];
                 format!("{}{}", self.module().name(), flags(&list))
             }
             Self::Resolve => "resolve".to_owned(),
+            Self::Bare => "bare lit draw".to_owned(),
         }
     }
 
@@ -362,12 +380,17 @@ impl Key {
                 }
                 list
             }
-            Self::Shade { lenses, textured, clay, summed, .. } => vec![
+            Self::Shade { lenses, textured, clay, summed, shadows, outlines, mask_layers, haze, .. } => vec![
                 ("LENSES", flag(*lenses)),
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
                 ("SUMMED", flag(*summed)),
+                ("SHADOWS", flag(*shadows)),
+                ("OUTLINES", flag(*outlines)),
+                ("MASK_LAYERS", f64::from(*mask_layers)),
+                ("HAZE", flag(*haze)),
             ],
+            Self::LensMask(layers) => vec![("MASK_LAYERS", f64::from(*layers))],
             Self::SpriteEntry(kind) | Self::SpriteExit(kind) => vec![("KIND", f64::from(*kind))],
             _ => Vec::new(),
         }
@@ -394,7 +417,7 @@ impl Key {
         match self {
             Self::Geometry { section: GeometryKind::Textured(_), .. } => vec![vertex, per_vertex(8, TEXCOORD)],
             Self::Geometry { section: GeometryKind::Coplanar, .. } => vec![vertex, per_vertex(4, PLANE_NUMBER)],
-            Self::Geometry { .. } | Self::Shadow => vec![vertex],
+            Self::Geometry { .. } | Self::Shadow | Self::Bare => vec![vertex],
             _ => Vec::new(),
         }
     }
@@ -415,7 +438,7 @@ impl Key {
                     write_mask: wgpu::ColorWrites::ALL,
                 })]
             }
-            Self::Shade { .. } | Self::Resolve => vec![Some(PICTURE.into())],
+            Self::Shade { .. } | Self::Resolve | Self::Bare => vec![Some(PICTURE.into())],
             _ => Vec::new(),
         }
     }
@@ -424,7 +447,7 @@ impl Key {
         use wgpu::CompareFunction as C;
         let compare = match self {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
-            Self::Geometry { .. } | Self::Shadow | Self::SpriteEntry(_) => C::Greater,
+            Self::Geometry { .. } | Self::Shadow | Self::Bare | Self::SpriteEntry(_) => C::Greater,
             Self::SpriteExit(_) => C::Less,
             _ => return None,
         };

@@ -14,8 +14,8 @@ pub struct Needs {
     pub colors: bool,
     /// Sums of samples.
     pub sums: bool,
-    /// Lenses: mask layers are three per 32 of them.
-    pub lenses: u32,
+    /// Layers of the lens masks, 0 for none.
+    pub mask_layers: u32,
     /// Width and height of the depth sprites, 0 for none.
     pub sprite: [u32; 2],
     /// Side of the shadow map, 0 for none.
@@ -48,7 +48,7 @@ pub struct Targets {
     pub picture: Target,
     /// Sums of samples, linear (1×1 where not needed).
     pub sums: Target,
-    /// One bit per lens; layers 3w inside, 3w+1 in front, 3w+2 behind (1×1×3 where not needed).
+    /// One bit per lens; layers 3w inside, 3w+1 in front, 3w+2 behind, or w inside (1×1 where not needed).
     pub masks: Target,
     /// Nearest entries of the sprite at work.
     pub entry: Target,
@@ -76,13 +76,13 @@ impl Targets {
                     ..Default::default()
                 })
             };
-            let layers = if size[2] > 1 { (0..size[2]).map(layer).collect() } else { Vec::new() };
+            let layers = if format == MASKS { (0..size[2]).map(layer).collect() } else { Vec::new() };
             Target { view, layers, texture }
         };
         let [w, h] = needs.size;
         let full = |on: bool| if on { [w, h, 1] } else { [1, 1, 1] };
         let [sw, sh] = needs.sprite;
-        let mask_size = if needs.lenses > 0 { [w, h, 3 * needs.lenses.div_ceil(32)] } else { [1, 1, 3] };
+        let mask_size = if needs.mask_layers > 0 { [w, h, needs.mask_layers] } else { [1, 1, 1] };
         Self {
             needs,
             codes: make("codes", [w, h, 1], CODES, drawn),

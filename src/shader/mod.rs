@@ -21,6 +21,7 @@ files! {
     LENS_MASK = "pass/lens_mask.wgsl";
     SHADE = "pass/shade.wgsl";
     RESOLVE = "pass/resolve.wgsl";
+    BARE = "pass/bare.wgsl";
 }
 
 /// Effects that have a WGSL function of their own, by the name they have in scenes; the position is the
@@ -62,6 +63,8 @@ pub enum Module {
     Shade(Vec<u32>),
     /// The mean of samples.
     Resolve,
+    /// The bare lit draw that benchmarks compare with.
+    Bare,
 }
 
 impl Module {
@@ -78,6 +81,7 @@ impl Module {
                 format!("shade ({})", names.join(", "))
             }
             Self::Resolve => "resolve".to_owned(),
+            Self::Bare => "bare".to_owned(),
         }
     }
 
@@ -90,6 +94,7 @@ impl Module {
             Self::LensMask => &[VIEW, LENS_MASK],
             Self::Shade(_) => &[VIEW, SURFACE, COLOR, LIGHT, SHADE],
             Self::Resolve => &[RESOLVE],
+            Self::Bare => &[VIEW, SURFACE, BARE],
         };
         let mut text = String::new();
         for (path, source) in files {
@@ -144,7 +149,8 @@ mod tests {
     use super::*;
 
     fn all_modules() -> Vec<Module> {
-        let mut modules = vec![Module::Geometry, Module::Shadow, Module::Sprite, Module::LensMask, Module::Resolve];
+        let mut modules =
+            vec![Module::Geometry, Module::Shadow, Module::Sprite, Module::LensMask, Module::Resolve, Module::Bare];
         for set in 0..1_u32 << EFFECTS.len() {
             modules.push(Module::Shade((0..EFFECTS.len() as u32).filter(|e| set >> e & 1 == 1).collect()));
         }
