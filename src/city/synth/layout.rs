@@ -33,6 +33,8 @@ pub struct Block {
     pub first_building: u64,
     /// The street at its west and south: an L, counter-clockwise, millimetres.
     pub street: [[i64; 2]; 6],
+    /// What its buildings stand on, counter-clockwise, millimetres.
+    pub ground: [[i64; 2]; 4],
     /// Its buildings.
     pub houses: Vec<House>,
 }
@@ -81,10 +83,11 @@ impl Iterator for Layout {
         let mut random = Random::at(self.options.seed, BLOCK_SALT, [i, j]);
         // 1000 at the centre, 0 at the edge.
         let centrality = 1000 - (1000 * i.abs().max((j.abs() + 1) / 2) / self.last_ring).min(1000);
-        let ground = Ground {
+        let plot = Plot {
             min: [x0 + PAVEMENT, y0 + PAVEMENT],
             max: [x_end - PAVEMENT, y_end - PAVEMENT],
             centrality,
+            skyline: (self.last_ring * 30_000).min(135_000),
             // The city grew outward: the centre is old, with newer blocks in between.
             year: if random.chance(15) {
                 random.range(1960, 2020)
@@ -92,14 +95,15 @@ impl Iterator for Layout {
                 1985 - centrality / 10 + random.range(-20, 30)
             },
         };
-        let mut houses = ground.build(&mut random);
+        let mut houses = plot.build(&mut random);
         houses.iter_mut().for_each(|house| house.year = house.year.min(NEWEST));
         houses.truncate(usize::try_from(self.options.buildings - self.made).unwrap_or(usize::MAX));
         let first_building = self.made;
         self.made += houses.len() as u64;
         self.blocks += 1;
         let street = [[x, y], [x_end, y], [x_end, y0], [x0, y0], [x0, y_end], [x, y_end]];
-        Some(Block { number: self.blocks, first_building, street, houses })
+        let ground = [[x0, y0], [x_end, y0], [x_end, y_end], [x0, y_end]];
+        Some(Block { number: self.blocks, first_building, street, ground, houses })
     }
 }
 
@@ -183,12 +187,14 @@ impl Axis {
 
 // --- blocks -----------------------------------------------------------------------------------
 
-/// The ground of a block, without pavement.
+/// Where a block may be built over: its ground without the pavement.
 #[derive(Clone, Copy, Debug)]
-struct Ground {
+struct Plot {
     min: [i64; 2],
     max: [i64; 2],
     centrality: i64,
+    /// Height that the towers of a city of this size reach, above those of its edge.
+    skyline: i64,
     year: i64,
 }
 
@@ -215,7 +221,7 @@ struct Row {
     depth: i64,
 }
 
-impl Ground {
+impl Plot {
     fn build(&self, random: &mut Random) -> Vec<House> {
         let c = self.centrality;
         let kind = random.pick(&[
@@ -374,7 +380,7 @@ impl Ground {
 
     /// High buildings, the higher the nearer the centre.
     fn towers(&self, random: &mut Random) -> Vec<House> {
-        let reach = 25_000 + 135_000 * (self.centrality - 600).max(0) / 400;
+        let reach = 25_000 + self.skyline * (self.centrality - 600).max(0) / 400;
         self.parcels(random.range(3, 4), 2, 8_000, random, |random, width, depth| {
             let height = random.decimetres(25_000, reach.max(30_000));
             let on_podium = random.chance(45);

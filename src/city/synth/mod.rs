@@ -91,11 +91,14 @@ enum Object<'a> {
     Building(u64, &'a House),
     /// The streets at the west and south of a block, with the block's number, from 1.
     Street(u64, &'a Block),
+    /// The ground of a block, with its number.
+    Ground(u64, &'a Block),
 }
 
 impl Block {
     fn each_object(&self, write: &mut dyn FnMut(&Object<'_>) -> Result<()>) -> Result<()> {
         write(&Object::Street(self.number, self))?;
+        write(&Object::Ground(self.number, self))?;
         for (i, house) in self.houses.iter().enumerate() {
             write(&Object::Building(self.first_building + i as u64 + 1, house))?;
         }
@@ -108,6 +111,7 @@ impl Object<'_> {
         match self {
             Self::Building(number, _) => format!("b{number}"),
             Self::Street(number, _) => format!("s{number}"),
+            Self::Ground(number, _) => format!("g{number}"),
         }
     }
 
@@ -115,6 +119,7 @@ impl Object<'_> {
         match self {
             Self::Building(_, house) => house.points(),
             Self::Street(_, block) => block.street.iter().map(|[x, y]| [*x, *y, 0]).collect(),
+            Self::Ground(_, block) => block.ground.iter().map(|[x, y]| [*x, *y, 0]).collect(),
         }
     }
 
@@ -123,13 +128,18 @@ impl Object<'_> {
         write!(out, r#""{}":"#, self.id())?;
         match self {
             Self::Building(_, house) => write_building(out, house, first),
-            Self::Street(..) => {
-                write!(out, r#"{{"type":"Road","geometry":[{{"type":"MultiSurface","lod":"2","boundaries":[["#)?;
-                write_ring(out, &[0, 1, 2, 3, 4, 5], first)?;
-                write!(out, r#"]],"semantics":{{"surfaces":[{{"type":"TrafficArea"}}],"values":[0]}}}}]}}"#)
-            }
+            Self::Street(_, block) => write_flat(out, "Road", block.street.len(), first),
+            Self::Ground(_, block) => write_flat(out, "LandUse", block.ground.len(), first),
         }
     }
+}
+
+/// An object of one horizontal polygon.
+fn write_flat(out: &mut dyn Write, kind: &str, corners: usize, first: usize) -> Result<()> {
+    write!(out, r#"{{"type":"{kind}","geometry":[{{"type":"MultiSurface","lod":"2","boundaries":[["#)?;
+    let ring: Vec<u8> = (0..corners as u8).collect();
+    write_ring(out, &ring, first)?;
+    write!(out, "]]}}]}}")
 }
 
 fn write_building(out: &mut dyn Write, house: &House, first: usize) -> Result<()> {

@@ -2,7 +2,10 @@
 
 pub mod arguments;
 
-use std::{path::PathBuf, sync::Arc};
+use std::{
+    path::PathBuf,
+    sync::{Arc, Once},
+};
 
 use arguments::{AovFormat, AovKind, AovRequest, Arguments};
 
@@ -140,8 +143,9 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
         warnings.push(serde_json::json!({"code": "scene", "count": 1, "objects": [], "message": message}));
     }
     let gpu = Gpu::open().map_err(Failure::failed)?;
+    static SAID: Once = Once::new();
     if gpu.is_software() && !global.quiet {
-        terminal::say(&format!("note: drawn in software by {}; the picture is the same, only slower", gpu.name()));
+        SAID.call_once(|| terminal::say(&format!("note: there is no graphics hardware; {} draws, slowly", gpu.name())));
     }
     let mut studio = Studio::new(gpu, Arc::new(model), &scene.city).map_err(Failure::failed)?;
     let ms = |stage: &str, time: std::time::Duration| (stage.to_owned(), time.as_secs_f64() * 1e3);
