@@ -385,7 +385,7 @@ mod tests {
             solid: false,
             pool: std::sync::Arc::new(crate::city::build::Pool {
                 lattice: crate::city::test_city::LATTICE,
-                points: vec![[10_000, 2_000, 5_000], [30_000, 2_000, 5_000], [30_000, 8_000, 5_000]],
+                points: vec![[10_000, 2_000, 5_000], [30_000, 2_000, 5_000], [30_000, 8_000, 5_000]].into(),
             }),
             polygons: crate::city::build::Polygons {
                 indices: vec![0, 1, 2],

@@ -38,7 +38,7 @@ pub(crate) fn add(
         polygons.polygon_ends.push(polygons.ring_ends.len() as u32);
         polygons.surfaces.push(surface);
     }
-    let pool = Arc::new(Pool { lattice: LATTICE, points });
+    let pool = Arc::new(Pool { lattice: LATTICE, points: points.into() });
     builder.add_geometry(RawGeometry { object, lod: Lod { tenths: 20 }, solid: false, pool, polygons });
     object
 }

@@ -44,7 +44,7 @@ fn city(count: usize, seed: u64) -> (veduta::city::CityModel, Vec<[P3; 3]>) {
                 surfaces: vec![surface],
                 ..Polygons::default()
             };
-            let pool = Arc::new(Pool { lattice, points });
+            let pool = Arc::new(Pool { lattice, points: points.into() });
             builder.add_geometry(RawGeometry { object, lod: Lod { tenths: 20 }, solid: false, pool, polygons });
             triangles.push(triangle);
         }

@@ -1,15 +1,16 @@
 //! One job: some objects' geometries become triangles in tiles.
 
-use std::{ops::Range, sync::Arc};
+use std::ops::Range;
 
 use glam::DVec3;
-use rustc_hash::FxHashMap;
 
 use super::{
-    Lattice, Polygons, RawGeometry,
+    Lattice, extent_of,
     metric::{Grid, is_trusted},
     planes::PlaneKey,
-    repeats, tiles,
+    repeats,
+    shelf::{Part, Shape, Shelf, Slices},
+    tiles,
 };
 use crate::{
     city::{CityObject, Geometry, Surface, Tile, Vertex, WarningCode, Warnings, encode_normal},
@@ -27,24 +28,22 @@ const FLAT_M: f64 = 1e-3;
 pub(super) struct Context<'a> {
     pub(super) objects: &'a [CityObject],
     pub(super) surfaces: &'a [Surface],
-    /// Grids by the address of the pool.
-    grids: FxHashMap<usize, Grid>,
+    shelf: &'a Shelf,
+    /// One per pool.
+    grids: Vec<Grid>,
     /// Lattices by grid class.
     pub(super) classes: Vec<Lattice>,
 }
 
 impl<'a> Context<'a> {
-    pub(super) fn new(objects: &'a [CityObject], surfaces: &'a [Surface], raws: &[RawGeometry]) -> Self {
+    pub(super) fn new(objects: &'a [CityObject], surfaces: &'a [Surface], shelf: &'a Shelf) -> Self {
         let mut classes = Vec::new();
-        let mut grids = FxHashMap::default();
-        for raw in raws {
-            grids.entry(Arc::as_ptr(&raw.pool).addr()).or_insert_with(|| Grid::new(raw.pool.lattice, &mut classes));
-        }
-        Self { objects, surfaces, grids, classes }
+        let grids = shelf.pools.iter().map(|pool| Grid::new(pool.lattice, &mut classes)).collect();
+        Self { objects, surfaces, shelf, grids, classes }
     }
 
-    pub(super) fn grid(&self, raw: &RawGeometry) -> &Grid {
-        &self.grids[&Arc::as_ptr(&raw.pool).addr()]
+    pub(super) fn grid(&self, raw: &Shape<'_>) -> &Grid {
+        &self.grids[raw.pool_number as usize]
     }
 }
 
@@ -98,7 +97,7 @@ pub(super) struct Scratch {
 }
 
 /// The corners of a polygon's rings, as ranges of `indices`.
-pub(super) fn corner_ranges(polygons: &Polygons, polygon: usize) -> impl Iterator<Item = Range<usize>> {
+pub(super) fn corner_ranges(polygons: Slices<'_>, polygon: usize) -> impl Iterator<Item = Range<usize>> {
     let end_before = |ends: &[u32], i: usize| i.checked_sub(1).map_or(0, |i| ends[i] as usize);
     let rings = end_before(&polygons.polygon_ends, polygon)..polygons.polygon_ends[polygon] as usize;
     rings.map_while(move |ring| {
@@ -108,27 +107,24 @@ pub(super) fn corner_ranges(polygons: &Polygons, polygon: usize) -> impl Iterato
 }
 
 /// Does a job: geometries sorted by object and LoD.
-pub(super) fn run(job: Vec<RawGeometry>, context: &Context<'_>, scratch: &mut Scratch) -> Chunk {
+pub(super) fn run(job: &[Part], context: &Context<'_>, scratch: &mut Scratch) -> Chunk {
     let mut chunk = Chunk::default();
-    let mut same_shape: Vec<RawGeometry> = Vec::new();
-    let mut job = job.into_iter().peekable();
-    while let Some(raw) = job.next() {
-        let ends_here = job.peek().is_none_or(|next| (next.object, next.lod) != (raw.object, raw.lod));
-        same_shape.push(raw);
-        if ends_here {
-            let mut repeated = std::mem::take(&mut scratch.repeated);
-            repeats::mark(&same_shape, context, &mut scratch.repeats, &mut repeated);
-            for (raw, repeated) in same_shape.drain(..).zip(&repeated) {
-                add_geometry(raw, repeated, context, scratch, &mut chunk);
-            }
-            scratch.repeated = repeated;
+    let mut same_shape: Vec<Shape<'_>> = Vec::new();
+    for parts in job.chunk_by(|a, b| (a.object, a.lod) == (b.object, b.lod)) {
+        same_shape.clear();
+        same_shape.extend(parts.iter().map(|part| context.shelf.shape(part)));
+        let mut repeated = std::mem::take(&mut scratch.repeated);
+        repeats::mark(&same_shape, context, &mut scratch.repeats, &mut repeated);
+        for (raw, repeated) in same_shape.iter().zip(&repeated) {
+            add_geometry(raw, repeated, context, scratch, &mut chunk);
         }
+        scratch.repeated = repeated;
     }
     chunk
 }
 
-fn add_geometry(raw: RawGeometry, repeated: &[bool], context: &Context<'_>, scratch: &mut Scratch, chunk: &mut Chunk) {
-    let grid = context.grid(&raw);
+fn add_geometry(raw: &Shape<'_>, repeated: &[bool], context: &Context<'_>, scratch: &mut Scratch, chunk: &mut Chunk) {
+    let grid = context.grid(raw);
     let first_triangle = chunk.planes.len();
     let mut dropped = 0;
     scratch.faces.clear();
@@ -143,14 +139,14 @@ fn add_geometry(raw: RawGeometry, repeated: &[bool], context: &Context<'_>, scra
             continue;
         }
         let polygon_number = chunk.polygons + polygon as u32;
-        if let Err((code, why)) = add_face(&raw, polygon, polygon_number, grid, scratch, chunk, (id, &place)) {
+        if let Err((code, why)) = add_face(raw, polygon, polygon_number, grid, scratch, chunk, (id, &place)) {
             dropped += 1;
             chunk.warnings.add(code, id, || format!("{}: {why}; the face is dropped", place()));
         }
     }
     chunk.polygons += repeated.len() as u32;
-    let bounds = raw.extent_by(|p| grid.world(p));
-    let tiles = tiles::emit(&raw, grid, bounds, scratch, chunk);
+    let bounds = extent_of(raw.polygons.indices, raw.pool, |p| grid.world(p));
+    let tiles = tiles::emit(raw, grid, bounds, scratch, chunk);
     chunk.geometries.push(Geometry {
         object: raw.object,
         lod: raw.lod,
@@ -165,7 +161,7 @@ fn add_geometry(raw: RawGeometry, repeated: &[bool], context: &Context<'_>, scra
 
 /// Triangulates one polygon into `scratch.faces` and `scratch.triangles`, or says why not.
 fn add_face(
-    raw: &RawGeometry,
+    raw: &Shape<'_>,
     polygon: usize,
     polygon_number: u32,
     grid: &Grid,
@@ -209,7 +205,7 @@ fn add_face(
 
 /// Copies a polygon's points and ring ends; returns the position of its first corner.
 fn gather(
-    raw: &RawGeometry,
+    raw: &Shape<'_>,
     polygon: usize,
     grid: &Grid,
     scratch: &mut Scratch,
@@ -217,10 +213,10 @@ fn gather(
     scratch.points.clear();
     scratch.ring_ends.clear();
     let mut first = None;
-    for ring in corner_ranges(&raw.polygons, polygon) {
+    for ring in corner_ranges(raw.polygons, polygon) {
         first.get_or_insert(ring.start as u32);
         for &index in raw.polygons.indices.get(ring).unwrap_or_default() {
-            let Some(&point) = raw.pool.points.get(index as usize) else {
+            let Some(point) = raw.pool.points.get(index) else {
                 return Err((WarningCode::VertexIndex, "a vertex index points past the vertex list"));
             };
             let world: DVec3 = grid.world(point);

@@ -2,29 +2,32 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::RawObject;
+use super::KeptObject;
 use crate::city::{WarningCode, Warnings};
 
 /// Ids unique over the whole city: the first keeps its own, later ones become `ID#2`, `ID#3`, ...
-pub(super) fn unique_ids(objects: &[RawObject], warnings: &mut Warnings) -> Vec<Box<str>> {
-    let mut taken: FxHashSet<Box<str>> = FxHashSet::default();
-    taken.reserve(objects.len());
+pub(super) fn unique_ids(objects: &[KeptObject], warnings: &mut Warnings) -> Vec<Box<str>> {
+    let mut own: FxHashSet<&str> = FxHashSet::default();
+    own.reserve(objects.len());
+    let mut made: FxHashSet<Box<str>> = FxHashSet::default();
     let mut repeats: FxHashMap<&str, u32> = FxHashMap::default();
     objects
         .iter()
         .map(|object| {
-            let mut id: Box<str> = object.id.as_str().into();
-            while taken.contains(&id) {
+            let mut id = object.id.clone();
+            while own.contains(&*id) || made.contains(&id) {
                 let number = repeats.entry(&object.id).or_insert(1);
                 *number += 1;
                 id = format!("{}#{number}", object.id).into();
             }
-            if *id != *object.id {
+            if id == object.id {
+                own.insert(&object.id);
+            } else {
                 warnings.add(WarningCode::DuplicateId, &id, || {
                     format!("the id {:?} is used before; this object is called {id:?}", object.id)
                 });
+                made.insert(id.clone());
             }
-            taken.insert(id.clone());
             id
         })
         .collect()
@@ -39,7 +42,7 @@ pub(super) struct Links {
 
 /// Resolves links by id within each file (`file_starts`: first object of each). A link given on one side only is given
 /// to both; a link to nowhere and a link that closes a cycle are dropped.
-pub(super) fn resolve(objects: &[RawObject], ids: &[Box<str>], file_starts: &[u32], warnings: &mut Warnings) -> Links {
+pub(super) fn resolve(objects: &[KeptObject], ids: &[Box<str>], file_starts: &[u32], warnings: &mut Warnings) -> Links {
     let mut links = Links { parents: vec![Vec::new(); objects.len()], children: vec![Vec::new(); objects.len()] };
     let mut ends: Vec<usize> = file_starts.iter().skip(1).map(|&start| start as usize).collect();
     ends.push(objects.len());
@@ -52,7 +55,7 @@ pub(super) fn resolve(objects: &[RawObject], ids: &[Box<str>], file_starts: &[u3
     links
 }
 
-fn resolve_file(objects: &[RawObject], ids: &[Box<str>], base: u32, links: &mut Links, warnings: &mut Warnings) {
+fn resolve_file(objects: &[KeptObject], ids: &[Box<str>], base: u32, links: &mut Links, warnings: &mut Warnings) {
     if objects.iter().all(|object| object.parents.is_empty() && object.children.is_empty()) {
         return;
     }
@@ -154,12 +157,19 @@ fn cut_cycles(ids: &[Box<str>], links: &mut Links, warnings: &mut Warnings) {
 mod tests {
     use super::*;
 
-    fn object(id: &str, parents: &[&str], children: &[&str]) -> RawObject {
+    fn object(id: &str, parents: &[&str], children: &[&str]) -> KeptObject {
         let own = |ids: &[&str]| ids.iter().map(|&s| s.to_owned()).collect();
-        RawObject { id: id.to_owned(), parents: own(parents), children: own(children), ..RawObject::default() }
+        KeptObject {
+            id: id.into(),
+            parents: own(parents),
+            children: own(children),
+            kind: 0,
+            class: crate::city::ObjectClass::Other,
+            attributes: 0..0,
+        }
     }
 
-    fn linked(objects: &[RawObject], file_starts: &[u32]) -> (Vec<Box<str>>, Links, Warnings) {
+    fn linked(objects: &[KeptObject], file_starts: &[u32]) -> (Vec<Box<str>>, Links, Warnings) {
         let mut warnings = Warnings::default();
         let ids = unique_ids(objects, &mut warnings);
         let links = resolve(objects, &ids, file_starts, &mut warnings);

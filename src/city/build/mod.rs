@@ -13,15 +13,22 @@ mod job;
 mod links;
 mod metric;
 mod planes;
+mod points;
 mod repeats;
+mod shelf;
 mod tiles;
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use self::{job::Chunk, planes::PlaneTable};
+pub use self::points::{BAD_POINT, Points, Pool};
+use self::{
+    job::Chunk,
+    planes::PlaneTable,
+    shelf::{Part, Shelf},
+};
 use crate::{
     city::{
         Attribute, CityModel, CityObject, Lod, NONE, ObjectClass, Source, StringId, Surface, SurfaceDetail, WarningCode,
@@ -53,18 +60,6 @@ impl Lattice {
         let p = ((world - self.origin) / self.step).round();
         p.abs().cmplt(DVec3::splat(4.6e18)).all().then_some([p.x as i64, p.y as i64, p.z as i64])
     }
-}
-
-/// What loaders put into a pool for a point that is no number: its faces are dropped as `bad-coordinate`.
-pub const BAD_POINT: [i64; 3] = [i64::MAX; 3];
-
-/// Vertices that polygons index into.
-#[derive(Clone, Debug)]
-pub struct Pool {
-    /// What the integers mean.
-    pub lattice: Lattice,
-    /// The vertices.
-    pub points: Vec<[i64; 3]>,
 }
 
 /// Polygons of one geometry, flat: `indices` split into rings by `ring_ends`, rings into polygons by `polygon_ends`.
@@ -110,28 +105,28 @@ impl RawGeometry {
     /// Box around the vertices its polygons use, metres: taken on the integers, so corners are exactly as read.
     /// Coordinates too far away to be true are left out.
     pub fn extent(&self) -> Aabb {
-        self.extent_by(|p| self.pool.lattice.to_world(p))
+        extent_of(&self.polygons.indices, &self.pool, |p| self.pool.lattice.to_world(p))
     }
+}
 
-    /// The same with other metres: `world` must grow with each coordinate.
-    fn extent_by(&self, world: impl Fn([i64; 3]) -> DVec3) -> Aabb {
-        let used = || self.polygons.indices.iter().filter_map(|&i| self.pool.points.get(i as usize));
-        let (mut min, mut max) = ([i64::MAX; 3], [i64::MIN; 3]);
-        for point in used() {
-            for axis in 0..3 {
-                min[axis] = min[axis].min(point[axis]);
-                max[axis] = max[axis].max(point[axis]);
-            }
+/// Box around the points that `indices` name, in metres as `world` has them: it must grow with each coordinate.
+fn extent_of(indices: &[u32], pool: &Pool, world: impl Fn([i64; 3]) -> DVec3) -> Aabb {
+    let used = || indices.iter().filter_map(|&i| pool.points.get(i));
+    let (mut min, mut max) = ([i64::MAX; 3], [i64::MIN; 3]);
+    for point in used() {
+        for axis in 0..3 {
+            min[axis] = min[axis].min(point[axis]);
+            max[axis] = max[axis].max(point[axis]);
         }
-        if min[0] > max[0] {
-            return Aabb::EMPTY;
-        }
-        let corners = [min, max].map(&world);
-        if corners.into_iter().all(metric::is_trusted) {
-            return Aabb { min: corners[0], max: corners[1] };
-        }
-        Aabb::from_points(used().map(|&p| world(p)).filter(|&p| metric::is_trusted(p)))
     }
+    if min[0] > max[0] {
+        return Aabb::EMPTY;
+    }
+    let corners = [min, max].map(&world);
+    if corners.into_iter().all(metric::is_trusted) {
+        return Aabb { min: corners[0], max: corners[1] };
+    }
+    Aabb::from_points(used().map(&world).filter(|&p| metric::is_trusted(p)))
 }
 
 /// An object as read; links by id are resolved in [`ModelBuilder::finish`], within the object's own file.
@@ -158,23 +153,55 @@ pub struct ModelBuilder {
     pub model: CityModel,
     /// The metric frame of a city in degrees, once its first vertex is known.
     pub zone: Option<crate::city::crs::UtmZone>,
-    raw_objects: Vec<RawObject>,
+    objects: Vec<KeptObject>,
+    /// Kinds of objects, as `KeptObject::kind` counts them.
+    kinds: Vec<Box<str>>,
+    /// Attributes of the objects, in ranges.
+    attributes: Vec<Attribute>,
     /// First object of each file.
     file_starts: Vec<u32>,
-    raw_geometries: Vec<RawGeometry>,
+    shelf: Shelf,
+}
+
+/// A [`RawObject`] on less memory: a city has tens of thousands, waiting for the rest of their file.
+#[derive(Clone, Debug)]
+struct KeptObject {
+    id: Box<str>,
+    parents: Box<[String]>,
+    children: Box<[String]>,
+    /// Index into [`ModelBuilder::kinds`].
+    kind: u32,
+    class: ObjectClass,
+    /// In [`ModelBuilder::attributes`].
+    attributes: Range<u32>,
 }
 
 impl ModelBuilder {
     /// Starts a file: ids are resolved within it, and `source` is listed.
     pub fn begin_file(&mut self, source: Source) {
-        self.file_starts.push(self.raw_objects.len() as u32);
+        self.file_starts.push(self.objects.len() as u32);
         self.model.sources.push(source);
     }
 
     /// Adds an object; returns its index in the whole city.
     pub fn add_object(&mut self, object: RawObject) -> u32 {
-        self.raw_objects.push(object);
-        (self.raw_objects.len() - 1) as u32
+        let RawObject { id, kind, class, parents, children, attributes } = object;
+        // A city has a handful of kinds, and neighbours in a file are mostly alike.
+        let kind = self.kinds.iter().rposition(|known| **known == *kind).unwrap_or_else(|| {
+            self.kinds.push(kind.into());
+            self.kinds.len() - 1
+        });
+        let start = self.attributes.len() as u32;
+        self.attributes.extend(attributes);
+        self.objects.push(KeptObject {
+            id: id.into(),
+            parents: parents.into(),
+            children: children.into(),
+            kind: kind as u32,
+            class,
+            attributes: start..self.attributes.len() as u32,
+        });
+        (self.objects.len() - 1) as u32
     }
 
     /// Adds a surface; loaders keep their own map so that equal surfaces are added once.
@@ -194,7 +221,11 @@ impl ModelBuilder {
     /// Adds a geometry of an object.
     pub fn add_geometry(&mut self, geometry: RawGeometry) {
         self.model.extent_as_read = self.model.extent_as_read.union(geometry.extent());
-        self.raw_geometries.push(geometry);
+        if !self.shelf.add(geometry) {
+            self.model.warnings.add(WarningCode::Unsupported, "", || {
+                "a city has 2^32 corners at most; the geometries beyond are skipped".to_owned()
+            });
+        }
     }
 
     /// Interns a string.
@@ -202,82 +233,82 @@ impl ModelBuilder {
         self.model.strings.intern(text)
     }
 
-    /// Makes the model: ids and links, then all geometry. The raw polygons are freed as they are used up.
+    /// Makes the model: ids and links, then all geometry.
     pub fn finish(mut self) -> CityModel {
         self.finish_objects();
-        let mut raws = std::mem::take(&mut self.raw_geometries);
+        let mut shelf = std::mem::take(&mut self.shelf);
         let mut model = self.model;
-        raws.retain(|raw| {
-            let known = (raw.object as usize) < model.objects.len();
+        shelf.parts.retain(|part| {
+            let known = (part.object as usize) < model.objects.len();
             if !known {
                 model.warnings.add(WarningCode::BadGeometry, "", || "a geometry belongs to no object".to_owned());
             }
             known
         });
-        raws.sort_by_key(|raw| (raw.object, raw.lod));
-        let mut geometries = 0;
+        shelf.parts.sort_by_key(|part| (part.object, part.lod));
         let mut at = 0;
         for (index, object) in model.objects.iter_mut().enumerate() {
-            let start = geometries;
-            while raws.get(at).is_some_and(|raw| raw.object as usize == index) {
+            let start = at;
+            while shelf.parts.get(at).is_some_and(|part| part.object as usize == index) {
                 at += 1;
-                geometries += 1;
             }
-            object.geometries = start..geometries;
+            object.geometries = start as u32..at as u32;
         }
-        finish_geometries(&mut model, raws);
+        finish_geometries(&mut model, shelf);
         model
     }
 
     /// Turns raw objects into objects with unique ids, resolved links and their range of attributes.
     fn finish_objects(&mut self) {
-        let raw = std::mem::take(&mut self.raw_objects);
+        let kept = std::mem::take(&mut self.objects);
         let model = &mut self.model;
-        let ids = links::unique_ids(&raw, &mut model.warnings);
-        let links = links::resolve(&raw, &ids, &self.file_starts, &mut model.warnings);
-        model.attributes.reserve_exact(raw.iter().map(|object| object.attributes.len()).sum());
-        model.objects.reserve_exact(raw.len());
-        for (((object, id), parents), children) in raw.into_iter().zip(ids).zip(links.parents).zip(links.children) {
-            let start = model.attributes.len() as u32;
-            model.attributes.extend_from_slice(&object.attributes);
-            let kind = model.strings.intern(&object.kind);
-            model.objects.push(CityObject {
-                id,
-                kind,
-                class: object.class,
-                parents,
-                children,
-                attributes: start..model.attributes.len() as u32,
-                geometries: 0..0,
-            });
+        let ids = links::unique_ids(&kept, &mut model.warnings);
+        let links = links::resolve(&kept, &ids, &self.file_starts, &mut model.warnings);
+        let first = model.attributes.len() as u32;
+        if first == 0 {
+            model.attributes = std::mem::take(&mut self.attributes);
+            model.attributes.shrink_to_fit();
+        } else {
+            model.attributes.reserve_exact(self.attributes.len());
+            model.attributes.append(&mut std::mem::take(&mut self.attributes));
+        }
+        model.surfaces.shrink_to_fit();
+        model.details.shrink_to_fit();
+        model.objects.reserve_exact(kept.len());
+        for (((object, id), parents), children) in kept.into_iter().zip(ids).zip(links.parents).zip(links.children) {
+            let KeptObject { kind, class, attributes, .. } = object;
+            let kind = model.strings.intern(&self.kinds[kind as usize]);
+            let attributes = attributes.start + first..attributes.end + first;
+            model.objects.push(CityObject { id, kind, class, parents, children, attributes, geometries: 0..0 });
         }
     }
 }
 
 /// Polygons per job: enough to be worth a thread's while, few enough to share work evenly.
-const JOB_POLYGONS: usize = 2048;
-/// Jobs per batch: what is triangulated but not yet appended is bounded by two batches.
-const BATCH_JOBS: usize = 16;
+const JOB_POLYGONS: usize = 1024;
+
+/// Jobs per batch, for all threads: what is triangulated but not yet appended is bounded by two batches. Results do not
+/// depend on it.
+fn batch_jobs() -> usize {
+    (3 * rayon::current_num_threads()).clamp(4, 96)
+}
 
 /// Triangulates geometries (sorted by object and LoD) and appends them to the model, in order.
-fn finish_geometries(model: &mut CityModel, raws: Vec<RawGeometry>) {
-    let context = job::Context::new(&model.objects, &model.surfaces, &raws);
+fn finish_geometries(model: &mut CityModel, shelf: Shelf) {
+    let context = job::Context::new(&model.objects, &model.surfaces, &shelf);
     // The whole is known before: growing by doubling would cost half as much memory again.
-    let corners: usize = raws.iter().map(|raw| raw.polygons.indices.len()).sum();
-    let rings: usize = raws.iter().map(|raw| raw.polygons.ring_ends.len()).sum();
-    let triangles =
-        (corners + 2 * rings).saturating_sub(2 * raws.iter().map(|r| r.polygons.surfaces.len()).sum::<usize>());
+    let (corners, triangles) = shelf.corners_and_triangles();
     let mut built = Built::default();
     built.chunk.vertices.reserve_exact(corners);
     built.chunk.indices.reserve_exact(3 * triangles);
     built.chunk.planes.reserve_exact(triangles);
-    built.chunk.geometries.reserve_exact(raws.len());
-    built.planes.reserve(raws.iter().map(|raw| raw.polygons.polygon_ends.len()).sum());
+    built.chunk.geometries.reserve_exact(shelf.parts.len());
+    built.chunk.tiles.reserve(shelf.parts.len());
 
-    let mut jobs = Jobs { raws: raws.into_iter().peekable() };
+    let mut jobs = Jobs { parts: &shelf.parts };
     let mut ready: Vec<Chunk> = Vec::new();
     loop {
-        let batch: Vec<_> = jobs.by_ref().take(BATCH_JOBS).collect();
+        let batch: Vec<_> = jobs.by_ref().take(batch_jobs()).collect();
         if batch.is_empty() && ready.is_empty() {
             break;
         }
@@ -293,12 +324,15 @@ fn finish_geometries(model: &mut CityModel, raws: Vec<RawGeometry>) {
         );
         ready = next;
     }
+    drop(context);
+    drop(shelf);
     let Built { mut chunk, planes, .. } = built;
     let plane_equations = planes.finish(&mut chunk.planes);
     chunk.vertices.shrink_to_fit();
     chunk.indices.shrink_to_fit();
     chunk.planes.shrink_to_fit();
     chunk.texcoords.shrink_to_fit();
+    chunk.tiles.shrink_to_fit();
     model.geometries = chunk.geometries;
     model.tiles = chunk.tiles;
     model.vertices = chunk.vertices;
@@ -310,24 +344,29 @@ fn finish_geometries(model: &mut CityModel, raws: Vec<RawGeometry>) {
 }
 
 /// Cuts sorted geometries into jobs; an object's geometries of one LoD stay together.
-struct Jobs {
-    raws: std::iter::Peekable<std::vec::IntoIter<RawGeometry>>,
+struct Jobs<'a> {
+    parts: &'a [Part],
 }
 
-impl Iterator for Jobs {
-    type Item = Vec<RawGeometry>;
+impl<'a> Iterator for Jobs<'a> {
+    type Item = &'a [Part];
 
     fn next(&mut self) -> Option<Self::Item> {
-        let mut job: Vec<RawGeometry> = Vec::new();
         let mut polygons = 0;
-        while let Some(raw) = self.raws.peek() {
-            let same_shape = job.last().is_some_and(|last| (last.object, last.lod) == (raw.object, raw.lod));
+        let mut end = 0;
+        while let Some(part) = self.parts.get(end) {
+            let same_shape = end > 0 && {
+                let last = &self.parts[end - 1];
+                (last.object, last.lod) == (part.object, part.lod)
+            };
             if polygons >= JOB_POLYGONS && !same_shape {
                 break;
             }
-            polygons += raw.polygons.polygon_ends.len();
-            job.extend(self.raws.next());
+            polygons += part.polygon_count();
+            end += 1;
         }
+        let (job, rest) = self.parts.split_at(end);
+        self.parts = rest;
         (!job.is_empty()).then_some(job)
     }
 }

@@ -1,7 +1,6 @@
 //! Numbers for planes that several polygons share.
 
 use glam::DVec3;
-use rustc_hash::FxHashMap;
 
 use super::Lattice;
 use crate::geom::plane::{ExactPlane, Plane};
@@ -20,7 +19,9 @@ pub(super) struct PlaneKey {
 /// two of a million planes would be confused with a chance of some 10⁻²⁷.
 #[derive(Debug, Default)]
 pub(super) struct PlaneTable {
-    numbers: FxHashMap<[u64; 2], u32>,
+    /// Open addressing over the fingerprints: 1 + number, or 0 where free; a power of two, at most three quarters full.
+    slots: Vec<u32>,
+    fingerprints: Vec<[u64; 2]>,
     /// Per number: the polygon that was on it last, and the plane in the world if another one was before.
     uses: Vec<(u32, u32)>,
     shared: Vec<Plane>,
@@ -30,15 +31,9 @@ pub(super) struct PlaneTable {
 const ALONE: u32 = u32::MAX;
 
 impl PlaneTable {
-    /// Makes room for as many polygons.
-    pub(super) fn reserve(&mut self, polygons: usize) {
-        self.uses.reserve_exact(polygons);
-    }
-
     /// The number of `key`, 1 or more; `polygon` lies on it. `classes` are the lattices of the grid classes.
     pub(super) fn add(&mut self, key: PlaneKey, polygon: u32, classes: &[Lattice]) -> u32 {
-        let next = self.uses.len() as u32;
-        let number = *self.numbers.entry(key.fingerprint()).or_insert(next);
+        let number = self.find_or_add(key.fingerprint());
         match self.uses.get_mut(number as usize) {
             Some((last, shared)) => {
                 if *last != polygon && *shared == ALONE {
@@ -54,14 +49,51 @@ impl PlaneTable {
         number + 1
     }
 
+    /// The number of a fingerprint: the next one if it is new.
+    fn find_or_add(&mut self, fingerprint: [u64; 2]) -> u32 {
+        if self.fingerprints.len() * 4 >= self.slots.len() * 3 {
+            self.resize((self.slots.len() * 2).max(64));
+        }
+        let mut at = self.home(fingerprint);
+        loop {
+            match self.slots[at].checked_sub(1) {
+                Some(number) if self.fingerprints[number as usize] == fingerprint => return number,
+                Some(_) => at = (at + 1) & (self.slots.len() - 1),
+                None => {
+                    self.fingerprints.push(fingerprint);
+                    self.slots[at] = self.fingerprints.len() as u32;
+                    return self.slots[at] - 1;
+                }
+            }
+        }
+    }
+
+    /// Where a fingerprint stands, or where looking for it begins.
+    fn home(&self, fingerprint: [u64; 2]) -> usize {
+        fingerprint[0] as usize & (self.slots.len() - 1)
+    }
+
+    fn resize(&mut self, slots: usize) {
+        self.slots = Vec::new();
+        self.slots = vec![0; slots];
+        for number in 0..self.fingerprints.len() {
+            let mut at = self.home(self.fingerprints[number]);
+            while self.slots[at] != 0 {
+                at = (at + 1) & (slots - 1);
+            }
+            self.slots[at] = number as u32 + 1;
+        }
+    }
+
     /// Renumbers `planes`: planes of a single polygon become 0, the others 1, 2, ... in the order in which their second
     /// polygon was met. Returns those others in the world.
-    pub(super) fn finish(self, planes: &mut [u32]) -> Vec<Plane> {
-        drop(self.numbers);
+    pub(super) fn finish(mut self, planes: &mut [u32]) -> Vec<Plane> {
+        drop((self.slots, self.fingerprints));
         for plane in planes {
             // `ALONE` wraps around to 0, and so do triangles without a plane.
             *plane = plane.checked_sub(1).map_or(0, |number| self.uses[number as usize].1.wrapping_add(1));
         }
+        self.shared.shrink_to_fit();
         self.shared
     }
 }

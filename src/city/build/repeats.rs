@@ -1,6 +1,9 @@
 //! Finds polygons given more than once in one object at one LoD.
 
-use super::{RawGeometry, job::Context, job::corner_ranges};
+use super::{
+    job::{Context, corner_ranges},
+    shelf::Shape,
+};
 use crate::city::{NONE, Surface};
 
 /// Buffers kept between objects.
@@ -12,7 +15,7 @@ pub(super) struct Scratch {
 
 /// Marks repeated polygons in `repeated` (per geometry of `raws`, per polygon): of each set of polygons with the same
 /// rings in the same direction, starting anywhere, the one that knows most about its surface stays, else the first.
-pub(super) fn mark(raws: &[RawGeometry], context: &Context<'_>, scratch: &mut Scratch, repeated: &mut Vec<Vec<bool>>) {
+pub(super) fn mark(raws: &[Shape<'_>], context: &Context<'_>, scratch: &mut Scratch, repeated: &mut Vec<Vec<bool>>) {
     repeated.clear();
     repeated.extend(raws.iter().map(|raw| vec![false; raw.polygons.polygon_ends.len()]));
     if raws.iter().map(|raw| raw.polygons.polygon_ends.len()).sum::<usize>() < 2 {
@@ -44,19 +47,19 @@ pub(super) fn mark(raws: &[RawGeometry], context: &Context<'_>, scratch: &mut Sc
 }
 
 /// How much a polygon's surface says: semantics above material.
-fn knowledge(raw: &RawGeometry, polygon: usize, surfaces: &[Surface]) -> u8 {
+fn knowledge(raw: &Shape<'_>, polygon: usize, surfaces: &[Surface]) -> u8 {
     let surface = raw.polygons.surfaces.get(polygon).and_then(|&s| surfaces.get(s as usize));
     surface.map_or(0, |s| 2 * u8::from(s.kind.0 != NONE) + u8::from(s.material != NONE))
 }
 
 /// A sum over the polygon's directed edges; `None` if it names vertices that are not there.
-fn edge_sum(raw: &RawGeometry, polygon: usize, context: &Context<'_>) -> Option<u64> {
+fn edge_sum(raw: &Shape<'_>, polygon: usize, context: &Context<'_>) -> Option<u64> {
     let grid = context.grid(raw);
     let mut sum = u64::from(grid.class);
-    for (number, ring) in corner_ranges(&raw.polygons, polygon).enumerate() {
+    for (number, ring) in corner_ranges(raw.polygons, polygon).enumerate() {
         let role = if number == 0 { 0x9e37_79b9 } else { 0x85eb_ca6b };
         let indices = raw.polygons.indices.get(ring)?;
-        let point = |index: u32| raw.pool.points.get(index as usize).map(|&p| mix_point(grid.absolute(p)));
+        let point = |index: u32| raw.pool.points.get(index).map(|p| mix_point(grid.absolute(p)));
         let mut previous = point(*indices.last()?)?;
         for &index in indices {
             let next = point(index)?;
@@ -78,7 +81,7 @@ fn mix(x: u64) -> u64 {
 }
 
 /// Whether two polygons really have the same rings: the sums only point at candidates.
-fn are_same(raws: &[RawGeometry], a: (usize, usize), b: (usize, usize), context: &Context<'_>) -> bool {
+fn are_same(raws: &[Shape<'_>], a: (usize, usize), b: (usize, usize), context: &Context<'_>) -> bool {
     let [grid_a, grid_b] = [a, b].map(|(g, _)| context.grid(&raws[g]));
     if grid_a.class != grid_b.class {
         return false;
@@ -86,9 +89,13 @@ fn are_same(raws: &[RawGeometry], a: (usize, usize), b: (usize, usize), context:
     let rings = |(g, p): (usize, usize)| -> Vec<Vec<[i64; 3]>> {
         let (raw, grid) = (&raws[g], context.grid(&raws[g]));
         let points = |ring: std::ops::Range<usize>| {
-            raw.polygons.indices[ring].iter().map(|&i| grid.absolute(raw.pool.points[i as usize])).collect()
+            raw.polygons.indices[ring]
+                .iter()
+                .filter_map(|&i| raw.pool.points.get(i))
+                .map(|p| grid.absolute(p))
+                .collect()
         };
-        let mut rings: Vec<Vec<[i64; 3]>> = corner_ranges(&raw.polygons, p).map(points).collect();
+        let mut rings: Vec<Vec<[i64; 3]>> = corner_ranges(raw.polygons, p).map(points).collect();
         for ring in &mut rings {
             start_at_least(ring);
         }

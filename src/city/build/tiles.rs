@@ -5,9 +5,10 @@ use std::ops::Range;
 use glam::{DVec3, IVec3, Vec3};
 
 use super::{
-    RawGeometry,
+    BAD_POINT,
     job::{Chunk, Triangle},
     metric::Grid,
+    shelf::Shape,
 };
 use crate::{
     city::{NONE, Tile, Vertex, encode_normal},
@@ -36,7 +37,7 @@ pub(super) struct Scratch {
 /// The grid of tiles starts at the whole metre below the geometry's smallest coordinates. A triangle belongs whole to
 /// the tile that holds its lexicographically smallest corner, so it may reach out of it; [`Tile::bounds`] says how far.
 pub(super) fn emit(
-    raw: &RawGeometry,
+    raw: &Shape<'_>,
     grid: &Grid,
     bounds: Aabb,
     scratch: &mut super::job::Scratch,
@@ -48,7 +49,9 @@ pub(super) fn emit(
         return first..first;
     }
     let origin = bounds.min.floor();
-    let world = |corner: u32| grid.world(raw.pool.points[raw.polygons.indices[corner as usize] as usize]);
+    // Corners of triangles are points that exist: faces with others were dropped.
+    let point = |corner: u32| raw.pool.points.get(raw.polygons.indices[corner as usize]).unwrap_or(BAD_POINT);
+    let world = |corner: u32| grid.world(point(corner));
     own.vertex_of.clear();
     own.vertex_of.resize(raw.polygons.indices.len(), NONE);
     own.order.clear();
@@ -76,7 +79,7 @@ pub(super) fn emit(
 }
 
 struct Emitter<'a> {
-    raw: &'a RawGeometry,
+    raw: &'a Shape<'a>,
     faces: &'a [super::job::Face],
     triangles: &'a [Triangle],
     vertex_of: &'a mut [u32],
@@ -101,7 +104,7 @@ impl Emitter<'_> {
                     *known = chunk.vertices.len() as u32;
                     let position = (world(corner) - origin).as_vec3();
                     bounds = bounds.grown(origin + position.as_dvec3());
-                    let normal = smooth_normal(&polygons.normals, corner).unwrap_or(face.normal);
+                    let normal = smooth_normal(polygons.normals, corner).unwrap_or(face.normal);
                     chunk.vertices.push(Vertex { position: position.to_array(), normal, surface: face.surface });
                     if has_texcoords {
                         chunk.texcoords.push(polygons.texcoords[corner as usize]);

@@ -13,6 +13,7 @@ use crate::city::{
         document::{Document, ObjectRead},
         geometry::{GeometryKind, GeometryRead},
         semantics::{self, Meaning},
+        stowage::Stowage,
         vertices::{self, Placing, Vertices},
     },
 };
@@ -48,22 +49,26 @@ pub struct Assembly<'a> {
 impl Assembly<'_> {
     /// Adds a document's objects. Without vertices (a file cut before them) they have no geometry.
     pub fn add(&mut self, document: Document) {
-        let anchors = anchors(&document.objects, &document.vertices, &self.placing);
+        let anchors = anchors(&document.geometries, &document.vertices, &self.placing);
         let is_cut = document.damage.is_some() && document.vertices.len() == 0;
         let pool = Arc::new(document.vertices.into_pool(&self.placing));
+        let mut stowed = document.geometries.into_reader();
+        let mut geometry = GeometryRead::default();
         for ObjectRead { raw, geometries } in document.objects {
             let id = raw.id.clone();
             let object = self.builder.add_object(raw);
             let mut surfaces = SurfaceTable::new(object);
-            for geometry in geometries.into_iter().filter(|_| !is_cut) {
-                self.add_geometry(geometry, &id, object, &pool, &anchors, &mut surfaces);
+            for _ in 0..geometries {
+                if stowed.next_into(&mut geometry).is_some() && !is_cut {
+                    self.add_geometry(&mut geometry, &id, object, &pool, &anchors, &mut surfaces);
+                }
             }
         }
     }
 
     fn add_geometry(
         &mut self,
-        geometry: GeometryRead,
+        geometry: &mut GeometryRead,
         id: &str,
         object: u32,
         pool: &Arc<Pool>,
@@ -71,20 +76,21 @@ impl Assembly<'_> {
         surfaces: &mut SurfaceTable,
     ) {
         match geometry.kind {
-            GeometryKind::Instance => self.add_instance(&geometry, id, object, anchors, surfaces),
+            GeometryKind::Instance => self.add_instance(geometry, id, object, anchors, surfaces),
             GeometryKind::Unknown => self.warn(WarningCode::BadGeometry, id, || {
                 format!("a geometry is of type \"{}\", which CityJSON does not have; it is skipped", geometry.kind_name)
             }),
             GeometryKind::MultiPoint | GeometryKind::MultiLineString => {
                 self.warn(WarningCode::Unsupported, id, || format!("{:?} is read but not drawn", geometry.kind));
-                let lod = self.lod(&geometry, id);
+                let lod = self.lod(geometry, id);
                 // Indices without rings: they count for the extent, and nothing is drawn.
-                let polygons = Polygons { indices: geometry.boundaries.indices, ..Polygons::default() };
+                let polygons =
+                    Polygons { indices: std::mem::take(&mut geometry.boundaries.indices), ..Polygons::default() };
                 self.builder.add_geometry(RawGeometry { object, lod, solid: false, pool: pool.clone(), polygons });
             }
             _ => {
-                let Some(polygons) = self.polygons(&geometry, id, surfaces) else { return };
-                let (lod, solid) = (self.lod(&geometry, id), geometry.kind.is_solid());
+                let Some(polygons) = self.polygons(geometry, id, surfaces) else { return };
+                let (lod, solid) = (self.lod(geometry, id), geometry.kind.is_solid());
                 self.builder.add_geometry(RawGeometry { object, lod, solid, pool: pool.clone(), polygons });
             }
         }
@@ -158,7 +164,7 @@ impl Assembly<'_> {
             reverse_rings(&mut polygons);
         }
         let points = place(&mut polygons.indices, &templates.vertices, &world_from_template);
-        let pool = Arc::new(Pool { lattice: Lattice::FINE, points });
+        let pool = Arc::new(Pool { lattice: Lattice::FINE, points: points.into() });
         let (lod, solid) = (self.lod(template, id), template.kind.is_solid());
         self.builder.add_geometry(RawGeometry { object, lod, solid, pool, polygons });
     }
@@ -178,9 +184,9 @@ impl Assembly<'_> {
 }
 
 /// World places of the reference vertices of instances.
-fn anchors(objects: &[ObjectRead], vertices: &Vertices, placing: &Placing) -> FxHashMap<u32, DVec3> {
-    let instances = objects.iter().flat_map(|o| &o.geometries).filter(|g| g.kind == GeometryKind::Instance);
-    instances
+fn anchors(geometries: &Stowage, vertices: &Vertices, placing: &Placing) -> FxHashMap<u32, DVec3> {
+    geometries
+        .instances()
         .flat_map(|g| &g.boundaries.indices)
         .map(|&index| (index, placing.world(vertices.transformed(index, &placing.transform))))
         .collect()

@@ -30,6 +30,10 @@ pub fn read(json: &mut Json<'_>, builder: &mut ModelBuilder, object: &str) -> St
 
 /// Of attributes with one name the last stays, as in other readers.
 fn drop_repeated(attributes: &mut Vec<Attribute>, builder: &mut ModelBuilder, object: &str) {
+    let has_few = attributes.len() <= 12;
+    if has_few && attributes.iter().enumerate().all(|(i, a)| attributes[..i].iter().all(|b| a.name != b.name)) {
+        return;
+    }
     let mut seen = rustc_hash::FxHashSet::default();
     if attributes.iter().all(|a| seen.insert(a.name)) {
         return;

@@ -10,6 +10,7 @@ use crate::city::{
         attributes,
         geometry::{GeometryRead, each_member, text},
         kinds,
+        stowage::Stowage,
         vertices::{Transform, Vertices},
     },
     json::{Json, JsonError, Kind, Step},
@@ -20,8 +21,8 @@ use crate::city::{
 pub struct ObjectRead {
     /// Id, type, links, attributes.
     pub raw: RawObject,
-    /// Its geometries.
-    pub geometries: Vec<GeometryRead>,
+    /// How many geometries it has, of those stowed.
+    pub geometries: u32,
 }
 
 /// Everything one JSON object holds; members come in any order.
@@ -39,6 +40,10 @@ pub struct Document {
     pub has_objects: bool,
     /// The city objects that were read completely, in order.
     pub objects: Vec<ObjectRead>,
+    /// Geometries of the objects, in order.
+    pub geometries: Stowage,
+    /// The geometry being read: a buffer.
+    geometry: GeometryRead,
     /// `vertices`.
     pub vertices: Vertices,
     /// `appearance`, if there is any.
@@ -56,6 +61,7 @@ impl Document {
     pub fn read(json: &mut Json<'_>, builder: &mut ModelBuilder) -> Self {
         let mut this = Self::default();
         let result = json.object(|json, key| this.read_member(json, builder, &key));
+        this.geometry = GeometryRead::default();
         this.damage = result.err();
         this
     }
@@ -112,7 +118,9 @@ impl Document {
                 // CityJSON 1.0 calls the children of a group its members.
                 "children" | "members" => object.raw.children = ids(json)?,
                 "geometry" if json.peek()? == Kind::Array => json.array(|json| {
-                    object.geometries.push(GeometryRead::read(json, builder, id)?);
+                    self.geometry.read_again(json, builder, id)?;
+                    self.geometries.put(&self.geometry);
+                    object.geometries += 1;
                     Ok(())
                 })?,
                 // Never trusted: the box is taken from the vertices.

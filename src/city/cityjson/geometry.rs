@@ -115,22 +115,39 @@ pub struct GeometryRead {
 }
 
 impl GeometryRead {
-    /// Reads one; `unknown(member, text)` gets what nobody here reads.
+    /// Reads one.
     pub fn read(json: &mut Json<'_>, builder: &mut ModelBuilder, object: &str) -> Step<Self> {
         let mut this = Self::default();
+        this.read_again(json, builder, object)?;
+        Ok(this)
+    }
+
+    /// Nothing, but the memory is kept.
+    pub fn clear(&mut self) {
+        let Self { kind_name, boundaries, semantics, .. } = std::mem::take(self);
+        *self = Self { kind_name, boundaries, semantics, ..Self::default() };
+        self.kind_name.clear();
+        self.boundaries.clear();
+        self.semantics.clear();
+    }
+
+    /// Reads one in place of another. The builder gets what nobody here reads.
+    pub fn read_again(&mut self, json: &mut Json<'_>, builder: &mut ModelBuilder, object: &str) -> Step<()> {
+        self.clear();
         if json.peek()? != Kind::Object {
-            json.skip()?;
-            return Ok(this);
+            return json.skip();
         }
+        let this = self;
         json.object(|json, key| {
             match &*key {
                 "type" => {
                     let name = text(json)?;
                     this.kind = GeometryKind::parse(&name);
-                    this.kind_name = name.into_owned();
+                    this.kind_name.clear();
+                    this.kind_name.push_str(&name);
                 }
                 "lod" => this.lod = lod(json)?,
-                "boundaries" => this.boundaries = Boundaries::read(json)?,
+                "boundaries" => this.boundaries.read_again(json)?,
                 "semantics" => this.read_semantics(json, builder, object)?,
                 "material" => each_theme(json, |json, theme| {
                     if let Some(used) = material_use(json)? {
@@ -155,8 +172,7 @@ impl GeometryRead {
                 }
             }
             Ok(())
-        })?;
-        Ok(this)
+        })
     }
 
     fn read_semantics(&mut self, json: &mut Json<'_>, builder: &mut ModelBuilder, object: &str) -> Step<()> {

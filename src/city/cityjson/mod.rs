@@ -11,6 +11,7 @@ mod geometry;
 mod kinds;
 mod nested;
 mod semantics;
+mod stowage;
 mod vertices;
 
 use glam::DVec3;

@@ -28,21 +28,29 @@ pub struct Boundaries {
 }
 
 impl Boundaries {
-    /// Reads the value of `boundaries`.
-    pub fn read(json: &mut Json<'_>) -> Step<Self> {
-        let mut this = Self::default();
+    /// Nothing, but the memory is kept.
+    pub fn clear(&mut self) {
+        self.indices.clear();
+        self.leaf_depth = None;
+        self.ends.iter_mut().for_each(Vec::clear);
+        self.is_malformed = false;
+    }
+
+    /// Reads the value of `boundaries` in place of what was there.
+    pub fn read_again(&mut self, json: &mut Json<'_>) -> Step<()> {
+        self.clear();
         if json.peek()? != Kind::Array {
-            json.skip()?;
-            this.is_malformed = true;
-            return Ok(this);
+            self.is_malformed = true;
+            return json.skip();
         }
+        let this = self;
         json.take(b'[');
         let mut depth = 0;
         let mut needs_comma = false;
         loop {
             if json.take(b']') {
                 this.close(depth);
-                let Some(up) = depth.checked_sub(1) else { return Ok(this) };
+                let Some(up) = depth.checked_sub(1) else { return Ok(()) };
                 (depth, needs_comma) = (up, true);
                 continue;
             }
@@ -235,7 +243,9 @@ mod tests {
     use super::*;
 
     fn boundaries(text: &str) -> Boundaries {
-        Boundaries::read(&mut Json::new(text.as_bytes())).unwrap()
+        let mut boundaries = Boundaries::default();
+        boundaries.read_again(&mut Json::new(text.as_bytes())).unwrap();
+        boundaries
     }
 
     fn values(text: &str) -> Values {
@@ -273,7 +283,7 @@ mod tests {
         }
         let deep = "[".repeat(1_000_000) + &"]".repeat(1_000_000);
         assert!(boundaries(&deep).is_malformed);
-        assert!(Boundaries::read(&mut Json::new(b"[[[1,2")).is_err());
+        assert!(Boundaries::default().read_again(&mut Json::new(b"[[[1,2")).is_err());
     }
 
     fn per_polygon(boundary: &str, depth: usize, text: &str) -> Option<Vec<Token>> {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::city::{
-    build::{Lattice, Pool},
+    build::{Lattice, Points, Pool},
     crs::{Axes, UtmZone},
     json::{Json, Kind, Number, Step},
 };
@@ -17,14 +17,14 @@ const SMALLEST_STEP_M: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Vertices {
     /// All are whole numbers: the file's own lattice.
-    Integers(Vec<[i64; 3]>),
+    Integers(Points),
     /// Some are not; NaN where something else than three numbers stood.
     Reals(Vec<DVec3>),
 }
 
 impl Default for Vertices {
     fn default() -> Self {
-        Self::Integers(Vec::new())
+        Self::Integers(Points::default())
     }
 }
 
@@ -103,7 +103,7 @@ impl Vertices {
             Self::Integers(list) => match lattice_point(vertex) {
                 Some(point) => list.push(point),
                 None => {
-                    let mut reals: Vec<DVec3> = list.iter().map(|p| to_real(*p)).collect();
+                    let mut reals: Vec<DVec3> = list.iter().map(to_real).collect();
                     reals.push(real_point(vertex));
                     *self = Self::Reals(reals);
                 }
@@ -115,7 +115,7 @@ impl Vertices {
     /// One vertex, transformed, not yet placed; NaN where it is none.
     pub fn transformed(&self, index: u32, transform: &Transform) -> DVec3 {
         let number = match self {
-            Self::Integers(list) => list.get(index as usize).map(|p| to_real(*p)),
+            Self::Integers(list) => list.get(index).map(to_real),
             Self::Reals(list) => list.get(index as usize).copied(),
         };
         transform.apply(number.unwrap_or(DVec3::NAN))
@@ -124,11 +124,12 @@ impl Vertices {
     /// The pool that polygons index into.
     pub fn into_pool(self, placing: &Placing) -> Pool {
         let reals = match self {
-            Self::Integers(points) if placing.keeps_lattice() => {
+            Self::Integers(mut points) if placing.keeps_lattice() => {
+                points.shrink_to_fit();
                 let Transform { scale, translate } = placing.transform;
                 return Pool { lattice: Lattice { step: scale, origin: translate }, points };
             }
-            Self::Integers(points) => points.into_iter().map(to_real).collect(),
+            Self::Integers(points) => points.iter().map(to_real).collect::<Vec<_>>(),
             Self::Reals(reals) => reals,
         };
         let points = reals.into_iter().map(|p| fine_point(placing.world(placing.transform.apply(p)))).collect();
@@ -211,7 +212,7 @@ mod tests {
     #[test]
     fn integers_stay_the_integers_of_the_file() {
         let pool = pool("[[1,-2,3],[4.0,5,6]]", &MILLIMETRES);
-        assert_eq!(pool.points, [[1, -2, 3], [4, 5, 6]]);
+        assert_eq!(pool.points, Points::from(vec![[1, -2, 3], [4, 5, 6]]));
         assert_eq!(pool.lattice.step, DVec3::splat(0.001));
         assert_eq!(pool.lattice.origin, MILLIMETRES.transform.translate);
     }
@@ -220,7 +221,7 @@ mod tests {
     fn one_real_puts_all_on_the_fine_lattice() {
         let pool = pool("[[1,2,3],[4.5,5,6],null,[1,2]]", &MILLIMETRES);
         assert_eq!(pool.lattice, Lattice::FINE);
-        let at = |i: usize| pool.lattice.to_world(pool.points[i]);
+        let at = |i: u32| pool.lattice.to_world(pool.points.get(i).unwrap());
         assert!((at(0) - DVec3::new(85_000.001, 446_000.002, 0.003)).abs().max_element() < 1e-6);
         assert!((at(1) - DVec3::new(85_000.004_5, 446_000.005, 0.006)).abs().max_element() < 1e-6);
         for i in [2, 3] {
@@ -233,7 +234,7 @@ mod tests {
         let placing = Placing { transform: Transform::IDENTITY, ..MILLIMETRES };
         let pool = pool("[[0,0,-2147483648],[0,0,9223372036854775807],[0,0,1]]", &placing);
         for (i, is_lost) in [(0, true), (1, true), (2, false)] {
-            assert_eq!(pool.lattice.to_world(pool.points[i]).abs().max_element() > 1e9, is_lost);
+            assert_eq!(pool.lattice.to_world(pool.points.get(i).unwrap()).abs().max_element() > 1e9, is_lost);
         }
     }
 
@@ -241,7 +242,7 @@ mod tests {
     fn degrees_become_metres() {
         let placing = Placing { transform: Transform::IDENTITY, axes: Axes::LatLon, zone: UtmZone::at(48.9, 2.3) };
         let pool = pool("[[48.8582, 2.2945, 35.5]]", &placing);
-        let at = pool.lattice.to_world(pool.points[0]);
+        let at = pool.lattice.to_world(pool.points.get(0).unwrap());
         assert!((at - DVec3::new(448_252.0, 5_411_933.0, 35.5)).abs().max_element() < 1.0, "{at}");
     }
 }

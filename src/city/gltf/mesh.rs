@@ -207,7 +207,7 @@ impl Gathered {
         for Part { points, polygons } in self.parts {
             triangles += polygons.polygon_ends.len();
             if !polygons.polygon_ends.is_empty() {
-                let pool = Arc::new(Pool { lattice: Lattice::FINE, points });
+                let pool = Arc::new(Pool { lattice: Lattice::FINE, points: points.into() });
                 builder.add_geometry(RawGeometry { object: self.object, lod: Lod::NONE, solid: false, pool, polygons });
             }
         }

@@ -24,7 +24,7 @@ use self::{
 };
 use crate::city::{
     Lod, Source, WarningCode,
-    build::{Lattice, ModelBuilder, Pool, RawGeometry},
+    build::{Lattice, ModelBuilder, Points, Pool, RawGeometry},
     load::{Input, LoadError, LoadOptions},
 };
 
@@ -248,7 +248,7 @@ impl<'a> Reader<'a> {
         let scale = self.decimals.map(|d| 10f64.powi(d as i32)).filter(|scale| farthest * scale <= MAX_STEPS);
         let lattice = scale.map_or(Lattice::FINE, |s| Lattice { step: DVec3::splat(1.0 / s), origin: DVec3::ZERO });
         // Unusable positions are in no face.
-        let points = self.points.iter().map(|p| lattice.nearest(*p).unwrap_or_default()).collect();
+        let points: Points = self.points.iter().map(|p| lattice.nearest(*p).unwrap_or_default()).collect();
         let pool = Arc::new(Pool { lattice, points });
         for group in self.groups {
             for (object, polygons) in group.into_parts() {
