@@ -107,28 +107,32 @@ impl Iterator for Layout {
     }
 }
 
-/// Goes through the cells ring by ring: rows -2r..=2r, columns -r..=r, without those of the ring before.
+/// Goes through the cells ring by ring: columns -r..=r, rows -2r..=2r, without those of the ring before. Rows come in the
+/// order 0, 1, -1, 2, -2, ..., so that a ring that ends early still hangs together.
 #[derive(Clone, Debug, Default)]
 struct Cells {
     ring: i64,
-    at: [i64; 2],
+    column: i64,
+    /// Position in the order of rows.
+    row: i64,
 }
 
 impl Cells {
     fn next(&mut self) -> [i64; 2] {
-        let here = self.at;
         let r = self.ring;
-        let is_whole_row = here[1].abs() > 2 * (r - 1);
+        let row = if self.row % 2 == 1 { (self.row + 1) / 2 } else { -self.row / 2 };
+        let here = [self.column, row];
+        let is_whole_row = row.abs() > 2 * (r - 1);
         // Rows that the ring before has crossed keep only their two ends.
-        let next = if is_whole_row || here[0] == r { here[0] + 1 } else { r };
-        self.at = if next <= r {
-            [next, here[1]]
-        } else if here[1] < 2 * r {
-            [-r, here[1] + 1]
-        } else {
-            self.ring += 1;
-            [-self.ring, -2 * self.ring]
-        };
+        self.column = if is_whole_row || self.column == r { self.column + 1 } else { r };
+        if self.column > r {
+            self.row += 1;
+            if self.row > 4 * r {
+                self.ring += 1;
+                self.row = 0;
+            }
+            self.column = -self.ring;
+        }
         here
     }
 }
