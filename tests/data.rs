@@ -8,8 +8,11 @@ mod faces;
 mod info;
 #[path = "data/meshes.rs"]
 mod meshes;
+#[path = "data/pictures.rs"]
+mod pictures;
 #[path = "data/scenes.rs"]
 mod scenes;
+mod studio;
 
 use std::path::PathBuf;
 
@@ -29,6 +32,7 @@ fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 's
 
 fn main() {
     let arguments = Arguments::from_args();
-    let trials = [faces::trials(), info::trials(), meshes::trials(), scenes::trials()].into_iter().flatten().collect();
+    let rooms = [faces::trials(), info::trials(), meshes::trials(), pictures::trials(), scenes::trials()];
+    let trials = rooms.into_iter().flatten().collect();
     libtest_mimic::run(&arguments, trials).exit();
 }

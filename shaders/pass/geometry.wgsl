@@ -2,6 +2,9 @@
 //
 // target 0  rg32uint    x: octahedral normal, y: surface + 1 (0 = nothing)
 // target 1  rgba8unorm-srgb  base colour; only in cities that have textures
+// target 2  r32float    interpolated depth; only where the depth AOV is asked for. A face that shares its
+//                       plane takes its tested depth from the plane; its AOV must not depend on what else
+//                       the city holds, so it is always the face's own.
 
 override SMOOTH: bool = false;  // whether some faces have a normal per vertex
 
@@ -40,14 +43,15 @@ fn plain(in: Varying) -> @location(0) vec2u {
     return code_of(in);
 }
 
-struct Colored {
+struct Full {
     @location(0) code: vec2u,
     @location(1) color: vec4f,
+    @location(2) own_depth: f32,
 }
 
 @fragment
-fn colored(in: Varying) -> Colored {
-    return Colored(code_of(in), vec4f(natural_color(in.code.y - 1u), 1.0));
+fn full(in: Varying) -> Full {
+    return Full(code_of(in), vec4f(natural_color(in.code.y - 1u), 1.0), in.clip.z);
 }
 
 // ---- textured surfaces
@@ -65,12 +69,12 @@ fn vertex_textured(@location(0) position: vec3f, @location(1) normal: u32, @loca
 }
 
 @fragment
-fn textured(in: Varying) -> Colored {
+fn textured(in: Varying) -> Full {
     let texel = textureSample(image, image_sampler, in.texcoord);
     if texel.a < ALPHA_CUTOFF {
         discard;
     }
-    return Colored(code_of(in), vec4f(texel.rgb * natural_color(in.code.y - 1u), 1.0));
+    return Full(code_of(in), vec4f(texel.rgb * natural_color(in.code.y - 1u), 1.0), in.clip.z);
 }
 
 // ---- faces of exactly one plane that overlap (hard case 3)
@@ -122,13 +126,14 @@ fn plain_coplanar(in: Varying) -> CoplanarPlain {
     return CoplanarPlain(code_of(in), depth_on_plane(in));
 }
 
-struct CoplanarColored {
+struct CoplanarFull {
     @location(0) code: vec2u,
     @location(1) color: vec4f,
+    @location(2) own_depth: f32,
     @builtin(frag_depth) depth: f32,
 }
 
 @fragment
-fn colored_coplanar(in: Varying) -> CoplanarColored {
-    return CoplanarColored(code_of(in), vec4f(natural_color(in.code.y - 1u), 1.0), depth_on_plane(in));
+fn full_coplanar(in: Varying) -> CoplanarFull {
+    return CoplanarFull(code_of(in), vec4f(natural_color(in.code.y - 1u), 1.0), in.clip.z, depth_on_plane(in));
 }

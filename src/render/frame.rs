@@ -55,6 +55,8 @@ pub struct FrameInput<'a> {
     pub sprite_resolution: &'a [Option<u32>],
     /// What the context and the lenses do.
     pub operations: &'a Operations,
+    /// Whether interpolated depth is kept, for the AOV.
+    pub measured: bool,
     /// Whether somebody counts pixels in front of and behind lenses.
     pub all_classes: bool,
     /// Which sample this is.
@@ -257,7 +259,7 @@ impl Renderer {
             keys.push(Key::Shadow);
         }
         for section in &city.buffers.sections {
-            keys.push(geometry_key(section.kind, colored, city.buffers.smooth));
+            keys.push(geometry_key(section.kind, colored, city.buffers.smooth, input.measured));
         }
         for volume in seen {
             let mask = Key::LensMask(mask_layers(input));
@@ -327,10 +329,12 @@ impl Renderer {
         let colors = [
             Some(color_attachment(&targets.codes.view, wgpu::Color::TRANSPARENT)),
             colored.then(|| color_attachment(&targets.colors.view, wgpu::Color::TRANSPARENT)),
+            input.measured.then(|| color_attachment(&targets.own_depth.view, wgpu::Color::TRANSPARENT)),
         ];
+        let count = if input.measured { 3 } else { 1 + usize::from(colored) };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("geometry"),
-            color_attachments: &colors[..1 + usize::from(colored)],
+            color_attachments: &colors[..count],
             depth_stencil_attachment: Some(depth_attachment(&targets.depth.view, 0.0)),
             timestamp_writes: writes,
             ..Default::default()
@@ -348,7 +352,12 @@ impl Renderer {
             if draws.is_empty() {
                 continue;
             }
-            pass.set_pipeline(self.pipelines.render(&geometry_key(section.kind, colored, city.buffers.smooth)));
+            pass.set_pipeline(self.pipelines.render(&geometry_key(
+                section.kind,
+                colored,
+                city.buffers.smooth,
+                input.measured,
+            )));
             pass.set_vertex_buffer(0, section.vertices.slice(..));
             if let Some(extra) = &section.extra {
                 pass.set_vertex_buffer(1, extra.slice(..));
@@ -514,13 +523,13 @@ struct ShadeKeys {
     lenses: Option<Key>,
 }
 
-fn geometry_key(kind: SectionKind, colored: bool, smooth: bool) -> Key {
+fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool) -> Key {
     let section = match kind {
         SectionKind::Plain => GeometryKind::Plain,
         SectionKind::Textured { alpha_cutoff, .. } => GeometryKind::Textured(alpha_cutoff.to_bits()),
         SectionKind::Coplanar => GeometryKind::Coplanar,
     };
-    Key::Geometry { section, colored, smooth }
+    Key::Geometry { section, colored, smooth, measured }
 }
 
 /// Mask layers per 32 lenses: where only *inside* is asked for, one will do.
@@ -566,6 +575,7 @@ fn needs(input: &FrameInput, seen: &[SeenVolume], colors: bool, shadows: bool) -
     Needs {
         size: input.tile.size,
         colors,
+        own_depth: input.measured,
         sums: input.samples > 1,
         mask_layers: if seen.is_empty() { 0 } else { mask_layers(input) * input.lens_count.div_ceil(32) },
         sprite,

@@ -261,7 +261,7 @@ impl Studio {
         let gpu = &self.renderer.gpu;
         let (Some(targets), Some(city)) = (self.renderer.targets(), self.renderer.city()) else { return Ok(()) };
         if let Some(out) = &mut picture.depth {
-            let stored = gpu.read_texture(&targets.depth.texture, 0, wgpu::TextureAspect::DepthOnly)?;
+            let stored = gpu.read_texture(&targets.own_depth.texture, 0, wgpu::TextureAspect::All)?;
             let near = view.camera.near_m as f32;
             let far = view.far_m as f32;
             let metres: Vec<f32> = bytemuck::cast_slice(&stored)
@@ -402,6 +402,7 @@ fn input<'a>(
         lens_count: scene.lenses.len() as u32,
         sprite_resolution: &prepared.sprite_resolution,
         operations: &prepared.operations,
+        measured: request.aovs.depth,
         all_classes: request.statistics,
         sample: 0,
         samples: request.samples.max(1),

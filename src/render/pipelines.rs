@@ -10,6 +10,8 @@ pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub const CODES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// sRGB base colours, only in cities with textures.
 pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Interpolated depth, only where the depth AOV is asked for.
+pub const OWN_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// One bit per lens and class.
 pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// The picture: sRGB bytes.
@@ -26,6 +28,8 @@ pub enum Key {
         colored: bool,
         /// Whether normals are interpolated.
         smooth: bool,
+        /// Whether interpolated depth is written, for the AOV.
+        measured: bool,
     },
     /// Depth from the sun.
     Shadow,
@@ -342,14 +346,14 @@ impl Key {
             list.iter().filter(|(on, _)| *on).map(|(_, name)| format!(" {name}")).collect()
         };
         match self {
-            Self::Geometry { section, colored, smooth } => {
+            Self::Geometry { section, colored, smooth, measured } => {
                 let kind = match section {
                     GeometryKind::Plain => "geometry",
                     GeometryKind::Textured(0) => "geometry textured",
                     GeometryKind::Textured(_) => "geometry textured with holes",
                     GeometryKind::Coplanar => "geometry coplanar",
                 };
-                format!("{kind}{}", flags(&[(*colored, "colored"), (*smooth, "smooth")]))
+                format!("{kind}{}", flags(&[(*colored, "colored"), (*smooth, "smooth"), (*measured, "measured")]))
             }
             Self::Shadow => "shadow".to_owned(),
             Self::SpriteEntry(kind) => format!("sprite entry of a {}", shape_name(*kind)),
@@ -398,12 +402,12 @@ impl Key {
 
     fn entry_points(&self) -> (&'static str, Option<&'static str>) {
         match self {
-            Self::Geometry { section: GeometryKind::Plain, colored, .. } => {
-                ("vertex", Some(if *colored { "colored" } else { "plain" }))
+            Self::Geometry { section: GeometryKind::Plain, colored, measured, .. } => {
+                ("vertex", Some(if *colored || *measured { "full" } else { "plain" }))
             }
             Self::Geometry { section: GeometryKind::Textured(_), .. } => ("vertex_textured", Some("textured")),
-            Self::Geometry { section: GeometryKind::Coplanar, colored, .. } => {
-                ("vertex_coplanar", Some(if *colored { "colored_coplanar" } else { "plain_coplanar" }))
+            Self::Geometry { section: GeometryKind::Coplanar, colored, measured, .. } => {
+                ("vertex_coplanar", Some(if *colored || *measured { "full_coplanar" } else { "plain_coplanar" }))
             }
             Self::Shadow => ("vertex", None),
             Self::SpriteEntry(_) => ("vertex", Some("entry")),
@@ -424,8 +428,13 @@ impl Key {
 
     fn targets(&self, sums: wgpu::TextureFormat) -> Vec<Option<wgpu::ColorTargetState>> {
         match self {
-            Self::Geometry { colored: true, .. } => vec![Some(CODES.into()), Some(COLORS.into())],
-            Self::Geometry { .. } => vec![Some(CODES.into())],
+            Self::Geometry { colored, measured, .. } => {
+                let mut targets = vec![Some(CODES.into()), colored.then(|| COLORS.into())];
+                targets.extend(measured.then(|| Some(OWN_DEPTH.into())));
+                // Without the colour target the list ends where it may.
+                targets.truncate(if *measured { 3 } else { 1 + usize::from(*colored) });
+                targets
+            }
             Self::Shade { summed: true, .. } => {
                 let add = wgpu::BlendComponent {
                     src_factor: wgpu::BlendFactor::One,

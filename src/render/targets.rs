@@ -2,7 +2,7 @@
 
 use crate::{
     gpu::Gpu,
-    render::pipelines::{CODES, COLORS, DEPTH, MASKS, PICTURE},
+    render::pipelines::{CODES, COLORS, DEPTH, MASKS, OWN_DEPTH, PICTURE},
 };
 
 /// What a frame needs beside codes, depth and the picture.
@@ -12,6 +12,8 @@ pub struct Needs {
     pub size: [u32; 2],
     /// Base colours, in cities with textures.
     pub colors: bool,
+    /// Interpolated depth, for the AOV.
+    pub own_depth: bool,
     /// Sums of samples.
     pub sums: bool,
     /// Layers of the lens masks, 0 for none.
@@ -44,6 +46,8 @@ pub struct Targets {
     pub depth: Target,
     /// sRGB base colours (1×1 where not needed).
     pub colors: Target,
+    /// Interpolated depth of the seen face (1×1 where not needed).
+    pub own_depth: Target,
     /// The picture, sRGB, straight alpha.
     pub picture: Target,
     /// Sums of samples, linear (1×1 where not needed).
@@ -88,6 +92,7 @@ impl Targets {
             codes: make("codes", [w, h, 1], CODES, drawn),
             depth: make("depth", [w, h, 1], DEPTH, drawn),
             colors: make("colors", full(needs.colors), COLORS, drawn),
+            own_depth: make("own depth", full(needs.own_depth), OWN_DEPTH, drawn),
             picture: make("picture", [w, h, 1], PICTURE, drawn),
             sums: make("sums", full(needs.sums), sums, drawn),
             masks: make("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING),
