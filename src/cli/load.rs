@@ -34,7 +34,7 @@ pub fn load(files: &[PathBuf], global: &GlobalArguments) -> Outcome<(CityModel, 
     load_below(files, named_folders(files), global)
 }
 
-/// [`load`], with folders that paths inside the files may lead to; the folders of the files themselves are always
+/// [`load()`], with folders that paths inside the files may lead to; the folders of the files themselves are always
 /// among them.
 pub fn load_below(files: &[PathBuf], roots: Vec<PathBuf>, global: &GlobalArguments) -> Outcome<(CityModel, LoadStats)> {
     let options = LoadOptions { allow_outside: global.allow_outside, roots };

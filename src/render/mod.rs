@@ -1,6 +1,6 @@
 //! A scene becomes a frame.
 //!
-//! [`picture::render`] makes a picture, its AOVs and its statistics of a scene and a city;
+//! [`picture::Studio::render`] makes a picture, its AOVs and its statistics of a scene and a city;
 //! [`frame`] lists the passes of one sample; [`renderer`] holds what stays on the graphics card.
 //! This room knows no files and no commands.
 

@@ -99,10 +99,10 @@ pub(super) struct Scratch {
 /// The corners of a polygon's rings, as ranges of `indices`.
 pub(super) fn corner_ranges(polygons: Slices<'_>, polygon: usize) -> impl Iterator<Item = Range<usize>> {
     let end_before = |ends: &[u32], i: usize| i.checked_sub(1).map_or(0, |i| ends[i] as usize);
-    let rings = end_before(&polygons.polygon_ends, polygon)..polygons.polygon_ends[polygon] as usize;
+    let rings = end_before(polygons.polygon_ends, polygon)..polygons.polygon_ends[polygon] as usize;
     rings.map_while(move |ring| {
         let end = *polygons.ring_ends.get(ring)? as usize;
-        Some(end_before(&polygons.ring_ends, ring)..end)
+        Some(end_before(polygons.ring_ends, ring)..end)
     })
 }
 
