@@ -367,7 +367,7 @@ fn a_picture_goes_to_stdout_too() {
 #[test]
 fn the_gallery_draws_or_says_why_not() {
     let folder = Folder::new("gallery");
-    let output = run(&["gallery", "-o", &folder.path("new/out"), "denhaag-ridges"]);
+    let output = run(&["gallery", "-o", &folder.path("new/out"), "vienna-roofs"]);
     assert_eq!((code(&output), out(&output).trim().contains("skipped: data absent")), (0, true), "{}", err(&output));
     let output = run(&["gallery", "-o", &folder.path("out"), "no-such-scene"]);
     assert_eq!(code(&output), 2);

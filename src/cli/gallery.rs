@@ -17,16 +17,25 @@ use crate::{
 const EXAMPLES: &str = "\
 Examples:
   veduta gallery -o out
-  veduta gallery -o out town-sepia              only this one
+  veduta gallery -o out first-lens              only this one
   VEDUTA_DATA=/data veduta gallery -o out       also scenes of shared data sets";
 
-/// The scenes, by name; a test holds this against `scenes/`.
-pub const SCENES: &[(&str, &str)] = &[
-    ("denhaag-ridges", include_str!("../../scenes/denhaag-ridges.toml")),
-    ("town", include_str!("../../scenes/town.toml")),
-    ("town-age", include_str!("../../scenes/town-age.toml")),
-    ("town-old-photograph", include_str!("../../scenes/town-old-photograph.toml")),
-];
+/// Name and text of scenes below `scenes/`.
+macro_rules! scenes {
+    ($($name:literal)*) => { &[$(($name, include_str!(concat!("../../scenes/", $name, ".toml")))),*] };
+}
+
+/// The scenes that ship with the program, by name; a test holds the list against the folder.
+pub const SCENES: &[(&str, &str)] = scenes! {
+    "delft-age"
+    "delft-streets"
+    "den-haag-sphere"
+    "first-lens"
+    "rotterdam-textures"
+    "three-lenses"
+    "town"
+    "vienna-roofs"
+};
 
 /// Arguments of `veduta gallery`.
 #[derive(Args, Clone, Debug)]
@@ -51,18 +60,21 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let folder = &arguments.output;
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
     let is_asked = |name: &str| arguments.names.is_empty() || arguments.names.iter().any(|asked| asked == name);
-    // Scenes of one city follow each other: it is loaded once.
-    let mut last: Option<(CitySpec, Studio)> = None;
+    let mut scenes = Vec::new();
     for (name, text) in SCENES.iter().filter(|(name, _)| is_asked(name)) {
         let options = Options::for_file(&PathBuf::from("scenes").join(name));
-        let scene = match scene_file::parse(text, &format!("scenes/{name}.toml"), &options) {
-            Ok(scene) => scene,
+        match scene_file::parse(text, &format!("scenes/{name}.toml"), &options) {
+            Ok(scene) => scenes.push((name, scene, options)),
             Err(error) if error.is_data_absent => {
                 output::print(&format!("{name}: skipped: data absent (VEDUTA_DATA is not set)\n"))?;
-                continue;
             }
             Err(error) => return Err(Failure::failed(error)),
-        };
+        }
+    }
+    // Scenes of one city follow each other: it is loaded once.
+    scenes.sort_by(|(_, a, _), (_, b, _)| a.city.files.cmp(&b.city.files));
+    let mut last: Option<(CitySpec, Studio)> = None;
+    for (name, scene, options) in scenes {
         let mut studio = match last.take() {
             Some((city, studio)) if city == scene.city => studio,
             _ => render::open(&scene, &options, global)?.0,

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::{
-    city::{Texture, Wrap, texture},
+    city::{Texture, TextureImage, Wrap, texture},
     gpu::{Gpu, GpuError},
     render::city::Shown,
 };
@@ -52,6 +52,8 @@ impl Textures {
                         log::warn!("textures beyond {} MiB are drawn in plain colours", BUDGET >> 20);
                     }
                     Ok(pixels) => entries[i] = Some(upload(gpu, &pixels, &model.textures[i])),
+                    // Whoever loaded the city has said this, for all of them at once.
+                    Err(_) if model.textures[i].image == TextureImage::Missing => {}
                     Err(message) => log::warn!("texture {i}: {message}"),
                 }
             }

@@ -10,7 +10,7 @@ use std::{
 use arguments::{AovFormat, AovKind, AovRequest, Arguments};
 
 use crate::{
-    city::facts,
+    city::{TextureImage, facts},
     cli::{Failure, GlobalArguments, Outcome, load, output, terminal},
     figure::{
         picture::{self, Note, WriteError},
@@ -136,6 +136,10 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
         facts::warning_facts(&model).iter().filter_map(|warning| serde_json::to_value(warning).ok()).collect();
     if !warnings.is_empty() {
         log::info!("{} kinds of warnings about the city; `veduta info` lists them", warnings.len());
+    }
+    let missing = model.textures.iter().filter(|texture| texture.image == TextureImage::Missing).count();
+    if missing > 0 {
+        log::warn!("{missing} of {} textures were not found; their materials' colours are used", model.textures.len());
     }
     for problem in check_against(scene, &model) {
         log::warn!("scene: {problem}");
