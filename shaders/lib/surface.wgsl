@@ -1,4 +1,4 @@
-// What a triangle is part of.
+// What a triangle is part of, and which way it faces: one entry per surface, direction and tile.
 
 struct Surface {
     origin: vec3i,              // of its tile, whole metres
@@ -6,7 +6,7 @@ struct Surface {
     color_rg: u32,              // natural colour, linear, 4 x float16
     color_ba: u32,
     flags: u32,                 // SURFACE_*
-    model_surface: u32,         // index in the city model
+    normal: u32,                // octahedral, of its flat faces
 }
 
 const NO_OBJECT: u32 = 0xffffffffu;

@@ -1,6 +1,6 @@
 // The one opaque geometry pass: what is there, which way it faces, how far it is.
 //
-// target 0  rg32uint    x: octahedral normal, y: surface + 1 (0 = nothing)
+// target 0  r32uint     surface + 1 (0 = nothing); rg32uint where normals are smooth: y = octahedral normal
 // target 1  rgba8unorm-srgb  base colour; only in cities that have textures
 // target 2  r32float    interpolated depth; only where the depth AOV is asked for. A face that shares its
 //                       plane takes its tested depth from the plane; its AOV must not depend on what else
@@ -10,32 +10,37 @@ override SMOOTH: bool = false;  // whether some faces have a normal per vertex
 
 struct Varying {
     @builtin(position) clip: vec4f,
-    @location(0) @interpolate(flat, either) code: vec2u,
+    @location(0) @interpolate(flat, either) code: u32,
     @location(1) normal: vec3f,
     @location(2) texcoord: vec2f,
     @location(3) @interpolate(flat, either) plane: vec4f,
 }
 
-fn placed(position: vec3f, normal: u32, surface: u32) -> Varying {
+fn placed(position: vec3f, surface: u32) -> Varying {
     var out: Varying;
     out.clip = clip_from_relative(relative_to_eye(surfaces[surface].origin, position));
-    out.code = vec2u(normal, surface + 1u);
-    if SMOOTH {
-        out.normal = decode_normal(normal);
-    }
+    out.code = surface + 1u;
     return out;
 }
 
 @vertex
-fn vertex(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32) -> Varying {
-    return placed(position, normal, surface);
+fn vertex(@location(0) position: vec3f, @location(2) surface: u32) -> Varying {
+    return placed(position, surface);
+}
+
+// Normals are interpolated: a pipeline of its own, since a flat city has no use for them.
+@vertex
+fn vertex_smooth(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32) -> Varying {
+    var out = placed(position, surface);
+    out.normal = decode_normal(normal);
+    return out;
 }
 
 fn code_of(in: Varying) -> vec2u {
     if SMOOTH {
-        return vec2u(encode_normal(in.normal), in.code.y);
+        return vec2u(in.code, encode_normal(in.normal));
     }
-    return in.code;
+    return vec2u(in.code, 0u);
 }
 
 @fragment
@@ -51,7 +56,7 @@ struct Full {
 
 @fragment
 fn full(in: Varying) -> Full {
-    return Full(code_of(in), vec4f(natural_color(in.code.y - 1u), 1.0), in.clip.z);
+    return Full(code_of(in), vec4f(natural_color(in.code - 1u), 1.0), in.clip.z);
 }
 
 // ---- textured surfaces
@@ -63,7 +68,10 @@ override ALPHA_CUTOFF: f32 = 0.0;
 @vertex
 fn vertex_textured(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32,
                    @location(3) texcoord: vec2f) -> Varying {
-    var out = placed(position, normal, surface);
+    var out = placed(position, surface);
+    if SMOOTH {
+        out.normal = decode_normal(normal);
+    }
     out.texcoord = texcoord;
     return out;
 }
@@ -74,7 +82,7 @@ fn textured(in: Varying) -> Full {
     if texel.a < ALPHA_CUTOFF {
         discard;
     }
-    return Full(code_of(in), vec4f(texel.rgb * natural_color(in.code.y - 1u), 1.0), in.clip.z);
+    return Full(code_of(in), vec4f(texel.rgb * natural_color(in.code - 1u), 1.0), in.clip.z);
 }
 
 // ---- faces of exactly one plane that overlap (hard case 3)
@@ -94,7 +102,10 @@ struct Plane {
 @vertex
 fn vertex_coplanar(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32,
                    @location(4) plane_index: u32) -> Varying {
-    var out = placed(position, normal, surface);
+    var out = placed(position, surface);
+    if SMOOTH {
+        out.normal = decode_normal(normal);
+    }
     let plane = shared_planes[plane_index];
     let distance = dot(plane.normal, relative_to_eye(plane.origin, vec3f(0.0))) + plane.offset;
     out.plane = vec4f(view.view_from_world * plane.normal, distance);
@@ -135,5 +146,5 @@ struct CoplanarFull {
 
 @fragment
 fn full_coplanar(in: Varying) -> CoplanarFull {
-    return CoplanarFull(code_of(in), vec4f(natural_color(in.code.y - 1u), 1.0), in.clip.z, depth_on_plane(in));
+    return CoplanarFull(code_of(in), vec4f(natural_color(in.code - 1u), 1.0), in.clip.z, depth_on_plane(in));
 }

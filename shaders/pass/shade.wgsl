@@ -4,6 +4,7 @@
 // from the effects that this scene uses, so an effect nobody asked for is not in the shader (U3).
 
 override LENSES: bool = false;      // whether this part of the picture meets a lens
+override SMOOTH: bool = false;      // whether normals are in the target, not with the surfaces
 override TEXTURED: bool = false;    // whether base colours are in a target of their own
 override CLAY: bool = false;        // one colour for everything
 override OUTLINES: bool = false;    // whether some lens shows its silhouette
@@ -120,11 +121,11 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
     var point: Point;
     point.distance = distance_of_depth(depth);
     point.relative = (ray.origin + point.distance * ray.direction) * view.view_from_world;
-    point.normal = decode_normal(code.x);
+    point.surface = code.x - 1u;
+    point.normal = decode_normal(select(surfaces[point.surface].normal, code.y, SMOOTH));
     if dot(point.normal, ray.direction * view.view_from_world) > 0.0 {
         point.normal = -point.normal;
     }
-    point.surface = code.y - 1u;
     point.object = surfaces[point.surface].object;
     return point;
 }

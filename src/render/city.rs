@@ -72,7 +72,7 @@ pub enum SectionKind {
 pub struct CityBuffers {
     /// What is drawn, in order.
     pub sections: Vec<Section>,
-    /// `layout::Surface` of every drawn (surface, tile).
+    /// `layout::Surface` of every drawn (surface, normal, tile).
     pub surfaces: wgpu::Buffer,
     /// The same on the CPU, for whoever reads surface numbers back.
     pub surface_table: Vec<layout::Surface>,
@@ -105,12 +105,12 @@ pub struct Shown<'a> {
     pub ground: Option<&'a Ground>,
 }
 
-/// Collects surfaces as the shader wants them: one entry per (surface, tile).
+/// Collects surfaces as the shader wants them: one entry per (surface, normal, tile).
 struct SurfaceTable<'a> {
     model: &'a CityModel,
     textures: &'a Textures,
     entries: Vec<layout::Surface>,
-    in_tile: FxHashMap<u32, u32>,
+    in_tile: FxHashMap<(u32, u32), u32>,
 }
 
 impl SurfaceTable<'_> {
@@ -118,7 +118,8 @@ impl SurfaceTable<'_> {
         self.in_tile.clear();
     }
 
-    fn number(&mut self, surface: u32, origin: IVec3) -> u32 {
+    /// The entry of a model surface and a packed normal.
+    fn number(&mut self, surface: (u32, u32), origin: IVec3) -> u32 {
         let Self { model, textures, entries, in_tile } = self;
         *in_tile.entry(surface).or_insert_with(|| {
             entries.push(entry(model, textures, surface, origin));
@@ -127,7 +128,7 @@ impl SurfaceTable<'_> {
     }
 }
 
-fn entry(model: &CityModel, textures: &Textures, surface: u32, origin: IVec3) -> layout::Surface {
+fn entry(model: &CityModel, textures: &Textures, (surface, normal): (u32, u32), origin: IVec3) -> layout::Surface {
     let Some(found) = model.surfaces.get(surface as usize) else {
         let [color_rg, color_ba] = packed(palette::linear_bytes(palette::PLAIN_GROUND));
         return layout::Surface {
@@ -136,7 +137,7 @@ fn entry(model: &CityModel, textures: &Textures, surface: u32, origin: IVec3) ->
             color_rg,
             color_ba,
             flags: 0,
-            model_surface: NONE,
+            normal,
         };
     };
     let material = model.materials.get(found.material as usize);
@@ -153,7 +154,7 @@ fn entry(model: &CityModel, textures: &Textures, surface: u32, origin: IVec3) ->
         color_rg,
         color_ba,
         flags: if material.is_some_and(|m| m.unlit) { layout::SURFACE_UNLIT } else { 0 },
-        model_surface: surface,
+        normal,
     }
 }
 
@@ -251,7 +252,7 @@ impl CityBuffers {
         let mut plain = Gathered::default();
         let mut textured: FxHashMap<(u32, u32), Gathered> = FxHashMap::default();
         let mut smooth = false;
-        let mut coplanar_surfaces: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+        let mut coplanar_surfaces: FxHashMap<(u32, u32, u32), u32> = FxHashMap::default();
         for t in ordered_tiles(shown, &extent) {
             let tile = &shown.model.tiles[t as usize];
             table.begin_tile();
@@ -343,7 +344,7 @@ fn gather_tile(
             Some(key) => {
                 let target = textured.entry(key).or_default();
                 for c in corners {
-                    let number = table.number(first.surface, tile.origin);
+                    let number = table.number((first.surface, first.normal), tile.origin);
                     target.indices.push(target.vertices.len() as u32);
                     target.vertices.push(Vertex { surface: number, ..vertices[c as usize] });
                     target.texcoords.push(model.texcoords[(tile.texcoords + c) as usize]);
@@ -352,7 +353,9 @@ fn gather_tile(
         }
     }
     if any_plain {
-        plain.vertices.extend(vertices.iter().map(|v| Vertex { surface: table.number(v.surface, tile.origin), ..*v }));
+        plain.vertices.extend(
+            vertices.iter().map(|v| Vertex { surface: table.number((v.surface, v.normal), tile.origin), ..*v }),
+        );
     }
     plain.close_run(tile.bounds);
     for gathered in textured.values_mut() {
@@ -375,7 +378,9 @@ fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered
         table.begin_tile();
         let base = plain.vertices.len() as u32;
         let vertices = &ground.vertices[tile.vertices.start as usize..tile.vertices.end as usize];
-        plain.vertices.extend(vertices.iter().map(|v| Vertex { surface: table.number(NONE, tile.origin), ..*v }));
+        plain
+            .vertices
+            .extend(vertices.iter().map(|v| Vertex { surface: table.number((NONE, v.normal), tile.origin), ..*v }));
         let indices = &ground.indices[tile.indices.start as usize..tile.indices.end as usize];
         plain.indices.extend(indices.iter().map(|i| base + i));
         plain.close_run(tile.bounds);
@@ -392,7 +397,7 @@ struct Coplanar {
     chunks: Vec<Chunk>,
 }
 
-fn gather_coplanar(shown: &Shown, table: &mut SurfaceTable, known: &mut FxHashMap<(u32, u32), u32>) -> Coplanar {
+fn gather_coplanar(shown: &Shown, table: &mut SurfaceTable, known: &mut FxHashMap<(u32, u32, u32), u32>) -> Coplanar {
     let model = shown.model;
     let mut order: Vec<&CoplanarTriangle> = shown.coplanar.iter().collect();
     // Within a group the higher priority is drawn later and wins at equal depth.
@@ -413,8 +418,8 @@ fn gather_coplanar(shown: &Shown, table: &mut SurfaceTable, known: &mut FxHashMa
             }
             out.planes.push(plane_of(&model.plane_equations[c.group as usize - 1], tile.origin));
         }
-        let surface = *known.entry((c.tile, corners[0].surface)).or_insert_with(|| {
-            table.entries.push(entry(model, table.textures, corners[0].surface, tile.origin));
+        let surface = *known.entry((c.tile, corners[0].surface, corners[0].normal)).or_insert_with(|| {
+            table.entries.push(entry(model, table.textures, (corners[0].surface, corners[0].normal), tile.origin));
             (table.entries.len() - 1) as u32
         });
         for corner in corners {

@@ -122,7 +122,7 @@ impl Renderer {
         let mut recorder = Recorder { timer, passes: Vec::new() };
         let seen = seen_volumes(input);
         let sun_view = self.sun_view(input);
-        self.fit_targets(needs(input, &seen, self.colored(), sun_view.is_some()));
+        self.fit_targets(needs(input, &seen, self.colored(), self.smooth(), sun_view.is_some()));
         self.upload(input, sun_view.as_ref(), &seen)?;
         self.fit_groups();
         let keys = self.prepare(input, &seen, sun_view.is_some());
@@ -175,6 +175,10 @@ impl Renderer {
         }
         drop(pass);
         self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn smooth(&self) -> bool {
+        self.city.as_ref().is_some_and(|c| c.buffers.smooth)
     }
 
     fn colored(&self) -> bool {
@@ -276,6 +280,7 @@ impl Renderer {
             outlines: lenses && input.operations.outlines,
             mask_layers: if lenses { mask_layers(input) } else { 1 },
             haze: haze(input) > 0.0,
+            smooth: city.buffers.smooth,
         };
         let shade_keys = ShadeKeys {
             context: Some(shade(&input.operations.context_effects, false)),
@@ -568,13 +573,14 @@ fn seen_volumes(input: &FrameInput) -> Vec<SeenVolume> {
     seen
 }
 
-fn needs(input: &FrameInput, seen: &[SeenVolume], colors: bool, shadows: bool) -> Needs {
+fn needs(input: &FrameInput, seen: &[SeenVolume], colors: bool, smooth: bool, shadows: bool) -> Needs {
     // In steps of 64 texels, so that a lens that moves does not have its sprite made anew every frame.
     let longest = |i: usize| seen.iter().map(|v| v.sprite_bounds.size[i].next_multiple_of(64)).max().unwrap_or(0);
     let sprite = [longest(0), longest(1)];
     Needs {
         size: input.tile.size,
         colors,
+        smooth,
         own_depth: input.measured,
         sums: input.samples > 1,
         mask_layers: if seen.is_empty() { 0 } else { mask_layers(input) * input.lens_count.div_ceil(32) },

@@ -32,7 +32,7 @@ pub struct Surface {
     pub color_rg: u32,
     pub color_ba: u32,
     pub flags: u32,
-    pub model_surface: u32,
+    pub normal: u32,
 }
 
 /// `lib/surface.wgsl`: no city object.
@@ -204,7 +204,7 @@ mod tests {
                     pad_2
                 }),
             ),
-            (&Module::Geometry, host!(Surface { origin, object, color_rg, color_ba, flags, model_surface })),
+            (&Module::Geometry, host!(Surface { origin, object, color_rg, color_ba, flags, normal })),
             (&Module::Geometry, host!(Plane { normal, reserved, origin, offset })),
             (
                 &Module::Sprite,

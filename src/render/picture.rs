@@ -278,16 +278,23 @@ impl Studio {
             return Ok(());
         }
         let codes = gpu.read_texture(&targets.codes.texture, 0, wgpu::TextureAspect::All)?;
-        let codes: &[[u32; 2]] = bytemuck::cast_slice(&codes);
+        let codes: Vec<[u32; 2]> = match targets.needs.smooth {
+            true => bytemuck::cast_slice(&codes).to_vec(),
+            false => {
+                // Flat faces: the normal stands with the surface.
+                let normal = |code: u32| code.checked_sub(1).map_or(0, |s| city.surface_table[s as usize].normal);
+                bytemuck::cast_slice(&codes).iter().map(|&code: &u32| [code, normal(code)]).collect()
+            }
+        };
         if let Some(out) = &mut picture.object_id {
             // The plain ground is no object: its NO_OBJECT wraps to 0.
             let object = |surface: u32| city.surface_table[surface as usize].object.wrapping_add(1);
-            let ids: Vec<u32> = codes.iter().map(|&[_, code]| code.checked_sub(1).map_or(0, object)).collect();
+            let ids: Vec<u32> = codes.iter().map(|&[code, _]| code.checked_sub(1).map_or(0, object)).collect();
             put(out, request.size, part, &ids);
         }
         if let Some(out) = &mut picture.normal {
             let width = part.drawn.size[0];
-            let normal = |(i, &[normal, code]): (usize, &[u32; 2])| {
+            let normal = |(i, &[code, normal]): (usize, &[u32; 2])| {
                 if code == 0 {
                     return [0.0; 3];
                 }

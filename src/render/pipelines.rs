@@ -6,8 +6,10 @@ use crate::{gpu::Gpu, render::layout, shader::Module};
 
 /// Depth everywhere: reversed, f32.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Packed normal and surface number.
-pub const CODES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+/// Surface number + 1.
+pub const CODES: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// The same and a packed normal, in cities with smooth faces.
+pub const SMOOTH_CODES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// sRGB base colours, only in cities with textures.
 pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Interpolated depth, only where the depth AOV is asked for.
@@ -59,6 +61,8 @@ pub enum Key {
         mask_layers: u32,
         /// The air shows.
         haze: bool,
+        /// Normals are in the target.
+        smooth: bool,
     },
     /// The mean of samples.
     Resolve,
@@ -384,7 +388,7 @@ impl Key {
                 }
                 list
             }
-            Self::Shade { lenses, textured, clay, summed, shadows, outlines, mask_layers, haze, .. } => vec![
+            Self::Shade { lenses, textured, clay, summed, shadows, outlines, mask_layers, haze, smooth, .. } => vec![
                 ("LENSES", flag(*lenses)),
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
@@ -393,6 +397,7 @@ impl Key {
                 ("OUTLINES", flag(*outlines)),
                 ("MASK_LAYERS", f64::from(*mask_layers)),
                 ("HAZE", flag(*haze)),
+                ("SMOOTH", flag(*smooth)),
             ],
             Self::LensMask(layers) => vec![("MASK_LAYERS", f64::from(*layers))],
             Self::SpriteEntry(kind) | Self::SpriteExit(kind) => vec![("KIND", f64::from(*kind))],
@@ -402,8 +407,9 @@ impl Key {
 
     fn entry_points(&self) -> (&'static str, Option<&'static str>) {
         match self {
-            Self::Geometry { section: GeometryKind::Plain, colored, measured, .. } => {
-                ("vertex", Some(if *colored || *measured { "full" } else { "plain" }))
+            Self::Geometry { section: GeometryKind::Plain, colored, measured, smooth } => {
+                let vertex = if *smooth { "vertex_smooth" } else { "vertex" };
+                (vertex, Some(if *colored || *measured { "full" } else { "plain" }))
             }
             Self::Geometry { section: GeometryKind::Textured(_), .. } => ("vertex_textured", Some("textured")),
             Self::Geometry { section: GeometryKind::Coplanar, colored, measured, .. } => {
@@ -428,8 +434,9 @@ impl Key {
 
     fn targets(&self, sums: wgpu::TextureFormat) -> Vec<Option<wgpu::ColorTargetState>> {
         match self {
-            Self::Geometry { colored, measured, .. } => {
-                let mut targets = vec![Some(CODES.into()), colored.then(|| COLORS.into())];
+            Self::Geometry { colored, measured, smooth, .. } => {
+                let codes = if *smooth { SMOOTH_CODES } else { CODES };
+                let mut targets = vec![Some(codes.into()), colored.then(|| COLORS.into())];
                 targets.extend(measured.then(|| Some(OWN_DEPTH.into())));
                 // Without the colour target the list ends where it may.
                 targets.truncate(if *measured { 3 } else { 1 + usize::from(*colored) });

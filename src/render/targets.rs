@@ -2,7 +2,7 @@
 
 use crate::{
     gpu::Gpu,
-    render::pipelines::{CODES, COLORS, DEPTH, MASKS, OWN_DEPTH, PICTURE},
+    render::pipelines::{CODES, COLORS, DEPTH, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES},
 };
 
 /// What a frame needs beside codes, depth and the picture.
@@ -12,6 +12,8 @@ pub struct Needs {
     pub size: [u32; 2],
     /// Base colours, in cities with textures.
     pub colors: bool,
+    /// Normals beside the surface numbers, in cities with smooth faces.
+    pub smooth: bool,
     /// Interpolated depth, for the AOV.
     pub own_depth: bool,
     /// Sums of samples.
@@ -40,7 +42,7 @@ pub struct Target {
 pub struct Targets {
     /// What they were made for.
     pub needs: Needs,
-    /// Packed normal, surface number + 1.
+    /// Surface number + 1, packed normal.
     pub codes: Target,
     /// Reversed depth.
     pub depth: Target,
@@ -70,7 +72,9 @@ impl Targets {
         let make = |label: &str, size: [u32; 3], format, usage| {
             let size = [size[0].max(1), size[1].max(1), size[2]];
             let texture = gpu.texture(label, size, 1, format, usage);
-            let array = (format == MASKS).then_some(wgpu::TextureViewDimension::D2Array);
+            // Only the masks are written by a compute pass, and only they have layers.
+            let layered = usage.contains(U::STORAGE_BINDING);
+            let array = layered.then_some(wgpu::TextureViewDimension::D2Array);
             let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension: array, ..Default::default() });
             let layer = |i| {
                 texture.create_view(&wgpu::TextureViewDescriptor {
@@ -80,7 +84,7 @@ impl Targets {
                     ..Default::default()
                 })
             };
-            let layers = if format == MASKS { (0..size[2]).map(layer).collect() } else { Vec::new() };
+            let layers = if layered { (0..size[2]).map(layer).collect() } else { Vec::new() };
             Target { view, layers, texture }
         };
         let [w, h] = needs.size;
@@ -89,7 +93,7 @@ impl Targets {
         let mask_size = if needs.mask_layers > 0 { [w, h, needs.mask_layers] } else { [1, 1, 1] };
         Self {
             needs,
-            codes: make("codes", [w, h, 1], CODES, drawn),
+            codes: make("codes", [w, h, 1], if needs.smooth { SMOOTH_CODES } else { CODES }, drawn),
             depth: make("depth", [w, h, 1], DEPTH, drawn),
             colors: make("colors", full(needs.colors), COLORS, drawn),
             own_depth: make("own depth", full(needs.own_depth), OWN_DEPTH, drawn),
