@@ -31,6 +31,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "delft-streets"
     "den-haag-sphere"
     "first-lens"
+    "market-square"
     "rotterdam-textures"
     "three-lenses"
     "town"
