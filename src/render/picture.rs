@@ -27,7 +27,7 @@ use crate::{
 };
 
 /// How thick the air is: the share of the horizon's colour that a scene's radius of it adds.
-const HAZE: f64 = 0.08;
+const HAZE: f64 = 0.035;
 /// Longest side of a target; larger pictures are drawn in tiles.
 const TILE: u32 = 4096;
 /// Pixels by which tiles overlap, so that what looks at neighbours (outlines) has them.
