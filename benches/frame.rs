@@ -2,7 +2,8 @@
 //! colour lens against the plain frame.
 //!
 //! `cargo bench --bench frame [-- --pairs N]`: frames A and B are drawn in turn, and the median of their ratios is
-//! given with its 95 % interval; a target is met when the interval's upper end meets it.
+//! given with its 95 % interval; a target is met when the interval's upper end meets it. `-- --profile "V1 plain"` draws
+//! one of them over and over, for a profiler to watch.
 
 #![expect(clippy::print_stdout, reason = "a bench prints its table")]
 
@@ -23,44 +24,56 @@ use veduta::{
 
 const SIZE: [u32; 2] = [1280, 720];
 
+/// One of the frames that are compared.
+enum Frame {
+    /// The bare lit draw.
+    Bare(View),
+    /// A scene, redrawn in full.
+    Full(Scene),
+}
+
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
-    let pairs = match &arguments[..] {
-        [flag, n] if flag == "--pairs" => n.parse().expect("--pairs wants a number"),
-        _ => 31,
-    };
+    let (mut pairs, mut profile) = (31, None);
+    let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
+    while let Some(argument) = arguments.next() {
+        match (argument.as_str(), arguments.next()) {
+            ("--pairs", Some(n)) => pairs = n.parse().expect("--pairs wants a number"),
+            ("--profile", name @ Some(_)) => profile = name,
+            _ => panic!("{argument} is neither --pairs N nor --profile NAME"),
+        }
+    }
     let model = load(&[bench_city::written(bench_city::BENCH_BUILDINGS)], &LoadOptions::default(), &Quiet)
         .unwrap_or_else(|error| panic!("{error}"));
     let spec = CitySpec { ground: false, ..CitySpec::default() };
     let gpu = Gpu::open().unwrap_or_else(|error| panic!("{error}"));
     println!("adapter {}, {pairs} pairs, {}x{}", gpu.name(), SIZE[0], SIZE[1]);
     let mut studio = Studio::new(gpu, Arc::new(model), &spec).unwrap_or_else(|error| panic!("{error}"));
-    let extent = studio.extent();
     println!("{} triangles", studio.renderer.city().map_or(0, |c| c.triangles));
-    println!("{:<52} {:>9} {:>9} {:>24} {:>8}", "A / B", "A ms", "B ms", "ratio (95 % interval)", "target");
-    let v1 = plain(overview(&extent));
-    let v2 = plain(street(&studio));
-    for (name, scene, target) in [("V1", &v1, 1.3), ("V2", &v2, 1.45)] {
-        let view = view(scene);
-        let plain = |studio: &mut Studio| frame(studio, scene);
-        let bare = |studio: &mut Studio| {
-            studio.renderer.draw_bare(&view);
-            finish(studio);
-        };
-        compare(&format!("{name}: plain frame / bare lit draw"), &mut studio, pairs, target, plain, bare);
+    let mut frames = Vec::new();
+    for (v, camera) in [("V1", overview(&studio.extent())), ("V2", street(&studio))] {
+        let scene = plain(camera);
+        let lensed = with_lens(v, &scene, &mut studio);
+        frames.push((format!("{v} bare"), Frame::Bare(view(&scene))));
+        frames.push((format!("{v} plain"), Frame::Full(scene)));
+        frames.push((format!("{v} lens"), Frame::Full(lensed)));
     }
-    compare("plain frame: V2 / V1", &mut studio, pairs, 0.5, |s| frame(s, &v2), |s| frame(s, &v1));
-    for (name, scene) in [("V1", &v1), ("V2", &v2)] {
-        let lensed = with_lens(scene, &mut studio);
-        compare(
-            &format!("{name}: one colour lens over a tenth / plain frame"),
-            &mut studio,
-            pairs,
-            1.10,
-            |s| frame(s, &lensed),
-            |s| frame(s, scene),
-        );
+    let named = |name: &str| {
+        let found = frames.iter().find(|(n, _)| n == name);
+        &found.unwrap_or_else(|| panic!("no frame is called {name}; V1 or V2 with bare, plain or lens")).1
+    };
+    if let Some(name) = profile {
+        // A bare draw takes targets and view from the frame before it.
+        timed(&mut studio, named(&format!("{} plain", name.split(' ').next().unwrap_or_default())));
+        let best = (0..pairs).map(|_| timed(&mut studio, named(&name))).fold(f64::INFINITY, f64::min);
+        println!("{name}: {best:.1} ms at best");
+        return;
     }
+    println!("{:<22} {:>9} {:>9} {:>24} {:>8}", "A / B", "A ms", "B ms", "ratio (95 % interval)", "target");
+    compare(&mut studio, pairs, named, ["V1 plain", "V1 bare"], 1.30);
+    compare(&mut studio, pairs, named, ["V2 plain", "V2 bare"], 1.45);
+    compare(&mut studio, pairs, named, ["V2 plain", "V1 plain"], 0.50);
+    compare(&mut studio, pairs, named, ["V1 lens", "V1 plain"], 1.10);
+    compare(&mut studio, pairs, named, ["V2 lens", "V2 plain"], 1.10);
 }
 
 /// Clay, no shadows, one sample.
@@ -113,8 +126,8 @@ fn view(scene: &Scene) -> View {
     View::new(scene.camera.expect("a camera"), SIZE, &Aabb::EMPTY).expect("a view")
 }
 
-/// A greyscale lens whose mask covers about a tenth of the picture.
-fn with_lens(scene: &Scene, studio: &mut Studio) -> Scene {
+/// A greyscale lens whose mask covers a tenth of the picture.
+fn with_lens(v: &str, scene: &Scene, studio: &mut Studio) -> Scene {
     let camera = scene.camera.expect("a camera");
     let forward = (camera.target - camera.eye).normalize_or(DVec3::X);
     let of = |radius: f64, distance: f64| {
@@ -135,61 +148,51 @@ fn with_lens(scene: &Scene, studio: &mut Studio) -> Scene {
         }];
         lensed
     };
+    // From the street a lens at the camera's target is behind the first houses: it stands among them.
     let distance = camera.eye.distance(camera.target);
-    // A disc of a tenth of the picture: π p² = w·h/10 pixels.
-    let pixels = f64::from(SIZE[0] * SIZE[1]) / 10.0;
-    // From the street a lens that far is behind the first houses: it stands among them.
     let distance = if distance < 100.0 { 30.0 } else { distance };
-    let mut radius = (pixels / std::f64::consts::PI).sqrt() * view(scene).pixel_m(distance);
     let request = Request { size: SIZE, samples: 1, transparent: false, aovs: Aovs::default(), statistics: true };
-    let mut covered = |radius: f64| {
+    let mut share = |radius: f64| {
         let figures = studio.render(&of(radius, distance), &request).expect("a picture").statistics;
-        figures.lenses[0].covered as f64 / pixels
+        figures.lenses[0].covered as f64 / f64::from(SIZE[0] * SIZE[1])
     };
-    // The shown surface inside it makes up the tenth, not its disc.
-    for _ in 0..12 {
-        radius *= (1.0 / covered(radius).max(0.05)).sqrt().clamp(0.7, 1.4);
+    // The shown surface inside it makes up the tenth, not its disc; it grows with the radius.
+    let (mut low, mut high) = (0.0, distance);
+    for _ in 0..16 {
+        let middle = 0.5 * (low + high);
+        if share(middle) < 0.1 { low = middle } else { high = middle }
     }
-    println!("  the lens covers {:.1} % of the picture", 10.0 * covered(radius));
-    of(radius, distance)
+    println!("{v}: a lens of {high:.1} m covers {:.2} % of the picture", 100.0 * share(high));
+    of(high, distance)
 }
 
-fn frame(studio: &mut Studio, scene: &Scene) {
-    studio.redraw(scene, SIZE).unwrap_or_else(|error| panic!("{error}"));
-    finish(studio);
-}
-
-fn finish(studio: &Studio) {
+/// Draws one frame to its end; takes milliseconds.
+fn timed(studio: &mut Studio, frame: &Frame) -> f64 {
+    let start = Instant::now();
+    match frame {
+        Frame::Bare(view) => studio.renderer.draw_bare(view),
+        Frame::Full(scene) => studio.redraw(scene, SIZE).unwrap_or_else(|error| panic!("{error}")),
+    }
     studio.renderer.gpu.wait().unwrap_or_else(|error| panic!("{error}"));
+    start.elapsed().as_secs_f64() * 1e3
 }
 
 /// Draws A and B in turn and prints the median of A/B with its 95 % interval.
-fn compare(
-    name: &str,
-    studio: &mut Studio,
-    pairs: usize,
-    target: f64,
-    mut a: impl FnMut(&mut Studio),
-    mut b: impl FnMut(&mut Studio),
-) {
-    let time = |studio: &mut Studio, f: &mut dyn FnMut(&mut Studio)| {
-        let start = Instant::now();
-        f(studio);
-        start.elapsed().as_secs_f64() * 1e3
-    };
+fn compare<'a>(studio: &mut Studio, pairs: usize, named: impl Fn(&str) -> &'a Frame, names: [&str; 2], target: f64) {
+    let [a, b] = names.map(named);
     for _ in 0..2 {
-        a(studio);
-        b(studio);
+        timed(studio, a);
+        timed(studio, b);
     }
     let (mut of_a, mut of_b, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..pairs {
         // Every other pair the other way round, so that neither always runs on the other's warm caches.
         let (ta, tb) = if i % 2 == 0 {
-            let ta = time(studio, &mut a);
-            (ta, time(studio, &mut b))
+            let ta = timed(studio, a);
+            (ta, timed(studio, b))
         } else {
-            let tb = time(studio, &mut b);
-            (time(studio, &mut a), tb)
+            let tb = timed(studio, b);
+            (timed(studio, a), tb)
         };
         of_a.push(ta);
         of_b.push(tb);
@@ -205,7 +208,8 @@ fn compare(
     let median = ratios[pairs / 2];
     let verdict = if high <= target { "met" } else { "MISSED" };
     println!(
-        "{name:<52} {:>9.1} {:>9.1} {median:>9.3} ({low:.3}..{high:.3}) {target:>6.2} {verdict}",
+        "{:<22} {:>9.1} {:>9.1} {median:>9.3} ({low:.3}..{high:.3}) {target:>6.2} {verdict}",
+        names.join(" / "),
         of_a[pairs / 2],
         of_b[pairs / 2]
     );
