@@ -10,10 +10,12 @@ pub mod gltf;
 pub mod ground;
 pub mod json;
 pub mod load;
+mod memory;
 pub mod model;
 pub mod obj;
 pub mod shown;
 pub mod spatial;
+mod strings;
 pub mod synth;
 #[cfg(test)]
 pub(crate) mod test_city;
@@ -22,4 +24,5 @@ pub mod validate;
 pub mod warning;
 
 pub use model::*;
+pub use strings::Strings;
 pub use warning::{WarningCode, Warnings};

@@ -15,7 +15,7 @@ use std::{ops::Range, path::PathBuf, sync::Arc};
 use glam::{DVec3, IVec3};
 
 use crate::{
-    city::warning::Warnings,
+    city::{strings::Strings, warning::Warnings},
     geom::{Aabb, plane::Plane},
 };
 
@@ -84,52 +84,6 @@ pub struct Source {
     pub format: &'static str,
     /// The format's version as the file states it, `2.0`; empty where it has none.
     pub version: String,
-}
-
-/// Interned strings.
-#[derive(Clone, Debug, Default)]
-pub struct Strings {
-    list: Vec<Arc<str>>,
-    index: rustc_hash::FxHashMap<Arc<str>, StringId>,
-}
-
-impl Strings {
-    /// The id of `text`, made if new.
-    pub fn intern(&mut self, text: &str) -> StringId {
-        if let Some(id) = self.index.get(text) {
-            return *id;
-        }
-        let id = StringId(u32::try_from(self.list.len()).expect("more than 2^32 strings"));
-        let shared: Arc<str> = text.into();
-        self.list.push(shared.clone());
-        self.index.insert(shared, id);
-        id
-    }
-
-    /// The id of `text`, if it was ever interned.
-    pub fn find(&self, text: &str) -> Option<StringId> {
-        self.index.get(text).copied()
-    }
-
-    /// All texts, in the order of their ids.
-    pub fn iter(&self) -> impl Iterator<Item = &str> {
-        self.list.iter().map(|text| &**text)
-    }
-
-    /// How many strings there are.
-    pub fn len(&self) -> usize {
-        self.list.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.list.is_empty()
-    }
-
-    /// The text of `id`.
-    pub fn get(&self, id: StringId) -> &str {
-        &self.list[id.0 as usize]
-    }
 }
 
 /// A city object: a building, a part of one, a road, a tree, a patch of terrain, ...

@@ -83,7 +83,7 @@ fn read(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
     };
     let Ok(input) = input::from_bytes(&folder.join(name), bytes) else { return Ok(()) };
     let mut builder = ModelBuilder::default();
-    match read_input(&mut builder, &input, &options) {
+    match read_input(&mut builder, input, &options) {
         Ok(()) => {}
         Err(e) if e.message.is_empty() || e.to_string().contains('\n') || e.to_string().len() > 2000 => {
             return Err(format!("an unreadable message: {e}"));

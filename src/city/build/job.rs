@@ -9,11 +9,11 @@ use super::{
     metric::{Grid, is_trusted},
     planes::PlaneKey,
     repeats,
-    shelf::{Part, Shape, Shelf, Slices},
+    shelf::{Part, Shape, Shelf, Slices, corners_and_triangles},
     tiles,
 };
 use crate::{
-    city::{CityObject, Geometry, Surface, Tile, Vertex, WarningCode, Warnings, encode_normal},
+    city::{CityObject, Geometry, Surface, Tile, Vertex, WarningCode, Warnings, encode_normal, memory::give_back},
     geom::{
         exact::newell,
         plane::ExactPlane,
@@ -63,6 +63,42 @@ pub(super) struct Chunk {
     pub(super) warnings: Warnings,
 }
 
+impl Chunk {
+    /// Nothing, but the memory is kept.
+    fn clear(&mut self) {
+        let Self { geometries, tiles, vertices, texcoords, indices, planes, plane_keys, polygons, warnings } = self;
+        geometries.clear();
+        tiles.clear();
+        vertices.clear();
+        texcoords.clear();
+        indices.clear();
+        planes.clear();
+        plane_keys.clear();
+        *polygons = 0;
+        *warnings = Warnings::default();
+    }
+
+    /// Frees the lists whose pages are worth it.
+    pub(super) fn give_back(self) {
+        give_back(self.vertices);
+        give_back(self.texcoords);
+        give_back(self.indices);
+        give_back(self.planes);
+        give_back(self.plane_keys);
+    }
+
+    /// Asks once for what a job will need: lists that double leave twice their size in pieces behind.
+    fn reserve(&mut self, job: &[Part]) {
+        let (corners, triangles) = corners_and_triangles(job);
+        self.vertices.reserve_exact(corners);
+        self.indices.reserve_exact(3 * triangles);
+        self.planes.reserve_exact(triangles);
+        self.plane_keys.reserve_exact(job.iter().map(Part::polygon_count).sum());
+        self.geometries.reserve_exact(job.len());
+        self.tiles.reserve_exact(job.len());
+    }
+}
+
 /// A triangulated polygon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
@@ -106,9 +142,10 @@ pub(super) fn corner_ranges(polygons: Slices<'_>, polygon: usize) -> impl Iterat
     })
 }
 
-/// Does a job: geometries sorted by object and LoD.
-pub(super) fn run(job: &[Part], context: &Context<'_>, scratch: &mut Scratch) -> Chunk {
-    let mut chunk = Chunk::default();
+/// Does a job (geometries sorted by object and LoD), in place of what `chunk` held.
+pub(super) fn run(job: &[Part], context: &Context<'_>, scratch: &mut Scratch, chunk: &mut Chunk) {
+    chunk.clear();
+    chunk.reserve(job);
     let mut same_shape: Vec<Shape<'_>> = Vec::new();
     for parts in job.chunk_by(|a, b| (a.object, a.lod) == (b.object, b.lod)) {
         same_shape.clear();
@@ -116,11 +153,10 @@ pub(super) fn run(job: &[Part], context: &Context<'_>, scratch: &mut Scratch) ->
         let mut repeated = std::mem::take(&mut scratch.repeated);
         repeats::mark(&same_shape, context, &mut scratch.repeats, &mut repeated);
         for (raw, repeated) in same_shape.iter().zip(&repeated) {
-            add_geometry(raw, repeated, context, scratch, &mut chunk);
+            add_geometry(raw, repeated, context, scratch, chunk);
         }
         scratch.repeated = repeated;
     }
-    chunk
 }
 
 fn add_geometry(raw: &Shape<'_>, repeated: &[bool], context: &Context<'_>, scratch: &mut Scratch, chunk: &mut Chunk) {

@@ -10,6 +10,7 @@
 //! ```
 
 mod job;
+mod line;
 mod links;
 mod metric;
 mod planes;
@@ -21,17 +22,13 @@ mod tiles;
 use std::{ops::Range, sync::Arc};
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 pub use self::points::{BAD_POINT, Points, Pool};
-use self::{
-    job::Chunk,
-    planes::PlaneTable,
-    shelf::{Part, Shelf},
-};
+use self::shelf::Shelf;
 use crate::{
     city::{
-        Attribute, CityModel, CityObject, Lod, NONE, ObjectClass, Source, StringId, Surface, SurfaceDetail, WarningCode,
+        Attribute, CityModel, CityObject, Lod, ObjectClass, Source, StringId, Surface, SurfaceDetail, WarningCode,
+        memory::give_back,
     },
     geom::Aabb,
 };
@@ -184,15 +181,21 @@ impl ModelBuilder {
     }
 
     /// Adds an object; returns its index in the whole city.
-    pub fn add_object(&mut self, object: RawObject) -> u32 {
-        let RawObject { id, kind, class, parents, children, attributes } = object;
+    pub fn add_object(&mut self, mut object: RawObject) -> u32 {
+        let attributes = std::mem::take(&mut object.attributes);
+        self.add_object_with(object, &attributes)
+    }
+
+    /// Adds an object whose attributes stand elsewhere, in place of its own.
+    pub fn add_object_with(&mut self, object: RawObject, attributes: &[Attribute]) -> u32 {
+        let RawObject { id, kind, class, parents, children, .. } = object;
         // A city has a handful of kinds, and neighbours in a file are mostly alike.
         let kind = self.kinds.iter().rposition(|known| **known == *kind).unwrap_or_else(|| {
             self.kinds.push(kind.into());
             self.kinds.len() - 1
         });
         let start = self.attributes.len() as u32;
-        self.attributes.extend(attributes);
+        self.attributes.extend_from_slice(attributes);
         self.objects.push(KeptObject {
             id: id.into(),
             parents: parents.into(),
@@ -254,13 +257,13 @@ impl ModelBuilder {
             }
             object.geometries = start as u32..at as u32;
         }
-        finish_geometries(&mut model, shelf);
+        line::finish_geometries(&mut model, shelf);
         model
     }
 
     /// Turns raw objects into objects with unique ids, resolved links and their range of attributes.
     fn finish_objects(&mut self) {
-        let kept = std::mem::take(&mut self.objects);
+        let mut kept = std::mem::take(&mut self.objects);
         let model = &mut self.model;
         let ids = links::unique_ids(&kept, &mut model.warnings);
         let links = links::resolve(&kept, &ids, &self.file_starts, &mut model.warnings);
@@ -270,146 +273,19 @@ impl ModelBuilder {
             model.attributes.shrink_to_fit();
         } else {
             model.attributes.reserve_exact(self.attributes.len());
-            model.attributes.append(&mut std::mem::take(&mut self.attributes));
+            model.attributes.append(&mut self.attributes);
+            give_back(std::mem::take(&mut self.attributes));
         }
         model.surfaces.shrink_to_fit();
         model.details.shrink_to_fit();
         model.objects.reserve_exact(kept.len());
-        for (((object, id), parents), children) in kept.into_iter().zip(ids).zip(links.parents).zip(links.children) {
+        for (((object, id), parents), children) in kept.drain(..).zip(ids).zip(links.parents).zip(links.children) {
             let KeptObject { kind, class, attributes, .. } = object;
             let kind = model.strings.intern(&self.kinds[kind as usize]);
             let attributes = attributes.start + first..attributes.end + first;
             model.objects.push(CityObject { id, kind, class, parents, children, attributes, geometries: 0..0 });
         }
-    }
-}
-
-/// Polygons per job: enough to be worth a thread's while, few enough to share work evenly.
-const JOB_POLYGONS: usize = 1024;
-
-/// Jobs per batch, for all threads: what is triangulated but not yet appended is bounded by two batches. Results do not
-/// depend on it.
-fn batch_jobs() -> usize {
-    (3 * rayon::current_num_threads()).clamp(4, 96)
-}
-
-/// Triangulates geometries (sorted by object and LoD) and appends them to the model, in order.
-fn finish_geometries(model: &mut CityModel, shelf: Shelf) {
-    let context = job::Context::new(&model.objects, &model.surfaces, &shelf);
-    // The whole is known before: growing by doubling would cost half as much memory again.
-    let (corners, triangles) = shelf.corners_and_triangles();
-    let mut built = Built::default();
-    built.chunk.vertices.reserve_exact(corners);
-    built.chunk.indices.reserve_exact(3 * triangles);
-    built.chunk.planes.reserve_exact(triangles);
-    built.chunk.geometries.reserve_exact(shelf.parts.len());
-    built.chunk.tiles.reserve(shelf.parts.len());
-
-    let mut jobs = Jobs { parts: &shelf.parts };
-    let mut ready: Vec<Chunk> = Vec::new();
-    loop {
-        let batch: Vec<_> = jobs.by_ref().take(batch_jobs()).collect();
-        if batch.is_empty() && ready.is_empty() {
-            break;
-        }
-        // One batch is appended while the next is worked on.
-        let (next, ()) = rayon::join(
-            || {
-                batch
-                    .into_par_iter()
-                    .map_init(job::Scratch::default, |scratch, job| job::run(job, &context, scratch))
-                    .collect()
-            },
-            || ready.drain(..).for_each(|chunk| built.append(chunk, &context.classes)),
-        );
-        ready = next;
-    }
-    drop(context);
-    drop(shelf);
-    let Built { mut chunk, planes, .. } = built;
-    let plane_equations = planes.finish(&mut chunk.planes);
-    chunk.vertices.shrink_to_fit();
-    chunk.indices.shrink_to_fit();
-    chunk.planes.shrink_to_fit();
-    chunk.texcoords.shrink_to_fit();
-    chunk.tiles.shrink_to_fit();
-    model.geometries = chunk.geometries;
-    model.tiles = chunk.tiles;
-    model.vertices = chunk.vertices;
-    model.texcoords = chunk.texcoords;
-    model.indices = chunk.indices;
-    model.planes = chunk.planes;
-    model.plane_equations = plane_equations;
-    model.warnings.append(chunk.warnings);
-}
-
-/// Cuts sorted geometries into jobs; an object's geometries of one LoD stay together.
-struct Jobs<'a> {
-    parts: &'a [Part],
-}
-
-impl<'a> Iterator for Jobs<'a> {
-    type Item = &'a [Part];
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let mut polygons = 0;
-        let mut end = 0;
-        while let Some(part) = self.parts.get(end) {
-            let same_shape = end > 0 && {
-                let last = &self.parts[end - 1];
-                (last.object, last.lod) == (part.object, part.lod)
-            };
-            if polygons >= JOB_POLYGONS && !same_shape {
-                break;
-            }
-            polygons += part.polygon_count();
-            end += 1;
-        }
-        let (job, rest) = self.parts.split_at(end);
-        self.parts = rest;
-        (!job.is_empty()).then_some(job)
-    }
-}
-
-/// Everything appended so far.
-#[derive(Default)]
-struct Built {
-    chunk: Chunk,
-    planes: PlaneTable,
-    /// Polygons so far, for the plane table.
-    polygons: u32,
-}
-
-impl Built {
-    fn append(&mut self, chunk: Chunk, classes: &[Lattice]) {
-        let all = &mut self.chunk;
-        let (vertices, indices) = (all.vertices.len() as u32, all.indices.len() as u32);
-        let (tiles, texcoords) = (all.tiles.len() as u32, all.texcoords.len() as u32);
-        let geometries = all.geometries.len() as u32;
-        all.vertices.extend_from_slice(&chunk.vertices);
-        all.indices.extend_from_slice(&chunk.indices);
-        all.texcoords.extend_from_slice(&chunk.texcoords);
-        all.tiles.extend(chunk.tiles.into_iter().map(|mut tile| {
-            tile.geometry += geometries;
-            tile.vertices = tile.vertices.start + vertices..tile.vertices.end + vertices;
-            tile.indices = tile.indices.start + indices..tile.indices.end + indices;
-            if tile.texcoords != NONE {
-                tile.texcoords += texcoords;
-            }
-            tile
-        }));
-        all.geometries.extend(chunk.geometries.into_iter().map(|mut geometry| {
-            geometry.tiles = geometry.tiles.start + tiles..geometry.tiles.end + tiles;
-            geometry
-        }));
-        let numbers: Vec<u32> = chunk
-            .plane_keys
-            .iter()
-            .map(|&(key, polygon)| self.planes.add(key, self.polygons + polygon, classes))
-            .collect();
-        all.planes.extend(chunk.planes.iter().map(|&local| if local == 0 { 0 } else { numbers[local as usize - 1] }));
-        self.polygons += chunk.polygons;
-        all.warnings.append(chunk.warnings);
+        give_back(kept);
     }
 }
 

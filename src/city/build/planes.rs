@@ -3,7 +3,10 @@
 use glam::DVec3;
 
 use super::Lattice;
-use crate::geom::plane::{ExactPlane, Plane};
+use crate::{
+    city::memory::give_back,
+    geom::plane::{ExactPlane, Plane},
+};
 
 /// A plane in the integers of one class of grids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -74,7 +77,7 @@ impl PlaneTable {
     }
 
     fn resize(&mut self, slots: usize) {
-        self.slots = Vec::new();
+        give_back(std::mem::take(&mut self.slots));
         self.slots = vec![0; slots];
         for number in 0..self.fingerprints.len() {
             let mut at = self.home(self.fingerprints[number]);
@@ -88,11 +91,13 @@ impl PlaneTable {
     /// Renumbers `planes`: planes of a single polygon become 0, the others 1, 2, ... in the order in which their second
     /// polygon was met. Returns those others in the world.
     pub(super) fn finish(mut self, planes: &mut [u32]) -> Vec<Plane> {
-        drop((self.slots, self.fingerprints));
+        give_back(self.slots);
+        give_back(self.fingerprints);
         for plane in planes {
             // `ALONE` wraps around to 0, and so do triangles without a plane.
             *plane = plane.checked_sub(1).map_or(0, |number| self.uses[number as usize].1.wrapping_add(1));
         }
+        give_back(self.uses);
         self.shared.shrink_to_fit();
         self.shared
     }

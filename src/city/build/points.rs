@@ -1,6 +1,7 @@
 //! Vertices that polygons index into, as compact as their integers allow.
 
 use super::Lattice;
+use crate::city::memory::give_back;
 
 /// What loaders put into a pool for a point that is no number: its faces are dropped as `bad-coordinate`.
 pub const BAD_POINT: [i64; 3] = [i64::MAX; 3];
@@ -88,6 +89,14 @@ impl Points {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Frees them.
+    pub(super) fn give_back(self) {
+        match self {
+            Self::Narrow(list) => give_back(list),
+            Self::Wide(list) => give_back(list),
+        }
     }
 
     /// Gives back memory that was reserved for more.

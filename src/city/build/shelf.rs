@@ -6,7 +6,7 @@
 use std::{ops::Range, sync::Arc};
 
 use super::{Polygons, Pool, RawGeometry};
-use crate::city::Lod;
+use crate::city::{Lod, memory::give_back};
 
 /// Everything that was read and waits.
 #[derive(Debug, Default)]
@@ -106,13 +106,31 @@ impl Shelf {
         }
     }
 
-    /// Corners, and triangles that they make at most: of n corners and h holes n + 2 h - 2.
-    pub(super) fn corners_and_triangles(&self) -> (usize, usize) {
-        let sum = |count: fn(&Part) -> usize| self.parts.iter().map(count).sum::<usize>();
-        let corners = sum(|part| part.indices.len());
-        let triangles = (corners + 2 * sum(|part| part.ring_ends.len())).saturating_sub(4 * sum(Part::polygon_count));
-        (corners, triangles)
+    /// Texture coordinates of all corners that have any.
+    pub(super) fn texcoord_count(&self) -> usize {
+        self.all.texcoords.len()
     }
+
+    /// Frees everything.
+    pub(super) fn give_back(self) {
+        let Polygons { indices, ring_ends, polygon_ends, surfaces, texcoords, normals } = self.all;
+        give_back(indices);
+        give_back(ring_ends);
+        give_back(polygon_ends);
+        give_back(surfaces);
+        give_back(texcoords);
+        give_back(normals);
+        give_back(self.parts);
+        self.pools.into_iter().filter_map(Arc::into_inner).for_each(|pool| pool.points.give_back());
+    }
+}
+
+/// Corners of geometries, and triangles that they make at most: of n corners and h holes n + 2 h - 2.
+pub(super) fn corners_and_triangles(parts: &[Part]) -> (usize, usize) {
+    let sum = |count: fn(&Part) -> usize| parts.iter().map(count).sum::<usize>();
+    let corners = sum(|part| part.indices.len());
+    let triangles = (corners + 2 * sum(|part| part.ring_ends.len())).saturating_sub(4 * sum(Part::polygon_count));
+    (corners, triangles)
 }
 
 fn append<T>(all: &mut Vec<T>, own: Vec<T>) -> Option<Range<u32>> {

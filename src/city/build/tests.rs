@@ -1,4 +1,5 @@
 use super::*;
+use crate::city::NONE;
 use crate::city::decode_normal;
 
 const MM: Lattice = Lattice { step: DVec3::splat(0.001), origin: DVec3::ZERO };

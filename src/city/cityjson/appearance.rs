@@ -1,5 +1,7 @@
 //! Materials and textures: from the file's lists to the model's, and which polygon wears what.
 
+use std::path::Path;
+
 use rustc_hash::FxHashMap;
 
 use crate::city::{
@@ -9,7 +11,8 @@ use crate::city::{
         geometry::{GeometryRead, MaterialUse},
         nested::Token,
     },
-    load::{Input, LoadOptions, Sibling},
+    load::{LoadOptions, Sibling},
+    memory::give_back,
 };
 
 /// `appearance` as read.
@@ -72,11 +75,23 @@ fn roughness(shininess: f32) -> f32 {
 /// The model's materials and textures of one file, across the documents of a sequence.
 #[derive(Debug, Default)]
 pub struct Wardrobe {
+    /// Whether more documents follow.
+    is_shared: bool,
     /// Materials and textures of earlier documents, so that features that repeat them share them.
-    known_materials: FxHashMap<String, u32>,
+    known_materials: FxHashMap<MaterialKey, u32>,
     known_textures: FxHashMap<(String, [u8; 2]), u32>,
     /// Textured variants: (material or NONE, texture) → material.
     textured: FxHashMap<(u32, u32), u32>,
+}
+
+/// Everything in a material: its name, and the bits of the rest.
+type MaterialKey = (String, [u32; 11]);
+
+fn key_of(material: &Material) -> MaterialKey {
+    let Material { name, base_color: [r, g, b, a], emissive, roughness, unlit, alpha_cutoff, texture } = material;
+    let [r, g, b, a, roughness, alpha_cutoff] = [r, g, b, a, roughness, alpha_cutoff].map(|x| x.to_bits());
+    let [er, eg, eb] = emissive.map(f32::to_bits);
+    (name.clone(), [r, g, b, a, er, eg, eb, roughness, u32::from(*unlit), alpha_cutoff, *texture])
 }
 
 /// The appearance of one document, in the model's indices.
@@ -89,39 +104,56 @@ pub struct Dressed {
     texture_theme: Option<String>,
 }
 
+impl Dressed {
+    /// Frees it.
+    pub fn give_back(self) {
+        give_back(self.texcoords);
+    }
+}
+
 impl Wardrobe {
+    /// An empty one; `is_shared`: more than one document wears what is in it.
+    pub fn new(is_shared: bool) -> Self {
+        Self { is_shared, ..Self::default() }
+    }
+
     /// Adds what a document declares to the model.
     pub fn adopt(
         &mut self,
-        appearance: Appearance,
+        mut appearance: Appearance,
         builder: &mut ModelBuilder,
-        input: &Input,
+        file: &Path,
         options: &LoadOptions,
     ) -> Dressed {
-        let (mut new_materials, mut new_textures) = (Vec::new(), Vec::new());
         let mut dressed = Dressed {
             texcoords: appearance.texcoords,
             material_theme: appearance.material_theme,
             texture_theme: appearance.texture_theme,
             ..Dressed::default()
         };
-        for material in appearance.materials {
-            let key = format!("{material:?}");
-            let index = self.known_materials.get(&key).copied().unwrap_or_else(|| {
+        // What one document repeats stays repeated: only what earlier ones declared is looked up.
+        let (mut new_materials, mut new_textures) = (Vec::new(), Vec::new());
+        builder.model.materials.reserve(appearance.materials.len());
+        for material in appearance.materials.drain(..) {
+            let key = self.is_shared.then(|| key_of(&material));
+            let index = key.as_ref().and_then(|key| self.known_materials.get(key).copied()).unwrap_or_else(|| {
                 builder.model.materials.push(material);
                 (builder.model.materials.len() - 1) as u32
             });
-            new_materials.push((key, index));
+            new_materials.extend(key.map(|key| (key, index)));
             dressed.materials.push(index);
         }
+        give_back(appearance.materials);
         for (image, wrap) in appearance.textures {
             let key = (image, wrap.map(|w| w as u8));
             let index = self.known_textures.get(&key).copied().unwrap_or_else(|| {
-                let image = resolve(&key.0, builder, input, options);
+                let image = resolve(&key.0, builder, file, options);
                 builder.model.textures.push(Texture { image, wrap });
                 (builder.model.textures.len() - 1) as u32
             });
-            new_textures.push((key, index));
+            if self.is_shared {
+                new_textures.push((key, index));
+            }
             dressed.textures.push(index);
         }
         self.known_materials.extend(new_materials);
@@ -201,9 +233,9 @@ impl Wardrobe {
 }
 
 /// Where an image of the file is.
-fn resolve(image: &str, builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) -> TextureImage {
+fn resolve(image: &str, builder: &mut ModelBuilder, path: &Path, options: &LoadOptions) -> TextureImage {
     let warnings = &mut builder.model.warnings;
-    let file = input.path.display();
+    let file = path.display();
     if image.is_empty() {
         warnings.add(WarningCode::MissingTexture, "", || format!("{file}: a texture names no image"));
         return TextureImage::Missing;
@@ -212,7 +244,7 @@ fn resolve(image: &str, builder: &mut ModelBuilder, input: &Input, options: &Loa
         warnings.add(WarningCode::MissingTexture, "", || format!("{file}: {image} is on the web; nothing is fetched"));
         return TextureImage::Missing;
     }
-    match options.sibling(&input.path, image) {
+    match options.sibling(path, image) {
         Sibling::Found(path) => TextureImage::File(path),
         Sibling::Missing(path) => {
             warnings.add(WarningCode::MissingTexture, "", || format!("{file}: no image at {}", path.display()));

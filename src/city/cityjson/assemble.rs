@@ -16,6 +16,7 @@ use crate::city::{
         stowage::Stowage,
         vertices::{self, Placing, Vertices},
     },
+    memory::give_back,
 };
 
 /// Indices that instances of templates may add to one city: a file of a few bytes could ask for any number.
@@ -48,15 +49,15 @@ pub struct Assembly<'a> {
 
 impl Assembly<'_> {
     /// Adds a document's objects. Without vertices (a file cut before them) they have no geometry.
-    pub fn add(&mut self, document: Document) {
+    pub fn add(&mut self, mut document: Document) {
         let anchors = anchors(&document.geometries, &document.vertices, &self.placing);
         let is_cut = document.damage.is_some() && document.vertices.len() == 0;
         let pool = Arc::new(document.vertices.into_pool(&self.placing));
         let mut stowed = document.geometries.into_reader();
         let mut geometry = GeometryRead::default();
-        for ObjectRead { raw, geometries } in document.objects {
+        for ObjectRead { raw, attributes, geometries } in document.objects.iter_mut().map(std::mem::take) {
             let id = raw.id.clone();
-            let object = self.builder.add_object(raw);
+            let object = self.builder.add_object_with(raw, &document.attributes[attributes]);
             let mut surfaces = SurfaceTable::new(object);
             for _ in 0..geometries {
                 if stowed.next_into(&mut geometry).is_some() && !is_cut {
@@ -64,6 +65,8 @@ impl Assembly<'_> {
                 }
             }
         }
+        give_back(document.objects);
+        give_back(document.attributes);
     }
 
     fn add_geometry(

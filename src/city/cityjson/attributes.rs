@@ -6,9 +6,14 @@ use crate::city::{
     json::{self, Json, Kind, Number, Step},
 };
 
-/// Reads the value of `attributes`: an object, or null.
-pub fn read(json: &mut Json<'_>, builder: &mut ModelBuilder, object: &str) -> Step<Vec<Attribute>> {
-    let mut attributes: Vec<Attribute> = Vec::new();
+/// Reads the value of `attributes` (an object, or null) and appends it to `attributes`.
+pub fn read(
+    json: &mut Json<'_>,
+    builder: &mut ModelBuilder,
+    object: &str,
+    attributes: &mut Vec<Attribute>,
+) -> Step<()> {
+    let start = attributes.len();
     match json.peek()? {
         Kind::Object => json.object(|json, key| {
             let name = builder.intern(&key);
@@ -24,24 +29,26 @@ pub fn read(json: &mut Json<'_>, builder: &mut ModelBuilder, object: &str) -> St
             });
         }
     }
-    drop_repeated(&mut attributes, builder, object);
-    Ok(attributes)
+    drop_repeated(attributes, start, builder, object);
+    Ok(())
 }
 
-/// Of attributes with one name the last stays, as in other readers.
-fn drop_repeated(attributes: &mut Vec<Attribute>, builder: &mut ModelBuilder, object: &str) {
-    let has_few = attributes.len() <= 12;
-    if has_few && attributes.iter().enumerate().all(|(i, a)| attributes[..i].iter().all(|b| a.name != b.name)) {
+/// Of attributes with one name the last stays, as in other readers; those from `start` on are one object's.
+fn drop_repeated(attributes: &mut Vec<Attribute>, start: usize, builder: &mut ModelBuilder, object: &str) {
+    let own = &attributes[start..];
+    let has_few = own.len() <= 12;
+    if has_few && own.iter().enumerate().all(|(i, a)| own[..i].iter().all(|b| a.name != b.name)) {
         return;
     }
     let mut seen = rustc_hash::FxHashSet::default();
-    if attributes.iter().all(|a| seen.insert(a.name)) {
+    if own.iter().all(|a| seen.insert(a.name)) {
         return;
     }
     seen.clear();
-    let mut kept: Vec<Attribute> = attributes.iter().rev().filter(|a| seen.insert(a.name)).copied().collect();
+    let mut kept: Vec<Attribute> = own.iter().rev().filter(|a| seen.insert(a.name)).copied().collect();
     kept.reverse();
-    *attributes = kept;
+    attributes.truncate(start);
+    attributes.append(&mut kept);
     builder.model.warnings.add(WarningCode::Malformed, object, || {
         format!("object {object}: an attribute is given twice; the last one counts")
     });

@@ -1,9 +1,11 @@
 //! One JSON object of a file, the whole CityJSON or one CityJSONFeature, read once from front to back.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::city::{
-    Material, WarningCode, Wrap,
+    Attribute, Material, WarningCode, Wrap,
     build::{ModelBuilder, RawObject},
     cityjson::{
         appearance::{self, Appearance},
@@ -19,8 +21,10 @@ use crate::city::{
 /// A city object and its geometries, as read.
 #[derive(Clone, Debug, Default)]
 pub struct ObjectRead {
-    /// Id, type, links, attributes.
+    /// Id, type, links.
     pub raw: RawObject,
+    /// Its attributes, in [`Document::attributes`].
+    pub attributes: Range<usize>,
     /// How many geometries it has, of those stowed.
     pub geometries: u32,
 }
@@ -40,6 +44,8 @@ pub struct Document {
     pub has_objects: bool,
     /// The city objects that were read completely, in order.
     pub objects: Vec<ObjectRead>,
+    /// Attributes of all objects: a list for each would scatter them over the heap.
+    pub attributes: Vec<Attribute>,
     /// Geometries of the objects, in order.
     pub geometries: Stowage,
     /// The geometry being read: a buffer.
@@ -113,7 +119,11 @@ impl Document {
         json.object(|json, key| {
             match &*key {
                 "type" => object.raw.kind = text(json)?.into_owned(),
-                "attributes" => object.raw.attributes = attributes::read(json, builder, id)?,
+                "attributes" => {
+                    let start = self.attributes.len();
+                    attributes::read(json, builder, id, &mut self.attributes)?;
+                    object.attributes = start..self.attributes.len();
+                }
                 "parents" => object.raw.parents = ids(json)?,
                 // CityJSON 1.0 calls the children of a group its members.
                 "children" | "members" => object.raw.children = ids(json)?,

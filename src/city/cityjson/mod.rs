@@ -14,6 +14,8 @@ mod semantics;
 mod stowage;
 mod vertices;
 
+use std::path::Path;
+
 use glam::DVec3;
 
 use crate::city::{
@@ -28,37 +30,47 @@ use crate::city::{
     crs::{Axes, Crs, UtmZone},
     json::{self, Json},
     load::{Input, LoadError, LoadOptions},
+    memory::give_back,
 };
 
 /// Versions that can be read.
 const VERSIONS: [&str; 3] = ["1.0", "1.1", "2.0"];
 
-/// Reads a CityJSON or CityJSONSeq file.
-pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) -> Result<(), LoadError> {
+/// Reads a CityJSON or CityJSONSeq file; its text is freed as soon as it is read.
+pub fn read(builder: &mut ModelBuilder, mut input: Input, options: &LoadOptions) -> Result<(), LoadError> {
     let mut json = Json::new(&input.bytes);
     let header = Document::read(&mut json, builder);
-    let rest = &input.bytes[json.offset().min(input.bytes.len())..];
+    let end = json.offset().min(input.bytes.len());
+    let rest = &input.bytes[end..];
     let is_sequence =
         header.damage.is_none() && (input.extension() == "jsonl" || rest.trim_ascii_start().starts_with(b"{"));
-    let version = check(&header, input, is_sequence, builder)?;
+    let version = check(&header, &input, is_sequence, builder)?;
     builder.begin_file(Source {
         path: input.path.clone(),
         format: if is_sequence { "CityJSONSeq" } else { "CityJSON" },
         version: version.clone(),
     });
-    let mut file = File::new(builder, input, options);
+    let has_more = !is_sequence && !rest.iter().all(|b| b.is_ascii_whitespace() || *b == 0);
+    let more = has_more.then(|| json::place(&input.bytes, end));
+    let mut bytes = std::mem::take(&mut input.bytes);
+    let mut file = File::new(builder, &input.path, options, is_sequence);
     file.adopt_crs(header.crs.as_deref());
     file.adopt_transform(&header, &version);
-    file.warn_damage(&header);
-    file.warn_encoding();
+    file.warn_damage(&header, &bytes);
+    file.warn_encoding(&bytes);
+    if !is_sequence {
+        give_back(std::mem::take(&mut bytes));
+    }
     file.add(header);
-    if is_sequence {
-        file.read_features(json.offset());
-    } else if !rest.iter().all(|b| b.is_ascii_whitespace() || *b == 0) && !file.is_damaged {
-        let place = json::place(&input.bytes, json.offset());
-        let message = || format!("{}, {place}: text after the end of the model is ignored", input.path.display());
+    if let Some(place) = more.filter(|_| !file.is_damaged) {
+        let message = || format!("{}, {place}: text after the end of the model is ignored", file.path.display());
         file.builder.model.warnings.add(WarningCode::Malformed, "", message);
     }
+    if is_sequence {
+        file.read_features(&bytes, end);
+    }
+    file.dressed.give_back();
+    give_back(bytes);
     Ok(())
 }
 
@@ -102,7 +114,7 @@ fn check(header: &Document, input: &Input, is_sequence: bool, builder: &mut Mode
 /// One file being read: what the header says holds for its features.
 struct File<'a> {
     builder: &'a mut ModelBuilder,
-    input: &'a Input,
+    path: &'a Path,
     options: &'a LoadOptions,
     axes: Axes,
     transform: Transform,
@@ -114,14 +126,14 @@ struct File<'a> {
 }
 
 impl<'a> File<'a> {
-    fn new(builder: &'a mut ModelBuilder, input: &'a Input, options: &'a LoadOptions) -> Self {
+    fn new(builder: &'a mut ModelBuilder, path: &'a Path, options: &'a LoadOptions, is_sequence: bool) -> Self {
         Self {
             builder,
-            input,
+            path,
             options,
             axes: Axes::Metric,
             transform: Transform::IDENTITY,
-            wardrobe: Wardrobe::default(),
+            wardrobe: Wardrobe::new(is_sequence),
             dressed: Dressed::default(),
             templates: Templates::default(),
             instanced: 0,
@@ -130,18 +142,17 @@ impl<'a> File<'a> {
     }
 
     /// JSON is UTF-8; an old code page shows as `\u{fffd}` in names, and that is said once.
-    fn warn_encoding(&mut self) {
-        let input = self.input;
-        if let Err(e) = std::str::from_utf8(&input.bytes) {
+    fn warn_encoding(&mut self, bytes: &[u8]) {
+        if let Err(e) = std::str::from_utf8(bytes) {
             self.warn(WarningCode::Malformed, || {
-                let place = json::place(&input.bytes, e.valid_up_to());
+                let place = json::place(bytes, e.valid_up_to());
                 format!(", {place}: this is not UTF-8; what cannot be read stands as \u{fffd}")
             });
         }
     }
 
     fn warn(&mut self, code: WarningCode, message: impl FnOnce() -> String) {
-        let file = self.input.path.display();
+        let file = self.path.display();
         self.builder.model.warnings.add(code, "", || format!("{file}{}", message()));
     }
 
@@ -189,10 +200,10 @@ impl<'a> File<'a> {
         }
     }
 
-    fn warn_damage(&mut self, document: &Document) {
+    fn warn_damage(&mut self, document: &Document, bytes: &[u8]) {
         let Some(damage) = document.damage else { return };
         self.is_damaged = true;
-        let place = json::place(&self.input.bytes, damage.at);
+        let place = json::place(bytes, damage.at);
         let count = document.objects.len();
         let shapes = if document.vertices.len() == 0 { ", without geometry: the vertices come later" } else { "" };
         self.warn(WarningCode::TruncatedFile, || {
@@ -202,7 +213,7 @@ impl<'a> File<'a> {
 
     /// Adds a document's objects; what it declares itself holds for it, else what the header declared.
     fn add(&mut self, mut document: Document) {
-        let own = document.appearance.take().map(|a| self.wardrobe.adopt(a, self.builder, self.input, self.options));
+        let own = document.appearance.take().map(|a| self.wardrobe.adopt(a, self.builder, self.path, self.options));
         if !document.templates.is_empty() {
             self.templates = Templates {
                 geometries: std::mem::take(&mut document.templates),
@@ -210,9 +221,13 @@ impl<'a> File<'a> {
             };
         }
         let is_header = document.kind.as_deref() != Some("CityJSONFeature");
-        if let Some(own) = own.as_ref().filter(|_| is_header) {
-            self.dressed = own.clone();
-        }
+        let own = match own {
+            Some(own) if is_header => {
+                std::mem::replace(&mut self.dressed, own).give_back();
+                None
+            }
+            own => own,
+        };
         let placing = self.placing(&document);
         Assembly {
             builder: self.builder,
@@ -248,8 +263,7 @@ impl<'a> File<'a> {
     }
 
     /// The lines after the header; a bad one is named and left out.
-    fn read_features(&mut self, start: usize) {
-        let bytes = &self.input.bytes[..];
+    fn read_features(&mut self, bytes: &[u8], start: usize) {
         let first = bytes[..start].iter().filter(|b| **b == b'\n').count() + 1;
         for (line_number, line) in (first..).zip(bytes[start..].split(|b| *b == b'\n')) {
             if !line.trim_ascii().is_empty() {

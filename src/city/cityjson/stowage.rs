@@ -9,6 +9,7 @@ use crate::city::{
         geometry::{GeometryKind, GeometryRead, MaterialUse, Semantic},
         nested::{Token, Values},
     },
+    memory::give_back,
 };
 
 /// Geometries, taken out in the order in which they were put in.
@@ -133,6 +134,12 @@ pub struct Reader {
     attributes: std::vec::IntoIter<Attribute>,
     themes: Vec<String>,
     odd: std::vec::IntoIter<GeometryRead>,
+}
+
+impl Drop for Reader {
+    fn drop(&mut self) {
+        give_back(std::mem::take(&mut self.words));
+    }
 }
 
 impl Reader {

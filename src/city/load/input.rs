@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::city::load::LoadError;
+use crate::city::{load::LoadError, memory::give_back};
 
 /// The largest model, after decompression: 4 GiB, what 32-bit offsets can count.
 const MAX_BYTES: u64 = 4 << 30;
@@ -68,7 +68,9 @@ pub fn from_bytes(path: &Path, mut bytes: Vec<u8>) -> Result<Input, LoadError> {
     }
     let mut is_cut = false;
     if bytes.starts_with(&[0x1f, 0x8b]) {
-        (bytes, is_cut) = gunzip(path, &bytes)?;
+        let packed = std::mem::take(&mut bytes);
+        (bytes, is_cut) = gunzip(path, &packed)?;
+        give_back(packed);
         if bytes.starts_with(&[0x1f, 0x8b]) {
             return Err(LoadError::new(path, "is gzip inside gzip; unpack it once"));
         }

@@ -229,24 +229,24 @@ fn read_file(
     stats.bytes += input.bytes.len() as u64;
     enter(Stage::Parse);
     let start = Instant::now();
-    let result = read_input(builder, &input, options);
+    let result = read_input(builder, input, options);
     stats.parse += start.elapsed();
     result
 }
 
 /// Gives bytes to the loader of their format; what a fuzzer calls.
-pub fn read_input(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) -> Result<(), LoadError> {
+pub fn read_input(builder: &mut ModelBuilder, input: Input, options: &LoadOptions) -> Result<(), LoadError> {
     if input.is_cut {
         builder.model.warnings.add(WarningCode::TruncatedFile, "", || {
             format!("{}: the compressed file ends early; is the download complete?", input.path.display())
         });
     }
-    match sniff::format(input) {
+    match sniff::format(&input) {
         Format::Known(name) => Err(LoadError::new(&input.path, format!("{name} cannot be read yet"))),
         Format::Not(what) => Err(LoadError::new(&input.path, what)),
         Format::CityJson => crate::city::cityjson::read(builder, input, options),
-        Format::Gltf => crate::city::gltf::read(builder, input, options),
-        Format::Obj => crate::city::obj::read(builder, input, options),
+        Format::Gltf => crate::city::gltf::read(builder, &input, options),
+        Format::Obj => crate::city::obj::read(builder, &input, options),
     }
 }
 
