@@ -1,21 +1,22 @@
-// What a triangle is part of, and which way it faces: one entry per surface, direction and tile.
-
-struct Surface {
-    origin: vec3i,              // of its tile, whole metres
-    object: u32,                // city object, or NO_OBJECT (the plain ground)
-    color_rg: u32,              // natural colour, linear, 4 x float16
-    color_ba: u32,
-    flags: u32,                 // SURFACE_*
-    normal: u32,                // octahedral, of its flat faces
-}
+// What a triangle is part of, and which way it faces: one texel per surface, direction and tile.
 
 const NO_OBJECT: u32 = 0xffffffffu;
 const SURFACE_UNLIT: u32 = 1u;
+const SURFACES_PER_ROW: u32 = 4096u;
 
-@group(1) @binding(0) var<storage, read> surfaces: array<Surface>;
+struct Surface {
+    object: u32,                // city object, or NO_OBJECT (the plain ground)
+    normal: u32,                // octahedral, of its flat faces
+    color: vec3f,               // natural colour, linear
+    flags: u32,                 // SURFACE_*
+}
 
-fn natural_color(surface: u32) -> vec3f {
-    return vec3f(unpack2x16float(surfaces[surface].color_rg), unpack2x16float(surfaces[surface].color_ba).x);
+@group(1) @binding(0) var surfaces: texture_2d<u32>;
+
+fn surface_at(number: u32) -> Surface {
+    let texel = textureLoad(surfaces, vec2u(number % SURFACES_PER_ROW, number / SURFACES_PER_ROW), 0);
+    let color = vec3f(unpack2x16float(texel.z), unpack2x16float(texel.w & 0xffffu).x);
+    return Surface(texel.x, texel.y, color, texel.w >> 16u);
 }
 
 // Octahedral, 2 x snorm16: the inverse of the host's `encode_normal`.

@@ -6,8 +6,8 @@ struct Varying {
 }
 
 @vertex
-fn vertex(@location(0) position: vec3f, @location(2) surface: u32) -> Varying {
-    return Varying(clip_from_relative(relative_to_eye(surfaces[surface].origin, position)), decode_normal(surfaces[surface].normal));
+fn vertex(@location(0) origin: vec3i, @location(2) position: vec3f, @location(3) normal: u32) -> Varying {
+    return Varying(clip_from_relative(relative_to_eye(origin, position)), decode_normal(normal));
 }
 
 @fragment

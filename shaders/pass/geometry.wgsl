@@ -8,44 +8,22 @@
 
 override SMOOTH: bool = false;  // whether some faces have a normal per vertex
 
+struct Vertex {
+    @location(0) origin: vec3i,     // whole metres
+    @location(1) surface: u32,
+    @location(2) position: vec3f,   // from the origin, metres
+    @location(3) normal: u32,       // octahedral
+}
+
+// What every fragment knows. Flat values are those of a triangle's provoking vertex; its other vertices may belong
+// to other faces. Each kind of face carries no more than it uses: what is handed over is paid per vertex.
 struct Varying {
     @builtin(position) clip: vec4f,
     @location(0) @interpolate(flat, either) code: u32,
-    @location(1) normal: vec3f,
-    @location(2) texcoord: vec2f,
-    @location(3) @interpolate(flat, either) plane: vec4f,
 }
 
-fn placed(position: vec3f, surface: u32) -> Varying {
-    var out: Varying;
-    out.clip = clip_from_relative(relative_to_eye(surfaces[surface].origin, position));
-    out.code = surface + 1u;
-    return out;
-}
-
-@vertex
-fn vertex(@location(0) position: vec3f, @location(2) surface: u32) -> Varying {
-    return placed(position, surface);
-}
-
-// Normals are interpolated: a pipeline of its own, since a flat city has no use for them.
-@vertex
-fn vertex_smooth(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32) -> Varying {
-    var out = placed(position, surface);
-    out.normal = decode_normal(normal);
-    return out;
-}
-
-fn code_of(in: Varying) -> vec2u {
-    if SMOOTH {
-        return vec2u(in.code, encode_normal(in.normal));
-    }
-    return vec2u(in.code, 0u);
-}
-
-@fragment
-fn plain(in: Varying) -> @location(0) vec2u {
-    return code_of(in);
+fn placed(in: Vertex) -> Varying {
+    return Varying(clip_from_relative(relative_to_eye(in.origin, in.position)), in.surface + 1u);
 }
 
 struct Full {
@@ -54,9 +32,46 @@ struct Full {
     @location(2) own_depth: f32,
 }
 
+// ---- flat faces
+
+@vertex
+fn vertex(in: Vertex) -> Varying {
+    return placed(in);
+}
+
+@fragment
+fn plain(in: Varying) -> @location(0) u32 {
+    return in.code;
+}
+
 @fragment
 fn full(in: Varying) -> Full {
-    return Full(code_of(in), vec4f(natural_color(in.code - 1u), 1.0), in.clip.z);
+    return Full(vec2u(in.code, 0u), vec4f(surface_at(in.code - 1u).color, 1.0), in.clip.z);
+}
+
+// ---- faces in a city where some have a normal per vertex
+
+struct SmoothVarying {
+    @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat, either) code: u32,
+    @location(1) normal: vec3f,
+}
+
+@vertex
+fn vertex_smooth(in: Vertex) -> SmoothVarying {
+    let face = placed(in);
+    return SmoothVarying(face.clip, face.code, decode_normal(in.normal));
+}
+
+@fragment
+fn smooth_plain(in: SmoothVarying) -> @location(0) vec2u {
+    return vec2u(in.code, encode_normal(in.normal));
+}
+
+@fragment
+fn smooth_full(in: SmoothVarying) -> Full {
+    let code = vec2u(in.code, encode_normal(in.normal));
+    return Full(code, vec4f(surface_at(in.code - 1u).color, 1.0), in.clip.z);
 }
 
 // ---- textured surfaces
@@ -65,24 +80,27 @@ fn full(in: Varying) -> Full {
 @group(2) @binding(1) var image_sampler: sampler;
 override ALPHA_CUTOFF: f32 = 0.0;
 
+struct TexturedVarying {
+    @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat, either) code: u32,
+    @location(1) normal: vec3f,
+    @location(2) texcoord: vec2f,
+}
+
 @vertex
-fn vertex_textured(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32,
-                   @location(3) texcoord: vec2f) -> Varying {
-    var out = placed(position, surface);
-    if SMOOTH {
-        out.normal = decode_normal(normal);
-    }
-    out.texcoord = texcoord;
-    return out;
+fn vertex_textured(in: Vertex, @location(4) texcoord: vec2f) -> TexturedVarying {
+    let face = placed(in);
+    return TexturedVarying(face.clip, face.code, decode_normal(in.normal), texcoord);
 }
 
 @fragment
-fn textured(in: Varying) -> Full {
+fn textured(in: TexturedVarying) -> Full {
     let texel = textureSample(image, image_sampler, in.texcoord);
     if texel.a < ALPHA_CUTOFF {
         discard;
     }
-    return Full(code_of(in), vec4f(texel.rgb * natural_color(in.code - 1u), 1.0), in.clip.z);
+    let code = vec2u(in.code, select(0u, encode_normal(in.normal), SMOOTH));
+    return Full(code, vec4f(texel.rgb * surface_at(in.code - 1u).color, 1.0), in.clip.z);
 }
 
 // ---- faces of exactly one plane that overlap (hard case 3)
@@ -90,41 +108,53 @@ fn textured(in: Varying) -> Full {
 // Every face of the group takes its depth from the group's plane, by the same arithmetic, so their
 // depths are equal to the bit and the draw order (their fixed priority) decides in every frame.
 
-struct Plane {
-    normal: vec3f,              // unit
-    reserved: f32,
-    origin: vec3i,              // whole metres
-    offset: f32,                // normal . (any point of the plane - origin), metres
+struct CoplanarVarying {
+    @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat, either) code: u32,
+    @location(1) normal: vec3f,
+    @location(2) @interpolate(flat, either) plane: vec3f,   // dot(plane, (pixel, 1)) = depth
 }
 
-@group(1) @binding(1) var<storage, read> shared_planes: array<Plane>;
+struct Plane {
+    @location(4) normal: vec3f,     // unit
+    @location(5) origin: vec3i,     // whole metres
+    @location(6) offset: f32,       // normal . (any point of the plane - origin), metres
+}
+
+// The depth of a plane is affine in the picture: its slope in x and y, and its value at pixel (0, 0).
+// `room`: distance of the plane from the eye along its normal. Not finite where the eye is in the plane.
+fn plane_in_picture(normal: vec3f, room: f32) -> vec3f {
+    var across: vec2f;              // depth per unit of the picture plane at distance 1 (orthographic: per metre)
+    var middle: f32;                // depth on the view axis
+    if view.orthographic == 1u {
+        let step = 1.0 / (normal.z * (view.far - view.near));
+        across = -step * normal.xy;
+        middle = view.far / (view.far - view.near) + step * room;
+    } else {
+        across = view.near / room * normal.xy;
+        middle = -view.near / room * normal.z;
+    }
+    let per_ndc = across / view.projection.xy;
+    let per_pixel = per_ndc * vec2f(2.0, -2.0) / view.size;
+    return vec3f(per_pixel, middle + dot(per_ndc, vec2f(-1.0, 1.0) - view.projection.zw));
+}
 
 @vertex
-fn vertex_coplanar(@location(0) position: vec3f, @location(1) normal: u32, @location(2) surface: u32,
-                   @location(4) plane_index: u32) -> Varying {
-    var out = placed(position, surface);
-    if SMOOTH {
-        out.normal = decode_normal(normal);
-    }
-    let plane = shared_planes[plane_index];
-    let distance = dot(plane.normal, relative_to_eye(plane.origin, vec3f(0.0))) + plane.offset;
-    out.plane = vec4f(view.view_from_world * plane.normal, distance);
-    return out;
+fn vertex_coplanar(in: Vertex, plane: Plane) -> CoplanarVarying {
+    let face = placed(in);
+    let room = dot(plane.normal, relative_to_eye(plane.origin, vec3f(0.0))) + plane.offset;
+    let seen = plane_in_picture(view.view_from_world * plane.normal, room);
+    return CoplanarVarying(face.clip, face.code, decode_normal(in.normal), seen);
 }
 
-fn depth_on_plane(in: Varying) -> f32 {
-    let ray = ray_of_pixel(in.clip.xy);
-    let slope = dot(in.plane.xyz, ray.direction);
-    let room = in.plane.w - dot(in.plane.xyz, ray.origin);
-    // The eye is in the plane, or the plane is seen edge on: the interpolated depth will do.
-    if abs(room) < 1e-4 || abs(slope) < 1e-6 {
-        return in.clip.z;
-    }
-    let distance = room / slope;
-    if distance <= view.near {
-        return in.clip.z;
-    }
-    return depth_of_distance(distance);
+// Where the plane is seen edge on, its depth leaves 0..1 or is no number: the interpolated one will do.
+fn depth_on_plane(in: CoplanarVarying) -> f32 {
+    let depth = dot(in.plane, vec3f(in.clip.xy, 1.0));
+    return select(in.clip.z, depth, depth > 0.0 && depth < 1.0);
+}
+
+fn coplanar_code(in: CoplanarVarying) -> vec2u {
+    return vec2u(in.code, select(0u, encode_normal(in.normal), SMOOTH));
 }
 
 struct CoplanarPlain {
@@ -133,8 +163,8 @@ struct CoplanarPlain {
 }
 
 @fragment
-fn plain_coplanar(in: Varying) -> CoplanarPlain {
-    return CoplanarPlain(code_of(in), depth_on_plane(in));
+fn coplanar_plain(in: CoplanarVarying) -> CoplanarPlain {
+    return CoplanarPlain(coplanar_code(in), depth_on_plane(in));
 }
 
 struct CoplanarFull {
@@ -145,6 +175,7 @@ struct CoplanarFull {
 }
 
 @fragment
-fn full_coplanar(in: Varying) -> CoplanarFull {
-    return CoplanarFull(code_of(in), vec4f(natural_color(in.code - 1u), 1.0), in.clip.z, depth_on_plane(in));
+fn coplanar_full(in: CoplanarVarying) -> CoplanarFull {
+    let color = vec4f(surface_at(in.code - 1u).color, 1.0);
+    return CoplanarFull(coplanar_code(in), color, in.clip.z, depth_on_plane(in));
 }

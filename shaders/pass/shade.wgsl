@@ -37,6 +37,8 @@ struct Point {
     normal: vec3f,              // unit, towards the eye
     surface: u32,
     object: u32,                // or NO_OBJECT
+    natural: vec3f,             // its own colour, linear
+    lit: bool,                  // whether light acts on it
     shade: f32,                 // light on a white surface, 0..1
 }
 
@@ -113,7 +115,7 @@ fn base_color(point: Point, pixel: vec2i) -> vec3f {
     if TEXTURED {
         return textureLoad(colors, pixel, 0).rgb;
     }
-    return natural_color(point.surface);
+    return point.natural;
 }
 
 fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
@@ -122,16 +124,19 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
     point.distance = distance_of_depth(depth);
     point.relative = (ray.origin + point.distance * ray.direction) * view.view_from_world;
     point.surface = code.x - 1u;
-    point.normal = decode_normal(select(surfaces[point.surface].normal, code.y, SMOOTH));
+    let surface = surface_at(point.surface);
+    point.normal = decode_normal(select(surface.normal, code.y, SMOOTH));
     if dot(point.normal, ray.direction * view.view_from_world) > 0.0 {
         point.normal = -point.normal;
     }
-    point.object = surfaces[point.surface].object;
+    point.object = surface.object;
+    point.natural = surface.color;
+    point.lit = (surface.flags & SURFACE_UNLIT) == 0u;
     return point;
 }
 
 fn nowhere() -> Point {
-    return Point(vec3f(0.0), FAR_AWAY, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, 1.0);
+    return Point(vec3f(0.0), FAR_AWAY, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), false, 1.0);
 }
 
 fn shade(point: ptr<function, Point>, pixel: vec2i) -> vec3f {
@@ -139,7 +144,7 @@ fn shade(point: ptr<function, Point>, pixel: vec2i) -> vec3f {
     let arriving = irradiance((*point).normal, sun);
     (*point).shade = luminance(arriving);
     let base = base_color(*point, pixel);
-    if !CLAY && (surfaces[(*point).surface].flags & SURFACE_UNLIT) != 0u {
+    if !CLAY && !(*point).lit {
         return base;
     }
     return base * arriving;

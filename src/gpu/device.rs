@@ -205,6 +205,21 @@ impl Gpu {
         })
     }
 
+    /// Refuses a texture of more rows than the adapter takes; `row_bytes` is what each holds.
+    pub fn check_rows(&self, what: &str, rows: u32, row_bytes: u64) -> Result<(), GpuError> {
+        let allowed = self.device.limits().max_texture_dimension_2d;
+        if rows <= allowed {
+            return Ok(());
+        }
+        Err(GpuError::TooLarge {
+            what: what.to_owned(),
+            needed: mebibytes(u64::from(rows) * row_bytes),
+            allowed: mebibytes(u64::from(allowed) * row_bytes),
+            adapter: self.name(),
+            advice: "load fewer files or cap the level of detail ([city] lod)".to_owned(),
+        })
+    }
+
     /// A buffer holding `data` (at least [`LEAST_BYTES`], so that it can always be bound).
     pub fn buffer<T: bytemuck::NoUninit>(
         &self,
@@ -268,14 +283,15 @@ impl Gpu {
         })
     }
 
-    /// Fills one mip level of a texture's first layer; `rgba` is tightly packed, 4 bytes per texel.
-    pub fn write_texture_level(&self, texture: &wgpu::Texture, level: u32, rgba: &[u8]) {
+    /// Fills one mip level of a texture's first layer; `texels` are tightly packed.
+    pub fn write_texture_level(&self, texture: &wgpu::Texture, level: u32, texels: &[u8]) {
         self.uploads.fetch_add(1, Relaxed);
         let size = texture.size().mip_level_size(level, wgpu::TextureDimension::D2);
+        let texel = texture.format().block_copy_size(None).unwrap_or(4);
         self.queue.write_texture(
             wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
-            rgba,
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.width * 4), rows_per_image: None },
+            texels,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.width * texel), rows_per_image: None },
             wgpu::Extent3d { depth_or_array_layers: 1, ..size },
         );
     }

@@ -6,14 +6,20 @@
 
 use std::ops::Range;
 
+use bytemuck::Zeroable;
 use glam::{DVec3, IVec3, Vec3};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
     city::{CityModel, NONE, Tile, Vertex, coplanar::CoplanarTriangle, ground::Ground},
     geom::{Aabb, plane::Plane},
     gpu::{Gpu, GpuError},
-    render::{layout, palette, textures::Textures},
+    render::{
+        layout::{self, CityVertex},
+        surfaces::SurfaceTable,
+        textures::Textures,
+        weld::{Corner, Weld},
+    },
     view::Frustum,
 };
 
@@ -21,8 +27,8 @@ use crate::{
 /// (some microseconds on a software adapter) vanishes beside them.
 const CHUNK_TRIANGLES: usize = 512;
 
-/// Up to this many visible chunks are drawn near to far.
-const SORTED_CHUNKS: usize = 256;
+/// Visible chunks are drawn near to far in at most so many groups.
+const SORTED_GROUPS: usize = 256;
 
 /// A run of the index buffer that is drawn or culled as one.
 #[derive(Clone, Debug)]
@@ -41,11 +47,11 @@ pub type Draw = Range<u32>;
 pub struct Section {
     /// What the pipeline must do.
     pub kind: SectionKind,
-    /// Vertices, 20 bytes each.
+    /// [`CityVertex`]s.
     pub vertices: wgpu::Buffer,
     /// Indices, where the section is indexed.
     pub indices: Option<wgpu::Buffer>,
-    /// Texture coordinates or plane numbers, one per vertex.
+    /// Texture coordinates or planes, one per vertex.
     pub extra: Option<wgpu::Buffer>,
     /// In drawing order.
     pub chunks: Vec<Chunk>,
@@ -72,12 +78,10 @@ pub enum SectionKind {
 pub struct CityBuffers {
     /// What is drawn, in order.
     pub sections: Vec<Section>,
-    /// `layout::Surface` of every drawn (surface, normal, tile).
-    pub surfaces: wgpu::Buffer,
+    /// `layout::Surface` of every drawn (surface, normal, tile), as a texture.
+    pub surfaces: wgpu::TextureView,
     /// The same on the CPU, for whoever reads surface numbers back.
     pub surface_table: Vec<layout::Surface>,
-    /// `layout::Plane` of every shared plane.
-    pub planes: wgpu::Buffer,
     /// Textures by number.
     pub textures: Textures,
     /// Whether some faces have smooth normals.
@@ -105,84 +109,32 @@ pub struct Shown<'a> {
     pub ground: Option<&'a Ground>,
 }
 
-/// Collects surfaces as the shader wants them: one entry per (surface, normal, tile).
-struct SurfaceTable<'a> {
-    model: &'a CityModel,
-    textures: &'a Textures,
-    entries: Vec<layout::Surface>,
-    in_tile: FxHashMap<(u32, u32), u32>,
-}
-
-impl SurfaceTable<'_> {
-    fn begin_tile(&mut self) {
-        self.in_tile.clear();
-    }
-
-    /// The entry of a model surface and a packed normal.
-    fn number(&mut self, surface: (u32, u32), origin: IVec3) -> u32 {
-        let Self { model, textures, entries, in_tile } = self;
-        *in_tile.entry(surface).or_insert_with(|| {
-            entries.push(entry(model, textures, surface, origin));
-            (entries.len() - 1) as u32
-        })
-    }
-}
-
-fn entry(model: &CityModel, textures: &Textures, (surface, normal): (u32, u32), origin: IVec3) -> layout::Surface {
-    let Some(found) = model.surfaces.get(surface as usize) else {
-        let [color_rg, color_ba] = packed(palette::linear_bytes(palette::PLAIN_GROUND));
-        return layout::Surface {
-            origin: origin.to_array(),
-            object: layout::NO_OBJECT,
-            color_rg,
-            color_ba,
-            flags: 0,
-            normal,
-        };
-    };
-    let material = model.materials.get(found.material as usize);
-    let color = match material {
-        // A texture brings the colour; the material's own only tints it.
-        Some(m) if m.texture == NONE || textures.has(m.texture) => [m.base_color[0], m.base_color[1], m.base_color[2]],
-        // A declared texture that is missing: most files say plain white beside it, so the quiet colours are better.
-        _ => palette::linear_bytes(palette::natural(model, found)),
-    };
-    let [color_rg, color_ba] = packed(color);
-    layout::Surface {
-        origin: origin.to_array(),
-        object: found.object,
-        color_rg,
-        color_ba,
-        flags: if material.is_some_and(|m| m.unlit) { layout::SURFACE_UNLIT } else { 0 },
-        normal,
-    }
-}
-
-/// Linear light as four half floats.
-fn packed(linear: [f32; 3]) -> [u32; 2] {
-    let [r, g, b] = linear.map(|c| u32::from(palette::half(c)));
-    [r | g << 16, b | u32::from(palette::half(1.0)) << 16]
-}
-
 /// Triangles gathered for one section.
-#[derive(Default)]
 struct Gathered {
-    vertices: Vec<Vertex>,
-    indices: Vec<u32>,
+    weld: Weld,
+    /// One per vertex, where the section has a texture; its vertices are not shared then.
     texcoords: Vec<[f32; 2]>,
     /// Box of every tile's run of indices.
     runs: Vec<(usize, Aabb)>,
 }
 
 impl Gathered {
+    fn new(smooth: bool, provoking: usize) -> Self {
+        Self { weld: Weld::new(smooth, provoking), texcoords: Vec::new(), runs: Vec::new() }
+    }
+
     fn close_run(&mut self, bounds: Aabb) {
-        if self.indices.len() > self.runs.last().map_or(0, |r| r.0) {
-            self.runs.push((self.indices.len(), bounds));
+        if self.weld.indices.len() > self.runs.last().map_or(0, |r| r.0) {
+            self.runs.push((self.weld.indices.len(), bounds));
         }
     }
 
     /// Cuts the runs into chunks; a run longer than a chunk is cut by triangles.
-    fn chunks(&self, position: impl Fn(u32) -> DVec3) -> Vec<Chunk> {
+    fn chunks(&self) -> Vec<Chunk> {
+        let position = |i: u32| {
+            let vertex = &self.weld.vertices[i as usize];
+            IVec3::from(vertex.origin).as_dvec3() + Vec3::from(vertex.position).as_dvec3()
+        };
         let step = CHUNK_TRIANGLES * 3;
         let mut chunks: Vec<Chunk> = Vec::new();
         let (mut start, mut bounds, mut done) = (0, Aabb::EMPTY, 0);
@@ -193,7 +145,7 @@ impl Gathered {
                 }
                 for from in (done..end).step_by(step) {
                     let to = (from + step).min(end);
-                    let bounds = Aabb::from_points(self.indices[from..to].iter().map(|&i| position(i)));
+                    let bounds = Aabb::from_points(self.weld.indices[from..to].iter().map(|&i| position(i)));
                     chunks.push(Chunk { range: from as u32..to as u32, bounds });
                 }
                 (start, bounds) = (end, Aabb::EMPTY);
@@ -242,21 +194,18 @@ impl CityBuffers {
         let bytes_before = gpu.allocated_bytes();
         let extent =
             shown.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(shown.model.geometries[g as usize].bounds));
-        let mut table = SurfaceTable {
-            model: shown.model,
-            textures: &textures,
-            entries: Vec::new(),
-            in_tile: FxHashMap::default(),
-        };
-        let apart = shown.coplanar.iter().map(|c| c.triangle).collect::<std::collections::HashSet<_>>();
-        let mut plain = Gathered::default();
+        let mut table = SurfaceTable::new(shown.model, &textures);
+        let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
+        let smooth = is_smooth(shown, &apart);
+        // Flat values come from the first corner of a triangle, in OpenGL from the last.
+        let provoking = if gpu.info.backend == wgpu::Backend::Gl { 2 } else { 0 };
+        let mut plain = Gathered::new(smooth, provoking);
         let mut textured: FxHashMap<(u32, u32), Gathered> = FxHashMap::default();
-        let mut smooth = false;
         let mut coplanar_surfaces: FxHashMap<(u32, u32, u32), u32> = FxHashMap::default();
         for t in ordered_tiles(shown, &extent) {
             let tile = &shown.model.tiles[t as usize];
             table.begin_tile();
-            gather_tile(shown.model, tile, &apart, &mut table, &mut plain, &mut textured, &mut smooth);
+            gather_tile(shown.model, tile, &apart, &mut table, &mut plain, &mut textured);
         }
         let mut sections = Vec::new();
         let mut bounds = extent;
@@ -272,117 +221,112 @@ impl CityBuffers {
             }
         };
         let coplanar = gather_coplanar(shown, &mut table, &mut coplanar_surfaces);
-        push(upload(gpu, SectionKind::Plain, &plain, &table.entries)?);
+        push(upload(gpu, SectionKind::Plain, &plain)?);
         let mut by_texture: Vec<_> = textured.into_iter().collect();
         by_texture.sort_unstable_by_key(|(key, _)| *key);
         for ((texture, cutoff), gathered) in &by_texture {
             let kind = SectionKind::Textured { texture: *texture, alpha_cutoff: f32::from_bits(*cutoff) };
-            push(upload(gpu, kind, gathered, &table.entries)?);
+            push(upload(gpu, kind, gathered)?);
         }
         push(coplanar.upload(gpu)?);
-        let surfaces = gpu.buffer("surfaces", wgpu::BufferUsages::STORAGE, &table.entries)?;
-        let planes = gpu.buffer("shared planes", wgpu::BufferUsages::STORAGE, &coplanar.planes)?;
+        let surfaces = table.upload(gpu)?;
         let surface_table = table.entries;
         let bytes = gpu.allocated_bytes() - bytes_before + textures.bytes();
-        Ok(Self { sections, surfaces, surface_table, planes, textures, smooth, triangles, vertices, bytes, bounds })
+        Ok(Self { sections, surfaces, surface_table, textures, smooth, triangles, vertices, bytes, bounds })
     }
 
     /// The draws of one section that a frustum may see, and how many triangles they hold.
     ///
-    /// Few chunks come near ones first, so that they hide the rest before it is shaded; many come in the order of the
-    /// buffer, neighbours merged, because then draw calls cost more than hidden fragments. Coplanar sections always
-    /// keep their order: it decides who wins.
+    /// Near ones come first, so that they hide the rest before it is shaded; where many chunks are seen, runs of
+    /// neighbours are sorted as one, because draw calls cost something too. Coplanar sections keep their order: it
+    /// decides who wins.
     pub fn visible(section: &Section, frustum: &Frustum, eye: DVec3, draws: &mut Vec<Draw>) -> u64 {
         draws.clear();
         let seen: Vec<&Chunk> = section.chunks.iter().filter(|c| frustum.meets(&c.bounds)).collect();
-        if seen.len() <= SORTED_CHUNKS && section.kind != SectionKind::Coplanar {
-            let mut near_first: Vec<(f64, u32)> = Vec::with_capacity(seen.len());
-            for (i, chunk) in seen.iter().enumerate() {
-                let nearest = eye.clamp(chunk.bounds.min, chunk.bounds.max);
-                near_first.push((nearest.distance_squared(eye), i as u32));
-            }
-            near_first.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            draws.extend(near_first.iter().map(|&(_, i)| seen[i as usize].range.clone()));
-        } else {
-            for chunk in &seen {
-                match draws.last_mut() {
-                    Some(last) if last.end == chunk.range.start => last.end = chunk.range.end,
-                    _ => draws.push(chunk.range.clone()),
-                }
+        let mut groups: Vec<&[&Chunk]> = seen.chunks(seen.len().div_ceil(SORTED_GROUPS).max(1)).collect();
+        if section.kind != SectionKind::Coplanar {
+            groups.sort_by_cached_key(|group| {
+                let bounds = group.iter().fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
+                // Distances are not negative: their bits are in order.
+                eye.clamp(bounds.min, bounds.max).distance_squared(eye).to_bits()
+            });
+        }
+        for chunk in groups.into_iter().flatten() {
+            match draws.last_mut() {
+                Some(last) if last.end == chunk.range.start => last.end = chunk.range.end,
+                _ => draws.push(chunk.range.clone()),
             }
         }
         seen.iter().map(|c| u64::from(c.range.end - c.range.start)).sum::<u64>() / 3
     }
 }
 
-#[allow(clippy::too_many_arguments, reason = "one tile goes to several places; a struct would only rename them")]
+/// The corners of a model triangle; `triangle` counts from the model's first.
+fn corners_of<'a>(model: &'a CityModel, tile: &Tile, triangle: u32) -> [&'a Vertex; 3] {
+    [0, 1, 2].map(|k| &model.vertices[(tile.vertices.start + model.indices[triangle as usize * 3 + k]) as usize])
+}
+
+/// Whether some face that is drawn has a normal per corner.
+fn is_smooth(shown: &Shown, apart: &FxHashSet<u32>) -> bool {
+    let model = shown.model;
+    shown.geometries.iter().flat_map(|&g| model.geometries[g as usize].tiles.clone()).any(|t| {
+        let tile = &model.tiles[t as usize];
+        (tile.indices.start / 3..tile.indices.end / 3).any(|triangle| {
+            let [a, b, c] = corners_of(model, tile, triangle).map(|v| v.normal);
+            (a != b || a != c) && !apart.contains(&triangle)
+        })
+    })
+}
+
 fn gather_tile(
     model: &CityModel,
     tile: &Tile,
-    apart: &std::collections::HashSet<u32>,
+    apart: &FxHashSet<u32>,
     table: &mut SurfaceTable,
     plain: &mut Gathered,
     textured: &mut FxHashMap<(u32, u32), Gathered>,
-    smooth: &mut bool,
 ) {
-    let vertices = &model.vertices[tile.vertices.start as usize..tile.vertices.end as usize];
-    let base = plain.vertices.len() as u32;
-    let mut any_plain = false;
+    plain.weld.begin_tile(tile.origin);
     for triangle in tile.indices.start / 3..tile.indices.end / 3 {
         if apart.contains(&triangle) {
             continue;
         }
+        let corners = corners_of(model, tile, triangle);
+        let [first, ..] = corners;
+        let texture = if tile.texcoords == NONE { None } else { table.texture(first.surface) };
+        let Some(key) = texture else {
+            let number = table.number(first.surface, first.normal);
+            plain.weld.triangle(number, corners.map(|v| Corner { position: v.position, normal: v.normal }));
+            continue;
+        };
+        let target = textured.entry(key).or_insert_with(|| Gathered::new(false, 0));
         let at = triangle as usize * 3;
-        let corners: [u32; 3] = std::array::from_fn(|k| model.indices[at + k]);
-        let first = &vertices[corners[0] as usize];
-        *smooth |= corners.iter().any(|&c| vertices[c as usize].normal != first.normal);
-        match texture_of(model, table.textures, tile, first.surface) {
-            None => {
-                any_plain = true;
-                plain.indices.extend(corners.map(|c| base + c));
-            }
-            Some(key) => {
-                let target = textured.entry(key).or_default();
-                for c in corners {
-                    let number = table.number((first.surface, first.normal), tile.origin);
-                    target.indices.push(target.vertices.len() as u32);
-                    target.vertices.push(Vertex { surface: number, ..vertices[c as usize] });
-                    target.texcoords.push(model.texcoords[(tile.texcoords + c) as usize]);
-                }
-            }
+        for (vertex, &corner) in corners.into_iter().zip(&model.indices[at..at + 3]) {
+            let surface = table.number(first.surface, vertex.normal);
+            target.weld.indices.push(target.weld.vertices.len() as u32);
+            target.weld.vertices.push(CityVertex::new(tile.origin, surface, vertex.position, vertex.normal));
+            target.texcoords.push(model.texcoords[(tile.texcoords + corner) as usize]);
         }
     }
-    if any_plain {
-        plain.vertices.extend(
-            vertices.iter().map(|v| Vertex { surface: table.number((v.surface, v.normal), tile.origin), ..*v }),
-        );
-    }
+    plain.weld.end_tile();
     plain.close_run(tile.bounds);
     for gathered in textured.values_mut() {
         gathered.close_run(tile.bounds);
     }
 }
 
-/// Texture number and bits of the alpha cutoff, where a surface's texture was found.
-fn texture_of(model: &CityModel, textures: &Textures, tile: &Tile, surface: u32) -> Option<(u32, u32)> {
-    if tile.texcoords == NONE {
-        return None;
-    }
-    let material = model.materials.get(model.surfaces.get(surface as usize)?.material as usize)?;
-    textures.has(material.texture).then(|| (material.texture, material.alpha_cutoff.to_bits()))
-}
-
 fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered) -> Aabb {
     let mut all = Aabb::EMPTY;
     for tile in &ground.tiles {
         table.begin_tile();
-        let base = plain.vertices.len() as u32;
+        plain.weld.begin_tile(tile.origin);
         let vertices = &ground.vertices[tile.vertices.start as usize..tile.vertices.end as usize];
-        plain
-            .vertices
-            .extend(vertices.iter().map(|v| Vertex { surface: table.number((NONE, v.normal), tile.origin), ..*v }));
-        let indices = &ground.indices[tile.indices.start as usize..tile.indices.end as usize];
-        plain.indices.extend(indices.iter().map(|i| base + i));
+        for corners in ground.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
+            let corners = [0, 1, 2].map(|k| vertices[corners[k] as usize]);
+            let number = table.number(NONE, corners[0].normal);
+            plain.weld.triangle(number, corners.map(|v| Corner { position: v.position, normal: v.normal }));
+        }
+        plain.weld.end_tile();
         plain.close_run(tile.bounds);
         all = all.union(tile.bounds);
     }
@@ -391,8 +335,8 @@ fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered
 
 /// Overlapping triangles of shared planes, unindexed, in drawing order.
 struct Coplanar {
-    vertices: Vec<Vertex>,
-    plane_numbers: Vec<u32>,
+    vertices: Vec<CityVertex>,
+    /// One per vertex.
     planes: Vec<layout::Plane>,
     chunks: Vec<Chunk>,
 }
@@ -402,29 +346,27 @@ fn gather_coplanar(shown: &Shown, table: &mut SurfaceTable, known: &mut FxHashMa
     let mut order: Vec<&CoplanarTriangle> = shown.coplanar.iter().collect();
     // Within a group the higher priority is drawn later and wins at equal depth.
     order.sort_by_key(|c| (c.group, c.priority, c.triangle));
-    let mut out = Coplanar { vertices: Vec::new(), plane_numbers: Vec::new(), planes: Vec::new(), chunks: Vec::new() };
-    let mut group = None;
+    let mut out = Coplanar { vertices: Vec::new(), planes: Vec::new(), chunks: Vec::new() };
+    let (mut group, mut plane) = (None, layout::Plane::zeroed());
     let (mut start, mut bounds) = (0, Aabb::EMPTY);
     for c in order {
         let tile = &model.tiles[c.tile as usize];
-        let corners: [&Vertex; 3] = std::array::from_fn(|k| {
-            &model.vertices[(tile.vertices.start + model.indices[c.triangle as usize * 3 + k]) as usize]
-        });
+        let corners = corners_of(model, tile, c.triangle);
         if group != Some(c.group) {
             group = Some(c.group);
             if out.vertices.len() - start >= 3 * CHUNK_TRIANGLES / 4 {
                 out.chunks.push(Chunk { range: start as u32..out.vertices.len() as u32, bounds });
                 (start, bounds) = (out.vertices.len(), Aabb::EMPTY);
             }
-            out.planes.push(plane_of(&model.plane_equations[c.group as usize - 1], tile.origin));
+            plane = plane_of(&model.plane_equations[c.group as usize - 1], tile.origin);
         }
         let surface = *known.entry((c.tile, corners[0].surface, corners[0].normal)).or_insert_with(|| {
-            table.entries.push(entry(model, table.textures, (corners[0].surface, corners[0].normal), tile.origin));
-            (table.entries.len() - 1) as u32
+            table.begin_tile();
+            table.number(corners[0].surface, corners[0].normal)
         });
         for corner in corners {
-            out.vertices.push(Vertex { surface, ..*corner });
-            out.plane_numbers.push(out.planes.len() as u32 - 1);
+            out.vertices.push(CityVertex::new(tile.origin, surface, corner.position, corner.normal));
+            out.planes.push(plane);
             bounds = bounds.grown(tile.origin.as_dvec3() + Vec3::from(corner.position).as_dvec3());
         }
     }
@@ -441,7 +383,6 @@ fn plane_of(plane: &Plane, near: IVec3) -> layout::Plane {
     let foot = near.as_dvec3() + plane.normal * (plane.offset - plane.normal.dot(near.as_dvec3()));
     layout::Plane {
         normal: normal.to_array(),
-        reserved: 0.0,
         origin: near.to_array(),
         offset: normal.as_dvec3().dot(foot - near.as_dvec3()) as f32,
     }
@@ -456,37 +397,29 @@ impl Coplanar {
             kind: SectionKind::Coplanar,
             vertices: gpu.buffer("coplanar vertices", wgpu::BufferUsages::VERTEX, &self.vertices)?,
             indices: None,
-            extra: Some(gpu.buffer("plane numbers", wgpu::BufferUsages::VERTEX, &self.plane_numbers)?),
+            extra: Some(gpu.buffer("planes", wgpu::BufferUsages::VERTEX, &self.planes)?),
             chunks: self.chunks.clone(),
         };
         Ok(Some((section, self.vertices.len() / 3, self.vertices.len())))
     }
 }
 
-fn upload(
-    gpu: &Gpu,
-    kind: SectionKind,
-    gathered: &Gathered,
-    surfaces: &[layout::Surface],
-) -> Result<Option<(Section, usize, usize)>, GpuError> {
-    if gathered.indices.is_empty() {
+fn upload(gpu: &Gpu, kind: SectionKind, gathered: &Gathered) -> Result<Option<(Section, usize, usize)>, GpuError> {
+    let Weld { vertices, indices, .. } = &gathered.weld;
+    if indices.is_empty() {
         return Ok(None);
     }
-    let position = |i: u32| {
-        let v = &gathered.vertices[i as usize];
-        IVec3::from(surfaces[v.surface as usize].origin).as_dvec3() + Vec3::from(v.position).as_dvec3()
-    };
     let section = Section {
         kind,
-        vertices: gpu.buffer("vertices", wgpu::BufferUsages::VERTEX, &gathered.vertices)?,
-        indices: Some(gpu.buffer("indices", wgpu::BufferUsages::INDEX, &gathered.indices)?),
+        vertices: gpu.buffer("vertices", wgpu::BufferUsages::VERTEX, vertices)?,
+        indices: Some(gpu.buffer("indices", wgpu::BufferUsages::INDEX, indices)?),
         extra: match kind {
             SectionKind::Textured { .. } => {
                 Some(gpu.buffer("texture coordinates", wgpu::BufferUsages::VERTEX, &gathered.texcoords)?)
             }
             _ => None,
         },
-        chunks: gathered.chunks(position),
+        chunks: gathered.chunks(),
     };
-    Ok(Some((section, gathered.indices.len() / 3, gathered.vertices.len())))
+    Ok(Some((section, indices.len() / 3, vertices.len())))
 }

@@ -4,6 +4,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::render::palette;
+
 /// `lib/view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -23,16 +25,41 @@ pub struct View {
     pub pad_2: u32,
 }
 
-/// `lib/surface.wgsl`.
+/// A vertex of the city as the card reads it; `relative_to_eye` in `lib/view.wgsl` takes it from here.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct CityVertex {
+    pub origin: [i32; 3],
+    pub surface: u32,
+    pub position: [f32; 3],
+    pub normal: u32,
+}
+
+impl CityVertex {
+    /// A vertex `position` metres from a whole-metre `origin`, of an entry of the table of surfaces, with an octahedral
+    /// normal.
+    pub fn new(origin: glam::IVec3, surface: u32, position: [f32; 3], normal: u32) -> Self {
+        Self { origin: origin.to_array(), surface, position, normal }
+    }
+}
+
+/// One texel of the table of surfaces, decoded by `surface_at` in `lib/surface.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct Surface {
-    pub origin: [i32; 3],
     pub object: u32,
-    pub color_rg: u32,
-    pub color_ba: u32,
-    pub flags: u32,
     pub normal: u32,
+    pub color_rg: u32,
+    pub color_b_flags: u32,
+}
+
+impl Surface {
+    /// An entry: object index or [`NO_OBJECT`], octahedral normal, natural colour in linear light, and whether light
+    /// leaves it alone.
+    pub fn new(object: u32, normal: u32, color: [f32; 3], unlit: bool) -> Self {
+        let [r, g, b] = color.map(|c| u32::from(palette::half(c)));
+        Self { object, normal, color_rg: r | g << 16, color_b_flags: b | if unlit { SURFACE_UNLIT << 16 } else { 0 } }
+    }
 }
 
 /// `lib/surface.wgsl`: no city object.
@@ -40,12 +67,11 @@ pub const NO_OBJECT: u32 = u32::MAX;
 /// `lib/surface.wgsl`: light does not act on it.
 pub const SURFACE_UNLIT: u32 = 1;
 
-/// `pass/geometry.wgsl`.
+/// The plane of a face that shares it, as vertex attributes of `pass/geometry.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Plane {
     pub normal: [f32; 3],
-    pub reserved: f32,
     pub origin: [i32; 3],
     pub offset: f32,
 }
@@ -204,8 +230,6 @@ mod tests {
                     pad_2
                 }),
             ),
-            (&Module::Geometry, host!(Surface { origin, object, color_rg, color_ba, flags, normal })),
-            (&Module::Geometry, host!(Plane { normal, reserved, origin, offset })),
             (
                 &Module::Sprite,
                 host!(Shape {

@@ -15,9 +15,11 @@ pub mod picture;
 pub mod pipelines;
 pub mod renderer;
 pub mod stats;
+mod surfaces;
 mod synced;
 pub mod targets;
 mod textures;
 pub mod volume;
+mod weld;
 
 pub use renderer::Renderer;

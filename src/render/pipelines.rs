@@ -95,7 +95,7 @@ pub enum Pipeline {
 pub struct Pipelines {
     /// Group 0 everywhere: the view.
     pub view: wgpu::BindGroupLayout,
-    /// Geometry and shadow, group 1: surfaces, shared planes.
+    /// Geometry and shadow, group 1: surfaces.
     pub city: wgpu::BindGroupLayout,
     /// Geometry, group 2: a texture.
     pub image: wgpu::BindGroupLayout,
@@ -153,6 +153,7 @@ impl Pipelines {
         use wgpu::{TextureSampleType as T, TextureViewDimension as D};
         let float = image(T::Float { filterable: false }, D::D2);
         let depth = image(T::Depth, D::D2);
+        let surfaces = image(T::Uint, D::D2);
         let masks = B::StorageTexture {
             access: wgpu::StorageTextureAccess::ReadWrite,
             format: MASKS,
@@ -169,7 +170,7 @@ impl Pipelines {
         let compared = B::Sampler(wgpu::SamplerBindingType::Comparison);
         Self {
             view: layout(gpu, "view", &[(0, all, uniform())]),
-            city: layout(gpu, "city", &[(0, S::VERTEX | S::FRAGMENT, storage()), (1, S::VERTEX, storage())]),
+            city: layout(gpu, "city", &[(0, S::FRAGMENT, surfaces)]),
             image: layout(
                 gpu,
                 "image",
@@ -186,7 +187,7 @@ impl Pipelines {
                 gpu,
                 "shade",
                 &[
-                    (0, S::FRAGMENT, storage()),
+                    (0, S::FRAGMENT, surfaces),
                     (3, S::FRAGMENT, uniform()),
                     (4, S::FRAGMENT, depth),
                     (5, S::FRAGMENT, compared),
@@ -323,9 +324,10 @@ fn shape_name(kind: u32) -> &'static str {
     }
 }
 
-const VERTEX: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32, 2 => Uint32];
-const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![3 => Float32x2];
-const PLANE_NUMBER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Uint32];
+const VERTEX: &[wgpu::VertexAttribute] =
+    &wgpu::vertex_attr_array![0 => Sint32x3, 1 => Uint32, 2 => Float32x3, 3 => Uint32];
+const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x2];
+const PLANE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x3, 5 => Sint32x3, 6 => Float32];
 
 fn per_vertex(array_stride: u64, attributes: &[wgpu::VertexAttribute]) -> Option<wgpu::VertexBufferLayout<'_>> {
     Some(wgpu::VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes })
@@ -407,13 +409,18 @@ impl Key {
 
     fn entry_points(&self) -> (&'static str, Option<&'static str>) {
         match self {
-            Self::Geometry { section: GeometryKind::Plain, colored, measured, smooth } => {
-                let vertex = if *smooth { "vertex_smooth" } else { "vertex" };
-                (vertex, Some(if *colored || *measured { "full" } else { "plain" }))
-            }
-            Self::Geometry { section: GeometryKind::Textured(_), .. } => ("vertex_textured", Some("textured")),
-            Self::Geometry { section: GeometryKind::Coplanar, colored, measured, .. } => {
-                ("vertex_coplanar", Some(if *colored || *measured { "full_coplanar" } else { "plain_coplanar" }))
+            Self::Geometry { section, colored, measured, smooth } => {
+                let full = *colored || *measured;
+                match (section, smooth) {
+                    (GeometryKind::Plain, false) => ("vertex", Some(if full { "full" } else { "plain" })),
+                    (GeometryKind::Plain, true) => {
+                        ("vertex_smooth", Some(if full { "smooth_full" } else { "smooth_plain" }))
+                    }
+                    (GeometryKind::Textured(_), _) => ("vertex_textured", Some("textured")),
+                    (GeometryKind::Coplanar, _) => {
+                        ("vertex_coplanar", Some(if full { "coplanar_full" } else { "coplanar_plain" }))
+                    }
+                }
             }
             Self::Shadow => ("vertex", None),
             Self::SpriteEntry(_) => ("vertex", Some("entry")),
@@ -423,10 +430,12 @@ impl Key {
     }
 
     fn vertex_buffers(&self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
-        let vertex = per_vertex(size_of::<crate::city::Vertex>() as u64, VERTEX);
+        let vertex = per_vertex(size_of::<layout::CityVertex>() as u64, VERTEX);
         match self {
             Self::Geometry { section: GeometryKind::Textured(_), .. } => vec![vertex, per_vertex(8, TEXCOORD)],
-            Self::Geometry { section: GeometryKind::Coplanar, .. } => vec![vertex, per_vertex(4, PLANE_NUMBER)],
+            Self::Geometry { section: GeometryKind::Coplanar, .. } => {
+                vec![vertex, per_vertex(size_of::<layout::Plane>() as u64, PLANE)]
+            }
             Self::Geometry { .. } | Self::Shadow | Self::Bare => vec![vertex],
             _ => Vec::new(),
         }

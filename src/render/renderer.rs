@@ -115,8 +115,8 @@ impl Renderer {
         self.city = None;
         let gpu = &self.gpu;
         let buffers = CityBuffers::new(gpu, shown)?;
-        let group =
-            group(gpu, "city", &self.pipelines.city, &[(0, whole(&buffers.surfaces)), (1, whole(&buffers.planes))]);
+        let surfaces = wgpu::BindingResource::TextureView(&buffers.surfaces);
+        let group = group(gpu, "city", &self.pipelines.city, &[(0, surfaces)]);
         let images = buffers.sections.iter().map(|section| match section.kind {
             SectionKind::Textured { texture, .. } => buffers.textures.get(texture).map(|(view, sampler)| {
                 let entries =
@@ -197,7 +197,7 @@ impl Renderer {
                 "shade",
                 &p.shade,
                 &[
-                    (0, whole(&city.buffers.surfaces)),
+                    (0, wgpu::BindingResource::TextureView(&city.buffers.surfaces)),
                     (3, whole(b.light.buffer())),
                     (4, all_of(&targets.shadow)),
                     (5, wgpu::BindingResource::Sampler(&self.shadow_sampler)),

@@ -1,0 +1,77 @@
+//! The table of surfaces: what a fragment looks up by the number in the geometry target.
+//!
+//! It is a texture, [`ROW`] surfaces per row, one texel each: software adapters gather texels of many pixels at once,
+//! but walk through a storage buffer pixel by pixel.
+
+use rustc_hash::FxHashMap;
+
+use crate::{
+    city::{CityModel, NONE},
+    gpu::{Gpu, GpuError},
+    render::{layout, palette, textures::Textures},
+};
+
+/// Surfaces per row: `lib/surface.wgsl` knows it too.
+pub const ROW: u32 = 4096;
+
+/// Collects surfaces as the shader wants them: one entry per (surface, normal).
+pub struct SurfaceTable<'a> {
+    model: &'a CityModel,
+    textures: &'a Textures,
+    /// The entries, by number.
+    pub entries: Vec<layout::Surface>,
+    numbers: FxHashMap<(u32, u32), u32>,
+}
+
+impl<'a> SurfaceTable<'a> {
+    /// An empty table.
+    pub fn new(model: &'a CityModel, textures: &'a Textures) -> Self {
+        Self { model, textures, entries: Vec::new(), numbers: FxHashMap::default() }
+    }
+
+    /// Numbers given so far are not given again: surfaces of another tile are others.
+    pub fn begin_tile(&mut self) {
+        self.numbers.clear();
+    }
+
+    /// The number of a model surface (`NONE`: the plain ground) that faces a packed normal.
+    pub fn number(&mut self, surface: u32, normal: u32) -> u32 {
+        let Self { model, textures, entries, numbers } = self;
+        *numbers.entry((surface, normal)).or_insert_with(|| {
+            entries.push(entry(model, textures, surface, normal));
+            (entries.len() - 1) as u32
+        })
+    }
+
+    /// Number of the texture and bits of the alpha cutoff of a model surface, where its texture was found.
+    pub fn texture(&self, surface: u32) -> Option<(u32, u32)> {
+        let material = self.model.materials.get(self.model.surfaces.get(surface as usize)?.material as usize)?;
+        self.textures.has(material.texture).then(|| (material.texture, material.alpha_cutoff.to_bits()))
+    }
+
+    /// Puts the table on the card.
+    pub fn upload(&self, gpu: &Gpu) -> Result<wgpu::TextureView, GpuError> {
+        let rows = (self.entries.len() as u32).div_ceil(ROW).max(1);
+        gpu.check_rows("the table of surfaces", rows, u64::from(ROW) * size_of::<layout::Surface>() as u64)?;
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let texture = gpu.texture("surfaces", [ROW, rows, 1], 1, wgpu::TextureFormat::Rgba32Uint, usage);
+        let mut texels = bytemuck::cast_slice::<_, u8>(&self.entries).to_vec();
+        texels.resize((ROW * rows) as usize * size_of::<layout::Surface>(), 0);
+        gpu.write_texture_level(&texture, 0, &texels);
+        Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    }
+}
+
+fn entry(model: &CityModel, textures: &Textures, surface: u32, normal: u32) -> layout::Surface {
+    let Some(found) = model.surfaces.get(surface as usize) else {
+        return layout::Surface::new(layout::NO_OBJECT, normal, palette::linear_bytes(palette::PLAIN_GROUND), false);
+    };
+    let material = model.materials.get(found.material as usize);
+    let color = match material {
+        // A texture brings the colour; the material's own only tints it.
+        Some(m) if m.texture == NONE || textures.has(m.texture) => [m.base_color[0], m.base_color[1], m.base_color[2]],
+        // A declared texture that is missing: most files say plain white beside it, so the quiet colours are better.
+        _ => palette::linear_bytes(palette::natural(model, found)),
+    };
+    layout::Surface::new(found.object, normal, color, material.is_some_and(|m| m.unlit))
+}
