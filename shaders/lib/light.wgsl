@@ -11,8 +11,8 @@ struct Light {
     reserved_1: f32,
     // Shadow map from positions relative to the eye: u, v in 0..1, depth as the map stores it.
     shadow_from_relative: mat4x4f,
-    zenith: vec3f,              // the sky picture, linear
-    background: u32,            // 0 sky, 1 one colour (in `zenith`), 2 transparent
+    zenith: vec3f,              // the sky picture, linear; or the one colour of the background
+    reserved_2: u32,
     horizon: vec3f,
     scene_radius: f32,          // metres
 }

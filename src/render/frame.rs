@@ -1,10 +1,10 @@
 //! One sample of one view: the frame as a readable list of passes.
 //!
 //! ```text
-//! shadow map          if the sun casts shadows and the map does not hold this view yet
-//! geometry            once, for everything
-//! per lens volume     sprite entry, sprite exit, volumetric depth test
-//! shade               outside the lenses' screen bounds without them, inside with them
+//! shadow map                    if the sun casts shadows and the map does not hold this view yet
+//! geometry                      once, for everything
+//! sprite entries, sprite exits  of all lens volumes in view
+//! shade                         outside the lenses' screen bounds without them, inside with them
 //! ```
 //!
 //! A pass that the scene does not call for is not in the list (U3).
@@ -20,6 +20,7 @@ use crate::{
         operations::Operations,
         pipelines::{GeometryKind, Key},
         renderer::{Renderer, STAGE_STRIDE},
+        sprites::{self, Pages, Place},
         targets::Needs,
         volume::LensVolume,
     },
@@ -57,8 +58,8 @@ pub struct FrameInput<'a> {
     pub operations: &'a Operations,
     /// Whether interpolated depth is kept, for the AOV.
     pub measured: bool,
-    /// Whether somebody counts pixels in front of and behind lenses.
-    pub all_classes: bool,
+    /// Whether every pixel's classes are kept, for AOVs and statistics; of the first sample.
+    pub masks: bool,
     /// Which sample this is.
     pub sample: u32,
     /// How many there will be.
@@ -72,9 +73,9 @@ pub struct PassRecord {
     pub name: &'static str,
     /// Which view it drew.
     pub view: &'static str,
-    /// The lens it served, or `None`: the scene.
-    pub lens: Option<u32>,
-    /// Draw calls or dispatches.
+    /// The lenses it served; none: the scene.
+    pub lenses: Vec<u32>,
+    /// Draw calls.
     pub draws: u32,
     /// Triangles handed to the rasteriser.
     pub triangles: u64,
@@ -88,7 +89,10 @@ struct SeenVolume {
     lens: u32,
     kind: u32,
     bounds: PictureTile,
+    /// The part of the sprite that is kept, texels.
     sprite_bounds: PictureTile,
+    /// Where it is kept.
+    place: Place,
 }
 
 /// Notes passes while they are recorded.
@@ -98,10 +102,10 @@ struct Recorder<'a> {
 }
 
 impl Recorder<'_> {
-    fn begin(&mut self, name: &'static str, view: &'static str, lens: Option<u32>, shades: bool) -> Option<Slot> {
+    fn begin(&mut self, name: &'static str, view: &'static str, lenses: &[u32], shades: bool) -> Option<Slot> {
         let slot = self.timer.as_mut().and_then(|t| t.slot(shades));
         let index = slot.map(|s| s.index());
-        self.passes.push(PassRecord { name, view, lens, draws: 0, triangles: 0, slot: index });
+        self.passes.push(PassRecord { name, view, lenses: lenses.to_vec(), draws: 0, triangles: 0, slot: index });
         slot
     }
 
@@ -120,9 +124,9 @@ impl Renderer {
             return Ok(Vec::new());
         }
         let mut recorder = Recorder { timer, passes: Vec::new() };
-        let seen = seen_volumes(input);
+        let (seen, pages) = seen_volumes(input);
         let sun_view = self.sun_view(input);
-        self.fit_targets(needs(input, &seen, self.colored(), self.smooth(), sun_view.is_some()));
+        self.fit_targets(needs(input, &pages, self.colored(), self.smooth(), sun_view.is_some()));
         self.upload(input, sun_view.as_ref(), &seen)?;
         self.fit_groups();
         let keys = self.prepare(input, &seen, sun_view.is_some());
@@ -133,10 +137,9 @@ impl Renderer {
         }
         self.geometry_pass(&mut encoder, &mut recorder, input);
         if !seen.is_empty() {
-            self.clear_masks(&mut encoder, &mut recorder);
-            for (stage, volume) in seen.iter().enumerate() {
-                self.sprite_passes(&mut encoder, &mut recorder, volume, stage);
-                self.mask_pass(&mut encoder, &mut recorder, input, volume, stage);
+            self.sprite_passes(&mut encoder, &mut recorder, &seen);
+            if wants_masks(input) {
+                self.clear_masks(&mut encoder, &mut recorder);
             }
         }
         self.shade_pass(&mut encoder, &mut recorder, input, &seen, &keys);
@@ -163,7 +166,7 @@ impl Renderer {
             depth_stencil_attachment: Some(depth_attachment(&targets.depth.view, 0.0)),
             ..Default::default()
         });
-        pass.set_pipeline(self.pipelines.render(&Key::Bare));
+        pass.set_pipeline(self.pipelines.get(&Key::Bare));
         pass.set_bind_group(0, &groups.view, &[]);
         pass.set_bind_group(1, &city.group, &[]);
         let frustum = view.frustum(1.0);
@@ -211,28 +214,30 @@ impl Renderer {
         let jitter = if input.samples > 1 { jitter } else { DVec2::ZERO };
         let haze = haze(input) / radius;
         let view = view_uniform(&input.view, input.tile, jitter, input.sample, haze);
-        let light = light::uniform(&input.sun, input.background, input.transparent, sun, input.view.camera.eye, radius);
+        let light = light::uniform(&input.sun, input.background, sun, input.view.camera.eye, radius);
         let (mut shapes, mut planes) = (Vec::new(), Vec::new());
-        let (mut sprites, mut masks) = (Vec::new(), Vec::new());
+        let (mut stages, mut volumes) = (Vec::new(), Vec::new());
         for (stage, volume) in seen.iter().enumerate() {
             input.volumes[volume.index].push(&input.view, &mut shapes, &mut planes);
-            let scale = |i: usize| sprite_size(input, volume.lens)[i] as f32 / input.tile.size[i] as f32;
-            let sprite = layout::SpriteStage {
+            let scale: [f32; 2] =
+                std::array::from_fn(|i| sprite_size(input, volume.lens)[i] as f32 / input.tile.size[i] as f32);
+            // From the sprite's own texels to those of its page.
+            let shift: [f32; 2] =
+                std::array::from_fn(|i| volume.place.origin[i] as f32 - volume.sprite_bounds.origin[i] as f32);
+            stages.extend(strided(&layout::SpriteStage {
                 shape: stage as u32,
                 pad_0: 0,
-                pixels_per_texel: [1.0 / scale(0), 1.0 / scale(1)],
-                origin: volume.sprite_bounds.origin.map(|o| o as f32),
-            };
-            let mask = layout::MaskStage {
-                origin: volume.bounds.origin,
-                size: volume.bounds.size,
-                texels_per_pixel: [scale(0), scale(1)],
-                sprite_origin: volume.sprite_bounds.origin.map(|o| o as f32),
-                lens: volume.lens,
-                pad_0: 0,
-            };
-            sprites.extend(strided(&sprite));
-            masks.extend(strided(&mask));
+                pixels_per_texel: scale.map(|s| 1.0 / s),
+                origin: shift.map(|s| -s),
+            }));
+            volumes.push(layout::LensVolume {
+                origin: volume.bounds.origin.map(|o| o as i32),
+                size: volume.bounds.size.map(|s| s as i32),
+                texels_per_pixel: scale,
+                sprite: shift,
+                page: volume.place.page,
+                pad_0: [0; 3],
+            });
         }
         let (gpu, b) = (&self.gpu, &mut self.buffers);
         let mut stale = b.view.sync(gpu, &[view])?;
@@ -243,9 +248,9 @@ impl Renderer {
         }
         stale |= b.shapes.sync(gpu, &shapes)?;
         stale |= b.planes.sync(gpu, &planes)?;
-        stale |= b.sprite_stages.sync(gpu, &sprites)?;
-        stale |= b.mask_stages.sync(gpu, &masks)?;
-        stale |= b.operations.sync(gpu, &input.operations.bytes)?;
+        stale |= b.sprite_stages.sync(gpu, &stages)?;
+        stale |= b.volumes.sync(gpu, &volumes)?;
+        stale |= b.parameters.sync(gpu, &input.operations.parameters)?;
         stale |= b.object_colors.sync(gpu, &input.operations.object_colors)?;
         stale |= b.resolve.sync(gpu, &[input.samples as f32])?;
         if stale {
@@ -266,25 +271,27 @@ impl Renderer {
             keys.push(geometry_key(section.kind, colored, city.buffers.smooth, input.measured));
         }
         for volume in seen {
-            let mask = Key::LensMask(mask_layers(input));
-            keys.extend([Key::SpriteEntry(volume.kind), Key::SpriteExit(volume.kind), mask]);
+            keys.extend([Key::SpriteEntry(volume.kind), Key::SpriteExit(volume.kind)]);
         }
         let clay = input.base == BaseStyle::Clay;
-        let shade = |effects: &[u32], lenses| Key::Shade {
-            effects: effects.to_vec(),
-            lenses,
+        let shade = |plan| Key::Shade {
+            plan,
             textured: colored && !clay,
             clay,
             summed: input.samples > 1,
             shadows,
-            outlines: lenses && input.operations.outlines,
-            mask_layers: if lenses { mask_layers(input) } else { 1 },
             haze: haze(input) > 0.0,
             smooth: city.buffers.smooth,
+            background: match input.background {
+                _ if input.transparent => 2,
+                Background::Color(_) => 1,
+                Background::Sky => 0,
+            },
         };
+        let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         let shade_keys = ShadeKeys {
-            context: Some(shade(&input.operations.context_effects, false)),
-            lenses: (!seen.is_empty()).then(|| shade(&input.operations.effects, true)),
+            context: Some(shade(input.operations.context_plan())),
+            lenses: (!seen.is_empty()).then(|| shade(input.operations.lens_plan(&lenses, wants_masks(input)))),
         };
         keys.extend(shade_keys.context.clone());
         keys.extend(shade_keys.lenses.clone());
@@ -304,7 +311,7 @@ impl Renderer {
         }
         self.shadow_of = Some(wanted);
         let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
-        let slot = recorder.begin("shadow map", "sun", None, false);
+        let slot = recorder.begin("shadow map", "sun", &[], false);
         let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow map"),
@@ -312,7 +319,7 @@ impl Renderer {
             timestamp_writes: writes,
             ..Default::default()
         });
-        pass.set_pipeline(self.pipelines.render(&Key::Shadow));
+        pass.set_pipeline(self.pipelines.get(&Key::Shadow));
         pass.set_bind_group(0, &groups.sun_view, &[]);
         pass.set_bind_group(1, &city.group, &[]);
         // Casters may stand before the picture's edge, never behind the sun.
@@ -329,7 +336,7 @@ impl Renderer {
     fn geometry_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, input: &FrameInput) {
         let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
         let colored = self.colored();
-        let slot = recorder.begin("geometry", "main", None, true);
+        let slot = recorder.begin("geometry", "main", &[], true);
         let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
         let colors = [
             Some(color_attachment(&targets.codes.view, wgpu::Color::TRANSPARENT)),
@@ -357,7 +364,7 @@ impl Renderer {
             if draws.is_empty() {
                 continue;
             }
-            pass.set_pipeline(self.pipelines.render(&geometry_key(
+            pass.set_pipeline(self.pipelines.get(&geometry_key(
                 section.kind,
                 colored,
                 city.buffers.smooth,
@@ -382,7 +389,7 @@ impl Renderer {
     fn clear_masks(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
         let Some(targets) = &self.targets else { return };
         for some in targets.masks.layers.chunks(4) {
-            let slot = recorder.begin(CLEAR_MASKS, "main", None, false);
+            let slot = recorder.begin(CLEAR_MASKS, "main", &[], false);
             let attachments: Vec<_> =
                 some.iter().map(|view| Some(color_attachment(view, wgpu::Color::TRANSPARENT))).collect();
             encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -394,65 +401,43 @@ impl Renderer {
         }
     }
 
-    /// The two stages of a volumetric depth sprite (S1).
-    fn sprite_passes(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        volume: &SeenVolume,
-        stage: usize,
-    ) {
+    /// The two stages of the volumetric depth sprites (S1): all entries, then all exits.
+    fn sprite_passes(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, seen: &[SeenVolume]) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        let stages = [
-            ("sprite entry", &targets.entry, Key::SpriteEntry(volume.kind), 0.0),
-            ("sprite exit", &targets.exit, Key::SpriteExit(volume.kind), 1.0),
+        let stages: [(_, _, fn(u32) -> Key, _); 2] = [
+            ("sprite entries", &targets.entries, Key::SpriteEntry, 0.0),
+            ("sprite exits", &targets.exits, Key::SpriteExit, 1.0),
         ];
         for (name, target, key, clear) in stages {
-            let slot = recorder.begin(name, "main", Some(volume.lens), true);
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some(name),
-                depth_stencil_attachment: Some(depth_attachment(&target.view, clear)),
-                timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
-                ..Default::default()
-            });
-            if let Some(timer) = &recorder.timer {
-                timer.begin_count(&mut pass, slot);
+            for (page, view) in target.layers.iter().enumerate() {
+                let here = || seen.iter().enumerate().filter(|(_, v)| v.place.page as usize == page);
+                let mut lenses: Vec<u32> = here().map(|(_, v)| v.lens).collect();
+                lenses.dedup();
+                let slot = recorder.begin(name, "main", &lenses, true);
+                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label: Some(name),
+                    depth_stencil_attachment: Some(depth_attachment(view, clear)),
+                    timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
+                    ..Default::default()
+                });
+                if let Some(timer) = &recorder.timer {
+                    timer.begin_count(&mut pass, slot);
+                }
+                pass.set_bind_group(0, &groups.view, &[]);
+                pass.set_bind_group(1, &groups.shapes, &[]);
+                for (stage, volume) in here() {
+                    pass.set_pipeline(self.pipelines.get(&key(volume.kind)));
+                    pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
+                    scissor(&mut pass, PictureTile { origin: volume.place.origin, size: volume.sprite_bounds.size });
+                    pass.draw(0..3, 0..1);
+                }
+                if let Some(timer) = &recorder.timer {
+                    timer.end_count(&mut pass, slot);
+                }
+                let drawn = here().count() as u32;
+                recorder.count(drawn, u64::from(drawn));
             }
-            pass.set_pipeline(self.pipelines.render(&key));
-            pass.set_bind_group(0, &groups.view, &[]);
-            pass.set_bind_group(1, &groups.shapes, &[]);
-            pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
-            scissor(&mut pass, PictureTile::whole(volume.sprite_bounds.size));
-            pass.draw(0..3, 0..1);
-            if let Some(timer) = &recorder.timer {
-                timer.end_count(&mut pass, slot);
-            }
-            recorder.count(1, 1);
         }
-    }
-
-    /// The volumetric depth test (S5) over the lens' screen bounds.
-    fn mask_pass(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        input: &FrameInput,
-        volume: &SeenVolume,
-        stage: usize,
-    ) {
-        let Some(groups) = &self.groups else { return };
-        let slot = recorder.begin("lens mask", "main", Some(volume.lens), false);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("lens mask"),
-            timestamp_writes: recorder.timer.as_ref().and_then(|t| t.compute_writes(slot)),
-        });
-        pass.set_pipeline(self.pipelines.compute(&Key::LensMask(mask_layers(input))));
-        pass.set_bind_group(0, &groups.view, &[]);
-        pass.set_bind_group(1, &groups.mask, &[]);
-        pass.set_bind_group(2, &groups.mask_stage, &[stage as u32 * STAGE_STRIDE as u32]);
-        let [w, h] = volume.bounds.size;
-        pass.dispatch_workgroups(w.div_ceil(8), h.div_ceil(8), 1);
-        recorder.count(1, 0);
     }
 
     fn shade_pass(
@@ -464,7 +449,7 @@ impl Renderer {
         keys: &ShadeKeys,
     ) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        let slot = recorder.begin("shade", "main", None, true);
+        let slot = recorder.begin("shade", "main", &[], true);
         let target = if input.samples > 1 { &targets.sums } else { &targets.picture };
         let load = if input.sample == 0 { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load };
         let mut attachment = color_attachment(&target.view, wgpu::Color::TRANSPARENT);
@@ -487,7 +472,7 @@ impl Renderer {
             let mut set = false;
             for part in parts.iter().filter(|p| p.size[0] > 0 && p.size[1] > 0) {
                 if !set {
-                    pass.set_pipeline(self.pipelines.render(key));
+                    pass.set_pipeline(self.pipelines.get(key));
                     set = true;
                 }
                 scissor(&mut pass, *part);
@@ -507,14 +492,14 @@ impl Renderer {
 
     fn resolve_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        let slot = recorder.begin("resolve", "main", None, true);
+        let slot = recorder.begin("resolve", "main", &[], true);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("resolve"),
             color_attachments: &[Some(color_attachment(&targets.picture.view, wgpu::Color::TRANSPARENT))],
             timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
             ..Default::default()
         });
-        pass.set_pipeline(self.pipelines.render(&Key::Resolve));
+        pass.set_pipeline(self.pipelines.get(&Key::Resolve));
         pass.set_bind_group(0, &groups.resolve, &[]);
         pass.draw(0..3, 0..1);
         recorder.count(1, 1);
@@ -537,10 +522,9 @@ fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool) 
     Key::Geometry { section, colored, smooth, measured }
 }
 
-/// Mask layers per 32 lenses: where only *inside* is asked for, one will do.
-fn mask_layers(input: &FrameInput) -> u32 {
-    let all = input.all_classes || input.operations.outlines || input.operations.other_classes;
-    if all { 3 } else { 1 }
+/// Whether this sample writes the lens masks.
+fn wants_masks(input: &FrameInput) -> bool {
+    input.masks && input.sample == 0
 }
 
 /// Haze per radius of the scene; none in orthographic views, which have no distance, nor on clay.
@@ -558,7 +542,7 @@ fn sprite_size(input: &FrameInput, lens: u32) -> [u32; 2] {
     size.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, 16_384))
 }
 
-fn seen_volumes(input: &FrameInput) -> Vec<SeenVolume> {
+fn seen_volumes(input: &FrameInput) -> (Vec<SeenVolume>, Pages) {
     let mut seen = Vec::new();
     for (index, volume) in input.volumes.iter().enumerate() {
         let Some(bounds) = volume.screen_bounds(&input.view, input.tile) else { continue };
@@ -568,23 +552,29 @@ fn seen_volumes(input: &FrameInput) -> Vec<SeenVolume> {
         let high: [u32; 2] =
             std::array::from_fn(|i| (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i]));
         let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
-        seen.push(SeenVolume { index, lens: volume.lens, kind: volume.kind(), bounds, sprite_bounds });
+        let (lens, kind) = (volume.lens, volume.kind());
+        seen.push(SeenVolume { index, lens, kind, bounds, sprite_bounds, place: Place::default() });
     }
-    seen
+    if seen.is_empty() {
+        return (seen, Pages::default());
+    }
+    let sizes: Vec<[u32; 2]> = seen.iter().map(|v| v.sprite_bounds.size).collect();
+    let pages = sprites::arrange(&sizes);
+    for (volume, place) in seen.iter_mut().zip(&pages.places) {
+        volume.place = *place;
+    }
+    (seen, pages)
 }
 
-fn needs(input: &FrameInput, seen: &[SeenVolume], colors: bool, smooth: bool, shadows: bool) -> Needs {
-    // In steps of 64 texels, so that a lens that moves does not have its sprite made anew every frame.
-    let longest = |i: usize| seen.iter().map(|v| v.sprite_bounds.size[i].next_multiple_of(64)).max().unwrap_or(0);
-    let sprite = [longest(0), longest(1)];
+fn needs(input: &FrameInput, pages: &Pages, colors: bool, smooth: bool, shadows: bool) -> Needs {
     Needs {
         size: input.tile.size,
         colors,
         smooth,
         own_depth: input.measured,
         sums: input.samples > 1,
-        mask_layers: if seen.is_empty() { 0 } else { mask_layers(input) * input.lens_count.div_ceil(32) },
-        sprite,
+        mask_layers: if input.masks && pages.count > 0 { 3 * input.lens_count.div_ceil(32) } else { 0 },
+        sprites: [pages.size[0], pages.size[1], pages.count],
         shadow: if shadows { light::SHADOW_SIZE } else { 0 },
     }
 }

@@ -117,7 +117,7 @@ pub struct Light {
     pub reserved_1: f32,
     pub shadow_from_relative: [[f32; 4]; 4],
     pub zenith: [f32; 3],
-    pub background: u32,
+    pub reserved_2: u32,
     pub horizon: [f32; 3],
     pub scene_radius: f32,
 }
@@ -132,16 +132,17 @@ pub struct SpriteStage {
     pub origin: [f32; 2],
 }
 
-/// `pass/lens_mask.wgsl`.
+/// `lib/lens.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct MaskStage {
-    pub origin: [u32; 2],
-    pub size: [u32; 2],
+pub struct LensVolume {
+    pub origin: [i32; 2],
+    pub size: [i32; 2],
     pub texels_per_pixel: [f32; 2],
-    pub sprite_origin: [f32; 2],
-    pub lens: u32,
-    pub pad_0: u32,
+    pub sprite: [f32; 2],
+    pub page: u32,
+    /// An element of an array in a uniform buffer takes a multiple of 16 bytes.
+    pub pad_0: [u32; 3],
 }
 
 /// `pass/shade.wgsl`.
@@ -152,26 +153,10 @@ pub struct Parameters {
     pub b: [f32; 4],
 }
 
-/// `pass/shade.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct Operation {
-    pub effect: u32,
-    pub lens: u32,
-    pub class_: u32,
-    pub reserved: u32,
-    pub parameters: Parameters,
-}
-
-/// `pass/shade.wgsl`: everywhere, not in a lens.
-pub const CONTEXT: u32 = u32::MAX;
-/// `pass/shade.wgsl`: draws the lens' silhouette.
-pub const OUTLINE: u32 = 0xffff;
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::Module;
+    use crate::shader::{Module, Plan, PlanLens};
 
     type Fields = Vec<(&'static str, usize)>;
 
@@ -210,7 +195,8 @@ mod tests {
 
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
-        let shade = Module::Shade(vec![]);
+        let lens = PlanLens { number: 0, volumes: 1, outline: None };
+        let shade = Module::Shade(Plan { lenses: vec![lens], ..Plan::default() });
         let checks = [
             (
                 &Module::Geometry,
@@ -260,15 +246,14 @@ mod tests {
                     reserved_1,
                     shadow_from_relative,
                     zenith,
-                    background,
+                    reserved_2,
                     horizon,
                     scene_radius
                 }),
             ),
             (&Module::Sprite, host!(SpriteStage { shape, pad_0, pixels_per_texel, origin })),
-            (&Module::LensMask, host!(MaskStage { origin, size, texels_per_pixel, sprite_origin, lens, pad_0 })),
+            (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),
             (&shade, host!(Parameters { a, b })),
-            (&shade, host!(Operation { effect, lens, class_, reserved, parameters })),
         ];
         let wrong: Vec<String> = checks.into_iter().flat_map(|(module, fields)| differences(module, fields)).collect();
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));

@@ -55,7 +55,6 @@ pub fn sun_view(sun: &Sun, receivers: &Aabb, casters: &Aabb) -> Option<View> {
 pub fn uniform(
     sun: &Sun,
     background: Background,
-    transparent: bool,
     shadow: Option<&View>,
     eye: DVec3,
     scene_radius: f64,
@@ -66,10 +65,9 @@ pub fn uniform(
     let warmth = (1.0 - (sun.elevation.to_degrees() / 25.0).clamp(0.0, 1.0)) as f32;
     let sun_color = [0.86, 0.86 * (0.95 - 0.22 * warmth), 0.86 * (0.86 - 0.42 * warmth)].map(|c: f32| c * day);
     let ambient = 0.25 + 0.75 * day;
-    let (zenith, kind) = match background {
-        _ if transparent => ([0.0; 3], 2),
-        Background::Color(srgb) => (palette::linear(srgb), 1),
-        Background::Sky => (palette::linear([0.57, 0.70, 0.84]).map(|c| c * ambient), 0),
+    let zenith = match background {
+        Background::Color(srgb) => palette::linear(srgb),
+        Background::Sky => palette::linear([0.57, 0.70, 0.84]).map(|c| c * ambient),
     };
     let matrix = shadow.map(|view| shadow_from_relative(view, eye));
     let texel = shadow.map_or(0.0, |view| view.pixel_m(1.0));
@@ -84,7 +82,7 @@ pub fn uniform(
         reserved_1: 0.0,
         shadow_from_relative: matrix.unwrap_or_default().as_mat4().to_cols_array_2d(),
         zenith,
-        background: kind,
+        reserved_2: 0,
         horizon: palette::linear([0.90, 0.925, 0.94]).map(|c| c * ambient),
         scene_radius: scene_radius as f32,
     }

@@ -14,6 +14,7 @@ pub mod palette;
 pub mod picture;
 pub mod pipelines;
 pub mod renderer;
+mod sprites;
 pub mod stats;
 mod surfaces;
 mod synced;

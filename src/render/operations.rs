@@ -1,4 +1,4 @@
-//! What the context and the lenses do, as one list for the shader: bottom lens first (L6).
+//! What the context and the lenses do, as one list: bottom lens first (L6).
 
 use crate::{
     city::CityModel,
@@ -7,27 +7,38 @@ use crate::{
         thematic::{ThematicError, ThematicScale},
     },
     render::{layout, palette},
-    shader,
+    shader::{self, ClassTest, Plan, PlanLens, Scope, Step},
 };
 
 /// Width of a lens outline, pixels.
 const OUTLINE_PX: f32 = 1.6;
 
+/// Parameters and volumes that one pipeline may read: a uniform buffer of 64 KiB, which every adapter binds, holds
+/// more than so many.
+pub const MOST: usize = 1024;
+
+/// One use of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Operation {
+    /// Index into [`shader::EFFECTS`].
+    pub effect: u32,
+    /// Which lens, or `None`: everywhere.
+    pub lens: Option<u32>,
+    /// On which of its classes.
+    pub class: Class,
+}
+
 /// The operations of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Operations {
-    /// The shader's block: count, then [`layout::Operation`]s.
-    pub bytes: Vec<u8>,
+    /// Effects in order; their parameters stand at the same place in `parameters`.
+    pub list: Vec<Operation>,
+    /// Lenses that show their silhouette; their parameters follow those of the list.
+    pub outlines: Vec<u32>,
+    /// Parameters of all of them.
+    pub parameters: Vec<layout::Parameters>,
     /// Colours of objects, one run per thematic effect, sRGB bytes.
     pub object_colors: Vec<u32>,
-    /// Numbers of all effects in the list, ascending.
-    pub effects: Vec<u32>,
-    /// Numbers of the context's effects, ascending.
-    pub context_effects: Vec<u32>,
-    /// Whether some lens shows its silhouette.
-    pub outlines: bool,
-    /// Whether some lens acts on another class than *inside*.
-    pub other_classes: bool,
 }
 
 impl Operations {
@@ -40,46 +51,62 @@ impl Operations {
         model: &CityModel,
     ) -> Result<Self, ThematicError> {
         let mut out = Self::default();
-        let mut list = Vec::new();
         for effect in context {
-            list.extend(out.operation(effect, layout::CONTEXT, model)?);
+            out.add(effect, None, model)?;
         }
-        out.context_effects = out.effects.clone();
         let active = || lenses.iter().enumerate().filter(|(i, _)| visible.get(*i) == Some(&true));
         for (i, lens) in active() {
             for effect in &lens.effects {
-                out.other_classes |= effect.class != Class::Inside;
-                list.extend(out.operation(effect, i as u32, model)?);
+                out.add(effect, Some(i as u32), model)?;
             }
         }
         for (i, lens) in active().filter(|(_, lens)| lens.body == LensBody::Outline) {
-            out.outlines = true;
             let [r, g, b] = palette::linear(lens.color);
-            list.push(layout::Operation {
-                effect: layout::OUTLINE,
-                lens: i as u32,
-                parameters: layout::Parameters { a: [r, g, b, 0.92], b: [OUTLINE_PX, 0.0, 0.0, 0.0] },
-                ..Default::default()
-            });
+            out.outlines.push(i as u32);
+            out.parameters.push(layout::Parameters { a: [r, g, b, 0.92], b: [OUTLINE_PX, 0.0, 0.0, 0.0] });
         }
-        let mut header = [0_u32; 4];
-        header[0] = list.len() as u32;
-        out.bytes.extend_from_slice(bytemuck::cast_slice(&header));
-        list.resize(list.len().max(1), layout::Operation::default());
-        out.bytes.extend_from_slice(bytemuck::cast_slice(&list));
         Ok(out)
     }
 
-    fn operation(
-        &mut self,
-        effect: &EffectUse,
-        lens: u32,
-        model: &CityModel,
-    ) -> Result<Option<layout::Operation>, ThematicError> {
-        let Some(number) = shader::effect_number(&effect.effect) else { return Ok(None) };
-        if let Err(place) = self.effects.binary_search(&number) {
-            self.effects.insert(place, number);
+    /// What shading has to do outside all lenses.
+    pub fn context_plan(&self) -> Plan {
+        Plan { steps: self.steps(|_| None), ..Plan::default() }
+    }
+
+    /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending. With `masks`
+    /// every pixel's classes are written down.
+    pub fn lens_plan(&self, seen: &[u32], masks: bool) -> Plan {
+        let mut lenses: Vec<PlanLens> = Vec::new();
+        let mut numbers = Vec::new();
+        for &lens in seen {
+            if numbers.last() == Some(&lens) {
+                lenses[numbers.len() - 1].volumes += 1;
+                continue;
+            }
+            let line = self.outlines.iter().position(|&o| o == lens).map(|i| (self.list.len() + i) as u32);
+            // Without masks nobody asks for a lens' number: equal plans are equal then.
+            let number = if masks { lens } else { numbers.len() as u32 };
+            lenses.push(PlanLens { number, volumes: 1, outline: line });
+            numbers.push(lens);
         }
+        let steps = self.steps(|lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32));
+        Plan { lenses, steps, masks }
+    }
+
+    /// The list as steps; `place` finds a lens in the plan.
+    fn steps(&self, place: impl Fn(u32) -> Option<u32>) -> Vec<Step> {
+        let step = |(i, operation): (usize, &Operation)| {
+            let scope = match operation.lens {
+                None => Scope::Everywhere,
+                Some(lens) => Scope::Lens(place(lens)?, class_test(operation.class)),
+            };
+            Some(Step { effect: operation.effect, scope, parameters: i as u32 })
+        };
+        self.list.iter().enumerate().filter_map(step).collect()
+    }
+
+    fn add(&mut self, effect: &EffectUse, lens: Option<u32>, model: &CityModel) -> Result<(), ThematicError> {
+        let Some(number) = shader::effect_number(&effect.effect) else { return Ok(()) };
         let mut parameters = layout::Parameters::default();
         if effect.effect == "thematic" {
             parameters.a[0] = self.object_colors.len() as f32;
@@ -91,22 +118,17 @@ impl Operations {
         } else {
             parameters.a[0] = effect.amount();
         }
-        Ok(Some(layout::Operation {
-            effect: number,
-            lens,
-            class_: class_number(effect.class),
-            parameters,
-            reserved: 0,
-        }))
+        self.parameters.push(parameters);
+        self.list.push(Operation { effect: number, lens, class: effect.class });
+        Ok(())
     }
 }
 
-/// `pass/shade.wgsl`.
-fn class_number(class: Class) -> u32 {
+fn class_test(class: Class) -> ClassTest {
     match class {
-        Class::Inside => 0,
-        Class::Front => 1,
-        Class::Behind => 2,
-        Class::Rest => 3,
+        Class::Inside => ClassTest::Inside,
+        Class::Front => ClassTest::Front,
+        Class::Behind => ClassTest::Behind,
+        Class::Rest => ClassTest::Rest,
     }
 }

@@ -18,7 +18,7 @@ use crate::{
         city::Shown,
         eye::PictureTile,
         frame::{CLEAR_MASKS, FrameInput, PassRecord},
-        operations::Operations,
+        operations::{MOST, Operations},
         stats::{self, Statistics},
         volume::LensVolume,
     },
@@ -215,6 +215,12 @@ impl Studio {
         }
         let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, &self.model)
             .map_err(|error| RenderError::Scene(error.to_string()))?;
+        for (what, count) in [("volumes", volumes.len()), ("effects and outlines", operations.parameters.len())] {
+            if count > MOST {
+                let message = format!("the lenses have {count} {what} together; one picture takes {MOST}");
+                return Err(RenderError::Scene(message));
+            }
+        }
         let sprite_resolution = scene.lenses.iter().map(|l| l.sprite_resolution).collect();
         Ok(Prepared { volumes, operations, sprite_resolution })
     }
@@ -313,11 +319,10 @@ impl Studio {
     fn read_masks(&self, scene_lens_count: usize, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
         let Some(targets) = self.renderer.targets() else { return Ok(()) };
         let size = picture.size;
-        // The card may hold more classes than were asked for.
-        let words = scene_lens_count.max(1).div_ceil(32);
-        let per_word = [picture.classes.len() / words, targets.needs.mask_layers as usize / words];
+        // The card holds all three classes, whether or not they were asked for.
+        let per_word = picture.classes.len() / scene_lens_count.max(1).div_ceil(32);
         for (i, plane) in picture.classes.iter_mut().enumerate() {
-            let layer = (i / per_word[0] * per_word[1] + i % per_word[0]) as u32;
+            let layer = (i / per_word * 3 + i % per_word) as u32;
             let bytes = self.renderer.gpu.read_texture(&targets.masks.texture, layer, wgpu::TextureAspect::All)?;
             put(plane, size, part, bytemuck::cast_slice::<u8, u32>(&bytes));
         }
@@ -336,20 +341,12 @@ impl Studio {
         let gpu = &self.renderer.gpu;
         let pipelines = self.renderer.pipelines();
         let city = self.renderer.city();
-        let ran = passes.iter().any(|p| p.name == "shade");
-        let handlers = if !ran { &[] as &[u32] } else { &prepared.operations.effects };
         let lens_seen = |i: usize| {
             prepared
                 .volumes
                 .iter()
                 .any(|v| v.lens as usize == i && v.screen_bounds(view, whole(request.size)).is_some())
         };
-        let any_seen = (0..scene.lenses.len()).any(lens_seen);
-        let handlers = handlers
-            .iter()
-            .filter(|e| any_seen || prepared.operations.context_effects.contains(e))
-            .map(|&e| crate::shader::EFFECTS[e as usize].name.to_owned())
-            .collect();
         Statistics {
             adapter: stats::Adapter {
                 name: gpu.info.name.clone(),
@@ -374,7 +371,7 @@ impl Studio {
                 reused: pipelines.used.len() as u32 - pipelines.compiled,
                 names: pipelines.used.iter().map(crate::render::pipelines::Key::name).collect(),
             },
-            handlers,
+            handlers: pipelines.handlers(),
             lenses: (0..scene.lenses.len())
                 .map(|i| lens_figures(self, scene, prepared, picture, i, lens_seen(i)))
                 .collect(),
@@ -410,7 +407,7 @@ fn input<'a>(
         sprite_resolution: &prepared.sprite_resolution,
         operations: &prepared.operations,
         measured: request.aovs.depth,
-        all_classes: request.statistics,
+        masks: request.statistics || request.aovs.lens_mask,
         sample: 0,
         samples: request.samples.max(1),
     }
@@ -549,9 +546,9 @@ fn collect(passes: &mut Vec<stats::Pass>, records: &[PassRecord], measures: &[cr
         passes.push(stats::Pass {
             name: record.name.to_owned(),
             view: record.view.to_owned(),
-            serves: match record.lens {
-                Some(lens) => serde_json::json!([lens]),
-                None => serde_json::json!("scene"),
+            serves: match &record.lenses[..] {
+                [] => serde_json::json!("scene"),
+                lenses => serde_json::json!(lenses),
             },
             draws: record.draws,
             triangles: record.triangles,

@@ -2,7 +2,11 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::{gpu::Gpu, render::layout, shader::Module};
+use crate::{
+    gpu::Gpu,
+    render::layout,
+    shader::{EFFECTS, Module, Plan},
+};
 
 /// Depth everywhere: reversed, f32.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -39,14 +43,10 @@ pub enum Key {
     SpriteEntry(u32),
     /// Farthest exit from it; both by the kind of shape (`layout::Shape::kind`).
     SpriteExit(u32),
-    /// The depth test; mask layers per 32 lenses: 3, or 1 where only *inside* is asked for.
-    LensMask(u32),
     /// Shading.
     Shade {
-        /// Effect numbers, ascending.
-        effects: Vec<u32>,
-        /// For the part of the picture that meets a lens.
-        lenses: bool,
+        /// What the context and the lenses do.
+        plan: Plan,
         /// Base colours come from a target.
         textured: bool,
         /// One clay colour.
@@ -55,14 +55,12 @@ pub enum Key {
         summed: bool,
         /// There is a shadow map.
         shadows: bool,
-        /// Some lens shows its silhouette.
-        outlines: bool,
-        /// Mask layers per 32 lenses.
-        mask_layers: u32,
         /// The air shows.
         haze: bool,
         /// Normals are in the target.
         smooth: bool,
+        /// What is behind the city, as `pass/shade.wgsl` numbers it.
+        background: u32,
     },
     /// The mean of samples.
     Resolve,
@@ -81,15 +79,6 @@ pub enum GeometryKind {
     Coplanar,
 }
 
-/// A render or compute pipeline.
-#[derive(Debug)]
-pub enum Pipeline {
-    /// Draws.
-    Render(wgpu::RenderPipeline),
-    /// Computes.
-    Compute(wgpu::ComputePipeline),
-}
-
 /// All pipelines and the layouts they share.
 #[derive(Debug)]
 pub struct Pipelines {
@@ -101,20 +90,18 @@ pub struct Pipelines {
     pub image: wgpu::BindGroupLayout,
     /// Sprite, group 1: shapes, planes.
     pub shapes: wgpu::BindGroupLayout,
-    /// Sprite and mask, group 2: the stage, at a dynamic offset.
+    /// Sprite, group 2: the stage, at a dynamic offset.
     pub stage: wgpu::BindGroupLayout,
-    /// Mask, group 1: depths and masks.
-    pub mask: wgpu::BindGroupLayout,
     /// Shade, group 1: surfaces, light, targets.
     pub shade: wgpu::BindGroupLayout,
-    /// Shade, group 2: masks, operations, colours.
+    /// Shade, group 2: sprites, colours, parameters, volumes, masks.
     pub lenses: wgpu::BindGroupLayout,
     /// Resolve, group 0.
     pub resolve: wgpu::BindGroupLayout,
     /// Where samples are summed: f32 where it can be blended, else f16.
     pub sums: wgpu::TextureFormat,
     modules: FxHashMap<Module, wgpu::ShaderModule>,
-    made: FxHashMap<Key, Pipeline>,
+    made: FxHashMap<Key, wgpu::RenderPipeline>,
     /// Pipelines made since the last [`Pipelines::begin_picture`].
     pub compiled: u32,
     /// Keys of the pipelines used since then, in order of first use.
@@ -154,8 +141,9 @@ impl Pipelines {
         let float = image(T::Float { filterable: false }, D::D2);
         let depth = image(T::Depth, D::D2);
         let surfaces = image(T::Uint, D::D2);
+        let sprites = image(T::Depth, D::D2Array);
         let masks = B::StorageTexture {
-            access: wgpu::StorageTextureAccess::ReadWrite,
+            access: wgpu::StorageTextureAccess::WriteOnly,
             format: MASKS,
             view_dimension: D::D2Array,
         };
@@ -164,7 +152,7 @@ impl Pipelines {
         } else {
             wgpu::TextureFormat::Rgba16Float
         };
-        let all = S::VERTEX | S::FRAGMENT | S::COMPUTE;
+        let all = S::VERTEX | S::FRAGMENT;
         let dynamic = buffer(wgpu::BufferBindingType::Uniform, true);
         let filtered = B::Sampler(wgpu::SamplerBindingType::Filtering);
         let compared = B::Sampler(wgpu::SamplerBindingType::Comparison);
@@ -177,12 +165,7 @@ impl Pipelines {
                 &[(0, S::FRAGMENT, image(T::Float { filterable: true }, D::D2)), (1, S::FRAGMENT, filtered)],
             ),
             shapes: layout(gpu, "shapes", &[(0, S::FRAGMENT, storage()), (1, S::FRAGMENT, storage())]),
-            stage: layout(gpu, "stage", &[(0, S::FRAGMENT | S::COMPUTE, dynamic)]),
-            mask: layout(
-                gpu,
-                "mask",
-                &[(0, S::COMPUTE, depth), (1, S::COMPUTE, depth), (2, S::COMPUTE, depth), (3, S::COMPUTE, masks)],
-            ),
+            stage: layout(gpu, "stage", &[(0, S::FRAGMENT, dynamic)]),
             shade: layout(
                 gpu,
                 "shade",
@@ -200,9 +183,12 @@ impl Pipelines {
                 gpu,
                 "lenses",
                 &[
-                    (0, S::FRAGMENT, image(T::Uint, D::D2Array)),
-                    (1, S::FRAGMENT, storage()),
+                    (0, S::FRAGMENT, sprites),
+                    (1, S::FRAGMENT, sprites),
                     (2, S::FRAGMENT, storage()),
+                    (3, S::FRAGMENT, uniform()),
+                    (4, S::FRAGMENT, uniform()),
+                    (5, S::FRAGMENT, masks),
                 ],
             ),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
@@ -232,20 +218,22 @@ impl Pipelines {
         }
     }
 
-    /// A prepared render pipeline.
-    pub fn render(&self, key: &Key) -> &wgpu::RenderPipeline {
-        match self.made.get(key) {
-            Some(Pipeline::Render(pipeline)) => pipeline,
-            _ => unreachable!("{key:?} was not prepared as a render pipeline"),
-        }
+    /// A prepared pipeline.
+    pub fn get(&self, key: &Key) -> &wgpu::RenderPipeline {
+        self.made.get(key).unwrap_or_else(|| unreachable!("{key:?} was not prepared"))
     }
 
-    /// A prepared compute pipeline.
-    pub fn compute(&self, key: &Key) -> &wgpu::ComputePipeline {
-        match self.made.get(key) {
-            Some(Pipeline::Compute(pipeline)) => pipeline,
-            _ => unreachable!("{key:?} was not prepared as a compute pipeline"),
+    /// Names of the effects that ran since the last [`Pipelines::begin_picture`], each once.
+    pub fn handlers(&self) -> Vec<String> {
+        let mut numbers: Vec<u32> = Vec::new();
+        for key in &self.used {
+            if let Key::Shade { plan, .. } = key {
+                numbers.extend(plan.effects());
+            }
         }
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers.into_iter().map(|e| EFFECTS[e as usize].name.to_owned()).collect()
     }
 
     fn module(&mut self, gpu: &Gpu, module: Module) -> wgpu::ShaderModule {
@@ -258,7 +246,7 @@ impl Pipelines {
         self.modules.entry(module.clone()).or_insert_with(|| make(&module)).clone()
     }
 
-    fn make(&mut self, gpu: &Gpu, key: &Key) -> Pipeline {
+    fn make(&mut self, gpu: &Gpu, key: &Key) -> wgpu::RenderPipeline {
         let module = self.module(gpu, key.module());
         let groups: Vec<Option<&wgpu::BindGroupLayout>> = match key {
             Key::Geometry { section: GeometryKind::Textured(_), .. } => {
@@ -266,7 +254,6 @@ impl Pipelines {
             }
             Key::Geometry { .. } | Key::Shadow | Key::Bare => vec![Some(&self.view), Some(&self.city)],
             Key::SpriteEntry(_) | Key::SpriteExit(_) => vec![Some(&self.view), Some(&self.shapes), Some(&self.stage)],
-            Key::LensMask(_) => vec![Some(&self.view), Some(&self.mask), Some(&self.stage)],
             Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
             Key::Resolve => vec![Some(&self.resolve)],
         };
@@ -278,20 +265,10 @@ impl Pipelines {
         });
         let constants = key.constants();
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
-        if matches!(key, Key::LensMask(_)) {
-            return Pipeline::Compute(gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(&name),
-                layout: Some(&layout),
-                module: &module,
-                entry_point: Some("main"),
-                compilation_options: options,
-                cache: None,
-            }));
-        }
         let (vertex_entry, fragment_entry) = key.entry_points();
         let targets = key.targets(self.sums);
         let buffers = key.vertex_buffers();
-        Pipeline::Render(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(&name),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
@@ -311,7 +288,7 @@ impl Pipelines {
             }),
             multiview_mask: None,
             cache: None,
-        }))
+        })
     }
 }
 
@@ -339,8 +316,7 @@ impl Key {
             Self::Geometry { .. } => Module::Geometry,
             Self::Shadow => Module::Shadow,
             Self::SpriteEntry(_) | Self::SpriteExit(_) => Module::Sprite,
-            Self::LensMask(_) => Module::LensMask,
-            Self::Shade { effects, .. } => Module::Shade(effects.clone()),
+            Self::Shade { plan, .. } => Module::Shade(plan.clone()),
             Self::Resolve => Module::Resolve,
             Self::Bare => Module::Bare,
         }
@@ -364,15 +340,8 @@ impl Key {
             Self::Shadow => "shadow".to_owned(),
             Self::SpriteEntry(kind) => format!("sprite entry of a {}", shape_name(*kind)),
             Self::SpriteExit(kind) => format!("sprite exit of a {}", shape_name(*kind)),
-            Self::LensMask(_) => "lens mask".to_owned(),
-            Self::Shade { lenses, textured, clay, summed, shadows, .. } => {
-                let list = [
-                    (*lenses, "lenses"),
-                    (*textured, "textured"),
-                    (*clay, "clay"),
-                    (*summed, "summed"),
-                    (*shadows, "shadows"),
-                ];
+            Self::Shade { textured, clay, summed, shadows, .. } => {
+                let list = [(*textured, "textured"), (*clay, "clay"), (*summed, "summed"), (*shadows, "shadows")];
                 format!("{}{}", self.module().name(), flags(&list))
             }
             Self::Resolve => "resolve".to_owned(),
@@ -390,18 +359,15 @@ impl Key {
                 }
                 list
             }
-            Self::Shade { lenses, textured, clay, summed, shadows, outlines, mask_layers, haze, smooth, .. } => vec![
-                ("LENSES", flag(*lenses)),
+            Self::Shade { textured, clay, summed, shadows, haze, smooth, background, .. } => vec![
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
                 ("SUMMED", flag(*summed)),
                 ("SHADOWS", flag(*shadows)),
-                ("OUTLINES", flag(*outlines)),
-                ("MASK_LAYERS", f64::from(*mask_layers)),
                 ("HAZE", flag(*haze)),
                 ("SMOOTH", flag(*smooth)),
+                ("BACKGROUND", f64::from(*background)),
             ],
-            Self::LensMask(layers) => vec![("MASK_LAYERS", f64::from(*layers))],
             Self::SpriteEntry(kind) | Self::SpriteExit(kind) => vec![("KIND", f64::from(*kind))],
             _ => Vec::new(),
         }

@@ -20,8 +20,8 @@ pub struct Needs {
     pub sums: bool,
     /// Layers of the lens masks, 0 for none.
     pub mask_layers: u32,
-    /// Width and height of the depth sprites, 0 for none.
-    pub sprite: [u32; 2],
+    /// Width and height of the pages of depth sprites and how many there are, 0 for none.
+    pub sprites: [u32; 3],
     /// Side of the shadow map, 0 for none.
     pub shadow: u32,
 }
@@ -54,12 +54,12 @@ pub struct Targets {
     pub picture: Target,
     /// Sums of samples, linear (1×1 where not needed).
     pub sums: Target,
-    /// One bit per lens; layers 3w inside, 3w+1 in front, 3w+2 behind, or w inside (1×1 where not needed).
+    /// One bit per lens; layers 3w inside, 3w+1 in front, 3w+2 behind (1×1 where not needed).
     pub masks: Target,
-    /// Nearest entries of the sprite at work.
-    pub entry: Target,
-    /// Farthest exits of it.
-    pub exit: Target,
+    /// Nearest entries into lens volumes.
+    pub entries: Target,
+    /// Farthest exits from them.
+    pub exits: Target,
     /// Depth from the sun (1×1 where not needed).
     pub shadow: Target,
 }
@@ -69,11 +69,9 @@ impl Targets {
     pub fn new(gpu: &Gpu, needs: Needs, sums: wgpu::TextureFormat) -> Self {
         use wgpu::TextureUsages as U;
         let drawn = U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC;
-        let make = |label: &str, size: [u32; 3], format, usage| {
-            let size = [size[0].max(1), size[1].max(1), size[2]];
+        let make_any = |label: &str, size: [u32; 3], format, usage, layered: bool| {
+            let size = size.map(|side| side.max(1));
             let texture = gpu.texture(label, size, 1, format, usage);
-            // Only the masks are written by a compute pass, and only they have layers.
-            let layered = usage.contains(U::STORAGE_BINDING);
             let array = layered.then_some(wgpu::TextureViewDimension::D2Array);
             let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension: array, ..Default::default() });
             let layer = |i| {
@@ -87,9 +85,9 @@ impl Targets {
             let layers = if layered { (0..size[2]).map(layer).collect() } else { Vec::new() };
             Target { view, layers, texture }
         };
+        let make = |label: &str, size, format, usage| make_any(label, size, format, usage, false);
         let [w, h] = needs.size;
         let full = |on: bool| if on { [w, h, 1] } else { [1, 1, 1] };
-        let [sw, sh] = needs.sprite;
         let mask_size = if needs.mask_layers > 0 { [w, h, needs.mask_layers] } else { [1, 1, 1] };
         Self {
             needs,
@@ -99,9 +97,9 @@ impl Targets {
             own_depth: make("own depth", full(needs.own_depth), OWN_DEPTH, drawn),
             picture: make("picture", [w, h, 1], PICTURE, drawn),
             sums: make("sums", full(needs.sums), sums, drawn),
-            masks: make("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING),
-            entry: make("sprite entry", [sw, sh, 1], DEPTH, drawn),
-            exit: make("sprite exit", [sw, sh, 1], DEPTH, drawn),
+            masks: make_any("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING, true),
+            entries: make_any("sprite entries", needs.sprites, DEPTH, drawn, true),
+            exits: make_any("sprite exits", needs.sprites, DEPTH, drawn, true),
             shadow: make("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn),
         }
     }

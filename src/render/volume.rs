@@ -82,20 +82,9 @@ impl LensVolume {
         if self.bounds.is_empty() || !view.frustum(MARGIN_PX).meets(&self.bounds) {
             return None;
         }
-        let corners = self.bounds.corners();
-        let near = view.camera.near_m;
-        let mut low = DVec2::INFINITY;
-        let mut high = DVec2::NEG_INFINITY;
-        for corner in corners {
-            match view.pixel(corner).filter(|p| view.is_orthographic() || p.z > near) {
-                Some(p) => {
-                    low = low.min(p.truncate());
-                    high = high.max(p.truncate());
-                }
-                // A corner beside or behind the eye: its projection bounds nothing.
-                None => return Some(tile).map(|t| PictureTile { origin: [0, 0], size: t.size }),
-            }
-        }
+        let whole = Some(PictureTile::whole(tile.size));
+        // What lies beside or behind the eye bounds nothing.
+        let Some((low, high)) = self.projected(view) else { return whole };
         let origin = DVec2::new(tile.origin[0].into(), tile.origin[1].into());
         let size = DVec2::new(tile.size[0].into(), tile.size[1].into());
         let low = (low - origin - MARGIN_PX).floor().clamp(DVec2::ZERO, size);
@@ -103,5 +92,90 @@ impl LensVolume {
         let extent = high - low;
         (extent.x > 0.0 && extent.y > 0.0)
             .then_some(PictureTile { origin: [low.x as u32, low.y as u32], size: [extent.x as u32, extent.y as u32] })
+    }
+
+    /// Box around its projection, pixels; `None` where it reaches behind the near plane.
+    fn projected(&self, view: &View) -> Option<(DVec2, DVec2)> {
+        let corners = match &self.volume {
+            Volume::Sphere { center, radius } if !view.is_orthographic() => {
+                return projected_sphere(view, *center, *radius);
+            }
+            Volume::Sphere { .. } => self.bounds.corners().to_vec(),
+            Volume::Box { center, half, rotation } => corners_of_box(*center, DMat3::from_quat(*rotation), *half),
+            Volume::Cylinder { center, radius, half, axis } => {
+                let (x, y) = axis.any_orthonormal_pair();
+                corners_of_box(*center, DMat3::from_cols(x, y, *axis), DVec3::new(*radius, *radius, *half))
+            }
+            Volume::Convex(hull) => hull.faces().0,
+        };
+        let mut low = DVec2::INFINITY;
+        let mut high = DVec2::NEG_INFINITY;
+        for corner in corners {
+            let p = view.pixel(corner).filter(|p| view.is_orthographic() || p.z > view.camera.near_m)?;
+            low = low.min(p.truncate());
+            high = high.max(p.truncate());
+        }
+        Some((low, high))
+    }
+}
+
+fn corners_of_box(center: DVec3, axes: DMat3, half: DVec3) -> Vec<DVec3> {
+    let sign = |i: u32, bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+    (0..8).map(|i| center + axes * (half * DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)))).collect()
+}
+
+/// Box around a sphere's ellipse in a perspective picture: in the plane of an image axis and the view axis, the sphere
+/// is a disc, and the ellipse ends where the eye's tangents to it go (Mara and McGuire 2013).
+fn projected_sphere(view: &View, center: DVec3, radius: f64) -> Option<(DVec2, DVec2)> {
+    let c = view.basis.view_from_world() * (center - view.camera.eye);
+    let depth = -c.z;
+    if depth - radius <= view.camera.near_m {
+        return None;
+    }
+    let world_from_view = view.basis.view_from_world().transpose();
+    let pixel = |slope: DVec2| view.pixel(view.camera.eye + world_from_view * slope.extend(-1.0) * depth);
+    let across = DVec2::new(c.x, c.y);
+    let reach = radius * (across * across + depth * depth - radius * radius).map(f64::sqrt);
+    let inv = 1.0 / (depth * depth - radius * radius);
+    let (a, b) = (pixel((across * depth - reach) * inv)?, pixel((across * depth + reach) * inv)?);
+    Some((a.truncate().min(b.truncate()), a.truncate().max(b.truncate())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{geom::Shape, view::Camera};
+
+    #[test]
+    fn the_bounds_of_a_volume_hold_it_and_touch_it() {
+        let camera = Camera::looking(DVec3::new(3.0, -40.0, 12.0), DVec3::new(1.0, 5.0, 2.0), 0.9);
+        let view = View::new(camera, [640, 480], &Aabb::EMPTY).expect("a view");
+        let at = DVec3::new(-6.0, 4.0, 3.0);
+        let shapes = [
+            Shape::Sphere { center: at, radius: 9.0 },
+            Shape::Box {
+                center: at,
+                size: DVec3::new(4.0, 7.0, 11.0),
+                rotation: glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.3, -0.2, 0.9),
+            },
+        ];
+        for shape in shapes {
+            let volume = shape.volume().expect("a volume");
+            let lens = LensVolume { lens: 0, bounds: volume.bounds(), volume, everywhere: false };
+            let (low, high) = lens.projected(&view).expect("it is in front of the eye");
+            let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+            for (x, y) in (0..480).flat_map(|y| (0..640).map(move |x| (x, y))) {
+                if lens.volume.entry_exit(&view.pixel_ray(x, y)).is_some() {
+                    let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                    (least, most) = (least.min(p), most.max(p));
+                }
+            }
+            assert!(least.cmpge(low).all() && most.cmple(high).all(), "{low} {high} does not hold {least} {most}");
+            // A sharp corner may pass between the centres of some rows.
+            assert!(
+                (least - low).max_element() < 3.0 && (high - most).max_element() < 3.0,
+                "{low} {high} {least} {most}"
+            );
+        }
     }
 }

@@ -3,6 +3,10 @@
 //! No wgpu handle lives here. Entry points stand in `shaders/pass` alone; everything else is importable
 //! and free of side effects.
 
+mod plan;
+
+pub use plan::{ClassTest, Plan, PlanLens, Scope, Step};
+
 macro_rules! files {
     ($($name:ident = $path:literal;)*) => {
         $(const $name: (&str, &str) = ($path, include_str!(concat!("../../shaders/", $path)));)*
@@ -15,10 +19,11 @@ files! {
     COLOR = "lib/color.wgsl";
     SHAPE = "lib/shape.wgsl";
     LIGHT = "lib/light.wgsl";
+    LENS = "lib/lens.wgsl";
+    OUTLINE = "lib/outline.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
     SHADOW = "pass/shadow.wgsl";
     SPRITE = "pass/sprite.wgsl";
-    LENS_MASK = "pass/lens_mask.wgsl";
     SHADE = "pass/shade.wgsl";
     RESOLVE = "pass/resolve.wgsl";
     BARE = "pass/bare.wgsl";
@@ -57,10 +62,8 @@ pub enum Module {
     Shadow,
     /// The two stages of a volumetric depth sprite.
     Sprite,
-    /// The volumetric depth test.
-    LensMask,
-    /// Deferred shading with these effects (numbers, ascending, each once).
-    Shade(Vec<u32>),
+    /// Deferred shading, and what the lenses make of it.
+    Shade(Plan),
     /// The mean of samples.
     Resolve,
     /// The bare lit draw that benchmarks compare with.
@@ -74,11 +77,11 @@ impl Module {
             Self::Geometry => "geometry".to_owned(),
             Self::Shadow => "shadow".to_owned(),
             Self::Sprite => "sprite".to_owned(),
-            Self::LensMask => "lens mask".to_owned(),
-            Self::Shade(effects) if effects.is_empty() => "shade".to_owned(),
-            Self::Shade(effects) => {
-                let names: Vec<&str> = effects.iter().map(|&e| EFFECTS[e as usize].name).collect();
-                format!("shade ({})", names.join(", "))
+            Self::Shade(plan) => {
+                let names: Vec<&str> = plan.effects().iter().map(|&e| EFFECTS[e as usize].name).collect();
+                let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
+                let lenses = if plan.lenses.is_empty() { "" } else { " lenses" };
+                format!("shade{names}{lenses}")
             }
             Self::Resolve => "resolve".to_owned(),
             Self::Bare => "bare".to_owned(),
@@ -91,7 +94,8 @@ impl Module {
             Self::Geometry => &[VIEW, SURFACE, GEOMETRY],
             Self::Shadow => &[VIEW, SURFACE, SHADOW],
             Self::Sprite => &[VIEW, SHAPE, SPRITE],
-            Self::LensMask => &[VIEW, LENS_MASK],
+            Self::Shade(plan) if plan.has_outlines() => &[VIEW, SURFACE, COLOR, LIGHT, LENS, OUTLINE, SHADE],
+            Self::Shade(plan) if !plan.lenses.is_empty() => &[VIEW, SURFACE, COLOR, LIGHT, LENS, SHADE],
             Self::Shade(_) => &[VIEW, SURFACE, COLOR, LIGHT, SHADE],
             Self::Resolve => &[RESOLVE],
             Self::Bare => &[VIEW, SURFACE, BARE],
@@ -101,59 +105,44 @@ impl Module {
             text.push_str(&format!("// ==== {path}\n\n{source}\n"));
         }
         match self {
-            Self::Shade(effects) => text.replace("//@apply\n", &apply(effects)),
+            Self::Shade(plan) => text.replace("//@apply\n", &plan.source()),
             _ => text,
         }
     }
-}
-
-/// The effects' own functions and the list that calls them.
-fn apply(effects: &[u32]) -> String {
-    if effects.is_empty() {
-        return "fn apply(color: vec3f, point: Point, pixel: vec2i) -> vec3f {\n    return color;\n}\n".to_owned();
-    }
-    let mut text = String::new();
-    let mut cases = String::new();
-    for &number in effects {
-        let effect = &EFFECTS[number as usize];
-        text.push_str(effect.source);
-        text.push('\n');
-        let call = format!("color = {}(color, point, operation.parameters);", effect.name);
-        let guarded = if effect.surfaces_only { format!("if point.surface != NO_SURFACE {{ {call} }}") } else { call };
-        cases.push_str(&format!("            case {number}u: {{ {guarded} }}\n"));
-    }
-    text.push_str(&format!(
-        "fn apply(start: vec3f, point: Point, pixel: vec2i) -> vec3f {{
-    var color = start;
-    for (var i = 0u; i < operations.count; i++) {{
-        let operation = operations.list[i];
-        if operation.effect == OUTLINE || (!LENSES && operation.lens != CONTEXT) {{
-            continue;
-        }}
-        if !in_class(pixel, operation.lens, operation.class_) {{
-            continue;
-        }}
-        switch operation.effect {{
-{cases}            default: {{}}
-        }}
-    }}
-    return color;
-}}
-"
-    ));
-    text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn all_modules() -> Vec<Module> {
-        let mut modules =
-            vec![Module::Geometry, Module::Shadow, Module::Sprite, Module::LensMask, Module::Resolve, Module::Bare];
-        for set in 0..1_u32 << EFFECTS.len() {
-            modules.push(Module::Shade((0..EFFECTS.len() as u32).filter(|e| set >> e & 1 == 1).collect()));
+    /// Every effect everywhere, and two lenses with every pair of effects and classes.
+    fn plans() -> Vec<Plan> {
+        let effects = 0..EFFECTS.len() as u32;
+        let step = |effect, scope, parameters| Step { effect, scope, parameters };
+        let mut plans = vec![Plan::default()];
+        plans.extend(effects.clone().map(|e| Plan { steps: vec![step(e, Scope::Everywhere, 0)], ..Plan::default() }));
+        for (a, b) in effects.clone().flat_map(|a| effects.clone().map(move |b| (a, b))) {
+            for class in [ClassTest::Inside, ClassTest::Front, ClassTest::Behind, ClassTest::Rest] {
+                for masks in [false, true] {
+                    let lens = |number, volumes, outline| PlanLens { number, volumes, outline };
+                    plans.push(Plan {
+                        lenses: vec![lens(0, 1, None), lens(40, 2, masks.then_some(3))],
+                        steps: vec![
+                            step(a, Scope::Everywhere, 0),
+                            step(a, Scope::Lens(0, class), 1),
+                            step(b, Scope::Lens(1, class), 2),
+                        ],
+                        masks,
+                    });
+                }
+            }
         }
+        plans
+    }
+
+    fn all_modules() -> Vec<Module> {
+        let mut modules = vec![Module::Geometry, Module::Shadow, Module::Sprite, Module::Resolve, Module::Bare];
+        modules.extend(plans().into_iter().map(Module::Shade));
         modules
     }
 
@@ -177,8 +166,10 @@ mod tests {
 
     #[test]
     fn an_effect_nobody_uses_is_not_in_the_text() {
-        let source = Module::Shade(vec![0]).source();
+        let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0 }];
+        let source = Module::Shade(Plan { steps, ..Plan::default() }).source();
         assert!(source.contains("fn greyscale"));
         assert!(!source.contains("fn sepia") && !source.contains("fn thematic"));
+        assert!(!source.contains("sprite_exits"), "a lens that is not there is in the shader");
     }
 }
