@@ -148,10 +148,12 @@ fn with_lens(v: &str, scene: &Scene, studio: &mut Studio) -> Scene {
         }];
         lensed
     };
-    // From the street a lens at the camera's target is behind the first houses: it stands among them.
-    let distance = camera.eye.distance(camera.target);
-    let distance = if distance < 100.0 { 30.0 } else { distance };
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: Aovs::default(), statistics: true };
+    // Around the shown surface in the middle of the picture.
+    let aovs = Aovs { depth: true, ..Aovs::default() };
+    let request = Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: true };
+    let depth = studio.render(scene, &request).expect("a picture").depth.expect("its depth");
+    let distance = f64::from(depth[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize]);
+    assert!(distance.is_finite(), "nothing stands in the middle of the picture");
     let mut share = |radius: f64| {
         let figures = studio.render(&of(radius, distance), &request).expect("a picture").statistics;
         figures.lenses[0].covered as f64 / f64::from(SIZE[0] * SIZE[1])

@@ -144,7 +144,11 @@ fn vertex_coplanar(in: Vertex, plane: Plane) -> CoplanarVarying {
     let face = placed(in);
     let room = dot(plane.normal, relative_to_eye(plane.origin, vec3f(0.0))) + plane.offset;
     let seen = plane_in_picture(view.view_from_world * plane.normal, room);
-    return CoplanarVarying(face.clip, face.code, decode_normal(in.normal), seen);
+    var normal = vec3f(0.0);
+    if SMOOTH {
+        normal = decode_normal(in.normal);
+    }
+    return CoplanarVarying(face.clip, face.code, normal, seen);
 }
 
 // Where the plane is seen edge on, its depth leaves 0..1 or is no number: the interpolated one will do.

@@ -34,6 +34,9 @@ pub struct CoplanarTriangle {
     pub group: u32,
     /// Within the group, 0 and up, no two alike; of triangles at one place the highest is seen.
     pub priority: u32,
+    /// How many triangles lie below it at most, one on the other: triangles of one layer do not overlap, and one that
+    /// overlaps another has the higher layer if it has the higher priority.
+    pub layer: u32,
 }
 
 /// All triangles of the geometries `shown` that another shown triangle covers, whatever side they face: by group, then
@@ -50,7 +53,7 @@ pub fn coplanar_triangles(model: &CityModel, shown: &[u32]) -> Vec<CoplanarTrian
             for triangle in indices.start / 3..indices.end / 3 {
                 let group = model.planes[triangle as usize];
                 if group != 0 {
-                    members.push(CoplanarTriangle { tile: number, triangle, group, priority: 0 });
+                    members.push(CoplanarTriangle { tile: number, triangle, group, priority: 0, layer: 0 });
                 }
             }
         }
@@ -66,33 +69,45 @@ pub fn coplanar_triangles(model: &CityModel, shown: &[u32]) -> Vec<CoplanarTrian
 fn covered(model: &CityModel, group: &[CoplanarTriangle], ranks: &FxHashMap<StringId, u8>) -> Vec<CoplanarTriangle> {
     let corners: Vec<[DVec3; 3]> = group.iter().map(|member| world_corners(model, member)).collect();
     let flat = flatten(&corners, model.plane_equations[group[0].group as usize - 1].normal);
-    let covers: Vec<bool> = if group.len() <= PAIRWISE {
-        let covers_any = |i: usize| (0..group.len()).any(|j| i != j && overlap(&flat[i], &flat[j]));
-        (0..group.len()).map(covers_any).collect()
+    // Which others each one overlaps.
+    let others: Vec<Vec<u32>> = if group.len() <= PAIRWISE {
+        let of = |i: usize| -> Vec<u32> {
+            (0..group.len()).filter(|&j| i != j && overlap(&flat[i], &flat[j])).map(|j| j as u32).collect()
+        };
+        (0..group.len()).map(of).collect()
     } else {
         // Flat boxes of one plane may lie apart by the rounding of their tiles.
         let grown = |bounds: Aabb| Aabb { min: bounds.min - ROUNDING_M, max: bounds.max + ROUNDING_M };
         let boxes: Vec<Aabb> = corners.iter().map(|&corners| grown(Aabb::from_points(corners))).collect();
         let bvh = Bvh::build(&boxes);
-        let covers_any = |i: usize| {
-            let mut found = false;
-            bvh.in_box(&boxes[i], |j| found = found || j as usize != i && overlap(&flat[i], &flat[j as usize]));
+        let of = |i: usize| {
+            let mut found = Vec::new();
+            bvh.in_box(&boxes[i], |j| {
+                if j as usize != i && overlap(&flat[i], &flat[j as usize]) {
+                    found.push(j);
+                }
+            });
             found
         };
-        (0..group.len()).into_par_iter().map(covers_any).collect()
+        (0..group.len()).into_par_iter().map(of).collect()
     };
-    let mut found: Vec<CoplanarTriangle> =
-        group.iter().zip(covers).filter_map(|(member, covers)| covers.then_some(*member)).collect();
-    found.sort_by_cached_key(|member| {
+    let mut order: Vec<usize> = (0..group.len()).filter(|&i| !others[i].is_empty()).collect();
+    order.sort_by_cached_key(|&i| {
+        let member = &group[i];
         let surface = model.surfaces[first_vertex_surface(model, member) as usize];
         let object = &model.objects[surface.object as usize];
         let rank = ranks.get(&surface.kind).copied().unwrap_or(OTHER_SURFACE);
         (class_rank(object.class), rank, Reverse(&object.id), Reverse(member.triangle))
     });
-    for (member, priority) in found.iter_mut().zip(0..) {
-        member.priority = priority;
-    }
-    found
+    // From the lowest up: one layer above the highest that it overlaps.
+    let mut layers: Vec<Option<u32>> = vec![None; group.len()];
+    let number = |(priority, i): (usize, usize)| {
+        let below = others[i].iter().filter_map(|&j| layers[j as usize]).max();
+        let layer = below.map_or(0, |layer| layer + 1);
+        layers[i] = Some(layer);
+        CoplanarTriangle { priority: priority as u32, layer, ..group[i] }
+    };
+    order.into_iter().enumerate().map(number).collect()
 }
 
 /// What stands on the ground above it; among the ground, what is laid on what.
@@ -257,6 +272,7 @@ mod tests {
         let owners: Vec<_> = found.iter().map(|t| object_of(&model, t)).collect();
         assert_eq!(owners, ["west", "west", "east", "east"], "the id that comes first wins");
         assert_eq!(found.iter().map(|t| t.priority).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert_eq!(found.iter().map(|t| t.layer).collect::<Vec<_>>(), [0, 0, 1, 1], "two walls, one on the other");
         let plane = model.plane_equations[found[0].group as usize - 1];
         assert_eq!((plane.normal, plane.offset), (DVec3::X, 85_010.0));
         assert!(coplanar_triangles(&model, &[0]).is_empty(), "nothing to cover when the neighbour is hidden");
@@ -326,7 +342,9 @@ mod tests {
             .collect();
         let corners: Vec<[DVec3; 3]> = everything
             .iter()
-            .map(|&(tile, triangle)| world_corners(&model, &CoplanarTriangle { tile, triangle, group: 1, priority: 0 }))
+            .map(|&(tile, triangle)| {
+                world_corners(&model, &CoplanarTriangle { tile, triangle, group: 1, priority: 0, layer: 0 })
+            })
             .collect();
         let flat = flatten(&corners, DVec3::Z);
         let mut expected: Vec<u32> = (0..flat.len())

@@ -1,8 +1,8 @@
 //! The city on the graphics card: made once, then only read.
 //!
 //! Tiles are put in Morton order and cut into chunks of about [`CHUNK_TRIANGLES`] triangles; a view
-//! draws the chunks its frustum meets, neighbours merged into one draw. Faces of exactly one plane
-//! that overlap stand apart, in the order of their priority, and textured ones by texture.
+//! draws the chunks its frustum meets, near ones first. Textured faces stand apart by texture, and those that
+//! overlap in exactly one plane by layer: one layer is drawn after the other.
 
 use std::ops::Range;
 
@@ -33,7 +33,7 @@ const SORTED_GROUPS: usize = 256;
 /// A run of the index buffer that is drawn or culled as one.
 #[derive(Clone, Debug)]
 pub struct Chunk {
-    /// Its part of the section's indices (or vertices, where the section has no indices).
+    /// Its part of the section's indices.
     pub range: Range<u32>,
     /// Box around it, metres.
     pub bounds: Aabb,
@@ -49,8 +49,8 @@ pub struct Section {
     pub kind: SectionKind,
     /// [`CityVertex`]s.
     pub vertices: wgpu::Buffer,
-    /// Indices, where the section is indexed.
-    pub indices: Option<wgpu::Buffer>,
+    /// Three per triangle.
+    pub indices: wgpu::Buffer,
     /// Texture coordinates or planes, one per vertex.
     pub extra: Option<wgpu::Buffer>,
     /// In drawing order.
@@ -69,7 +69,7 @@ pub enum SectionKind {
         /// Opacity below which texels are holes; 0 = none.
         alpha_cutoff: f32,
     },
-    /// Overlapping triangles of shared planes.
+    /// Overlapping triangles of shared planes, one layer of them.
     Coplanar,
 }
 
@@ -201,8 +201,8 @@ impl CityBuffers {
         let provoking = if gpu.info.backend == wgpu::Backend::Gl { 2 } else { 0 };
         let mut plain = Gathered::new(smooth, provoking);
         let mut textured: FxHashMap<(u32, u32), Gathered> = FxHashMap::default();
-        let mut coplanar_surfaces: FxHashMap<(u32, u32, u32), u32> = FxHashMap::default();
-        for t in ordered_tiles(shown, &extent) {
+        let tiles = ordered_tiles(shown, &extent);
+        for &t in &tiles {
             let tile = &shown.model.tiles[t as usize];
             table.begin_tile();
             gather_tile(shown.model, tile, &apart, &mut table, &mut plain, &mut textured);
@@ -220,15 +220,17 @@ impl CityBuffers {
                 sections.push(section);
             }
         };
-        let coplanar = gather_coplanar(shown, &mut table, &mut coplanar_surfaces);
-        push(upload(gpu, SectionKind::Plain, &plain)?);
+        let layers = gather_layers(shown, &tiles, &mut table, (smooth, provoking));
+        push(upload(gpu, SectionKind::Plain, &plain, ("", &[0_u32; 0]))?);
         let mut by_texture: Vec<_> = textured.into_iter().collect();
         by_texture.sort_unstable_by_key(|(key, _)| *key);
         for ((texture, cutoff), gathered) in &by_texture {
             let kind = SectionKind::Textured { texture: *texture, alpha_cutoff: f32::from_bits(*cutoff) };
-            push(upload(gpu, kind, gathered)?);
+            push(upload(gpu, kind, gathered, ("texture coordinates", &gathered.texcoords))?);
         }
-        push(coplanar.upload(gpu)?);
+        for layer in &layers {
+            push(upload(gpu, SectionKind::Coplanar, &layer.gathered, ("planes", &layer.planes))?);
+        }
         let surfaces = table.upload(gpu)?;
         let surface_table = table.entries;
         let bytes = gpu.allocated_bytes() - bytes_before + textures.bytes();
@@ -238,19 +240,16 @@ impl CityBuffers {
     /// The draws of one section that a frustum may see, and how many triangles they hold.
     ///
     /// Near ones come first, so that they hide the rest before it is shaded; where many chunks are seen, runs of
-    /// neighbours are sorted as one, because draw calls cost something too. Coplanar sections keep their order: it
-    /// decides who wins.
+    /// neighbours are sorted as one, because draw calls cost something too.
     pub fn visible(section: &Section, frustum: &Frustum, eye: DVec3, draws: &mut Vec<Draw>) -> u64 {
         draws.clear();
         let seen: Vec<&Chunk> = section.chunks.iter().filter(|c| frustum.meets(&c.bounds)).collect();
         let mut groups: Vec<&[&Chunk]> = seen.chunks(seen.len().div_ceil(SORTED_GROUPS).max(1)).collect();
-        if section.kind != SectionKind::Coplanar {
-            groups.sort_by_cached_key(|group| {
-                let bounds = group.iter().fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
-                // Distances are not negative: their bits are in order.
-                eye.clamp(bounds.min, bounds.max).distance_squared(eye).to_bits()
-            });
-        }
+        groups.sort_by_cached_key(|group| {
+            let bounds = group.iter().fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
+            // Distances are not negative: their bits are in order.
+            eye.clamp(bounds.min, bounds.max).distance_squared(eye).to_bits()
+        });
         for chunk in groups.into_iter().flatten() {
             match draws.last_mut() {
                 Some(last) if last.end == chunk.range.start => last.end = chunk.range.end,
@@ -333,47 +332,75 @@ fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered
     all
 }
 
-/// Overlapping triangles of shared planes, unindexed, in drawing order.
-struct Coplanar {
-    vertices: Vec<CityVertex>,
+/// Overlapping triangles of shared planes: those of one layer, which do not overlap each other.
+struct Layer {
+    gathered: Gathered,
     /// One per vertex.
     planes: Vec<layout::Plane>,
-    chunks: Vec<Chunk>,
+    /// What vertices of the tile speak for: number of the surface, and its plane.
+    owners: Vec<(u32, layout::Plane)>,
+    numbers: FxHashMap<(u32, u32), u32>,
 }
 
-fn gather_coplanar(shown: &Shown, table: &mut SurfaceTable, known: &mut FxHashMap<(u32, u32, u32), u32>) -> Coplanar {
-    let model = shown.model;
-    let mut order: Vec<&CoplanarTriangle> = shown.coplanar.iter().collect();
-    // Within a group the higher priority is drawn later and wins at equal depth.
-    order.sort_by_key(|c| (c.group, c.priority, c.triangle));
-    let mut out = Coplanar { vertices: Vec::new(), planes: Vec::new(), chunks: Vec::new() };
-    let (mut group, mut plane) = (None, layout::Plane::zeroed());
-    let (mut start, mut bounds) = (0, Aabb::EMPTY);
-    for c in order {
-        let tile = &model.tiles[c.tile as usize];
-        let corners = corners_of(model, tile, c.triangle);
-        if group != Some(c.group) {
-            group = Some(c.group);
-            if out.vertices.len() - start >= 3 * CHUNK_TRIANGLES / 4 {
-                out.chunks.push(Chunk { range: start as u32..out.vertices.len() as u32, bounds });
-                (start, bounds) = (out.vertices.len(), Aabb::EMPTY);
-            }
-            plane = plane_of(&model.plane_equations[c.group as usize - 1], tile.origin);
-        }
-        let surface = *known.entry((c.tile, corners[0].surface, corners[0].normal)).or_insert_with(|| {
-            table.begin_tile();
-            table.number(corners[0].surface, corners[0].normal)
+impl Layer {
+    fn new(smooth: bool, provoking: usize) -> Self {
+        let gathered = Gathered::new(smooth, provoking);
+        Self { gathered, planes: Vec::new(), owners: Vec::new(), numbers: FxHashMap::default() }
+    }
+
+    fn begin_tile(&mut self, origin: IVec3) {
+        self.gathered.weld.begin_tile(origin);
+        self.owners.clear();
+        self.numbers.clear();
+    }
+
+    /// Adds a triangle of a surface, by its number in the table, that lies in a shared plane.
+    fn triangle(&mut self, surface: u32, (group, plane): (u32, layout::Plane), corners: [Corner; 3]) {
+        let owner = *self.numbers.entry((surface, group)).or_insert_with(|| {
+            self.owners.push((surface, plane));
+            (self.owners.len() - 1) as u32
         });
-        for corner in corners {
-            out.vertices.push(CityVertex::new(tile.origin, surface, corner.position, corner.normal));
-            out.planes.push(plane);
-            bounds = bounds.grown(tile.origin.as_dvec3() + Vec3::from(corner.position).as_dvec3());
+        self.gathered.weld.triangle(owner, corners);
+    }
+
+    fn end_tile(&mut self, bounds: Aabb) {
+        let Self { gathered, planes, owners, .. } = self;
+        gathered.weld.end_tile();
+        gathered.weld.rename_tile(|vertex| {
+            let (surface, plane) = owners.get(vertex.surface as usize).copied().unwrap_or((NONE, Zeroable::zeroed()));
+            vertex.surface = surface;
+            planes.push(plane);
+        });
+        gathered.close_run(bounds);
+    }
+}
+
+/// The overlapping triangles of all shared planes, lowest layer first.
+fn gather_layers(shown: &Shown, tiles: &[u32], table: &mut SurfaceTable, kind: (bool, usize)) -> Vec<Layer> {
+    let model = shown.model;
+    let mut of_tile: FxHashMap<u32, Vec<&CoplanarTriangle>> = FxHashMap::default();
+    for c in shown.coplanar {
+        of_tile.entry(c.tile).or_default().push(c);
+    }
+    let count = shown.coplanar.iter().map(|c| c.layer + 1).max().unwrap_or(0);
+    let mut layers: Vec<Layer> = (0..count).map(|_| Layer::new(kind.0, kind.1)).collect();
+    // All faces of a plane take their depth from the same numbers.
+    let mut planes: FxHashMap<u32, layout::Plane> = FxHashMap::default();
+    for (&t, triangles) in tiles.iter().filter_map(|t| Some((t, of_tile.get(t)?))) {
+        let tile = &model.tiles[t as usize];
+        table.begin_tile();
+        layers.iter_mut().for_each(|layer| layer.begin_tile(tile.origin));
+        for c in triangles {
+            let corners = corners_of(model, tile, c.triangle);
+            let equation = &model.plane_equations[c.group as usize - 1];
+            let plane = *planes.entry(c.group).or_insert_with(|| plane_of(equation, tile.origin));
+            let number = table.number(corners[0].surface, corners[0].normal);
+            let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
+            layers[c.layer as usize].triangle(number, (c.group, plane), corners);
         }
+        layers.iter_mut().for_each(|layer| layer.end_tile(tile.bounds));
     }
-    if out.vertices.len() > start {
-        out.chunks.push(Chunk { range: start as u32..out.vertices.len() as u32, bounds });
-    }
-    out
+    layers
 }
 
 /// A group's plane, relative to a whole-metre origin near it.
@@ -388,23 +415,13 @@ fn plane_of(plane: &Plane, near: IVec3) -> layout::Plane {
     }
 }
 
-impl Coplanar {
-    fn upload(&self, gpu: &Gpu) -> Result<Option<(Section, usize, usize)>, GpuError> {
-        if self.vertices.is_empty() {
-            return Ok(None);
-        }
-        let section = Section {
-            kind: SectionKind::Coplanar,
-            vertices: gpu.buffer("coplanar vertices", wgpu::BufferUsages::VERTEX, &self.vertices)?,
-            indices: None,
-            extra: Some(gpu.buffer("planes", wgpu::BufferUsages::VERTEX, &self.planes)?),
-            chunks: self.chunks.clone(),
-        };
-        Ok(Some((section, self.vertices.len() / 3, self.vertices.len())))
-    }
-}
-
-fn upload(gpu: &Gpu, kind: SectionKind, gathered: &Gathered) -> Result<Option<(Section, usize, usize)>, GpuError> {
+/// A section of what was gathered, with what each vertex has beside a [`CityVertex`]; and its triangles and vertices.
+fn upload<T: bytemuck::NoUninit>(
+    gpu: &Gpu,
+    kind: SectionKind,
+    gathered: &Gathered,
+    (extra_name, extra): (&str, &[T]),
+) -> Result<Option<(Section, usize, usize)>, GpuError> {
     let Weld { vertices, indices, .. } = &gathered.weld;
     if indices.is_empty() {
         return Ok(None);
@@ -412,12 +429,10 @@ fn upload(gpu: &Gpu, kind: SectionKind, gathered: &Gathered) -> Result<Option<(S
     let section = Section {
         kind,
         vertices: gpu.buffer("vertices", wgpu::BufferUsages::VERTEX, vertices)?,
-        indices: Some(gpu.buffer("indices", wgpu::BufferUsages::INDEX, indices)?),
-        extra: match kind {
-            SectionKind::Textured { .. } => {
-                Some(gpu.buffer("texture coordinates", wgpu::BufferUsages::VERTEX, &gathered.texcoords)?)
-            }
-            _ => None,
+        indices: gpu.buffer("indices", wgpu::BufferUsages::INDEX, indices)?,
+        extra: match extra {
+            [] => None,
+            extra => Some(gpu.buffer(extra_name, wgpu::BufferUsages::VERTEX, extra)?),
         },
         chunks: gathered.chunks(),
     };

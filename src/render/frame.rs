@@ -174,7 +174,7 @@ impl Renderer {
         for section in &city.buffers.sections {
             CityBuffers::visible(section, &frustum, view.camera.eye, &mut draws);
             pass.set_vertex_buffer(0, section.vertices.slice(..));
-            draw_ranges(&mut pass, section.indices.as_ref(), &draws);
+            draw_ranges(&mut pass, &section.indices, &draws);
         }
         drop(pass);
         self.gpu.queue.submit([encoder.finish()]);
@@ -328,7 +328,7 @@ impl Renderer {
         for section in &city.buffers.sections {
             let triangles = CityBuffers::visible(section, &frustum, sun.camera.eye, &mut draws);
             pass.set_vertex_buffer(0, section.vertices.slice(..));
-            draw_ranges(&mut pass, section.indices.as_ref(), &draws);
+            draw_ranges(&mut pass, &section.indices, &draws);
             recorder.count(draws.len() as u32, triangles);
         }
     }
@@ -377,7 +377,7 @@ impl Renderer {
             if let Some(image) = image {
                 pass.set_bind_group(2, image, &[]);
             }
-            draw_ranges(&mut pass, section.indices.as_ref(), &draws);
+            draw_ranges(&mut pass, &section.indices, &draws);
             counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
         }
         if let Some(timer) = &recorder.timer {
@@ -606,19 +606,10 @@ fn scissor(pass: &mut wgpu::RenderPass, part: PictureTile) {
     pass.set_scissor_rect(part.origin[0], part.origin[1], part.size[0], part.size[1]);
 }
 
-fn draw_ranges(pass: &mut wgpu::RenderPass, indices: Option<&wgpu::Buffer>, draws: &[Draw]) {
-    match indices {
-        Some(indices) => {
-            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-            for draw in draws {
-                pass.draw_indexed(draw.clone(), 0, 0..1);
-            }
-        }
-        None => {
-            for draw in draws {
-                pass.draw(draw.clone(), 0..1);
-            }
-        }
+fn draw_ranges(pass: &mut wgpu::RenderPass, indices: &wgpu::Buffer, draws: &[Draw]) {
+    pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+    for draw in draws {
+        pass.draw_indexed(draw.clone(), 0, 0..1);
     }
 }
 

@@ -67,6 +67,12 @@ impl Weld {
         }
     }
 
+    /// Gives the vertices of the last tile their final surfaces: `name` sees each vertex with the surface its triangles
+    /// came with, or `NONE` where it speaks for none.
+    pub fn rename_tile(&mut self, mut name: impl FnMut(&mut CityVertex)) {
+        self.vertices[self.first_of_tile as usize..].iter_mut().for_each(&mut name);
+    }
+
     /// What comes is relative to `origin`, whole metres.
     pub fn begin_tile(&mut self, origin: IVec3) {
         self.places.clear();
