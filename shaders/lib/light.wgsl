@@ -56,7 +56,7 @@ fn irradiance(normal: vec3f, sun: f32) -> vec3f {
 }
 
 fn sky_color(direction: vec3f) -> vec3f {
-    let height = clamp(normalize(direction).z, 0.0, 1.0);
+    let height = clamp(direction.z * inverseSqrt(dot(direction, direction)), 0.0, 1.0);
     let low = 1.0 - height;
     return mix(light.horizon, light.zenith, 1.0 - low * low);
 }

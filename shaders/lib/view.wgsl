@@ -7,6 +7,7 @@
 struct View {
     view_from_world: mat3x3f,   // rotation only
     projection: vec4f,          // scale x, y; offset x, y (sub-pixel jitter and picture tiles included)
+    across_from_pixel: vec4f,   // the inverse, from pixels: scale x, y; offset x, y of the picture plane at distance 1
     near: f32,                  // metres
     far: f32,                   // metres; used by orthographic views only
     orthographic: u32,          // 0 perspective, 1 orthographic
@@ -41,8 +42,7 @@ struct Ray {
 }
 
 fn ray_of_pixel(pixel: vec2f) -> Ray {
-    let ndc = vec2f(2.0, -2.0) * pixel / view.size + vec2f(-1.0, 1.0);
-    let across = (ndc - view.projection.zw) / view.projection.xy;
+    let across = pixel * view.across_from_pixel.xy + view.across_from_pixel.zw;
     if view.orthographic == 1u {
         return Ray(vec3f(across, 0.0), vec3f(0.0, 0.0, -1.0));
     }

@@ -25,10 +25,10 @@ use crate::{
 
 /// Triangles per chunk: few enough to cull a street scene finely, many enough that a draw call's cost
 /// (some microseconds on a software adapter) vanishes beside them.
-const CHUNK_TRIANGLES: usize = 512;
+const CHUNK_TRIANGLES: usize = 256;
 
 /// Visible chunks are drawn near to far in at most so many groups.
-const SORTED_GROUPS: usize = 256;
+const SORTED_GROUPS: usize = 512;
 
 /// A run of the index buffer that is drawn or culled as one.
 #[derive(Clone, Debug)]

@@ -37,10 +37,14 @@ pub fn view_uniform(view: &View, tile: PictureTile, jitter_px: DVec2, sample_ind
     let shift = zoom - 1.0 - 2.0 * from_bottom / size;
     let jitter = DVec2::new(-2.0, 2.0) * jitter_px / size;
     let scale = zoom / view.half_extent();
+    let offset = shift + jitter;
+    let per_pixel = DVec2::new(2.0, -2.0) / size / scale;
+    let at_corner = (DVec2::new(-1.0, 1.0) - offset) / scale;
     let (eye_whole, eye_fraction) = split_eye(view.camera.eye);
     layout::View {
         view_from_world: padded(view.basis.view_from_world()),
-        projection: [scale.x as f32, scale.y as f32, (shift.x + jitter.x) as f32, (shift.y + jitter.y) as f32],
+        projection: joined(scale, offset),
+        across_from_pixel: joined(per_pixel, at_corner),
         near: view.camera.near_m as f32,
         far: if view.is_orthographic() { view.far_m as f32 } else { 0.0 },
         orthographic: u32::from(view.is_orthographic()),
@@ -53,6 +57,10 @@ pub fn view_uniform(view: &View, tile: PictureTile, jitter_px: DVec2, sample_ind
         haze: haze as f32,
         pad_2: 0,
     }
+}
+
+fn joined(a: DVec2, b: DVec2) -> [f32; 4] {
+    [a.x as f32, a.y as f32, b.x as f32, b.y as f32]
 }
 
 /// Columns of a 3×3 matrix at WGSL's stride.

@@ -12,6 +12,7 @@ use crate::render::palette;
 pub struct View {
     pub view_from_world: [[f32; 4]; 3],
     pub projection: [f32; 4],
+    pub across_from_pixel: [f32; 4],
     pub near: f32,
     pub far: f32,
     pub orthographic: u32,
@@ -203,6 +204,7 @@ mod tests {
                 host!(View {
                     view_from_world,
                     projection,
+                    across_from_pixel,
                     near,
                     far,
                     orthographic,
