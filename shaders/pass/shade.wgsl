@@ -89,35 +89,35 @@ fn shade(point: ptr<function, Point>, pixel: vec2i) -> vec3f {
 
 //@apply
 
-@fragment
-fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let pixel = vec2i(at.xy);
-    let ray = ray_of_pixel(at.xy);
-    let depth = textureLoad(scene_depth, pixel, 0);
-    var color: vec3f;
-    var alpha = 1.0;
-    var point: Point;
-    if depth > 0.0 {
-        point = point_at(pixel, ray, depth);
-        color = shade(&point, pixel);
-        if HAZE {
-            let air = 1.0 - exp(-max(point.distance - light.scene_radius, 0.0) * view.haze);
-            color = mix(color, light.horizon, air);
-        }
-    } else {
-        point = nowhere();
-        if BACKGROUND == SKY {
-            color = sky_color(ray.direction * view.view_from_world);
-        } else if BACKGROUND == ONE_COLOR {
-            color = light.zenith;
-        } else {
-            color = vec3f(0.0);
-            alpha = 0.0;
-        }
-    }
-    let seen = apply(vec4f(color, alpha), point, pixel);
+fn finished(paint: vec4f, point: Point, pixel: vec2i) -> vec4f {
+    let seen = apply(paint, point, pixel);
     if SUMMED {
         return vec4f(seen.rgb * seen.a, seen.a);
     }
     return seen;
+}
+
+// Where something stands: the stored depth is not 0. The depth test chooses, so that neither shader runs in vain.
+@fragment
+fn surface(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    let pixel = vec2i(at.xy);
+    var point = point_at(pixel, ray_of_pixel(at.xy), textureLoad(scene_depth, pixel, 0));
+    var color = shade(&point, pixel);
+    if HAZE {
+        let air = 1.0 - exp(-max(point.distance - light.scene_radius, 0.0) * view.haze);
+        color = mix(color, light.horizon, air);
+    }
+    return finished(vec4f(color, 1.0), point, pixel);
+}
+
+// Where nothing stands: the stored depth is its clear value, 0.
+@fragment
+fn background(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    var paint = vec4f(0.0);
+    if BACKGROUND == SKY {
+        paint = vec4f(sky_color(ray_of_pixel(at.xy).direction * view.view_from_world), 1.0);
+    } else if BACKGROUND == ONE_COLOR {
+        paint = vec4f(light.zenith, 1.0);
+    }
+    return finished(paint, nowhere(), vec2i(at.xy));
 }

@@ -5,14 +5,13 @@
 // says that the eye, or the near plane, is inside.
 
 struct SpriteStage {
-    shape: u32,
+    shape: Shape,
     // Target pixels per sprite texel: a coarser sprite takes the ray of its own texel's centre.
     pixels_per_texel: vec2f,
     // Of the part of the sprite that is kept (the lens' screen bounds), texels.
     origin: vec2f,
 }
 
-@group(1) @binding(0) var<storage, read> shapes: array<Shape>;
 @group(2) @binding(0) var<uniform> stage: SpriteStage;
 
 @vertex
@@ -21,7 +20,7 @@ fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
 }
 
 fn span_at(texel: vec2f) -> Span {
-    let span = span_of_shape(ray_of_pixel((texel + stage.origin) * stage.pixels_per_texel), shapes[stage.shape]);
+    let span = span_of_shape(ray_of_pixel((texel + stage.origin) * stage.pixels_per_texel), stage.shape);
     // Perspective rays start at the eye; what lies behind it is not seen.
     if view.orthographic == 0u && span.exit <= 0.0 {
         return EMPTY_SPAN;

@@ -25,6 +25,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun},
+    shader::Plan,
     view::{Frustum, View},
 };
 
@@ -215,18 +216,15 @@ impl Renderer {
         let haze = haze(input) / radius;
         let view = view_uniform(&input.view, input.tile, jitter, input.sample, haze);
         let light = light::uniform(&input.sun, input.background, sun, input.view.camera.eye, radius);
-        let (mut shapes, mut planes) = (Vec::new(), Vec::new());
-        let (mut stages, mut volumes) = (Vec::new(), Vec::new());
-        for (stage, volume) in seen.iter().enumerate() {
-            input.volumes[volume.index].push(&input.view, &mut shapes, &mut planes);
+        let (mut stages, mut volumes, mut planes) = (Vec::new(), Vec::new(), Vec::new());
+        for volume in seen {
             let scale: [f32; 2] =
                 std::array::from_fn(|i| sprite_size(input, volume.lens)[i] as f32 / input.tile.size[i] as f32);
             // From the sprite's own texels to those of its page.
             let shift: [f32; 2] =
                 std::array::from_fn(|i| volume.place.origin[i] as f32 - volume.sprite_bounds.origin[i] as f32);
             stages.extend(strided(&layout::SpriteStage {
-                shape: stage as u32,
-                pad_0: 0,
+                shape: input.volumes[volume.index].figures(&input.view, &mut planes),
                 pixels_per_texel: scale.map(|s| 1.0 / s),
                 origin: shift.map(|s| -s),
             }));
@@ -246,7 +244,6 @@ impl Renderer {
             let whole = PictureTile::whole(sun.size);
             stale |= b.sun_view.sync(gpu, &[view_uniform(sun, whole, DVec2::ZERO, 0, 0.0)])?;
         }
-        stale |= b.shapes.sync(gpu, &shapes)?;
         stale |= b.planes.sync(gpu, &planes)?;
         stale |= b.sprite_stages.sync(gpu, &stages)?;
         stale |= b.volumes.sync(gpu, &volumes)?;
@@ -274,8 +271,9 @@ impl Renderer {
             keys.extend([Key::SpriteEntry(volume.kind), Key::SpriteExit(volume.kind)]);
         }
         let clay = input.base == BaseStyle::Clay;
-        let shade = |plan| Key::Shade {
-            plan,
+        let shade = |surface, plan: &Plan| Key::Shade {
+            plan: plan.clone(),
+            surface,
             textured: colored && !clay,
             clay,
             summed: input.samples > 1,
@@ -289,12 +287,16 @@ impl Renderer {
             },
         };
         let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
+        let both = |plan: Plan| vec![shade(true, &plan), shade(false, &plan)];
         let shade_keys = ShadeKeys {
-            context: Some(shade(input.operations.context_plan())),
-            lenses: (!seen.is_empty()).then(|| shade(input.operations.lens_plan(&lenses, wants_masks(input)))),
+            context: both(input.operations.context_plan()),
+            lenses: if seen.is_empty() {
+                Vec::new()
+            } else {
+                both(input.operations.lens_plan(&lenses, wants_masks(input)))
+            },
         };
-        keys.extend(shade_keys.context.clone());
-        keys.extend(shade_keys.lenses.clone());
+        keys.extend(shade_keys.context.iter().chain(&shade_keys.lenses).cloned());
         if input.samples > 1 {
             keys.push(Key::Resolve);
         }
@@ -424,7 +426,7 @@ impl Renderer {
                     timer.begin_count(&mut pass, slot);
                 }
                 pass.set_bind_group(0, &groups.view, &[]);
-                pass.set_bind_group(1, &groups.shapes, &[]);
+                pass.set_bind_group(1, &groups.planes, &[]);
                 for (stage, volume) in here() {
                     pass.set_pipeline(self.pipelines.get(&key(volume.kind)));
                     pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
@@ -457,6 +459,11 @@ impl Renderer {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shade"),
             color_attachments: &[Some(attachment)],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &targets.depth.view,
+                depth_ops: None, // only read
+                stencil_ops: None,
+            }),
             timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
             ..Default::default()
         });
@@ -467,17 +474,15 @@ impl Renderer {
         pass.set_bind_group(1, &groups.shade, &[]);
         pass.set_bind_group(2, &groups.lenses, &[]);
         let mut drawn = 0;
-        let mut fill = |key: &Option<Key>, parts: &[PictureTile]| {
-            let Some(key) = key else { return };
-            let mut set = false;
-            for part in parts.iter().filter(|p| p.size[0] > 0 && p.size[1] > 0) {
-                if !set {
-                    pass.set_pipeline(self.pipelines.get(key));
-                    set = true;
+        let mut fill = |keys: &[Key], parts: &[PictureTile]| {
+            let parts: Vec<_> = parts.iter().filter(|p| p.size[0] > 0 && p.size[1] > 0).collect();
+            for key in keys.iter().filter(|_| !parts.is_empty()) {
+                pass.set_pipeline(self.pipelines.get(key));
+                for part in &parts {
+                    scissor(&mut pass, **part);
+                    pass.draw(0..3, 0..1);
+                    drawn += 1;
                 }
-                scissor(&mut pass, *part);
-                pass.draw(0..3, 0..1);
-                drawn += 1;
             }
         };
         let (inside, outside) = split(input.tile.size, seen.iter().map(|v| v.bounds));
@@ -506,11 +511,11 @@ impl Renderer {
     }
 }
 
-/// The pipelines of the shade pass: outside the lenses' bounds, and inside.
+/// The pipelines of the shade pass: outside the lenses' bounds, and inside; each for surfaces and for the background.
 #[derive(Clone, Debug, Default)]
 struct ShadeKeys {
-    context: Option<Key>,
-    lenses: Option<Key>,
+    context: Vec<Key>,
+    lenses: Vec<Key>,
 }
 
 fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool) -> Key {

@@ -127,8 +127,7 @@ pub struct Light {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct SpriteStage {
-    pub shape: u32,
-    pub pad_0: u32,
+    pub shape: Shape,
     pub pixels_per_texel: [f32; 2],
     pub origin: [f32; 2],
 }
@@ -253,7 +252,7 @@ mod tests {
                     scene_radius
                 }),
             ),
-            (&Module::Sprite, host!(SpriteStage { shape, pad_0, pixels_per_texel, origin })),
+            (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin })),
             (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),
             (&shade, host!(Parameters { a, b })),
         ];

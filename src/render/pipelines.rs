@@ -47,6 +47,8 @@ pub enum Key {
     Shade {
         /// What the context and the lenses do.
         plan: Plan,
+        /// Which pixels: those that show a surface, or those that show what is behind the city.
+        surface: bool,
         /// Base colours come from a target.
         textured: bool,
         /// One clay colour.
@@ -88,8 +90,8 @@ pub struct Pipelines {
     pub city: wgpu::BindGroupLayout,
     /// Geometry, group 2: a texture.
     pub image: wgpu::BindGroupLayout,
-    /// Sprite, group 1: shapes, planes.
-    pub shapes: wgpu::BindGroupLayout,
+    /// Sprite, group 1: planes of convex volumes.
+    pub planes: wgpu::BindGroupLayout,
     /// Sprite, group 2: the stage, at a dynamic offset.
     pub stage: wgpu::BindGroupLayout,
     /// Shade, group 1: surfaces, light, targets.
@@ -164,7 +166,7 @@ impl Pipelines {
                 "image",
                 &[(0, S::FRAGMENT, image(T::Float { filterable: true }, D::D2)), (1, S::FRAGMENT, filtered)],
             ),
-            shapes: layout(gpu, "shapes", &[(0, S::FRAGMENT, storage()), (1, S::FRAGMENT, storage())]),
+            planes: layout(gpu, "planes", &[(1, S::FRAGMENT, storage())]),
             stage: layout(gpu, "stage", &[(0, S::FRAGMENT, dynamic)]),
             shade: layout(
                 gpu,
@@ -253,7 +255,7 @@ impl Pipelines {
                 vec![Some(&self.view), Some(&self.city), Some(&self.image)]
             }
             Key::Geometry { .. } | Key::Shadow | Key::Bare => vec![Some(&self.view), Some(&self.city)],
-            Key::SpriteEntry(_) | Key::SpriteExit(_) => vec![Some(&self.view), Some(&self.shapes), Some(&self.stage)],
+            Key::SpriteEntry(_) | Key::SpriteExit(_) => vec![Some(&self.view), Some(&self.planes), Some(&self.stage)],
             Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
             Key::Resolve => vec![Some(&self.resolve)],
         };
@@ -340,8 +342,14 @@ impl Key {
             Self::Shadow => "shadow".to_owned(),
             Self::SpriteEntry(kind) => format!("sprite entry of a {}", shape_name(*kind)),
             Self::SpriteExit(kind) => format!("sprite exit of a {}", shape_name(*kind)),
-            Self::Shade { textured, clay, summed, shadows, .. } => {
-                let list = [(*textured, "textured"), (*clay, "clay"), (*summed, "summed"), (*shadows, "shadows")];
+            Self::Shade { surface, textured, clay, summed, shadows, .. } => {
+                let list = [
+                    (!*surface, "background"),
+                    (*textured, "textured"),
+                    (*clay, "clay"),
+                    (*summed, "summed"),
+                    (*shadows, "shadows"),
+                ];
                 format!("{}{}", self.module().name(), flags(&list))
             }
             Self::Resolve => "resolve".to_owned(),
@@ -391,6 +399,7 @@ impl Key {
             Self::Shadow => ("vertex", None),
             Self::SpriteEntry(_) => ("vertex", Some("entry")),
             Self::SpriteExit(_) => ("vertex", Some("exit")),
+            Self::Shade { surface, .. } => ("vertex", Some(if *surface { "surface" } else { "background" })),
             _ => ("vertex", Some("fragment")),
         }
     }
@@ -440,11 +449,14 @@ impl Key {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
             Self::Geometry { .. } | Self::Shadow | Self::Bare | Self::SpriteEntry(_) => C::Greater,
             Self::SpriteExit(_) => C::Less,
-            _ => return None,
+            // The triangle lies at depth 0, where nothing is stored.
+            Self::Shade { surface: true, .. } => C::Less,
+            Self::Shade { surface: false, .. } => C::Equal,
+            Self::Resolve => return None,
         };
         Some(wgpu::DepthStencilState {
             format: DEPTH,
-            depth_write_enabled: Some(true),
+            depth_write_enabled: Some(!matches!(self, Self::Shade { .. })),
             depth_compare: Some(compare),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),

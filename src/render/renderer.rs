@@ -49,7 +49,6 @@ pub(super) struct Buffers {
     pub view: Synced,
     pub sun_view: Synced,
     pub light: Synced,
-    pub shapes: Synced,
     pub planes: Synced,
     pub sprite_stages: Synced,
     pub volumes: Synced,
@@ -63,7 +62,7 @@ pub(super) struct Buffers {
 pub(super) struct Groups {
     pub view: wgpu::BindGroup,
     pub sun_view: wgpu::BindGroup,
-    pub shapes: wgpu::BindGroup,
+    pub planes: wgpu::BindGroup,
     pub sprite_stage: wgpu::BindGroup,
     pub shade: wgpu::BindGroup,
     pub lenses: wgpu::BindGroup,
@@ -80,7 +79,6 @@ impl Renderer {
             view: uniform("view")?,
             sun_view: uniform("sun's view")?,
             light: uniform("light")?,
-            shapes: storage("lens shapes")?,
             planes: storage("lens planes")?,
             sprite_stages: uniform("sprite stages")?,
             volumes: uniform("lens volumes")?,
@@ -176,7 +174,7 @@ impl Renderer {
         self.groups = Some(Groups {
             view: group(gpu, "view", &p.view, &[(0, whole(b.view.buffer()))]),
             sun_view: group(gpu, "sun's view", &p.view, &[(0, whole(b.sun_view.buffer()))]),
-            shapes: group(gpu, "shapes", &p.shapes, &[(0, whole(b.shapes.buffer())), (1, whole(b.planes.buffer()))]),
+            planes: group(gpu, "planes", &p.planes, &[(1, whole(b.planes.buffer()))]),
             sprite_stage: stage_group("sprite stage", &b.sprite_stages, size_of::<layout::SpriteStage>()),
             shade: group(
                 gpu,

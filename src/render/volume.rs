@@ -25,8 +25,8 @@ pub struct LensVolume {
 }
 
 impl LensVolume {
-    /// Appends the volume's figures, and its planes, for an eye.
-    pub fn push(&self, view: &View, shapes: &mut Vec<layout::Shape>, planes: &mut Vec<[f32; 4]>) {
+    /// The volume's figures for an eye; its planes are appended to `planes`.
+    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
         let view_from_world = view.basis.view_from_world();
         let eye = view.camera.eye;
         let place = |p: DVec3| (view_from_world * (p - eye)).as_vec3().to_array();
@@ -61,7 +61,7 @@ impl LensVolume {
                 }));
             }
         }
-        shapes.push(out);
+        out
     }
 
     /// The kind of shape, as the shader numbers it.

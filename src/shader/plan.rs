@@ -176,7 +176,9 @@ impl Plan {
 
     /// Writes the classes down, one bit per lens.
     fn masks(&self) -> String {
-        let mut text = String::new();
+        // A shader that stores may run before the depth test that chooses between surface and background.
+        let mut text =
+            "    if (textureLoad(scene_depth, pixel, 0) > 0.0) == (point.surface != NO_SURFACE) {\n".to_owned();
         let mut words: Vec<u32> = self.lenses.iter().map(|l| l.number / 32).collect();
         words.dedup();
         for word in words {
@@ -190,9 +192,11 @@ impl Plan {
                     .collect();
                 let value = bits.join(" | ");
                 let layer = 3 * word as usize + layer;
-                let _ = writeln!(text, "    textureStore(class_masks, pixel, {layer}, vec4u({value}, 0u, 0u, 0u));");
+                let _ =
+                    writeln!(text, "        textureStore(class_masks, pixel, {layer}, vec4u({value}, 0u, 0u, 0u));");
             }
         }
+        text.push_str("    }\n");
         text
     }
 }
