@@ -19,15 +19,10 @@ const INSIDE: u32 = 1u;
 const FRONT: u32 = 2u;
 const BEHIND: u32 = 4u;
 
-// Twin: `veduta::lens::classify`. Distances in metres; `has_entry` false: the eye is inside.
-fn classify(distance: f32, has_entry: bool, enter: f32, exit: f32) -> u32 {
-    if has_entry && distance < enter {
-        return FRONT;
-    }
-    if distance < exit {
-        return INSIDE;
-    }
-    return BEHIND;
+// Twin: `veduta::lens::classify`. On stored depths, which fall with distance: every comparison of S5 is turned
+// round, and none needs a division. An entry of 0 says that the eye is inside; a depth of 0, that nothing is there.
+fn classify(depth: f32, entry: f32, exit: f32) -> u32 {
+    return select(select(BEHIND, INSIDE, depth > exit), FRONT, entry > 0.0 && depth > entry);
 }
 
 fn is_in_bounds(v: LensVolume, pixel: vec2i) -> bool {
@@ -43,12 +38,17 @@ fn covers(v: LensVolume, pixel: vec2i) -> bool {
     return is_in_bounds(v, pixel) && textureLoad(sprite_exits, sprite_texel(v, pixel), v.page, 0) != 1.0;
 }
 
-fn class_in(v: LensVolume, pixel: vec2i, distance: f32) -> u32 {
+// At a pixel within the volume's screen bounds.
+fn class_within(v: LensVolume, pixel: vec2i, depth: f32) -> u32 {
     let texel = sprite_texel(v, pixel);
     let exit = textureLoad(sprite_exits, texel, v.page, 0);
     let entry = textureLoad(sprite_entries, texel, v.page, 0);
-    let class_ = classify(distance, entry > 0.0, distance_of_depth(entry), distance_of_depth(exit));
-    return select(MISSED, class_, is_in_bounds(v, pixel) && exit != 1.0);
+    return select(MISSED, classify(depth, entry, exit), exit != 1.0);
+}
+
+// At any pixel.
+fn class_in(v: LensVolume, pixel: vec2i, depth: f32) -> u32 {
+    return select(MISSED, class_within(v, pixel, depth), is_in_bounds(v, pixel));
 }
 
 fn is_inside(classes: u32) -> bool {

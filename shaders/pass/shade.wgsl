@@ -24,6 +24,7 @@ struct Parameters {
 struct Point {
     relative: vec3f,            // to the eye, world axes, metres
     distance: f32,              // D, metres
+    depth: f32,                 // D as the depth target stores it; 0 = nothing
     normal: vec3f,              // unit, towards the eye
     surface: u32,
     object: u32,                // or NO_OBJECT
@@ -40,8 +41,9 @@ const FAR_AWAY: f32 = 1e30;
 @group(1) @binding(8) var colors: texture_2d<f32>;
 @group(2) @binding(2) var<storage, read> object_colors: array<u32>;
 
+// At depth 0, and exactly there: the depth test chooses between surface and background.
 @vertex
-fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) @invariant vec4f {
     return vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0);
 }
 
@@ -58,6 +60,7 @@ fn base_color(point: Point, pixel: vec2i) -> vec3f {
 fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
     let code = textureLoad(codes, pixel, 0).xy;
     var point: Point;
+    point.depth = depth;
     point.distance = distance_of_depth(depth);
     point.relative = (ray.origin + point.distance * ray.direction) * view.view_from_world;
     point.surface = code.x - 1u;
@@ -73,7 +76,7 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
 }
 
 fn nowhere() -> Point {
-    return Point(vec3f(0.0), FAR_AWAY, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), false, 1.0);
+    return Point(vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), false, 1.0);
 }
 
 fn shade(point: ptr<function, Point>, pixel: vec2i) -> vec3f {

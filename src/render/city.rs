@@ -11,7 +11,7 @@ use glam::{DVec3, IVec3, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
-    city::{CityModel, NONE, Tile, Vertex, coplanar::CoplanarTriangle, ground::Ground},
+    city::{CityModel, NONE, Tile, Vertex, coplanar::CoplanarTriangle, encode_normal, ground::Ground},
     geom::{Aabb, plane::Plane},
     gpu::{Gpu, GpuError},
     render::{
@@ -316,14 +316,15 @@ fn gather_tile(
 
 fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered) -> Aabb {
     let mut all = Aabb::EMPTY;
+    let up = encode_normal(DVec3::Z);
     for tile in &ground.tiles {
         table.begin_tile();
         plain.weld.begin_tile(tile.origin);
         let vertices = &ground.vertices[tile.vertices.start as usize..tile.vertices.end as usize];
         for corners in ground.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
-            let corners = [0, 1, 2].map(|k| vertices[corners[k] as usize]);
-            let number = table.number(NONE, corners[0].normal);
-            plain.weld.triangle(number, corners.map(|v| Corner { position: v.position, normal: v.normal }));
+            let corners = [0, 1, 2].map(|k| vertices[corners[k] as usize].position);
+            // Made up between footprints: shown as level, or its grid of triangles would catch the light.
+            plain.weld.triangle(table.number(NONE, up), corners.map(|position| Corner { position, normal: up }));
         }
         plain.weld.end_tile();
         plain.close_run(tile.bounds);

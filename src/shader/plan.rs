@@ -125,10 +125,11 @@ impl Plan {
         }
         text.push_str("\nfn apply(start: vec4f, point: Point, pixel: vec2i) -> vec4f {\n    var color = start.rgb;\n");
         let mut first = 0;
+        // This part of the picture is the bounds of all volumes: where there is one, they are its own.
+        let test = if self.volumes() == 1 { "class_within" } else { "class_in" };
         for (i, lens) in self.lenses.iter().enumerate() {
-            let volumes: Vec<String> = (first..first + lens.volumes)
-                .map(|v| format!("class_in(volumes[{v}], pixel, point.distance)"))
-                .collect();
+            let volumes: Vec<String> =
+                (first..first + lens.volumes).map(|v| format!("{test}(volumes[{v}], pixel, point.depth)")).collect();
             first += lens.volumes;
             let _ = writeln!(text, "    let lens_{i} = {};", volumes.join(" | "));
         }
