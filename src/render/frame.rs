@@ -406,11 +406,11 @@ impl Renderer {
     /// The two stages of the volumetric depth sprites (S1): all entries, then all exits.
     fn sprite_passes(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, seen: &[SeenVolume]) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        let stages: [(_, _, fn(u32) -> Key, _); 2] = [
-            ("sprite entries", &targets.entries, Key::SpriteEntry, 0.0),
-            ("sprite exits", &targets.exits, Key::SpriteExit, 1.0),
-        ];
-        for (name, target, key, clear) in stages {
+        for is_entry in [true, false] {
+            let (name, target, clear) = match is_entry {
+                true => ("sprite entries", &targets.entries, 0.0),
+                false => ("sprite exits", &targets.exits, 1.0),
+            };
             for (page, view) in target.layers.iter().enumerate() {
                 let here = || seen.iter().enumerate().filter(|(_, v)| v.place.page as usize == page);
                 let mut lenses: Vec<u32> = here().map(|(_, v)| v.lens).collect();
@@ -428,7 +428,8 @@ impl Renderer {
                 pass.set_bind_group(0, &groups.view, &[]);
                 pass.set_bind_group(1, &groups.planes, &[]);
                 for (stage, volume) in here() {
-                    pass.set_pipeline(self.pipelines.get(&key(volume.kind)));
+                    let key = if is_entry { Key::SpriteEntry(volume.kind) } else { Key::SpriteExit(volume.kind) };
+                    pass.set_pipeline(self.pipelines.get(&key));
                     pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
                     scissor(&mut pass, PictureTile { origin: volume.place.origin, size: volume.sprite_bounds.size });
                     pass.draw(0..3, 0..1);

@@ -116,10 +116,10 @@ impl Weld {
         speaker.surface = surface;
         speaker.normal = corners[lead].normal;
         let mut turned = [vertex; 3];
-        for step in 1..3 {
+        for (step, corner) in turned.iter_mut().enumerate().skip(1) {
             let k = (lead + step) % 3;
             // Looked up again: a triangle of two equal corners has just made one of them.
-            turned[step] = match self.places.get(&keys[k]) {
+            *corner = match self.places.get(&keys[k]) {
                 Some(&head) => head,
                 None => self.add(keys[k], corners[k]),
             };
