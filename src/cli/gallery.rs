@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         drop(progress);
         let file = folder.join(format!("{name}.png"));
         picture::save_picture(&file, drawn.size, &drawn.rgba, true, &render::notes(&scene, &options))
-            .map_err(render::unwritten)?;
+            .map_err(output::unwritten)?;
         output::print(&format!("{}\n", file.display()))?;
         last = Some((scene.city, studio));
     }

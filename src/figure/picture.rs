@@ -1,59 +1,8 @@
 //! Pictures and AOVs as files (contract, "Shown surface"): PNG and EXR, written beside and then renamed.
 
-use std::{
-    fs,
-    io::{self, BufWriter, Write},
-    path::{Path, PathBuf},
-};
+use std::{io, path::Path};
 
-/// What can go wrong while writing.
-#[derive(Debug, thiserror::Error)]
-pub enum WriteError {
-    /// The file system.
-    #[error("{path}: cannot be written: {error}")]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// The format cannot hold it.
-    #[error("{path}: {message}")]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong and what would be right.
-        message: String,
-    },
-}
-
-/// Writes a file whole or not at all: beside it first, then renamed. `-` is standard output.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    let failed = |error| WriteError::Io { path: path.to_owned(), error };
-    if path.as_os_str() == "-" {
-        let mut out = io::stdout().lock();
-        return out.write_all(bytes).and_then(|()| out.flush()).map_err(failed);
-    }
-    let Some(name) = path.file_name() else {
-        return Err(WriteError::Format { path: path.to_owned(), message: "names no file".to_owned() });
-    };
-    let mut beside = std::ffi::OsString::from(".");
-    beside.push(name);
-    beside.push(format!(".{}.part", std::process::id()));
-    let beside = path.with_file_name(beside);
-    let written = fs::File::create(&beside)
-        .and_then(|file| {
-            let mut out = BufWriter::new(file);
-            out.write_all(bytes)?;
-            out.flush()
-        })
-        .and_then(|()| fs::rename(&beside, path));
-    written.map_err(|error| {
-        // Nothing half-written stays behind; the first error is the one worth telling.
-        let _ = fs::remove_file(&beside);
-        failed(error)
-    })
-}
+use crate::figure::file::{WriteError, write_whole};
 
 /// Text that goes into a picture: keyword and value.
 pub type Note = (&'static str, String);
@@ -106,7 +55,7 @@ fn save_png(
 ) -> Result<(), WriteError> {
     let bytes =
         png(size, color, depth, notes, data).map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
-    write_whole(path, &bytes)
+    write_whole(path, |out| out.write_all(&bytes))
 }
 
 /// A picture: sRGB, straight alpha; without alpha where `opaque`.
@@ -238,11 +187,13 @@ fn save_exr(path: &Path, size: [u32; 2], channels: Vec<(String, exr::prelude::Fl
         .non_parallel()
         .to_buffered(&mut bytes)
         .map_err(|error| WriteError::Format { path: path.to_owned(), message: error.to_string() })?;
-    write_whole(path, bytes.get_ref())
+    write_whole(path, |out| out.write_all(bytes.get_ref()))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::{fs, path::PathBuf};
+
     use super::*;
 
     fn folder(name: &str) -> PathBuf {
@@ -294,16 +245,6 @@ mod tests {
             assert_eq!(values, &planes[i]);
         }
         assert!(save_normal(&folder.join("n.jpg"), [1, 1], &[[0.0; 3]], &[]).is_err());
-        fs::remove_dir_all(folder).unwrap();
-    }
-
-    #[test]
-    fn what_cannot_be_written_leaves_nothing_behind() {
-        let folder = folder("nowhere");
-        let target = folder.join("taken");
-        fs::create_dir_all(target.join("inner")).unwrap();
-        assert!(write_whole(&target, b"x").is_err());
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
         fs::remove_dir_all(folder).unwrap();
     }
 }

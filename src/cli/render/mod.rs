@@ -13,7 +13,7 @@ use crate::{
     city::{TextureImage, facts},
     cli::{Failure, GlobalArguments, Outcome, load, output, terminal},
     figure::{
-        picture::{self, Note, WriteError},
+        picture::{self, Note},
         scene_file::{self, Options},
     },
     gpu::Gpu,
@@ -63,20 +63,12 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     }
     // Last, so that a picture that is there means that everything is there.
     picture::save_picture(&arguments.output, picture.size, &picture.rgba, !arguments.transparent, &notes)
-        .map_err(unwritten)
+        .map_err(output::unwritten)
 }
 
 /// What a picture says about itself: the program's version and a hash of the scene, paths relative to its file.
 pub fn notes(scene: &Scene, options: &Options) -> Vec<Note> {
     picture::notes(Some(picture::hash(&scene_file::to_toml_for(scene, options))))
-}
-
-/// A reader that leaves is no failure here either.
-pub fn unwritten(error: WriteError) -> Failure {
-    match error {
-        WriteError::Io { path, error } => Failure::io(&path.display().to_string(), &error),
-        format @ WriteError::Format { .. } => Failure::failed(format),
-    }
 }
 
 fn options_of(arguments: &Arguments, global: &GlobalArguments) -> Options {
@@ -171,5 +163,5 @@ fn write_aov(aov: &AovRequest, picture: &Picture, lens_count: usize, notes: &[No
             picture.lens_mask.as_ref().map(|masks| picture::save_lens_mask(file, size, masks, lens_count, notes))
         }
     };
-    written.expect("every AOV that is asked for is drawn").map_err(unwritten)
+    written.expect("every AOV that is asked for is drawn").map_err(output::unwritten)
 }
