@@ -124,6 +124,20 @@ fn the_same_scene_gives_the_same_bytes_and_costs_nothing_anew() {
 }
 
 #[test]
+fn what_near_buildings_hide_is_not_drawn_and_not_missed() {
+    let mut studio = synthetic(8_000);
+    let (used, fewer, all) = hiding_changes_nothing(&mut studio, 12, SIZE);
+    assert!(used >= 6, "only {used} of 12 street views leave anything out");
+    assert!(fewer * 3 < all * 2, "{fewer} triangles are drawn instead of {all}");
+    // From above, everything is drawn in one pass.
+    studio.renderer.culls_hidden = true;
+    let extent = studio.extent();
+    let above = Camera::looking(extent.center() + DVec3::new(0.0, -1.0, 1.0) * extent.size().y, extent.center(), 0.8);
+    let passes = picture(&mut studio, &scene(above, vec![]), SIZE).statistics.passes;
+    assert!(passes.iter().all(|p| p.name != "geometry beyond"));
+}
+
+#[test]
 fn lenses_that_do_nothing_cost_nothing() {
     let mut studio = synthetic(60);
     let at = house(&studio, 0.5);

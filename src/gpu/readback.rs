@@ -56,7 +56,8 @@ impl Gpu {
         self.mapped(&staging, <[u8]>::to_vec)
     }
 
-    fn mapped<T>(&self, staging: &wgpu::Buffer, read: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
+    /// Waits for what was submitted, and shows `read` the bytes of a buffer made with `MAP_READ`.
+    pub fn mapped<T>(&self, staging: &wgpu::Buffer, read: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
         let failed = Arc::new(AtomicBool::new(false));
         let flag = failed.clone();
         staging.slice(..).map_async(wgpu::MapMode::Read, move |result| flag.store(result.is_err(), Relaxed));
@@ -66,6 +67,9 @@ impl Gpu {
             return Err(failure());
         }
         let view = staging.slice(..).get_mapped_range().map_err(|_| failure())?;
-        Ok(read(&view))
+        let found = read(&view);
+        drop(view);
+        staging.unmap();
+        Ok(found)
     }
 }

@@ -237,27 +237,48 @@ impl CityBuffers {
         Ok(Self { sections, surfaces, surface_table, textures, smooth, triangles, vertices, bytes, bounds })
     }
 
-    /// The draws of one section that a frustum may see, and how many triangles they hold.
+    /// The chunks of one section that a frustum may see, in drawing order.
     ///
     /// Near ones come first, so that they hide the rest before it is shaded; where many chunks are seen, runs of
     /// neighbours are sorted as one, because draw calls cost something too.
-    pub fn visible(section: &Section, frustum: &Frustum, eye: DVec3, draws: &mut Vec<Draw>) -> u64 {
-        draws.clear();
+    pub fn visible<'a>(section: &'a Section, frustum: &Frustum, eye: DVec3) -> Vec<SeenChunk<'a>> {
         let seen: Vec<&Chunk> = section.chunks.iter().filter(|c| frustum.meets(&c.bounds)).collect();
-        let mut groups: Vec<&[&Chunk]> = seen.chunks(seen.len().div_ceil(SORTED_GROUPS).max(1)).collect();
-        groups.sort_by_cached_key(|group| {
-            let bounds = group.iter().fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
-            // Distances are not negative: their bits are in order.
-            eye.clamp(bounds.min, bounds.max).distance_squared(eye).to_bits()
-        });
-        for chunk in groups.into_iter().flatten() {
-            match draws.last_mut() {
-                Some(last) if last.end == chunk.range.start => last.end = chunk.range.end,
-                _ => draws.push(chunk.range.clone()),
-            }
-        }
-        seen.iter().map(|c| u64::from(c.range.end - c.range.start)).sum::<u64>() / 3
+        let run_length = seen.len().div_ceil(SORTED_GROUPS).max(1);
+        let mut runs: Vec<(f64, &[&Chunk])> = seen
+            .chunks(run_length)
+            .map(|run| {
+                let bounds = run.iter().fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
+                (eye.clamp(bounds.min, bounds.max).distance(eye), run)
+            })
+            .collect();
+        runs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let chunks =
+            runs.into_iter().flat_map(|(distance, run)| run.iter().map(move |&chunk| SeenChunk { chunk, distance }));
+        chunks.collect()
     }
+}
+
+/// A chunk in a frustum.
+#[derive(Clone, Copy, Debug)]
+pub struct SeenChunk<'a> {
+    /// Which.
+    pub chunk: &'a Chunk,
+    /// From the eye to the nearest point of what is sorted with it, metres.
+    pub distance: f64,
+}
+
+/// Few draws for many chunks: neighbours in the index buffer become one. And how many triangles they hold.
+pub fn draws_of<'a>(chunks: impl Iterator<Item = &'a Chunk>) -> (Vec<Draw>, u64) {
+    let mut draws: Vec<Draw> = Vec::new();
+    let mut indices = 0;
+    for Chunk { range, .. } in chunks {
+        indices += u64::from(range.end - range.start);
+        match draws.last_mut() {
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => draws.push(range.clone()),
+        }
+    }
+    (draws, indices / 3)
 }
 
 /// The corners of a model triangle; `triangle` counts from the model's first.

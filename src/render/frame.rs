@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! shadow map                    if the sun casts shadows and the map does not hold this view yet
-//! geometry                      once, for everything
+//! geometry                      everything once; on a software adapter what is near, and then
+//! geometry beyond               what that does not hide, where it hides much
 //! sprite entries, sprite exits  of all lens volumes in view
 //! shade                         outside the lenses' screen bounds without them, inside with them
 //! ```
@@ -14,7 +15,8 @@ use glam::DVec2;
 use crate::{
     gpu::{GpuError, Slot, Timer},
     render::{
-        city::{CityBuffers, Draw, SectionKind},
+        city::{Chunk, CityBuffers, Draw, Section, SectionKind, SeenChunk, draws_of},
+        curtain::{self, Curtain},
         eye::{PictureTile, view_uniform},
         layout, light,
         operations::Operations,
@@ -26,7 +28,7 @@ use crate::{
     },
     scene::{Background, BaseStyle, Sun},
     shader::Plan,
-    view::{Frustum, View},
+    view::View,
 };
 
 /// Name of the pass that empties the lens masks; where it ran, they hold this frame's classes.
@@ -136,7 +138,7 @@ impl Renderer {
         if let Some(sun_view) = &sun_view {
             self.shadow_pass(&mut encoder, &mut recorder, sun_view);
         }
-        self.geometry_pass(&mut encoder, &mut recorder, input);
+        encoder = self.geometry_passes(encoder, &mut recorder, input)?;
         if !seen.is_empty() {
             self.sprite_passes(&mut encoder, &mut recorder, &seen);
             if wants_masks(input) {
@@ -171,9 +173,9 @@ impl Renderer {
         pass.set_bind_group(0, &groups.view, &[]);
         pass.set_bind_group(1, &city.group, &[]);
         let frustum = view.frustum(1.0);
-        let mut draws = Vec::new();
         for section in &city.buffers.sections {
-            CityBuffers::visible(section, &frustum, view.camera.eye, &mut draws);
+            let seen = CityBuffers::visible(section, &frustum, view.camera.eye);
+            let (draws, _) = draws_of(seen.iter().map(|s| s.chunk));
             pass.set_vertex_buffer(0, section.vertices.slice(..));
             draw_ranges(&mut pass, &section.indices, &draws);
         }
@@ -326,30 +328,88 @@ impl Renderer {
         pass.set_bind_group(1, &city.group, &[]);
         // Casters may stand before the picture's edge, never behind the sun.
         let frustum = sun.frustum(1.0);
-        let mut draws = Vec::new();
         for section in &city.buffers.sections {
-            let triangles = CityBuffers::visible(section, &frustum, sun.camera.eye, &mut draws);
+            let seen = CityBuffers::visible(section, &frustum, sun.camera.eye);
+            let (draws, triangles) = draws_of(seen.iter().map(|s| s.chunk));
             pass.set_vertex_buffer(0, section.vertices.slice(..));
             draw_ranges(&mut pass, &section.indices, &draws);
             recorder.count(draws.len() as u32, triangles);
         }
     }
 
-    fn geometry_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, input: &FrameInput) {
+    /// The city, every triangle at most once: in one pass, or what is near first and then what it does not hide.
+    fn geometry_passes(
+        &mut self,
+        mut encoder: wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        input: &FrameInput,
+    ) -> Result<wgpu::CommandEncoder, GpuError> {
+        let (Some(targets), Some(city)) = (&self.targets, &self.city) else { return Ok(encoder) };
+        let frustum = input.view.frustum(1.0);
+        let sections = &city.buffers.sections;
+        let seen: Vec<Vec<SeenChunk>> =
+            sections.iter().map(|s| CityBuffers::visible(s, &frustum, input.view.camera.eye)).collect();
+        let part = |keep: &dyn Fn(&Section, &SeenChunk) -> bool| -> Vec<Vec<&Chunk>> {
+            let mut kept: Vec<Vec<&Chunk>> = Vec::new();
+            for (section, seen) in sections.iter().zip(&seen) {
+                kept.push(seen.iter().filter(|s| keep(section, s)).map(|s| s.chunk).collect());
+            }
+            kept
+        };
+        // Layers of coplanar faces stay together and last: the later one wins where depths are equal.
+        let hangs = |section: &Section| section.kind != SectionKind::Coplanar;
+        let hanging = || sections.iter().zip(&seen).filter(|(section, _)| hangs(section)).flat_map(|(_, seen)| seen);
+        let reach = if self.culls_hidden { curtain::reach(&input.view, hanging()) } else { None };
+        let Some(reach) = reach else {
+            self.geometry_pass(&mut encoder, recorder, input, &part(&|_, _| true), ("geometry", true));
+            return Ok(encoder);
+        };
+        let is_near = |section: &Section, s: &SeenChunk| hangs(section) && s.distance <= reach;
+        self.geometry_pass(&mut encoder, recorder, input, &part(&is_near), ("geometry", true));
+        let mut curtain = match self.curtain.take() {
+            Some(curtain) if curtain.fits(&targets.depth.texture) => curtain,
+            _ => Curtain::new(&self.gpu, input.tile.size)?,
+        };
+        curtain.copy(&mut encoder, &targets.depth.texture);
+        self.gpu.queue.submit([encoder.finish()]);
+        curtain.read(&self.gpu)?;
+        let rest = part(&|section, s| !is_near(section, s) && !curtain.hides(&input.view, input.tile, &s.chunk.bounds));
+        encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        self.geometry_pass(&mut encoder, recorder, input, &rest, ("geometry beyond", false));
+        self.curtain = Some(curtain);
+        Ok(encoder)
+    }
+
+    fn geometry_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        input: &FrameInput,
+        chunks: &[Vec<&Chunk>],
+        (name, is_first): (&'static str, bool),
+    ) {
         let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
         let colored = self.colored();
-        let slot = recorder.begin("geometry", "main", &[], true);
+        let slot = recorder.begin(name, "main", &[], true);
         let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
-        let colors = [
-            Some(color_attachment(&targets.codes.view, wgpu::Color::TRANSPARENT)),
-            colored.then(|| color_attachment(&targets.colors.view, wgpu::Color::TRANSPARENT)),
-            input.measured.then(|| color_attachment(&targets.own_depth.view, wgpu::Color::TRANSPARENT)),
-        ];
+        let targets_of =
+            [Some(&targets.codes), colored.then_some(&targets.colors), input.measured.then_some(&targets.own_depth)];
+        let colors = targets_of.map(|target| {
+            let mut attachment = color_attachment(&target?.view, wgpu::Color::TRANSPARENT);
+            if !is_first {
+                attachment.ops.load = wgpu::LoadOp::Load;
+            }
+            Some(attachment)
+        });
         let count = if input.measured { 3 } else { 1 + usize::from(colored) };
+        let mut depth = depth_attachment(&targets.depth.view, 0.0);
+        if !is_first {
+            depth.depth_ops = Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store });
+        }
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("geometry"),
+            label: Some(name),
             color_attachments: &colors[..count],
-            depth_stencil_attachment: Some(depth_attachment(&targets.depth.view, 0.0)),
+            depth_stencil_attachment: Some(depth),
             timestamp_writes: writes,
             ..Default::default()
         });
@@ -358,14 +418,12 @@ impl Renderer {
         }
         pass.set_bind_group(0, &groups.view, &[]);
         pass.set_bind_group(1, &city.group, &[]);
-        let frustum: Frustum = input.view.frustum(1.0);
-        let mut draws = Vec::new();
         let mut counted = (0, 0);
-        for (section, image) in city.buffers.sections.iter().zip(&city.images) {
-            let triangles = CityBuffers::visible(section, &frustum, input.view.camera.eye, &mut draws);
-            if draws.is_empty() {
+        for ((section, image), chunks) in city.buffers.sections.iter().zip(&city.images).zip(chunks) {
+            if chunks.is_empty() {
                 continue;
             }
+            let (draws, triangles) = draws_of(chunks.iter().copied());
             pass.set_pipeline(self.pipelines.get(&geometry_key(
                 section.kind,
                 colored,

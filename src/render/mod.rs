@@ -5,6 +5,7 @@
 //! This room knows no files and no commands.
 
 pub mod city;
+mod curtain;
 pub mod eye;
 pub mod frame;
 pub mod layout;

@@ -7,6 +7,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         city::{CityBuffers, SectionKind, Shown},
+        curtain::Curtain,
         layout,
         pipelines::Pipelines,
         synced::Synced,
@@ -30,6 +31,10 @@ pub struct Renderer {
     pub(super) shadow_sampler: wgpu::Sampler,
     /// What the shadow map holds; drawn again when it should hold something else.
     pub(super) shadow_of: Option<layout::View>,
+    /// Whether chunks that nearer ones hide are left out where that pays: on software adapters.
+    pub culls_hidden: bool,
+    /// The near depth of the last frame that culled by it.
+    pub(super) curtain: Option<Curtain>,
     /// Counts cities, so that the shadow of an old one is not taken for the new one's.
     generation: u32,
 }
@@ -101,6 +106,8 @@ impl Renderer {
             groups: None,
             shadow_sampler,
             shadow_of: None,
+            culls_hidden: gpu.is_software(),
+            curtain: None,
             generation: 0,
             gpu,
         })

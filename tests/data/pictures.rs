@@ -11,6 +11,7 @@ use crate::studio;
 
 const SIZE: [u32; 2] = [960, 540];
 const DEN_HAAG: &str = "denhaag-01/DenHaag_01.v1.0.city.json";
+const DELFT: &str = "3dbag-delft/3dbag_5908_delft.v1.1.city.jsonl";
 const PART_OF_IT: &str = "denhaag-01/DH_01_subs.city.json";
 
 pub fn trials() -> Vec<Trial> {
@@ -39,6 +40,14 @@ pub fn trials() -> Vec<Trial> {
         masks("pictures::den_haag_sphere_of_90_m", DEN_HAAG, 90.0),
         masks("pictures::vienna_sphere_of_60_m", "vienna-102081/vienna_102081.v1.1.city.jsonl", 60.0),
         masks("pictures::rotterdam_sphere_of_120_m", "rotterdam-delfshaven/3-20-DELFSHAVEN.city.json", 120.0),
+        crate::trial("pictures::hidden_buildings_are_not_missed", |root| {
+            let mut views = 0;
+            for file in [DEN_HAAG, DELFT] {
+                let mut studio = studio::studio(&[root.join(file)]);
+                views += studio::hiding_changes_nothing(&mut studio, 10, SIZE).0;
+            }
+            if views < 5 { Err(format!("only {views} of 20 street views leave anything out").into()) } else { Ok(()) }
+        }),
         crate::trial("pictures::both_files_of_den_haag_agree", |root| {
             let mut whole = studio::studio(&[root.join(DEN_HAAG)]);
             let mut part = studio::studio(&[root.join(PART_OF_IT)]);

@@ -132,3 +132,41 @@ pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, b
     }
     wrong
 }
+
+/// Draws street views through the city with and without what near buildings hide, and compares every byte; returns how many
+/// views left something out, and the triangles drawn with and without.
+pub fn hiding_changes_nothing(studio: &mut Studio, views: u32, size: [u32; 2]) -> (u32, u64, u64) {
+    let extent = studio.extent();
+    let (mut used, mut drawn_hiding, mut drawn_all) = (0, 0, 0);
+    for i in 0..views {
+        // Additive recurrences: spread evenly, the same in every run.
+        let at = |step: f64| (f64::from(i) * step + 0.5).fract();
+        let share = DVec3::new(at(0.754_877_666_2), at(0.569_840_290_9), 0.0);
+        let foot = (extent.min + extent.size() * (0.1 + 0.8 * share)).with_z(extent.min.z);
+        let eye = foot + DVec3::Z * (1.7 + 12.0 * at(0.618_033_988_7));
+        let turn = std::f64::consts::TAU * at(0.324_717_957_2);
+        let target = eye + DVec3::new(turn.cos(), turn.sin(), -0.1 * at(0.41)) * 50.0;
+        let scene = scene(Camera::looking(eye, target, 0.9), vec![]);
+        let samples = if i % 4 == 3 { 3 } else { 1 };
+        let request = Request { size, samples, transparent: false, aovs: ALL, statistics: true };
+        let mut draw = |hides: bool| {
+            studio.renderer.culls_hidden = hides;
+            let picture = studio.render(&scene, &request).expect("a picture");
+            let named = |p: &str| picture.statistics.passes.iter().any(|pass| pass.name == p);
+            let triangles = picture.statistics.passes.iter().map(|pass| pass.triangles).sum::<u64>();
+            (named("geometry beyond"), triangles, picture)
+        };
+        let (hid, fewer, with) = draw(true);
+        let (_, all, without) = draw(false);
+        assert!(with.rgba == without.rgba, "view {i}: another picture");
+        assert!(with.object_id == without.object_id, "view {i}: other objects");
+        assert!(with.normal == without.normal, "view {i}: other normals");
+        let bits = |p: &Picture| p.depth.as_ref().expect("depth").iter().map(|d| d.to_bits()).collect::<Vec<_>>();
+        assert!(bits(&with) == bits(&without), "view {i}: other depths");
+        assert!(fewer <= all, "view {i}: {fewer} triangles instead of {all}");
+        if hid {
+            (used, drawn_hiding, drawn_all) = (used + 1, drawn_hiding + fewer, drawn_all + all);
+        }
+    }
+    (used, drawn_hiding, drawn_all)
+}
