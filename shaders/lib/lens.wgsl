@@ -11,8 +11,7 @@ struct LensVolume {
     page: u32,
 }
 
-@group(2) @binding(0) var sprite_entries: texture_depth_2d_array;
-@group(2) @binding(1) var sprite_exits: texture_depth_2d_array;
+@group(2) @binding(0) var sprites: texture_2d_array<f32>;    // stored depth of the entry, and of the exit
 
 const MISSED: u32 = 0u;
 const INSIDE: u32 = 1u;
@@ -35,15 +34,13 @@ fn sprite_texel(v: LensVolume, pixel: vec2i) -> vec2i {
 
 // Exits hold 1, their clear value, where the ray misses the volume.
 fn covers(v: LensVolume, pixel: vec2i) -> bool {
-    return is_in_bounds(v, pixel) && textureLoad(sprite_exits, sprite_texel(v, pixel), v.page, 0) != 1.0;
+    return is_in_bounds(v, pixel) && textureLoad(sprites, sprite_texel(v, pixel), v.page, 0).y != 1.0;
 }
 
 // At a pixel within the volume's screen bounds.
 fn class_within(v: LensVolume, pixel: vec2i, depth: f32) -> u32 {
-    let texel = sprite_texel(v, pixel);
-    let exit = textureLoad(sprite_exits, texel, v.page, 0);
-    let entry = textureLoad(sprite_entries, texel, v.page, 0);
-    return select(MISSED, classify(depth, entry, exit), exit != 1.0);
+    let ends = textureLoad(sprites, sprite_texel(v, pixel), v.page, 0).xy;
+    return select(MISSED, classify(depth, ends.x, ends.y), ends.y != 1.0);
 }
 
 // At any pixel.

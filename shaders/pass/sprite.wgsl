@@ -1,8 +1,10 @@
-// Volumetric depth sprite of one lens volume, created in two stages (S1, V §3.1):
-// stage 1 keeps the nearest entry (clear 0, test greater), stage 2 the farthest exit (clear 1, test
-// less); stored depth decreases with distance (1/w, S4's default), so both tests are swapped.
-// Depth is clamped, not clipped. An entry behind the eye is not written: an exit without an entry
-// says that the eye, or the near plane, is inside.
+// Volumetric depth sprite of one lens volume (S1, V §3.1): per texel the stored depth of the nearest entry (stage 1)
+// and of the farthest exit (stage 2). The volumes are convex and their ends have closed forms, so one draw makes both
+// stages, and the "nearest" and "farthest" of the source need no depth test: a ray has one span.
+//
+// Stored depth decreases with distance (1/w, S4's default). It is clamped, not clipped. A texel that the volume misses
+// holds what the target was cleared to, NO_ENTRY and NO_EXIT. An exit without an entry says that the eye, or the near
+// plane, is inside.
 
 struct SpriteStage {
     shape: Shape,
@@ -19,31 +21,22 @@ fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0);
 }
 
-fn span_at(texel: vec2f) -> Span {
-    let span = span_of_shape(ray_of_pixel((texel + stage.origin) * stage.pixels_per_texel), stage.shape);
-    // Perspective rays start at the eye; what lies behind it is not seen.
-    if view.orthographic == 0u && span.exit <= 0.0 {
-        return EMPTY_SPAN;
-    }
-    return span;
+const NO_ENTRY = 0.0;
+const NO_EXIT = 1.0;
+
+// Stage 1 of a span, and stage 2.
+fn ends_of(span: Span) -> vec2f {
+    // A true entry is never NO_ENTRY; a true exit never NO_EXIT: a lens nearer than the near plane ends just behind it.
+    let enter = max(depth_of_distance(span.enter), 1e-30);
+    let exit = min(depth_of_distance(span.exit), 0.99999994);
+    // Perspective rays start at the eye: what lies behind it is not seen, and no entry.
+    let starts_at_eye = view.orthographic == 0u;
+    let is_missed = span.enter > span.exit || (starts_at_eye && span.exit <= 0.0);
+    let ends = vec2f(select(enter, NO_ENTRY, starts_at_eye && span.enter <= 0.0), exit);
+    return select(ends, vec2f(NO_ENTRY, NO_EXIT), is_missed);
 }
 
 @fragment
-fn entry(@builtin(position) at: vec4f) -> @builtin(frag_depth) f32 {
-    let span = span_at(at.xy);
-    if span.enter > span.exit || (view.orthographic == 0u && span.enter <= 0.0) {
-        discard;
-    }
-    // Never 0, which says "no entry".
-    return max(depth_of_distance(span.enter), 1e-30);
-}
-
-@fragment
-fn exit(@builtin(position) at: vec4f) -> @builtin(frag_depth) f32 {
-    let span = span_at(at.xy);
-    if span.enter > span.exit {
-        discard;
-    }
-    // Never 1, which says "no exit": a lens nearer than the near plane ends just behind it.
-    return min(depth_of_distance(span.exit), 0.99999994);
+fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2f {
+    return ends_of(span_of_shape(ray_of_pixel((at.xy + stage.origin) * stage.pixels_per_texel), stage.shape));
 }

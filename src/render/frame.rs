@@ -4,7 +4,7 @@
 //! shadow map                    if the sun casts shadows and the map does not hold this view yet
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
-//! sprite entries, sprite exits  of all lens volumes in view
+//! depth sprites                 of all lens volumes in view
 //! shade                         outside the lenses' screen bounds without them, inside with them
 //! ```
 //!
@@ -270,7 +270,7 @@ impl Renderer {
             keys.push(geometry_key(section.kind, colored, city.buffers.smooth, input.measured));
         }
         for volume in seen {
-            keys.extend([Key::SpriteEntry(volume.kind), Key::SpriteExit(volume.kind)]);
+            keys.push(Key::Sprite(volume.kind));
         }
         let clay = input.base == BaseStyle::Clay;
         let shade = |surface, plan: &Plan| Key::Shade {
@@ -461,43 +461,39 @@ impl Renderer {
         }
     }
 
-    /// The two stages of the volumetric depth sprites (S1): all entries, then all exits.
+    /// The volumetric depth sprites (S1) of all volumes in view, page by page.
     fn sprite_passes(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, seen: &[SeenVolume]) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        for is_entry in [true, false] {
-            let (name, target, clear) = match is_entry {
-                true => ("sprite entries", &targets.entries, 0.0),
-                false => ("sprite exits", &targets.exits, 1.0),
-            };
-            for (page, view) in target.layers.iter().enumerate() {
-                let here = || seen.iter().enumerate().filter(|(_, v)| v.place.page as usize == page);
-                let mut lenses: Vec<u32> = here().map(|(_, v)| v.lens).collect();
-                lenses.dedup();
-                let slot = recorder.begin(name, "main", &lenses, true);
-                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                    label: Some(name),
-                    depth_stencil_attachment: Some(depth_attachment(view, clear)),
-                    timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
-                    ..Default::default()
-                });
-                if let Some(timer) = &recorder.timer {
-                    timer.begin_count(&mut pass, slot);
-                }
-                pass.set_bind_group(0, &groups.view, &[]);
-                pass.set_bind_group(1, &groups.planes, &[]);
-                for (stage, volume) in here() {
-                    let key = if is_entry { Key::SpriteEntry(volume.kind) } else { Key::SpriteExit(volume.kind) };
-                    pass.set_pipeline(self.pipelines.get(&key));
-                    pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
-                    scissor(&mut pass, PictureTile { origin: volume.place.origin, size: volume.sprite_bounds.size });
-                    pass.draw(0..3, 0..1);
-                }
-                if let Some(timer) = &recorder.timer {
-                    timer.end_count(&mut pass, slot);
-                }
-                let drawn = here().count() as u32;
-                recorder.count(drawn, u64::from(drawn));
+        for (page, view) in targets.sprites.layers.iter().enumerate() {
+            let here = || seen.iter().enumerate().filter(|(_, v)| v.place.page as usize == page);
+            let mut lenses: Vec<u32> = here().map(|(_, v)| v.lens).collect();
+            lenses.dedup();
+            let slot = recorder.begin("depth sprites", "main", &lenses, true);
+            // No entry, no exit.
+            let cleared = color_attachment(view, wgpu::Color { r: 0.0, g: 1.0, b: 0.0, a: 0.0 });
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("depth sprites"),
+                color_attachments: &[Some(cleared)],
+                timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
+                ..Default::default()
+            });
+            if let Some(timer) = &recorder.timer {
+                timer.begin_count(&mut pass, slot);
             }
+            pass.set_bind_group(0, &groups.view, &[]);
+            pass.set_bind_group(1, &groups.planes, &[]);
+            for (stage, volume) in here() {
+                pass.set_pipeline(self.pipelines.get(&Key::Sprite(volume.kind)));
+                pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
+                scissor(&mut pass, PictureTile { origin: volume.place.origin, size: volume.sprite_bounds.size });
+                pass.draw(0..3, 0..1);
+            }
+            if let Some(timer) = &recorder.timer {
+                timer.end_count(&mut pass, slot);
+            }
+            drop(pass);
+            let drawn = here().count() as u32;
+            recorder.count(drawn, u64::from(drawn));
         }
     }
 

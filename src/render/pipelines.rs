@@ -20,6 +20,8 @@ pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 pub const OWN_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// One bit per lens and class.
 pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// Stored depths of an entry and of an exit: volumetric depth sprites.
+pub const SPRITES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// The picture: sRGB bytes.
 pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
@@ -39,10 +41,8 @@ pub enum Key {
     },
     /// Depth from the sun.
     Shadow,
-    /// Nearest entry into a lens.
-    SpriteEntry(u32),
-    /// Farthest exit from it; both by the kind of shape (`layout::Shape::kind`).
-    SpriteExit(u32),
+    /// Depth sprite of a volume, by the kind of shape (`layout::Shape::kind`).
+    Sprite(u32),
     /// Shading.
     Shade {
         /// What the context and the lenses do.
@@ -143,7 +143,7 @@ impl Pipelines {
         let float = image(T::Float { filterable: false }, D::D2);
         let depth = image(T::Depth, D::D2);
         let surfaces = image(T::Uint, D::D2);
-        let sprites = image(T::Depth, D::D2Array);
+        let sprites = image(T::Float { filterable: false }, D::D2Array);
         let masks = B::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
             format: MASKS,
@@ -186,11 +186,10 @@ impl Pipelines {
                 "lenses",
                 &[
                     (0, S::FRAGMENT, sprites),
-                    (1, S::FRAGMENT, sprites),
-                    (2, S::FRAGMENT, storage()),
+                    (1, S::FRAGMENT, storage()),
+                    (2, S::FRAGMENT, uniform()),
                     (3, S::FRAGMENT, uniform()),
-                    (4, S::FRAGMENT, uniform()),
-                    (5, S::FRAGMENT, masks),
+                    (4, S::FRAGMENT, masks),
                 ],
             ),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
@@ -255,7 +254,7 @@ impl Pipelines {
                 vec![Some(&self.view), Some(&self.city), Some(&self.image)]
             }
             Key::Geometry { .. } | Key::Shadow | Key::Bare => vec![Some(&self.view), Some(&self.city)],
-            Key::SpriteEntry(_) | Key::SpriteExit(_) => vec![Some(&self.view), Some(&self.planes), Some(&self.stage)],
+            Key::Sprite(_) => vec![Some(&self.view), Some(&self.planes), Some(&self.stage)],
             Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
             Key::Resolve => vec![Some(&self.resolve)],
         };
@@ -317,7 +316,7 @@ impl Key {
         match self {
             Self::Geometry { .. } => Module::Geometry,
             Self::Shadow => Module::Shadow,
-            Self::SpriteEntry(_) | Self::SpriteExit(_) => Module::Sprite,
+            Self::Sprite(_) => Module::Sprite,
             Self::Shade { plan, .. } => Module::Shade(plan.clone()),
             Self::Resolve => Module::Resolve,
             Self::Bare => Module::Bare,
@@ -340,8 +339,7 @@ impl Key {
                 format!("{kind}{}", flags(&[(*colored, "colored"), (*smooth, "smooth"), (*measured, "measured")]))
             }
             Self::Shadow => "shadow".to_owned(),
-            Self::SpriteEntry(kind) => format!("sprite entry of a {}", shape_name(*kind)),
-            Self::SpriteExit(kind) => format!("sprite exit of a {}", shape_name(*kind)),
+            Self::Sprite(kind) => format!("depth sprite of a {}", shape_name(*kind)),
             Self::Shade { surface, textured, clay, summed, shadows, .. } => {
                 let list = [
                     (!*surface, "background"),
@@ -376,7 +374,7 @@ impl Key {
                 ("SMOOTH", flag(*smooth)),
                 ("BACKGROUND", f64::from(*background)),
             ],
-            Self::SpriteEntry(kind) | Self::SpriteExit(kind) => vec![("KIND", f64::from(*kind))],
+            Self::Sprite(kind) => vec![("KIND", f64::from(*kind))],
             _ => Vec::new(),
         }
     }
@@ -397,8 +395,6 @@ impl Key {
                 }
             }
             Self::Shadow => ("vertex", None),
-            Self::SpriteEntry(_) => ("vertex", Some("entry")),
-            Self::SpriteExit(_) => ("vertex", Some("exit")),
             Self::Shade { surface, .. } => ("vertex", Some(if *surface { "surface" } else { "background" })),
             _ => ("vertex", Some("fragment")),
         }
@@ -438,6 +434,7 @@ impl Key {
                     write_mask: wgpu::ColorWrites::ALL,
                 })]
             }
+            Self::Sprite(_) => vec![Some(SPRITES.into())],
             Self::Shade { .. } | Self::Resolve | Self::Bare => vec![Some(PICTURE.into())],
             _ => Vec::new(),
         }
@@ -447,12 +444,11 @@ impl Key {
         use wgpu::CompareFunction as C;
         let compare = match self {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
-            Self::Geometry { .. } | Self::Shadow | Self::Bare | Self::SpriteEntry(_) => C::Greater,
-            Self::SpriteExit(_) => C::Less,
+            Self::Geometry { .. } | Self::Shadow | Self::Bare => C::Greater,
             // The triangle lies at depth 0, where nothing is stored.
             Self::Shade { surface: true, .. } => C::Less,
             Self::Shade { surface: false, .. } => C::Equal,
-            Self::Resolve => return None,
+            Self::Sprite(_) | Self::Resolve => return None,
         };
         Some(wgpu::DepthStencilState {
             format: DEPTH,

@@ -2,7 +2,7 @@
 
 use crate::{
     gpu::Gpu,
-    render::pipelines::{CODES, COLORS, DEPTH, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES},
+    render::pipelines::{CODES, COLORS, DEPTH, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES},
 };
 
 /// What a frame needs beside codes, depth and the picture.
@@ -56,10 +56,8 @@ pub struct Targets {
     pub sums: Target,
     /// One bit per lens; layers 3w inside, 3w+1 in front, 3w+2 behind (1×1 where not needed).
     pub masks: Target,
-    /// Nearest entries into lens volumes.
-    pub entries: Target,
-    /// Farthest exits from them.
-    pub exits: Target,
+    /// Pages of volumetric depth sprites: stored depths of entries and exits.
+    pub sprites: Target,
     /// Depth from the sun (1×1 where not needed).
     pub shadow: Target,
 }
@@ -98,8 +96,7 @@ impl Targets {
             picture: make("picture", [w, h, 1], PICTURE, drawn),
             sums: make("sums", full(needs.sums), sums, drawn),
             masks: make_any("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING, true),
-            entries: make_any("sprite entries", needs.sprites, DEPTH, drawn, true),
-            exits: make_any("sprite exits", needs.sprites, DEPTH, drawn, true),
+            sprites: make_any("depth sprites", needs.sprites, SPRITES, drawn, true),
             shadow: make("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn),
         }
     }

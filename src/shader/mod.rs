@@ -170,6 +170,6 @@ mod tests {
         let source = Module::Shade(Plan { steps, ..Plan::default() }).source();
         assert!(source.contains("fn greyscale"));
         assert!(!source.contains("fn sepia") && !source.contains("fn thematic"));
-        assert!(!source.contains("sprite_exits"), "a lens that is not there is in the shader");
+        assert!(!source.contains("var sprites"), "a lens that is not there is in the shader");
     }
 }

@@ -104,16 +104,16 @@ impl Plan {
         let mut text = String::new();
         if self.parameters() > 0 {
             let count = self.parameters();
-            let _ = writeln!(text, "@group(2) @binding(3) var<uniform> parameters: array<Parameters, {count}>;");
+            let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<Parameters, {count}>;");
         }
         if self.volumes() > 0 {
             let count = self.volumes();
-            let _ = writeln!(text, "@group(2) @binding(4) var<uniform> volumes: array<LensVolume, {count}>;");
+            let _ = writeln!(text, "@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {count}>;");
         }
         if self.masks {
             let _ = writeln!(
                 text,
-                "@group(2) @binding(5) var class_masks: texture_storage_2d_array<r32uint, write>; // per 32 lenses: \
+                "@group(2) @binding(4) var class_masks: texture_storage_2d_array<r32uint, write>; // per 32 lenses: \
                  inside, in front, behind"
             );
         }
