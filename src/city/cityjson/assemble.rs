@@ -41,6 +41,8 @@ pub struct Assembly<'a> {
     pub dressed: &'a Dressed,
     /// Templates of the file.
     pub templates: &'a Templates,
+    /// What the templates wear: materials and textures of where they are declared.
+    pub templates_dressed: &'a Dressed,
     /// How numbers become metres.
     pub placing: Placing,
     /// Indices instanced so far.
@@ -92,7 +94,7 @@ impl Assembly<'_> {
                 self.builder.add_geometry(RawGeometry { object, lod, solid: false, pool: pool.clone(), polygons });
             }
             _ => {
-                let Some(polygons) = self.polygons(geometry, id, surfaces) else { return };
+                let Some(polygons) = self.polygons(geometry, id, self.dressed, surfaces) else { return };
                 let (lod, solid) = (self.lod(geometry, id), geometry.kind.is_solid());
                 self.builder.add_geometry(RawGeometry { object, lod, solid, pool: pool.clone(), polygons });
             }
@@ -100,7 +102,13 @@ impl Assembly<'_> {
     }
 
     /// The polygons of a geometry of surfaces or solids; `None` (and a warning) where its arrays do not fit its type.
-    fn polygons(&mut self, geometry: &GeometryRead, id: &str, surfaces: &mut SurfaceTable) -> Option<Polygons> {
+    fn polygons(
+        &mut self,
+        geometry: &GeometryRead,
+        id: &str,
+        dressed: &Dressed,
+        surfaces: &mut SurfaceTable,
+    ) -> Option<Polygons> {
         let depth = geometry.kind.ring_depth()?;
         let Some((indices, ring_ends, polygon_ends)) = geometry.boundaries.rings(depth) else {
             self.warn(WarningCode::BadGeometry, id, || {
@@ -113,7 +121,7 @@ impl Assembly<'_> {
             return None;
         };
         let meanings = semantics::of_polygons(geometry, depth, self.builder, id);
-        let (materials, texcoords) = self.wardrobe.dress(geometry, depth, self.dressed, self.builder, id);
+        let (materials, texcoords) = self.wardrobe.dress(geometry, depth, dressed, self.builder, id);
         let surfaces = meanings
             .into_iter()
             .zip(materials)
@@ -154,7 +162,7 @@ impl Assembly<'_> {
                 format!("instances of templates have more than {MAX_INSTANCED} corners together; the rest is skipped")
             });
         }
-        let Some(mut polygons) = self.polygons(template, id, surfaces) else {
+        let Some(mut polygons) = self.polygons(template, id, self.templates_dressed, surfaces) else {
             if template.kind.ring_depth().is_none() {
                 self.warn(WarningCode::BadGeometry, id, || {
                     format!("a template of type {:?} cannot be placed; it is skipped", template.kind)

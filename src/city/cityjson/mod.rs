@@ -234,6 +234,7 @@ impl<'a> File<'a> {
             wardrobe: &mut self.wardrobe,
             dressed: own.as_ref().unwrap_or(&self.dressed),
             templates: &self.templates,
+            templates_dressed: &self.dressed,
             placing,
             instanced: &mut self.instanced,
         }

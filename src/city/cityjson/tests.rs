@@ -134,6 +134,15 @@ fn materials_follow_the_default_theme() {
 }
 
 #[test]
+fn templates_wear_what_their_own_document_declares() {
+    let model = city("templates-sequence.city.jsonl");
+    for (id, wanted) in [("dressed", "brick"), ("fir", "leaves"), ("yew", "leaves")] {
+        assert_eq!(material(&model, id, -DVec3::Y).unwrap().name, wanted, "{id}");
+    }
+    assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+}
+
+#[test]
 fn textures_stand_upright() {
     let model = city("textures.city.json");
     assert!(
