@@ -153,7 +153,18 @@ impl Studio {
     /// The scene's camera, or a good first view of the city.
     pub fn camera(&self, scene: &Scene, size: [u32; 2]) -> Camera {
         scene.camera.unwrap_or_else(|| {
-            let boxes: Vec<Aabb> = self.geometries.iter().map(|&g| self.model.geometries[g as usize].bounds).collect();
+            // Tile by tile: the box of a long or slanting object is mostly empty. Terrain may leave the picture.
+            let tiles_of = |wanted: &dyn Fn(bool) -> bool| -> Vec<Aabb> {
+                let kept = self.geometries.iter().map(|&g| &self.model.geometries[g as usize]);
+                kept.filter(|g| wanted(self.model.objects[g.object as usize].class.is_ground()))
+                    .flat_map(|g| &self.model.tiles[g.tiles.start as usize..g.tiles.end as usize])
+                    .map(|tile| tile.bounds)
+                    .collect()
+            };
+            let mut boxes = tiles_of(&|is_ground| !is_ground);
+            if boxes.is_empty() {
+                boxes = tiles_of(&|_| true);
+            }
             first_view(&self.extent(), &boxes, f64::from(size[0]) / f64::from(size[1]))
         })
     }
