@@ -1,6 +1,17 @@
-// K3, post style: the warm brown of an albumen print; luminance is kept.
-fn sepia(color: vec3f, point: Point, p: Parameters) -> vec3f {
+//! name = "sepia"
+//! kind = "post"
+//! spec = "K3"
+//! doc = "The warm brown of an albumen print; luminance is kept."
+//!
+//! [[parameter]]
+//! name = "amount"
+//! type = "number"
+//! range = [0, 1]
+//! default = 1
+//! doc = "How much of the effect: 0 = none, 1 = all of it."
+
+fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     let grey = luminance(color);
     let toned = grey * vec3f(1.22, 0.97, 0.68);
-    return mix(color, mix(toned, vec3f(1.0), 0.06 * grey), p.a.x);
+    return mix(color, mix(toned, vec3f(1.0), 0.06 * grey), p.amount);
 }

@@ -18,7 +18,8 @@ fn silhouette(lens: u32, pixel: vec2i, width: f32) -> f32 {
     return clamp(0.5 * width + 1.0 - nearest, 0.0, 1.0);
 }
 
-fn outlined(paint: vec4f, lens: u32, pixel: vec2i, line: Parameters) -> vec4f {
-    let opacity = line.a.w * silhouette(lens, pixel, line.b.x);
-    return vec4f(mix(paint.rgb, line.a.rgb, opacity), paint.a + (1.0 - paint.a) * opacity);
+// `color`: and its opacity; `line`: x = width in pixels.
+fn outlined(paint: vec4f, lens: u32, pixel: vec2i, color: vec4f, line: vec4f) -> vec4f {
+    let opacity = color.a * silhouette(lens, pixel, line.x);
+    return vec4f(mix(paint.rgb, color.rgb, opacity), paint.a + (1.0 - paint.a) * opacity);
 }

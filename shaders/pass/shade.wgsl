@@ -14,12 +14,6 @@ override BACKGROUND: u32 = 0u;      // SKY, ONE_COLOR, NOTHING
 const SKY: u32 = 0u;
 const ONE_COLOR: u32 = 1u;
 
-// Of one effect; which is which stands with the effect. Outlines: a = colour and opacity, b.x = width in pixels.
-struct Parameters {
-    a: vec4f,
-    b: vec4f,
-}
-
 // The shown surface at a pixel; `surface` is NO_SURFACE where there is none (D infinite).
 struct Point {
     relative: vec3f,            // to the eye, world axes, metres
@@ -28,8 +22,10 @@ struct Point {
     normal: vec3f,              // unit, towards the eye
     surface: u32,
     object: u32,                // or NO_OBJECT
-    natural: vec3f,             // its own colour, linear
+    natural: vec3f,             // its own colour, linear; where it has a texture, that of the material
+    base: vec3f,                // its colour before light, linear: clay, texture or natural
     lit: bool,                  // whether light acts on it
+    sun: f32,                   // share of the sun that arrives, 0..1
     shade: f32,                 // light on a white surface, 0..1
 }
 
@@ -76,18 +72,25 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
 }
 
 fn nowhere() -> Point {
-    return Point(vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), false, 1.0);
+    return Point(vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), vec3f(0.0),
+                 false, 1.0, 1.0);
 }
 
 fn shade(point: ptr<function, Point>, pixel: vec2i) -> vec3f {
     let sun = sun_share((*point).relative, (*point).normal);
     let arriving = irradiance((*point).normal, sun);
     (*point).shade = luminance(arriving);
-    let base = base_color(*point, pixel);
+    (*point).sun = sun;
+    (*point).base = base_color(*point, pixel);
     if !CLAY && !(*point).lit {
-        return base;
+        return (*point).base;
     }
-    return base * arriving;
+    return (*point).base * arriving;
+}
+
+// What a user's effect returned, as a colour: no negative light, no infinity, nothing that is no number.
+fn contained(color: vec3f) -> vec3f {
+    return select(vec3f(0.0), min(color, vec3f(64.0)), color > vec3f(0.0));
 }
 
 //@apply

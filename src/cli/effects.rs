@@ -1,20 +1,26 @@
 //! `veduta effects`: what lenses can do to what they show.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::{Value, json};
 
 use crate::{
-    cli::{GlobalArguments, Outcome, output, report::wrap, terminal::Paint},
-    lens::effect::{EFFECTS, EffectDefinition, ParameterDefinition},
+    cli::{
+        Failure, GlobalArguments, Outcome, output,
+        report::wrap,
+        terminal::{self, Paint},
+    },
+    shader::effect::{self, EffectDefinition, ParameterDefinition},
 };
 
 const EXAMPLES: &str = "\
 Examples:
   veduta effects
   veduta effects thematic
-  veduta effects --json | jq '.[].name'";
+  veduta effects --json | jq '.[].name'
+  veduta effects --check my-effect.wgsl
+  veduta effects --effects my-effects/";
 
 /// Arguments of `veduta effects`.
 #[derive(Args, Clone, Debug)]
@@ -26,18 +32,65 @@ pub struct Arguments {
     /// Write a JSON array instead of text
     #[arg(long)]
     pub json: bool,
+    /// Say whether an effect file of your own is right, and do nothing else; repeatable
+    #[arg(long, value_name = "FILE.wgsl", conflicts_with_all = ["names", "json"])]
+    pub check: Vec<PathBuf>,
+}
+
+/// Adds the effects in a user's folders. A broken file is reported and left out; the rest works.
+pub fn add_folders(folders: &[PathBuf], global: &GlobalArguments) -> Outcome {
+    for folder in folders {
+        let entries = std::fs::read_dir(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
+        let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        files.retain(|path| path.extension().is_some_and(|e| e == "wgsl"));
+        files.sort();
+        if files.is_empty() {
+            return Err(Failure::failed(format!("{}: there is no effect (*.wgsl) in this folder", folder.display())));
+        }
+        for file in files {
+            let name = file.display().to_string();
+            let text = text_of_file(&file)?;
+            if let Err(error) = effect::add(&name, &text)
+                && !global.quiet
+            {
+                let paint = Paint::for_stderr();
+                terminal::say(&format!("{} {error}; this effect is left out", paint.warning("warning:")));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn text_of_file(file: &Path) -> Outcome<String> {
+    let name = file.display().to_string();
+    let bytes = std::fs::read(file).map_err(|error| Failure::io(&name, &error))?;
+    String::from_utf8(bytes).map_err(|_| Failure::failed(format!("{name}: expected WGSL, which is UTF-8 text")))
+}
+
+/// Checks files; the first broken one fails the command after all were reported.
+fn check(files: &[PathBuf]) -> Outcome {
+    let mut broken = Vec::new();
+    for file in files {
+        let name = file.display().to_string();
+        match crate::shader::effect_file::checked(&name, &text_of_file(file)?) {
+            Ok(effect) => output::print(&format!("{name}: \"{}\" is right\n", effect.name))?,
+            Err(error) => broken.push(error.to_string()),
+        }
+    }
+    if broken.is_empty() { Ok(()) } else { Err(Failure::failed(broken.join("\n"))) }
 }
 
 /// Lists the effects.
 pub fn run(arguments: &Arguments, _: &GlobalArguments) -> Outcome {
-    if let Some(unknown) = arguments.names.iter().find(|name| crate::lens::effect::find(name).is_none()) {
+    if !arguments.check.is_empty() {
+        return check(&arguments.check);
+    }
+    if let Some(unknown) = arguments.names.iter().find(|name| effect::find(name).is_none()) {
         let message = crate::lens::effect::unknown_effect(unknown);
         return Err(crate::cli::Failure::usage(format!("effects: {message}")));
     }
-    let is_asked = |effect: &&EffectDefinition| {
-        arguments.names.is_empty() || arguments.names.iter().any(|name| name == effect.name)
-    };
-    let effects = EFFECTS.iter().filter(is_asked);
+    let is_asked = |effect: &&EffectDefinition| arguments.names.is_empty() || arguments.names.contains(&effect.name);
+    let effects = effect::effects().iter().filter(is_asked);
     if arguments.json {
         let list: Vec<Value> = effects.map(json_of).collect();
         return output::write(Path::new("-"), |out| {
@@ -55,8 +108,8 @@ fn json_of(effect: &EffectDefinition) -> Value {
         json!({
             "name": p.name,
             "takes": p.kind.describe(),
-            "default": if p.required { Value::Null } else { p.default.into() },
-            "required": p.required,
+            "default": if p.is_required() { Value::Null } else { p.default_text().into() },
+            "required": p.is_required(),
             "unit": p.unit,
             "doc": p.doc,
         })
@@ -73,13 +126,13 @@ fn json_of(effect: &EffectDefinition) -> Value {
 fn text_of(effect: &EffectDefinition, paint: Paint) -> String {
     const WIDTH: usize = 96;
     let kind = format!("{}, {}", effect.kind.name(), effect.spec);
-    let mut text = format!("{}  {}\n  {}\n", paint.heading(effect.name), paint.faint(&kind), effect.doc);
-    for p in effect.parameters {
+    let mut text = format!("{}  {}\n  {}\n", paint.heading(&effect.name), paint.faint(&kind), effect.doc);
+    for p in &effect.parameters {
         let unit = if p.unit.is_empty() { String::new() } else { format!(", unit: {}", p.unit) };
-        let default = if p.required { "required".to_owned() } else { format!("default {}", p.default) };
+        let default = if p.is_required() { "required".to_owned() } else { format!("default {}", p.default_text()) };
         let takes = format!("{}{unit}; {default}", p.kind.describe());
-        text += &format!("    {}\n", paint.strong(p.name));
-        for line in wrap(p.doc, WIDTH - 8) {
+        text += &format!("    {}\n", paint.strong(&p.name));
+        for line in wrap(&p.doc, WIDTH - 8) {
             text += &format!("        {line}\n");
         }
         for line in wrap(&takes, WIDTH - 8) {

@@ -68,6 +68,9 @@ pub struct GlobalArguments {
     /// Follow paths in models and scenes that leave the folders named on the command line
     #[arg(long, global = true, display_order = 100)]
     pub allow_outside: bool,
+    /// Add the effects in this folder (*.wgsl, docs/effects.md); repeatable
+    #[arg(long, global = true, value_name = "DIR", display_order = 100)]
+    pub effects: Vec<PathBuf>,
 }
 
 /// The commands of this version.
@@ -120,6 +123,7 @@ pub fn main() -> ExitCode {
 
 fn run(cli: Cli) -> Outcome {
     let global = &cli.global;
+    effects::add_folders(&global.effects, global)?;
     match cli.command {
         Some(Command::View(arguments)) => view(&arguments),
         Some(Command::Render(arguments)) => render::run(&arguments, global),

@@ -1,201 +1,22 @@
-//! The table of effects: names, kinds, parameters; what scene files, help and the renderer read.
+//! Uses of effects: whether they are right, and what they tell the shader. The effects themselves are files
+//! ([`crate::shader::effect`]).
 //!
 //! A lens has at most one scene style (K1: how surfaces are drawn); post styles run after it in list order (K3).
 
-use crate::lens::{
-    EffectUse, Parameter,
-    color::{Srgb, parse_hex},
-    nearest::did_you_mean,
-    ramp,
+use crate::{
+    lens::{
+        EffectUse, Parameter,
+        color::{Srgb, linear_from_srgb, parse_hex},
+        nearest::did_you_mean,
+    },
+    shader::effect::{DefaultValue, Fallback, MAX_LIST, ParameterDefinition, ParameterKind, effects, find},
 };
-
-/// How an effect takes part in the picture (K1).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EffectKind {
-    /// Gives surfaces their colour, before light.
-    SceneStyle,
-    /// Changes the colour of the lit picture.
-    PostStyle,
-}
-
-impl EffectKind {
-    /// As people read it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::SceneStyle => "scene style",
-            Self::PostStyle => "post style",
-        }
-    }
-}
-
-/// What a parameter takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ParameterKind {
-    /// `true` or `false`.
-    Boolean,
-    /// A number within the closed range.
-    Number {
-        /// Smallest.
-        min: f64,
-        /// Largest.
-        max: f64,
-    },
-    /// Any text.
-    Text,
-    /// One of these words.
-    Word(&'static [&'static str]),
-    /// `"#rrggbb"` or `[r, g, b]`, sRGB 0..1.
-    Color,
-    /// Finite numbers, ascending, at most [`MAX_LIST`].
-    Numbers,
-    /// Texts, at most [`MAX_LIST`].
-    Texts,
-}
-
-/// Longest list a parameter takes.
-pub const MAX_LIST: usize = 256;
-
-/// One parameter of an effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ParameterDefinition {
-    /// Its key.
-    pub name: &'static str,
-    /// What it takes.
-    pub kind: ParameterKind,
-    /// What holds where it is not given, in words or as TOML.
-    pub default: &'static str,
-    /// Whether the effect does nothing without it.
-    pub required: bool,
-    /// Unit, or empty.
-    pub unit: &'static str,
-    /// What it does.
-    pub doc: &'static str,
-}
-
-/// One effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EffectDefinition {
-    /// Its name in scene files.
-    pub name: &'static str,
-    /// Scene style or post style.
-    pub kind: EffectKind,
-    /// The requirement it fulfils.
-    pub spec: &'static str,
-    /// What it does, one sentence.
-    pub doc: &'static str,
-    /// Its parameters.
-    pub parameters: &'static [ParameterDefinition],
-}
-
-const AMOUNT: ParameterDefinition = ParameterDefinition {
-    name: "amount",
-    kind: ParameterKind::Number { min: 0.0, max: 1.0 },
-    default: "1.0",
-    required: false,
-    unit: "",
-    doc: "How much of the effect: 0 = none, 1 = all of it.",
-};
-
-const fn optional(
-    name: &'static str,
-    kind: ParameterKind,
-    default: &'static str,
-    unit: &'static str,
-    doc: &'static str,
-) -> ParameterDefinition {
-    ParameterDefinition { name, kind, default, required: false, unit, doc }
-}
-
-const ANY_NUMBER: ParameterKind = ParameterKind::Number { min: f64::MIN, max: f64::MAX };
-
-const THEMATIC: &[ParameterDefinition] = &[
-    ParameterDefinition {
-        name: "attribute",
-        kind: ParameterKind::Text,
-        default: "none",
-        required: true,
-        unit: "",
-        doc: "Name of the attribute; an object without it takes its parent's.",
-    },
-    optional("ramp", ParameterKind::Word(ramp::NAMES), "\"viridis\"", "", "Colours of numbers, low to high."),
-    optional("reverse", ParameterKind::Boolean, "false", "", "Turns the ramp around."),
-    optional(
-        "scale",
-        ParameterKind::Word(&["continuous", "equal", "quantile"]),
-        "\"continuous\"",
-        "",
-        "Numbers: a smooth ramp, classes of equal width, or classes of equally many objects.",
-    ),
-    optional("classes", ParameterKind::Number { min: 2.0, max: 12.0 }, "5", "classes", "How many classes."),
-    optional(
-        "breaks",
-        ParameterKind::Numbers,
-        "none",
-        "the attribute's",
-        "Own class borders, ascending; a value on a border belongs to the upper class.",
-    ),
-    optional(
-        "min",
-        ANY_NUMBER,
-        "the smallest value",
-        "the attribute's",
-        "Where the ramp begins; lower values take its first colour.",
-    ),
-    optional(
-        "max",
-        ANY_NUMBER,
-        "the largest value",
-        "the attribute's",
-        "Where the ramp ends; higher values take its last colour.",
-    ),
-    optional(
-        "categories",
-        ParameterKind::Texts,
-        "most frequent first",
-        "",
-        "Treats values as categories, in this order; others are drawn as `other`.",
-    ),
-    optional("no_data", ParameterKind::Color, "\"#a8a8a8\"", "", "Colour of objects without a value."),
-    optional("threshold", ANY_NUMBER, "none", "the attribute's", "Numbers at or above it take the colour `highlight`."),
-    optional("highlight", ParameterKind::Color, "\"#d55e00\"", "", "Colour of numbers at or above `threshold`."),
-];
-
-/// All effects of this version.
-pub const EFFECTS: &[EffectDefinition] = &[
-    EffectDefinition {
-        name: "greyscale",
-        kind: EffectKind::PostStyle,
-        spec: "K3",
-        doc: "Keeps lightness (Rec. 709 luminance), drops colour.",
-        parameters: &[AMOUNT],
-    },
-    EffectDefinition {
-        name: "sepia",
-        kind: EffectKind::PostStyle,
-        spec: "K3",
-        doc: "The brown of old photographs.",
-        parameters: &[AMOUNT],
-    },
-    EffectDefinition {
-        name: "thematic",
-        kind: EffectKind::SceneStyle,
-        spec: "K2",
-        doc: "Colours objects by an attribute; light changes lightness alone, hue and chroma stay the legend's.",
-        parameters: THEMATIC,
-    },
-];
 
 /// Effects whose names are fixed but which this version does not have.
-pub const LATER: &[&str] =
-    &["invert", "darken", "blur", "flat", "cel", "gooch", "wireframe", "hidden-line", "eraser", "x-ray", "lod"];
+pub const LATER: &[&str] = &["blur", "wireframe", "hidden-line", "eraser", "x-ray", "lod"];
 
 /// Keys of an effect table that are not parameters.
 pub const RESERVED: &[&str] = &["effect", "class"];
-
-/// The definition of the effect called `name`.
-pub fn find(name: &str) -> Option<&'static EffectDefinition> {
-    EFFECTS.iter().find(|e| e.name == name)
-}
 
 /// Something wrong with a use of an effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -212,19 +33,23 @@ pub fn check(used: &EffectUse) -> Vec<EffectProblem> {
     let Some(definition) = find(&used.effect) else {
         return vec![problem("effect", unknown_effect(&used.effect))];
     };
-    let names = || definition.parameters.iter().map(|p| p.name);
+    let names = || definition.parameters.iter().map(|p| p.name.as_str());
     let mut problems = Vec::new();
     for (key, value) in &used.parameters {
-        match definition.parameters.iter().find(|p| p.name == key) {
+        match definition.parameters.iter().find(|p| p.name == *key) {
             None => {
                 let hint = did_you_mean(key, names().chain(RESERVED.iter().copied()));
                 problems.push(problem(key, format!("\"{}\" has no such parameter{hint}", used.effect)));
             }
-            Some(parameter) => problems.extend(parameter.kind.check(value).map(|message| problem(key, message))),
+            Some(parameter) => {
+                problems.extend(problem_with(&parameter.kind, value).map(|message| problem(key, message)))
+            }
         }
     }
-    for parameter in definition.parameters.iter().filter(|p| p.required && !used.parameters.contains_key(p.name)) {
-        problems.push(problem(parameter.name, format!("is missing: \"{}\" needs it ({})", used.effect, parameter.doc)));
+    for parameter in definition.parameters.iter().filter(|p| p.is_required() && !used.parameters.contains_key(&p.name))
+    {
+        problems
+            .push(problem(&parameter.name, format!("is missing: \"{}\" needs it ({})", used.effect, parameter.doc)));
     }
     if let (Some(min), Some(max)) = (used.number("min"), used.number("max"))
         && min >= max
@@ -237,51 +62,57 @@ pub fn check(used: &EffectUse) -> Vec<EffectProblem> {
 /// The message for a name that is no effect of this version.
 pub fn unknown_effect(name: &str) -> String {
     if LATER.contains(&name) {
-        let all: Vec<&str> = EFFECTS.iter().map(|e| e.name).collect();
+        let all: Vec<&str> = effects().iter().map(|e| e.name.as_str()).collect();
         return format!("effect = \"{name}\" is not available yet; available: {}", all.join(", "));
     }
-    format!("there is no effect \"{name}\"{}", did_you_mean(name, EFFECTS.iter().map(|e| e.name)))
+    format!("there is no effect \"{name}\"{}", did_you_mean(name, effects().iter().map(|e| e.name.as_str())))
 }
 
-impl ParameterKind {
-    /// What is wrong with `value`, if anything.
-    pub fn check(&self, value: &Parameter) -> Option<String> {
-        let expected = |what: &str| Some(format!("must be {what}, is {}", written(value)));
-        match (self, value) {
-            (Self::Boolean, Parameter::Boolean(_)) | (Self::Text, Parameter::Text(_)) => None,
-            (Self::Boolean, _) => expected("true or false"),
-            (Self::Text, _) => expected("a text"),
-            (Self::Number { min, max }, Parameter::Number(n)) if n.is_finite() && (*min..=*max).contains(n) => None,
-            (Self::Number { .. }, _) => expected(&self.describe()),
-            (Self::Word(words), Parameter::Text(text)) if words.contains(&text.as_str()) => None,
-            (Self::Word(words), Parameter::Text(text)) => Some(format!(
-                "must be one of {}, is \"{text}\"{}",
-                words.join(", "),
-                did_you_mean(text, words.iter().copied())
-            )),
-            (Self::Color, value) if color_of(value).is_some() => None,
-            (Self::Numbers, Parameter::Numbers(n)) => {
-                let ascending = n.windows(2).all(|w| w[0] < w[1]) && n.iter().all(|n| n.is_finite());
-                let fits = (1..=MAX_LIST).contains(&n.len()) && ascending;
-                if fits { None } else { expected(&self.describe()) }
-            }
-            (Self::Texts, Parameter::Texts(t)) if (1..=MAX_LIST).contains(&t.len()) => None,
-            _ => expected(&self.describe()),
+/// What is wrong with a parameter's value, if anything.
+pub fn problem_with(kind: &ParameterKind, value: &Parameter) -> Option<String> {
+    let expected = |what: &str| Some(format!("must be {what}, is {}", written(value)));
+    match (kind, value) {
+        (ParameterKind::Boolean, Parameter::Boolean(_)) | (ParameterKind::Text, Parameter::Text(_)) => None,
+        (ParameterKind::Number { min, max }, Parameter::Number(n)) if n.is_finite() && (*min..=*max).contains(n) => {
+            None
         }
+        (ParameterKind::Word(words), Parameter::Text(text)) if words.contains(text) => None,
+        (ParameterKind::Word(words), Parameter::Text(text)) => Some(format!(
+            "must be one of {}, is \"{text}\"{}",
+            words.join(", "),
+            did_you_mean(text, words.iter().map(String::as_str))
+        )),
+        (ParameterKind::Color, value) if color_of(value).is_some() => None,
+        (ParameterKind::Numbers, Parameter::Numbers(n)) => {
+            let ascending = n.windows(2).all(|w| w[0] < w[1]) && n.iter().all(|n| n.is_finite());
+            let fits = (1..=MAX_LIST).contains(&n.len()) && ascending;
+            if fits { None } else { expected(&kind.describe()) }
+        }
+        (ParameterKind::Texts, Parameter::Texts(t)) if (1..=MAX_LIST).contains(&t.len()) => None,
+        _ => expected(&kind.describe()),
     }
+}
 
-    /// What it takes, as people read it.
-    pub fn describe(&self) -> String {
-        match self {
-            Self::Boolean => "true or false".into(),
-            Self::Number { min, max } if *min == f64::MIN && *max == f64::MAX => "a finite number".into(),
-            Self::Number { min, max } => format!("a number {min} to {max}"),
-            Self::Text => "a text".into(),
-            Self::Word(words) => format!("one of {}", words.join(", ")),
-            Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
-            Self::Numbers => format!("1 to {MAX_LIST} ascending numbers"),
-            Self::Texts => format!("1 to {MAX_LIST} texts"),
+/// The value that holds where a parameter is not given, if it has one.
+pub fn default_of(parameter: &ParameterDefinition) -> Option<Parameter> {
+    match &parameter.fallback {
+        Fallback::Value(DefaultValue::Boolean(b)) => Some(Parameter::Boolean(*b)),
+        Fallback::Value(DefaultValue::Number(n)) => Some(Parameter::Number(*n)),
+        Fallback::Value(DefaultValue::Text(t)) => Some(Parameter::Text(t.clone())),
+        Fallback::Required | Fallback::Words(_) => None,
+    }
+}
+
+/// A value as the shader reads it: as many floats as [`ParameterKind::in_shader`] says, colours linear.
+pub fn in_floats(parameter: &ParameterDefinition, value: &Parameter) -> Vec<f32> {
+    match (&parameter.kind, value) {
+        (ParameterKind::Boolean, Parameter::Boolean(b)) => vec![f32::from(u8::from(*b))],
+        (ParameterKind::Number { min, max }, Parameter::Number(n)) => vec![n.clamp(*min, *max) as f32],
+        (ParameterKind::Word(words), Parameter::Text(text)) => {
+            vec![words.iter().position(|w| w == text).unwrap_or(0) as f32]
         }
+        (ParameterKind::Color, value) => linear_from_srgb(color_of(value).unwrap_or_default()).to_vec(),
+        _ => Vec::new(),
     }
 }
 
@@ -337,11 +168,6 @@ impl EffectUse {
     pub fn color(&self, key: &str) -> Option<Srgb> {
         self.parameters.get(key).and_then(color_of)
     }
-
-    /// How much of the effect, 0..=1; 1 where not given.
-    pub fn amount(&self) -> f32 {
-        self.number("amount").unwrap_or(1.0).clamp(0.0, 1.0) as f32
-    }
 }
 
 #[cfg(test)]
@@ -355,13 +181,17 @@ mod tests {
 
     #[test]
     fn the_table_is_well_formed() {
-        for effect in EFFECTS {
-            assert!(effect.doc.ends_with('.') && !effect.spec.is_empty() && !LATER.contains(&effect.name));
-            for p in effect.parameters {
-                assert!(p.doc.ends_with('.') && !p.default.is_empty(), "{}.{}", effect.name, p.name);
-                assert!(!RESERVED.contains(&p.name));
+        for effect in effects() {
+            assert!(effect.doc.ends_with('.') && !effect.spec.is_empty() && !LATER.contains(&effect.name.as_str()));
+            for p in &effect.parameters {
+                assert!(p.doc.ends_with('.') && !RESERVED.contains(&p.name.as_str()), "{}.{}", effect.name, p.name);
+                // The shader reads every parameter, so every one has a value.
+                let reads = !effect.object_colors;
+                assert!(!reads || p.is_required() || default_of(p).is_some(), "{}.{}", effect.name, p.name);
             }
         }
+        let ramps = &find("thematic").unwrap().parameters.iter().find(|p| p.name == "ramp").unwrap().kind;
+        assert_eq!(*ramps, ParameterKind::Word(crate::lens::ramp::NAMES.iter().map(|n| (*n).to_owned()).collect()));
     }
 
     #[test]

@@ -145,14 +145,6 @@ pub struct LensVolume {
     pub pad_0: [u32; 3],
 }
 
-/// `pass/shade.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct Parameters {
-    pub a: [f32; 4],
-    pub b: [f32; 4],
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -254,7 +246,6 @@ mod tests {
             ),
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin })),
             (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),
-            (&shade, host!(Parameters { a, b })),
         ];
         let wrong: Vec<String> = checks.into_iter().flat_map(|(module, fields)| differences(module, fields)).collect();
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));

@@ -18,7 +18,7 @@ use crate::{
         city::Shown,
         eye::PictureTile,
         frame::{CLEAR_MASKS, FrameInput, PassRecord},
-        operations::{MOST, Operations},
+        operations::{MOST_SLOTS, MOST_VOLUMES, Operations},
         stats::{self, Statistics},
         volume::LensVolume,
     },
@@ -226,9 +226,13 @@ impl Studio {
         }
         let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, &self.model)
             .map_err(|error| RenderError::Scene(error.to_string()))?;
-        for (what, count) in [("volumes", volumes.len()), ("effects and outlines", operations.parameters.len())] {
-            if count > MOST {
-                let message = format!("the lenses have {count} {what} together; one picture takes {MOST}");
+        let counts = [
+            ("volumes", volumes.len(), MOST_VOLUMES),
+            ("parameters of effects and outlines, in fours,", operations.parameters.len(), MOST_SLOTS),
+        ];
+        for (what, count, most) in counts {
+            if count > most {
+                let message = format!("the lenses have {count} {what} together; one picture takes {most}");
                 return Err(RenderError::Scene(message));
             }
         }

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::{
     gpu::Gpu,
     render::layout,
-    shader::{EFFECTS, Module, Plan},
+    shader::{Module, Plan, effects},
 };
 
 /// Depth everywhere: reversed, f32.
@@ -234,7 +234,7 @@ impl Pipelines {
         }
         numbers.sort_unstable();
         numbers.dedup();
-        numbers.into_iter().map(|e| EFFECTS[e as usize].name.to_owned()).collect()
+        numbers.into_iter().map(|e| effects()[e as usize].name.clone()).collect()
     }
 
     fn module(&mut self, gpu: &Gpu, module: Module) -> wgpu::ShaderModule {

@@ -3,8 +3,12 @@
 //! No wgpu handle lives here. Entry points stand in `shaders/pass` alone; everything else is importable
 //! and free of side effects.
 
+pub mod effect;
+pub mod effect_file;
 mod plan;
+pub mod wgsl;
 
+pub use effect::{EffectDefinition, effects};
 pub use plan::{ClassTest, Plan, PlanLens, Scope, Step};
 
 macro_rules! files {
@@ -27,30 +31,6 @@ files! {
     SHADE = "pass/shade.wgsl";
     RESOLVE = "pass/resolve.wgsl";
     BARE = "pass/bare.wgsl";
-}
-
-/// Effects that have a WGSL function of their own, by the name they have in scenes; the position is the
-/// number the shader knows them by.
-pub const EFFECTS: &[Effect] = &[
-    Effect { name: "greyscale", surfaces_only: false, source: include_str!("../../shaders/effect/greyscale.wgsl") },
-    Effect { name: "sepia", surfaces_only: false, source: include_str!("../../shaders/effect/sepia.wgsl") },
-    Effect { name: "thematic", surfaces_only: true, source: include_str!("../../shaders/effect/thematic.wgsl") },
-];
-
-/// One effect's WGSL.
-#[derive(Clone, Copy, Debug)]
-pub struct Effect {
-    /// Name in scenes, and of its function.
-    pub name: &'static str,
-    /// Scene styles colour surfaces; post styles also what is behind the city.
-    pub surfaces_only: bool,
-    /// Its file.
-    pub source: &'static str,
-}
-
-/// The number the shader knows an effect by.
-pub fn effect_number(name: &str) -> Option<u32> {
-    EFFECTS.iter().position(|e| e.name == name).map(|i| i as u32)
 }
 
 /// A module of the frame.
@@ -78,7 +58,7 @@ impl Module {
             Self::Shadow => "shadow".to_owned(),
             Self::Sprite => "sprite".to_owned(),
             Self::Shade(plan) => {
-                let names: Vec<&str> = plan.effects().iter().map(|&e| EFFECTS[e as usize].name).collect();
+                let names: Vec<&str> = plan.effects().iter().map(|&e| effects()[e as usize].name.as_str()).collect();
                 let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
                 let lenses = if plan.lenses.is_empty() { "" } else { " lenses" };
                 format!("shade{names}{lenses}")
@@ -90,6 +70,11 @@ impl Module {
 
     /// The whole WGSL text.
     pub fn source(&self) -> String {
+        self.source_with(effects())
+    }
+
+    /// The whole WGSL text, where a plan's numbers count these effects.
+    pub fn source_with(&self, effects: &[EffectDefinition]) -> String {
         let files: &[(&str, &str)] = match self {
             Self::Geometry => &[VIEW, SURFACE, GEOMETRY],
             Self::Shadow => &[VIEW, SURFACE, SHADOW],
@@ -105,7 +90,7 @@ impl Module {
             text.push_str(&format!("// ==== {path}\n\n{source}\n"));
         }
         match self {
-            Self::Shade(plan) => text.replace("//@apply\n", &plan.source()),
+            Self::Shade(plan) => text.replace("//@apply\n", &plan.source(effects)),
             _ => text,
         }
     }
@@ -117,7 +102,7 @@ mod tests {
 
     /// Every effect everywhere, and two lenses with every pair of effects and classes.
     fn plans() -> Vec<Plan> {
-        let effects = 0..EFFECTS.len() as u32;
+        let effects = 0..effects().len() as u32;
         let step = |effect, scope, parameters| Step { effect, scope, parameters };
         let mut plans = vec![Plan::default()];
         plans.extend(effects.clone().map(|e| Plan { steps: vec![step(e, Scope::Everywhere, 0)], ..Plan::default() }));
@@ -166,7 +151,8 @@ mod tests {
 
     #[test]
     fn an_effect_nobody_uses_is_not_in_the_text() {
-        let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0 }];
+        let greyscale = effect::number_of("greyscale").expect("there is one");
+        let steps = vec![Step { effect: greyscale, scope: Scope::Everywhere, parameters: 0 }];
         let source = Module::Shade(Plan { steps, ..Plan::default() }).source();
         assert!(source.contains("fn greyscale"));
         assert!(!source.contains("fn sepia") && !source.contains("fn thematic"));

@@ -5,7 +5,10 @@
 
 use std::fmt::Write as _;
 
-use crate::shader::EFFECTS;
+use crate::shader::effect::{EffectDefinition, EffectKind};
+
+/// `vec4f` that an outline's parameters take: colour and opacity; width in pixels.
+pub const OUTLINE_SLOTS: u32 = 2;
 
 /// Lenses and effects of one part of the picture, bottom lens first (L6).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -32,11 +35,11 @@ pub struct PlanLens {
 /// One use of an effect.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Step {
-    /// Index into [`EFFECTS`].
+    /// Index into [`crate::shader::effects`].
     pub effect: u32,
     /// Where it acts.
     pub scope: Scope,
-    /// Place of its parameters.
+    /// Its first `vec4f` of the parameters.
     pub parameters: u32,
 }
 
@@ -92,19 +95,19 @@ impl Plan {
         self.lenses.iter().map(|l| l.volumes).sum()
     }
 
-    /// How many entries of the parameters it reads.
-    fn parameters(&self) -> u32 {
-        let of_steps = self.steps.iter().map(|s| s.parameters);
-        let of_lines = self.lenses.iter().filter_map(|l| l.outline);
-        of_steps.chain(of_lines).max().map_or(0, |last| last + 1)
+    /// How many `vec4f` of the parameters it reads.
+    fn parameters(&self, effects: &[EffectDefinition]) -> u32 {
+        let of_steps = self.steps.iter().map(|s| s.parameters + effects[s.effect as usize].slots());
+        let of_lines = self.lenses.iter().filter_map(|l| l.outline.map(|first| first + OUTLINE_SLOTS));
+        of_steps.chain(of_lines).max().unwrap_or(0)
     }
 
     /// The effects' own functions, and `apply`, which calls them.
-    pub fn source(&self) -> String {
+    pub fn source(&self, effects: &[EffectDefinition]) -> String {
         let mut text = String::new();
-        if self.parameters() > 0 {
-            let count = self.parameters();
-            let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<Parameters, {count}>;");
+        let count = self.parameters(effects);
+        if count > 0 {
+            let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {count}>;");
         }
         if self.volumes() > 0 {
             let count = self.volumes();
@@ -118,7 +121,8 @@ impl Plan {
             );
         }
         for effect in self.effects() {
-            let _ = write!(text, "\n{}", EFFECTS[effect as usize].source);
+            let EffectDefinition { name, source, .. } = &effects[effect as usize];
+            let _ = write!(text, "\n// ==== effect {name}\n\n{source}");
         }
         if self.has_outlines() {
             text.push_str(&self.coverage());
@@ -134,15 +138,23 @@ impl Plan {
             let _ = writeln!(text, "    let lens_{i} = {};", volumes.join(" | "));
         }
         for step in &self.steps {
-            let effect = &EFFECTS[step.effect as usize];
+            let effect = &effects[step.effect as usize];
             let mut tests = Vec::new();
             if let Scope::Lens(lens, class) = step.scope {
                 tests.push(format!("{}(lens_{lens})", class.function()));
             }
-            if effect.surfaces_only {
+            if effect.kind == EffectKind::Scene {
                 tests.push("point.surface != NO_SURFACE".to_owned());
             }
-            let call = format!("color = {}(color, point, parameters[{}]);", effect.name, step.parameters);
+            let name = effect.wgsl_name();
+            let own = match effect.slots() {
+                0 => String::new(),
+                _ => format!(", {name}_parameters({}u)", step.parameters),
+            };
+            let call = match effect.is_users {
+                false => format!("color = {name}(color, point{own});"),
+                true => format!("color = contained({name}(color, point{own}));"),
+            };
             let _ = match tests.is_empty() {
                 true => writeln!(text, "    {call}"),
                 false => writeln!(text, "    if {} {{\n        {call}\n    }}", tests.join(" && ")),
@@ -154,7 +166,11 @@ impl Plan {
         text.push_str("    var paint = vec4f(color, start.a);\n");
         for (i, lens) in self.lenses.iter().enumerate() {
             if let Some(line) = lens.outline {
-                let _ = writeln!(text, "    paint = outlined(paint, {i}u, pixel, parameters[{line}]);");
+                let _ = writeln!(
+                    text,
+                    "    paint = outlined(paint, {i}u, pixel, parameters[{line}], parameters[{}]);",
+                    line + 1
+                );
             }
         }
         text.push_str("    return paint;\n}\n");

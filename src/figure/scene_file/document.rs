@@ -6,7 +6,8 @@ use serde_json::{Map, Value, json};
 
 use crate::{
     figure::scene_file::keys::{self, CLASSES, Key, Kind, LATER_SHAPES, LATER_TABLES, SHAPES, TABLES, Table},
-    lens::effect::{EFFECTS, EffectKind, LATER, ParameterKind},
+    lens::effect::LATER,
+    shader::effect::{EffectKind, ParameterKind, effects as all_effects},
 };
 
 /// The reference part of `docs/scene.md`: every key with what it takes, unit, default and an example.
@@ -24,19 +25,35 @@ pub fn reference() -> String {
     out += "## Effects\n\n`effects` is a list; each element is a name (`\"sepia\"`) or a table of `effect` (the name), `class` and parameters.\n\
             `class` says which part of the sight line it acts on: `\"inside\"` the lens (default), in `\"front\"` of it, `\"behind\"` it,\n\
             or the `\"rest\"`, where the sight line misses the lens. It has a meaning only in a lens.\n\n";
-    for effect in EFFECTS {
-        let _ = write!(out, "### {}\n\n{} ({}, {})\n\n", effect.name, effect.doc, effect.kind.name(), effect.spec);
-        out += "| parameter | takes | unit | default | meaning |\n| --- | --- | --- | --- | --- |\n";
-        for p in effect.parameters {
-            let default = if p.required { "must be given" } else { p.default };
-            let _ =
-                writeln!(out, "| `{}` | {} | {} | {default} | {} |", p.name, cell(&p.kind.describe()), p.unit, p.doc);
-        }
-        out.push('\n');
-    }
+    let names: Vec<&str> = all_effects().iter().map(|e| e.name.as_str()).collect();
+    let _ = write!(out, "The effects are {}; [effects.md](effects.md) has their parameters.\n\n", words(&names));
     let _ = write!(out, "Not available yet: {}.\n\n", words(LATER));
     let _ = writeln!(out, "Tables of later versions: {}.", words(LATER_TABLES));
     out
+}
+
+/// The effects and their parameters, for `docs/effects.md`.
+pub fn effects_reference() -> String {
+    let mut out = String::new();
+    for kind in [EffectKind::Scene, EffectKind::Post] {
+        let _ = write!(out, "## {}s\n\n", capital(kind.name()));
+        for effect in all_effects().iter().filter(|e| e.kind == kind) {
+            let _ = write!(out, "### {}\n\n{} ({})\n\n", effect.name, effect.doc, effect.spec);
+            out += "| parameter | takes | unit | default | meaning |\n| --- | --- | --- | --- | --- |\n";
+            for p in &effect.parameters {
+                let default = if p.is_required() { "must be given".to_owned() } else { p.default_text() };
+                let takes = cell(&p.kind.describe());
+                let _ = writeln!(out, "| `{}` | {takes} | {} | {default} | {} |", p.name, p.unit, p.doc);
+            }
+            out.push('\n');
+        }
+    }
+    out
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn words(list: &[&str]) -> String {
@@ -167,23 +184,28 @@ fn shapes() -> Value {
 }
 
 fn effects() -> Vec<Value> {
-    let alone: Vec<&str> =
-        EFFECTS.iter().filter(|e| !e.parameters.iter().any(|p| p.required)).map(|e| e.name).collect();
+    let alone: Vec<&str> = all_effects()
+        .iter()
+        .filter(|e| !e.parameters.iter().any(|p| p.is_required()))
+        .map(|e| e.name.as_str())
+        .collect();
     let mut all = vec![json!({ "enum": alone })];
-    for effect in EFFECTS {
+    for effect in all_effects() {
         let mut properties = Map::new();
         properties.insert("effect".into(), json!({ "const": effect.name }));
         properties.insert("class".into(), json!({ "enum": CLASSES }));
-        for p in effect.parameters {
+        for p in &effect.parameters {
             let mut value = of_parameter(&p.kind);
             if let Value::Object(map) = &mut value {
-                map.insert("description".into(), p.doc.into());
+                map.insert("description".into(), p.doc.clone().into());
             }
-            properties.insert(p.name.into(), value);
+            properties.insert(p.name.clone(), value);
         }
-        let required: Vec<&str> =
-            ["effect"].into_iter().chain(effect.parameters.iter().filter(|p| p.required).map(|p| p.name)).collect();
-        let style = if effect.kind == EffectKind::SceneStyle { "Scene style" } else { "Post style" };
+        let required: Vec<&str> = ["effect"]
+            .into_iter()
+            .chain(effect.parameters.iter().filter(|p| p.is_required()).map(|p| p.name.as_str()))
+            .collect();
+        let style = if effect.kind == EffectKind::Scene { "Scene style" } else { "Post style" };
         all.push(json!({
             "type": "object",
             "description": format!("{style}. {}", effect.doc),
@@ -235,11 +257,19 @@ mod tests {
 
     #[test]
     fn the_reference_is_committed() {
-        const MARK: &str =
-            "<!-- From here on made from the tables in src/figure/scene_file/keys.rs and src/lens/effect.rs. -->\n";
+        const MARK: &str = "<!-- From here on made from the tables in src/figure/scene_file/keys.rs. -->\n";
         committed("scene.md", |old| {
             let prose = old.split(MARK).next().unwrap_or_default();
             format!("{prose}{MARK}\n{}", reference())
+        });
+    }
+
+    #[test]
+    fn the_effects_are_committed() {
+        const MARK: &str = "<!-- From here on made from the files in shaders/effect. -->\n";
+        committed("effects.md", |old| {
+            let prose = old.split(MARK).next().unwrap_or_default();
+            format!("{prose}{MARK}\n{}", effects_reference())
         });
     }
 
@@ -253,8 +283,8 @@ mod tests {
                 format!("v = {}", key.example).parse::<toml::Table>().unwrap_or_else(|e| panic!("{}: {e}", key.name));
             }
         }
-        for effect in EFFECTS {
-            assert!(text.contains(&format!("### {}\n", effect.name)));
+        for effect in all_effects() {
+            assert!(text.contains(&format!("`{}`", effect.name)));
         }
     }
 }

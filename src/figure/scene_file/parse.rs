@@ -13,12 +13,12 @@ use crate::{
     },
     geom::Shape,
     lens::{
-        Class, EffectUse, Lens, LensBody, LensKind, Parameter,
-        effect::{self, EffectKind},
+        Class, EffectUse, Lens, LensBody, LensKind, Parameter, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
     scene::{Background, BaseStyle, CitySpec, Figure, Poi, PoiPlace, Scene, Style, Sun},
+    shader::effect::{EffectKind, find as find_effect},
     view::{Camera, CameraError, Projection, default_near_m},
 };
 
@@ -270,7 +270,7 @@ impl<'o> SceneReader<'o> {
         for (i, node) in fields.node("effects").and_then(Node::list).unwrap_or_default().iter().enumerate() {
             let place = fields.place.within(&format!("effects.{i}"), node.line);
             let Some(used) = self.effect(node, &place, in_lens) else { continue };
-            let is_scene_style = effect::find(&used.effect).is_some_and(|e| e.kind == EffectKind::SceneStyle);
+            let is_scene_style = find_effect(&used.effect).is_some_and(|e| e.kind == EffectKind::Scene);
             match &scene_style {
                 Some(first) if is_scene_style => {
                     let message =

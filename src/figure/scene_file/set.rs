@@ -228,7 +228,7 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
             after("lens.0.effects.1.attribute=height").unwrap().lenses[0].effects[1].text("attribute"),
             Some("height")
         );
-        assert_eq!(after("lens.0.effects.0.amount=0.5").unwrap().lenses[0].effects[0].amount(), 0.5);
+        assert_eq!(after("lens.0.effects.0.amount=0.5").unwrap().lenses[0].effects[0].number("amount"), Some(0.5));
         assert_eq!(after("lens.1.effects.0=sepia").unwrap().lenses[1].effects[0].effect, "sepia");
         assert!((after("sun.azimuth_deg=90").unwrap().sun.azimuth - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
         let camera = after("camera.projection=orthographic").unwrap().camera.unwrap();

@@ -1,0 +1,14 @@
+//! name = "clay"
+//! kind = "scene"
+//! spec = "K2"
+//! doc = "One matt colour for everything, as if the city were an architect's model."
+//!
+//! [[parameter]]
+//! name = "color"
+//! type = "color"
+//! default = "#ccc5b9"
+//! doc = "The colour."
+
+fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
+    return p.color * irradiance(point.normal, point.sun);
+}

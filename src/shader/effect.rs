@@ -1,0 +1,238 @@
+//! The effects: what lenses and the context can do to what they show (C4).
+//!
+//! An effect is one file in `shaders/effect` and one row in [`FILES`]; [`super::effect_file`] says what stands in it.
+
+use std::sync::{LazyLock, RwLock};
+
+use crate::shader::effect_file::{self, FileError};
+
+macro_rules! built_in {
+    ($name:literal) => {
+        (concat!("shaders/effect/", $name, ".wgsl"), include_str!(concat!("../../shaders/effect/", $name, ".wgsl")))
+    };
+}
+
+/// The effects that come with the program, in the order people read them.
+const FILES: &[(&str, &str)] = &[
+    built_in!("thematic"),
+    built_in!("flat"),
+    built_in!("cel"),
+    built_in!("gooch"),
+    built_in!("clay"),
+    built_in!("greyscale"),
+    built_in!("sepia"),
+    built_in!("invert"),
+    built_in!("darken"),
+    built_in!("brighten"),
+    built_in!("saturate"),
+    built_in!("overlay"),
+    built_in!("discard-color"),
+    built_in!("posterise"),
+];
+
+/// How an effect takes part in the picture (K1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EffectKind {
+    /// Gives surfaces their colour; at most one per lens, and nothing behind the city has it.
+    Scene,
+    /// Changes the colour of the lit picture.
+    Post,
+}
+
+impl EffectKind {
+    /// As people read it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scene => "scene style",
+            Self::Post => "post style",
+        }
+    }
+}
+
+/// What a parameter takes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParameterKind {
+    /// `true` or `false`; in WGSL a `bool`.
+    Boolean,
+    /// A number within the closed range; in WGSL an `f32`.
+    Number {
+        /// Smallest.
+        min: f64,
+        /// Largest.
+        max: f64,
+    },
+    /// Any text; not for WGSL.
+    Text,
+    /// One of these words; in WGSL a `u32`, and a constant `PARAMETER_WORD` for each.
+    Word(Vec<String>),
+    /// `"#rrggbb"` or `[r, g, b]`, sRGB 0..1; in WGSL a `vec3f`, linear.
+    Color,
+    /// Finite numbers, ascending, at most [`MAX_LIST`]; not for WGSL.
+    Numbers,
+    /// Texts, at most [`MAX_LIST`]; not for WGSL.
+    Texts,
+}
+
+/// Longest list a parameter takes.
+pub const MAX_LIST: usize = 256;
+
+impl ParameterKind {
+    /// Its type in WGSL and how many floats it takes there; `None` for what only the host reads.
+    pub fn in_shader(&self) -> Option<(&'static str, usize)> {
+        match self {
+            Self::Boolean => Some(("bool", 1)),
+            Self::Number { .. } => Some(("f32", 1)),
+            Self::Word(_) => Some(("u32", 1)),
+            Self::Color => Some(("vec3f", 3)),
+            Self::Text | Self::Numbers | Self::Texts => None,
+        }
+    }
+
+    /// What it takes, as people read it.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Boolean => "true or false".into(),
+            Self::Number { min, max } if *min == f64::MIN && *max == f64::MAX => "a finite number".into(),
+            Self::Number { min, max } => format!("a number {min} to {max}"),
+            Self::Text => "a text".into(),
+            Self::Word(words) => format!("one of {}", words.join(", ")),
+            Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
+            Self::Numbers => format!("1 to {MAX_LIST} ascending numbers"),
+            Self::Texts => format!("1 to {MAX_LIST} texts"),
+        }
+    }
+}
+
+/// What holds where a parameter is not given.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fallback {
+    /// The effect does nothing without it.
+    Required,
+    /// This value.
+    Value(DefaultValue),
+    /// What the words say; the host knows.
+    Words(String),
+}
+
+/// A parameter's default value.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[serde(untagged)]
+pub enum DefaultValue {
+    /// Yes or no.
+    Boolean(bool),
+    /// A number.
+    Number(f64),
+    /// A word, or a colour as `"#rrggbb"`.
+    Text(String),
+}
+
+/// One parameter of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterDefinition {
+    /// Its key.
+    pub name: String,
+    /// What it takes.
+    pub kind: ParameterKind,
+    /// What holds where it is not given.
+    pub fallback: Fallback,
+    /// Unit, or empty.
+    pub unit: String,
+    /// What it does.
+    pub doc: String,
+}
+
+impl ParameterDefinition {
+    /// Whether the effect does nothing without it.
+    pub fn is_required(&self) -> bool {
+        self.fallback == Fallback::Required
+    }
+
+    /// What holds where it is not given, in words or as TOML; empty where it is required.
+    pub fn default_text(&self) -> String {
+        match &self.fallback {
+            Fallback::Required => String::new(),
+            Fallback::Words(words) => words.clone(),
+            Fallback::Value(DefaultValue::Boolean(b)) => b.to_string(),
+            Fallback::Value(DefaultValue::Number(n)) => n.to_string(),
+            Fallback::Value(DefaultValue::Text(t)) => format!("\"{t}\""),
+        }
+    }
+}
+
+/// One effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectDefinition {
+    /// Its name in scene files.
+    pub name: String,
+    /// Scene style or post style.
+    pub kind: EffectKind,
+    /// The requirement it fulfils.
+    pub spec: String,
+    /// What it does, one sentence.
+    pub doc: String,
+    /// Its parameters.
+    pub parameters: Vec<ParameterDefinition>,
+    /// Its WGSL has one colour per object, which the host makes of an attribute (K2).
+    pub object_colors: bool,
+    /// Somebody else wrote it: what it returns is contained.
+    pub is_users: bool,
+    /// The WGSL of its functions, names qualified.
+    pub source: String,
+}
+
+impl EffectDefinition {
+    /// Its name as WGSL has it: what all its names begin with.
+    pub fn wgsl_name(&self) -> String {
+        self.name.replace('-', "_")
+    }
+
+    /// The parameters that WGSL reads, in order.
+    pub fn shader_parameters(&self) -> impl Iterator<Item = (&ParameterDefinition, &'static str, usize)> {
+        let all = self.parameters.iter().filter(|_| !self.object_colors);
+        all.filter_map(|p| p.kind.in_shader().map(|(type_name, floats)| (p, type_name, floats)))
+    }
+
+    /// How many `vec4f` its parameters take.
+    pub fn slots(&self) -> u32 {
+        let floats: usize = self.shader_parameters().map(|(_, _, floats)| floats).sum();
+        (floats + usize::from(self.object_colors)).div_ceil(4) as u32
+    }
+}
+
+/// The effects there are. Definitions are never freed: a pipeline may refer to one that was replaced.
+static EFFECTS: LazyLock<RwLock<&'static [EffectDefinition]>> = LazyLock::new(|| {
+    let read = |(path, text): &(&str, &str)| {
+        effect_file::read(path, text).unwrap_or_else(|error| unreachable!("a built-in effect: {error}"))
+    };
+    RwLock::new(Vec::leak(FILES.iter().map(read).collect()))
+});
+
+/// All effects: those of the program, then a user's.
+pub fn effects() -> &'static [EffectDefinition] {
+    *EFFECTS.read().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// The effect called `name`.
+pub fn find(name: &str) -> Option<&'static EffectDefinition> {
+    effects().iter().find(|e| e.name == name)
+}
+
+/// The number the shader knows an effect by.
+pub fn number_of(name: &str) -> Option<u32> {
+    effects().iter().position(|e| e.name == name).map(|i| i as u32)
+}
+
+/// Adds a user's effect file; its name must be new.
+pub fn add(path: &str, text: &str) -> Result<(), FileError> {
+    let effect = effect_file::checked(path, text)?;
+    let mut all = EFFECTS.write().unwrap_or_else(std::sync::PoisonError::into_inner);
+    if all.iter().any(|e| e.name == effect.name) {
+        let message = format!("there is an effect \"{}\" already; expected another name", effect.name);
+        return Err(FileError { path: path.to_owned(), line: 1, column: 1, message });
+    }
+    let mut more = all.to_vec();
+    more.push(effect);
+    *all = Vec::leak(more);
+    Ok(())
+}

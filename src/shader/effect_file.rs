@@ -1,0 +1,605 @@
+//! Effect files (C4): WGSL with a header of TOML in `//!` lines.
+//!
+//! ```wgsl
+//! //! name = "posterise"
+//! //! kind = "post"
+//! //! spec = "K3"
+//! //! doc = "Few steps of lightness instead of many."
+//! //!
+//! //! [[parameter]]
+//! //! name = "steps"
+//! //! type = "number"
+//! //! range = [2, 16]
+//! //! default = 4
+//! //! doc = "How many."
+//!
+//! fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
+//!     return floor(color * p.steps) / p.steps;
+//! }
+//! ```
+//!
+//! `effect` gets the colour so far (linear light), the shown surface and its parameters, and returns the new colour.
+//! Without parameters for WGSL it takes no `p`. The file may declare functions, constants, structs and aliases of its own:
+//! every name it declares is qualified by the effect's, so that files never clash (H2).
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::shader::{
+    Module, Plan, Scope, Step,
+    effect::{DefaultValue, EffectDefinition, EffectKind, Fallback, ParameterDefinition, ParameterKind},
+    wgsl::{self, Declaration, Renamed, Token, TokenKind},
+};
+
+/// Lines of a user's file: more than any effect needs, few enough to compile in no time.
+const MOST_LINES: usize = 2000;
+/// Bytes of a user's file.
+const MOST_BYTES: usize = 128 * 1024;
+/// Rounds of one loop.
+const MOST_ROUNDS: u32 = 1024;
+/// Words and marks that `effect` may run through for one pixel, loops and calls multiplied out.
+const MOST_STEPS: u64 = 1_000_000;
+/// What every effect may use beside its own names.
+const OUTER_NAMES: &[&str] = &["Parameters", "effect"];
+
+/// What is wrong with an effect file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{path}:{line}:{column}: {message}")]
+pub struct FileError {
+    /// The file.
+    pub path: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1, in characters.
+    pub column: usize,
+    /// What is wrong, and what was expected.
+    pub message: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    name: Spanned<String>,
+    kind: EffectKind,
+    spec: String,
+    doc: String,
+    #[serde(default)]
+    object_colors: bool,
+    #[serde(default, rename = "parameter")]
+    parameters: Vec<ParameterHeader>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ParameterHeader {
+    name: Spanned<String>,
+    r#type: Spanned<TypeName>,
+    range: Option<Spanned<[f64; 2]>>,
+    words: Option<Vec<String>>,
+    default: Option<Spanned<DefaultValue>>,
+    without: Option<String>,
+    #[serde(default)]
+    required: bool,
+    #[serde(default)]
+    unit: String,
+    doc: String,
+}
+
+#[derive(Clone, Copy, Deserialize, PartialEq)]
+#[serde(rename_all = "lowercase")]
+enum TypeName {
+    Boolean,
+    Number,
+    Text,
+    Word,
+    Color,
+    Numbers,
+    Texts,
+}
+
+/// A file while it is read.
+struct File<'a> {
+    path: &'a str,
+    text: &'a str,
+}
+
+impl File<'_> {
+    fn error(&self, at: usize, message: impl Into<String>) -> FileError {
+        let (line, column) = wgsl::line_and_column(self.text, at);
+        FileError { path: self.path.to_owned(), line, column, message: message.into() }
+    }
+
+    /// The TOML of the header, and where each of its lines begins: in itself and in the file.
+    fn header(&self) -> (String, Vec<(usize, usize)>) {
+        let (mut toml, mut starts, mut at) = (String::new(), Vec::new(), 0);
+        for line in self.text.split_inclusive('\n') {
+            let Some(rest) = line.strip_prefix("//!") else { break };
+            let rest = rest.strip_prefix(' ').unwrap_or(rest);
+            starts.push((toml.len(), at + line.len() - rest.len()));
+            toml.push_str(rest);
+            at += line.len();
+        }
+        (toml, starts)
+    }
+}
+
+/// Where a place of the header stands in the file.
+fn in_file(starts: &[(usize, usize)], at: usize) -> usize {
+    let line = starts.partition_point(|&(toml, _)| toml <= at).saturating_sub(1);
+    starts.get(line).map_or(0, |&(toml, file)| file + (at - toml))
+}
+
+/// Reads an effect file; that its WGSL is right is for [`checked`] to say.
+pub fn read(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
+    read_with_names(path, text).map(|(effect, _)| effect)
+}
+
+fn read_with_names(path: &str, text: &str) -> Result<(EffectDefinition, Renamed), FileError> {
+    let file = File { path, text };
+    let (toml, starts) = file.header();
+    if toml.is_empty() {
+        return Err(file.error(0, "expected a header: lines that begin with //! and hold name, kind, spec and doc"));
+    }
+    let header: Header = toml::from_str(&toml).map_err(|error| {
+        let at = error.span().map_or(0, |span| span.start);
+        file.error(in_file(&starts, at), error.message().to_owned())
+    })?;
+    let at = |span: std::ops::Range<usize>| in_file(&starts, span.start);
+    if !is_effect_name(header.name.get_ref()) {
+        let message = "expected a name of a-z, 0-9 and -, a letter first, at most 40 of them";
+        return Err(file.error(at(header.name.span()), message));
+    }
+    let mut effect = EffectDefinition {
+        name: header.name.into_inner(),
+        kind: header.kind,
+        spec: header.spec,
+        doc: header.doc,
+        parameters: Vec::new(),
+        object_colors: header.object_colors,
+        is_users: false,
+        source: String::new(),
+    };
+    for parameter in header.parameters {
+        let (span, name) = (parameter.name.span(), parameter.name.get_ref().clone());
+        if !is_parameter_name(&name) || effect.parameters.iter().any(|p| p.name == name) {
+            let message = "expected a new name of a-z, 0-9 and _, a letter first; not effect or class";
+            return Err(file.error(at(span), message));
+        }
+        effect
+            .parameters
+            .push(parameter.definition().map_err(|(place, message)| file.error(place.map_or(at(span), &at), message))?);
+    }
+    let tokens = wgsl::tokens(text);
+    let declared = wgsl::declarations(text, &tokens);
+    if let Some(bad) = declared.iter().find(|d| matches!(d.keyword, "var" | "override")) {
+        let message = format!("an effect keeps nothing between pixels: no {} at the top of a file", bad.keyword);
+        return Err(file.error(bad.span.start, message));
+    }
+    if !declared.iter().any(|d| (d.keyword, d.name) == ("fn", "effect")) {
+        return Err(file.error(text.len(), format!("expected `{}`", signature(&effect))));
+    }
+    let renamed = qualified(&effect, text, &tokens, &declared);
+    effect.source = format!("{}{}", parameters_source(&effect), body_of(&renamed.text));
+    Ok((effect, renamed))
+}
+
+/// A file's text after its header and the blank lines below it.
+fn body_of(text: &str) -> &str {
+    let header: usize = text.split_inclusive('\n').take_while(|line| line.starts_with("//!")).map(str::len).sum();
+    text[header..].trim_start_matches(['\n', '\r'])
+}
+
+/// What `effect` must look like.
+fn signature(effect: &EffectDefinition) -> String {
+    let parameters = if effect.slots() > 0 { ", p: Parameters" } else { "" };
+    format!("fn effect(color: vec3f, point: Point{parameters}) -> vec3f")
+}
+
+/// The file with the effect's name before every name it declares; `effect` itself takes the effect's name.
+fn qualified(effect: &EffectDefinition, text: &str, tokens: &[Token], declared: &[Declaration]) -> Renamed {
+    let prefix = effect.wgsl_name();
+    let constants: Vec<String> = word_constants(effect).map(|(name, _)| name).collect();
+    Renamed::new(text, tokens, |word| {
+        let is_own = declared.iter().any(|d| d.name == word) || constants.iter().any(|c| c == word);
+        match word {
+            "effect" => Some(prefix.clone()),
+            _ if is_own || OUTER_NAMES.contains(&word) => Some(format!("{prefix}_{word}")),
+            _ => None,
+        }
+    })
+}
+
+/// `PARAMETER_WORD` and its number, of all parameters that take words.
+fn word_constants(effect: &EffectDefinition) -> impl Iterator<Item = (String, usize)> {
+    let of = |p: &ParameterDefinition| {
+        let words = if let ParameterKind::Word(words) = &p.kind { words.clone() } else { Vec::new() };
+        let parameter = p.name.to_uppercase();
+        let name = move |word: &str| format!("{parameter}_{}", word.to_uppercase().replace('-', "_"));
+        words.into_iter().enumerate().map(move |(i, word)| (name(&word), i)).collect::<Vec<_>>()
+    };
+    effect.shader_parameters().flat_map(move |(p, ..)| of(p)).collect::<Vec<_>>().into_iter()
+}
+
+/// The struct of an effect's parameters, and the function that reads it.
+fn parameters_source(effect: &EffectDefinition) -> String {
+    let prefix = effect.wgsl_name();
+    let mut fields: Vec<(String, &str, usize)> =
+        effect.shader_parameters().map(|(p, type_name, floats)| (p.name.clone(), type_name, floats)).collect();
+    if effect.object_colors {
+        fields.push(("first".to_owned(), "u32", 1));
+    }
+    if fields.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("struct {prefix}_Parameters {{\n");
+    for (name, type_name, _) in &fields {
+        text.push_str(&format!("    {name}: {type_name},\n"));
+    }
+    text.push_str("}\n\n");
+    for (name, number) in word_constants(effect) {
+        text.push_str(&format!("const {prefix}_{name} = {number}u;\n"));
+    }
+    text.push_str(&format!("fn {prefix}_parameters(first: u32) -> {prefix}_Parameters {{\n"));
+    for slot in 0..effect.slots() {
+        text.push_str(&format!("    let s{slot} = parameters[first + {slot}u];\n"));
+    }
+    let mut next = 0;
+    let mut float = || {
+        next += 1;
+        format!("s{}.{}", (next - 1) / 4, ["x", "y", "z", "w"][(next - 1) % 4])
+    };
+    let values: Vec<String> = fields
+        .iter()
+        .map(|(_, type_name, _)| match *type_name {
+            "bool" => format!("{} != 0.0", float()),
+            "u32" => format!("u32({})", float()),
+            "vec3f" => format!("vec3f({}, {}, {})", float(), float(), float()),
+            _ => float(),
+        })
+        .collect();
+    text.push_str(&format!("    return {prefix}_Parameters({});\n}}\n\n", values.join(", ")));
+    text
+}
+
+impl ParameterHeader {
+    /// What it defines, or what is wrong and where in the header.
+    fn definition(self) -> Result<ParameterDefinition, (Option<std::ops::Range<usize>>, String)> {
+        let span = Some(self.r#type.span());
+        let wrong = |message: &str| Err((span.clone(), message.to_owned()));
+        let type_name = *self.r#type.get_ref();
+        if self.range.is_some() && type_name != TypeName::Number {
+            return wrong("only numbers have a range");
+        }
+        let kind = match (type_name, self.words) {
+            (TypeName::Word, Some(words)) if !words.is_empty() && words.iter().all(|w| is_effect_name(w)) => {
+                ParameterKind::Word(words)
+            }
+            (TypeName::Word, _) => return wrong("expected words = [...], each of a-z, 0-9 and -"),
+            (_, Some(_)) => return wrong("only type = \"word\" has words"),
+            (TypeName::Boolean, None) => ParameterKind::Boolean,
+            (TypeName::Text, None) => ParameterKind::Text,
+            (TypeName::Color, None) => ParameterKind::Color,
+            (TypeName::Numbers, None) => ParameterKind::Numbers,
+            (TypeName::Texts, None) => ParameterKind::Texts,
+            (TypeName::Number, None) => match self.range.map(Spanned::into_inner) {
+                None => ParameterKind::Number { min: f64::MIN, max: f64::MAX },
+                Some([min, max]) if min < max => ParameterKind::Number { min, max },
+                Some(_) => return wrong("expected range = [LOW, HIGH] with LOW < HIGH"),
+            },
+        };
+        let fallback = match (self.required, self.default, self.without) {
+            (true, None, None) => Fallback::Required,
+            (false, Some(value), None) => {
+                let (place, value) = (value.span(), value.into_inner());
+                if !takes(&kind, &value) {
+                    return Err((Some(place), format!("the default must be {}", kind.describe())));
+                }
+                Fallback::Value(value)
+            }
+            (false, None, Some(words)) => Fallback::Words(words),
+            _ => return wrong("expected one of default = VALUE, without = \"WHAT HOLDS THEN\" and required = true"),
+        };
+        Ok(ParameterDefinition { name: self.name.into_inner(), kind, fallback, unit: self.unit, doc: self.doc })
+    }
+}
+
+/// Whether a parameter of this kind may have this default.
+fn takes(kind: &ParameterKind, value: &DefaultValue) -> bool {
+    match (kind, value) {
+        (ParameterKind::Boolean, DefaultValue::Boolean(_)) | (ParameterKind::Text, DefaultValue::Text(_)) => true,
+        (ParameterKind::Number { min, max }, DefaultValue::Number(n)) => (*min..=*max).contains(n),
+        (ParameterKind::Word(words), DefaultValue::Text(text)) => words.contains(text),
+        (ParameterKind::Color, DefaultValue::Text(text)) => {
+            text.len() == 7 && text.starts_with('#') && text[1..].bytes().all(|b| b.is_ascii_hexdigit())
+        }
+        _ => false,
+    }
+}
+
+fn is_effect_name(name: &str) -> bool {
+    name.len() <= 40
+        && name.starts_with(|c: char| c.is_ascii_lowercase())
+        && name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-')
+}
+
+fn is_parameter_name(name: &str) -> bool {
+    name.len() <= 40
+        && !["effect", "class"].contains(&name)
+        && name.starts_with(|c: char| c.is_ascii_lowercase())
+        && name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
+}
+
+/// Reads a user's effect file and checks that it can do no harm: its size, that its loops end, and its WGSL.
+pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
+    let file = File { path, text };
+    if text.len() > MOST_BYTES || text.lines().count() > MOST_LINES {
+        let message = format!("an effect file has at most {MOST_LINES} lines and {MOST_BYTES} bytes");
+        return Err(file.error(0, message));
+    }
+    let (mut effect, renamed) = read_with_names(path, text)?;
+    effect.is_users = true;
+    if effect.object_colors {
+        return Err(file.error(0, "object_colors is for effects of the program"));
+    }
+    check_control_flow(&file)?;
+    check_cost(&file)?;
+    let plan = Plan { steps: vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0 }], ..Plan::default() };
+    let source = Module::Shade(plan).source_with(std::slice::from_ref(&effect));
+    let body = body_of(&renamed.text);
+    let begin = source.find(body).unwrap_or(0);
+    let before = renamed.text.len() - body.len();
+    let place = |at: Option<usize>| match at {
+        Some(at) if (begin..=begin + body.len()).contains(&at) => renamed.original(at - begin + before),
+        // Beside the file: where it is called. Its signature is not what the caller expects.
+        _ => wgsl::declarations(text, &wgsl::tokens(text))
+            .iter()
+            .find(|d| d.name == "effect")
+            .map_or(0, |d| d.span.start),
+    };
+    let prefix = format!("{}_", effect.wgsl_name());
+    let own = |message: String| message.replace(&prefix, "");
+    let parsed = wgpu::naga::front::wgsl::parse_str(&source).map_err(|error| {
+        let at = error.labels().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
+        file.error(place(at), own(error.message().to_owned()))
+    })?;
+    let capabilities =
+        wgpu::naga::valid::Capabilities::default() | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    let mut validator = wgpu::naga::valid::Validator::new(wgpu::naga::valid::ValidationFlags::all(), capabilities);
+    validator.validate(&parsed).map_err(|error| {
+        let at = error.spans().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
+        let mut message = error.as_inner().to_string();
+        let mut source: Option<&dyn std::error::Error> = std::error::Error::source(error.as_inner());
+        while let Some(inner) = source {
+            message = format!("{message}: {inner}");
+            source = inner.source();
+        }
+        file.error(place(at), own(message))
+    })?;
+    Ok(effect)
+}
+
+/// Refuses what may never end, or leave a hole: `loop`, `while`, `discard`, and `for` but for
+/// `for (var i = NUMBER; i < NUMBER; i++)` whose body leaves `i` alone.
+fn check_control_flow(file: &File) -> Result<(), FileError> {
+    let tokens = wgsl::tokens(file.text);
+    let word = |i: usize| tokens.get(i).map_or("", |t: &Token| &file.text[t.span.clone()]);
+    for (i, token) in tokens.iter().enumerate().filter(|(_, t)| t.kind == TokenKind::Word) {
+        let error = |message: &str| Err(file.error(token.span.start, message));
+        match word(i) {
+            "loop" | "while" => {
+                return error("it may never end; expected for (var i = 0; i < NUMBER; i++), or no loop");
+            }
+            "discard" => return error("an effect changes a colour; it cannot take the pixel away"),
+            "for" if !is_bounded(&tokens, i, &word) => {
+                let message = format!(
+                    "expected for (var i = NUMBER; i < NUMBER; i++) of at most {MOST_ROUNDS} rounds, whose body \
+                     leaves i alone"
+                );
+                return error(&message);
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Whether the `for` at token `i` counts a variable of its own from one number up to another.
+fn is_bounded<'a>(tokens: &[Token], i: usize, word: &impl Fn(usize) -> &'a str) -> bool {
+    let name = word(i + 3);
+    let head = ["for", "(", "var", name, "=", word(i + 5), ";", name, "<", word(i + 9), ";", name, "+", "+", ")", "{"];
+    let integer = |text: &str| text.trim_end_matches(['u', 'i']).parse::<u32>().ok();
+    let (Some(from), Some(to)) = (integer(word(i + 5)), integer(word(i + 9))) else { return false };
+    if !(0..head.len()).all(|k| word(i + k) == head[k]) || to.saturating_sub(from) > MOST_ROUNDS {
+        return false;
+    }
+    // Up to the brace that closes the body, nobody assigns to the variable or takes its address.
+    let mut depth = 1;
+    for k in i + head.len()..tokens.len() {
+        match word(k) {
+            "{" => depth += 1,
+            "}" => depth -= 1,
+            w if w == name && word(k - 1) != "." => {
+                let assigns = match (word(k + 1), word(k + 2)) {
+                    ("=", next) => next != "=",
+                    ("+", "+" | "=") | ("-", "-" | "=") | ("*" | "/" | "%" | "&" | "|" | "^", "=") => true,
+                    ("<", "<") | (">", ">") => word(k + 3) == "=",
+                    _ => false,
+                };
+                if assigns || word(k - 1) == "&" {
+                    return false;
+                }
+            }
+            _ => {}
+        }
+        if depth == 0 {
+            return true;
+        }
+    }
+    false
+}
+
+/// Refuses what ends, but not in anybody's lifetime: loops in loops, and functions that call the next one twice.
+fn check_cost(file: &File) -> Result<(), FileError> {
+    let tokens = wgsl::tokens(file.text);
+    let declared = wgsl::declarations(file.text, &tokens);
+    let mut costs = Costs { file, tokens: &tokens, declared: &declared, known: Vec::new() };
+    for declaration in declared.iter().filter(|d| d.keyword == "fn") {
+        if costs.of(declaration.name, 0).is_none_or(|cost| cost > MOST_STEPS) {
+            let message = format!("this takes more than {MOST_STEPS} steps per pixel, or calls itself");
+            return Err(file.error(declaration.span.start, message));
+        }
+    }
+    Ok(())
+}
+
+/// What the functions of a file cost.
+struct Costs<'a> {
+    file: &'a File<'a>,
+    tokens: &'a [Token],
+    declared: &'a [Declaration<'a>],
+    known: Vec<(&'a str, u64)>,
+}
+
+impl<'a> Costs<'a> {
+    /// Steps of one call; `None` for one that calls itself.
+    fn of(&mut self, name: &'a str, depth: usize) -> Option<u64> {
+        if let Some((_, cost)) = self.known.iter().find(|(known, _)| *known == name) {
+            return Some(*cost);
+        }
+        // Deeper than there are functions: one calls itself.
+        if depth > self.declared.len() {
+            return None;
+        }
+        let begin = self.declared.iter().find(|d| d.keyword == "fn" && d.name == name)?.span.end;
+        let first = self.tokens.partition_point(|t| t.span.start < begin);
+        let (mut cost, mut rounds) = (0_u64, Vec::new());
+        let mut pending = None;
+        for (i, token) in self.tokens.iter().enumerate().skip(first) {
+            let text = self.file.text;
+            let word = &text[token.span.clone()];
+            let times = rounds.iter().copied().fold(1, u64::saturating_mul);
+            cost = cost.saturating_add(times);
+            match word {
+                "for" => {
+                    let number = |k: usize| self.tokens.get(i + k).map_or("0", |t| &text[t.span.clone()]);
+                    let integer = |text: &str| text.trim_end_matches(['u', 'i']).parse::<u64>().unwrap_or(0);
+                    pending = Some(integer(number(9)).saturating_sub(integer(number(5))));
+                }
+                "{" => rounds.push(pending.take().unwrap_or(1)),
+                "}" => {
+                    rounds.pop();
+                    if rounds.is_empty() {
+                        break;
+                    }
+                }
+                _ => {
+                    let callee = self.declared.iter().find(|d| d.keyword == "fn" && d.name == word);
+                    if let (TokenKind::Word, Some(callee)) = (token.kind, callee) {
+                        cost = cost.saturating_add(times.saturating_mul(self.of(callee.name, depth + 1)?));
+                    }
+                }
+            }
+        }
+        self.known.push((name, cost));
+        Some(cost)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "//! name = \"mine\"\n//! kind = \"post\"\n//! spec = \"K3\"\n//! doc = \"Does it.\"\n";
+    const PARAMETER: &str = "//!\n//! [[parameter]]\n//! name = \"mode\"\n//! type = \"word\"\n//! words = [\"soft\", \"very-hard\"]\n\
+                             //! default = \"soft\"\n//! doc = \"How.\"\n";
+
+    fn failure(text: &str) -> String {
+        match checked("my.wgsl", text) {
+            Ok(effect) => panic!("it passed: {}", effect.source),
+            Err(error) => error.to_string(),
+        }
+    }
+
+    #[test]
+    fn a_file_becomes_an_effect() {
+        let body = "const TINT = vec3f(1.0, 0.5, 0.0);\n\
+                    fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {\n    \
+                    if p.mode == MODE_VERY_HARD { return TINT; }\n    return mix(color, TINT, 0.5);\n}\n";
+        let effect = checked("my.wgsl", &format!("{HEADER}{PARAMETER}{body}")).unwrap();
+        assert_eq!((effect.name.as_str(), effect.kind, effect.slots()), ("mine", EffectKind::Post, 1));
+        assert!(effect.source.contains("fn mine(color: vec3f, point: Point, p: mine_Parameters) -> vec3f"));
+        assert!(effect.source.contains("mine_MODE_VERY_HARD = 1u") && effect.source.contains("mix(color, mine_TINT"));
+        let bare = "fn effect(color: vec3f, point: Point) -> vec3f { return 1.0 - color; }";
+        assert_eq!(checked("my.wgsl", &format!("{HEADER}{bare}")).unwrap().slots(), 0);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        let good = "fn effect(color: vec3f, point: Point) -> vec3f { return color; }\n";
+        for (text, expected) in [
+            (String::new(), "my.wgsl:1:1: expected a header"),
+            (
+                format!("//! name = \"Mine\"\n//! kind = \"post\"\n//! spec = \"\"\n//! doc = \"\"\n{good}"),
+                "my.wgsl:1:12: expected a name",
+            ),
+            (HEADER.replace("post", "past"), "my.wgsl:2:12: unknown variant `past`, expected `scene` or `post`"),
+            (HEADER.replace("spec", "spek"), "my.wgsl:3:5: unknown field `spek`"),
+            (HEADER.to_owned(), "my.wgsl:5:1: expected `fn effect(color: vec3f, point: Point) -> vec3f`"),
+            (
+                format!("{HEADER}{PARAMETER}").replace("= \"soft\"", "= \"hart\""),
+                "my.wgsl:10:15: the default must be one of soft, very-hard",
+            ),
+            (format!("{HEADER}{good}var<private> n: u32;"), "my.wgsl:6:14: an effect keeps nothing"),
+            (
+                format!("{HEADER}fn effect(color: vec3f, point: Point) -> vec3f {{\n    return colour;\n}}"),
+                "my.wgsl:6:12: no definition in scope",
+            ),
+            (format!("{HEADER}fn effect(color: vec3f) -> vec3f {{ return color; }}"), "my.wgsl:5:4: "),
+            (
+                format!(
+                    "{HEADER}fn effect(color: vec3f, point: Point) -> vec3f {{\n    return vec3f(1.0, 2.0) + color;\n}}"
+                ),
+                "my.wgsl:6:",
+            ),
+            (
+                format!("{HEADER}fn effect(color: vec3f, point: Point) -> vec3f {{\n    loop {{ }}\n}}"),
+                "my.wgsl:6:5: it may never end",
+            ),
+            (
+                format!("{HEADER}{good}fn f() {{ for (var i = 0; i < 9; i++) {{ i = 0; }} }}"),
+                "my.wgsl:6:10: expected for",
+            ),
+            (format!("{HEADER}{good}fn f() {{ for (var i = 0; i >= 0; i++) {{ }} }}"), "my.wgsl:6:10: expected for"),
+            (format!("{HEADER}{good}fn f() {{ discard; }}"), "my.wgsl:6:10: an effect changes a colour"),
+            (format!("{HEADER}{good}fn f() {{ f(); }}"), "my.wgsl:6:4: this takes more"),
+            (format!("{HEADER}{}{good}", "//\n".repeat(1_000_000)), "my.wgsl:1:1: an effect file has at most"),
+        ] {
+            let found = failure(&text);
+            assert!(found.starts_with(expected), "{found}\nis not\n{expected}");
+        }
+    }
+
+    #[test]
+    fn what_would_take_for_ever_is_refused() {
+        let nested =
+            "for (var i = 0; i < 1000; i++) { for (var j = 0; j < 1000; j++) { for (var k = 0; k < 1000; k++) { } } }";
+        let effect = "fn effect(color: vec3f, point: Point) -> vec3f { return color; }\n";
+        assert!(failure(&format!("{HEADER}{effect}fn f() {{ {nested} }}")).contains("steps per pixel"));
+        let mut chain = String::from("fn f0(x: f32) -> f32 { return x; }\n");
+        for i in 1..60 {
+            chain += &format!("fn f{i}(x: f32) -> f32 {{ return f{0}(x) + f{0}(x); }}\n", i - 1);
+        }
+        assert!(failure(&format!("{HEADER}{chain}{effect}")).contains("steps per pixel"));
+        let fine = "fn f() -> f32 { var s = 0.0; for (var i = 0; i < 64; i++) { s += f32(i); } return s; }\n";
+        assert!(checked("my.wgsl", &format!("{HEADER}{fine}{effect}")).is_ok());
+    }
+
+    #[test]
+    fn names_that_clash_with_ours_do_no_harm() {
+        let text = format!(
+            "{HEADER}fn luminance(c: vec3f) -> f32 {{ return c.g; }}\nconst mine_x = 2.0;\n\
+             fn effect(color: vec3f, point: Point) -> vec3f {{ let depth = point.depth; return vec3f(luminance(color) * mine_x + depth); }}"
+        );
+        assert!(checked("my.wgsl", &text).is_ok());
+    }
+}

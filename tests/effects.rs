@@ -1,0 +1,232 @@
+//! Effects: pictures known by thought, and effect files as their authors meet them.
+
+mod studio;
+
+use std::{path::PathBuf, process::Command};
+
+use glam::DVec3;
+use studio::*;
+use veduta::{
+    geom::Shape,
+    lens::{EffectUse, Parameter, color},
+    render::picture::{Picture, Studio},
+    scene::Scene,
+    shader::{EffectDefinition, effects},
+    view::Camera,
+};
+
+const SIZE: [u32; 2] = [240, 160];
+
+/// A town, partly within a lens, and the lens' mask.
+struct Stage {
+    studio: Studio,
+    camera: Camera,
+    ball: Shape,
+    inside: Vec<bool>,
+    plain: Picture,
+}
+
+impl Stage {
+    fn new() -> Self {
+        let mut studio = synthetic(60);
+        let number = studio.geometries[studio.geometries.len() / 2];
+        let at = studio.model.geometries[number as usize].bounds.center();
+        let camera = Camera::looking(at + DVec3::new(60.0, -90.0, 70.0), at, 0.8);
+        let ball = Shape::Sphere { center: at, radius: 60.0 };
+        let plain = picture(&mut studio, &scene(camera, vec![]), SIZE);
+        let lensed = picture(&mut studio, &scene(camera, vec![lens("l", vec![ball.clone()], "greyscale")]), SIZE);
+        let inside = bits(&lensed, 0);
+        assert!(inside.iter().filter(|b| **b).count() > 1000);
+        Self { studio, camera, ball, inside, plain }
+    }
+
+    fn scene(&self, effects: Vec<EffectUse>) -> Scene {
+        let mut lens = lens("l", vec![self.ball.clone()], "greyscale");
+        lens.effects = effects;
+        scene(self.camera, vec![lens])
+    }
+
+    /// The picture with these effects inside the lens; outside it must be the plain one.
+    fn with(&mut self, effects: Vec<EffectUse>) -> Picture {
+        let scene = self.scene(effects);
+        let picture = picture(&mut self.studio, &scene, SIZE);
+        for (i, inside) in self.inside.iter().enumerate() {
+            assert!(*inside || picture.rgba[i] == self.plain.rgba[i], "pixel {i} outside the lens changed");
+        }
+        picture
+    }
+
+    /// The largest difference of a channel from what `expected` makes of the plain picture, inside the lens.
+    fn farthest(&mut self, effects: Vec<EffectUse>, expected: impl Fn([f32; 3]) -> [f32; 3]) -> i32 {
+        let picture = self.with(effects);
+        let apart = |i: usize| {
+            let [r, g, b, _] = self.plain.rgba[i];
+            let wanted = expected([r, g, b].map(|c| f32::from(c) / 255.0)).map(|c| (c * 255.0).round() as i32);
+            (0..3).map(|c| (wanted[c] - i32::from(picture.rgba[i][c])).abs()).max().unwrap_or(0)
+        };
+        (0..self.inside.len()).filter(|i| self.inside[*i]).map(apart).max().unwrap_or(0)
+    }
+}
+
+fn with_numbers(effect: &str, numbers: &[(&str, f64)]) -> EffectUse {
+    let parameters = numbers.iter().map(|(name, n)| ((*name).to_owned(), Parameter::Number(*n))).collect();
+    EffectUse { parameters, ..used(effect) }
+}
+
+/// Effects that need no parameter.
+fn ready() -> impl Iterator<Item = &'static EffectDefinition> {
+    effects().iter().filter(|e| !e.parameters.iter().any(|p| p.is_required()))
+}
+
+#[test]
+fn every_effect_changes_the_inside_and_nothing_else() {
+    let mut stage = Stage::new();
+    for effect in ready() {
+        let picture = stage.with(vec![used(&effect.name)]);
+        let changed = (0..stage.inside.len()).filter(|&i| picture.rgba[i] != stage.plain.rgba[i]).count();
+        let inside = stage.inside.iter().filter(|b| **b).count();
+        assert!(changed * 20 > inside, "{} changed {changed} of {inside} pixels", effect.name);
+        assert_eq!(picture.statistics.handlers.as_slice(), std::slice::from_ref(&effect.name));
+        assert_eq!(picture.statistics.lenses[0].pixels as usize, inside, "{}", effect.name);
+    }
+}
+
+#[test]
+fn effects_do_what_their_arithmetic_says() {
+    let mut stage = Stage::new();
+    // Bytes of the plain picture are rounded, and so are those of the result.
+    let one = |effect, numbers: &[(&str, f64)]| vec![with_numbers(effect, numbers)];
+    assert!(stage.farthest(one("invert", &[]), |c| c.map(|c| 1.0 - c)) <= 1);
+    assert!(stage.farthest(vec![used("invert"), used("invert")], |c| c) <= 1);
+    assert_eq!(stage.farthest(one("darken", &[("amount", 1.0)]), |_| [0.0; 3]), 0);
+    assert!(stage.farthest(one("brighten", &[("amount", 1.0)]), |_| [1.0; 3]) <= 1);
+    for identity in [
+        one("darken", &[("amount", 0.0)]),
+        one("brighten", &[("amount", 0.0)]),
+        one("saturate", &[("factor", 1.0)]),
+        one("overlay", &[("opacity", 0.0)]),
+        one("greyscale", &[("amount", 0.0)]),
+    ] {
+        let name = identity[0].effect.clone();
+        assert!(stage.farthest(identity, |c| c) <= 1, "{name}");
+    }
+    let halved = |c: [f32; 3]| color::srgb_from_linear(color::linear_from_srgb(c).map(|c| 0.125 * c));
+    assert!(stage.farthest(one("darken", &[("amount", 0.5)]), halved) <= 1);
+    let grey = |c: [f32; 3]| {
+        let [r, g, b] = color::linear_from_srgb(c);
+        color::srgb_from_linear([0.2126 * r + 0.7152 * g + 0.0722 * b; 3])
+    };
+    assert!(stage.farthest(one("greyscale", &[]), grey) <= 1);
+    let paint = |mode: &str| EffectUse {
+        parameters: [
+            ("mode".to_owned(), Parameter::Text(mode.into())),
+            ("color".to_owned(), Parameter::Text("#804020".into())),
+            ("opacity".to_owned(), Parameter::Number(1.0)),
+        ]
+        .into(),
+        ..used("overlay")
+    };
+    let brown = [128.0, 64.0, 32.0].map(|c| c / 255.0);
+    assert_eq!(stage.farthest(vec![paint("alpha")], |_| brown), 0);
+    let blended = |f: fn(f32, f32) -> f32| {
+        move |c: [f32; 3]| {
+            let (below, above) = (color::linear_from_srgb(c), color::linear_from_srgb(brown));
+            color::srgb_from_linear([0, 1, 2].map(|i| f(below[i], above[i])))
+        }
+    };
+    assert!(stage.farthest(vec![paint("multiply")], blended(|a, b| a * b)) <= 1);
+    assert!(stage.farthest(vec![paint("screen")], blended(|a, b| 1.0 - (1.0 - a) * (1.0 - b))) <= 1);
+}
+
+#[test]
+fn dragging_a_parameter_compiles_nothing() {
+    let mut stage = Stage::new();
+    stage.with(vec![with_numbers("overlay", &[("opacity", 0.2)]), used("posterise")]);
+    let again =
+        stage.with(vec![with_numbers("overlay", &[("opacity", 0.9)]), with_numbers("posterise", &[("steps", 7.0)])]);
+    assert_eq!(again.statistics.pipelines.compiled, 0);
+}
+
+// ---- effect files
+
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str, files: &[(&str, &str)]) -> Self {
+        let path = std::env::temp_dir().join(format!("veduta-effects-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        for (file, text) in files {
+            std::fs::write(path.join(file), text).unwrap();
+        }
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().unwrap().to_owned()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Exit code, stdout and stderr.
+fn veduta(arguments: &[&str]) -> (i32, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_veduta")).args(arguments).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code().expect("the program was killed"), text(output.stdout), text(output.stderr))
+}
+
+/// The effect file that `docs/effects.md` shows.
+fn documented() -> String {
+    let page = include_str!("../docs/effects.md");
+    let block = page.split("```wgsl\n").nth(1).and_then(|rest| rest.split("```").next());
+    block.expect("the page shows an effect").to_owned()
+}
+
+const BROKEN: &str = "//! name = \"broken\"\n//! kind = \"post\"\n//! spec = \"\"\n//! doc = \"Is broken.\"\n\n\
+                      fn effect(color: vec3f, point: Point) -> vec3f {\n    return colour;\n}\n";
+
+#[test]
+fn the_effect_of_the_docs_is_right_and_works_at_once() {
+    let no_number = BROKEN.replace("broken", "nothing").replace("colour", "sqrt(color - 9.0) / (color - color)");
+    let folder =
+        Folder::new("docs", &[("broken.wgsl", BROKEN), ("night.wgsl", &documented()), ("nothing.wgsl", &no_number)]);
+    let root = folder.path("");
+    let (code, _, said) = veduta(&["effects", "--check", &folder.path("night.wgsl")]);
+    assert_eq!(code, 0, "{said}");
+    let (code, _, said) = veduta(&["effects", "--check", &folder.path("broken.wgsl")]);
+    assert_eq!(code, 1);
+    assert!(said.contains("broken.wgsl:7:12: no definition in scope for identifier: `colour`"), "{said}");
+    let (code, list, said) = veduta(&["effects", "--json", "--effects", &root]);
+    assert_eq!(code, 0, "{said}");
+    assert!(list.contains("\"night\"") && list.contains("\"greyscale\"") && !list.contains("\"broken\""));
+    assert!(said.contains("this effect is left out"), "{said}");
+    let model = citydata("courtyard.city.json");
+    let model = model.to_str().unwrap();
+    let draw = |effect: &str| {
+        let picture = folder.path(&format!("{effect}.png"));
+        let effect = format!("style.effects=[\"{effect}\"]");
+        let size = ["--size", "64x48", "--effects", &root, "--set", &effect, "-o", &picture, "-q"];
+        let (code, _, said) = veduta(&[&["render", model][..], &size].concat());
+        assert_eq!(code, 0, "{said}");
+        image::open(&picture).unwrap().to_rgb8()
+    };
+    let (plain, night) = (draw("sepia"), draw("night"));
+    let mean = |image: &image::RgbImage| image.pixels().map(|p| f64::from(p.0[1])).sum::<f64>();
+    assert!(mean(&night) < 0.7 * mean(&plain), "the night is not dark");
+    assert!(draw("nothing").pixels().all(|p| p.0 == [0, 0, 0]), "what is no number is not black");
+}
+
+#[test]
+fn a_folder_of_effects_that_is_none_is_said() {
+    let folder = Folder::new("none", &[("a.txt", "")]);
+    let (code, _, said) = veduta(&["effects", "--effects", &folder.path("")]);
+    assert!(code == 1 && said.contains("there is no effect (*.wgsl) in this folder"), "{said}");
+    let twice = BROKEN.replace("colour", "color").replace("name = \"broken\"", "name = \"sepia\"");
+    let folder = Folder::new("twice", &[("mine.wgsl", &twice)]);
+    let (code, _, said) = veduta(&["effects", "--effects", &folder.path("")]);
+    assert!(code == 0 && said.contains("there is an effect \"sepia\" already"), "{said}");
+}
