@@ -146,6 +146,8 @@ fn with_lens(v: &str, scene: &Scene, studio: &mut Studio) -> Scene {
             effects: vec![EffectUse {
                 effect: "greyscale".into(),
                 class: Class::Inside,
+                blend: None,
+                weight: None,
                 parameters: Default::default(),
             }],
             body: LensBody::None,
@@ -155,7 +157,8 @@ fn with_lens(v: &str, scene: &Scene, studio: &mut Studio) -> Scene {
     };
     // Around the shown surface in the middle of the picture.
     let aovs = Aovs { depth: true, ..Aovs::default() };
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: true };
+    let request =
+        Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: true, backend: Default::default() };
     let depth = studio.render(scene, &request).expect("a picture").depth.expect("its depth");
     let distance = f64::from(depth[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize]);
     assert!(distance.is_finite(), "nothing stands in the middle of the picture");

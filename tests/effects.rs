@@ -75,7 +75,7 @@ fn with_numbers(effect: &str, numbers: &[(&str, f64)]) -> EffectUse {
 
 /// Effects that need no parameter.
 fn ready() -> impl Iterator<Item = &'static EffectDefinition> {
-    effects().iter().filter(|e| !e.parameters.iter().any(|p| p.is_required()))
+    effects().filter(|e| !e.parameters.iter().any(|p| p.is_required()))
 }
 
 #[test]

@@ -218,7 +218,14 @@ fn samples_smooth_and_aovs_stay() {
     ball.body = LensBody::Outline;
     let scene = scene(overview(), vec![ball]);
     let one = picture(&mut studio, &scene, SIZE);
-    let request = Request { size: SIZE, samples: 8, transparent: false, aovs: ALL, statistics: true };
+    let request = Request {
+        size: SIZE,
+        samples: 8,
+        transparent: false,
+        aovs: ALL,
+        statistics: true,
+        backend: Default::default(),
+    };
     let eight = studio.render(&scene, &request).expect("a picture");
     assert_eq!(one.depth, eight.depth);
     assert_eq!(one.object_id, eight.object_id);
@@ -235,7 +242,8 @@ fn nothing_behind_the_city_where_it_is_to_be_transparent() {
     let scene = scene(Camera::looking(DVec3::new(40.0, -30.0, 30.0), DVec3::splat(5.0), 0.8), vec![]);
     for samples in [1, 4] {
         let aovs = Aovs { object_id: true, ..Aovs::default() };
-        let request = Request { size: SIZE, samples, transparent: true, aovs, statistics: false };
+        let request =
+            Request { size: SIZE, samples, transparent: true, aovs, statistics: false, backend: Default::default() };
         let drawn = studio.render(&scene, &request).expect("a picture");
         let ids = drawn.object_id.expect("ids");
         let solid = drawn.rgba.iter().filter(|p| p[3] == 255).count();

@@ -1,13 +1,12 @@
 // Deferred shading of the shown surface, and what the lenses make of it.
 //
-// What the scene's context and lenses do is written out in `apply`, bottom lens first (L6): an effect, a lens
-// or a class that nobody asked for is not in the shader (U3). Moving a lens or turning a parameter changes
-// uniforms only.
+// What the scene's context and lenses do stands in `shade` and `styled`, which are put together from the scene: by the
+// specialised back end, which writes out what is asked for and nothing else (U3), or by the uber back end, which reads
+// it from a table. Moving a lens or turning a parameter changes uniforms only.
 
 override SMOOTH: bool = false;      // whether normals are in the target, not with the surfaces
 override TEXTURED: bool = false;    // whether base colours are in a target of their own
 override CLAY: bool = false;        // one colour for everything
-override HAZE: bool = false;        // whether the air shows
 override SUMMED: bool = false;      // weighted by coverage, to be summed over samples
 override BACKGROUND: u32 = 0u;      // SKY, ONE_COLOR, NOTHING
 
@@ -26,7 +25,9 @@ struct Point {
     base: vec3f,                // its colour before light, linear: clay, texture or natural
     lit: bool,                  // whether light acts on it
     sun: f32,                   // share of the sun that arrives, 0..1
-    shade: f32,                 // light on a white surface, 0..1
+    arriving: vec3f,            // light on a white surface, linear
+    shade: f32,                 // its luminance, 0..1
+    highlight: vec3f,           // light that does not come out of its colour, linear
 }
 
 const NO_SURFACE: u32 = 0xffffffffu;
@@ -37,10 +38,15 @@ const FAR_AWAY: f32 = 1e30;
 @group(1) @binding(8) var colors: texture_2d<f32>;
 @group(2) @binding(1) var<storage, read> object_colors: array<u32>;
 
+struct Corner {
+    @builtin(position) @invariant clip: vec4f,
+    @location(0) @interpolate(flat, either) part: u32,      // of the picture: the context's, or the lenses'
+}
+
 // At depth 0, and exactly there: the depth test chooses between surface and background.
 @vertex
-fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) @invariant vec4f {
-    return vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0);
+fn vertex(@builtin(vertex_index) i: u32, @builtin(instance_index) part: u32) -> Corner {
+    return Corner(vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0), part);
 }
 
 fn base_color(point: Point, pixel: vec2i) -> vec3f {
@@ -67,25 +73,17 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
     }
     point.object = surface.object;
     point.natural = surface.color;
-    point.lit = (surface.flags & SURFACE_UNLIT) == 0u;
+    point.lit = CLAY || (surface.flags & SURFACE_UNLIT) == 0u;
+    point.base = base_color(point, pixel);
+    point.sun = sun_share(point.relative, point.normal);
+    point.arriving = irradiance(point.normal, point.sun);
+    point.shade = luminance(point.arriving);
     return point;
 }
 
 fn nowhere() -> Point {
     return Point(vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), vec3f(0.0),
-                 false, 1.0, 1.0);
-}
-
-fn shade(point: ptr<function, Point>, pixel: vec2i) -> vec3f {
-    let sun = sun_share((*point).relative, (*point).normal);
-    let arriving = irradiance((*point).normal, sun);
-    (*point).shade = luminance(arriving);
-    (*point).sun = sun;
-    (*point).base = base_color(*point, pixel);
-    if !CLAY && !(*point).lit {
-        return (*point).base;
-    }
-    return (*point).base * arriving;
+                 false, 1.0, vec3f(1.0), 1.0, vec3f(0.0));
 }
 
 // What a user's effect returned, as a colour: no negative light, no infinity, nothing that is no number.
@@ -93,10 +91,11 @@ fn contained(color: vec3f) -> vec3f {
     return select(vec3f(0.0), min(color, vec3f(64.0)), color > vec3f(0.0));
 }
 
-//@apply
+//@handlers
 
-fn finished(paint: vec4f, point: Point, pixel: vec2i) -> vec4f {
-    let seen = apply(paint, point, pixel);
+fn finished(paint: vec4f, point: Point, pixel: vec2i, classes: Classes) -> vec4f {
+    let seen = outlines(paint, pixel, classes);
+    write_classes(pixel, point, classes);
     if SUMMED {
         return vec4f(seen.rgb * seen.a, seen.a);
     }
@@ -105,25 +104,24 @@ fn finished(paint: vec4f, point: Point, pixel: vec2i) -> vec4f {
 
 // Where something stands: the stored depth is not 0. The depth test chooses, so that neither shader runs in vain.
 @fragment
-fn surface(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let pixel = vec2i(at.xy);
-    var point = point_at(pixel, ray_of_pixel(at.xy), textureLoad(scene_depth, pixel, 0));
-    var color = shade(&point, pixel);
-    if HAZE {
-        let air = 1.0 - exp(-max(point.distance - light.scene_radius, 0.0) * view.haze);
-        color = mix(color, light.horizon, air);
-    }
-    return finished(vec4f(color, 1.0), point, pixel);
+fn surface(in: Corner) -> @location(0) vec4f {
+    let pixel = vec2i(in.clip.xy);
+    var point = point_at(pixel, ray_of_pixel(in.clip.xy), textureLoad(scene_depth, pixel, 0));
+    let classes = classes_at(pixel, point.depth, in.part);
+    return finished(vec4f(shade(&point, classes), 1.0), point, pixel, classes);
 }
 
 // Where nothing stands: the stored depth is its clear value, 0.
 @fragment
-fn background(@builtin(position) at: vec4f) -> @location(0) vec4f {
+fn background(in: Corner) -> @location(0) vec4f {
+    let pixel = vec2i(in.clip.xy);
     var paint = vec4f(0.0);
     if BACKGROUND == SKY {
-        paint = vec4f(sky_color(ray_of_pixel(at.xy).direction * view.view_from_world), 1.0);
+        paint = vec4f(sky_color(ray_of_pixel(in.clip.xy).direction * view.view_from_world), 1.0);
     } else if BACKGROUND == ONE_COLOR {
         paint = vec4f(light.zenith, 1.0);
     }
-    return finished(paint, nowhere(), vec2i(at.xy));
+    let point = nowhere();
+    let classes = classes_at(pixel, 0.0, in.part);
+    return finished(vec4f(styled(paint.rgb, point, classes), paint.a), point, pixel, classes);
 }

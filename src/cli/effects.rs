@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments, _: &GlobalArguments) -> Outcome {
         return Err(crate::cli::Failure::usage(format!("effects: {message}")));
     }
     let is_asked = |effect: &&EffectDefinition| arguments.names.is_empty() || arguments.names.contains(&effect.name);
-    let effects = effect::effects().iter().filter(is_asked);
+    let effects = effect::effects().filter(is_asked);
     if arguments.json {
         let list: Vec<Value> = effects.map(json_of).collect();
         return output::write(Path::new("-"), |out| {

@@ -86,6 +86,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             transparent: false,
             aovs: Default::default(),
             statistics: false,
+            backend: Default::default(),
         };
         let progress = terminal::Progress::spinning(&format!("drawing {name}"), global);
         let drawn = studio.render(&scene, &request).map_err(|error| Failure::failed(format!("{name}: {error}")))?;

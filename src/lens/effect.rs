@@ -9,14 +9,14 @@ use crate::{
         color::{Srgb, linear_from_srgb, parse_hex},
         nearest::did_you_mean,
     },
-    shader::effect::{DefaultValue, Fallback, MAX_LIST, ParameterDefinition, ParameterKind, effects, find},
+    shader::{
+        effect::{DefaultValue, Fallback, MAX_LIST, ParameterDefinition, ParameterKind, effects, find},
+        effect_file::RESERVED,
+    },
 };
 
 /// Effects whose names are fixed but which this version does not have.
 pub const LATER: &[&str] = &["blur", "wireframe", "hidden-line", "eraser", "x-ray", "lod"];
-
-/// Keys of an effect table that are not parameters.
-pub const RESERVED: &[&str] = &["effect", "class"];
 
 /// Something wrong with a use of an effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,16 +56,21 @@ pub fn check(used: &EffectUse) -> Vec<EffectProblem> {
     {
         problems.push(problem("min", format!("must be less than max = {max}, is {min}")));
     }
+    if let Some(weight) = used.weight
+        && !(0.0..=1.0).contains(&weight)
+    {
+        problems.push(problem("weight", format!("must be a number 0 to 1, is {weight}")));
+    }
     problems
 }
 
 /// The message for a name that is no effect of this version.
 pub fn unknown_effect(name: &str) -> String {
     if LATER.contains(&name) {
-        let all: Vec<&str> = effects().iter().map(|e| e.name.as_str()).collect();
+        let all: Vec<&str> = effects().map(|e| e.name.as_str()).collect();
         return format!("effect = \"{name}\" is not available yet; available: {}", all.join(", "));
     }
-    format!("there is no effect \"{name}\"{}", did_you_mean(name, effects().iter().map(|e| e.name.as_str())))
+    format!("there is no effect \"{name}\"{}", did_you_mean(name, effects().map(|e| e.name.as_str())))
 }
 
 /// What is wrong with a parameter's value, if anything.
@@ -176,7 +181,7 @@ mod tests {
 
     fn with(effect: &str, parameters: &[(&str, Parameter)]) -> Vec<EffectProblem> {
         let parameters = parameters.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
-        check(&EffectUse { effect: effect.into(), class: Default::default(), parameters })
+        check(&EffectUse { effect: effect.into(), class: Default::default(), blend: None, weight: None, parameters })
     }
 
     #[test]

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 pub use classify::classify;
 
-use crate::geom::Shape;
+use crate::{geom::Shape, shader::Blend};
 
 /// A lens (L1).
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +60,10 @@ pub struct EffectUse {
     pub effect: String,
     /// What it acts on, seen along the pixel's ray (L4).
     pub class: Class,
+    /// How it is laid over what is below (C5); `None`: it replaces that.
+    pub blend: Option<Blend>,
+    /// How much of it, 0 to 1; `None`: all.
+    pub weight: Option<f64>,
     /// Its parameters; the table has the defaults.
     pub parameters: BTreeMap<String, Parameter>,
 }

@@ -338,7 +338,7 @@ mod tests {
         let mut all: std::collections::BTreeMap<_, _> =
             parameters.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
         all.entry("attribute".into()).or_insert_with(|| Parameter::Text("a".into()));
-        EffectUse { effect: "thematic".into(), class: Default::default(), parameters: all }
+        EffectUse { effect: "thematic".into(), class: Default::default(), blend: None, weight: None, parameters: all }
     }
 
     #[test]

@@ -19,7 +19,7 @@ use crate::{
         curtain::{self, Curtain},
         eye::{PictureTile, view_uniform},
         layout, light,
-        operations::Operations,
+        operations::{Operations, invoker_table},
         pipelines::{GeometryKind, Key},
         renderer::{Renderer, STAGE_STRIDE},
         sprites::{self, Pages, Place},
@@ -27,7 +27,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun},
-    shader::Plan,
+    shader::{MOST_SLOTS, MOST_VOLUMES, Plan, Program, handlers},
     view::View,
 };
 
@@ -59,6 +59,8 @@ pub struct FrameInput<'a> {
     pub sprite_resolution: &'a [Option<u32>],
     /// What the context and the lenses do.
     pub operations: &'a Operations,
+    /// How shaders are made of that.
+    pub backend: Backend,
     /// Whether interpolated depth is kept, for the AOV.
     pub measured: bool,
     /// Whether every pixel's classes are kept, for AOVs and statistics; of the first sample.
@@ -67,6 +69,18 @@ pub struct FrameInput<'a> {
     pub sample: u32,
     /// How many there will be.
     pub samples: u32,
+}
+
+/// How shaders are made of what a scene asks for (H3). The picture is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backend {
+    /// For this very scene: the fastest frames; a change of effects, lenses or their order is compiled, and waited for.
+    #[default]
+    Specialised,
+    /// One module for all that the scene may ask for: nothing is compiled when lenses come, go or change their order.
+    Uber,
+    /// The uber back end, until the specialised pipelines are there; those are made off the frame.
+    Adaptive,
 }
 
 /// One pass that ran.
@@ -130,9 +144,10 @@ impl Renderer {
         let (seen, pages) = seen_volumes(input);
         let sun_view = self.sun_view(input);
         self.fit_targets(needs(input, &pages, self.colored(), self.smooth(), sun_view.is_some()));
-        self.upload(input, sun_view.as_ref(), &seen)?;
+        let plans = Plans::new(input, &seen);
+        let (keys, is_uber) = self.prepare(input, &seen, &plans, sun_view.is_some());
+        self.upload(input, sun_view.as_ref(), &seen, is_uber.then_some(&plans))?;
         self.fit_groups();
-        let keys = self.prepare(input, &seen, sun_view.is_some());
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         if let Some(sun_view) = &sun_view {
@@ -159,7 +174,7 @@ impl Renderer {
     /// Draws the city in one lit pass over the same buffers and the same visible chunks, into the same targets: what
     /// the plain frame is measured against. Needs a frame drawn before, for the targets and the view.
     pub fn draw_bare(&mut self, view: &View) {
-        self.pipelines.prepare(&self.gpu, &Key::Bare);
+        self.pipelines.prepare(&Key::Bare);
         let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("bare") });
@@ -209,8 +224,14 @@ impl Renderer {
         light::sun_view(&input.sun, &receivers, &city.bounds)
     }
 
-    /// Brings the small buffers up to date.
-    fn upload(&mut self, input: &FrameInput, sun: Option<&View>, seen: &[SeenVolume]) -> Result<(), GpuError> {
+    /// Brings the small buffers up to date; `uber`: with the invoker table of these plans.
+    fn upload(
+        &mut self,
+        input: &FrameInput,
+        sun: Option<&View>,
+        seen: &[SeenVolume],
+        uber: Option<&Plans>,
+    ) -> Result<(), GpuError> {
         let Some(city) = &self.city else { return Ok(()) };
         let radius = light::radius_of(&city.buffers.bounds);
         let jitter = crate::view::jitter_px(input.sample);
@@ -239,8 +260,17 @@ impl Renderer {
                 pad_0: [0; 3],
             });
         }
+        let mut parameters = std::borrow::Cow::Borrowed(&input.operations.parameters);
         let (gpu, b) = (&self.gpu, &mut self.buffers);
-        let mut stale = b.view.sync(gpu, &[view])?;
+        let mut stale = false;
+        if let Some(plans) = uber {
+            // Its module declares these arrays as long as they may be.
+            parameters.to_mut().resize(MOST_SLOTS as usize, [0.0; 4]);
+            volumes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
+            let table = invoker_table([&plans.context, &plans.lenses], handlers()).unwrap_or_default();
+            stale |= b.invokers.sync(gpu, &table)?;
+        }
+        stale |= b.view.sync(gpu, &[view])?;
         stale |= b.light.sync(gpu, &[light])?;
         if let Some(sun) = sun {
             let whole = PictureTile::whole(sun.size);
@@ -249,7 +279,7 @@ impl Renderer {
         stale |= b.planes.sync(gpu, &planes)?;
         stale |= b.sprite_stages.sync(gpu, &stages)?;
         stale |= b.volumes.sync(gpu, &volumes)?;
-        stale |= b.parameters.sync(gpu, &input.operations.parameters)?;
+        stale |= b.parameters.sync(gpu, &parameters)?;
         stale |= b.object_colors.sync(gpu, &input.operations.object_colors)?;
         stale |= b.resolve.sync(gpu, &[input.samples as f32])?;
         if stale {
@@ -258,9 +288,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes the pipelines this frame calls for, and no other.
-    fn prepare(&mut self, input: &FrameInput, seen: &[SeenVolume], shadows: bool) -> ShadeKeys {
-        let Some(city) = &self.city else { return ShadeKeys::default() };
+    /// Makes the pipelines this frame calls for, and no other; whether shading is the uber back end's.
+    fn prepare(&mut self, input: &FrameInput, seen: &[SeenVolume], plans: &Plans, shadows: bool) -> (ShadeKeys, bool) {
+        let Some(city) = &self.city else { return (ShadeKeys::default(), false) };
         let colored = self.colored();
         let mut keys: Vec<Key> = Vec::new();
         if shadows {
@@ -273,39 +303,57 @@ impl Renderer {
             keys.push(Key::Sprite(volume.kind));
         }
         let clay = input.base == BaseStyle::Clay;
-        let shade = |surface, plan: &Plan| Key::Shade {
-            plan: plan.clone(),
+        let smooth = city.buffers.smooth;
+        let shade = |surface, program: Program| Key::Shade {
+            program,
             surface,
             textured: colored && !clay,
             clay,
             summed: input.samples > 1,
             shadows,
-            haze: haze(input) > 0.0,
-            smooth: city.buffers.smooth,
+            smooth,
             background: match input.background {
                 _ if input.transparent => 2,
                 Background::Color(_) => 1,
                 Background::Sky => 0,
             },
         };
-        let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
-        let both = |plan: Plan| vec![shade(true, &plan), shade(false, &plan)];
-        let shade_keys = ShadeKeys {
-            context: both(input.operations.context_plan()),
-            lenses: if seen.is_empty() {
-                Vec::new()
-            } else {
-                both(input.operations.lens_plan(&lenses, wants_masks(input)))
-            },
+        let both = |program: Program| vec![shade(true, program.clone()), shade(false, program)];
+        let parts = |context: Program, lenses: Program| ShadeKeys {
+            context: both(context),
+            lenses: if seen.is_empty() { Vec::new() } else { both(lenses) },
         };
-        keys.extend(shade_keys.context.iter().chain(&shade_keys.lenses).cloned());
+        let specialised =
+            || parts(Program::Specialised(plans.context.clone()), Program::Specialised(plans.lenses.clone()));
+        let uber = || {
+            let uber = Program::Uber(input.operations.uber(haze(input) > 0.0, wants_masks(input)));
+            parts(uber.clone(), uber)
+        };
+        let shade_keys = match input.backend {
+            Backend::Specialised => specialised(),
+            // More invokers than the table holds: written out, there is no limit.
+            _ if invoker_table([&plans.context, &plans.lenses], handlers()).is_err() => specialised(),
+            Backend::Uber => uber(),
+            Backend::Adaptive => {
+                let wanted = specialised();
+                // All are asked for, also when the first is not there.
+                let missing = wanted.all().filter(|key| !self.pipelines.is_ready(key)).count();
+                if missing == 0 { wanted } else { uber() }
+            }
+        };
+        keys.extend(shade_keys.all().cloned());
         if input.samples > 1 {
             keys.push(Key::Resolve);
         }
         for key in &keys {
-            self.pipelines.prepare(&self.gpu, key);
+            self.pipelines.prepare(key);
         }
-        shade_keys
+        self.ran.extend(plans.context.effects());
+        self.ran.extend(plans.lenses.effects());
+        self.ran.sort_unstable();
+        self.ran.dedup();
+        let is_uber = shade_keys.all().any(|key| matches!(key, Key::Shade { program: Program::Uber(_), .. }));
+        (shade_keys, is_uber)
     }
 
     fn shadow_pass(&mut self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, sun: &View) {
@@ -529,20 +577,20 @@ impl Renderer {
         pass.set_bind_group(1, &groups.shade, &[]);
         pass.set_bind_group(2, &groups.lenses, &[]);
         let mut drawn = 0;
-        let mut fill = |keys: &[Key], parts: &[PictureTile]| {
+        let mut fill = |part: u32, keys: &[Key], parts: &[PictureTile]| {
             let parts: Vec<_> = parts.iter().filter(|p| p.size[0] > 0 && p.size[1] > 0).collect();
             for key in keys.iter().filter(|_| !parts.is_empty()) {
                 pass.set_pipeline(self.pipelines.get(key));
-                for part in &parts {
-                    scissor(&mut pass, **part);
-                    pass.draw(0..3, 0..1);
+                for rectangle in &parts {
+                    scissor(&mut pass, **rectangle);
+                    pass.draw(0..3, part..part + 1);
                     drawn += 1;
                 }
             }
         };
         let (inside, outside) = split(input.tile.size, seen.iter().map(|v| v.bounds));
-        fill(&keys.context, &outside);
-        fill(&keys.lenses, inside.as_slice());
+        fill(0, &keys.context, &outside);
+        fill(1, &keys.lenses, inside.as_slice());
         if let Some(timer) = &recorder.timer {
             timer.end_count(&mut pass, slot);
         }
@@ -571,6 +619,30 @@ impl Renderer {
 struct ShadeKeys {
     context: Vec<Key>,
     lenses: Vec<Key>,
+}
+
+impl ShadeKeys {
+    fn all(&self) -> impl Iterator<Item = &Key> {
+        self.context.iter().chain(&self.lenses)
+    }
+}
+
+/// What shading does outside the lenses' bounds, and inside.
+struct Plans {
+    context: Plan,
+    lenses: Plan,
+}
+
+impl Plans {
+    fn new(input: &FrameInput, seen: &[SeenVolume]) -> Self {
+        let haze = haze(input) > 0.0;
+        let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
+        let lenses = match seen.is_empty() {
+            true => Plan::default(),
+            false => input.operations.lens_plan(&lenses, haze, wants_masks(input)),
+        };
+        Self { context: input.operations.context_plan(haze), lenses }
+    }
 }
 
 fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool) -> Key {

@@ -145,10 +145,37 @@ pub struct LensVolume {
     pub pad_0: [u32; 3],
 }
 
+/// `shader::uber`: one entry of the invoker table.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Invoker {
+    pub handler: u32,
+    pub scope: u32,
+    pub first_volume: u32,
+    pub volumes: u32,
+    pub parameters: u32,
+    pub blend: u32,
+    pub weight: u32,
+    pub number: u32,
+}
+
+/// `shader::uber`: which entries of the invoker table belong to which prototype.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Part {
+    pub material: [u32; 2],
+    pub light: [u32; 2],
+    pub styles: [u32; 2],
+    pub outlines: [u32; 2],
+    pub masks: [u32; 2],
+    /// An element of an array in a uniform buffer takes a multiple of 16 bytes.
+    pub pad_0: [u32; 2],
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::{Module, Plan, PlanLens};
+    use crate::shader::{Module, Plan, PlanLens, Program, Uber};
 
     type Fields = Vec<(&'static str, usize)>;
 
@@ -188,7 +215,8 @@ mod tests {
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
         let lens = PlanLens { number: 0, volumes: 1, outline: None };
-        let shade = Module::Shade(Plan { lenses: vec![lens], ..Plan::default() });
+        let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
+        let uber = Module::Shade(Program::Uber(Uber::default()));
         let checks = [
             (
                 &Module::Geometry,
@@ -245,6 +273,8 @@ mod tests {
                 }),
             ),
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin })),
+            (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
+            (&uber, host!(Part { material, light, styles, outlines, masks, pad_0 })),
             (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),
         ];
         let wrong: Vec<String> = checks.into_iter().flat_map(|(module, fields)| differences(module, fields)).collect();

@@ -7,22 +7,21 @@ use crate::{
         effect::{default_of, in_floats},
         thematic::{ThematicError, ThematicScale},
     },
+    render::layout,
     render::palette,
-    shader::{self, ClassTest, Plan, PlanLens, Scope, Step},
+    shader::{
+        self, Blend, ClassTest, EffectDefinition, EffectKind, MOST_INVOKERS, Plan, PlanLens, Scope, Step, Uber,
+        scope_number,
+    },
 };
 
 /// Width of a lens outline, pixels.
 const OUTLINE_PX: f32 = 1.6;
 
-/// Volumes that one pipeline may read: a uniform buffer of 64 KiB, which every adapter binds, holds more than so many.
-pub const MOST_VOLUMES: usize = 1024;
-/// `vec4f` of parameters that one pipeline may read: such a buffer full.
-pub const MOST_SLOTS: usize = 4096;
-
 /// One use of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operation {
-    /// Index into [`shader::effects`].
+    /// Index into [`shader::handlers`].
     pub effect: u32,
     /// Its first slot of the parameters.
     pub parameters: u32,
@@ -30,6 +29,8 @@ pub struct Operation {
     pub lens: Option<u32>,
     /// On which of its classes.
     pub class: Class,
+    /// How it is laid over what is below.
+    pub blend: Option<Blend>,
 }
 
 /// The operations of a scene.
@@ -43,6 +44,8 @@ pub struct Operations {
     pub parameters: Vec<[f32; 4]>,
     /// Colours of objects, one run per thematic effect, sRGB bytes.
     pub object_colors: Vec<u32>,
+    /// What any frame of the scene may ask for, disabled lenses included.
+    uber: Uber,
 }
 
 impl Operations {
@@ -54,7 +57,7 @@ impl Operations {
         visible: &[bool],
         model: &CityModel,
     ) -> Result<Self, ThematicError> {
-        let mut out = Self::default();
+        let mut out = Self { uber: Self::uber_of(context, lenses), ..Self::default() };
         for effect in context {
             out.add(effect, None, model)?;
         }
@@ -72,14 +75,34 @@ impl Operations {
         Ok(out)
     }
 
+    /// What one module of the uber back end has to hold for this scene.
+    fn uber_of(context: &[EffectUse], lenses: &[Lens]) -> Uber {
+        let uses = || context.iter().chain(lenses.iter().flat_map(|l| &l.effects));
+        let mut effects: Vec<u32> = uses().filter_map(|e| shader::effect::number_of(&e.effect)).collect();
+        effects.sort_unstable();
+        effects.dedup();
+        Uber {
+            effects,
+            lenses: !lenses.is_empty(),
+            outlines: lenses.iter().any(|l| l.body == LensBody::Outline),
+            blends: uses().any(|e| blend_of(e).is_some()),
+            ..Uber::default()
+        }
+    }
+
+    /// The uber back end's module for a frame of the scene.
+    pub fn uber(&self, haze: bool, masks: bool) -> Uber {
+        Uber { haze, masks, ..self.uber.clone() }
+    }
+
     /// What shading has to do outside all lenses.
-    pub fn context_plan(&self) -> Plan {
-        Plan { steps: self.steps(|_| None), ..Plan::default() }
+    pub fn context_plan(&self, haze: bool) -> Plan {
+        Plan { steps: self.steps(|_| None), haze, ..Plan::default() }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending. With `masks`
     /// every pixel's classes are written down.
-    pub fn lens_plan(&self, seen: &[u32], masks: bool) -> Plan {
+    pub fn lens_plan(&self, seen: &[u32], haze: bool, masks: bool) -> Plan {
         let mut lenses: Vec<PlanLens> = Vec::new();
         let mut numbers = Vec::new();
         for &lens in seen {
@@ -94,7 +117,7 @@ impl Operations {
             numbers.push(lens);
         }
         let steps = self.steps(|lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32));
-        Plan { lenses, steps, masks }
+        Plan { lenses, steps, haze, masks }
     }
 
     /// The list as steps; `place` finds a lens in the plan.
@@ -104,14 +127,14 @@ impl Operations {
                 None => Scope::Everywhere,
                 Some(lens) => Scope::Lens(place(lens)?, class_test(operation.class)),
             };
-            Some(Step { effect: operation.effect, scope, parameters: operation.parameters })
+            Some(Step { effect: operation.effect, scope, parameters: operation.parameters, blend: operation.blend })
         };
         self.list.iter().filter_map(step).collect()
     }
 
     fn add(&mut self, effect: &EffectUse, lens: Option<u32>, model: &CityModel) -> Result<(), ThematicError> {
         let Some(number) = shader::effect::number_of(&effect.effect) else { return Ok(()) };
-        let definition = &shader::effects()[number as usize];
+        let definition = &shader::handlers()[number as usize];
         let first = self.parameters.len() as u32;
         let mut floats = Vec::new();
         if definition.object_colors {
@@ -128,8 +151,76 @@ impl Operations {
         }
         floats.resize(definition.slots() as usize * 4, 0.0);
         self.parameters.extend(floats.as_chunks().0);
-        self.list.push(Operation { effect: number, parameters: first, lens, class: effect.class });
+        let blend = blend_of(effect);
+        if blend.is_some() {
+            self.parameters.push([effect.weight.unwrap_or(1.0) as f32, 0.0, 0.0, 0.0]);
+        }
+        self.list.push(Operation { effect: number, parameters: first, lens, class: effect.class, blend });
         Ok(())
+    }
+}
+
+/// How a use is laid over what is below; one with a weight at least as paint.
+fn blend_of(effect: &EffectUse) -> Option<Blend> {
+    effect.blend.filter(|b| *b != Blend::Replace || effect.weight.is_some()).or(effect.weight.map(|_| Blend::Replace))
+}
+
+/// The invoker table of the uber back end (H2), as `shader::uber` declares it, full: the context's plan, and the lenses'.
+/// `Err` says how many invokers there are where they are too many.
+pub fn invoker_table(plans: [&Plan; 2], handlers: &[EffectDefinition]) -> Result<Vec<u32>, usize> {
+    let mut invokers: Vec<layout::Invoker> = Vec::new();
+    let parts = plans.map(|plan| {
+        let mut of = |kinds: &[EffectKind]| {
+            let first = invokers.len() as u32;
+            let steps = plan.steps.iter().map(|s| (s, &handlers[s.effect as usize]));
+            let chosen = steps.filter(|(_, h)| kinds.contains(&h.kind));
+            invokers.extend(chosen.map(|(step, handler)| invoker(plan, step, handler)));
+            [first, invokers.len() as u32]
+        };
+        let (material, light) = (of(&[EffectKind::Material]), of(&[EffectKind::Light]));
+        let styles = of(&[EffectKind::Scene, EffectKind::Post]);
+        let mut of_lenses = |is_one: &dyn Fn(&PlanLens) -> bool| {
+            let first = invokers.len() as u32;
+            let ones = (0..).zip(&plan.lenses).filter(|(_, lens)| is_one(lens));
+            invokers.extend(ones.map(|(i, lens)| {
+                let volumes = plan.volumes_of(i);
+                layout::Invoker {
+                    first_volume: volumes.start,
+                    volumes: lens.volumes,
+                    parameters: lens.outline.unwrap_or(0),
+                    number: lens.number,
+                    ..layout::Invoker::default()
+                }
+            }));
+            [first, invokers.len() as u32]
+        };
+        let outlines = of_lenses(&|lens| lens.outline.is_some());
+        let masks = of_lenses(&|_| plan.masks);
+        layout::Part { material, light, styles, outlines, masks, pad_0: [0; 2] }
+    });
+    if invokers.len() > MOST_INVOKERS as usize {
+        return Err(invokers.len());
+    }
+    invokers.resize(MOST_INVOKERS as usize, layout::Invoker::default());
+    let mut words: Vec<u32> = bytemuck::cast_slice(&parts).to_vec();
+    words.extend_from_slice(bytemuck::cast_slice(&invokers));
+    Ok(words)
+}
+
+fn invoker(plan: &Plan, step: &Step, handler: &EffectDefinition) -> layout::Invoker {
+    let volumes = match step.scope {
+        Scope::Everywhere => 0..0,
+        Scope::Lens(lens, _) => plan.volumes_of(lens),
+    };
+    layout::Invoker {
+        handler: step.effect,
+        scope: scope_number(step.scope),
+        first_volume: volumes.start,
+        volumes: volumes.len() as u32,
+        parameters: step.parameters,
+        blend: step.blend.map_or(0, Blend::number),
+        weight: step.weight(handler).unwrap_or(0),
+        number: u32::from(handler.kind == EffectKind::Scene),
     }
 }
 

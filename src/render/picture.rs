@@ -17,12 +17,13 @@ use crate::{
         Renderer,
         city::Shown,
         eye::PictureTile,
-        frame::{CLEAR_MASKS, FrameInput, PassRecord},
-        operations::{MOST_SLOTS, MOST_VOLUMES, Operations},
+        frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord},
+        operations::Operations,
         stats::{self, Statistics},
         volume::LensVolume,
     },
     scene::{CitySpec, Scene},
+    shader::{MOST_SLOTS, MOST_VOLUMES},
     view::{Camera, CameraError, View, first_view},
 };
 
@@ -73,6 +74,8 @@ pub struct Request {
     pub aovs: Aovs,
     /// Whether passes are timed and lenses counted.
     pub statistics: bool,
+    /// How shaders are made.
+    pub backend: Backend,
 }
 
 /// A finished picture; row 0 at the top.
@@ -113,6 +116,8 @@ pub struct Studio {
     pub objects: u64,
     /// How long loading took, filled by whoever loaded.
     pub load: stats::Load,
+    /// How [`Studio::redraw`] makes shaders.
+    pub backend: Backend,
 }
 
 /// Everything of a scene that does not depend on the eye.
@@ -142,7 +147,15 @@ impl Studio {
         let mut objects: Vec<u32> = geometries.iter().map(|&g| model.geometries[g as usize].object).collect();
         objects.sort_unstable();
         objects.dedup();
-        Ok(Self { renderer, objects: objects.len() as u64, model, geometries, ground, load: stats::Load::default() })
+        Ok(Self {
+            renderer,
+            objects: objects.len() as u64,
+            model,
+            geometries,
+            ground,
+            load: stats::Load::default(),
+            backend: Backend::default(),
+        })
     }
 
     /// Box around the shown city, without the plain ground; empty for an empty city.
@@ -200,7 +213,14 @@ impl Studio {
         let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
         let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
         let view = View::new(self.camera(scene, size), size, &reach)?;
-        let request = Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false };
+        let request = Request {
+            size,
+            samples: 1,
+            transparent: false,
+            aovs: Aovs::default(),
+            statistics: false,
+            backend: self.backend,
+        };
         let input = input(scene, &request, &prepared, view, PictureTile::whole(size));
         self.renderer.draw(&input, None)?;
         Ok(())
@@ -227,8 +247,8 @@ impl Studio {
         let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, &self.model)
             .map_err(|error| RenderError::Scene(error.to_string()))?;
         let counts = [
-            ("volumes", volumes.len(), MOST_VOLUMES),
-            ("parameters of effects and outlines, in fours,", operations.parameters.len(), MOST_SLOTS),
+            ("volumes", volumes.len(), MOST_VOLUMES as usize),
+            ("parameters of effects and outlines, in fours,", operations.parameters.len(), MOST_SLOTS as usize),
         ];
         for (what, count, most) in counts {
             if count > most {
@@ -386,7 +406,7 @@ impl Studio {
                 reused: pipelines.used.len() as u32 - pipelines.compiled,
                 names: pipelines.used.iter().map(crate::render::pipelines::Key::name).collect(),
             },
-            handlers: pipelines.handlers(),
+            handlers: self.renderer.handlers(),
             lenses: (0..scene.lenses.len())
                 .map(|i| lens_figures(self, scene, prepared, picture, i, lens_seen(i)))
                 .collect(),
@@ -421,6 +441,7 @@ fn input<'a>(
         lens_count: scene.lenses.len() as u32,
         sprite_resolution: &prepared.sprite_resolution,
         operations: &prepared.operations,
+        backend: request.backend,
         measured: request.aovs.depth,
         masks: request.statistics || request.aovs.lens_mask,
         sample: 0,

@@ -1,11 +1,13 @@
-//! Pipelines by canonical key, made when first needed; how many were made and met again is counted.
+//! Pipelines by canonical key, made when first needed, or off the frame; how many were made and met again is counted.
 
-use rustc_hash::FxHashMap;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
     gpu::Gpu,
     render::layout,
-    shader::{Module, Plan, effects},
+    shader::{Module, Program},
 };
 
 /// Depth everywhere: reversed, f32.
@@ -46,7 +48,7 @@ pub enum Key {
     /// Shading.
     Shade {
         /// What the context and the lenses do.
-        plan: Plan,
+        program: Program,
         /// Which pixels: those that show a surface, or those that show what is behind the city.
         surface: bool,
         /// Base colours come from a target.
@@ -57,8 +59,6 @@ pub enum Key {
         summed: bool,
         /// There is a shadow map.
         shadows: bool,
-        /// The air shows.
-        haze: bool,
         /// Normals are in the target.
         smooth: bool,
         /// What is behind the city, as `pass/shade.wgsl` numbers it.
@@ -81,9 +81,10 @@ pub enum GeometryKind {
     Coplanar,
 }
 
-/// All pipelines and the layouts they share.
-#[derive(Debug)]
-pub struct Pipelines {
+/// The layouts that pipelines share, and the device that makes them.
+#[derive(Clone, Debug)]
+pub struct Layouts {
+    device: wgpu::Device,
     /// Group 0 everywhere: the view.
     pub view: wgpu::BindGroupLayout,
     /// Geometry and shadow, group 1: surfaces.
@@ -102,12 +103,53 @@ pub struct Pipelines {
     pub resolve: wgpu::BindGroupLayout,
     /// Where samples are summed: f32 where it can be blended, else f16.
     pub sums: wgpu::TextureFormat,
-    modules: FxHashMap<Module, wgpu::ShaderModule>,
+}
+
+/// Shader modules by what is in them.
+type Modules = FxHashMap<Module, wgpu::ShaderModule>;
+
+/// All pipelines.
+#[derive(Debug)]
+pub struct Pipelines {
+    /// What they share.
+    pub layouts: Layouts,
+    modules: Modules,
     made: FxHashMap<Key, wgpu::RenderPipeline>,
-    /// Pipelines made since the last [`Pipelines::begin_picture`].
+    /// Pipelines that a frame waited for, since the last [`Pipelines::begin_picture`].
     pub compiled: u32,
+    /// Pipelines that were made off the frame and arrived since then.
+    pub arrived: u32,
     /// Keys of the pipelines used since then, in order of first use.
     pub used: Vec<Key>,
+    /// Made off the frame: what was asked for and is not there yet, and the worker that makes it.
+    asked: FxHashSet<Key>,
+    worker: Option<Worker>,
+}
+
+/// A thread that makes pipelines; it ends when its sender is dropped.
+#[derive(Debug)]
+struct Worker {
+    wanted: Sender<Key>,
+    ready: Receiver<(Key, wgpu::RenderPipeline)>,
+}
+
+impl Worker {
+    /// `None` where the system gives no thread.
+    fn start(layouts: Layouts) -> Option<Self> {
+        let (wanted, orders) = channel::<Key>();
+        let (deliveries, ready) = channel();
+        let work = move || {
+            let mut modules = Modules::default();
+            for key in orders {
+                let pipeline = layouts.make(&mut modules, &key);
+                if deliveries.send((key, pipeline)).is_err() {
+                    return;
+                }
+            }
+        };
+        std::thread::Builder::new().name("pipelines".to_owned()).spawn(work).ok()?;
+        Some(Self { wanted, ready })
+    }
 }
 
 use wgpu::{BindingType as B, ShaderStages as S};
@@ -136,9 +178,8 @@ fn layout(gpu: &Gpu, label: &str, entries: &[(u32, S, B)]) -> wgpu::BindGroupLay
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
-impl Pipelines {
-    /// The layouts; no pipeline yet.
-    pub fn new(gpu: &Gpu) -> Self {
+impl Layouts {
+    fn new(gpu: &Gpu) -> Self {
         use wgpu::{TextureSampleType as T, TextureViewDimension as D};
         let float = image(T::Float { filterable: false }, D::D2);
         let depth = image(T::Depth, D::D2);
@@ -159,6 +200,7 @@ impl Pipelines {
         let filtered = B::Sampler(wgpu::SamplerBindingType::Filtering);
         let compared = B::Sampler(wgpu::SamplerBindingType::Comparison);
         Self {
+            device: gpu.device.clone(),
             view: layout(gpu, "view", &[(0, all, uniform())]),
             city: layout(gpu, "city", &[(0, S::FRAGMENT, surfaces)]),
             image: layout(
@@ -190,65 +232,26 @@ impl Pipelines {
                     (2, S::FRAGMENT, uniform()),
                     (3, S::FRAGMENT, uniform()),
                     (4, S::FRAGMENT, masks),
+                    (5, S::FRAGMENT, uniform()),
                 ],
             ),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
             sums,
-            modules: FxHashMap::default(),
-            made: FxHashMap::default(),
-            compiled: 0,
-            used: Vec::new(),
         }
     }
 
-    /// Starts counting anew.
-    pub fn begin_picture(&mut self) {
-        self.compiled = 0;
-        self.used.clear();
-    }
-
-    /// Makes a pipeline if it is not there yet.
-    pub fn prepare(&mut self, gpu: &Gpu, key: &Key) {
-        if !self.made.contains_key(key) {
-            let pipeline = self.make(gpu, key);
-            self.made.insert(key.clone(), pipeline);
-            self.compiled += 1;
-        }
-        if !self.used.contains(key) {
-            self.used.push(key.clone());
-        }
-    }
-
-    /// A prepared pipeline.
-    pub fn get(&self, key: &Key) -> &wgpu::RenderPipeline {
-        self.made.get(key).unwrap_or_else(|| unreachable!("{key:?} was not prepared"))
-    }
-
-    /// Names of the effects that ran since the last [`Pipelines::begin_picture`], each once.
-    pub fn handlers(&self) -> Vec<String> {
-        let mut numbers: Vec<u32> = Vec::new();
-        for key in &self.used {
-            if let Key::Shade { plan, .. } = key {
-                numbers.extend(plan.effects());
-            }
-        }
-        numbers.sort_unstable();
-        numbers.dedup();
-        numbers.into_iter().map(|e| effects()[e as usize].name.clone()).collect()
-    }
-
-    fn module(&mut self, gpu: &Gpu, module: Module) -> wgpu::ShaderModule {
+    fn module(&self, modules: &mut Modules, module: Module) -> wgpu::ShaderModule {
         let make = |m: &Module| {
-            gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(&m.name()),
                 source: wgpu::ShaderSource::Wgsl(m.source().into()),
             })
         };
-        self.modules.entry(module.clone()).or_insert_with(|| make(&module)).clone()
+        modules.entry(module.clone()).or_insert_with(|| make(&module)).clone()
     }
 
-    fn make(&mut self, gpu: &Gpu, key: &Key) -> wgpu::RenderPipeline {
-        let module = self.module(gpu, key.module());
+    fn make(&self, modules: &mut Modules, key: &Key) -> wgpu::RenderPipeline {
+        let module = self.module(modules, key.module());
         let groups: Vec<Option<&wgpu::BindGroupLayout>> = match key {
             Key::Geometry { section: GeometryKind::Textured(_), .. } => {
                 vec![Some(&self.view), Some(&self.city), Some(&self.image)]
@@ -259,7 +262,7 @@ impl Pipelines {
             Key::Resolve => vec![Some(&self.resolve)],
         };
         let name = key.name();
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(&name),
             bind_group_layouts: &groups,
             immediate_size: 0,
@@ -269,7 +272,7 @@ impl Pipelines {
         let (vertex_entry, fragment_entry) = key.entry_points();
         let targets = key.targets(self.sums);
         let buffers = key.vertex_buffers();
-        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(&name),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
@@ -290,6 +293,74 @@ impl Pipelines {
             multiview_mask: None,
             cache: None,
         })
+    }
+}
+
+impl Pipelines {
+    /// The layouts; no pipeline yet.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            layouts: Layouts::new(gpu),
+            modules: Modules::default(),
+            made: FxHashMap::default(),
+            compiled: 0,
+            arrived: 0,
+            used: Vec::new(),
+            asked: FxHashSet::default(),
+            worker: None,
+        }
+    }
+
+    /// Starts counting anew.
+    pub fn begin_picture(&mut self) {
+        (self.compiled, self.arrived) = (0, 0);
+        self.used.clear();
+    }
+
+    /// Makes a pipeline if it is not there yet.
+    pub fn prepare(&mut self, key: &Key) {
+        if !self.made.contains_key(key) {
+            let pipeline = self.layouts.make(&mut self.modules, key);
+            self.made.insert(key.clone(), pipeline);
+            self.compiled += 1;
+        }
+        if !self.used.contains(key) {
+            self.used.push(key.clone());
+        }
+    }
+
+    /// Whether a pipeline is there; if it is not, it is made off the frame, and is there in a later one.
+    pub fn is_ready(&mut self, key: &Key) -> bool {
+        while let Some(Ok((key, pipeline))) = self.worker.as_ref().map(|w| w.ready.try_recv()) {
+            self.asked.remove(&key);
+            // The frame may have made it meanwhile.
+            self.made.entry(key).or_insert(pipeline);
+            self.arrived += 1;
+        }
+        if self.made.contains_key(key) {
+            return true;
+        }
+        if self.asked.insert(key.clone()) {
+            if self.worker.is_none() {
+                self.worker = Worker::start(self.layouts.clone());
+            }
+            let sent = self.worker.as_ref().is_some_and(|w| w.wanted.send(key.clone()).is_ok());
+            if !sent {
+                self.worker = None;
+                self.asked.clear();
+            }
+        }
+        false
+    }
+
+    /// How many pipelines are being made off the frame.
+    pub fn pending(&self) -> usize {
+        self.asked.len()
+    }
+
+    /// A prepared pipeline.
+    pub fn get(&self, key: &Key) -> &wgpu::RenderPipeline {
+        self.made.get(key).unwrap_or_else(|| unreachable!("{key:?} was not prepared"))
     }
 }
 
@@ -317,7 +388,7 @@ impl Key {
             Self::Geometry { .. } => Module::Geometry,
             Self::Shadow => Module::Shadow,
             Self::Sprite(_) => Module::Sprite,
-            Self::Shade { plan, .. } => Module::Shade(plan.clone()),
+            Self::Shade { program, .. } => Module::Shade(program.clone()),
             Self::Resolve => Module::Resolve,
             Self::Bare => Module::Bare,
         }
@@ -365,12 +436,11 @@ impl Key {
                 }
                 list
             }
-            Self::Shade { textured, clay, summed, shadows, haze, smooth, background, .. } => vec![
+            Self::Shade { textured, clay, summed, shadows, smooth, background, .. } => vec![
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
                 ("SUMMED", flag(*summed)),
                 ("SHADOWS", flag(*shadows)),
-                ("HAZE", flag(*haze)),
                 ("SMOOTH", flag(*smooth)),
                 ("BACKGROUND", f64::from(*background)),
             ],

@@ -9,10 +9,11 @@ use crate::{
         city::{CityBuffers, SectionKind, Shown},
         curtain::Curtain,
         layout,
-        pipelines::Pipelines,
+        pipelines::{Layouts, Pipelines},
         synced::Synced,
         targets::{Needs, Target, Targets},
     },
+    shader::handlers,
 };
 
 /// Bytes between two dynamic offsets: what every adapter accepts.
@@ -33,6 +34,8 @@ pub struct Renderer {
     pub(super) shadow_of: Option<layout::View>,
     /// Whether chunks that nearer ones hide are left out where that pays: on software adapters.
     pub culls_hidden: bool,
+    /// The effects that the frames since the last [`Renderer::begin_picture`] ran, ascending.
+    pub(super) ran: Vec<u32>,
     /// The near depth of the last frame that culled by it.
     pub(super) curtain: Option<Curtain>,
     /// Counts cities, so that the shadow of an old one is not taken for the new one's.
@@ -58,6 +61,7 @@ pub(super) struct Buffers {
     pub sprite_stages: Synced,
     pub volumes: Synced,
     pub parameters: Synced,
+    pub invokers: Synced,
     pub object_colors: Synced,
     pub resolve: Synced,
 }
@@ -88,6 +92,7 @@ impl Renderer {
             sprite_stages: uniform("sprite stages")?,
             volumes: uniform("lens volumes")?,
             parameters: uniform("parameters")?,
+            invokers: uniform("invoker table")?,
             object_colors: storage("object colours")?,
             resolve: uniform("resolve")?,
         };
@@ -108,6 +113,7 @@ impl Renderer {
             shadow_of: None,
             culls_hidden: gpu.is_software(),
             curtain: None,
+            ran: Vec::new(),
             generation: 0,
             gpu,
         })
@@ -119,12 +125,12 @@ impl Renderer {
         let gpu = &self.gpu;
         let buffers = CityBuffers::new(gpu, shown)?;
         let surfaces = wgpu::BindingResource::TextureView(&buffers.surfaces);
-        let group = group(gpu, "city", &self.pipelines.city, &[(0, surfaces)]);
+        let group = group(gpu, "city", &self.pipelines.layouts.city, &[(0, surfaces)]);
         let images = buffers.sections.iter().map(|section| match section.kind {
             SectionKind::Textured { texture, .. } => buffers.textures.get(texture).map(|(view, sampler)| {
                 let entries =
                     [(0, wgpu::BindingResource::TextureView(view)), (1, wgpu::BindingResource::Sampler(sampler))];
-                self::group(gpu, "image", &self.pipelines.image, &entries)
+                self::group(gpu, "image", &self.pipelines.layouts.image, &entries)
             }),
             _ => None,
         });
@@ -149,6 +155,12 @@ impl Renderer {
     /// Starts counting pipelines anew.
     pub fn begin_picture(&mut self) {
         self.pipelines.begin_picture();
+        self.ran.clear();
+    }
+
+    /// Names of the effects that ran since then, each once.
+    pub fn handlers(&self) -> Vec<String> {
+        self.ran.iter().map(|&e| handlers()[e as usize].name.clone()).collect()
     }
 
     /// The pipelines.
@@ -160,7 +172,7 @@ impl Renderer {
     pub(super) fn fit_targets(&mut self, needs: Needs) {
         if self.targets.as_ref().is_none_or(|t| t.needs != needs) {
             self.targets = None;
-            self.targets = Some(Targets::new(&self.gpu, needs, self.pipelines.sums));
+            self.targets = Some(Targets::new(&self.gpu, needs, self.pipelines.layouts.sums));
             self.groups = None;
             self.shadow_of = None;
         }
@@ -172,7 +184,7 @@ impl Renderer {
             return;
         }
         let (Some(targets), Some(city)) = (&self.targets, &self.city) else { return };
-        let (gpu, p, b) = (&self.gpu, &self.pipelines, &self.buffers);
+        let (gpu, p, b): (_, &Layouts, _) = (&self.gpu, &self.pipelines.layouts, &self.buffers);
         let stage_group = |label, buffer: &Synced, size: usize| {
             let binding =
                 wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size: wgpu::BufferSize::new(size as u64) };
@@ -207,6 +219,7 @@ impl Renderer {
                     (2, whole(b.parameters.buffer())),
                     (3, whole(b.volumes.buffer())),
                     (4, all_of(&targets.masks)),
+                    (5, whole(b.invokers.buffer())),
                 ],
             ),
             resolve: group(gpu, "resolve", &p.resolve, &[(0, whole(b.resolve.buffer())), (1, all_of(&targets.sums))]),

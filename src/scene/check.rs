@@ -79,6 +79,8 @@ mod tests {
         let used = |attribute: &str| EffectUse {
             effect: "thematic".into(),
             class: Default::default(),
+            blend: None,
+            weight: None,
             parameters: [("attribute".to_owned(), Parameter::Text(attribute.into()))].into(),
         };
         scene.style.effects.push(used("yearOfConstruction"));

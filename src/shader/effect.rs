@@ -12,7 +12,7 @@ macro_rules! built_in {
     };
 }
 
-/// The effects that come with the program, in the order people read them.
+/// The handlers that come with the program: effects in the order people read them, then what runs without being asked.
 const FILES: &[(&str, &str)] = &[
     built_in!("thematic"),
     built_in!("flat"),
@@ -28,26 +28,70 @@ const FILES: &[(&str, &str)] = &[
     built_in!("overlay"),
     built_in!("discard-color"),
     built_in!("posterise"),
+    built_in!("lambert"),
+    built_in!("haze"),
 ];
 
-/// How an effect takes part in the picture (K1).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+/// The prototype handlers of shading (H1), in the order of their execution: what an effect's `kind` says. Several
+/// handlers of one prototype run in lens order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EffectKind {
+    /// Changes what surfaces are made of, before light falls on them.
+    Material,
+    /// Changes the light that falls on them.
+    Light,
     /// Gives surfaces their colour; at most one per lens, and nothing behind the city has it.
     Scene,
+    /// What is between the surface and the eye.
+    Air,
     /// Changes the colour of the lit picture.
     Post,
 }
 
 impl EffectKind {
+    /// All, in the order of their execution.
+    pub const ALL: [Self; 5] = [Self::Material, Self::Light, Self::Scene, Self::Air, Self::Post];
+
     /// As people read it.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Material => "material",
+            Self::Light => "light",
             Self::Scene => "scene style",
+            Self::Air => "air",
             Self::Post => "post style",
         }
     }
+
+    /// What its handlers take first and give back: name and type in WGSL.
+    pub fn subject(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Material => ("material", "Material"),
+            Self::Light => ("arriving", "vec3f"),
+            Self::Scene | Self::Air | Self::Post => ("color", "vec3f"),
+        }
+    }
+
+    /// Whether its handlers run before the surface has a colour.
+    pub fn is_before_color(self) -> bool {
+        matches!(self, Self::Material | Self::Light)
+    }
+}
+
+/// When a handler runs (H1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// Always.
+    Global,
+    /// Where a lens, or the context, has it: effects.
+    #[default]
+    Local,
+    /// Where no other handler of its prototype set the result.
+    Optional,
+    /// Never.
+    Ignore,
 }
 
 /// What a parameter takes.
@@ -165,8 +209,10 @@ impl ParameterDefinition {
 pub struct EffectDefinition {
     /// Its name in scene files.
     pub name: String,
-    /// Scene style or post style.
+    /// Its prototype.
     pub kind: EffectKind,
+    /// When it runs.
+    pub mode: Mode,
     /// The requirement it fulfils.
     pub spec: String,
     /// What it does, one sentence.
@@ -177,6 +223,8 @@ pub struct EffectDefinition {
     pub object_colors: bool,
     /// Somebody else wrote it: what it returns is contained.
     pub is_users: bool,
+    /// It looks at what it takes first, so it cannot stand in for what is below it.
+    pub reads_below: bool,
     /// The WGSL of its functions, names qualified.
     pub source: String,
 }
@@ -184,7 +232,15 @@ pub struct EffectDefinition {
 impl EffectDefinition {
     /// Its name as WGSL has it: what all its names begin with.
     pub fn wgsl_name(&self) -> String {
-        self.name.replace('-', "_")
+        let name = self.name.replace('-', "_");
+        // Whatever a user calls an effect, nothing of the program is called so.
+        if self.is_users { format!("user_{name}") } else { name }
+    }
+
+    /// What a name of its own is called in a module. Two users' effects never have the same name: an effect's holds no
+    /// `__`. That two of the program's have not, tests see.
+    pub fn own(&self, name: &str) -> String {
+        format!("{}{}{name}", self.wgsl_name(), if self.is_users { "__" } else { "_" })
     }
 
     /// The parameters that WGSL reads, in order.
@@ -200,7 +256,7 @@ impl EffectDefinition {
     }
 }
 
-/// The effects there are. Definitions are never freed: a pipeline may refer to one that was replaced.
+/// The handlers there are. Definitions are never freed: a pipeline may refer to one that was replaced.
 static EFFECTS: LazyLock<RwLock<&'static [EffectDefinition]>> = LazyLock::new(|| {
     let read = |(path, text): &(&str, &str)| {
         effect_file::read(path, text).unwrap_or_else(|error| unreachable!("a built-in effect: {error}"))
@@ -208,19 +264,24 @@ static EFFECTS: LazyLock<RwLock<&'static [EffectDefinition]>> = LazyLock::new(||
     RwLock::new(Vec::leak(FILES.iter().map(read).collect()))
 });
 
-/// All effects: those of the program, then a user's.
-pub fn effects() -> &'static [EffectDefinition] {
+/// All handler objects: the program's, then a user's. A handler's place is the number that shaders know it by.
+pub fn handlers() -> &'static [EffectDefinition] {
     *EFFECTS.read().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// The effects: handlers that a lens, or the context, asks for by name.
+pub fn effects() -> impl Iterator<Item = &'static EffectDefinition> {
+    handlers().iter().filter(|h| h.mode == Mode::Local)
 }
 
 /// The effect called `name`.
 pub fn find(name: &str) -> Option<&'static EffectDefinition> {
-    effects().iter().find(|e| e.name == name)
+    effects().find(|e| e.name == name)
 }
 
-/// The number the shader knows an effect by.
+/// The number of the effect called `name`.
 pub fn number_of(name: &str) -> Option<u32> {
-    effects().iter().position(|e| e.name == name).map(|i| i as u32)
+    handlers().iter().position(|e| e.name == name && e.mode == Mode::Local).map(|i| i as u32)
 }
 
 /// Adds a user's effect file; its name must be new.

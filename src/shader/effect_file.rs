@@ -26,8 +26,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::shader::{
-    Module, Plan, Scope, Step,
-    effect::{DefaultValue, EffectDefinition, EffectKind, Fallback, ParameterDefinition, ParameterKind},
+    Module, Plan, Program, Scope, Step,
+    effect::{DefaultValue, EffectDefinition, EffectKind, Fallback, Mode, ParameterDefinition, ParameterKind},
     wgsl::{self, Declaration, Renamed, Token, TokenKind},
 };
 
@@ -39,6 +39,8 @@ const MOST_BYTES: usize = 128 * 1024;
 const MOST_ROUNDS: u32 = 1024;
 /// Words and marks that `effect` may run through for one pixel, loops and calls multiplied out.
 const MOST_STEPS: u64 = 1_000_000;
+/// Keys of a use of an effect that are no parameters.
+pub const RESERVED: &[&str] = &["effect", "class", "blend", "weight"];
 /// What every effect may use beside its own names.
 const OUTER_NAMES: &[&str] = &["Parameters", "effect"];
 
@@ -61,6 +63,8 @@ pub struct FileError {
 struct Header {
     name: Spanned<String>,
     kind: EffectKind,
+    #[serde(default)]
+    mode: Mode,
     spec: String,
     doc: String,
     #[serde(default)]
@@ -131,10 +135,10 @@ fn in_file(starts: &[(usize, usize)], at: usize) -> usize {
 
 /// Reads an effect file; that its WGSL is right is for [`checked`] to say.
 pub fn read(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
-    read_with_names(path, text).map(|(effect, _)| effect)
+    read_with_names(path, text, false).map(|(effect, _)| effect)
 }
 
-fn read_with_names(path: &str, text: &str) -> Result<(EffectDefinition, Renamed), FileError> {
+fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefinition, Renamed), FileError> {
     let file = File { path, text };
     let (toml, starts) = file.header();
     if toml.is_empty() {
@@ -146,23 +150,25 @@ fn read_with_names(path: &str, text: &str) -> Result<(EffectDefinition, Renamed)
     })?;
     let at = |span: std::ops::Range<usize>| in_file(&starts, span.start);
     if !is_effect_name(header.name.get_ref()) {
-        let message = "expected a name of a-z, 0-9 and -, a letter first, at most 40 of them";
+        let message = "expected a name of a-z, 0-9 and single -, a letter first, at most 40 of them";
         return Err(file.error(at(header.name.span()), message));
     }
     let mut effect = EffectDefinition {
         name: header.name.into_inner(),
         kind: header.kind,
+        mode: header.mode,
         spec: header.spec,
         doc: header.doc,
         parameters: Vec::new(),
         object_colors: header.object_colors,
-        is_users: false,
+        is_users,
+        reads_below: false,
         source: String::new(),
     };
     for parameter in header.parameters {
         let (span, name) = (parameter.name.span(), parameter.name.get_ref().clone());
         if !is_parameter_name(&name) || effect.parameters.iter().any(|p| p.name == name) {
-            let message = "expected a new name of a-z, 0-9 and _, a letter first; not effect or class";
+            let message = "expected a new name of a-z, 0-9 and _, a letter first; not effect, class, blend or weight";
             return Err(file.error(at(span), message));
         }
         effect
@@ -175,9 +181,10 @@ fn read_with_names(path: &str, text: &str) -> Result<(EffectDefinition, Renamed)
         let message = format!("an effect keeps nothing between pixels: no {} at the top of a file", bad.keyword);
         return Err(file.error(bad.span.start, message));
     }
-    if !declared.iter().any(|d| (d.keyword, d.name) == ("fn", "effect")) {
+    let Some(main) = declared.iter().find(|d| (d.keyword, d.name) == ("fn", "effect")) else {
         return Err(file.error(text.len(), format!("expected `{}`", signature(&effect))));
-    }
+    };
+    effect.reads_below = reads_first_argument(text, &tokens, main);
     let renamed = qualified(&effect, text, &tokens, &declared);
     effect.source = format!("{}{}", parameters_source(&effect), body_of(&renamed.text));
     Ok((effect, renamed))
@@ -192,7 +199,26 @@ fn body_of(text: &str) -> &str {
 /// What `effect` must look like.
 fn signature(effect: &EffectDefinition) -> String {
     let parameters = if effect.slots() > 0 { ", p: Parameters" } else { "" };
-    format!("fn effect(color: vec3f, point: Point{parameters}) -> vec3f")
+    let (name, type_name) = effect.kind.subject();
+    format!("fn effect({name}: {type_name}, point: Point{parameters}) -> {type_name}")
+}
+
+/// Whether the function that begins there names its first argument again.
+fn reads_first_argument(text: &str, tokens: &[Token], function: &Declaration) -> bool {
+    let begin = tokens.partition_point(|t| t.span.start < function.span.end);
+    let word = |t: &Token| &text[t.span.clone()];
+    let Some(name) = tokens.get(begin + 1).map(word) else { return true };
+    let mut depth = 0;
+    for (i, token) in tokens.iter().enumerate().skip(begin + 2) {
+        match word(token) {
+            "{" => depth += 1,
+            "}" if depth == 1 => return false,
+            "}" => depth -= 1,
+            w if w == name && tokens[i - 1].kind != TokenKind::Mark(b'.') => return true,
+            _ => {}
+        }
+    }
+    false
 }
 
 /// The file with the effect's name before every name it declares; `effect` itself takes the effect's name.
@@ -203,7 +229,7 @@ fn qualified(effect: &EffectDefinition, text: &str, tokens: &[Token], declared: 
         let is_own = declared.iter().any(|d| d.name == word) || constants.iter().any(|c| c == word);
         match word {
             "effect" => Some(prefix.clone()),
-            _ if is_own || OUTER_NAMES.contains(&word) => Some(format!("{prefix}_{word}")),
+            _ if is_own || OUTER_NAMES.contains(&word) => Some(effect.own(word)),
             _ => None,
         }
     })
@@ -222,7 +248,6 @@ fn word_constants(effect: &EffectDefinition) -> impl Iterator<Item = (String, us
 
 /// The struct of an effect's parameters, and the function that reads it.
 fn parameters_source(effect: &EffectDefinition) -> String {
-    let prefix = effect.wgsl_name();
     let mut fields: Vec<(String, &str, usize)> =
         effect.shader_parameters().map(|(p, type_name, floats)| (p.name.clone(), type_name, floats)).collect();
     if effect.object_colors {
@@ -231,15 +256,16 @@ fn parameters_source(effect: &EffectDefinition) -> String {
     if fields.is_empty() {
         return String::new();
     }
-    let mut text = format!("struct {prefix}_Parameters {{\n");
+    let type_name = effect.own("Parameters");
+    let mut text = format!("struct {type_name} {{\n");
     for (name, type_name, _) in &fields {
         text.push_str(&format!("    {name}: {type_name},\n"));
     }
     text.push_str("}\n\n");
     for (name, number) in word_constants(effect) {
-        text.push_str(&format!("const {prefix}_{name} = {number}u;\n"));
+        text.push_str(&format!("const {} = {number}u;\n", effect.own(&name)));
     }
-    text.push_str(&format!("fn {prefix}_parameters(first: u32) -> {prefix}_Parameters {{\n"));
+    text.push_str(&format!("fn {}(first: u32) -> {type_name} {{\n", effect.own("parameters")));
     for slot in 0..effect.slots() {
         text.push_str(&format!("    let s{slot} = parameters[first + {slot}u];\n"));
     }
@@ -257,7 +283,7 @@ fn parameters_source(effect: &EffectDefinition) -> String {
             _ => float(),
         })
         .collect();
-    text.push_str(&format!("    return {prefix}_Parameters({});\n}}\n\n", values.join(", ")));
+    text.push_str(&format!("    return {type_name}({});\n}}\n\n", values.join(", ")));
     text
 }
 
@@ -320,11 +346,13 @@ fn is_effect_name(name: &str) -> bool {
     name.len() <= 40
         && name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-')
+        && !name.contains("--")
+        && !name.ends_with('-')
 }
 
 fn is_parameter_name(name: &str) -> bool {
     name.len() <= 40
-        && !["effect", "class"].contains(&name)
+        && !RESERVED.contains(&name)
         && name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
 }
@@ -336,15 +364,20 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         let message = format!("an effect file has at most {MOST_LINES} lines and {MOST_BYTES} bytes");
         return Err(file.error(0, message));
     }
-    let (mut effect, renamed) = read_with_names(path, text)?;
-    effect.is_users = true;
+    let (effect, renamed) = read_with_names(path, text, true)?;
     if effect.object_colors {
         return Err(file.error(0, "object_colors is for effects of the program"));
     }
     check_control_flow(&file)?;
     check_cost(&file)?;
-    let plan = Plan { steps: vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0 }], ..Plan::default() };
-    let source = Module::Shade(plan).source_with(std::slice::from_ref(&effect));
+    if effect.mode != Mode::Local || effect.kind == EffectKind::Air {
+        let message =
+            "mode, and kind = \"air\", are for handlers of the program; expected kind = material, light, scene or post";
+        return Err(file.error(0, message));
+    }
+    let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, blend: None }];
+    let program = Program::Specialised(Plan { steps, ..Plan::default() });
+    let source = Module::Shade(program).source_with(std::slice::from_ref(&effect));
     let body = body_of(&renamed.text);
     let begin = source.find(body).unwrap_or(0);
     let before = renamed.text.len() - body.len();
@@ -356,7 +389,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
             .find(|d| d.name == "effect")
             .map_or(0, |d| d.span.start),
     };
-    let prefix = format!("{}_", effect.wgsl_name());
+    let prefix = effect.own("");
     let own = |message: String| message.replace(&prefix, "");
     let parsed = wgpu::naga::front::wgsl::parse_str(&source).map_err(|error| {
         let at = error.labels().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
@@ -527,8 +560,9 @@ mod tests {
                     if p.mode == MODE_VERY_HARD { return TINT; }\n    return mix(color, TINT, 0.5);\n}\n";
         let effect = checked("my.wgsl", &format!("{HEADER}{PARAMETER}{body}")).unwrap();
         assert_eq!((effect.name.as_str(), effect.kind, effect.slots()), ("mine", EffectKind::Post, 1));
-        assert!(effect.source.contains("fn mine(color: vec3f, point: Point, p: mine_Parameters) -> vec3f"));
-        assert!(effect.source.contains("mine_MODE_VERY_HARD = 1u") && effect.source.contains("mix(color, mine_TINT"));
+        assert!(effect.source.contains("fn user_mine(color: vec3f, point: Point, p: user_mine__Parameters) -> vec3f"));
+        assert!(effect.source.contains("user_mine__MODE_VERY_HARD = 1u"));
+        assert!(effect.source.contains("mix(color, user_mine__TINT"));
         let bare = "fn effect(color: vec3f, point: Point) -> vec3f { return 1.0 - color; }";
         assert_eq!(checked("my.wgsl", &format!("{HEADER}{bare}")).unwrap().slots(), 0);
     }
@@ -542,7 +576,10 @@ mod tests {
                 format!("//! name = \"Mine\"\n//! kind = \"post\"\n//! spec = \"\"\n//! doc = \"\"\n{good}"),
                 "my.wgsl:1:12: expected a name",
             ),
-            (HEADER.replace("post", "past"), "my.wgsl:2:12: unknown variant `past`, expected `scene` or `post`"),
+            (
+                HEADER.replace("post", "past"),
+                "my.wgsl:2:12: unknown variant `past`, expected one of `material`, `light`, `scene`, `air`, `post`",
+            ),
             (HEADER.replace("spec", "spek"), "my.wgsl:3:5: unknown field `spek`"),
             (HEADER.to_owned(), "my.wgsl:5:1: expected `fn effect(color: vec3f, point: Point) -> vec3f`"),
             (

@@ -6,10 +6,14 @@
 pub mod effect;
 pub mod effect_file;
 mod plan;
+mod specialised;
+mod uber;
 pub mod wgsl;
 
-pub use effect::{EffectDefinition, effects};
-pub use plan::{ClassTest, Plan, PlanLens, Scope, Step};
+pub use effect::{EffectDefinition, EffectKind, Mode, effects, handlers};
+pub use plan::{Blend, ClassTest, Plan, PlanLens, Program, Scope, Step, Uber};
+pub use specialised::scope_number;
+pub use uber::{MOST_INVOKERS, MOST_SLOTS, MOST_VOLUMES};
 
 macro_rules! files {
     ($($name:ident = $path:literal;)*) => {
@@ -23,6 +27,8 @@ files! {
     COLOR = "lib/color.wgsl";
     SHAPE = "lib/shape.wgsl";
     LIGHT = "lib/light.wgsl";
+    BLEND = "lib/blend.wgsl";
+    MATERIAL = "lib/material.wgsl";
     LENS = "lib/lens.wgsl";
     OUTLINE = "lib/outline.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
@@ -43,7 +49,7 @@ pub enum Module {
     /// The two stages of a volumetric depth sprite.
     Sprite,
     /// Deferred shading, and what the lenses make of it.
-    Shade(Plan),
+    Shade(Program),
     /// The mean of samples.
     Resolve,
     /// The bare lit draw that benchmarks compare with.
@@ -57,11 +63,13 @@ impl Module {
             Self::Geometry => "geometry".to_owned(),
             Self::Shadow => "shadow".to_owned(),
             Self::Sprite => "sprite".to_owned(),
-            Self::Shade(plan) => {
-                let names: Vec<&str> = plan.effects().iter().map(|&e| effects()[e as usize].name.as_str()).collect();
+            Self::Shade(program) => {
+                let names: Vec<&str> =
+                    program.effects().iter().map(|&e| handlers()[e as usize].name.as_str()).collect();
                 let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
-                let lenses = if plan.lenses.is_empty() { "" } else { " lenses" };
-                format!("shade{names}{lenses}")
+                let uber = if matches!(program, Program::Uber(_)) { " uber" } else { "" };
+                let lenses = if program.has().lenses { " lenses" } else { "" };
+                format!("shade{uber}{names}{lenses}")
             }
             Self::Resolve => "resolve".to_owned(),
             Self::Bare => "bare".to_owned(),
@@ -70,18 +78,21 @@ impl Module {
 
     /// The whole WGSL text.
     pub fn source(&self) -> String {
-        self.source_with(effects())
+        self.source_with(handlers())
     }
 
-    /// The whole WGSL text, where a plan's numbers count these effects.
-    pub fn source_with(&self, effects: &[EffectDefinition]) -> String {
+    /// The whole WGSL text, where a program's numbers count these handlers.
+    pub fn source_with(&self, handlers: &[EffectDefinition]) -> String {
+        self.source_for_people(handlers, &[])
+    }
+
+    /// The whole WGSL text with the names of a plan's lenses in comments (H4).
+    pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str]) -> String {
         let files: &[(&str, &str)] = match self {
             Self::Geometry => &[VIEW, SURFACE, GEOMETRY],
             Self::Shadow => &[VIEW, SURFACE, SHADOW],
             Self::Sprite => &[VIEW, SHAPE, SPRITE],
-            Self::Shade(plan) if plan.has_outlines() => &[VIEW, SURFACE, COLOR, LIGHT, LENS, OUTLINE, SHADE],
-            Self::Shade(plan) if !plan.lenses.is_empty() => &[VIEW, SURFACE, COLOR, LIGHT, LENS, SHADE],
-            Self::Shade(_) => &[VIEW, SURFACE, COLOR, LIGHT, SHADE],
+            Self::Shade(program) => &Self::files_of_shade(program, handlers),
             Self::Resolve => &[RESOLVE],
             Self::Bare => &[VIEW, SURFACE, BARE],
         };
@@ -90,9 +101,28 @@ impl Module {
             text.push_str(&format!("// ==== {path}\n\n{source}\n"));
         }
         match self {
-            Self::Shade(plan) => text.replace("//@apply\n", &plan.source(effects)),
+            Self::Shade(Program::Specialised(plan)) => {
+                text.replace("//@handlers\n", &specialised::source(plan, handlers, lenses))
+            }
+            Self::Shade(Program::Uber(uber)) => text.replace("//@handlers\n", &uber::source(uber, handlers)),
             _ => text,
         }
+    }
+
+    /// The libraries that shading calls, and no other.
+    fn files_of_shade(program: &Program, handlers: &[EffectDefinition]) -> Vec<(&'static str, &'static str)> {
+        let parts = program.has();
+        let materials = program.effects().iter().any(|&e| handlers[e as usize].kind == EffectKind::Material);
+        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT];
+        let optional = [
+            (parts.blends || materials, BLEND),
+            (materials, MATERIAL),
+            (parts.lenses, LENS),
+            (parts.outlines, OUTLINE),
+        ];
+        files.extend(optional.iter().filter(|(is_used, _)| *is_used).map(|(_, file)| *file));
+        files.push(SHADE);
+        files
     }
 }
 
@@ -100,62 +130,123 @@ impl Module {
 mod tests {
     use super::*;
 
-    /// Every effect everywhere, and two lenses with every pair of effects and classes.
-    fn plans() -> Vec<Plan> {
-        let effects = 0..effects().len() as u32;
-        let step = |effect, scope, parameters| Step { effect, scope, parameters };
-        let mut plans = vec![Plan::default()];
-        plans.extend(effects.clone().map(|e| Plan { steps: vec![step(e, Scope::Everywhere, 0)], ..Plan::default() }));
-        for (a, b) in effects.clone().flat_map(|a| effects.clone().map(move |b| (a, b))) {
-            for class in [ClassTest::Inside, ClassTest::Front, ClassTest::Behind, ClassTest::Rest] {
-                for masks in [false, true] {
-                    let lens = |number, volumes, outline| PlanLens { number, volumes, outline };
-                    plans.push(Plan {
-                        lenses: vec![lens(0, 1, None), lens(40, 2, masks.then_some(3))],
-                        steps: vec![
-                            step(a, Scope::Everywhere, 0),
-                            step(a, Scope::Lens(0, class), 1),
-                            step(b, Scope::Lens(1, class), 2),
-                        ],
-                        masks,
-                    });
-                }
-            }
+    fn step(effect: u32, scope: Scope, blend: Option<Blend>) -> Step {
+        Step { effect, scope, parameters: 0, blend }
+    }
+
+    /// The numbers of all effects.
+    fn numbers() -> Vec<u32> {
+        let is_effect = |(_, h): &(usize, &EffectDefinition)| h.mode == Mode::Local;
+        handlers().iter().enumerate().filter(is_effect).map(|(i, _)| i as u32).collect()
+    }
+
+    /// A scene of the context and two lenses whose steps are these effects, in order; `seed` chooses classes, blends,
+    /// outlines and masks. On both back ends.
+    fn programs(effects: &[u32], seed: usize) -> [Program; 2] {
+        let scopes: Vec<Scope> = std::iter::once(Scope::Everywhere)
+            .chain(ClassTest::ALL.into_iter().flat_map(|c| [Scope::Lens(0, c), Scope::Lens(1, c)]))
+            .collect();
+        let mut steps = Vec::new();
+        for (i, &effect) in effects.iter().enumerate() {
+            let blend = (i + seed).is_multiple_of(3).then(|| Blend::ALL[(i + seed) % 6]);
+            steps.push(step(effect, scopes[(seed + 4 * i) % scopes.len()], blend));
         }
-        plans
+        let lens = |number, volumes, outline| PlanLens { number, volumes, outline };
+        let outline = seed.is_multiple_of(2).then_some(3);
+        let plan = Plan {
+            lenses: vec![lens(0, 1, None), lens(40, 2, outline)],
+            steps,
+            haze: seed.is_multiple_of(5),
+            masks: seed.is_multiple_of(7),
+        };
+        let uber = Uber {
+            effects: plan.effects(),
+            lenses: true,
+            outlines: plan.has_outlines(),
+            blends: plan.has_blends(),
+            haze: plan.haze,
+            masks: plan.masks,
+        };
+        [Program::Specialised(plan), Program::Uber(uber)]
     }
 
     fn all_modules() -> Vec<Module> {
+        let plain = [Program::Specialised(Plan::default()), Program::Uber(Uber::default())];
         let mut modules = vec![Module::Geometry, Module::Shadow, Module::Sprite, Module::Resolve, Module::Bare];
-        modules.extend(plans().into_iter().map(Module::Shade));
+        modules.extend(plain.map(Module::Shade));
         modules
+    }
+
+    fn validate(module: &Module) {
+        let source = module.source();
+        let parsed = match wgpu::naga::front::wgsl::parse_str(&source) {
+            Ok(parsed) => parsed,
+            Err(error) => panic!("{}: {}", module.name(), error.emit_to_string(&source)),
+        };
+        let mut validator = wgpu::naga::valid::Validator::new(
+            wgpu::naga::valid::ValidationFlags::all(),
+            wgpu::naga::valid::Capabilities::default() | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,
+        );
+        if let Err(error) = validator.validate(&parsed) {
+            panic!("{}: {}", module.name(), error.emit_to_string(&source));
+        }
+    }
+
+    fn validate_all(lists: &[Vec<u32>]) {
+        use rayon::prelude::*;
+        lists.par_iter().enumerate().for_each(|(seed, list)| {
+            for program in programs(list, seed) {
+                validate(&Module::Shade(program));
+            }
+        });
     }
 
     #[test]
     fn every_module_is_valid_wgsl() {
-        for module in all_modules() {
-            let source = module.source();
-            let parsed = match wgpu::naga::front::wgsl::parse_str(&source) {
-                Ok(parsed) => parsed,
-                Err(error) => panic!("{}: {}", module.name(), error.emit_to_string(&source)),
-            };
-            let mut validator = wgpu::naga::valid::Validator::new(
-                wgpu::naga::valid::ValidationFlags::all(),
-                wgpu::naga::valid::Capabilities::default() | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,
-            );
-            if let Err(error) = validator.validate(&parsed) {
-                panic!("{}: {}", module.name(), error.emit_to_string(&source));
-            }
-        }
+        all_modules().iter().for_each(validate);
+    }
+
+    #[test]
+    fn every_effect_and_every_ordered_pair_is_valid_wgsl() {
+        let all = numbers();
+        let singles = all.iter().flat_map(|&a| vec![vec![a]; 9]);
+        let pairs = all.iter().flat_map(|&a| all.iter().map(move |&b| vec![a, b]));
+        validate_all(&singles.chain(pairs).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_thousand_triples_of_effects_are_valid_wgsl() {
+        let all = numbers();
+        let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut next = || {
+            // SplitMix64.
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mixed = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            all[((mixed ^ (mixed >> 31)) % all.len() as u64) as usize]
+        };
+        validate_all(&(0..1000).map(|_| vec![next(), next(), next()]).collect::<Vec<_>>());
+    }
+
+    #[test]
+    #[ignore = "minutes; ./dev hard"]
+    fn all_triples_of_effects_are_valid_wgsl() {
+        let all = numbers();
+        let pairs: Vec<(u32, u32)> = all.iter().flat_map(|&a| all.iter().map(move |&b| (a, b))).collect();
+        validate_all(&pairs.iter().flat_map(|&(a, b)| all.iter().map(move |&c| vec![a, b, c])).collect::<Vec<_>>());
     }
 
     #[test]
     fn an_effect_nobody_uses_is_not_in_the_text() {
         let greyscale = effect::number_of("greyscale").expect("there is one");
-        let steps = vec![Step { effect: greyscale, scope: Scope::Everywhere, parameters: 0 }];
-        let source = Module::Shade(Plan { steps, ..Plan::default() }).source();
-        assert!(source.contains("fn greyscale"));
-        assert!(!source.contains("fn sepia") && !source.contains("fn thematic"));
-        assert!(!source.contains("var sprites"), "a lens that is not there is in the shader");
+        let plan = Plan { steps: vec![step(greyscale, Scope::Everywhere, None)], ..Plan::default() };
+        let uber = Uber { effects: plan.effects(), ..Uber::default() };
+        for program in [Program::Specialised(plan), Program::Uber(uber)] {
+            let source = Module::Shade(program).source();
+            assert!(source.contains("fn greyscale"));
+            assert!(!source.contains("fn sepia") && !source.contains("fn thematic") && !source.contains("fn haze"));
+            assert!(!source.contains("var sprites"), "a lens that is not there is in the shader");
+            assert!(!source.contains("struct Material") && !source.contains("fn blend_add"), "{source}");
+        }
     }
 }

@@ -1,9 +1,7 @@
-//! What a scene asks of the shading pass, and the WGSL that says it.
+//! What a scene asks of shading: the invoker table (H2), from which both back ends are made.
 //!
-//! A [`Plan`] names effects, lenses and classes, never positions or parameters: those stand in uniforms, so a lens
-//! that moves or a slider that is dragged compiles nothing. Equal plans share a pipeline.
-
-use std::fmt::Write as _;
+//! A [`Plan`] names handlers, lenses and classes, never positions or parameters: those stand in uniforms, so a lens that
+//! moves or a slider that is dragged compiles nothing. Equal plans share a pipeline.
 
 use crate::shader::effect::{EffectDefinition, EffectKind};
 
@@ -15,8 +13,10 @@ pub const OUTLINE_SLOTS: u32 = 2;
 pub struct Plan {
     /// Lenses that may be seen there.
     pub lenses: Vec<PlanLens>,
-    /// What is done, in order.
+    /// What is done, bottom lens first; prototypes have an order of their own ([`EffectKind::ALL`]).
     pub steps: Vec<Step>,
+    /// Whether the air shows.
+    pub haze: bool,
     /// Whether every pixel's classes are written down, for AOVs and statistics.
     pub masks: bool,
 }
@@ -35,12 +35,14 @@ pub struct PlanLens {
 /// One use of an effect.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Step {
-    /// Index into [`crate::shader::effects`].
+    /// Index into [`crate::shader::effect::handlers`].
     pub effect: u32,
     /// Where it acts.
     pub scope: Scope,
     /// Its first `vec4f` of the parameters.
     pub parameters: u32,
+    /// How it is laid over what is below it; its weight follows its parameters. `None`: it replaces that.
+    pub blend: Option<Blend>,
 }
 
 /// Where an effect acts.
@@ -66,7 +68,11 @@ pub enum ClassTest {
 }
 
 impl ClassTest {
-    fn function(self) -> &'static str {
+    /// All of them, in the order of the uber back end's numbers, which begin with 1.
+    pub const ALL: [Self; 4] = [Self::Inside, Self::Front, Self::Behind, Self::Rest];
+
+    /// The function that tests it.
+    pub fn function(self) -> &'static str {
         match self {
             Self::Inside => "is_inside",
             Self::Front => "is_in_front",
@@ -74,6 +80,111 @@ impl ClassTest {
             Self::Rest => "is_rest",
         }
     }
+}
+
+/// How a channel is laid over what is below (C5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Blend {
+    /// In its place; with a weight below 1: as paint.
+    Replace,
+    /// The sum.
+    Add,
+    /// The difference, at least 0.
+    Subtract,
+    /// As a filter.
+    Multiply,
+    /// As light.
+    Screen,
+    /// A filter where it is dark below, light where it is light.
+    Overlay,
+}
+
+impl Blend {
+    /// All, in the order of the uber back end's numbers, which begin with 1.
+    pub const ALL: [Self; 6] = [Self::Replace, Self::Add, Self::Subtract, Self::Multiply, Self::Screen, Self::Overlay];
+
+    /// All words that name one.
+    pub const WORDS: [&str; 7] = ["replace", "add", "subtract", "multiply", "screen", "overlay", "alpha"];
+
+    /// The number that `lib/blend.wgsl` knows it by.
+    pub fn number(self) -> u32 {
+        1 + Self::ALL.iter().position(|b| *b == self).unwrap_or(0) as u32
+    }
+
+    /// The mode that a word names.
+    pub fn parse(word: &str) -> Option<Self> {
+        let word = if word == "alpha" { "replace" } else { word };
+        Self::ALL.into_iter().find(|b| b.word() == word)
+    }
+
+    /// Its word in scene files; `alpha` is another for `replace`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Replace => "replace",
+            Self::Add => "add",
+            Self::Subtract => "subtract",
+            Self::Multiply => "multiply",
+            Self::Screen => "screen",
+            Self::Overlay => "overlay",
+        }
+    }
+}
+
+/// A plan on one of the back ends (H3). Both make the same picture.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Program {
+    /// What is asked for, written out.
+    Specialised(Plan),
+    /// Everything that the scene may ask for, chosen per pixel from a table in a uniform.
+    Uber(Uber),
+}
+
+/// What one module of the uber back end holds: what any plan of the scene may name.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Uber {
+    /// The scene's effects, ascending, each once; those of disabled lenses too.
+    pub effects: Vec<u32>,
+    /// Whether there are lenses.
+    pub lenses: bool,
+    /// Whether some of them show their silhouettes.
+    pub outlines: bool,
+    /// Whether some effects are blended.
+    pub blends: bool,
+    /// Whether the air shows.
+    pub haze: bool,
+    /// Whether every pixel's classes are written down.
+    pub masks: bool,
+}
+
+impl Program {
+    /// Whether it has lenses, and whether it has outlines.
+    pub fn has(&self) -> Parts {
+        match self {
+            Self::Specialised(plan) => {
+                Parts { lenses: !plan.lenses.is_empty(), outlines: plan.has_outlines(), blends: plan.has_blends() }
+            }
+            Self::Uber(uber) => Parts { lenses: uber.lenses, outlines: uber.outlines, blends: uber.blends },
+        }
+    }
+
+    /// The numbers of all handlers its text has, ascending.
+    pub fn effects(&self) -> Vec<u32> {
+        match self {
+            Self::Specialised(plan) => plan.effects(),
+            Self::Uber(uber) => uber.effects.clone(),
+        }
+    }
+}
+
+/// Which libraries a program calls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parts {
+    /// The lens test.
+    pub lenses: bool,
+    /// Silhouettes.
+    pub outlines: bool,
+    /// Blend modes.
+    pub blends: bool,
 }
 
 impl Plan {
@@ -90,130 +201,52 @@ impl Plan {
         self.lenses.iter().any(|l| l.outline.is_some())
     }
 
+    /// Whether some effect is blended.
+    pub fn has_blends(&self) -> bool {
+        self.steps.iter().any(|s| s.blend.is_some())
+    }
+
     /// Volumes of all its lenses.
     pub fn volumes(&self) -> u32 {
         self.lenses.iter().map(|l| l.volumes).sum()
     }
 
+    /// The volumes of one of its lenses.
+    pub fn volumes_of(&self, lens: u32) -> std::ops::Range<u32> {
+        let before: u32 = self.lenses[..lens as usize].iter().map(|l| l.volumes).sum();
+        before..before + self.lenses[lens as usize].volumes
+    }
+
+    /// Its steps of one prototype, in the order of their execution.
+    pub fn steps_of<'a>(
+        &'a self,
+        kind: EffectKind,
+        handlers: &'a [EffectDefinition],
+    ) -> impl DoubleEndedIterator<Item = (&'a Step, &'a EffectDefinition)> {
+        self.steps.iter().map(|s| (s, &handlers[s.effect as usize])).filter(move |(_, h)| h.kind == kind)
+    }
+
     /// How many `vec4f` of the parameters it reads.
-    fn parameters(&self, effects: &[EffectDefinition]) -> u32 {
-        let of_steps = self.steps.iter().map(|s| s.parameters + effects[s.effect as usize].slots());
+    pub fn slots(&self, handlers: &[EffectDefinition]) -> u32 {
+        let of_steps = self.steps.iter().map(|s| s.end(&handlers[s.effect as usize]));
         let of_lines = self.lenses.iter().filter_map(|l| l.outline.map(|first| first + OUTLINE_SLOTS));
         of_steps.chain(of_lines).max().unwrap_or(0)
     }
+}
 
-    /// The effects' own functions, and `apply`, which calls them.
-    pub fn source(&self, effects: &[EffectDefinition]) -> String {
-        let mut text = String::new();
-        let count = self.parameters(effects);
-        if count > 0 {
-            let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {count}>;");
-        }
-        if self.volumes() > 0 {
-            let count = self.volumes();
-            let _ = writeln!(text, "@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {count}>;");
-        }
-        if self.masks {
-            let _ = writeln!(
-                text,
-                "@group(2) @binding(4) var class_masks: texture_storage_2d_array<r32uint, write>; // per 32 lenses: \
-                 inside, in front, behind"
-            );
-        }
-        for effect in self.effects() {
-            let EffectDefinition { name, source, .. } = &effects[effect as usize];
-            let _ = write!(text, "\n// ==== effect {name}\n\n{source}");
-        }
-        if self.has_outlines() {
-            text.push_str(&self.coverage());
-        }
-        text.push_str("\nfn apply(start: vec4f, point: Point, pixel: vec2i) -> vec4f {\n    var color = start.rgb;\n");
-        let mut first = 0;
-        // This part of the picture is the bounds of all volumes: where there is one, they are its own.
-        let test = if self.volumes() == 1 { "class_within" } else { "class_in" };
-        for (i, lens) in self.lenses.iter().enumerate() {
-            let volumes: Vec<String> =
-                (first..first + lens.volumes).map(|v| format!("{test}(volumes[{v}], pixel, point.depth)")).collect();
-            first += lens.volumes;
-            let _ = writeln!(text, "    let lens_{i} = {};", volumes.join(" | "));
-        }
-        for step in &self.steps {
-            let effect = &effects[step.effect as usize];
-            let mut tests = Vec::new();
-            if let Scope::Lens(lens, class) = step.scope {
-                tests.push(format!("{}(lens_{lens})", class.function()));
-            }
-            if effect.kind == EffectKind::Scene {
-                tests.push("point.surface != NO_SURFACE".to_owned());
-            }
-            let name = effect.wgsl_name();
-            let own = match effect.slots() {
-                0 => String::new(),
-                _ => format!(", {name}_parameters({}u)", step.parameters),
-            };
-            let call = match effect.is_users {
-                false => format!("color = {name}(color, point{own});"),
-                true => format!("color = contained({name}(color, point{own}));"),
-            };
-            let _ = match tests.is_empty() {
-                true => writeln!(text, "    {call}"),
-                false => writeln!(text, "    if {} {{\n        {call}\n    }}", tests.join(" && ")),
-            };
-        }
-        if self.masks {
-            text.push_str(&self.masks());
-        }
-        text.push_str("    var paint = vec4f(color, start.a);\n");
-        for (i, lens) in self.lenses.iter().enumerate() {
-            if let Some(line) = lens.outline {
-                let _ = writeln!(
-                    text,
-                    "    paint = outlined(paint, {i}u, pixel, parameters[{line}], parameters[{}]);",
-                    line + 1
-                );
-            }
-        }
-        text.push_str("    return paint;\n}\n");
-        text
+impl Step {
+    /// Where its weight stands, if it is blended.
+    pub fn weight(&self, handler: &EffectDefinition) -> Option<u32> {
+        self.blend.map(|_| self.parameters + handler.slots())
     }
 
-    /// Which lens covers a pixel, for `lib/outline.wgsl`.
-    fn coverage(&self) -> String {
-        let mut text = "\nfn lens_covers(lens: u32, pixel: vec2i) -> bool {\n    switch lens {\n".to_owned();
-        let mut first = 0;
-        for (i, lens) in self.lenses.iter().enumerate() {
-            let volumes: Vec<String> =
-                (first..first + lens.volumes).map(|v| format!("covers(volumes[{v}], pixel)")).collect();
-            first += lens.volumes;
-            let _ = writeln!(text, "        case {i}u: {{ return {}; }}", volumes.join(" || "));
-        }
-        text.push_str("        default: { return false; }\n    }\n}\n");
-        text
+    /// The slot after its last one.
+    fn end(&self, handler: &EffectDefinition) -> u32 {
+        self.parameters + handler.slots() + u32::from(self.blend.is_some())
     }
 
-    /// Writes the classes down, one bit per lens.
-    fn masks(&self) -> String {
-        // A shader that stores may run before the depth test that chooses between surface and background.
-        let mut text =
-            "    if (textureLoad(scene_depth, pixel, 0) > 0.0) == (point.surface != NO_SURFACE) {\n".to_owned();
-        let mut words: Vec<u32> = self.lenses.iter().map(|l| l.number / 32).collect();
-        words.dedup();
-        for word in words {
-            for (layer, class) in ["INSIDE", "FRONT", "BEHIND"].into_iter().enumerate() {
-                let bits: Vec<String> = self
-                    .lenses
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, l)| l.number / 32 == word)
-                    .map(|(i, l)| format!("select(0u, {:#x}u, (lens_{i} & {class}) != 0u)", 1_u32 << (l.number % 32)))
-                    .collect();
-                let value = bits.join(" | ");
-                let layer = 3 * word as usize + layer;
-                let _ =
-                    writeln!(text, "        textureStore(class_masks, pixel, {layer}, vec4u({value}, 0u, 0u, 0u));");
-            }
-        }
-        text.push_str("    }\n");
-        text
+    /// Whether nothing of what is below it is left where it acts.
+    pub fn replaces(&self, handler: &EffectDefinition) -> bool {
+        self.blend.is_none() && !handler.reads_below
     }
 }

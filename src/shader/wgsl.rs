@@ -140,7 +140,12 @@ impl Renamed {
         for (i, token) in tokens.iter().enumerate() {
             let word = &text[token.span.clone()];
             structs.pass(token, word);
-            if token.kind != TokenKind::Word || i > 0 && tokens[i - 1].kind == TokenKind::Mark(b'.') {
+            let before = |n: usize| i.checked_sub(n).map(|k| &tokens[k]);
+            let is_after = |mark: u8| before(1).is_some_and(|t| t.kind == TokenKind::Mark(mark));
+            // An address space: `ptr<function, T>`.
+            let is_space = is_after(b'<') && before(2).is_some_and(|t| &text[t.span.clone()] == "ptr");
+            // Nor are members and attributes names of the file.
+            if token.kind != TokenKind::Word || is_after(b'.') || is_after(b'@') || is_space {
                 continue;
             }
             let is_field = structs.inside && tokens.get(i + 1).is_some_and(|t| t.kind == TokenKind::Mark(b':'));

@@ -4,7 +4,10 @@ use std::{path::PathBuf, str::FromStr};
 
 use clap::Args;
 
-use crate::cli::{Failure, Outcome};
+use crate::{
+    cli::{Failure, Outcome},
+    render::frame::Backend,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -50,6 +53,28 @@ pub struct Arguments {
     /// Leave out sky and background: straight alpha
     #[arg(long)]
     pub transparent: bool,
+    /// How shaders are made; the picture is the same
+    #[arg(long, value_name = "HOW", value_enum, default_value_t)]
+    pub shaders: Shaders,
+}
+
+/// Back ends of the shader handlers (H3).
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shaders {
+    /// Made for this scene
+    #[default]
+    Specialised,
+    /// One for all that the scene may ask for
+    Uber,
+}
+
+impl From<Shaders> for Backend {
+    fn from(shaders: Shaders) -> Self {
+        match shaders {
+            Shaders::Specialised => Self::Specialised,
+            Shaders::Uber => Self::Uber,
+        }
+    }
 }
 
 impl Arguments {

@@ -46,6 +46,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             lens_mask: has(AovKind::LensMask),
         },
         statistics: arguments.stats.is_some(),
+        backend: arguments.shaders.into(),
     };
     let progress = terminal::Progress::spinning("drawing", global);
     let mut picture = studio.render(&scene, &request).map_err(Failure::failed)?;

@@ -7,7 +7,10 @@ use serde_json::{Map, Value, json};
 use crate::{
     figure::scene_file::keys::{self, CLASSES, Key, Kind, LATER_SHAPES, LATER_TABLES, SHAPES, TABLES, Table},
     lens::effect::LATER,
-    shader::effect::{EffectKind, ParameterKind, effects as all_effects},
+    shader::{
+        Blend,
+        effect::{EffectKind, ParameterKind, effects as all_effects},
+    },
 };
 
 /// The reference part of `docs/scene.md`: every key with what it takes, unit, default and an example.
@@ -25,7 +28,13 @@ pub fn reference() -> String {
     out += "## Effects\n\n`effects` is a list; each element is a name (`\"sepia\"`) or a table of `effect` (the name), `class` and parameters.\n\
             `class` says which part of the sight line it acts on: `\"inside\"` the lens (default), in `\"front\"` of it, `\"behind\"` it,\n\
             or the `\"rest\"`, where the sight line misses the lens. It has a meaning only in a lens.\n\n";
-    let names: Vec<&str> = all_effects().iter().map(|e| e.name.as_str()).collect();
+    let _ = write!(
+        out,
+        "`blend` says how its result is laid over what is below, channel by channel: {}. Without it the result replaces that.\n\
+         `weight`, 0 to 1, says how much of it is laid over. A material, the light and the colour are channels of their own.\n\n",
+        words(&Blend::WORDS)
+    );
+    let names: Vec<&str> = all_effects().map(|e| e.name.as_str()).collect();
     let _ = write!(out, "The effects are {}; [effects.md](effects.md) has their parameters.\n\n", words(&names));
     let _ = write!(out, "Not available yet: {}.\n\n", words(LATER));
     let _ = writeln!(out, "Tables of later versions: {}.", words(LATER_TABLES));
@@ -35,9 +44,12 @@ pub fn reference() -> String {
 /// The effects and their parameters, for `docs/effects.md`.
 pub fn effects_reference() -> String {
     let mut out = String::new();
-    for kind in [EffectKind::Scene, EffectKind::Post] {
+    for kind in EffectKind::ALL {
+        if !all_effects().any(|e| e.kind == kind) {
+            continue;
+        }
         let _ = write!(out, "## {}s\n\n", capital(kind.name()));
-        for effect in all_effects().iter().filter(|e| e.kind == kind) {
+        for effect in all_effects().filter(|e| e.kind == kind) {
             let _ = write!(out, "### {}\n\n{} ({})\n\n", effect.name, effect.doc, effect.spec);
             out += "| parameter | takes | unit | default | meaning |\n| --- | --- | --- | --- | --- |\n";
             for p in &effect.parameters {
@@ -184,16 +196,15 @@ fn shapes() -> Value {
 }
 
 fn effects() -> Vec<Value> {
-    let alone: Vec<&str> = all_effects()
-        .iter()
-        .filter(|e| !e.parameters.iter().any(|p| p.is_required()))
-        .map(|e| e.name.as_str())
-        .collect();
+    let alone: Vec<&str> =
+        all_effects().filter(|e| !e.parameters.iter().any(|p| p.is_required())).map(|e| e.name.as_str()).collect();
     let mut all = vec![json!({ "enum": alone })];
     for effect in all_effects() {
         let mut properties = Map::new();
         properties.insert("effect".into(), json!({ "const": effect.name }));
         properties.insert("class".into(), json!({ "enum": CLASSES }));
+        properties.insert("blend".into(), json!({ "enum": Blend::WORDS }));
+        properties.insert("weight".into(), json!({ "type": "number", "minimum": 0, "maximum": 1 }));
         for p in &effect.parameters {
             let mut value = of_parameter(&p.kind);
             if let Value::Object(map) = &mut value {
@@ -205,7 +216,7 @@ fn effects() -> Vec<Value> {
             .into_iter()
             .chain(effect.parameters.iter().filter(|p| p.is_required()).map(|p| p.name.as_str()))
             .collect();
-        let style = if effect.kind == EffectKind::Scene { "Scene style" } else { "Post style" };
+        let style = capital(effect.kind.name());
         all.push(json!({
             "type": "object",
             "description": format!("{style}. {}", effect.doc),

@@ -18,7 +18,10 @@ use crate::{
         ramp::{MAX_CATEGORIES, category},
     },
     scene::{Background, BaseStyle, CitySpec, Figure, Poi, PoiPlace, Scene, Style, Sun},
-    shader::effect::{EffectKind, find as find_effect},
+    shader::{
+        Blend,
+        effect::{EffectKind, find as find_effect},
+    },
     view::{Camera, CameraError, Projection, default_near_m},
 };
 
@@ -286,7 +289,13 @@ impl<'o> SceneReader<'o> {
     }
 
     fn effect(&mut self, node: &Node, place: &Place, in_lens: bool) -> Option<EffectUse> {
-        let mut used = EffectUse { effect: String::new(), class: Class::Inside, parameters: BTreeMap::new() };
+        let mut used = EffectUse {
+            effect: String::new(),
+            class: Class::Inside,
+            blend: None,
+            weight: None,
+            parameters: BTreeMap::new(),
+        };
         let mut lines: BTreeMap<&str, u32> = BTreeMap::new();
         match &node.data {
             Data::Text(name) => used.effect.clone_from(name),
@@ -307,14 +316,26 @@ impl<'o> SceneReader<'o> {
                         ("class", Some("front")) => used.class = Class::Front,
                         ("class", Some("behind")) => used.class = Class::Behind,
                         ("class", Some("rest")) => used.class = Class::Rest,
-                        ("effect" | "class", text) => {
-                            let what = if key == "class" { CLASSES.join(", ") } else { "the name of an effect".into() };
-                            let hint = text.map_or_else(String::new, |t| did_you_mean(t, CLASSES.iter().copied()));
+                        ("blend", Some(word)) if Blend::parse(word).is_some() => used.blend = Blend::parse(word),
+                        ("weight", _) if matches!(parameter(value), Some(Parameter::Number(_))) => {
+                            used.weight = match parameter(value) {
+                                Some(Parameter::Number(n)) => Some(n),
+                                _ => None,
+                            };
+                        }
+                        ("effect" | "class" | "blend" | "weight", text) => {
+                            let (what, words): (String, &[&str]) = match key.as_str() {
+                                "class" => (format!("one of {}", CLASSES.join(", ")), &CLASSES),
+                                "blend" => (format!("one of {}", Blend::WORDS.join(", ")), &Blend::WORDS),
+                                "weight" => ("a number 0 to 1".into(), &[]),
+                                _ => ("the name of an effect".into(), &[]),
+                            };
+                            let hint = text.map_or_else(String::new, |t| did_you_mean(t, words.iter().copied()));
                             self.checker.note(
                                 place,
                                 key,
                                 *line,
-                                format!("must be one of {what}, is {}{hint}", value.quoted()),
+                                format!("must be {what}, is {}{hint}", value.quoted()),
                             );
                         }
                         _ => match parameter(value) {

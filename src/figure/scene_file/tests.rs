@@ -6,6 +6,7 @@ use crate::{
     geom::Shape,
     lens::{Class, EffectUse, Lens, LensBody, LensKind, Parameter},
     scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Style, Sun},
+    shader::Blend,
     view::{Camera, Projection},
 };
 
@@ -281,23 +282,30 @@ fn effects() -> impl Strategy<Value = EffectUse> {
     let used = |effect: &str, class, parameters: Vec<(&str, Parameter)>| EffectUse {
         effect: effect.into(),
         class,
+        blend: None,
+        weight: None,
         parameters: parameters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
     };
-    (class, 0.0..=1.0f64, ".{1,8}", any::<bool>(), any::<bool>()).prop_map(move |(class, amount, text, plain, flag)| {
-        if plain {
-            let parameters = if flag { vec![("amount", Parameter::Number(amount))] } else { vec![] };
-            used("sepia", class, parameters)
-        } else {
-            let list = vec![
-                ("attribute", Parameter::Text(text.clone())),
-                ("reverse", Parameter::Boolean(flag)),
-                ("breaks", Parameter::Numbers(vec![amount, amount + 1.0])),
-                ("categories", Parameter::Texts(vec![text])),
-                ("no_data", Parameter::Text("#123456".into())),
-            ];
-            used("thematic", class, list)
-        }
-    })
+    let laid = (prop::option::of(prop::sample::select(Blend::ALL.to_vec())), prop::option::of(0.0..=1.0f64));
+    let lay = |(used, (blend, weight))| EffectUse { blend, weight, ..used };
+    let used = (class, 0.0..=1.0f64, ".{1,8}", any::<bool>(), any::<bool>()).prop_map(
+        move |(class, amount, text, plain, flag)| {
+            if plain {
+                let parameters = if flag { vec![("amount", Parameter::Number(amount))] } else { vec![] };
+                used("sepia", class, parameters)
+            } else {
+                let list = vec![
+                    ("attribute", Parameter::Text(text.clone())),
+                    ("reverse", Parameter::Boolean(flag)),
+                    ("breaks", Parameter::Numbers(vec![amount, amount + 1.0])),
+                    ("categories", Parameter::Texts(vec![text])),
+                    ("no_data", Parameter::Text("#123456".into())),
+                ];
+                used("thematic", class, list)
+            }
+        },
+    );
+    (used, laid).prop_map(lay)
 }
 
 prop_compose! {

@@ -232,12 +232,18 @@ fn effect(used: &EffectUse) -> String {
         Class::Behind => Some("behind"),
         Class::Rest => Some("rest"),
     };
-    if class.is_none() && used.parameters.is_empty() {
+    if class.is_none() && used.blend.is_none() && used.weight.is_none() && used.parameters.is_empty() {
         return quoted(&used.effect);
     }
     let mut out = format!("{{ effect = {}", quoted(&used.effect));
     if let Some(class) = class {
         let _ = write!(out, ", class = \"{class}\"");
+    }
+    if let Some(blend) = used.blend {
+        let _ = write!(out, ", blend = \"{}\"", blend.word());
+    }
+    if let Some(weight) = used.weight {
+        let _ = write!(out, ", weight = {}", number(weight));
     }
     for (key, value) in &used.parameters {
         let bare = !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-');

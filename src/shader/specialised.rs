@@ -1,0 +1,271 @@
+//! The specialised back end (H3): a plan written out, as a person would write it for this one scene.
+
+use std::fmt::Write as _;
+
+use crate::shader::{
+    effect::{EffectDefinition, EffectKind, Mode},
+    plan::{ClassTest, Plan, Scope, Step},
+};
+
+/// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`. `names` of the plan's lenses
+/// become comments.
+pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str]) -> String {
+    let writer = Writer { plan, handlers, names };
+    let mut text = writer.bindings();
+    for effect in writer.used() {
+        let _ = write!(text, "// ==== effect {}\n\n{}\n", effect.name, effect.source.trim_end());
+        text.push('\n');
+    }
+    text.push_str("// ==== this scene\n\n");
+    text.push_str(&writer.classes());
+    text.push_str(&writer.shade());
+    text.push_str(&writer.styled());
+    text.push_str(&writer.outlines());
+    text.push_str(&writer.write_classes());
+    text
+}
+
+struct Writer<'a> {
+    plan: &'a Plan,
+    handlers: &'a [EffectDefinition],
+    names: &'a [&'a str],
+}
+
+impl Writer<'_> {
+    /// The uniforms that are read.
+    fn bindings(&self) -> String {
+        let mut text = String::new();
+        let slots = self.plan.slots(self.handlers);
+        if slots > 0 {
+            let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
+        }
+        let volumes = self.plan.volumes();
+        if volumes > 0 {
+            let _ = writeln!(text, "@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {volumes}>;");
+        }
+        if self.plan.masks {
+            text.push_str(MASKS);
+        }
+        text.push('\n');
+        text
+    }
+
+    /// The handlers that may run, once each: the plan's, and those of the program that it calls for.
+    fn used(&self) -> impl Iterator<Item = &EffectDefinition> {
+        let own = self.plan.effects();
+        let is_used = move |(i, h): &(usize, &EffectDefinition)| match h.mode {
+            Mode::Local => own.contains(&(*i as u32)),
+            Mode::Optional => self.needs_optional(h.kind),
+            Mode::Global => self.plan.haze && self.needs_optional(EffectKind::Scene),
+            Mode::Ignore => false,
+        };
+        self.handlers.iter().enumerate().filter(is_used).map(|(_, h)| h)
+    }
+
+    /// Whether some surface gets its result from a prototype's optional handler.
+    fn needs_optional(&self, kind: EffectKind) -> bool {
+        !self.plan.steps_of(kind, self.handlers).any(|(s, h)| s.scope == Scope::Everywhere && s.replaces(h))
+    }
+
+    fn comment(&self, lens: usize) -> String {
+        self.names.get(lens).map_or_else(String::new, |name| format!("  // {}", one_line(name)))
+    }
+
+    /// Which classes of which lens a pixel is in.
+    fn classes(&self) -> String {
+        let mut text = "struct Classes {\n".to_owned();
+        let lenses = &self.plan.lenses;
+        if lenses.is_empty() {
+            text.push_str("    none: u32,\n");
+        }
+        for i in 0..lenses.len() {
+            let _ = writeln!(text, "    lens_{i}: u32,{}", self.comment(i));
+        }
+        text.push_str(
+            "}\n\nfn classes_at(pixel: vec2i, depth: f32, part: u32) -> Classes {\n    var classes: Classes;\n",
+        );
+        // This part of the picture is the bounds of all volumes: where there is one, they are its own.
+        let test = if self.plan.volumes() == 1 { "class_within" } else { "class_in" };
+        for i in 0..lenses.len() {
+            let volumes: Vec<String> =
+                self.plan.volumes_of(i as u32).map(|v| format!("{test}(volumes[{v}], pixel, depth)")).collect();
+            let _ = writeln!(text, "    classes.lens_{i} = {};", volumes.join("\n        | "));
+        }
+        text.push_str("    return classes;\n}\n\n");
+        text
+    }
+
+    /// The call of a handler, laid over `subject` as the step says.
+    fn call(step: &Step, handler: &EffectDefinition, subject: &str, point: &str) -> String {
+        let name = handler.wgsl_name();
+        let own = match handler.slots() {
+            0 => String::new(),
+            _ => format!(", {}({}u)", handler.own("parameters"), step.parameters),
+        };
+        let mut call = format!("{name}({subject}, {point}{own})");
+        let is_material = handler.kind == EffectKind::Material;
+        if handler.is_users {
+            let contained = if is_material { "contained_material" } else { "contained" };
+            call = format!("{contained}({call})");
+        }
+        let Some((blend, weight)) = step.blend.zip(step.weight(handler)) else { return call };
+        let weight = format!("parameters[{weight}].x");
+        match is_material {
+            true => format!("blended_material({}u, {subject}, {call}, {weight})", blend.number()),
+            false => format!("weighed({subject}, blend_{}({subject}, {call}), {weight})", blend.word()),
+        }
+    }
+
+    /// `if condition { subject = call; }`.
+    fn statement(&self, step: &Step, handler: &EffectDefinition) -> String {
+        let subject = match handler.kind {
+            EffectKind::Material => "material",
+            EffectKind::Light => "(*point).arriving",
+            _ => "color",
+        };
+        let point = if handler.kind.is_before_color() { "*point" } else { "point" };
+        let mut line = format!("{subject} = {}", Self::call(step, handler, subject, point));
+        let mut conditions = Vec::new();
+        if let Scope::Lens(lens, class) = step.scope {
+            conditions.push(format!("{}(classes.lens_{lens})", class.function()));
+        }
+        if handler.kind == EffectKind::Scene {
+            conditions.push("point.surface != NO_SURFACE".to_owned());
+            if self.has(EffectKind::Material) {
+                line.push_str(" + point.highlight");
+            }
+        }
+        match conditions.is_empty() {
+            true => format!("    {line};\n"),
+            false => format!("    if {} {{\n        {line};\n    }}\n", conditions.join(" && ")),
+        }
+    }
+
+    fn has(&self, kind: EffectKind) -> bool {
+        self.plan.steps_of(kind, self.handlers).next().is_some()
+    }
+
+    fn statements(&self, kind: EffectKind) -> String {
+        self.plan.steps_of(kind, self.handlers).map(|(step, handler)| self.statement(step, handler)).collect()
+    }
+
+    /// From the surface to its colour: material, light, the standard style and air, then the styles.
+    fn shade(&self) -> String {
+        let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
+        if self.has(EffectKind::Material) {
+            text.push_str("    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);\n");
+            text.push_str(&self.statements(EffectKind::Material));
+            text.push_str("    (*point).base = material.base;\n");
+        }
+        if self.has(EffectKind::Light) {
+            text.push_str(&self.statements(EffectKind::Light));
+            text.push_str("    (*point).shade = luminance((*point).arriving);\n");
+        }
+        let highlights = self.has(EffectKind::Material);
+        if highlights {
+            text.push_str("    (*point).highlight = highlights(material, *point);\n");
+        }
+        text.push_str("    var color = vec3f(0.0);\n");
+        let own = |kind, mode| self.handlers.iter().find(move |h| h.kind == kind && h.mode == mode);
+        if let Some(standard) =
+            own(EffectKind::Scene, Mode::Optional).filter(|_| self.needs_optional(EffectKind::Scene))
+        {
+            let plus = if highlights { " + (*point).highlight" } else { "" };
+            let _ = writeln!(text, "    color = {}(color, *point){plus};", standard.wgsl_name());
+            if let Some(air) = own(EffectKind::Air, Mode::Global).filter(|_| self.plan.haze) {
+                let _ = writeln!(text, "    color = {}(color, *point);", air.wgsl_name());
+            }
+        }
+        text.push_str("    return styled(color, *point, classes);\n}\n\n");
+        text
+    }
+
+    /// Scene styles and post styles, in lens order: what replaces the colour leaves nothing of the styles below (C5).
+    fn styled(&self) -> String {
+        let is_style = |(_, h): &(&Step, &EffectDefinition)| matches!(h.kind, EffectKind::Scene | EffectKind::Post);
+        let all = self.plan.steps.iter().map(|s| (s, &self.handlers[s.effect as usize])).filter(is_style);
+        let lines: String = all.map(|(step, handler)| self.statement(step, handler)).collect();
+        let head = "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n";
+        match lines.is_empty() {
+            true => format!("{head}    return start;\n}}\n\n"),
+            false => format!("{head}    var color = start;\n{lines}    return color;\n}}\n\n"),
+        }
+    }
+
+    /// The lenses' silhouettes, and for `lib/outline.wgsl` which lens covers a pixel.
+    fn outlines(&self) -> String {
+        let mut text = String::new();
+        if self.plan.has_outlines() {
+            text.push_str("fn lens_covers(lens: u32, pixel: vec2i) -> bool {\n    switch lens {\n");
+            for i in 0..self.plan.lenses.len() {
+                let volumes: Vec<String> =
+                    self.plan.volumes_of(i as u32).map(|v| format!("covers(volumes[{v}], pixel)")).collect();
+                let _ = writeln!(text, "        case {i}u: {{ return {}; }}", volumes.join(" || "));
+            }
+            text.push_str("        default: { return false; }\n    }\n}\n\n");
+        }
+        text.push_str("fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n");
+        let lines: Vec<(usize, u32)> =
+            self.plan.lenses.iter().enumerate().filter_map(|(i, l)| l.outline.map(|line| (i, line))).collect();
+        if lines.is_empty() {
+            text.push_str("    return start;\n}\n\n");
+            return text;
+        }
+        text.push_str("    var paint = start;\n");
+        for (i, line) in lines {
+            let _ = writeln!(
+                text,
+                "    paint = outlined(paint, {i}u, pixel, parameters[{line}], parameters[{}]);",
+                line + 1
+            );
+        }
+        text.push_str("    return paint;\n}\n\n");
+        text
+    }
+
+    /// Writes the classes down, one bit per lens.
+    fn write_classes(&self) -> String {
+        let mut text = "fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n".to_owned();
+        if self.plan.masks {
+            text.push_str(ONLY_SHOWN);
+            let mut words: Vec<u32> = self.plan.lenses.iter().map(|l| l.number / 32).collect();
+            words.dedup();
+            for word in words {
+                for (layer, class) in ["INSIDE", "FRONT", "BEHIND"].into_iter().enumerate() {
+                    let here = self.plan.lenses.iter().enumerate().filter(|(_, l)| l.number / 32 == word);
+                    let bits: Vec<String> = here
+                        .map(|(i, l)| {
+                            format!("select(0u, {:#x}u, (classes.lens_{i} & {class}) != 0u)", 1_u32 << (l.number % 32))
+                        })
+                        .collect();
+                    let (layer, value) = (3 * word as usize + layer, bits.join("\n        | "));
+                    let _ =
+                        writeln!(text, "    textureStore(class_masks, pixel, {layer}, vec4u({value}, 0u, 0u, 0u));");
+                }
+            }
+        }
+        text.push_str("}\n");
+        text
+    }
+}
+
+/// Where masks are written.
+pub(super) const MASKS: &str = "// Layers, per 32 lenses: inside, in front, behind.\n\
+    @group(2) @binding(4) var class_masks: texture_storage_2d_array<r32uint, write>;\n";
+
+/// A shader that stores may run before the depth test that chooses between surface and background.
+pub(super) const ONLY_SHOWN: &str = "    // This may run before the depth test that chooses between surface and background.\n    \
+    if (textureLoad(scene_depth, pixel, 0) > 0.0) != (point.surface != NO_SURFACE) {\n        return;\n    }\n";
+
+/// The number that the uber back end knows a scope by: 0 is everywhere.
+pub fn scope_number(scope: Scope) -> u32 {
+    match scope {
+        Scope::Everywhere => 0,
+        Scope::Lens(_, class) => 1 + ClassTest::ALL.iter().position(|c| *c == class).unwrap_or(0) as u32,
+    }
+}
+
+/// A text that cannot end the comment it stands in.
+fn one_line(text: &str) -> String {
+    text.chars().take(60).map(|c| if c.is_control() || "\u{2028}\u{2029}".contains(c) { ' ' } else { c }).collect()
+}

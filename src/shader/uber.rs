@@ -1,0 +1,307 @@
+//! The uber back end (H3): every handler the scene may ask for in one module; which of them run, where, and with which
+//! parameters stands in the invoker table (H2), a uniform. Whatever lenses do, nothing is compiled.
+
+use std::fmt::Write as _;
+
+use crate::shader::{
+    effect::{EffectDefinition, EffectKind, Mode},
+    plan::Uber,
+    specialised::{MASKS, ONLY_SHOWN},
+};
+
+/// Entries of the invoker table.
+pub const MOST_INVOKERS: u32 = 1024;
+/// Volumes of a picture: a uniform of 64 KiB holds more than so many.
+pub const MOST_VOLUMES: u32 = 1024;
+/// `vec4f` of parameters of a picture: such a uniform full.
+pub const MOST_SLOTS: u32 = 4096;
+
+/// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`.
+pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
+    let mut text = String::new();
+    let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;");
+    if uber.lenses {
+        let _ = writeln!(text, "@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {MOST_VOLUMES}>;");
+    }
+    if uber.masks {
+        text.push_str(MASKS);
+    }
+    text.push('\n');
+    for (_, effect) in used(uber, handlers) {
+        let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
+    }
+    text.push_str(&TABLE.replace("MOST_INVOKERS", &format!("{MOST_INVOKERS}")));
+    text.push_str(if uber.lenses { CLASSES } else { NO_CLASSES });
+    text.push_str(&invoke(uber, "material", &[EffectKind::Material], handlers));
+    text.push_str(&invoke(uber, "light", &[EffectKind::Light], handlers));
+    text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post], handlers));
+    text.push_str(&shade(uber, handlers));
+    text.push_str(&styled(uber, handlers));
+    text.push_str(if uber.outlines { OUTLINES } else { NO_OUTLINES });
+    text.push_str("fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n");
+    if uber.masks && uber.lenses {
+        text.push_str(ONLY_SHOWN);
+        text.push_str(WRITE_CLASSES);
+    }
+    text.push_str("}\n");
+    text
+}
+
+/// The handlers of the module, with their numbers.
+fn used<'a>(uber: &Uber, handlers: &'a [EffectDefinition]) -> impl Iterator<Item = (u32, &'a EffectDefinition)> {
+    let is_used = |(i, h): &(u32, &EffectDefinition)| match h.mode {
+        Mode::Local => uber.effects.contains(i),
+        Mode::Optional => true,
+        Mode::Global => uber.haze,
+        Mode::Ignore => false,
+    };
+    handlers.iter().enumerate().map(|(i, h)| (i as u32, h)).filter(is_used)
+}
+
+/// Whether the scene may ask for an effect of this prototype.
+fn has(uber: &Uber, kind: EffectKind, handlers: &[EffectDefinition]) -> bool {
+    used(uber, handlers).any(|(_, h)| h.kind == kind && h.mode == Mode::Local)
+}
+
+/// One handler of a prototype by its number, laid over what is below as its invoker says. Scene styles and post styles
+/// are one list.
+fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[EffectDefinition]) -> String {
+    if !kinds.iter().any(|&kind| has(uber, kind, handlers)) {
+        return String::new();
+    }
+    let (_, type_name) = kinds[0].subject();
+    let mut text = format!(
+        "fn invoke_{word}(below: {type_name}, point: Point, by: Invoker) -> {type_name} {{\n    var above = below;\n    switch \
+         by.handler {{\n"
+    );
+    let is_one = |h: &EffectDefinition| kinds.contains(&h.kind) && h.mode == Mode::Local;
+    for (number, handler) in used(uber, handlers).filter(|(_, h)| is_one(h)) {
+        let name = handler.wgsl_name();
+        let own = match handler.slots() {
+            0 => String::new(),
+            _ => format!(", {}(by.parameters)", handler.own("parameters")),
+        };
+        let call = format!("{name}(below, point{own})");
+        let call = match (handler.is_users, handler.kind) {
+            (false, _) => call,
+            (true, EffectKind::Material) => format!("contained_material({call})"),
+            (true, _) => format!("contained({call})"),
+        };
+        let _ = writeln!(text, "        case {number}u: {{ above = {call}; }}");
+    }
+    text.push_str("        default: {}\n    }\n");
+    if uber.blends {
+        let blended = match kinds[0] {
+            EffectKind::Material => "blended_material(by.blend, below, above, parameters[by.weight].x)",
+            _ => "weighed(below, blend(by.blend, below, above), parameters[by.weight].x)",
+        };
+        let _ = writeln!(text, "    if by.blend != 0u {{\n        above = {blended};\n    }}");
+    }
+    text.push_str("    return above;\n}\n\n");
+    text
+}
+
+/// From the surface to its colour: material, light, the standard style and air, then the styles.
+fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
+    let has = |kind| has(uber, kind, handlers);
+    let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
+    if has(EffectKind::Material) || has(EffectKind::Light) {
+        text.push_str("    let part = table.parts[classes.part];\n");
+    }
+    if has(EffectKind::Material) {
+        text.push_str(MATERIALS);
+    }
+    if has(EffectKind::Light) {
+        text.push_str(LIGHTS);
+    }
+    let plus = if has(EffectKind::Material) {
+        text.push_str("    (*point).highlight = highlights(material, *point);\n");
+        " + (*point).highlight"
+    } else {
+        ""
+    };
+    text.push_str("    var color = vec3f(0.0);\n");
+    let own = |kind, mode| handlers.iter().find(move |h| h.kind == kind && h.mode == mode);
+    if let Some(standard) = own(EffectKind::Scene, Mode::Optional) {
+        let _ = writeln!(text, "    color = {}(color, *point){plus};", standard.wgsl_name());
+    }
+    if let Some(air) = own(EffectKind::Air, Mode::Global).filter(|_| uber.haze) {
+        let _ = writeln!(text, "    color = {}(color, *point);", air.wgsl_name());
+    }
+    text.push_str("    return styled(color, *point, classes);\n}\n\n");
+    text
+}
+
+/// Scene styles and post styles, in lens order.
+fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
+    let has = |kind| has(uber, kind, handlers);
+    if !has(EffectKind::Scene) && !has(EffectKind::Post) {
+        return "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n    return start;\n}\n\n"
+            .to_owned();
+    }
+    let highlight = match has(EffectKind::Material) {
+        true => "                color += point.highlight;\n",
+        false => "",
+    };
+    STYLED.replace("                HIGHLIGHT\n", highlight)
+}
+
+/// As `render::layout` lays it out.
+const TABLE: &str = "// ==== the invoker table
+
+struct Invoker {
+    handler: u32,               // its number
+    scope: u32,                 // 0 everywhere, 1 inside, 2 in front, 3 behind, 4 rest
+    first_volume: u32,          // of its lens
+    volumes: u32,
+    parameters: u32,            // its first slot
+    blend: u32,                 // 0 replaces
+    weight: u32,                // slot of its weight, if blended
+    number: u32,                // of a style: 1 = for surfaces alone; of a lens: its bit in the masks
+}
+
+// From (x) up to (y, not included) the invokers of each prototype.
+struct Part {
+    @align(16) material: vec2u,
+    light: vec2u,
+    styles: vec2u,
+    outlines: vec2u,
+    masks: vec2u,
+}
+
+struct InvokerTable {
+    parts: array<Part, 2>,      // the context's, and the lenses'
+    invokers: array<Invoker, MOST_INVOKERS>,
+}
+
+@group(2) @binding(5) var<uniform> table: InvokerTable;
+
+";
+
+const NO_CLASSES: &str = "struct Classes {
+    part: u32,
+}
+
+fn classes_at(pixel: vec2i, depth: f32, part: u32) -> Classes {
+    return Classes(part);
+}
+
+fn runs(by: Invoker, classes: Classes) -> bool {
+    return by.scope == 0u;
+}
+
+";
+
+const CLASSES: &str = "struct Classes {
+    part: u32,
+    pixel: vec2i,
+    depth: f32,
+}
+
+fn classes_at(pixel: vec2i, depth: f32, part: u32) -> Classes {
+    return Classes(part, pixel, depth);
+}
+
+fn classes_of(by: Invoker, classes: Classes) -> u32 {
+    var all = MISSED;
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        all |= class_in(volumes[v], classes.pixel, classes.depth);
+    }
+    return all;
+}
+
+fn runs(by: Invoker, classes: Classes) -> bool {
+    if by.scope == 0u {
+        return true;
+    }
+    let all = classes_of(by, classes);
+    switch by.scope {
+        case 1u: { return is_inside(all); }
+        case 2u: { return is_in_front(all); }
+        case 3u: { return is_behind(all); }
+        default: { return is_rest(all); }
+    }
+}
+
+";
+
+const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);
+    for (var i = part.material.x; i < part.material.y; i++) {
+        let by = table.invokers[i];
+        if runs(by, classes) {
+            material = invoke_material(material, *point, by);
+        }
+    }
+    (*point).base = material.base;
+";
+
+const LIGHTS: &str = "    for (var i = part.light.x; i < part.light.y; i++) {
+        let by = table.invokers[i];
+        if runs(by, classes) {
+            (*point).arriving = invoke_light((*point).arriving, *point, by);
+        }
+    }
+    (*point).shade = luminance((*point).arriving);
+";
+
+const STYLED: &str = "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {
+    var color = start;
+    let part = table.parts[classes.part];
+    for (var i = part.styles.x; i < part.styles.y; i++) {
+        let by = table.invokers[i];
+        let is_scene_style = by.number == 1u;
+        if runs(by, classes) && (!is_scene_style || point.surface != NO_SURFACE) {
+            color = invoke_style(color, point, by);
+            if is_scene_style {
+                HIGHLIGHT
+            }
+        }
+    }
+    return color;
+}
+
+";
+
+const NO_OUTLINES: &str = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
+    return start;
+}
+
+";
+
+const OUTLINES: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
+    let by = table.invokers[lens];
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        if covers(volumes[v], pixel) {
+            return true;
+        }
+    }
+    return false;
+}
+
+fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
+    var paint = start;
+    let part = table.parts[classes.part];
+    for (var i = part.outlines.x; i < part.outlines.y; i++) {
+        let by = table.invokers[i];
+        paint = outlined(paint, i, pixel, parameters[by.parameters], parameters[by.parameters + 1u]);
+    }
+    return paint;
+}
+
+";
+
+const WRITE_CLASSES: &str = "    let part = table.parts[classes.part];
+    var bits = vec3u(0u);
+    for (var i = part.masks.x; i < part.masks.y; i++) {
+        let by = table.invokers[i];
+        let all = classes_of(by, classes);
+        bits |= select(vec3u(0u), vec3u(1u << (by.number % 32u)), (vec3u(all) & vec3u(INSIDE, FRONT, BEHIND)) != vec3u(0u));
+        let layer = i32(by.number / 32u) * 3;
+        if i + 1u == part.masks.y || table.invokers[i + 1u].number / 32u != by.number / 32u {
+            textureStore(class_masks, pixel, layer, vec4u(bits.x, 0u, 0u, 0u));
+            textureStore(class_masks, pixel, layer + 1, vec4u(bits.y, 0u, 0u, 0u));
+            textureStore(class_masks, pixel, layer + 2, vec4u(bits.z, 0u, 0u, 0u));
+            bits = vec3u(0u);
+        }
+    }
+";
