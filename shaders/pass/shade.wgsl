@@ -15,6 +15,7 @@ const ONE_COLOR: u32 = 1u;
 
 // The shown surface at a pixel; `surface` is NO_SURFACE where there is none (D infinite).
 struct Point {
+    pixel: vec2i,
     relative: vec3f,            // to the eye, world axes, metres
     distance: f32,              // D, metres
     depth: f32,                 // D as the depth target stores it; 0 = nothing
@@ -62,6 +63,7 @@ fn base_color(point: Point, pixel: vec2i) -> vec3f {
 fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
     let code = textureLoad(codes, pixel, 0).xy;
     var point: Point;
+    point.pixel = pixel;
     point.depth = depth;
     point.distance = distance_of_depth(depth);
     point.relative = (ray.origin + point.distance * ray.direction) * view.view_from_world;
@@ -81,9 +83,42 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
     return point;
 }
 
-fn nowhere() -> Point {
-    return Point(vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), vec3f(0.0),
+fn nowhere(pixel: vec2i) -> Point {
+    return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), vec3f(0.0),
                  false, 1.0, vec3f(1.0), 1.0, vec3f(0.0));
+}
+
+// What is shown beside a point, `offset` pixels away; at the picture's edge, what is at the edge.
+struct Beside {
+    depth: f32,                 // as Point's
+    normal: vec3f,              // unit; whichever way it faces
+    object: u32,                // or NO_OBJECT
+    surface: u32,               // or NO_SURFACE
+}
+
+fn beside(point: Point, offset: vec2i) -> Beside {
+    let pixel = clamp(point.pixel + offset, vec2i(0), vec2i(view.size) - 1);
+    let code = textureLoad(codes, pixel, 0).xy;
+    if code.x == 0u {
+        return Beside(0.0, vec3f(0.0, 0.0, 1.0), NO_OBJECT, NO_SURFACE);
+    }
+    let surface = surface_at(code.x - 1u);
+    let normal = decode_normal(select(surface.normal, code.y, SMOOTH));
+    return Beside(textureLoad(scene_depth, pixel, 0), normal, surface.object, code.x - 1u);
+}
+
+// Metres of the picture plane at a point that one pixel spans.
+fn metres_per_pixel(point: Point) -> f32 {
+    let at_one = 2.0 / (view.projection.y * view.size.y);
+    return abs(at_one) * select(point.distance, 1.0, view.orthographic == 1u);
+}
+
+// Where a point is in a grid of `period` metres (to the millimetre, at most 60 m), 0..period: the same wherever the eye is.
+fn within(point: Point, period: f32) -> vec3f {
+    let step = max(i32(round(period * 1000.0)), 1);
+    let whole = vec3f(((view.eye_whole % step) * 1000) % step) * 0.001;
+    let at = (whole + view.eye_fraction + point.relative) / period;
+    return (at - floor(at)) * period;
 }
 
 // What a user's effect returned, as a colour: no negative light, no infinity, nothing that is no number.
@@ -121,7 +156,7 @@ fn background(in: Corner) -> @location(0) vec4f {
     } else if BACKGROUND == ONE_COLOR {
         paint = vec4f(light.zenith, 1.0);
     }
-    let point = nowhere();
+    let point = nowhere(pixel);
     let classes = classes_at(pixel, 0.0, in.part);
     return finished(vec4f(styled(paint.rgb, point, classes), paint.a), point, pixel, classes);
 }

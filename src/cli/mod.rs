@@ -11,7 +11,8 @@ pub mod load;
 pub mod output;
 pub mod render;
 pub mod report;
-pub mod synth;
+pub mod shader;
+mod synth;
 pub mod terminal;
 
 use std::{ffi::OsString, path::PathBuf, process::ExitCode};
@@ -88,6 +89,8 @@ pub enum Command {
     Gallery(gallery::Arguments),
     /// Lists what lenses can do to what they show
     Effects(effects::Arguments),
+    /// Prints the WGSL that a scene is shaded with
+    Shader(shader::Arguments),
     /// Files to view, or a word that is no command.
     #[command(external_subcommand)]
     Other(Vec<OsString>),
@@ -131,6 +134,7 @@ fn run(cli: Cli) -> Outcome {
         Some(Command::Info(arguments)) => info::run(&arguments, global),
         Some(Command::Synth(arguments)) => synth::run(&arguments, global),
         Some(Command::Effects(arguments)) => effects::run(&arguments, global),
+        Some(Command::Shader(arguments)) => shader::run(&arguments, global),
         Some(Command::Other(words)) => other(&words),
         None => view(&ViewArguments { files: Vec::new(), scene: cli.scene }),
     }

@@ -14,6 +14,7 @@ use glam::DVec2;
 
 use crate::{
     gpu::{GpuError, Slot, Timer},
+    lens::Lens,
     render::{
         city::{Chunk, CityBuffers, Draw, Section, SectionKind, SeenChunk, draws_of},
         curtain::{self, Curtain},
@@ -27,7 +28,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun},
-    shader::{MOST_SLOTS, MOST_VOLUMES, Plan, Program, handlers},
+    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, handlers},
     view::View,
 };
 
@@ -196,6 +197,21 @@ impl Renderer {
         }
         drop(pass);
         self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// The text of the module that shades the lenses' part of the picture; without lenses in view the context's.
+    pub fn shader(&self, input: &FrameInput, lenses: &[Lens]) -> String {
+        let (seen, _) = seen_volumes(input);
+        let plans = Plans::new(input, &seen);
+        let plan = if seen.is_empty() { plans.context } else { plans.lenses };
+        let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
+        numbers.dedup();
+        let names: Vec<&str> = numbers.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
+        let program = match input.backend {
+            Backend::Specialised => Program::Specialised(plan),
+            Backend::Uber | Backend::Adaptive => Program::Uber(input.operations.uber(plan.haze, plan.masks)),
+        };
+        Module::Shade(program).source_for_people(handlers(), &names)
     }
 
     fn smooth(&self) -> bool {

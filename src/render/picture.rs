@@ -185,10 +185,8 @@ impl Studio {
     /// Draws a picture.
     pub fn render(&mut self, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
         let started = Instant::now();
-        let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
         let prepared = self.prepare(scene)?;
-        let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
-        let view = View::new(self.camera(scene, request.size), request.size, &reach)?;
+        let view = self.view(scene, &prepared, request.size)?;
         let mut picture = Picture::empty(request, scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
@@ -210,9 +208,7 @@ impl Studio {
     /// Draws one sample of one frame without reading anything back: what a window does, and benchmarks.
     pub fn redraw(&mut self, scene: &Scene, size: [u32; 2]) -> Result<(), RenderError> {
         let prepared = self.prepare(scene)?;
-        let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
-        let view = View::new(self.camera(scene, size), size, &reach)?;
+        let view = self.view(scene, &prepared, size)?;
         let request = Request {
             size,
             samples: 1,
@@ -224,6 +220,22 @@ impl Studio {
         let input = input(scene, &request, &prepared, view, PictureTile::whole(size));
         self.renderer.draw(&input, None)?;
         Ok(())
+    }
+
+    /// The WGSL that shading runs where the scene's lenses are in the picture, or everywhere where none is (H4).
+    pub fn shader(&self, scene: &Scene, size: [u32; 2], backend: Backend) -> Result<String, RenderError> {
+        let prepared = self.prepare(scene)?;
+        let view = self.view(scene, &prepared, size)?;
+        let request =
+            Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false, backend };
+        let input = input(scene, &request, &prepared, view, whole(size));
+        Ok(self.renderer.shader(&input, &scene.lenses))
+    }
+
+    fn view(&self, scene: &Scene, prepared: &Prepared, size: [u32; 2]) -> Result<View, CameraError> {
+        let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
+        let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
+        View::new(self.camera(scene, size), size, &reach)
     }
 
     fn prepare(&self, scene: &Scene) -> Result<Prepared, RenderError> {

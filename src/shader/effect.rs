@@ -28,6 +28,12 @@ const FILES: &[(&str, &str)] = &[
     built_in!("overlay"),
     built_in!("discard-color"),
     built_in!("posterise"),
+    built_in!("edges"),
+    built_in!("iso-lines"),
+    built_in!("brick"),
+    built_in!("gloss"),
+    built_in!("glow"),
+    built_in!("lighting"),
     built_in!("lambert"),
     built_in!("haze"),
 ];

@@ -39,6 +39,12 @@ pub fn studio(files: &[PathBuf]) -> Studio {
     Studio::new(Gpu::open().expect("an adapter, hardware or software"), Arc::new(model), &spec).expect("a studio")
 }
 
+/// A studio over a scene's city.
+pub fn of_scene(scene: &Scene) -> Studio {
+    let model = load(&scene.city.files, &LoadOptions::default(), &Quiet).expect("the files load");
+    Studio::new(Gpu::open().expect("an adapter"), Arc::new(model), &scene.city).expect("a studio")
+}
+
 /// A studio over the synthetic city.
 pub fn synthetic(buildings: u64) -> Studio {
     static MADE: AtomicU32 = AtomicU32::new(0);

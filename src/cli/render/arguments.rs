@@ -101,8 +101,13 @@ impl Arguments {
 
     /// The scene file, when one is named; else `files` are city files.
     pub fn scene(&self) -> Option<&PathBuf> {
-        self.files.first().filter(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")))
+        scene_among(&self.files)
     }
+}
+
+/// The scene file, when the first is one.
+pub fn scene_among(files: &[PathBuf]) -> Option<&PathBuf> {
+    files.first().filter(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")))
 }
 
 /// A picture's size, `1280x720`.

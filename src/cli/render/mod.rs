@@ -30,8 +30,14 @@ const PNG_LENSES: usize = 16;
 /// Draws the picture and everything that comes with it.
 pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     arguments.check()?;
-    let options = options_of(arguments, global);
-    let scene = scene_of(arguments, &options)?;
+    let options = options_of(arguments.scene(), global);
+    let mut scene = scene_of(&arguments.files, &arguments.settings, &options)?;
+    if let Some(size) = arguments.size {
+        scene.figure.size = size.0;
+    }
+    if let Some(samples) = arguments.samples {
+        scene.figure.samples = samples;
+    }
     check_masks(&arguments.aovs, &scene)?;
     let (mut studio, warnings) = open(&scene, &options, global)?;
     let has = |kind| arguments.aovs.iter().any(|aov| aov.kind == kind);
@@ -72,36 +78,30 @@ pub fn notes(scene: &Scene, options: &Options) -> Vec<Note> {
     picture::notes(Some(picture::hash(&scene_file::to_toml_for(scene, options))))
 }
 
-fn options_of(arguments: &Arguments, global: &GlobalArguments) -> Options {
-    match arguments.scene() {
+/// How paths of a scene file, or of the command line, are read.
+pub fn options_of(scene: Option<&PathBuf>, global: &GlobalArguments) -> Options {
+    match scene {
         Some(file) => Options { allow_outside: global.allow_outside, ..Options::for_file(file) },
         None => Options::for_command_line(),
     }
 }
 
-/// The scene that is drawn: the file's, or one of the city files alone, then every `--set` in order, then the options.
-fn scene_of(arguments: &Arguments, options: &Options) -> Outcome<Scene> {
-    let scene = match arguments.scene() {
+/// The scene that is drawn: the file's, or one of the city files alone, then every `--set` in order.
+pub fn scene_of(files: &[PathBuf], settings: &[String], options: &Options) -> Outcome<Scene> {
+    let scene = match arguments::scene_among(files) {
         Some(file) => scene_file::read(file, options).map_err(Failure::failed)?,
         None => {
             let mut scene = Scene::default();
-            scene.city.files.clone_from(&arguments.files);
+            scene.city.files = files.to_vec();
             scene
         }
     };
     let mut history = History::new(scene);
-    for assignment in &arguments.settings {
+    for assignment in settings {
         let command = scene_file::set(history.scene(), assignment).map_err(Failure::usage)?;
         history.apply(command);
     }
-    let mut scene = history.scene().clone();
-    if let Some(size) = arguments.size {
-        scene.figure.size = size.0;
-    }
-    if let Some(samples) = arguments.samples {
-        scene.figure.samples = samples;
-    }
-    Ok(scene)
+    Ok(history.scene().clone())
 }
 
 /// Refuses, before anything is drawn, what could not be written afterwards.

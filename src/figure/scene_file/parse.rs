@@ -325,7 +325,7 @@ impl<'o> SceneReader<'o> {
                         }
                         ("effect" | "class" | "blend" | "weight", text) => {
                             let (what, words): (String, &[&str]) = match key.as_str() {
-                                "class" => (format!("one of {}", CLASSES.join(", ")), &CLASSES),
+                                "class" => (format!("one of {}", CLASSES.join(", ")), CLASSES),
                                 "blend" => (format!("one of {}", Blend::WORDS.join(", ")), &Blend::WORDS),
                                 "weight" => ("a number 0 to 1".into(), &[]),
                                 _ => ("the name of an effect".into(), &[]),

@@ -1,0 +1,48 @@
+//! name = "edges"
+//! kind = "post"
+//! spec = "K2, K3"
+//! doc = "Lines where objects, faces or depths meet, as one would draw them (Saito and Takahashi 1990)."
+//!
+//! [[parameter]]
+//! name = "color"
+//! type = "color"
+//! default = "#1d1d1b"
+//! doc = "Colour of the lines."
+//!
+//! [[parameter]]
+//! name = "strength"
+//! type = "number"
+//! range = [0, 1]
+//! default = 0.85
+//! doc = "How dark they are."
+//!
+//! [[parameter]]
+//! name = "creases"
+//! type = "number"
+//! range = [0, 1]
+//! default = 0.6
+//! doc = "How dark lines between faces of one object are, as a share of the others."
+
+fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
+    if point.surface == NO_SURFACE {
+        return color;
+    }
+    let line = max(across(point, vec2i(1, 0), p.creases), across(point, vec2i(0, 1), p.creases));
+    // Lines of far things would be all there is.
+    let fade = clamp(90.0 * 0.02 / metres_per_pixel(point), 0.25, 1.0);
+    return mix(color, p.color, line * p.strength * fade);
+}
+
+// The line between the two neighbours on either side.
+fn across(point: Point, step: vec2i, creases: f32) -> f32 {
+    let before = beside(point, -step);
+    let after = beside(point, step);
+    // Stored depth is affine in the picture of a plane: what is left is a step or a bend. The nearer side has the line.
+    let bend = (2.0 * point.depth - before.depth - after.depth) / point.depth;
+    let gap = smoothstep(0.004, 0.012, bend);
+    let is_other = (before.object != point.object && before.depth < point.depth)
+        || (after.object != point.object && after.depth <= point.depth);
+    let turn = 1.0 - min(dot(before.normal, point.normal), dot(after.normal, point.normal));
+    let crease = creases * smoothstep(0.06, 0.2, turn);
+    return max(max(gap, crease), select(0.0, 1.0, is_other));
+}

@@ -1,0 +1,56 @@
+//! `veduta shader`: the generated WGSL of a scene (H4).
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::{
+    Failure, GlobalArguments, Outcome, output,
+    render::{
+        self,
+        arguments::{Shaders, Size, scene_among},
+    },
+};
+
+const EXAMPLES: &str = "\
+Examples:
+  veduta shader scene.toml
+  veduta shader scene.toml --shaders uber
+  veduta shader scene.toml --set lens.0.enabled=false > plain.wgsl
+
+What is printed is what the graphics card gets where the scene's lenses are in the picture (where there is none: the whole
+picture), validated; lens names are in comments.";
+
+/// Arguments of `veduta shader`.
+#[derive(Args, Clone, Debug, Default)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// One scene (.toml), or city files
+    #[arg(required = true, value_name = "SCENE|FILE")]
+    pub files: Vec<PathBuf>,
+    /// Change the scene, as for `render`
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub settings: Vec<String>,
+    /// Width and height in pixels: which lenses are in the picture may depend on it
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Which back end
+    #[arg(long, value_name = "HOW", value_enum, default_value_t)]
+    pub shaders: Shaders,
+}
+
+/// Prints it.
+pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
+    let file = scene_among(&arguments.files);
+    if file.is_some() && arguments.files.len() > 1 {
+        return Err(Failure::usage("shader: one scene (.toml) or any number of city files"));
+    }
+    let options = render::options_of(file, global);
+    let mut scene = render::scene_of(&arguments.files, &arguments.settings, &options)?;
+    if let Some(size) = arguments.size {
+        scene.figure.size = size.0;
+    }
+    let (studio, _) = render::open(&scene, &options, global)?;
+    let text = studio.shader(&scene, scene.figure.size, arguments.shaders.into()).map_err(Failure::failed)?;
+    output::print(&text)
+}
