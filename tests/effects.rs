@@ -8,7 +8,7 @@ use glam::DVec3;
 use studio::*;
 use veduta::{
     geom::Shape,
-    lens::{EffectUse, Parameter, color},
+    lens::{EffectUse, Lens, Parameter, color},
     render::picture::{Picture, Studio},
     scene::Scene,
     shader::{EffectDefinition, effects},
@@ -136,6 +136,153 @@ fn effects_do_what_their_arithmetic_says() {
     };
     assert!(stage.farthest(vec![paint("multiply")], blended(|a, b| a * b)) <= 1);
     assert!(stage.farthest(vec![paint("screen")], blended(|a, b| 1.0 - (1.0 - a) * (1.0 - b))) <= 1);
+}
+
+/// The picture blurred by hand, from its bytes: columns of rows, weights of the kernel, linear light.
+fn blurred(picture: &Picture, radius: f64) -> Vec<[f32; 3]> {
+    let [w, h] = picture.size.map(|s| s as i64);
+    let reach = radius.ceil() as i64;
+    let weight = |o: i64| (-0.5 * (2.5 * o as f64 / radius).powi(2)).exp();
+    let pass = |image: &[[f64; 3]], step: [i64; 2]| -> Vec<[f64; 3]> {
+        let at = |i: i64| {
+            let (x, y) = (i % w, i / w);
+            let (mut sum, mut weights) = ([0.0; 3], 0.0);
+            for o in -reach..=reach {
+                let (x, y) = (x + o * step[0], y + o * step[1]);
+                if (0..w).contains(&x) && (0..h).contains(&y) {
+                    let c = image[(y * w + x) as usize];
+                    sum = [0, 1, 2].map(|k| sum[k] + weight(o) * c[k]);
+                    weights += weight(o);
+                }
+            }
+            sum.map(|s| s / weights)
+        };
+        (0..w * h).map(at).collect()
+    };
+    let linear = |p: &[u8; 4]| color::linear_from_srgb([p[0], p[1], p[2]].map(|c| f32::from(c) / 255.0)).map(f64::from);
+    let image: Vec<[f64; 3]> = picture.rgba.iter().map(linear).collect();
+    let done = pass(&pass(&image, [1, 0]), [0, 1]);
+    done.into_iter().map(|c| color::srgb_from_linear(c.map(|c| c as f32))).collect()
+}
+
+#[test]
+fn blur_is_a_gaussian_of_the_lens_own_unmasked_picture() {
+    let mut stage = Stage::new();
+    let wanted = blurred(&stage.plain, 5.0);
+    let picture = stage.with(vec![with_numbers("blur", &[("radius", 5.0)])]);
+    let apart =
+        |i: usize| (0..3).map(|c| (wanted[i][c] * 255.0 - f32::from(picture.rgba[i][c])).abs()).fold(0.0_f32, f32::max);
+    let worst = (0..wanted.len()).filter(|i| stage.inside[*i]).map(apart).fold(0.0_f32, f32::max);
+    // Bytes of the plain picture are rounded, dark ones most in linear light; so are half floats and the result.
+    assert!(worst <= 2.0, "{worst}");
+    // Another lens' style is not sampled: the blurred lens beside a black one is as without it.
+    let mut scene = stage.scene(vec![with_numbers("blur", &[("radius", 5.0)])]);
+    let mut below = lens("below", vec![stage.ball.clone()], "darken");
+    below.effects = vec![with_numbers("darken", &[("amount", 1.0)])];
+    scene.lenses.insert(0, below);
+    let both = studio::picture(&mut stage.studio, &scene, SIZE);
+    assert_eq!(both.rgba, picture.rgba);
+}
+
+#[test]
+fn blend_modes_and_weights_are_their_arithmetic() {
+    use veduta::shader::Blend;
+    let mut stage = Stage::new();
+    let paint = |blend: Blend, weight: Option<f64>| {
+        let parameters =
+            [("color".to_owned(), Parameter::Text("#804020".into())), ("opacity".to_owned(), Parameter::Number(1.0))];
+        vec![EffectUse { blend: Some(blend), weight, parameters: parameters.into(), ..used("overlay") }]
+    };
+    let brown = color::linear_from_srgb([128.0, 64.0, 32.0].map(|c| c / 255.0));
+    for (blend, f) in [
+        (Blend::Replace, (|_, a| a) as fn(f32, f32) -> f32),
+        (Blend::Add, |b, a| (b + a).min(1.0)),
+        (Blend::Subtract, |b, a| (b - a).max(0.0)),
+        (Blend::Multiply, |b, a| b * a),
+        (Blend::Screen, |b, a| 1.0 - (1.0 - b) * (1.0 - a)),
+    ] {
+        let wanted = |weight: f32| {
+            move |c: [f32; 3]| {
+                let below = color::linear_from_srgb(c);
+                color::srgb_from_linear([0, 1, 2].map(|i| below[i] + (f(below[i], brown[i]) - below[i]) * weight))
+            }
+        };
+        // Where two bright ones leave a dark one, the byte that was rounded is far from the result: 20 dark steps.
+        let most = if blend == Blend::Subtract { 20 } else { 2 };
+        assert!(stage.farthest(paint(blend, None), wanted(1.0)) <= most, "{blend:?}");
+        if blend != Blend::Add {
+            assert!(stage.farthest(paint(blend, Some(0.25)), wanted(0.25)) <= 2, "{blend:?}, a quarter");
+        }
+        assert!(stage.farthest(paint(blend, Some(0.0)), |c| c) <= 1, "{blend:?}, nothing");
+    }
+}
+
+#[test]
+fn the_glow_of_one_lens_survives_the_colour_of_another() {
+    let mut stage = Stage::new();
+    let glow = EffectUse {
+        parameters: [
+            ("color".to_owned(), Parameter::Text("#800000".into())),
+            ("strength".to_owned(), Parameter::Number(1.0)),
+            ("rim".to_owned(), Parameter::Number(0.0)),
+        ]
+        .into(),
+        ..used("glow")
+    };
+    let flat = lens("flat", vec![stage.ball.clone()], "flat");
+    let glowing = Lens { effects: vec![glow], ..lens("glow", vec![stage.ball.clone()], "glow") };
+    let alone = picture(&mut stage.studio, &scene(stage.camera, vec![flat.clone()]), SIZE);
+    for lenses in [vec![glowing.clone(), flat.clone()], vec![flat, glowing]] {
+        let both = picture(&mut stage.studio, &scene(stage.camera, lenses), SIZE);
+        let (mut objects, red) = (0, color::linear_from_srgb([128.0 / 255.0, 0.0, 0.0])[0]);
+        for i in 0..alone.rgba.len() {
+            let is_object = alone.object_id.as_ref().is_some_and(|ids| ids[i] != 0);
+            if !stage.inside[i] || !is_object {
+                continue;
+            }
+            let below = color::linear_from_srgb([f32::from(alone.rgba[i][0]) / 255.0; 3])[0];
+            let wanted = color::srgb_from_linear([(below + red).min(1.0); 3])[0] * 255.0;
+            assert!((wanted - f32::from(both.rgba[i][0])).abs() <= 1.5, "pixel {i}: {:?}", both.rgba[i]);
+            assert_eq!(alone.rgba[i][1..], both.rgba[i][1..], "pixel {i}");
+            objects += 1;
+        }
+        assert!(objects > 500);
+    }
+}
+
+/// The passes that a lens with these effects adds to a plain frame, from what the kinds of effects are.
+fn predicted(effects: &[&str]) -> Vec<String> {
+    let filters = effects.iter().filter(|e| **e == "blur").count();
+    let mut names = vec!["geometry", "depth sprites", "clear lens masks"];
+    for _ in 0..filters {
+        names.extend(["unfiltered", "filter across", "filter down"]);
+    }
+    names.push("shade");
+    names.into_iter().map(str::to_owned).collect()
+}
+
+#[test]
+fn each_effect_and_each_pair_adds_its_own_passes_and_handlers() {
+    let mut stage = Stage::new();
+    let all: Vec<&str> = ready().map(|e| e.name.as_str()).collect();
+    let is_scene = |name: &str| effects().any(|e| e.name == name && e.kind == veduta::shader::EffectKind::Scene);
+    let singles = all.iter().map(|&e| vec![e]);
+    let pairs = all.iter().enumerate().flat_map(|(i, &a)| all[i + 1..].iter().map(move |&b| vec![a, b]));
+    for names in singles.chain(pairs).filter(|names| names.iter().filter(|n| is_scene(n)).count() < 2) {
+        let scene = stage.scene(names.iter().map(|n| used(n)).collect());
+        let statistics = studio::picture(&mut stage.studio, &scene, [48, 32]).statistics;
+        let passes: Vec<String> = statistics.passes.iter().map(|p| p.name.clone()).collect();
+        assert_eq!(passes, predicted(&names), "{names:?}");
+        let mut ran = statistics.handlers.clone();
+        ran.sort_unstable();
+        let mut wanted = names.clone();
+        wanted.sort_unstable();
+        assert_eq!(ran, wanted);
+        // Beside geometry: the sprite of a sphere, shading without and with the lens, of surfaces and of the sky.
+        let filters = names.iter().filter(|n| **n == "blur").count();
+        let pipelines = statistics.pipelines.names.iter().filter(|n| !n.starts_with("geometry"));
+        assert_eq!(pipelines.count(), 1 + 4 + 3 * filters, "{:?}", statistics.pipelines.names);
+    }
 }
 
 #[test]

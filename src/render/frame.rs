@@ -5,6 +5,8 @@
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
 //! depth sprites                 of all lens volumes in view
+//! unfiltered, filter across,    for each neighbourhood filter in view: its lens' own image over the lens' bounds
+//! filter down                   and what the filter reaches beyond them, and the filter
 //! shade                         outside the lenses' screen bounds without them, inside with them
 //! ```
 //!
@@ -20,8 +22,8 @@ use crate::{
         curtain::{self, Curtain},
         eye::{PictureTile, view_uniform},
         layout, light,
-        operations::{Operations, invoker_table},
-        pipelines::{GeometryKind, Key},
+        operations::{Filter, Operations, invoker_table},
+        pipelines::{GeometryKind, Key, ShadeTarget},
         renderer::{Renderer, STAGE_STRIDE},
         sprites::{self, Pages, Place},
         targets::Needs,
@@ -144,10 +146,11 @@ impl Renderer {
         let mut recorder = Recorder { timer, passes: Vec::new() };
         let (seen, pages) = seen_volumes(input);
         let sun_view = self.sun_view(input);
-        self.fit_targets(needs(input, &pages, self.colored(), self.smooth(), sun_view.is_some()));
         let plans = Plans::new(input, &seen);
+        let filters = plans.filters.len() as u32;
+        self.fit_targets(Needs { filters, ..needs(input, &pages, self.colored(), self.smooth(), sun_view.is_some()) });
         let (keys, is_uber) = self.prepare(input, &seen, &plans, sun_view.is_some());
-        self.upload(input, sun_view.as_ref(), &seen, is_uber.then_some(&plans))?;
+        self.upload(input, sun_view.as_ref(), &seen, &plans, is_uber)?;
         self.fit_groups();
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
@@ -161,6 +164,7 @@ impl Renderer {
                 self.clear_masks(&mut encoder, &mut recorder);
             }
         }
+        self.filter_passes(&mut encoder, &mut recorder, input, &seen, &plans.filters, &keys);
         self.shade_pass(&mut encoder, &mut recorder, input, &seen, &keys);
         if input.samples > 1 && input.sample + 1 == input.samples {
             self.resolve_pass(&mut encoder, &mut recorder);
@@ -240,13 +244,14 @@ impl Renderer {
         light::sun_view(&input.sun, &receivers, &city.bounds)
     }
 
-    /// Brings the small buffers up to date; `uber`: with the invoker table of these plans.
+    /// Brings the small buffers up to date; on the uber back end with the invoker table of the plans.
     fn upload(
         &mut self,
         input: &FrameInput,
         sun: Option<&View>,
         seen: &[SeenVolume],
-        uber: Option<&Plans>,
+        plans: &Plans,
+        is_uber: bool,
     ) -> Result<(), GpuError> {
         let Some(city) = &self.city else { return Ok(()) };
         let radius = light::radius_of(&city.buffers.bounds);
@@ -279,9 +284,22 @@ impl Renderer {
         let mut parameters = std::borrow::Cow::Borrowed(&input.operations.parameters);
         let (gpu, b) = (&self.gpu, &mut self.buffers);
         let mut stale = false;
-        if let Some(plans) = uber {
-            // Its module declares these arrays as long as they may be.
+        if is_uber || !plans.filters.is_empty() {
+            // Their modules declare this array as long as it may be.
             parameters.to_mut().resize(MOST_SLOTS as usize, [0.0; 4]);
+        }
+        let across_and_down = |f: &Filter| {
+            [[1, 0], [0, 1]].map(|step| layout::FilterStage {
+                step,
+                reach: f.reach as i32,
+                first: f.parameters,
+                size: input.tile.size.map(|s| s as i32),
+            })
+        };
+        let filter_stages: Vec<u8> =
+            plans.filters.iter().flat_map(across_and_down).flat_map(|stage| strided(&stage)).collect();
+        stale |= b.filter_stages.sync(gpu, &filter_stages)?;
+        if is_uber {
             volumes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             let table = invoker_table([&plans.context, &plans.lenses], handlers()).unwrap_or_default();
             stale |= b.invokers.sync(gpu, &table)?;
@@ -320,12 +338,12 @@ impl Renderer {
         }
         let clay = input.base == BaseStyle::Clay;
         let smooth = city.buffers.smooth;
-        let shade = |surface, program: Program| Key::Shade {
+        let shade_to = |target, surface, program: Program| Key::Shade {
             program,
             surface,
+            target,
             textured: colored && !clay,
             clay,
-            summed: input.samples > 1,
             shadows,
             smooth,
             background: match input.background {
@@ -334,10 +352,19 @@ impl Renderer {
                 Background::Sky => 0,
             },
         };
-        let both = |program: Program| vec![shade(true, program.clone()), shade(false, program)];
+        let target = if input.samples > 1 { ShadeTarget::Sums } else { ShadeTarget::Picture };
+        let both_to =
+            |target, program: Program| vec![shade_to(target, true, program.clone()), shade_to(target, false, program)];
+        let both = |program: Program| both_to(target, program);
         let parts = |context: Program, lenses: Program| ShadeKeys {
             context: both(context),
             lenses: if seen.is_empty() { Vec::new() } else { both(lenses) },
+            // Written out on either back end: a few steps without a lens.
+            filters: plans
+                .filters
+                .iter()
+                .map(|f| both_to(ShadeTarget::Unfiltered, Program::Specialised(f.plan.clone())))
+                .collect(),
         };
         let specialised =
             || parts(Program::Specialised(plans.context.clone()), Program::Specialised(plans.lenses.clone()));
@@ -358,6 +385,7 @@ impl Renderer {
             }
         };
         keys.extend(shade_keys.all().cloned());
+        keys.extend(plans.filters.iter().map(|f| Key::Filter(f.effect)));
         if input.samples > 1 {
             keys.push(Key::Resolve);
         }
@@ -614,6 +642,81 @@ impl Renderer {
         recorder.count(drawn, u64::from(drawn));
     }
 
+    /// Neighbourhood filters (K3): the lens' own image, unmasked, then the filter across and down.
+    fn filter_passes(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        input: &FrameInput,
+        seen: &[SeenVolume],
+        filters: &[Filter],
+        keys: &ShadeKeys,
+    ) {
+        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
+        let Some([across, down]) = &groups.filters else { return };
+        let whole = PictureTile::whole(input.tile.size);
+        for (layer, filter) in filters.iter().enumerate() {
+            let bounds = match filter.lens {
+                None => Some(whole),
+                Some(lens) => split(input.tile.size, seen.iter().filter(|v| v.lens == lens).map(|v| v.bounds)).0,
+            };
+            let Some(bounds) = bounds else { continue };
+            let lens: Vec<u32> = filter.lens.into_iter().collect();
+            let reach = filter.reach;
+            let mut pass_into =
+                |name: &'static str, target: &wgpu::TextureView, part: PictureTile, draw: &mut Draws| {
+                    let slot = recorder.begin(name, "main", &lens, true);
+                    let is_shading = target == &targets.unfiltered[0].view;
+                    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                        label: Some(name),
+                        color_attachments: &[Some(color_attachment(target, wgpu::Color::TRANSPARENT))],
+                        depth_stencil_attachment: is_shading.then_some(wgpu::RenderPassDepthStencilAttachment {
+                            view: &targets.depth.view,
+                            depth_ops: None, // only read
+                            stencil_ops: None,
+                        }),
+                        timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
+                        ..Default::default()
+                    });
+                    if let Some(timer) = &recorder.timer {
+                        timer.begin_count(&mut pass, slot);
+                    }
+                    scissor(&mut pass, part);
+                    let drawn = draw(&mut pass);
+                    if let Some(timer) = &recorder.timer {
+                        timer.end_count(&mut pass, slot);
+                    }
+                    drop(pass);
+                    recorder.count(drawn, u64::from(drawn));
+                };
+            let key = Key::Filter(filter.effect);
+            let stage = |direction: u64| ((2 * layer as u64 + direction) * STAGE_STRIDE) as u32;
+            let unfiltered = &targets.unfiltered;
+            pass_into("unfiltered", &unfiltered[0].view, grown(bounds, [reach, reach], whole), &mut |pass| {
+                pass.set_bind_group(0, &groups.view, &[]);
+                pass.set_bind_group(1, &groups.shade, &[]);
+                pass.set_bind_group(2, &groups.lenses, &[]);
+                for key in &keys.filters[layer] {
+                    pass.set_pipeline(self.pipelines.get(key));
+                    pass.draw(0..3, 0..1);
+                }
+                keys.filters[layer].len() as u32
+            });
+            pass_into("filter across", &unfiltered[1].view, grown(bounds, [0, reach], whole), &mut |pass| {
+                pass.set_pipeline(self.pipelines.get(&key));
+                pass.set_bind_group(0, across, &[stage(0)]);
+                pass.draw(0..3, 0..1);
+                1
+            });
+            pass_into("filter down", &targets.filtered.layers[layer], bounds, &mut |pass| {
+                pass.set_pipeline(self.pipelines.get(&key));
+                pass.set_bind_group(0, down, &[stage(1)]);
+                pass.draw(0..3, 0..1);
+                1
+            });
+        }
+    }
+
     fn resolve_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
         let slot = recorder.begin("resolve", "main", &[], true);
@@ -635,11 +738,13 @@ impl Renderer {
 struct ShadeKeys {
     context: Vec<Key>,
     lenses: Vec<Key>,
+    /// For each filter, what shades the image that it reads.
+    filters: Vec<Vec<Key>>,
 }
 
 impl ShadeKeys {
     fn all(&self) -> impl Iterator<Item = &Key> {
-        self.context.iter().chain(&self.lenses)
+        self.context.iter().chain(&self.lenses).chain(self.filters.iter().flatten())
     }
 }
 
@@ -647,18 +752,30 @@ impl ShadeKeys {
 struct Plans {
     context: Plan,
     lenses: Plan,
+    filters: Vec<Filter>,
 }
 
 impl Plans {
     fn new(input: &FrameInput, seen: &[SeenVolume]) -> Self {
         let haze = haze(input) > 0.0;
         let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
+        let filters = input.operations.filters(&lenses, haze);
         let lenses = match seen.is_empty() {
             true => Plan::default(),
             false => input.operations.lens_plan(&lenses, haze, wants_masks(input)),
         };
-        Self { context: input.operations.context_plan(haze), lenses }
+        Self { filters, context: input.operations.context_plan(haze), lenses }
     }
+}
+
+/// Draws into a pass; says how often.
+type Draws<'a> = dyn FnMut(&mut wgpu::RenderPass) -> u32 + 'a;
+
+/// A rectangle with so many pixels more on either side, inside the whole.
+fn grown(part: PictureTile, by: [u32; 2], whole: PictureTile) -> PictureTile {
+    let low: [u32; 2] = std::array::from_fn(|i| part.origin[i].saturating_sub(by[i]));
+    let high: [u32; 2] = std::array::from_fn(|i| (part.origin[i] + part.size[i] + by[i]).min(whole.size[i]));
+    PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] }
 }
 
 fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool) -> Key {
@@ -723,6 +840,7 @@ fn needs(input: &FrameInput, pages: &Pages, colors: bool, smooth: bool, shadows:
         sums: input.samples > 1,
         mask_layers: if input.masks && pages.count > 0 { 3 * input.lens_count.div_ceil(32) } else { 0 },
         sprites: [pages.size[0], pages.size[1], pages.count],
+        filters: 0,
         shadow: if shadows { light::SHADOW_SIZE } else { 0 },
     }
 }

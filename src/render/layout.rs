@@ -145,6 +145,16 @@ pub struct LensVolume {
     pub pad_0: [u32; 3],
 }
 
+/// `pass/filter.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct FilterStage {
+    pub step: [i32; 2],
+    pub reach: i32,
+    pub first: u32,
+    pub size: [i32; 2],
+}
+
 /// `shader::uber`: one entry of the invoker table.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -216,6 +226,7 @@ mod tests {
     fn host_and_wgsl_structs_are_the_same() {
         let lens = PlanLens { number: 0, volumes: 1, outline: None };
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
+        let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
         let checks = [
             (
@@ -273,6 +284,7 @@ mod tests {
                 }),
             ),
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin })),
+            (&Module::Filter(blur), host!(FilterStage { step, reach, first, size })),
             (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
             (&uber, host!(Part { material, light, styles, outlines, masks, pad_0 })),
             (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),

@@ -33,6 +33,27 @@ pub struct Operation {
     pub blend: Option<Blend>,
 }
 
+impl Operation {
+    fn is_filter(&self) -> bool {
+        shader::handlers()[self.effect as usize].kind == EffectKind::Filter
+    }
+}
+
+/// A neighbourhood filter of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Filter {
+    /// Its handler.
+    pub effect: u32,
+    /// Whose it is; `None`: the context's.
+    pub lens: Option<u32>,
+    /// Its first slot of the parameters.
+    pub parameters: u32,
+    /// How far it looks to either side, pixels.
+    pub reach: u32,
+    /// What makes the image that it filters.
+    pub plan: Plan,
+}
+
 /// The operations of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Operations {
@@ -122,14 +143,51 @@ impl Operations {
 
     /// The list as steps; `place` finds a lens in the plan.
     fn steps(&self, place: impl Fn(u32) -> Option<u32>) -> Vec<Step> {
+        let mut filters = 0;
         let step = |operation: &Operation| {
             let scope = match operation.lens {
                 None => Scope::Everywhere,
                 Some(lens) => Scope::Lens(place(lens)?, class_test(operation.class)),
             };
-            Some(Step { effect: operation.effect, scope, parameters: operation.parameters, blend: operation.blend })
+            let layer = filters;
+            filters += u32::from(operation.is_filter());
+            Some(Step {
+                layer,
+                effect: operation.effect,
+                scope,
+                parameters: operation.parameters,
+                blend: operation.blend,
+            })
         };
         self.list.iter().filter_map(step).collect()
+    }
+
+    /// The neighbourhood filters of the context and of the lenses `seen`, in the order of their layers: each with the
+    /// plan of the image it filters. That is its lens' own, unmasked: what the context does, then what the lens does to
+    /// the same class before it (K3).
+    pub fn filters(&self, seen: &[u32], haze: bool) -> Vec<Filter> {
+        let is_seen = |o: &&Operation| o.lens.is_none_or(|lens| seen.contains(&lens));
+        let operations: Vec<&Operation> = self.list.iter().filter(is_seen).collect();
+        let layer_of = |i: usize| operations[..i].iter().filter(|o| o.is_filter()).count() as u32;
+        let filter = |(i, operation): (usize, &&Operation)| {
+            let is_own = |o: &Operation| o.lens.is_none() || (o.lens, o.class) == (operation.lens, operation.class);
+            let before = operations[..i].iter().enumerate().filter(|(_, o)| is_own(o));
+            let steps = before.map(|(k, o)| Step {
+                effect: o.effect,
+                scope: Scope::Everywhere,
+                parameters: o.parameters,
+                layer: layer_of(k),
+                blend: o.blend,
+            });
+            Filter {
+                effect: operation.effect,
+                lens: operation.lens,
+                parameters: operation.parameters,
+                reach: self.parameters[operation.parameters as usize][0].ceil() as u32,
+                plan: Plan { steps: steps.collect(), haze, ..Plan::default() },
+            }
+        };
+        operations.iter().enumerate().filter(|(_, o)| o.is_filter()).map(filter).collect()
     }
 
     fn add(&mut self, effect: &EffectUse, lens: Option<u32>, model: &CityModel) -> Result<(), ThematicError> {
@@ -178,7 +236,7 @@ pub fn invoker_table(plans: [&Plan; 2], handlers: &[EffectDefinition]) -> Result
             [first, invokers.len() as u32]
         };
         let (material, light) = (of(&[EffectKind::Material]), of(&[EffectKind::Light]));
-        let styles = of(&[EffectKind::Scene, EffectKind::Post]);
+        let styles = of(&[EffectKind::Scene, EffectKind::Post, EffectKind::Filter]);
         let mut of_lenses = |is_one: &dyn Fn(&PlanLens) -> bool| {
             let first = invokers.len() as u32;
             let ones = (0..).zip(&plan.lenses).filter(|(_, lens)| is_one(lens));
@@ -217,7 +275,7 @@ fn invoker(plan: &Plan, step: &Step, handler: &EffectDefinition) -> layout::Invo
         scope: scope_number(step.scope),
         first_volume: volumes.start,
         volumes: volumes.len() as u32,
-        parameters: step.parameters,
+        parameters: if handler.kind == EffectKind::Filter { step.layer } else { step.parameters },
         blend: step.blend.map_or(0, Blend::number),
         weight: step.weight(handler).unwrap_or(0),
         number: u32::from(handler.kind == EffectKind::Scene),

@@ -23,7 +23,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{CitySpec, Scene},
-    shader::{MOST_SLOTS, MOST_VOLUMES},
+    shader::{MOST_SLOTS, MOST_VOLUMES, effect_file::MOST_REACH},
     view::{Camera, CameraError, View, first_view},
 };
 
@@ -31,8 +31,8 @@ use crate::{
 const HAZE: f64 = 0.035;
 /// Longest side of a target; larger pictures are drawn in tiles.
 const TILE: u32 = 4096;
-/// Pixels by which tiles overlap, so that what looks at neighbours (outlines) has them.
-const OVERLAP: u32 = 8;
+/// Pixels by which tiles overlap, so that what looks at neighbours (outlines, filters) has them.
+const OVERLAP: u32 = 8 + MOST_REACH;
 
 /// What can go wrong while drawing.
 #[derive(Debug, thiserror::Error)]

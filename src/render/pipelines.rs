@@ -22,6 +22,8 @@ pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 pub const OWN_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// One bit per lens and class.
 pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// Linear colours times opacity, to 11 bits: what neighbourhood filters read and write.
+pub const FILTERED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Stored depths of an entry and of an exit: volumetric depth sprites.
 pub const SPRITES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// The picture: sRGB bytes.
@@ -55,8 +57,8 @@ pub enum Key {
         textured: bool,
         /// One clay colour.
         clay: bool,
-        /// Weighted by coverage, for the sum of samples.
-        summed: bool,
+        /// Where it goes.
+        target: ShadeTarget,
         /// There is a shadow map.
         shadows: bool,
         /// Normals are in the target.
@@ -64,10 +66,23 @@ pub enum Key {
         /// What is behind the city, as `pass/shade.wgsl` numbers it.
         background: u32,
     },
+    /// One direction of a neighbourhood filter, by its handler.
+    Filter(u32),
     /// The mean of samples.
     Resolve,
     /// One lit pass without anything else: what benchmarks compare with.
     Bare,
+}
+
+/// Where shading goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ShadeTarget {
+    /// The picture.
+    Picture,
+    /// The sum of samples, weighted by coverage.
+    Sums,
+    /// What a filter reads, weighted by coverage.
+    Unfiltered,
 }
 
 /// Kinds of geometry sections, as far as pipelines differ.
@@ -99,6 +114,8 @@ pub struct Layouts {
     pub shade: wgpu::BindGroupLayout,
     /// Shade, group 2: sprites, colours, parameters, volumes, masks.
     pub lenses: wgpu::BindGroupLayout,
+    /// Filter, group 0: the stage at a dynamic offset, the image, parameters.
+    pub filter: wgpu::BindGroupLayout,
     /// Resolve, group 0.
     pub resolve: wgpu::BindGroupLayout,
     /// Where samples are summed: f32 where it can be blended, else f16.
@@ -233,7 +250,13 @@ impl Layouts {
                     (3, S::FRAGMENT, uniform()),
                     (4, S::FRAGMENT, masks),
                     (5, S::FRAGMENT, uniform()),
+                    (6, S::FRAGMENT, image(T::Float { filterable: false }, D::D2Array)),
                 ],
+            ),
+            filter: layout(
+                gpu,
+                "filter",
+                &[(0, S::FRAGMENT, dynamic), (1, S::FRAGMENT, float), (2, S::FRAGMENT, uniform())],
             ),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
             sums,
@@ -259,6 +282,7 @@ impl Layouts {
             Key::Geometry { .. } | Key::Shadow | Key::Bare => vec![Some(&self.view), Some(&self.city)],
             Key::Sprite(_) => vec![Some(&self.view), Some(&self.planes), Some(&self.stage)],
             Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
+            Key::Filter(_) => vec![Some(&self.filter)],
             Key::Resolve => vec![Some(&self.resolve)],
         };
         let name = key.name();
@@ -389,6 +413,7 @@ impl Key {
             Self::Shadow => Module::Shadow,
             Self::Sprite(_) => Module::Sprite,
             Self::Shade { program, .. } => Module::Shade(program.clone()),
+            Self::Filter(effect) => Module::Filter(*effect),
             Self::Resolve => Module::Resolve,
             Self::Bare => Module::Bare,
         }
@@ -411,16 +436,18 @@ impl Key {
             }
             Self::Shadow => "shadow".to_owned(),
             Self::Sprite(kind) => format!("depth sprite of a {}", shape_name(*kind)),
-            Self::Shade { surface, textured, clay, summed, shadows, .. } => {
+            Self::Shade { surface, textured, clay, target, shadows, .. } => {
                 let list = [
                     (!*surface, "background"),
                     (*textured, "textured"),
                     (*clay, "clay"),
-                    (*summed, "summed"),
+                    (*target == ShadeTarget::Sums, "summed"),
+                    (*target == ShadeTarget::Unfiltered, "unfiltered"),
                     (*shadows, "shadows"),
                 ];
                 format!("{}{}", self.module().name(), flags(&list))
             }
+            Self::Filter(_) => self.module().name(),
             Self::Resolve => "resolve".to_owned(),
             Self::Bare => "bare lit draw".to_owned(),
         }
@@ -436,10 +463,10 @@ impl Key {
                 }
                 list
             }
-            Self::Shade { textured, clay, summed, shadows, smooth, background, .. } => vec![
+            Self::Shade { textured, clay, target, shadows, smooth, background, .. } => vec![
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
-                ("SUMMED", flag(*summed)),
+                ("SUMMED", flag(*target != ShadeTarget::Picture)),
                 ("SHADOWS", flag(*shadows)),
                 ("SMOOTH", flag(*smooth)),
                 ("BACKGROUND", f64::from(*background)),
@@ -492,7 +519,7 @@ impl Key {
                 targets.truncate(if *measured { 3 } else { 1 + usize::from(*colored) });
                 targets
             }
-            Self::Shade { summed: true, .. } => {
+            Self::Shade { target: ShadeTarget::Sums, .. } => {
                 let add = wgpu::BlendComponent {
                     src_factor: wgpu::BlendFactor::One,
                     dst_factor: wgpu::BlendFactor::One,
@@ -505,6 +532,7 @@ impl Key {
                 })]
             }
             Self::Sprite(_) => vec![Some(SPRITES.into())],
+            Self::Filter(_) | Self::Shade { target: ShadeTarget::Unfiltered, .. } => vec![Some(FILTERED.into())],
             Self::Shade { .. } | Self::Resolve | Self::Bare => vec![Some(PICTURE.into())],
             _ => Vec::new(),
         }
@@ -518,7 +546,7 @@ impl Key {
             // The triangle lies at depth 0, where nothing is stored.
             Self::Shade { surface: true, .. } => C::Less,
             Self::Shade { surface: false, .. } => C::Equal,
-            Self::Sprite(_) | Self::Resolve => return None,
+            Self::Sprite(_) | Self::Filter(_) | Self::Resolve => return None,
         };
         Some(wgpu::DepthStencilState {
             format: DEPTH,

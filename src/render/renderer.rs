@@ -62,6 +62,7 @@ pub(super) struct Buffers {
     pub volumes: Synced,
     pub parameters: Synced,
     pub invokers: Synced,
+    pub filter_stages: Synced,
     pub object_colors: Synced,
     pub resolve: Synced,
 }
@@ -75,6 +76,8 @@ pub(super) struct Groups {
     pub sprite_stage: wgpu::BindGroup,
     pub shade: wgpu::BindGroup,
     pub lenses: wgpu::BindGroup,
+    /// Across, and down; where the frame has filters.
+    pub filters: Option<[wgpu::BindGroup; 2]>,
     pub resolve: wgpu::BindGroup,
 }
 
@@ -93,6 +96,7 @@ impl Renderer {
             volumes: uniform("lens volumes")?,
             parameters: uniform("parameters")?,
             invokers: uniform("invoker table")?,
+            filter_stages: uniform("filter stages")?,
             object_colors: storage("object colours")?,
             resolve: uniform("resolve")?,
         };
@@ -220,8 +224,24 @@ impl Renderer {
                     (3, whole(b.volumes.buffer())),
                     (4, all_of(&targets.masks)),
                     (5, whole(b.invokers.buffer())),
+                    (6, all_of(&targets.filtered)),
                 ],
             ),
+            filters: (targets.needs.filters > 0).then(|| {
+                targets.unfiltered.each_ref().map(|image| {
+                    let stage = wgpu::BufferBinding {
+                        buffer: b.filter_stages.buffer(),
+                        offset: 0,
+                        size: wgpu::BufferSize::new(size_of::<layout::FilterStage>() as u64),
+                    };
+                    let entries = [
+                        (0, wgpu::BindingResource::Buffer(stage)),
+                        (1, all_of(image)),
+                        (2, whole(b.parameters.buffer())),
+                    ];
+                    group(gpu, "filter", &p.filter, &entries)
+                })
+            }),
             resolve: group(gpu, "resolve", &p.resolve, &[(0, whole(b.resolve.buffer())), (1, all_of(&targets.sums))]),
         });
     }

@@ -2,7 +2,7 @@
 
 use crate::{
     gpu::Gpu,
-    render::pipelines::{CODES, COLORS, DEPTH, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES},
+    render::pipelines::{CODES, COLORS, DEPTH, FILTERED, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES},
 };
 
 /// What a frame needs beside codes, depth and the picture.
@@ -22,6 +22,8 @@ pub struct Needs {
     pub mask_layers: u32,
     /// Width and height of the pages of depth sprites and how many there are, 0 for none.
     pub sprites: [u32; 3],
+    /// Layers of what neighbourhood filters make, 0 for none.
+    pub filters: u32,
     /// Side of the shadow map, 0 for none.
     pub shadow: u32,
 }
@@ -58,6 +60,10 @@ pub struct Targets {
     pub masks: Target,
     /// Pages of volumetric depth sprites: stored depths of entries and exits.
     pub sprites: Target,
+    /// What a filter reads, and what is half done (1×1 where not needed).
+    pub unfiltered: [Target; 2],
+    /// What filters made, one layer each.
+    pub filtered: Target,
     /// Depth from the sun (1×1 where not needed).
     pub shadow: Target,
 }
@@ -97,6 +103,14 @@ impl Targets {
             sums: make("sums", full(needs.sums), sums, drawn),
             masks: make_any("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING, true),
             sprites: make_any("depth sprites", needs.sprites, SPRITES, drawn, true),
+            unfiltered: ["unfiltered", "half filtered"].map(|l| make(l, full(needs.filters > 0), FILTERED, drawn)),
+            filtered: make_any(
+                "filtered",
+                if needs.filters > 0 { [w, h, needs.filters] } else { [1; 3] },
+                FILTERED,
+                drawn,
+                true,
+            ),
             shadow: make("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn),
         }
     }

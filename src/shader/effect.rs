@@ -28,6 +28,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("overlay"),
     built_in!("discard-color"),
     built_in!("posterise"),
+    built_in!("blur"),
     built_in!("edges"),
     built_in!("iso-lines"),
     built_in!("brick"),
@@ -53,11 +54,13 @@ pub enum EffectKind {
     Air,
     /// Changes the colour of the lit picture.
     Post,
+    /// The same, by what is beside it: the kernel of a separable filter. Runs among the post styles.
+    Filter,
 }
 
 impl EffectKind {
     /// All, in the order of their execution.
-    pub const ALL: [Self; 5] = [Self::Material, Self::Light, Self::Scene, Self::Air, Self::Post];
+    pub const ALL: [Self; 6] = [Self::Material, Self::Light, Self::Scene, Self::Air, Self::Post, Self::Filter];
 
     /// As people read it.
     pub fn name(self) -> &'static str {
@@ -67,6 +70,7 @@ impl EffectKind {
             Self::Scene => "scene style",
             Self::Air => "air",
             Self::Post => "post style",
+            Self::Filter => "filter",
         }
     }
 
@@ -76,7 +80,13 @@ impl EffectKind {
             Self::Material => ("material", "Material"),
             Self::Light => ("arriving", "vec3f"),
             Self::Scene | Self::Air | Self::Post => ("color", "vec3f"),
+            Self::Filter => ("offset", "f32"),
         }
+    }
+
+    /// Whether its handlers take turns in lens order on the colour.
+    pub fn is_style(self) -> bool {
+        matches!(self, Self::Scene | Self::Post | Self::Filter)
     }
 
     /// Whether its handlers run before the surface has a colour.

@@ -39,6 +39,8 @@ const MOST_BYTES: usize = 128 * 1024;
 const MOST_ROUNDS: u32 = 1024;
 /// Words and marks that `effect` may run through for one pixel, loops and calls multiplied out.
 const MOST_STEPS: u64 = 1_000_000;
+/// Pixels that a filter reaches to either side.
+pub const MOST_REACH: u32 = 64;
 /// Keys of a use of an effect that are no parameters.
 pub const RESERVED: &[&str] = &["effect", "class", "blend", "weight"];
 /// What every effect may use beside its own names.
@@ -175,6 +177,14 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
             .parameters
             .push(parameter.definition().map_err(|(place, message)| file.error(place.map_or(at(span), &at), message))?);
     }
+    let reaches = |p: &ParameterDefinition| {
+        p.name == "radius" && matches!(p.kind, ParameterKind::Number { max, .. } if max <= f64::from(MOST_REACH))
+    };
+    if effect.kind == EffectKind::Filter && !effect.parameters.first().is_some_and(reaches) {
+        let message =
+            format!("expected a first parameter \"radius\", a number of at most {MOST_REACH}: how far it reaches");
+        return Err(file.error(0, message));
+    }
     let tokens = wgsl::tokens(text);
     let declared = wgsl::declarations(text, &tokens);
     if let Some(bad) = declared.iter().find(|d| matches!(d.keyword, "var" | "override")) {
@@ -200,6 +210,9 @@ fn body_of(text: &str) -> &str {
 fn signature(effect: &EffectDefinition) -> String {
     let parameters = if effect.slots() > 0 { ", p: Parameters" } else { "" };
     let (name, type_name) = effect.kind.subject();
+    if effect.kind == EffectKind::Filter {
+        return format!("fn effect({name}: {type_name}{parameters}) -> {type_name}");
+    }
     format!("fn effect({name}: {type_name}, point: Point{parameters}) -> {type_name}")
 }
 
@@ -371,13 +384,15 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
     check_control_flow(&file)?;
     check_cost(&file)?;
     if effect.mode != Mode::Local || effect.kind == EffectKind::Air {
-        let message =
-            "mode, and kind = \"air\", are for handlers of the program; expected kind = material, light, scene or post";
+        let message = "mode, and kind = \"air\", are for handlers of the program; expected kind = material, light, scene, post or filter";
         return Err(file.error(0, message));
     }
-    let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, blend: None }];
-    let program = Program::Specialised(Plan { steps, ..Plan::default() });
-    let source = Module::Shade(program).source_with(std::slice::from_ref(&effect));
+    let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, layer: 0, blend: None }];
+    let module = match effect.kind {
+        EffectKind::Filter => Module::Filter(0),
+        _ => Module::Shade(Program::Specialised(Plan { steps, ..Plan::default() })),
+    };
+    let source = module.source_with(std::slice::from_ref(&effect));
     let body = body_of(&renamed.text);
     let begin = source.find(body).unwrap_or(0);
     let before = renamed.text.len() - body.len();
@@ -578,7 +593,7 @@ mod tests {
             ),
             (
                 HEADER.replace("post", "past"),
-                "my.wgsl:2:12: unknown variant `past`, expected one of `material`, `light`, `scene`, `air`, `post`",
+                "my.wgsl:2:12: unknown variant `past`, expected one of `material`, `light`, `scene`, `air`, `post`, `filter`",
             ),
             (HEADER.replace("spec", "spek"), "my.wgsl:3:5: unknown field `spek`"),
             (HEADER.to_owned(), "my.wgsl:5:1: expected `fn effect(color: vec3f, point: Point) -> vec3f`"),

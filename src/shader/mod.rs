@@ -31,10 +31,12 @@ files! {
     MATERIAL = "lib/material.wgsl";
     LENS = "lib/lens.wgsl";
     OUTLINE = "lib/outline.wgsl";
+    FILTERED = "lib/filter.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
     SHADOW = "pass/shadow.wgsl";
     SPRITE = "pass/sprite.wgsl";
     SHADE = "pass/shade.wgsl";
+    FILTER = "pass/filter.wgsl";
     RESOLVE = "pass/resolve.wgsl";
     BARE = "pass/bare.wgsl";
 }
@@ -50,6 +52,8 @@ pub enum Module {
     Sprite,
     /// Deferred shading, and what the lenses make of it.
     Shade(Program),
+    /// One direction of a neighbourhood filter: the number of its handler.
+    Filter(u32),
     /// The mean of samples.
     Resolve,
     /// The bare lit draw that benchmarks compare with.
@@ -71,6 +75,7 @@ impl Module {
                 let lenses = if program.has().lenses { " lenses" } else { "" };
                 format!("shade{uber}{names}{lenses}")
             }
+            Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
             Self::Resolve => "resolve".to_owned(),
             Self::Bare => "bare".to_owned(),
         }
@@ -93,6 +98,7 @@ impl Module {
             Self::Shadow => &[VIEW, SURFACE, SHADOW],
             Self::Sprite => &[VIEW, SHAPE, SPRITE],
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
+            Self::Filter(_) => &[FILTER],
             Self::Resolve => &[RESOLVE],
             Self::Bare => &[VIEW, SURFACE, BARE],
         };
@@ -105,6 +111,7 @@ impl Module {
                 text.replace("//@handlers\n", &specialised::source(plan, handlers, lenses))
             }
             Self::Shade(Program::Uber(uber)) => text.replace("//@handlers\n", &uber::source(uber, handlers)),
+            Self::Filter(effect) => text.replace("//@handlers\n", &specialised::kernel(&handlers[*effect as usize])),
             _ => text,
         }
     }
@@ -112,13 +119,15 @@ impl Module {
     /// The libraries that shading calls, and no other.
     fn files_of_shade(program: &Program, handlers: &[EffectDefinition]) -> Vec<(&'static str, &'static str)> {
         let parts = program.has();
-        let materials = program.effects().iter().any(|&e| handlers[e as usize].kind == EffectKind::Material);
+        let has = |kind| program.effects().iter().any(|&e| handlers[e as usize].kind == kind);
+        let (materials, filters) = (has(EffectKind::Material), has(EffectKind::Filter));
         let mut files = vec![VIEW, SURFACE, COLOR, LIGHT];
         let optional = [
             (parts.blends || materials, BLEND),
             (materials, MATERIAL),
             (parts.lenses, LENS),
             (parts.outlines, OUTLINE),
+            (filters, FILTERED),
         ];
         files.extend(optional.iter().filter(|(is_used, _)| *is_used).map(|(_, file)| *file));
         files.push(SHADE);
@@ -131,7 +140,7 @@ mod tests {
     use super::*;
 
     fn step(effect: u32, scope: Scope, blend: Option<Blend>) -> Step {
-        Step { effect, scope, parameters: 0, blend }
+        Step { effect, scope, parameters: 0, layer: 0, blend }
     }
 
     /// The numbers of all effects.
@@ -174,6 +183,8 @@ mod tests {
         let plain = [Program::Specialised(Plan::default()), Program::Uber(Uber::default())];
         let mut modules = vec![Module::Geometry, Module::Shadow, Module::Sprite, Module::Resolve, Module::Bare];
         modules.extend(plain.map(Module::Shade));
+        let is_filter = |e: &u32| handlers()[*e as usize].kind == EffectKind::Filter;
+        modules.extend(numbers().into_iter().filter(is_filter).map(Module::Filter));
         modules
     }
 

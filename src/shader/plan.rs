@@ -41,6 +41,8 @@ pub struct Step {
     pub scope: Scope,
     /// Its first `vec4f` of the parameters.
     pub parameters: u32,
+    /// Of a filter: the layer that holds what it made.
+    pub layer: u32,
     /// How it is laid over what is below it; its weight follows its parameters. `None`: it replaces that.
     pub blend: Option<Blend>,
 }
@@ -199,6 +201,11 @@ impl Plan {
     /// Whether some lens shows its silhouette.
     pub fn has_outlines(&self) -> bool {
         self.lenses.iter().any(|l| l.outline.is_some())
+    }
+
+    /// Whether some effect is a filter.
+    pub fn has_filters(&self, handlers: &[EffectDefinition]) -> bool {
+        self.steps.iter().any(|s| handlers[s.effect as usize].kind == EffectKind::Filter)
     }
 
     /// Whether some effect is blended.

@@ -54,7 +54,7 @@ impl Writer<'_> {
     fn used(&self) -> impl Iterator<Item = &EffectDefinition> {
         let own = self.plan.effects();
         let is_used = move |(i, h): &(usize, &EffectDefinition)| match h.mode {
-            Mode::Local => own.contains(&(*i as u32)),
+            Mode::Local => own.contains(&(*i as u32)) && h.kind != EffectKind::Filter,
             Mode::Optional => self.needs_optional(h.kind),
             Mode::Global => self.plan.haze && self.needs_optional(EffectKind::Scene),
             Mode::Ignore => false,
@@ -102,9 +102,12 @@ impl Writer<'_> {
             0 => String::new(),
             _ => format!(", {}({}u)", handler.own("parameters"), step.parameters),
         };
-        let mut call = format!("{name}({subject}, {point}{own})");
+        let mut call = match handler.kind {
+            EffectKind::Filter => format!("filtered_at({}u, {point})", step.layer),
+            _ => format!("{name}({subject}, {point}{own})"),
+        };
         let is_material = handler.kind == EffectKind::Material;
-        if handler.is_users {
+        if handler.is_users && handler.kind != EffectKind::Filter {
             let contained = if is_material { "contained_material" } else { "contained" };
             call = format!("{contained}({call})");
         }
@@ -182,7 +185,7 @@ impl Writer<'_> {
 
     /// Scene styles and post styles, in lens order: what replaces the colour leaves nothing of the styles below (C5).
     fn styled(&self) -> String {
-        let is_style = |(_, h): &(&Step, &EffectDefinition)| matches!(h.kind, EffectKind::Scene | EffectKind::Post);
+        let is_style = |(_, h): &(&Step, &EffectDefinition)| h.kind.is_style();
         let all = self.plan.steps.iter().map(|s| (s, &self.handlers[s.effect as usize])).filter(is_style);
         let lines: String = all.map(|(step, handler)| self.statement(step, handler)).collect();
         let head = "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n";
@@ -247,6 +250,13 @@ impl Writer<'_> {
         text.push_str("}\n");
         text
     }
+}
+
+/// A filter's kernel, for `pass/filter.wgsl`.
+pub(super) fn kernel(filter: &EffectDefinition) -> String {
+    let own = if filter.slots() == 0 { String::new() } else { format!(", {}(stage.first)", filter.own("parameters")) };
+    let source = filter.source.trim_end();
+    format!("{source}\n\nfn kernel(offset: f32) -> f32 {{\n    return {}(offset{own});\n}}\n", filter.wgsl_name())
 }
 
 /// Where masks are written.

@@ -27,14 +27,14 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
         text.push_str(MASKS);
     }
     text.push('\n');
-    for (_, effect) in used(uber, handlers) {
+    for (_, effect) in used(uber, handlers).filter(|(_, h)| h.kind != EffectKind::Filter) {
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
     }
     text.push_str(&TABLE.replace("MOST_INVOKERS", &format!("{MOST_INVOKERS}")));
     text.push_str(if uber.lenses { CLASSES } else { NO_CLASSES });
     text.push_str(&invoke(uber, "material", &[EffectKind::Material], handlers));
     text.push_str(&invoke(uber, "light", &[EffectKind::Light], handlers));
-    text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post], handlers));
+    text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post, EffectKind::Filter], handlers));
     text.push_str(&shade(uber, handlers));
     text.push_str(&styled(uber, handlers));
     text.push_str(if uber.outlines { OUTLINES } else { NO_OUTLINES });
@@ -81,9 +81,12 @@ fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[EffectDefin
             0 => String::new(),
             _ => format!(", {}(by.parameters)", handler.own("parameters")),
         };
-        let call = format!("{name}(below, point{own})");
+        let call = match handler.kind {
+            EffectKind::Filter => "filtered_at(by.parameters, point)".to_owned(),
+            _ => format!("{name}(below, point{own})"),
+        };
         let call = match (handler.is_users, handler.kind) {
-            (false, _) => call,
+            (false, _) | (_, EffectKind::Filter) => call,
             (true, EffectKind::Material) => format!("contained_material({call})"),
             (true, _) => format!("contained({call})"),
         };
@@ -135,7 +138,7 @@ fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
 /// Scene styles and post styles, in lens order.
 fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let has = |kind| has(uber, kind, handlers);
-    if !has(EffectKind::Scene) && !has(EffectKind::Post) {
+    if !EffectKind::ALL.iter().any(|&kind| kind.is_style() && has(kind)) {
         return "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n    return start;\n}\n\n"
             .to_owned();
     }
