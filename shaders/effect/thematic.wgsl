@@ -11,6 +11,18 @@
 //! doc = "Name of the attribute; an object without it takes its parent's."
 //!
 //! [[parameter]]
+//! name = "label"
+//! type = "text"
+//! without = "the attribute's name"
+//! doc = "What the legend calls the attribute."
+//!
+//! [[parameter]]
+//! name = "unit"
+//! type = "text"
+//! without = "none"
+//! doc = "Unit of the attribute, for the legend."
+//!
+//! [[parameter]]
 //! name = "ramp"
 //! type = "word"
 //! words = ["viridis", "cividis", "purple-orange"]

@@ -7,7 +7,7 @@ use clap::Args;
 use crate::{
     cli::{Failure, GlobalArguments, Outcome, output, render, terminal},
     figure::{
-        picture,
+        self, picture,
         scene_file::{self, Options},
     },
     render::picture::{Request, Studio},
@@ -89,7 +89,8 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             backend: Default::default(),
         };
         let progress = terminal::Progress::spinning(&format!("drawing {name}"), global);
-        let drawn = studio.render(&scene, &request).map_err(|error| Failure::failed(format!("{name}: {error}")))?;
+        let drawn =
+            figure::draw(&mut studio, &scene, &request).map_err(|error| Failure::failed(format!("{name}: {error}")))?;
         drop(progress);
         let file = folder.join(format!("{name}.png"));
         picture::save_picture(&file, drawn.size, &drawn.rgba, true, &render::notes(&scene, &options))

@@ -31,6 +31,21 @@ pub struct LegendEntry {
     pub color: Srgb,
     /// Objects drawn in it.
     pub count: u64,
+    /// What kind of line it is.
+    pub kind: LegendKind,
+}
+
+/// Kinds of lines of a legend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LegendKind {
+    /// A class, a category, an end of a ramp.
+    Value,
+    /// All categories without a colour of their own.
+    Other,
+    /// Numbers at or above the threshold.
+    Threshold,
+    /// Objects without a value.
+    NoData,
 }
 
 /// From a value to a colour.
@@ -184,7 +199,9 @@ impl ThematicScale {
 
     fn counted(&self, values: &[Option<Value>], strings: &Strings, wanted: Option<&[String]>) -> Vec<LegendEntry> {
         let mut legend = match &self.rule {
-            Rule::Ramp { min, max, .. } => [*min, *max].map(|n| (short(n), self.color_of_number(n))).to_vec(),
+            Rule::Ramp { min, max, .. } => {
+                [*min, *max].map(|n| (short(n), self.color_of_number(n), LegendKind::Value)).to_vec()
+            }
             Rule::Classes { breaks, colors } => {
                 let label = |i: usize| match (i.checked_sub(1).map(|j| breaks[j]), breaks.get(i)) {
                     (None, Some(b)) => format!("< {}", short(*b)),
@@ -192,7 +209,7 @@ impl ThematicScale {
                     (Some(a), None) => format!("≥ {}", short(a)),
                     (None, None) => "all".into(),
                 };
-                colors.iter().enumerate().map(|(i, c)| (label(i), *c)).collect()
+                colors.iter().enumerate().map(|(i, c)| (label(i), *c, LegendKind::Value)).collect()
             }
             Rule::Categories { colors } => {
                 let mut counts: FxHashMap<String, u64> = FxHashMap::default();
@@ -201,30 +218,31 @@ impl ThematicScale {
                     .flatten()
                     .filter_map(|v| category_of(*v, strings))
                     .for_each(|c| *counts.entry(c).or_default() += 1);
-                let mut list: Vec<(String, Srgb)> = colors.iter().map(|(k, c)| (k.clone(), *c)).collect();
+                let mut list: Vec<(String, Srgb, LegendKind)> =
+                    colors.iter().map(|(k, c)| (k.clone(), *c, LegendKind::Value)).collect();
                 let place = |k: &str| wanted.and_then(|w| w.iter().position(|x| x == k)).unwrap_or(usize::MAX);
                 list.sort_by(|a, b| {
                     let count = |k: &str| counts.get(k).copied().unwrap_or(0);
                     place(&a.0).cmp(&place(&b.0)).then(count(&b.0).cmp(&count(&a.0))).then(a.0.cmp(&b.0))
                 });
                 if counts.keys().any(|k| !colors.contains_key(k)) {
-                    list.push(("other".into(), OTHER));
+                    list.push(("other".into(), OTHER, LegendKind::Other));
                 }
                 list
             }
         };
         if let (Some((at, color)), false) = (self.threshold, matches!(self.rule, Rule::Categories { .. })) {
-            legend.push((format!("≥ {} (threshold)", short(at)), color));
+            legend.push((format!("≥ {} (threshold)", short(at)), color, LegendKind::Threshold));
         }
         if values.iter().any(|v| self.color_of(*v, strings) == self.no_data) {
-            legend.push(("no data".into(), self.no_data));
+            legend.push(("no data".into(), self.no_data, LegendKind::NoData));
         }
         let mut by_color: FxHashMap<[u32; 3], u64> = FxHashMap::default();
         for value in values {
             *by_color.entry(self.color_of(*value, strings).map(f32::to_bits)).or_default() += 1;
         }
         let count = |c: Srgb| by_color.get(&c.map(f32::to_bits)).copied().unwrap_or(0);
-        legend.into_iter().map(|(label, color)| LegendEntry { count: count(color), label, color }).collect()
+        legend.into_iter().map(|(label, color, kind)| LegendEntry { count: count(color), label, color, kind }).collect()
     }
 }
 

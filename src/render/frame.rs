@@ -8,6 +8,8 @@
 //! unfiltered, filter across,    for each neighbourhood filter in view: its lens' own image over the lens' bounds
 //! filter down                   and what the filter reaches beyond them, and the filter
 //! shade                         outside the lenses' screen bounds without them, inside with them
+//! resolve                       the mean of the samples, after the last of several
+//! furniture                     title, caption, legends: over the last sample
 //! ```
 //!
 //! A pass that the scene does not call for is not in the list (U3).
@@ -21,6 +23,7 @@ use crate::{
         city::{Chunk, CityBuffers, Draw, Section, SectionKind, SeenChunk, draws_of},
         curtain::{self, Curtain},
         eye::{PictureTile, view_uniform},
+        furniture::{Furniture, FurnitureOnGpu},
         layout, light,
         operations::{Filter, Operations, invoker_table},
         pipelines::{GeometryKind, Key, ShadeTarget},
@@ -72,6 +75,8 @@ pub struct FrameInput<'a> {
     pub sample: u32,
     /// How many there will be.
     pub samples: u32,
+    /// What is drawn over the picture, after its last sample.
+    pub furniture: &'a Furniture,
 }
 
 /// How shaders are made of what a scene asks for (H3). The picture is the same.
@@ -168,6 +173,9 @@ impl Renderer {
         self.shade_pass(&mut encoder, &mut recorder, input, &seen, &keys);
         if input.samples > 1 && input.sample + 1 == input.samples {
             self.resolve_pass(&mut encoder, &mut recorder);
+        }
+        if wants_furniture(input) {
+            self.furniture_passes(&mut encoder, &mut recorder, input)?;
         }
         if let Some(timer) = &recorder.timer {
             timer.resolve(&mut encoder);
@@ -388,6 +396,10 @@ impl Renderer {
         keys.extend(plans.filters.iter().map(|f| Key::Filter(f.effect)));
         if input.samples > 1 {
             keys.push(Key::Resolve);
+        }
+        if wants_furniture(input) {
+            keys.push(Key::Furniture { layered: input.transparent });
+            keys.extend(input.transparent.then_some(Key::FurnitureOver));
         }
         for key in &keys {
             self.pipelines.prepare(key);
@@ -733,6 +745,64 @@ impl Renderer {
     }
 }
 
+impl Renderer {
+    /// Title, caption and legends over the finished picture. Straight alpha cannot be blended by fixed function: over a
+    /// transparent picture they are drawn into a layer first.
+    fn furniture_passes(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        input: &FrameInput,
+    ) -> Result<(), GpuError> {
+        let Some(targets) = &self.targets else { return Ok(()) };
+        let furniture = match &mut self.furniture {
+            Some(furniture) => furniture,
+            none => none.insert(FurnitureOnGpu::new(&self.gpu)?),
+        };
+        let whole = input.view.size;
+        furniture.fit(&self.gpu, &self.pipelines, input.furniture, whole, input.tile, input.transparent)?;
+        if furniture.count() == 0 {
+            return Ok(());
+        }
+        let slot = recorder.begin("furniture", "main", &[], true);
+        let mut attachment = color_attachment(&targets.picture.view, wgpu::Color::TRANSPARENT);
+        match furniture.layer() {
+            Some(layer) => attachment.view = layer,
+            None => attachment.ops.load = wgpu::LoadOp::Load,
+        }
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("furniture"),
+            color_attachments: &[Some(attachment)],
+            timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
+            ..Default::default()
+        });
+        if let Some(timer) = &recorder.timer {
+            timer.begin_count(&mut pass, slot);
+        }
+        pass.set_pipeline(self.pipelines.get(&Key::Furniture { layered: input.transparent }));
+        furniture.draw(&mut pass);
+        if let Some(timer) = &recorder.timer {
+            timer.end_count(&mut pass, slot);
+        }
+        drop(pass);
+        recorder.count(1, 2 * u64::from(furniture.count()));
+        let Some(over) = furniture.copied(encoder, &targets.picture.texture) else { return Ok(()) };
+        let slot = recorder.begin("furniture over", "main", &[], false);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("furniture over"),
+            color_attachments: &[Some(color_attachment(&targets.picture.view, wgpu::Color::TRANSPARENT))],
+            timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
+            ..Default::default()
+        });
+        pass.set_pipeline(self.pipelines.get(&Key::FurnitureOver));
+        pass.set_bind_group(0, over, &[]);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        recorder.count(1, 1);
+        Ok(())
+    }
+}
+
 /// The pipelines of the shade pass: outside the lenses' bounds, and inside; each for surfaces and for the background.
 #[derive(Clone, Debug, Default)]
 struct ShadeKeys {
@@ -790,6 +860,11 @@ fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool) 
 /// Whether this sample writes the lens masks.
 fn wants_masks(input: &FrameInput) -> bool {
     input.masks && input.sample == 0
+}
+
+/// Whether this sample is the last and something stands over the picture.
+fn wants_furniture(input: &FrameInput) -> bool {
+    !input.furniture.is_empty() && input.sample + 1 == input.samples
 }
 
 /// Haze per radius of the scene; none in orthographic views, which have no distance, nor on clay.

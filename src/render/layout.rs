@@ -182,6 +182,20 @@ pub struct Part {
     pub pad_0: [u32; 2],
 }
 
+/// `pass/furniture.wgsl`, per instance.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct FurnitureItem {
+    pub low: [f32; 2],
+    pub high: [f32; 2],
+    pub color: [f32; 4],
+    pub halo: [f32; 4],
+    pub radius: f32,
+    pub softness: f32,
+    pub first_texel: u32,
+    pub row_texels: u32,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -288,6 +302,10 @@ mod tests {
             (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
             (&uber, host!(Part { material, light, styles, outlines, masks, pad_0 })),
             (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),
+            (
+                &Module::Furniture,
+                host!(FurnitureItem { low, high, color, halo, radius, softness, first_texel, row_texels }),
+            ),
         ];
         let wrong: Vec<String> = checks.into_iter().flat_map(|(module, fields)| differences(module, fields)).collect();
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));

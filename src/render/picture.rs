@@ -18,6 +18,7 @@ use crate::{
         city::Shown,
         eye::PictureTile,
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord},
+        furniture::{self, Furniture},
         operations::Operations,
         stats::{self, Statistics},
         volume::LensVolume,
@@ -182,8 +183,18 @@ impl Studio {
         })
     }
 
-    /// Draws a picture.
+    /// Draws a picture, without text; [`crate::figure::draw`] adds what the scene's `[figure]` asks for.
     pub fn render(&mut self, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
+        self.render_with(scene, request, &furniture::NONE)
+    }
+
+    /// Draws a picture and `furniture` over it; AOVs do not see it.
+    pub fn render_with(
+        &mut self,
+        scene: &Scene,
+        request: &Request,
+        furniture: &Furniture,
+    ) -> Result<Picture, RenderError> {
         let started = Instant::now();
         let prepared = self.prepare(scene)?;
         let view = self.view(scene, &prepared, request.size)?;
@@ -191,7 +202,7 @@ impl Studio {
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
         for part in parts(request.size) {
-            self.render_part(scene, request, &prepared, &view, part, &mut picture, &mut passes)?;
+            self.render_part(scene, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
         }
         if request.statistics {
             picture.statistics = self.statistics(scene, request, &prepared, &view, &picture, passes);
@@ -207,6 +218,11 @@ impl Studio {
 
     /// Draws one sample of one frame without reading anything back: what a window does, and benchmarks.
     pub fn redraw(&mut self, scene: &Scene, size: [u32; 2]) -> Result<(), RenderError> {
+        self.redraw_with(scene, size, &furniture::NONE)
+    }
+
+    /// The same with `furniture` over it. As long as that stays equal, nothing is set, allocated or uploaded again.
+    pub fn redraw_with(&mut self, scene: &Scene, size: [u32; 2], furniture: &Furniture) -> Result<(), RenderError> {
         let prepared = self.prepare(scene)?;
         let view = self.view(scene, &prepared, size)?;
         let request = Request {
@@ -217,7 +233,7 @@ impl Studio {
             statistics: false,
             backend: self.backend,
         };
-        let input = input(scene, &request, &prepared, view, PictureTile::whole(size));
+        let input = FrameInput { furniture, ..input(scene, &request, &prepared, view, PictureTile::whole(size)) };
         self.renderer.draw(&input, None)?;
         Ok(())
     }
@@ -238,20 +254,19 @@ impl Studio {
         View::new(self.camera(scene, size), size, &reach)
     }
 
-    fn prepare(&self, scene: &Scene) -> Result<Prepared, RenderError> {
-        let mut volumes = Vec::new();
-        for (i, lens) in scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
-            // A lens without volume shows nothing and costs nothing.
-            for shape in &lens.shapes {
-                let volume = shape
-                    .volume()
-                    .map_err(|error| RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name)))?;
-                if !volume.is_empty() {
-                    let everywhere = lens.effects.iter().any(|e| e.class == Class::Rest);
-                    volumes.push(LensVolume { lens: i as u32, bounds: volume.bounds(), volume, everywhere });
-                }
-            }
+    /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
+    pub fn lenses_in_view(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<bool>, RenderError> {
+        let volumes = volumes_of(scene)?;
+        let view = View::new(self.camera(scene, size), size, &Aabb::EMPTY)?;
+        let mut seen = vec![false; scene.lenses.len()];
+        for volume in volumes.iter().filter(|v| v.screen_bounds(&view, whole(size)).is_some()) {
+            seen[volume.lens as usize] = true;
         }
+        Ok(seen)
+    }
+
+    fn prepare(&self, scene: &Scene) -> Result<Prepared, RenderError> {
+        let volumes = volumes_of(scene)?;
         let mut present = vec![false; scene.lenses.len()];
         for volume in &volumes {
             present[volume.lens as usize] = true;
@@ -280,10 +295,11 @@ impl Studio {
         prepared: &Prepared,
         view: &View,
         part: Part,
+        furniture: &Furniture,
         picture: &mut Picture,
         passes: &mut Vec<stats::Pass>,
     ) -> Result<(), RenderError> {
-        let mut input = input(scene, request, prepared, *view, part.drawn);
+        let mut input = FrameInput { furniture, ..input(scene, request, prepared, *view, part.drawn) };
         for sample in 0..input.samples {
             input.sample = sample;
             let mut timer =
@@ -434,6 +450,24 @@ impl Studio {
     }
 }
 
+/// The volumes of a scene's enabled lenses.
+fn volumes_of(scene: &Scene) -> Result<Vec<LensVolume>, RenderError> {
+    let mut volumes = Vec::new();
+    for (i, lens) in scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
+        // A lens without volume shows nothing and costs nothing.
+        for shape in &lens.shapes {
+            let volume = shape
+                .volume()
+                .map_err(|error| RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name)))?;
+            if !volume.is_empty() {
+                let everywhere = lens.effects.iter().any(|e| e.class == Class::Rest);
+                volumes.push(LensVolume { lens: i as u32, bounds: volume.bounds(), volume, everywhere });
+            }
+        }
+    }
+    Ok(volumes)
+}
+
 fn input<'a>(
     scene: &Scene,
     request: &Request,
@@ -458,6 +492,7 @@ fn input<'a>(
         masks: request.statistics || request.aovs.lens_mask,
         sample: 0,
         samples: request.samples.max(1),
+        furniture: &furniture::NONE,
     }
 }
 

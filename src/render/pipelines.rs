@@ -28,6 +28,8 @@ pub const FILTERED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub const SPRITES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// The picture: sRGB bytes.
 pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Furniture before it is laid over a transparent picture: linear, premultiplied.
+pub const FURNITURE_LAYER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// What makes a pipeline the one it is.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -70,6 +72,13 @@ pub enum Key {
     Filter(u32),
     /// The mean of samples.
     Resolve,
+    /// Titles, captions and legends; over the picture, or into a layer of their own where it is transparent.
+    Furniture {
+        /// Into a layer.
+        layered: bool,
+    },
+    /// The layer of furniture over a transparent picture.
+    FurnitureOver,
     /// One lit pass without anything else: what benchmarks compare with.
     Bare,
 }
@@ -118,6 +127,10 @@ pub struct Layouts {
     pub filter: wgpu::BindGroupLayout,
     /// Resolve, group 0.
     pub resolve: wgpu::BindGroupLayout,
+    /// Furniture, group 0: the target, coverage of text.
+    pub furniture: wgpu::BindGroupLayout,
+    /// Furniture over a transparent picture, group 0: both.
+    pub furniture_over: wgpu::BindGroupLayout,
     /// Where samples are summed: f32 where it can be blended, else f16.
     pub sums: wgpu::TextureFormat,
 }
@@ -259,6 +272,8 @@ impl Layouts {
                 &[(0, S::FRAGMENT, dynamic), (1, S::FRAGMENT, float), (2, S::FRAGMENT, uniform())],
             ),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
+            furniture: layout(gpu, "furniture", &[(0, all, uniform()), (1, S::FRAGMENT, storage())]),
+            furniture_over: layout(gpu, "furniture over", &[(0, S::FRAGMENT, float), (1, S::FRAGMENT, float)]),
             sums,
         }
     }
@@ -284,6 +299,8 @@ impl Layouts {
             Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
             Key::Filter(_) => vec![Some(&self.filter)],
             Key::Resolve => vec![Some(&self.resolve)],
+            Key::Furniture { .. } => vec![Some(&self.furniture)],
+            Key::FurnitureOver => vec![Some(&self.furniture_over)],
         };
         let name = key.name();
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -401,6 +418,8 @@ const VERTEX: &[wgpu::VertexAttribute] =
     &wgpu::vertex_attr_array![0 => Sint32x3, 1 => Uint32, 2 => Float32x3, 3 => Uint32];
 const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x2];
 const PLANE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x3, 5 => Sint32x3, 6 => Float32];
+const FURNITURE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![
+    0 => Float32x2, 1 => Float32x2, 2 => Float32x4, 3 => Float32x4, 4 => Float32, 5 => Float32, 6 => Uint32, 7 => Uint32];
 
 fn per_vertex(array_stride: u64, attributes: &[wgpu::VertexAttribute]) -> Option<wgpu::VertexBufferLayout<'_>> {
     Some(wgpu::VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes })
@@ -415,6 +434,8 @@ impl Key {
             Self::Shade { program, .. } => Module::Shade(program.clone()),
             Self::Filter(effect) => Module::Filter(*effect),
             Self::Resolve => Module::Resolve,
+            Self::Furniture { .. } => Module::Furniture,
+            Self::FurnitureOver => Module::FurnitureOver,
             Self::Bare => Module::Bare,
         }
     }
@@ -449,6 +470,9 @@ impl Key {
             }
             Self::Filter(_) => self.module().name(),
             Self::Resolve => "resolve".to_owned(),
+            Self::Furniture { layered: false } => "furniture".to_owned(),
+            Self::Furniture { layered: true } => "furniture in a layer".to_owned(),
+            Self::FurnitureOver => "furniture over a transparent picture".to_owned(),
             Self::Bare => "bare lit draw".to_owned(),
         }
     }
@@ -505,6 +529,11 @@ impl Key {
                 vec![vertex, per_vertex(size_of::<layout::Plane>() as u64, PLANE)]
             }
             Self::Geometry { .. } | Self::Shadow | Self::Bare => vec![vertex],
+            Self::Furniture { .. } => vec![Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<layout::FurnitureItem>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: FURNITURE,
+            })],
             _ => Vec::new(),
         }
     }
@@ -533,7 +562,12 @@ impl Key {
             }
             Self::Sprite(_) => vec![Some(SPRITES.into())],
             Self::Filter(_) | Self::Shade { target: ShadeTarget::Unfiltered, .. } => vec![Some(FILTERED.into())],
-            Self::Shade { .. } | Self::Resolve | Self::Bare => vec![Some(PICTURE.into())],
+            Self::Furniture { layered } => vec![Some(wgpu::ColorTargetState {
+                format: if *layered { FURNITURE_LAYER } else { PICTURE },
+                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+            Self::Shade { .. } | Self::Resolve | Self::FurnitureOver | Self::Bare => vec![Some(PICTURE.into())],
             _ => Vec::new(),
         }
     }
@@ -546,7 +580,9 @@ impl Key {
             // The triangle lies at depth 0, where nothing is stored.
             Self::Shade { surface: true, .. } => C::Less,
             Self::Shade { surface: false, .. } => C::Equal,
-            Self::Sprite(_) | Self::Filter(_) | Self::Resolve => return None,
+            Self::Sprite(_) | Self::Filter(_) | Self::Resolve | Self::Furniture { .. } | Self::FurnitureOver => {
+                return None;
+            }
         };
         Some(wgpu::DepthStencilState {
             format: DEPTH,

@@ -8,6 +8,7 @@ use crate::{
     render::{
         city::{CityBuffers, SectionKind, Shown},
         curtain::Curtain,
+        furniture::FurnitureOnGpu,
         layout,
         pipelines::{Layouts, Pipelines},
         synced::Synced,
@@ -38,6 +39,8 @@ pub struct Renderer {
     pub(super) ran: Vec<u32>,
     /// The near depth of the last frame that culled by it.
     pub(super) curtain: Option<Curtain>,
+    /// Titles, captions and legends, once a picture had some.
+    pub(super) furniture: Option<FurnitureOnGpu>,
     /// Counts cities, so that the shadow of an old one is not taken for the new one's.
     generation: u32,
 }
@@ -117,6 +120,7 @@ impl Renderer {
             shadow_of: None,
             culls_hidden: gpu.is_software(),
             curtain: None,
+            furniture: None,
             ran: Vec::new(),
             generation: 0,
             gpu,
@@ -255,7 +259,7 @@ fn whole(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
     buffer.as_entire_binding()
 }
 
-fn group(
+pub(super) fn group(
     gpu: &Gpu,
     label: &str,
     layout: &wgpu::BindGroupLayout,

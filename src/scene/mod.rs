@@ -120,16 +120,105 @@ pub enum PoiPlace {
 }
 
 /// How a picture is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Width and height, pixels, 1..=16384.
     pub size: [u32; 2],
     /// Samples per pixel, 1..=1024.
     pub samples: u32,
+    /// Where legends of thematic colours stand.
+    pub legend: LegendPlace,
+    /// A title, at the top left.
+    pub title: Option<String>,
+    /// A caption, at the bottom left; `\n` begins a line.
+    pub caption: Option<String>,
+    /// Size of the text (its em), pixels, 6..=400; `None`: by the size of the picture.
+    pub text_px: Option<f64>,
 }
 
 impl Default for Figure {
     fn default() -> Self {
-        Self { size: [1280, 720], samples: 1 }
+        Self {
+            size: [1280, 720],
+            samples: 1,
+            legend: LegendPlace::default(),
+            title: None,
+            caption: None,
+            text_px: None,
+        }
+    }
+}
+
+/// Where legends stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum LegendPlace {
+    /// Nowhere.
+    #[default]
+    None,
+    /// Where there is most room, which is the bottom right: the title and the caption stand on the left.
+    Auto,
+    /// In a corner.
+    Corner(Corner),
+}
+
+/// A corner of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Corner {
+    /// Top left.
+    TopLeft,
+    /// Top right.
+    TopRight,
+    /// Bottom left.
+    BottomLeft,
+    /// Bottom right.
+    BottomRight,
+}
+
+impl Corner {
+    /// All of them, with the words that scene files have for them.
+    pub const WORDS: [(&'static str, Self); 4] = [
+        ("top-left", Self::TopLeft),
+        ("top-right", Self::TopRight),
+        ("bottom-left", Self::BottomLeft),
+        ("bottom-right", Self::BottomRight),
+    ];
+
+    /// Whether it is a left one.
+    pub fn is_left(self) -> bool {
+        matches!(self, Self::TopLeft | Self::BottomLeft)
+    }
+
+    /// Whether it is a top one.
+    pub fn is_top(self) -> bool {
+        matches!(self, Self::TopLeft | Self::TopRight)
+    }
+}
+
+impl LegendPlace {
+    /// The word that scene files have for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Auto => "auto",
+            Self::Corner(corner) => Corner::WORDS.iter().find(|(_, c)| *c == corner).map_or("auto", |(word, _)| word),
+        }
+    }
+
+    /// The place that a word means.
+    pub fn of_word(word: &str) -> Option<Self> {
+        match word {
+            "none" => Some(Self::None),
+            "auto" => Some(Self::Auto),
+            word => Corner::WORDS.iter().find(|(w, _)| *w == word).map(|(_, c)| Self::Corner(*c)),
+        }
+    }
+
+    /// The corner, where there is a legend.
+    pub fn corner(self) -> Option<Corner> {
+        match self {
+            Self::None => None,
+            Self::Auto => Some(Corner::BottomRight),
+            Self::Corner(corner) => Some(corner),
+        }
     }
 }

@@ -38,6 +38,8 @@ files! {
     SHADE = "pass/shade.wgsl";
     FILTER = "pass/filter.wgsl";
     RESOLVE = "pass/resolve.wgsl";
+    FURNITURE = "pass/furniture.wgsl";
+    FURNITURE_OVER = "pass/furniture-over.wgsl";
     BARE = "pass/bare.wgsl";
 }
 
@@ -56,6 +58,10 @@ pub enum Module {
     Filter(u32),
     /// The mean of samples.
     Resolve,
+    /// Titles, captions and legends.
+    Furniture,
+    /// Furniture over a transparent picture.
+    FurnitureOver,
     /// The bare lit draw that benchmarks compare with.
     Bare,
 }
@@ -77,6 +83,8 @@ impl Module {
             }
             Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
             Self::Resolve => "resolve".to_owned(),
+            Self::Furniture => "furniture".to_owned(),
+            Self::FurnitureOver => "furniture over".to_owned(),
             Self::Bare => "bare".to_owned(),
         }
     }
@@ -100,6 +108,8 @@ impl Module {
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
             Self::Filter(_) => &[FILTER],
             Self::Resolve => &[RESOLVE],
+            Self::Furniture => &[FURNITURE],
+            Self::FurnitureOver => &[FURNITURE_OVER],
             Self::Bare => &[VIEW, SURFACE, BARE],
         };
         let mut text = String::new();
@@ -185,6 +195,7 @@ mod tests {
         modules.extend(plain.map(Module::Shade));
         let is_filter = |e: &u32| handlers()[*e as usize].kind == EffectKind::Filter;
         modules.extend(numbers().into_iter().filter(is_filter).map(Module::Filter));
+        modules.extend([Module::Furniture, Module::FurnitureOver]);
         modules
     }
 

@@ -13,6 +13,7 @@ use crate::{
     city::{TextureImage, facts},
     cli::{Failure, GlobalArguments, Outcome, load, output, terminal},
     figure::{
+        self,
         picture::{self, Note},
         scene_file::{self, Options},
     },
@@ -55,7 +56,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         backend: arguments.shaders.into(),
     };
     let progress = terminal::Progress::spinning("drawing", global);
-    let mut picture = studio.render(&scene, &request).map_err(Failure::failed)?;
+    let mut picture = figure::draw(&mut studio, &scene, &request).map_err(Failure::failed)?;
     drop(progress);
     let notes = notes(&scene, &options);
     for aov in &arguments.aovs {

@@ -386,6 +386,31 @@ pub const FIGURE: Table = Table {
             "Samples that are averaged: 1 is fast, 16 is smooth.",
             "16",
         ),
+        key(
+            "legend",
+            Kind::Word { now: &["none", "auto", "top-left", "top-right", "bottom-left", "bottom-right"], later: &[] },
+            "\"none\"",
+            "",
+            "Where the legends of thematic colours stand; `auto` chooses the corner.",
+            "\"auto\"",
+        ),
+        key("title", Kind::Text, "none", "", "A title, drawn at the top left.", "\"How old the town is\""),
+        key(
+            "caption",
+            Kind::Text,
+            "none",
+            "",
+            "A caption, drawn at the bottom left; `\\n` begins a new line.",
+            "\"Years from the land register, 2023.\"",
+        ),
+        key(
+            "text_px",
+            Kind::Number { min: 6.0, max: 400.0 },
+            "by the size of the picture: 13 at 1280x720",
+            "pixels",
+            "Size of the text of legends and captions.",
+            "16.0",
+        ),
     ],
 };
 

@@ -17,7 +17,7 @@ use crate::{
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
-    scene::{Background, BaseStyle, CitySpec, Figure, Poi, PoiPlace, Scene, Style, Sun},
+    scene::{Background, BaseStyle, CitySpec, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun},
     shader::{
         Blend,
         effect::{EffectKind, find as find_effect},
@@ -430,5 +430,12 @@ fn sun(fields: &Fields) -> Sun {
 fn figure(fields: &Fields) -> Figure {
     let default = Figure::default();
     let size = fields.node("size").and_then(Node::numbers::<2>).map_or(default.size, |s| s.map(|side| side as u32));
-    Figure { size, samples: fields.integer("samples").unwrap_or(default.samples) }
+    Figure {
+        size,
+        samples: fields.integer("samples").unwrap_or(default.samples),
+        legend: fields.text("legend").and_then(LegendPlace::of_word).unwrap_or(default.legend),
+        title: fields.text("title").map(str::to_owned),
+        caption: fields.text("caption").map(str::to_owned),
+        text_px: fields.number("text_px"),
+    }
 }

@@ -5,7 +5,7 @@ use super::*;
 use crate::{
     geom::Shape,
     lens::{Class, EffectUse, Lens, LensBody, LensKind, Parameter},
-    scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Style, Sun},
+    scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun},
     shader::Blend,
     view::{Camera, Projection},
 };
@@ -318,11 +318,20 @@ prop_compose! {
 }
 
 prop_compose! {
+    fn figures()(place in 0..6usize, title in prop::option::of(".{1,8}"), caption in prop::option::of("[a-z\n\"]{1,8}"),
+        text_px in prop::option::of(6.0..=400.0f64)) -> Figure {
+        let corner = |i: usize| LegendPlace::Corner(Corner::WORDS[i].1);
+        let legend = if place < 2 { [LegendPlace::None, LegendPlace::Auto][place] } else { corner(place - 2) };
+        Figure { legend, title, caption, text_px, ..Figure::default() }
+    }
+}
+
+prop_compose! {
     fn scenes()(eye in point(), target in point(), ortho in any::<bool>(), tenths in 1..1790u32, with_camera in any::<bool>(),
         near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
-        lod in prop::option::of(0..99u8), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3)) -> Scene {
+        figure in figures(), lod in prop::option::of(0..99u8), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3)) -> Scene {
         let fov_y = (f64::from(tenths) / 10.0).to_radians();
         let projection = if ortho { Projection::Orthographic { height_m: f64::from(tenths) } } else { Projection::Perspective { fov_y } };
         let up = if clay { DVec3::Z } else { target };
@@ -335,7 +344,7 @@ prop_compose! {
             style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color) },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).collect(),
             lenses,
-            figure: Figure { size, samples },
+            figure: Figure { size, samples, ..figure },
             ..Scene::default()
         };
         scene.city.files = files.into_iter().filter(|f| !f.contains("${")).map(Into::into).collect();

@@ -41,6 +41,12 @@ pub fn write(scene: &Scene, options: &Options) -> String {
         let [w, h] = scene.figure.size;
         out.key_if(scene.figure.size != figure.size, "size", &format!("[{w}, {h}]"));
         out.key_if(scene.figure.samples != figure.samples, "samples", &scene.figure.samples.to_string());
+        let legend = scene.figure.legend;
+        out.key_if(legend != figure.legend, "legend", &quoted(legend.word()));
+        for (key, text) in [("title", &scene.figure.title), ("caption", &scene.figure.caption)] {
+            out.key_if(text.is_some(), key, &quoted(text.as_deref().unwrap_or_default()));
+        }
+        out.key_if(scene.figure.text_px.is_some(), "text_px", &number(scene.figure.text_px.unwrap_or_default()));
     }
     out.text
 }

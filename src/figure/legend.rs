@@ -1,0 +1,168 @@
+//! What the legends of a scene say (K2): one for each scale of colours that can be seen.
+
+use crate::{
+    city::CityModel,
+    lens::{
+        EffectUse,
+        color::Srgb,
+        thematic::{LegendKind, Rule, ThematicScale},
+    },
+    scene::Scene,
+    shader::effect::find,
+};
+
+/// Legends of one picture at most.
+pub const MOST: usize = 16;
+
+/// A legend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Legend {
+    /// What is shown: the effect's `label`, else the attribute's name.
+    pub title: String,
+    /// Its unit, if the effect names one.
+    pub unit: Option<String>,
+    /// Name and colour of the lenses it is for; none: the context.
+    pub lenses: Vec<(String, Srgb)>,
+    /// How values become colours.
+    pub scale: ThematicScale,
+}
+
+/// One line of a legend: a colour and what it stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// sRGB 0..1, as the effect has it before light.
+    pub color: Srgb,
+    /// What it stands for.
+    pub label: String,
+    /// Whether it stays when there is no room for all.
+    pub is_kept: bool,
+}
+
+/// The legends of a scene, the context's first, then those of the lenses from the top one down; `seen[i]` says whether
+/// lens i can be seen. Uses of one scale share a legend. An attribute that the city does not have has none: drawing
+/// says so.
+pub fn legends(scene: &Scene, model: &CityModel, seen: &[bool]) -> Vec<Legend> {
+    let context = scene.style.effects.iter().map(|used| (used, None));
+    let lenses = scene.lenses.iter().enumerate().rev().filter(|(i, lens)| lens.enabled && seen.get(*i) == Some(&true));
+    let of_lenses = lenses.flat_map(|(_, lens)| lens.effects.iter().map(move |used| (used, Some(lens))));
+    let mut legends: Vec<Legend> = Vec::new();
+    for (used, lens) in context.chain(of_lenses).filter(|(used, _)| is_thematic(used)) {
+        let Ok(scale) = ThematicScale::new(model, used) else { continue };
+        let title = used.text("label").unwrap_or(&scale.attribute).to_owned();
+        let unit = used.text("unit").map(str::to_owned);
+        let mark = lens.map(|lens| (lens.name.clone(), lens.color));
+        match legends.iter_mut().find(|l| l.scale == scale && l.title == title && l.unit == unit) {
+            // What holds in the context holds everywhere.
+            Some(same) if same.lenses.is_empty() => {}
+            Some(same) => same.lenses.extend(mark.filter(|m| !same.lenses.contains(m))),
+            None => legends.push(Legend { title, unit, lenses: mark.into_iter().collect(), scale }),
+        }
+        if legends.len() == MOST {
+            break;
+        }
+    }
+    legends
+}
+
+fn is_thematic(used: &EffectUse) -> bool {
+    find(&used.effect).is_some_and(|definition| definition.object_colors)
+}
+
+impl Legend {
+    /// Ends of the ramp where there is one to draw as a bar.
+    pub fn bar(&self) -> Option<(f64, f64)> {
+        match self.scale.rule {
+            Rule::Ramp { min, max, .. } if max > min && (max - min).is_finite() => Some((min, max)),
+            _ => None,
+        }
+    }
+
+    /// The lines beside or below the bar: classes, categories, threshold, no data.
+    pub fn rows(&self) -> Vec<Row> {
+        let bar = self.bar().is_some();
+        let mut rows: Vec<Row> = Vec::new();
+        for entry in self.scale.legend.iter().filter(|e| !(bar && e.kind == LegendKind::Value)) {
+            let row = Row { color: entry.color, label: entry.label.clone(), is_kept: entry.kind != LegendKind::Value };
+            // A ramp of one value has two ends of one name.
+            if rows.last() != Some(&row) {
+                rows.push(row);
+            }
+        }
+        rows
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::{
+        city::load::{LoadOptions, Quiet, load},
+        lens::{Class, Lens, LensKind, Parameter},
+    };
+
+    fn used(parameters: &[(&str, &str)]) -> EffectUse {
+        let parameters = parameters.iter().map(|(k, v)| ((*k).into(), Parameter::Text((*v).into()))).collect();
+        EffectUse { effect: "thematic".into(), class: Class::Inside, blend: None, weight: None, parameters }
+    }
+
+    fn lens(name: &str, effects: Vec<EffectUse>) -> Lens {
+        Lens {
+            name: name.into(),
+            kind: LensKind::Color,
+            enabled: true,
+            color: [1.0, 0.0, 0.0],
+            shapes: vec![],
+            effects,
+            body: Default::default(),
+            sprite_resolution: None,
+        }
+    }
+
+    #[test]
+    fn uses_of_one_scale_share_a_legend() {
+        let model = load(&["builtin:town".into()], &LoadOptions::default(), &Quiet).unwrap();
+        let age = || used(&[("attribute", "yearOfConstruction")]);
+        let function = used(&[("attribute", "function"), ("label", "Use"), ("unit", "kind")]);
+        let reversed = EffectUse {
+            parameters: age().parameters.into_iter().chain([("reverse".into(), Parameter::Boolean(true))]).collect(),
+            ..age()
+        };
+        let sepia = EffectUse { effect: "sepia".into(), parameters: BTreeMap::new(), ..age() };
+        let lenses = vec![
+            lens("a", vec![age(), sepia]),
+            lens("b", vec![function]),
+            lens("c", vec![age()]),
+            lens("hidden", vec![reversed.clone()]),
+            Lens { enabled: false, ..lens("off", vec![reversed]) },
+            lens("unknown", vec![used(&[("attribute", "nothing")])]),
+        ];
+        let mut scene = Scene { lenses, ..Scene::default() };
+        let all = legends(&scene, &model, &[true, true, true, false, true, true]);
+        let said: Vec<_> = all
+            .iter()
+            .map(|l| (l.title.as_str(), l.unit.as_deref(), l.lenses.iter().map(|l| l.0.as_str()).collect::<String>()))
+            .collect();
+        assert_eq!(said, [("yearOfConstruction", None, "ca".to_owned()), ("Use", Some("kind"), "b".to_owned())]);
+        scene.style.effects = vec![age()];
+        let all = legends(&scene, &model, &[true; 6]);
+        assert_eq!(all.len(), 3, "the reversed one is another scale");
+        assert!(all[0].lenses.is_empty(), "the context's holds everywhere");
+    }
+
+    #[test]
+    fn a_bar_has_no_rows_for_its_ends() {
+        let model = load(&["builtin:town".into()], &LoadOptions::default(), &Quiet).unwrap();
+        let of = |parameters: &[(&str, &str)]| {
+            let scene = Scene { lenses: vec![lens("a", vec![used(parameters)])], ..Scene::default() };
+            legends(&scene, &model, &[true]).remove(0)
+        };
+        let ramp = of(&[("attribute", "yearOfConstruction")]);
+        assert!(ramp.bar().is_some_and(|(min, max)| min < max));
+        assert!(ramp.rows().iter().all(|row| row.is_kept));
+        let classes = of(&[("attribute", "yearOfConstruction"), ("scale", "equal")]);
+        assert_eq!(classes.bar(), None);
+        assert_eq!(classes.rows().iter().filter(|row| !row.is_kept).count(), 5);
+    }
+}

@@ -1,0 +1,305 @@
+//! Text: from a string to placed glyphs of the font that ships with the program, and to coverage.
+//!
+//! Only the shipped font is ever used, so a picture's text is the same on every machine. What the font lacks is drawn
+//! as a box. Texts may come from any file: they are cleaned and bounded before anything is measured.
+
+mod raster;
+
+use swash::{FontRef, scale::ScaleContext, shape::ShapeContext, text::Script};
+
+pub use raster::{Run, bent};
+
+use crate::lens::color::Srgb;
+
+/// Inter 4 (OFL 1.1, `assets/font/NOTICE.md`), a subset: Latin, Greek, Cyrillic, figures and signs.
+const REGULAR: &[u8] = include_bytes!("../../../assets/font/Inter-Regular.ttf");
+const SEMI_BOLD: &[u8] = include_bytes!("../../../assets/font/Inter-SemiBold.ttf");
+
+/// Characters of one text that are drawn at most; the rest is an ellipsis.
+pub const MAX_CHARS: usize = 1000;
+/// Sizes of text, pixels per em.
+pub const SIZES_PX: std::ops::RangeInclusive<f32> = 4.0..=400.0;
+
+/// How heavy letters are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Weight {
+    /// For reading.
+    #[default]
+    Regular,
+    /// For titles.
+    SemiBold,
+}
+
+/// How text is set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextStyle {
+    /// The em, pixels; brought into [`SIZES_PX`].
+    pub size_px: f32,
+    /// How heavy.
+    pub weight: Weight,
+    /// Whether all figures are equally wide, for numbers below each other.
+    pub tabular: bool,
+}
+
+/// A line around letters that keeps them readable on any ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Halo {
+    /// Its colour, sRGB 0..1.
+    pub color: Srgb,
+    /// How far it reaches, pixels; good: an eighth of the em.
+    pub width_px: f32,
+    /// 0 to 1; good: 0.8.
+    pub opacity: f32,
+}
+
+/// One line of text, placed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextLine {
+    /// What it says; drawn cleaned ([`cleaned`]).
+    pub text: String,
+    /// Left end of the base line, pixels from the picture's top left. Whole rows are crisp.
+    pub at: [f32; 2],
+    /// How it is set.
+    pub style: TextStyle,
+    /// sRGB 0..1.
+    pub color: Srgb,
+    /// Around the letters.
+    pub halo: Option<Halo>,
+}
+
+/// A glyph and where its origin is on the base line, pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PlacedGlyph {
+    id: u16,
+    x: f32,
+    y: f32,
+}
+
+/// Height of capitals, share of the em: to set text in the middle of something.
+pub const CAP_HEIGHT: f32 = 0.727;
+
+/// Sets text; keeps the shaper's and the rasteriser's caches.
+#[derive(Default)]
+pub struct Typesetter {
+    shape: ShapeContext,
+    scale: ScaleContext,
+}
+
+impl std::fmt::Debug for Typesetter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Typesetter")
+    }
+}
+
+/// A text fit to be set on one line: control characters and line ends become blanks, marks of direction and other
+/// characters without width go, blanks are single, and it ends with an ellipsis after [`MAX_CHARS`].
+pub fn cleaned(text: &str) -> String {
+    let mut out = String::new();
+    // Whatever the text, no more of it is looked at.
+    let mut all = text.chars();
+    for c in all.by_ref().take(MAX_CHARS) {
+        match c {
+            '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{ad}' => {}
+            '\u{fe00}'..='\u{fe0f}' => {}
+            c if c.is_control() || (c.is_whitespace() && c != '\u{a0}' && c != '\u{2009}') => {
+                if !out.is_empty() && !out.ends_with(' ') {
+                    out.push(' ');
+                }
+            }
+            c => out.push(c),
+        }
+    }
+    out.truncate(out.trim_end().len());
+    if all.next().is_some() {
+        out.push('…');
+    }
+    out
+}
+
+fn font_of(weight: Weight) -> FontRef<'static> {
+    let data = match weight {
+        Weight::Regular => REGULAR,
+        Weight::SemiBold => SEMI_BOLD,
+    };
+    FontRef::from_index(data, 0).unwrap_or_else(|| unreachable!("a test reads the shipped fonts"))
+}
+
+impl Typesetter {
+    /// The glyphs of a cleaned text with kerning, and the width of it, pixels.
+    fn shaped(&mut self, text: &str, style: TextStyle) -> (Vec<PlacedGlyph>, f32) {
+        let mut shaper = self
+            .shape
+            .builder(font_of(style.weight))
+            // The font has no script that joins letters: one way of setting does for all.
+            .script(Script::Latin)
+            .size(size_of(style))
+            .features(&[("tnum", u16::from(style.tabular))])
+            .build();
+        shaper.add_str(text);
+        let (mut glyphs, mut x) = (Vec::new(), 0.0);
+        shaper.shape_with(|cluster| {
+            for glyph in cluster.glyphs {
+                glyphs.push(PlacedGlyph { id: glyph.id, x: x + glyph.x, y: glyph.y });
+                x += glyph.advance;
+            }
+        });
+        (glyphs, x)
+    }
+
+    /// The width of a text on one line, pixels.
+    pub fn width(&mut self, text: &str, style: TextStyle) -> f32 {
+        self.shaped(&cleaned(text), style).1
+    }
+
+    /// The text, cleaned, or as much of its beginning as fits into `width_px` with an ellipsis; empty where not even
+    /// that fits.
+    pub fn elided(&mut self, text: &str, style: TextStyle, width_px: f32) -> String {
+        let text = cleaned(text);
+        if self.shaped(&text, style).1 <= width_px {
+            return text;
+        }
+        let ends: Vec<usize> = text.char_indices().map(|(i, _)| i).collect();
+        let cut = |end: usize| format!("{}…", text[..end].trim_end().trim_end_matches('…'));
+        // The longest beginning that fits; widths grow with length but for kerning, which the last step makes good.
+        let (mut fits, mut too_long) = (0, ends.len());
+        while fits + 1 < too_long {
+            let middle = usize::midpoint(fits, too_long);
+            if self.shaped(&cut(ends[middle]), style).1 <= width_px { fits = middle } else { too_long = middle }
+        }
+        // Without a mark that belonged to the letter after the cut.
+        let text = cut(ends.get(fits).copied().unwrap_or(0));
+        if self.shaped(&text, style).1 <= width_px { text } else { String::new() }
+    }
+
+    /// The text in at most `most` lines of `width_px`, broken at blanks; what does not fit ends in an ellipsis. A line
+    /// end of the text begins a line.
+    pub fn wrapped(&mut self, text: &str, style: TextStyle, width_px: f32, most: usize) -> Vec<String> {
+        let mut bounded: String = text.chars().take(MAX_CHARS).collect();
+        if bounded.len() < text.len() {
+            bounded.push('…');
+        }
+        let mut lines: Vec<String> = Vec::new();
+        for paragraph in bounded.trim().lines() {
+            let paragraph = cleaned(paragraph);
+            let mut line = String::new();
+            for word in paragraph.split(' ') {
+                let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+                if line.is_empty() || self.shaped(&longer, style).1 <= width_px {
+                    line = longer;
+                } else {
+                    lines.push(std::mem::replace(&mut line, word.to_owned()));
+                }
+            }
+            lines.push(line);
+        }
+        if lines.len() > most {
+            lines.truncate(most);
+            lines.last_mut().into_iter().for_each(|last| last.push_str(" …"));
+        }
+        // A word may be longer than a line.
+        lines.iter().map(|line| self.elided(line, style, width_px)).collect()
+    }
+}
+
+/// The size that is set, pixels per em.
+fn size_of(style: TextStyle) -> f32 {
+    if style.size_px.is_finite() { style.size_px.clamp(*SIZES_PX.start(), *SIZES_PX.end()) } else { *SIZES_PX.start() }
+}
+
+/// Whether the font has a glyph for the character.
+pub fn has_glyph(c: char) -> bool {
+    font_of(Weight::Regular).charmap().map(c) != 0
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const STYLE: TextStyle = TextStyle { size_px: 20.0, weight: Weight::Regular, tabular: false };
+
+    #[test]
+    fn the_font_has_what_legends_of_europe_need() {
+        let signs = "€²³°–—…≤≥×·−¹⁰₂½‰µ";
+        let letters = "AÄÅÆÇÉÍŁÑÓŐØŚŞŠÚŰÝŽßþđı ΑΒΓΩαβγω АБВЖИЙКЯабвжйяҐїє";
+        for c in signs.chars().chain(letters.chars()).chain(' '..='~') {
+            assert!(has_glyph(c), "{c:?}");
+        }
+        assert!(!has_glyph('😀') && !has_glyph('ש') && !has_glyph('漢'));
+        for weight in [Weight::Regular, Weight::SemiBold] {
+            assert_eq!(font_of(weight).metrics(&[]).units_per_em, 2048);
+        }
+        let cap = font_of(Weight::Regular).metrics(&[]).cap_height / 2048.0;
+        assert!((cap - CAP_HEIGHT).abs() < 1e-3, "{cap}");
+    }
+
+    #[test]
+    fn widths_scale_kern_and_align() {
+        let mut set = Typesetter::default();
+        let mut width = |text: &str, style| set.width(text, style);
+        let twice = TextStyle { size_px: 40.0, ..STYLE };
+        assert!((width("Rotterdam", twice) - 2.0 * width("Rotterdam", STYLE)).abs() < 1e-3);
+        assert!(width("AVAVAV", STYLE) < 3.0 * (width("A", STYLE) + width("V", STYLE)), "no kerning");
+        assert_eq!(width("", STYLE), 0.0);
+        let tabular = TextStyle { tabular: true, ..STYLE };
+        assert!((width("111", tabular) - width("888", tabular)).abs() < 1e-3);
+        assert!(width("111", STYLE) < width("888", STYLE));
+        // What the font does not have takes the width of its box.
+        assert!(width("漢字", STYLE) > 10.0);
+    }
+
+    #[test]
+    fn texts_are_cleaned() {
+        assert_eq!(cleaned("  a\tb\r\n\u{0}c\u{1b}[31m "), "a b c [31m");
+        assert_eq!(cleaned("\u{202e}abc\u{200b}\u{feff}"), "abc");
+        assert_eq!(cleaned("5\u{2009}000\u{a0}m"), "5\u{2009}000\u{a0}m");
+        let million = "x".repeat(1_000_000);
+        assert_eq!(cleaned(&million).chars().count(), MAX_CHARS + 1);
+        assert!(cleaned(&million).ends_with('…'));
+    }
+
+    #[test]
+    fn what_does_not_fit_ends_in_an_ellipsis() {
+        let mut set = Typesetter::default();
+        let text = "Nieuwe Binnenweg";
+        let full = set.width(text, STYLE);
+        assert_eq!(set.elided(text, STYLE, full + 0.1), text);
+        let shorter = set.elided(text, STYLE, full - 1.0);
+        assert!(shorter.ends_with('…') && text.starts_with(shorter.trim_end_matches('…')), "{shorter}");
+        // The longest that fits: one letter more would not.
+        let more: String = text.chars().take(shorter.chars().count()).collect();
+        assert!(set.width(&format!("{more}…"), STYLE) > full - 1.0);
+        assert_eq!(set.elided(text, STYLE, 1.0), "");
+        assert_eq!(set.elided("", STYLE, 0.0), "");
+    }
+
+    #[test]
+    fn lines_break_at_blanks() {
+        let mut set = Typesetter::default();
+        let width = set.width("one two three", STYLE) + 1.0;
+        assert_eq!(set.wrapped("one two three four five", STYLE, width, 9), ["one two three", "four five"]);
+        assert_eq!(set.wrapped("one\ntwo", STYLE, width, 9), ["one", "two"]);
+        assert_eq!(set.wrapped("one two three\nfour\nfive", STYLE, width, 2), ["one two three", "four …"]);
+        let long = set.wrapped(&"x".repeat(400), STYLE, width, 3);
+        assert!(long.len() == 1 && long[0].ends_with('…') && set.width(&long[0], STYLE) <= width, "{long:?}");
+        assert!(set.wrapped("", STYLE, width, 3).is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_can_be_set(text in "\\PC{0,40}|[\\x00-\\x{10FFFF}]{0,40}", width in 0.0_f32..300.0) {
+            let mut set = Typesetter::default();
+            let shown = set.elided(&text, STYLE, width);
+            prop_assert!(set.width(&shown, STYLE) <= width);
+            for line in set.wrapped(&text, STYLE, width, 4) {
+                prop_assert!(set.width(&line, STYLE) <= width);
+            }
+            let halo = Some(Halo { color: [1.0; 3], width_px: 2.0, opacity: 0.8 });
+            let line = TextLine { text, at: [-10.0, 20.0], style: STYLE, color: [0.0; 3], halo };
+            if let Some(run) = set.rasterised(&line, [100, 40]) {
+                prop_assert!(run.origin[0] + run.size[0] <= 100 && run.origin[1] + run.size[1] <= 40);
+            }
+        }
+    }
+}
