@@ -64,6 +64,9 @@ pub struct CityModel {
     pub planes: Vec<u32>,
     /// The planes that `planes` numbers: number k stands at k - 1.
     pub plane_equations: Vec<Plane>,
+    /// Triangles of polygons that lie in several tiles (few do): [`crate::city::edges`] must not take the cuts for edges.
+    /// Ascending by triangle.
+    pub cut_polygons: Vec<CutTriangle>,
     /// Box around the vertices that any geometry as read uses (dropped faces, points and lines too), metres:
     /// grown by [`crate::city::build::ModelBuilder::add_geometry`], and by loaders for points and lines.
     pub extent_as_read: Aabb,
@@ -249,6 +252,15 @@ pub struct Tile {
     pub texcoords: u32,
     /// Box around its vertices, metres.
     pub bounds: Aabb,
+}
+
+/// A triangle whose polygon has triangles in other tiles too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CutTriangle {
+    /// Index into [`CityModel::planes`].
+    pub triangle: u32,
+    /// The same number for all triangles of the polygon; unique within its geometry.
+    pub polygon: u32,
 }
 
 /// A vertex as the GPU reads it: 20 bytes.

@@ -22,6 +22,10 @@ impl CityModel {
         }
         let per_triangle = self.planes.len() * 3 == self.indices.len();
         ensure(per_triangle, || format!("{} planes for {} indices", self.planes.len(), self.indices.len()))?;
+        let cuts = &self.cut_polygons;
+        let is_ordered = cuts.windows(2).all(|w| w[0].triangle < w[1].triangle);
+        let is_inside = cuts.last().is_none_or(|cut| (cut.triangle as usize) < self.planes.len());
+        ensure(is_ordered && is_inside, || "triangles of cut polygons".into())?;
         self.attributes.iter().try_for_each(|a| self.validate_attribute(a))
     }
 

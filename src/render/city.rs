@@ -170,8 +170,13 @@ fn morton(x: u32, y: u32) -> u64 {
     (0..21).fold(0, |code, bit| code | u64::from(x >> bit & 1) << (2 * bit) | u64::from(y >> bit & 1) << (2 * bit + 1))
 }
 
+/// Box around what is shown but for the plain ground, metres.
+pub(super) fn extent_of(shown: &Shown) -> Aabb {
+    shown.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(shown.model.geometries[g as usize].bounds))
+}
+
 /// The shown tiles in Morton order of their centres.
-fn ordered_tiles(shown: &Shown, extent: &Aabb) -> Vec<u32> {
+pub(super) fn ordered_tiles(shown: &Shown, extent: &Aabb) -> Vec<u32> {
     let model = shown.model;
     let scale = f64::from((1 << 21) - 1) / extent.size().x.max(extent.size().y).max(1.0);
     let mut tiles: Vec<(u64, u32)> = shown
@@ -192,8 +197,7 @@ impl CityBuffers {
     pub fn new(gpu: &Gpu, shown: &Shown) -> Result<Self, GpuError> {
         let textures = Textures::new(gpu, shown)?;
         let bytes_before = gpu.allocated_bytes();
-        let extent =
-            shown.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(shown.model.geometries[g as usize].bounds));
+        let extent = extent_of(shown);
         let mut table = SurfaceTable::new(shown.model, &textures);
         let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
         let smooth = is_smooth(shown, &apart);
@@ -282,7 +286,7 @@ pub fn draws_of<'a>(chunks: impl Iterator<Item = &'a Chunk>) -> (Vec<Draw>, u64)
 }
 
 /// The corners of a model triangle; `triangle` counts from the model's first.
-fn corners_of<'a>(model: &'a CityModel, tile: &Tile, triangle: u32) -> [&'a Vertex; 3] {
+pub(super) fn corners_of<'a>(model: &'a CityModel, tile: &Tile, triangle: u32) -> [&'a Vertex; 3] {
     [0, 1, 2].map(|k| &model.vertices[(tile.vertices.start + model.indices[triangle as usize * 3 + k]) as usize])
 }
 

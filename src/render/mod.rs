@@ -6,6 +6,7 @@
 
 pub mod city;
 mod curtain;
+pub mod edges;
 pub mod eye;
 pub mod frame;
 pub mod furniture;

@@ -62,7 +62,8 @@ impl<'a> SurfaceTable<'a> {
     }
 }
 
-fn entry(model: &CityModel, textures: &Textures, surface: u32, normal: u32) -> layout::Surface {
+/// What the table says of a model surface (`NONE`: the plain ground) that faces a packed normal.
+pub(super) fn entry(model: &CityModel, textures: &Textures, surface: u32, normal: u32) -> layout::Surface {
     let Some(found) = model.surfaces.get(surface as usize) else {
         return layout::Surface::new(layout::NO_OBJECT, normal, palette::linear_bytes(palette::PLAIN_GROUND), false);
     };

@@ -13,7 +13,10 @@ use super::{
     tiles,
 };
 use crate::{
-    city::{CityObject, Geometry, Surface, Tile, Vertex, WarningCode, Warnings, encode_normal, memory::give_back},
+    city::{
+        CityObject, CutTriangle, Geometry, Surface, Tile, Vertex, WarningCode, Warnings, encode_normal,
+        memory::give_back,
+    },
     geom::{
         exact::newell,
         plane::ExactPlane,
@@ -57,6 +60,8 @@ pub(super) struct Chunk {
     pub(super) indices: Vec<u32>,
     /// Per triangle: 1 + index into `plane_keys`, or 0.
     pub(super) planes: Vec<u32>,
+    /// As in the model.
+    pub(super) cut_polygons: Vec<CutTriangle>,
     /// Planes and the polygon on each, counted within the chunk.
     pub(super) plane_keys: Vec<(PlaneKey, u32)>,
     pub(super) polygons: u32,
@@ -66,13 +71,15 @@ pub(super) struct Chunk {
 impl Chunk {
     /// Nothing, but the memory is kept.
     fn clear(&mut self) {
-        let Self { geometries, tiles, vertices, texcoords, indices, planes, plane_keys, polygons, warnings } = self;
+        let Self { geometries, tiles, vertices, texcoords, indices, planes, .. } = self;
+        let Self { cut_polygons, plane_keys, polygons, warnings, .. } = self;
         geometries.clear();
         tiles.clear();
         vertices.clear();
         texcoords.clear();
         indices.clear();
         planes.clear();
+        cut_polygons.clear();
         plane_keys.clear();
         *polygons = 0;
         *warnings = Warnings::default();

@@ -16,7 +16,7 @@ use super::{
     planes::PlaneTable,
     shelf::{Part, Shelf, corners_and_triangles},
 };
-use crate::city::{CityModel, NONE};
+use crate::city::{CityModel, CutTriangle, NONE};
 
 /// Jobs in a city, about; results do not depend on it.
 const JOBS: usize = 128;
@@ -212,6 +212,9 @@ impl Built {
         let (vertices, indices) = (all.vertices.len() as u32, all.indices.len() as u32);
         let (tiles, texcoords) = (all.tiles.len() as u32, all.texcoords.len() as u32);
         let geometries = all.geometries.len() as u32;
+        let triangles = all.planes.len() as u32;
+        all.cut_polygons
+            .extend(chunk.cut_polygons.iter().map(|cut| CutTriangle { triangle: cut.triangle + triangles, ..*cut }));
         append_slice(&mut all.vertices, &chunk.vertices);
         append_slice(&mut all.indices, &chunk.indices);
         append_slice(&mut all.texcoords, &chunk.texcoords);
@@ -254,6 +257,8 @@ impl Built {
         model.texcoords = chunk.texcoords;
         model.indices = chunk.indices;
         model.planes = chunk.planes;
+        chunk.cut_polygons.shrink_to_fit();
+        model.cut_polygons = chunk.cut_polygons;
         model.warnings.append(chunk.warnings);
     }
 }

@@ -124,6 +124,29 @@ fn large_geometries_are_cut_into_tiles_that_keep_whole_triangles() {
 }
 
 #[test]
+fn triangles_that_reach_far_out_of_their_tiles_share_corners_to_the_bit() {
+    // A fan: all corners far from each other, the hub in another tile than most triangles, and one polygon over all.
+    let mut b = builder();
+    let rim = |i: i64| [i * 41_137 - 300_003, 377_777 - (i * 9_973) % 7_001, i * 13];
+    let mut points: Vec<[i64; 3]> = (0..16).map(rim).collect();
+    points.push([101_009, -300_007, 7]);
+    let mut rings: Vec<Vec<u32>> = (0..15).map(|i| vec![16, i + 1, i]).collect();
+    rings.push((0..17).rev().collect());
+    add(&mut b, MM, &points, ring_polygons(&rings.iter().map(Vec::as_slice).collect::<Vec<_>>()));
+    let model = b.finish();
+    model.validate().unwrap();
+    assert!(model.tiles.len() > 5);
+    let places: std::collections::BTreeSet<[u64; 3]> = model
+        .tiles
+        .iter()
+        .flat_map(|tile| tile.vertices.clone().map(|v| model.position(tile, v).to_array().map(f64::to_bits)))
+        .collect();
+    assert_eq!(places.len(), 17, "one place per point, whichever tile it is seen from");
+    // The last polygon's fifteen triangles lie in several tiles; the others are whole.
+    assert_eq!(model.cut_polygons.iter().map(|cut| cut.polygon).collect::<Vec<_>>(), [15; 15]);
+}
+
+#[test]
 fn unusable_faces_are_dropped_with_their_reason() {
     let mut b = builder();
     let mut points = CUBE.to_vec();

@@ -11,7 +11,7 @@ use super::{
     shelf::Shape,
 };
 use crate::{
-    city::{NONE, Tile, Vertex, encode_normal},
+    city::{CutTriangle, NONE, Tile, Vertex, encode_normal},
     geom::Aabb,
 };
 
@@ -20,13 +20,20 @@ pub const TILE_M: f64 = 64.0;
 
 /// In geometries of several tiles positions are rounded to 2⁻¹⁷ m (8 µm; half of it is the f32 error that 64 m allow):
 /// offsets below 128 m are then exact, so a vertex that two tiles share is at one place and no crack opens between them.
+/// Where triangles reach farther out of their tiles along an axis, all positions of the geometry are rounded as much
+/// coarser along it, to 2⁻¹⁰ m at most: a corner more than 16 km away is an error of the file, and spoils no others.
 const SHARED_PER_M: f64 = 131_072.0;
+const LEAST_PER_M: f64 = 1024.0;
+/// Integers up to this are exact in an f32.
+const EXACT: f64 = 16_777_216.0;
 
 /// Buffers kept between geometries.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     /// Per triangle of a geometry of many tiles: its cell, its number.
     cells: Vec<([i32; 3], u32)>,
+    /// Per face of such a geometry: whether its triangles lie in several cells.
+    is_cut: Vec<bool>,
     /// Per corner: its vertex in the chunk; of this tile if not below the tile's first.
     vertex_of: Vec<u32>,
     order: Vec<u32>,
@@ -56,20 +63,37 @@ pub(super) fn emit(
     own.vertex_of.resize(raw.polygons.indices.len(), NONE);
     own.order.clear();
     own.order.extend(0..triangles.len() as u32);
-    let mut emitter = Emitter { raw, faces, triangles, vertex_of: &mut own.vertex_of, chunk };
+    own.is_cut.clear();
     if (bounds.max - bounds.min).max_element() <= TILE_M {
+        let mut emitter = Emitter { raw, faces, triangles, is_cut: &[], vertex_of: &mut own.vertex_of, chunk };
         emitter.tile(&own.order, origin, &world);
         return first..first + 1;
     }
     own.cells.clear();
+    let mut reach = DVec3::ZERO;
     own.cells.extend(triangles.iter().enumerate().map(|(number, triangle)| {
         let [a, b, c] = triangle.corners.map(world);
         let less = |p: DVec3, q: DVec3| if p.to_array() < q.to_array() { p } else { q };
-        let cell = ((less(less(a, b), c) - origin) / TILE_M).floor().as_ivec3();
-        (cell.to_array(), number as u32)
+        let cell = ((less(less(a, b), c) - origin) / TILE_M).floor();
+        let from = origin + TILE_M * cell;
+        reach = [a, b, c].into_iter().fold(reach, |reach, p| reach.max((p - from).abs()));
+        (cell.as_ivec3().to_array(), number as u32)
     }));
+    let per_m = DVec3::from(reach.to_array().map(|reach| {
+        let mut per_m = SHARED_PER_M;
+        while reach * per_m > EXACT && per_m > LEAST_PER_M {
+            per_m /= 2.0;
+        }
+        per_m
+    }));
+    // A face's triangles are neighbours here.
+    own.is_cut.resize(faces.len(), false);
+    for (cells, pair) in own.cells.windows(2).zip(triangles.windows(2)) {
+        own.is_cut[pair[0].face as usize] |= pair[0].face == pair[1].face && cells[0].0 != cells[1].0;
+    }
     own.cells.sort_unstable();
-    let world = |corner: u32| (world(corner) * SHARED_PER_M).round() / SHARED_PER_M;
+    let mut emitter = Emitter { raw, faces, triangles, is_cut: &own.is_cut, vertex_of: &mut own.vertex_of, chunk };
+    let world = |corner: u32| (world(corner) * per_m).round() / per_m;
     for same in own.cells.chunk_by(|a, b| a.0 == b.0) {
         own.order.clear();
         own.order.extend(same.iter().map(|&(_, number)| number));
@@ -82,6 +106,8 @@ struct Emitter<'a> {
     raw: &'a Shape<'a>,
     faces: &'a [super::job::Face],
     triangles: &'a [Triangle],
+    /// Per face, or empty.
+    is_cut: &'a [bool],
     vertex_of: &'a mut [u32],
     chunk: &'a mut Chunk,
 }
@@ -111,6 +137,9 @@ impl Emitter<'_> {
                     }
                 }
                 chunk.indices.push(*known - first_vertex);
+            }
+            if self.is_cut.get(triangle.face as usize) == Some(&true) {
+                chunk.cut_polygons.push(CutTriangle { triangle: chunk.planes.len() as u32, polygon: triangle.face });
             }
             chunk.planes.push(triangle.plane);
         }
