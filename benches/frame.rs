@@ -17,9 +17,12 @@ use veduta::{
     city::load::{LoadOptions, Quiet, load},
     geom::{Aabb, Shape},
     gpu::Gpu,
-    lens::{Class, EffectUse, Lens, LensBody, LensKind},
-    render::picture::{Aovs, Request, Studio},
-    scene::{BaseStyle, CitySpec, Scene, Sun},
+    measure::{
+        ratio::{Estimate, in_turn, ratios},
+        stage::{lens, plain_scene, sphere_covering},
+    },
+    render::picture::Studio,
+    scene::{CitySpec, Scene},
     view::{Camera, View},
 };
 
@@ -54,7 +57,7 @@ fn main() {
     println!("{} triangles", studio.renderer.city().map_or(0, |c| c.triangles));
     let mut frames = Vec::new();
     for (v, camera) in [("V1", overview(&studio.extent())), ("V2", street(&studio))] {
-        let scene = plain(camera);
+        let scene = plain_scene(camera);
         let lensed = with_lens(v, &scene, &mut studio);
         frames.push((format!("{v} bare"), Frame::Bare(view(&scene))));
         frames.push((format!("{v} all"), Frame::Unculled(scene.clone())));
@@ -79,14 +82,6 @@ fn main() {
     compare(&mut studio, pairs, named, ["V2 plain", "V1 plain"], 0.50);
     compare(&mut studio, pairs, named, ["V1 lens", "V1 plain"], 1.10);
     compare(&mut studio, pairs, named, ["V2 lens", "V2 plain"], 1.10);
-}
-
-/// Clay, no shadows, one sample.
-fn plain(camera: Camera) -> Scene {
-    let mut scene = Scene { camera: Some(camera), ..Scene::default() };
-    scene.style.base = BaseStyle::Clay;
-    scene.sun = Sun { shadows: false, ..Sun::default() };
-    scene
 }
 
 /// V1: the whole city in the frustum.
@@ -133,47 +128,11 @@ fn view(scene: &Scene) -> View {
 
 /// A greyscale lens whose mask covers a tenth of the picture.
 fn with_lens(v: &str, scene: &Scene, studio: &mut Studio) -> Scene {
-    let camera = scene.camera.expect("a camera");
-    let forward = (camera.target - camera.eye).normalize_or(DVec3::X);
-    let of = |radius: f64, distance: f64| {
-        let mut lensed = scene.clone();
-        lensed.lenses = vec![Lens {
-            name: "lens".into(),
-            kind: LensKind::Color,
-            enabled: true,
-            color: [0.8, 0.2, 0.1],
-            shapes: vec![Shape::Sphere { center: camera.eye + forward * distance, radius }],
-            effects: vec![EffectUse {
-                effect: "greyscale".into(),
-                class: Class::Inside,
-                blend: None,
-                weight: None,
-                parameters: Default::default(),
-            }],
-            body: LensBody::None,
-            sprite_resolution: None,
-        }];
-        lensed
-    };
-    // Around the shown surface in the middle of the picture.
-    let aovs = Aovs { depth: true, ..Aovs::default() };
-    let request =
-        Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: true, backend: Default::default() };
-    let depth = studio.render(scene, &request).expect("a picture").depth.expect("its depth");
-    let distance = f64::from(depth[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize]);
-    assert!(distance.is_finite(), "nothing stands in the middle of the picture");
-    let mut share = |radius: f64| {
-        let figures = studio.render(&of(radius, distance), &request).expect("a picture").statistics;
-        figures.lenses[0].covered as f64 / f64::from(SIZE[0] * SIZE[1])
-    };
-    // The shown surface inside it makes up the tenth, not its disc; it grows with the radius.
-    let (mut low, mut high) = (0.0, distance);
-    for _ in 0..16 {
-        let middle = 0.5 * (low + high);
-        if share(middle) < 0.1 { low = middle } else { high = middle }
+    let shape = sphere_covering(studio, scene, SIZE, 0.1).unwrap_or_else(|error| panic!("{error}"));
+    if let Shape::Sphere { radius, .. } = shape {
+        println!("{v}: a lens of {radius:.1} m covers a tenth of the picture");
     }
-    println!("{v}: a lens of {high:.1} m covers {:.2} % of the picture", 100.0 * share(high));
-    of(high, distance)
+    Scene { lenses: vec![lens("lens", shape, &["greyscale"])], ..scene.clone() }
 }
 
 /// Draws one frame to its end; takes milliseconds.
@@ -198,33 +157,16 @@ fn compare<'a>(studio: &mut Studio, pairs: usize, named: impl Fn(&str) -> &'a Fr
         timed(studio, a);
         timed(studio, b);
     }
-    let (mut of_a, mut of_b, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
-    for i in 0..pairs {
-        // Every other pair the other way round, so that neither always runs on the other's warm caches.
-        let (ta, tb) = if i % 2 == 0 {
-            let ta = timed(studio, a);
-            (ta, timed(studio, b))
-        } else {
-            let tb = timed(studio, b);
-            (timed(studio, a), tb)
-        };
-        of_a.push(ta);
-        of_b.push(tb);
-        ratios.push(ta / tb);
-    }
-    for list in [&mut of_a, &mut of_b, &mut ratios] {
-        list.sort_by(f64::total_cmp);
-    }
-    // Order statistics that hold the median with 95 %: n/2 ± 0.98·√n.
-    let half_width = 0.98 * (pairs as f64).sqrt();
-    let low = ratios[((pairs as f64 / 2.0 - half_width).floor().max(0.0)) as usize];
-    let high = ratios[((pairs as f64 / 2.0 + half_width).ceil() as usize).min(pairs - 1)];
-    let median = ratios[pairs / 2];
+    let times = in_turn(2, pairs, |i| Ok::<_, std::convert::Infallible>(timed(studio, [a, b][i])));
+    let Ok(times) = times;
+    let of = |values: &[f64]| Estimate::of(values).expect("one pair or more, and finite times");
+    let [of_a, of_b] = [0, 1].map(|i| of(&times[i]).median);
+    let Estimate { median, low, high } = of(&ratios(&times[0], &times[1]));
     let verdict = if high <= target { "met" } else { "MISSED" };
     println!(
         "{:<22} {:>9.1} {:>9.1} {median:>9.3} ({low:.3}..{high:.3}) {target:>6.2} {verdict}",
         names.join(" / "),
-        of_a[pairs / 2],
-        of_b[pairs / 2]
+        of_a,
+        of_b
     );
 }

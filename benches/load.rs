@@ -22,6 +22,7 @@ use veduta::city::{
     shown::shown_geometries,
     spatial::SpatialIndex,
 };
+use veduta::measure::ratio::Estimate;
 
 /// Ratios: the target for files of 1 MB and more, and for peak memory.
 const JSON_TARGET: f64 = 2.5;
@@ -74,12 +75,12 @@ fn measure(file: &Path, pairs: usize, mut python: Option<&mut Python>) {
             ratios.push(ours / python.seconds(file));
         }
     }
-    let stage = |i: usize| median(&mut stages.iter().map(|s| s[i]).collect::<Vec<_>>()).0;
+    let stage = |i: usize| estimate(&stages.iter().map(|s| s[i]).collect::<Vec<_>>()).median;
     let ratio = match ratios.is_empty() {
         true => "-".to_owned(),
         false => {
-            let (middle, low, high) = median(&mut ratios);
-            format!("{middle:.2} ({low:.2}..{high:.2}) {}", if high <= JSON_TARGET { "ok" } else { "over" })
+            let Estimate { median, low, high } = estimate(&ratios);
+            format!("{median:.2} ({low:.2}..{high:.2}) {}", if high <= JSON_TARGET { "ok" } else { "over" })
         }
     };
     let memory = peak(file);
@@ -98,6 +99,10 @@ fn measure(file: &Path, pairs: usize, mut python: Option<&mut Python>) {
     );
 }
 
+fn estimate(values: &[f64]) -> Estimate {
+    Estimate::of(values).expect("one pair or more, and finite times")
+}
+
 fn load(file: &Path) -> (CityModel, LoadStats, f64) {
     let files = [file.to_owned()];
     let (model, stats) = load_with_stats(&files, &LoadOptions::default(), &Quiet).expect("a bench file loads");
@@ -105,14 +110,6 @@ fn load(file: &Path) -> (CityModel, LoadStats, f64) {
     let index = SpatialIndex::build(&model, &shown_geometries(&model, None));
     std::hint::black_box(&index);
     (model, stats, start.elapsed().as_secs_f64())
-}
-
-/// Median and the 95 % interval of it (order statistics: n/2 ± 0.98 √n).
-fn median(values: &mut [f64]) -> (f64, f64, f64) {
-    values.sort_by(f64::total_cmp);
-    let n = values.len() as f64;
-    let at = |rank: f64| values[(rank.round().max(0.0) as usize).min(values.len() - 1)];
-    (at((n - 1.0) / 2.0), at(n / 2.0 - 0.98 * n.sqrt() - 1.0), at(n / 2.0 + 0.98 * n.sqrt()))
 }
 
 /// Peak memory of a fresh process that loads `file`, over the same process idle, as a multiple of geometry + attributes.

@@ -12,7 +12,8 @@
 //! 5. [`scene`]: plain data: city + view + lenses + POIs + styles, edited by commands.
 //! 6. [`render`]: a scene becomes a frame: a readable list of passes.
 //! 7. [`figure`]: scene files and back, pictures and their metadata.
-//! 8. [`cli`]: what people type.
+//! 8. [`measure`]: what accuracy costs in time.
+//! 9. [`cli`]: what people type.
 
 pub mod city;
 pub mod cli;
@@ -20,6 +21,7 @@ pub mod figure;
 pub mod geom;
 pub mod gpu;
 pub mod lens;
+pub mod measure;
 pub mod render;
 pub mod scene;
 pub mod shader;

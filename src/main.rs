@@ -7,5 +7,12 @@ fn main() -> std::process::ExitCode {
         // SAFETY: the first statement of the program; nothing else runs yet.
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
+    // A driver that remembers shaders of earlier runs would have nothing to compile when compiling is timed.
+    if std::env::args_os().any(|argument| argument == "measure") {
+        for (name, value) in [("MESA_SHADER_CACHE_DISABLE", "true"), ("__GL_SHADER_DISK_CACHE", "0")] {
+            // SAFETY: as above.
+            unsafe { std::env::set_var(name, value) };
+        }
+    }
     veduta::cli::main()
 }

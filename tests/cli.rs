@@ -74,7 +74,7 @@ fn help_and_version_are_no_failures() {
         assert_eq!(code(&output), 0, "{arguments:?}");
         assert!(!out(&output).is_empty() && err(&output).is_empty(), "{arguments:?}");
     }
-    for command in ["info", "synth", "effects", "render", "gallery"] {
+    for command in ["info", "synth", "effects", "render", "gallery", "measure"] {
         let help = out(&run(&[command, "--help"]));
         assert!(help.contains("Examples:"), "veduta {command} --help has no examples:\n{help}");
     }

@@ -8,6 +8,7 @@ pub mod failure;
 pub mod gallery;
 pub mod info;
 pub mod load;
+pub mod measure;
 pub mod output;
 pub mod render;
 pub mod report;
@@ -87,6 +88,8 @@ pub enum Command {
     Synth(synth::Arguments),
     /// Draws every figure of the docs
     Gallery(gallery::Arguments),
+    /// Measures what accuracy costs in time
+    Measure(measure::Arguments),
     /// Lists what lenses can do to what they show
     Effects(effects::Arguments),
     /// Prints the WGSL that a scene is shaded with
@@ -133,6 +136,7 @@ fn run(cli: Cli) -> Outcome {
         Some(Command::Gallery(arguments)) => gallery::run(&arguments, global),
         Some(Command::Info(arguments)) => info::run(&arguments, global),
         Some(Command::Synth(arguments)) => synth::run(&arguments, global),
+        Some(Command::Measure(arguments)) => measure::run(&arguments, global),
         Some(Command::Effects(arguments)) => effects::run(&arguments, global),
         Some(Command::Shader(arguments)) => shader::run(&arguments, global),
         Some(Command::Other(words)) => other(&words),

@@ -31,7 +31,7 @@ use crate::{
 /// How thick the air is: the share of the horizon's colour that a scene's radius of it adds.
 const HAZE: f64 = 0.035;
 /// Longest side of a target; larger pictures are drawn in tiles.
-const TILE: u32 = 4096;
+pub const TILE: u32 = 4096;
 /// Pixels by which tiles overlap, so that what looks at neighbours (outlines, filters) has them.
 const OVERLAP: u32 = 8 + MOST_REACH;
 
@@ -223,8 +223,6 @@ impl Studio {
 
     /// The same with `furniture` over it. As long as that stays equal, nothing is set, allocated or uploaded again.
     pub fn redraw_with(&mut self, scene: &Scene, size: [u32; 2], furniture: &Furniture) -> Result<(), RenderError> {
-        let prepared = self.prepare(scene)?;
-        let view = self.view(scene, &prepared, size)?;
         let request = Request {
             size,
             samples: 1,
@@ -233,8 +231,23 @@ impl Studio {
             statistics: false,
             backend: self.backend,
         };
-        let input = FrameInput { furniture, ..input(scene, &request, &prepared, view, PictureTile::whole(size)) };
-        self.renderer.draw(&input, None)?;
+        self.draw_with(scene, &request, furniture)
+    }
+
+    /// Draws all samples of a picture that fits one target, without reading anything back.
+    pub fn draw(&mut self, scene: &Scene, request: &Request) -> Result<(), RenderError> {
+        self.draw_with(scene, request, &furniture::NONE)
+    }
+
+    fn draw_with(&mut self, scene: &Scene, request: &Request, furniture: &Furniture) -> Result<(), RenderError> {
+        let prepared = self.prepare(scene)?;
+        let view = self.view(scene, &prepared, request.size)?;
+        let whole = PictureTile::whole(request.size);
+        let mut input = FrameInput { furniture, ..input(scene, request, &prepared, view, whole) };
+        for sample in 0..input.samples {
+            input.sample = sample;
+            self.renderer.draw(&input, None)?;
+        }
         Ok(())
     }
 

@@ -1,0 +1,232 @@
+//! Measuring: draws, compares, starts afresh, and times in turn.
+
+use std::{sync::Arc, time::Instant};
+
+use crate::{
+    gpu::Gpu,
+    measure::{
+        difference::Difference,
+        pareto,
+        ratio::{Estimate, in_turn, ratios},
+        stage::Stage,
+        topic::{Shot, Topic, Trial, Value, Variant},
+    },
+    render::{
+        picture::{Aovs, Picture, RenderError, Request, Studio},
+        stats,
+    },
+    scene::CitySpec,
+};
+
+/// What is measured on.
+#[derive(Debug)]
+pub struct Setup<'a> {
+    /// The city, on the graphics card.
+    pub studio: &'a mut Studio,
+    /// What of it is shown.
+    pub city: &'a CitySpec,
+    /// Width and height of all pictures, pixels, at most [`crate::render::picture::TILE`].
+    pub size: [u32; 2],
+    /// How often all variants are timed, at least once.
+    pub pairs: usize,
+}
+
+/// What measuring is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Comparing pictures.
+    Comparing,
+    /// Starting a device anew for every variant.
+    Starting,
+    /// Timing in turn.
+    Timing,
+}
+
+/// All that was measured of a topic.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// Which one.
+    pub topic: &'static Topic,
+    /// On what.
+    pub adapter: stats::Adapter,
+    /// City objects shown.
+    pub objects: u64,
+    /// Triangles that can be drawn.
+    pub triangles: u64,
+    /// What the city holds on the graphics card, bytes.
+    pub city_bytes: u64,
+    /// Width and height of all pictures, pixels.
+    pub size: [u32; 2],
+    /// How often all variants were timed.
+    pub pairs: usize,
+    /// How often they were started afresh.
+    pub starts: usize,
+    /// Time of the plain frame, milliseconds.
+    pub plain_ms: Estimate,
+    /// The variants, in the topic's order.
+    pub rows: Vec<Row>,
+}
+
+/// What was measured of one variant.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// What stands beside its point.
+    pub label: String,
+    /// Values of the topic's knobs.
+    pub knobs: Vec<Value>,
+    /// Against its reference.
+    pub difference: Difference,
+    /// Time, milliseconds.
+    pub ms: Estimate,
+    /// Time against the plain frame of the same round.
+    pub ratio: Estimate,
+    /// What its first frame on a fresh device takes longer than a later one, milliseconds.
+    pub start_ms: Estimate,
+    /// What its first frame allocated on the graphics card, bytes; all of it is held at once.
+    pub gpu_bytes: u64,
+    /// Whether nothing it may be compared with beats it.
+    pub is_pareto: bool,
+}
+
+/// Measures a topic; `watch` hears how many of how many steps are done.
+///
+/// # Errors
+/// What the topic or drawing cannot do.
+pub fn measure(
+    topic: &'static Topic,
+    setup: &mut Setup<'_>,
+    watch: &mut dyn FnMut(Step, usize, usize),
+) -> Result<Measurement, RenderError> {
+    let trial = (topic.make)(&mut Stage { studio: setup.studio, size: setup.size })?;
+    let differences = compare(setup.studio, &trial, watch)?;
+    // A start takes as long as dozens of frames.
+    let starts = (6 * setup.pairs / (5 * trial.variants.len().max(1))).clamp(1, 9);
+    let cold = start(setup, &trial, starts, watch)?;
+    // The plain frame is the first of those that are timed.
+    let shots: Vec<&Shot> = std::iter::once(&trial.plain).chain(trial.variants.iter().map(|v| &v.shot)).collect();
+    let total = setup.pairs * shots.len();
+    let mut done = 0;
+    let times = in_turn(shots.len(), setup.pairs, |i| {
+        watch(Step::Timing, done, total);
+        done += 1;
+        // Once unwatched: what a variant before it replaced (targets, sprites) is made anew then.
+        timed(setup.studio, shots[i])?;
+        timed(setup.studio, shots[i])
+    })?;
+    let mut rows = Vec::with_capacity(trial.variants.len());
+    for (i, Variant { label, knobs, .. }) in trial.variants.into_iter().enumerate() {
+        let ms = estimate(&times[i + 1])?;
+        let start_ms: Vec<f64> = cold[i].iter().map(|c| (c.first_ms - c.later_ms).max(0.0)).collect();
+        rows.push(Row {
+            label,
+            knobs,
+            difference: differences[i],
+            ms,
+            ratio: estimate(&ratios(&times[i + 1], &times[0]))?,
+            start_ms: estimate(&start_ms)?,
+            gpu_bytes: cold[i].iter().map(|c| c.bytes).max().unwrap_or(0),
+            is_pareto: false,
+        });
+    }
+    mark_front(topic, &mut rows);
+    let city = setup.studio.renderer.city();
+    Ok(Measurement {
+        topic,
+        adapter: adapter(&setup.studio.renderer.gpu),
+        objects: setup.studio.objects,
+        triangles: city.map_or(0, |c| c.triangles),
+        city_bytes: city.map_or(0, |c| c.bytes),
+        size: setup.size,
+        pairs: setup.pairs,
+        starts,
+        plain_ms: estimate(&times[0])?,
+        rows,
+    })
+}
+
+fn estimate(values: &[f64]) -> Result<Estimate, RenderError> {
+    let nothing = || RenderError::Scene("no frame was timed; one round or more would be right".to_owned());
+    Estimate::of(values).ok_or_else(nothing)
+}
+
+fn adapter(gpu: &Gpu) -> stats::Adapter {
+    stats::Adapter {
+        name: gpu.info.name.clone(),
+        backend: format!("{:?}", gpu.info.backend).to_lowercase(),
+        kind: gpu.kind().to_owned(),
+    }
+}
+
+/// Draws a picture to its end without AOVs and without reading it back; milliseconds.
+fn timed(studio: &mut Studio, shot: &Shot) -> Result<f64, RenderError> {
+    let request = Request { aovs: Aovs::default(), statistics: false, ..shot.request };
+    let start = Instant::now();
+    studio.draw(&shot.scene, &request)?;
+    studio.renderer.gpu.wait()?;
+    Ok(start.elapsed().as_secs_f64() * 1e3)
+}
+
+fn compare(
+    studio: &mut Studio,
+    trial: &Trial,
+    watch: &mut dyn FnMut(Step, usize, usize),
+) -> Result<Vec<Difference>, RenderError> {
+    let mut reference: Option<(&Shot, Picture)> = None;
+    let mut differences = Vec::with_capacity(trial.variants.len());
+    for (i, variant) in trial.variants.iter().enumerate() {
+        watch(Step::Comparing, i, trial.variants.len());
+        let wanted = variant.reference.as_ref().unwrap_or(&trial.reference);
+        let right = match reference.take() {
+            Some((shot, picture)) if shot == wanted => picture,
+            _ => studio.render(&wanted.scene, &wanted.request)?,
+        };
+        let picture = studio.render(&variant.shot.scene, &variant.shot.request)?;
+        differences.push(Difference::between(&right, &picture));
+        reference = Some((wanted, right));
+    }
+    Ok(differences)
+}
+
+/// A start on a device on which nothing was drawn before.
+struct Cold {
+    first_ms: f64,
+    later_ms: f64,
+    bytes: u64,
+}
+
+fn start(
+    setup: &Setup<'_>,
+    trial: &Trial,
+    starts: usize,
+    watch: &mut dyn FnMut(Step, usize, usize),
+) -> Result<Vec<Vec<Cold>>, RenderError> {
+    let mut cold: Vec<Vec<Cold>> = trial.variants.iter().map(|_| Vec::new()).collect();
+    let total = starts * cold.len();
+    for round in 0..starts {
+        for (i, variant) in trial.variants.iter().enumerate() {
+            watch(Step::Starting, round * trial.variants.len() + i, total);
+            let mut studio = Studio::new(Gpu::open()?, Arc::clone(&setup.studio.model), setup.city)?;
+            let before = studio.renderer.gpu.allocated_bytes();
+            let first_ms = timed(&mut studio, &variant.shot)?;
+            let bytes = studio.renderer.gpu.allocated_bytes() - before;
+            let mut later_ms = f64::INFINITY;
+            for _ in 0..3 {
+                later_ms = later_ms.min(timed(&mut studio, &variant.shot)?);
+            }
+            cold[i].push(Cold { first_ms, later_ms, bytes });
+        }
+    }
+    Ok(cold)
+}
+
+/// Marks who is on the Pareto front of those that may be compared.
+pub fn mark_front(topic: &Topic, rows: &mut [Row]) {
+    let group = |row: &Row| -> Vec<Value> { topic.alike.iter().filter_map(|&k| row.knobs.get(k).cloned()).collect() };
+    for i in 0..rows.len() {
+        let own = group(&rows[i]);
+        let among: Vec<usize> = (0..rows.len()).filter(|&k| group(&rows[k]) == own).collect();
+        let points: Vec<[f64; 2]> = among.iter().map(|&k| topic.front.map(|quantity| quantity.of(&rows[k]))).collect();
+        let at = among.iter().position(|&k| k == i);
+        rows[i].is_pareto = at.is_some_and(|at| pareto::front(&points)[at]);
+    }
+}

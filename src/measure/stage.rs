@@ -1,0 +1,141 @@
+//! Where topics set up what they have drawn: a city, a view of it, and lenses that cover a known share of the picture.
+
+use std::collections::BTreeMap;
+
+use crate::{
+    geom::{Aabb, Shape},
+    lens::{Class, EffectUse, Lens, LensBody, LensKind},
+    measure::topic::Shot,
+    render::{
+        frame::Backend,
+        picture::{Aovs, RenderError, Request, Studio},
+    },
+    scene::{BaseStyle, Scene, Sun},
+    view::{Camera, View},
+};
+
+/// What a topic works with.
+#[derive(Debug)]
+pub struct Stage<'a> {
+    /// The city on the graphics card.
+    pub studio: &'a mut Studio,
+    /// Width and height of all pictures, pixels.
+    pub size: [u32; 2],
+}
+
+impl Stage<'_> {
+    /// The plain frame: clay, no shadows, no lens, a good first view.
+    pub fn plain_scene(&self) -> Scene {
+        plain_scene(self.studio.camera(&Scene::default(), self.size))
+    }
+
+    /// A picture of `scene` with so many samples per pixel; with lens masks where it has lenses.
+    pub fn shot(&self, scene: Scene, samples: u32) -> Shot {
+        let aovs = Aovs { lens_mask: !scene.lenses.is_empty(), ..Aovs::default() };
+        Shot {
+            request: Request {
+                size: self.size,
+                samples,
+                transparent: false,
+                aovs,
+                statistics: false,
+                backend: Backend::default(),
+            },
+            scene,
+        }
+    }
+
+    /// A sphere around what stands near the middle of the picture, so large that the surface inside it makes up `share`
+    /// of the picture.
+    pub fn sphere_covering(&mut self, share: f64) -> Result<Shape, RenderError> {
+        let scene = self.plain_scene();
+        sphere_covering(self.studio, &scene, self.size, share)
+    }
+}
+
+/// Clay, no shadows, one sample.
+pub fn plain_scene(camera: Camera) -> Scene {
+    let mut scene = Scene { camera: Some(camera), ..Scene::default() };
+    scene.style.base = BaseStyle::Clay;
+    scene.sun = Sun { shadows: false, ..Sun::default() };
+    scene
+}
+
+/// A lens without outline that applies these effects to what is inside.
+pub fn lens(name: &str, shape: Shape, effects: &[&str]) -> Lens {
+    let use_of = |effect: &&str| EffectUse {
+        effect: (*effect).to_owned(),
+        class: Class::Inside,
+        blend: None,
+        weight: None,
+        parameters: BTreeMap::new(),
+    };
+    Lens {
+        name: name.to_owned(),
+        kind: LensKind::Color,
+        enabled: true,
+        color: [0.8, 0.2, 0.1],
+        shapes: vec![shape],
+        effects: effects.iter().map(use_of).collect(),
+        body: LensBody::None,
+        sprite_resolution: None,
+    }
+}
+
+/// See [`Stage::sphere_covering`]; `scene` has a camera and no lenses.
+pub fn sphere_covering(studio: &mut Studio, scene: &Scene, size: [u32; 2], share: f64) -> Result<Shape, RenderError> {
+    let mut request = Request {
+        size,
+        samples: 1,
+        transparent: false,
+        aovs: Aovs { depth: true, ..Aovs::default() },
+        statistics: false,
+        backend: Backend::default(),
+    };
+    let depth = studio.render(scene, &request)?.depth.unwrap_or_default();
+    let nothing =
+        || RenderError::Scene("nothing of the city is in the picture; another city would be right".to_owned());
+    let (pixel, distance) = nearest_to_the_middle(size, &depth).ok_or_else(nothing)?;
+    let camera = studio.camera(scene, size);
+    let center = View::new(camera, size, &Aabb::EMPTY)?.pixel_ray(pixel[0], pixel[1]).at(distance);
+    request.aovs = Aovs { lens_mask: true, ..Aovs::default() };
+    let mut share_of = |radius: f64| -> Result<f64, RenderError> {
+        let mut lensed = scene.clone();
+        lensed.lenses = vec![lens("lens", Shape::Sphere { center, radius }, &["greyscale"])];
+        let masks = studio.render(&lensed, &request)?.lens_mask.unwrap_or_default();
+        let inside = masks.iter().flatten().filter(|bits| **bits & 1 == 1).count();
+        Ok(inside as f64 / depth.len() as f64)
+    };
+    // The shown surface inside it makes up the share, not its disc; it grows with the radius.
+    let (mut low, mut high) = (0.0, distance);
+    for _ in 0..16 {
+        let middle = 0.5 * (low + high);
+        if share_of(middle)? < share { low = middle } else { high = middle }
+    }
+    Ok(Shape::Sphere { center, radius: high })
+}
+
+/// The pixel nearest to the middle that shows something, and its depth in metres.
+fn nearest_to_the_middle(size: [u32; 2], depth: &[f32]) -> Option<([u32; 2], f64)> {
+    let from_middle = |i: usize| {
+        let [x, y] = [i as u32 % size[0], i as u32 / size[0]];
+        let off = |at: u32, side: u32| u64::from(at.abs_diff(side / 2)).pow(2);
+        off(x, size[0]) + off(y, size[1])
+    };
+    let shown = (0..depth.len()).filter(|&i| depth[i].is_finite());
+    let i = shown.min_by_key(|&i| from_middle(i))?;
+    Some(([i as u32 % size[0], i as u32 / size[0]], f64::from(depth[i])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_is_where_something_stands() {
+        let far = f32::INFINITY;
+        let depth = [far, far, far, 5.0, far, far, far, far, far, far, 7.0, far];
+        assert_eq!(nearest_to_the_middle([4, 3], &depth), Some(([2, 2], 7.0)));
+        assert_eq!(nearest_to_the_middle([4, 3], &[far; 12]), None);
+    }
+}

@@ -1,0 +1,101 @@
+//! What a topic is: a name, and what it has drawn. One file each in [`crate::measure::topics`].
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::{
+    measure::{Quantity, stage::Stage},
+    render::picture::{RenderError, Request},
+    scene::Scene,
+};
+
+/// A question about accuracy and time.
+#[derive(Clone, Copy, Debug)]
+pub struct Topic {
+    /// As it is typed; also the name of its files.
+    pub name: &'static str,
+    /// The headline of its table and plot.
+    pub title: &'static str,
+    /// One sentence: what is varied, and what for.
+    pub about: &'static str,
+    /// Ids of the specification (`lenses.md`).
+    pub specs: &'static [&'static str],
+    /// What every variant is compared with, in words that follow "the reference is".
+    pub reference: &'static str,
+    /// What is turned; a variant has one value for each.
+    pub knobs: &'static [Knob],
+    /// What the plot has along x.
+    pub x: Quantity,
+    /// What it has along y, one panel each; the first is the time.
+    pub y: &'static [Quantity],
+    /// The two figures, both better when smaller, that decide who is on the Pareto front.
+    pub front: [Quantity; 2],
+    /// Knobs that variants must agree in to be compared: a picture of more effects does not lose against one of fewer.
+    pub alike: &'static [usize],
+    /// The knobs that tell lines of the plot apart; without any, points stand alone.
+    pub series: &'static [usize],
+    /// Makes what is drawn.
+    pub make: fn(&mut Stage<'_>) -> Result<Trial, RenderError>,
+}
+
+/// Something that can be turned.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Knob {
+    /// Its name, a table's heading.
+    pub name: &'static str,
+    /// `px`, `m`; empty for counts and words.
+    pub unit: &'static str,
+}
+
+/// A knob's value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// A count or a measure, in the knob's unit.
+    Number(f64),
+    /// A choice.
+    Text(String),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Text(text) => f.write_str(text),
+        }
+    }
+}
+
+/// A picture that can be drawn again and again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    /// Of what.
+    pub scene: Scene,
+    /// How.
+    pub request: Request,
+}
+
+/// One of the things that are compared.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    /// What stands beside its point in the plot: short, and unlike the others'.
+    pub label: String,
+    /// One value per knob of the topic, in their order.
+    pub knobs: Vec<Value>,
+    /// What is drawn.
+    pub shot: Shot,
+    /// What it is compared with; `None`: the trial's reference.
+    pub reference: Option<Shot>,
+}
+
+/// What a topic has drawn.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The frame whose time is 1.
+    pub plain: Shot,
+    /// What is right.
+    pub reference: Shot,
+    /// What is compared, in the order of the table.
+    pub variants: Vec<Variant>,
+}

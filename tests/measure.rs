@@ -1,0 +1,152 @@
+//! `veduta measure` as people and scripts meet it: four files that other programs can read, and that agree.
+
+use std::{
+    path::PathBuf,
+    process::{Command, Output, Stdio},
+};
+
+use serde_json::Value;
+use veduta::measure::TOPICS;
+
+fn run(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_veduta"));
+    command.args(arguments).env_remove("VEDUTA_DATA").stdin(Stdio::null()).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// A folder of one test, removed at its end.
+struct Folder(PathBuf);
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn folder(name: &str) -> Folder {
+    Folder(std::env::temp_dir().join(format!("veduta-measure-{name}-{}", std::process::id())))
+}
+
+/// The files of a tiny run of one topic; its JSON.
+fn tiny_run(topic: &str) -> (Folder, Value) {
+    let folder = folder(topic);
+    let place = folder.0.to_str().unwrap();
+    let size = ["--pairs", "3", "--size", "64x36"];
+    let output = run(&[&["measure", topic, "-o", place, "--json", "--city", "builtin:square"], &size[..]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let mut names: Vec<String> =
+        std::fs::read_dir(&folder.0).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, ["json", "md", "png", "svg"].map(|extension| format!("{topic}.{extension}")));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let file: Value = serde_json::from_slice(&std::fs::read(folder.0.join(format!("{topic}.json"))).unwrap()).unwrap();
+    assert_eq!(json, file, "stdout and file say the same");
+    (folder, json)
+}
+
+fn check_files(folder: &Folder, topic: &str, json: &Value) {
+    let read = |extension: &str| std::fs::read(folder.0.join(format!("{topic}.{extension}"))).unwrap();
+    let variants = json["variants"].as_array().unwrap();
+    let svg = text(&read("svg"));
+    let document = resvg::usvg::roxmltree::Document::parse(&svg).unwrap();
+    let drawn: Vec<&str> = document.descendants().filter(|n| n.has_tag_name("text")).filter_map(|n| n.text()).collect();
+    assert!(drawn.contains(&json["topic"]["title"].as_str().unwrap()));
+    let table = text(&read("md"));
+    assert_eq!(table.lines().filter(|line| line.starts_with('|')).count(), 2 + variants.len());
+    for variant in variants {
+        assert!(table.contains(variant["label"].as_str().unwrap()));
+        for key in ["ms", "ratio", "start_ms"] {
+            let at = |end: &str| variant[key][end].as_f64().unwrap();
+            assert!(at("low") <= at("median") && at("median") <= at("high"), "{key} of {variant}");
+        }
+        assert!(variant["gpu_bytes"].as_u64().unwrap() > 0);
+    }
+    assert!(table.contains(&format!("{topic}.svg")));
+    assert!(variants.iter().any(|v| v["is_pareto"] == true));
+    let png = png::Decoder::new(std::io::Cursor::new(read("png"))).read_info().unwrap();
+    assert!(png.info().width == 1520 && png.info().height >= 1000, "{:?}", png.info().size());
+}
+
+#[test]
+fn samples() {
+    let (folder, json) = tiny_run("samples");
+    check_files(&folder, "samples", &json);
+    let of = |key: &str| -> Vec<f64> {
+        json["variants"].as_array().unwrap().iter().map(|v| v["difference"][key].as_f64().unwrap()).collect()
+    };
+    // One sample shows stairs that 64 do not; half as many samples again and again come closer.
+    for key in ["flip", "mean_steps"] {
+        let errors = of(key);
+        assert_eq!(errors.len(), 6);
+        assert!(errors[0] > 2.0 * errors[4] && errors[5] > 0.0, "{key}: {errors:?}");
+    }
+    let counts: Vec<_> = json["variants"].as_array().unwrap().iter().map(|v| v["knobs"]["samples"].clone()).collect();
+    assert_eq!(counts, [1.0, 2.0, 4.0, 8.0, 16.0, 32.0]);
+}
+
+#[test]
+fn sprite_resolution() {
+    let (folder, json) = tiny_run("sprite-resolution");
+    check_files(&folder, "sprite-resolution", &json);
+    let variants = json["variants"].as_array().unwrap();
+    let wrong = |i: usize| variants[i]["difference"]["wrong_mask_pixels"].as_u64().unwrap();
+    assert_eq!(wrong(0), 0, "one texel per pixel is the reference");
+    assert!(wrong(variants.len() - 1) > 0, "a sprite of 2 × 1 texels has no sphere in it");
+    let bytes = |i: usize| variants[i]["gpu_bytes"].as_u64().unwrap();
+    assert!(bytes(0) >= bytes(variants.len() - 1));
+}
+
+#[test]
+fn topics_are_listed() {
+    let output = run(&["measure"]);
+    assert_eq!(output.status.code(), Some(0));
+    let list = text(&output.stdout);
+    assert_eq!(list.lines().count(), TOPICS.len());
+    for topic in TOPICS {
+        assert!(list.contains(topic.name) && list.contains(topic.about));
+    }
+    let json: Value = serde_json::from_slice(&run(&["measure", "--json"]).stdout).unwrap();
+    assert_eq!(json.as_array().unwrap().len(), TOPICS.len());
+}
+
+#[test]
+fn wrong_usage_is_told() {
+    let told = |arguments: &[&str], part: &str| {
+        let output = run(&[&["measure"], arguments].concat());
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(part), "{message} lacks {part}");
+    };
+    let nowhere = folder("nowhere");
+    let place = nowhere.0.to_str().unwrap();
+    told(&["sample", "-o", place], "did you mean \"samples\"?");
+    told(&["xyzzy", "-o", place], "sprite-resolution");
+    told(&["samples"], "-o DIR");
+    told(&["samples", "-o", place, "--pairs", "0"], "1..");
+    told(&["samples", "-o", place, "--size", "9000x10"], "4096");
+    assert!(!nowhere.0.exists(), "nothing is made for a command that is wrong");
+    let output = run(&["measure", "samples", "-o", place, "--city", "no/such.city.json"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("no/such.city.json"));
+}
+
+#[test]
+fn handlers() {
+    let (folder, json) = tiny_run("handlers");
+    check_files(&folder, "handlers", &json);
+    let variants = json["variants"].as_array().unwrap();
+    assert_eq!(variants.len(), 6 * 2 * 2, "counts, arrangements, back ends");
+    for variant in variants {
+        // Both back ends make one picture (H3).
+        assert_eq!(variant["difference"]["wrong_pixels"], 0, "{variant}");
+        assert_eq!(variant["difference"]["flip"], 0.0, "{variant}");
+    }
+    // Every pair of back ends has its own front.
+    for pair in variants.chunks(2) {
+        assert_eq!(pair[0]["knobs"]["effects"], pair[1]["knobs"]["effects"]);
+        assert!(pair.iter().any(|v| v["is_pareto"] == true));
+    }
+}
