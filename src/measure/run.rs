@@ -230,3 +230,50 @@ pub fn mark_front(topic: &Topic, rows: &mut [Row]) {
         rows[i].is_pareto = at.is_some_and(|at| pareto::front(&points)[at]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::{Knob, Quantity};
+
+    /// A row with a knob, a FLIP error and a ratio.
+    fn row(knob: f64, flip: f64, ratio: f64) -> Row {
+        let at = |median| Estimate { median, low: median, high: median };
+        Row {
+            label: String::new(),
+            knobs: vec![Value::Number(knob)],
+            difference: Difference { flip, ..Difference::default() },
+            ms: at(1.0),
+            ratio: at(ratio),
+            start_ms: at(1.0),
+            gpu_bytes: 1,
+            is_pareto: false,
+        }
+    }
+
+    #[test]
+    fn fronts_are_those_of_what_may_be_compared() {
+        let topic = Topic {
+            name: "test",
+            title: "",
+            about: "",
+            specs: &[],
+            reference: "",
+            knobs: &[Knob { name: "k", unit: "" }],
+            x: Quantity::Flip,
+            y: &[Quantity::Ratio],
+            front: [Quantity::Flip, Quantity::Ratio],
+            alike: &[],
+            series: &[],
+            make: |_| Err(RenderError::Scene(String::new())),
+        };
+        let rows = [row(0.0, 0.0, 2.0), row(0.0, 0.1, 3.0), row(1.0, 0.5, 5.0), row(1.0, 0.2, 6.0)];
+        let front = |topic: &Topic| {
+            let mut rows = rows.clone();
+            mark_front(topic, &mut rows);
+            rows.map(|row| row.is_pareto)
+        };
+        assert_eq!(front(&topic), [true, false, false, false], "the first beats all");
+        assert_eq!(front(&Topic { alike: &[0], ..topic }), [true, false, true, true], "or only its own kind");
+    }
+}
