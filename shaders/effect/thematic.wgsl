@@ -2,7 +2,7 @@
 //! kind = "scene"
 //! spec = "K2"
 //! doc = "Colours objects by an attribute; light changes lightness alone, hue and chroma stay the legend's."
-//! object_colors = true
+//! objects = "colors"
 //!
 //! [[parameter]]
 //! name = "attribute"
@@ -101,7 +101,7 @@ fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     if point.object == NO_OBJECT {
         return point.shade * vec3f(0.72);
     }
-    let code = object_colors[p.first + point.object];
+    let code = object_values[p.first + point.object];
     let legend = linear_from_srgb(unpack4x8unorm(code).rgb);
     let lab = oklab_from_linear(legend);
     let lightness = lab.x * mix(0.62, 1.06, clamp(point.shade, 0.0, 1.0));

@@ -1,7 +1,4 @@
 // The volumetric depth test (S5), on the sprites of the lens volumes in view.
-//
-// A point has one bit per class and lens; the bits of several volumes of one lens are ORed: inside any of
-// them is inside the lens, in front only before the first, behind only after the last.
 
 struct LensVolume {
     @align(16) origin: vec2i,   // of its screen bounds, pixels
@@ -12,11 +9,6 @@ struct LensVolume {
 }
 
 @group(2) @binding(0) var sprites: texture_2d_array<f32>;    // stored depth of the entry, and of the exit
-
-const MISSED: u32 = 0u;
-const INSIDE: u32 = 1u;
-const FRONT: u32 = 2u;
-const BEHIND: u32 = 4u;
 
 // Twin: `veduta::lens::classify`. On stored depths, which fall with distance: every comparison of S5 is turned
 // round, and none needs a division. An entry of 0 says that the eye is inside; a depth of 0, that nothing is there.
@@ -46,21 +38,4 @@ fn class_within(v: LensVolume, pixel: vec2i, depth: f32) -> u32 {
 // At any pixel.
 fn class_in(v: LensVolume, pixel: vec2i, depth: f32) -> u32 {
     return select(MISSED, class_within(v, pixel, depth), is_in_bounds(v, pixel));
-}
-
-fn is_inside(classes: u32) -> bool {
-    return (classes & INSIDE) != 0u;
-}
-
-fn is_in_front(classes: u32) -> bool {
-    return classes == FRONT;
-}
-
-fn is_behind(classes: u32) -> bool {
-    return classes == BEHIND;
-}
-
-// Missed, or between two volumes.
-fn is_rest(classes: u32) -> bool {
-    return classes == MISSED || classes == (FRONT | BEHIND);
 }

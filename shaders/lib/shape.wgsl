@@ -111,12 +111,10 @@ fn span_of_planes(ray: Ray, first: u32, count: u32) -> Span {
     return span;
 }
 
-// Which kind of shape this pipeline is for: a software adapter runs all cases of a switch, so the choice
-// is made before, not per pixel.
-override KIND: u32 = SPHERE;
-
-fn span_of_shape(ray: Ray, s: Shape) -> Span {
-    switch KIND {
+// `kind`: the shape's own, or a constant where all shapes of a pipeline are of one: a software adapter runs all cases of a
+// switch that it cannot decide before.
+fn span_of_shape(ray: Ray, s: Shape, kind: u32) -> Span {
+    switch kind {
         case SPHERE: { return span_of_sphere(ray, s.center, s.size_x); }
         case BOX: { return span_of_box(ray, s); }
         case CYLINDER: { return span_of_cylinder(ray, s); }

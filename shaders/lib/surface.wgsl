@@ -2,6 +2,13 @@
 
 const NO_OBJECT: u32 = 0xffffffffu;
 const SURFACE_UNLIT: u32 = 1u;
+const SURFACE_PART: u32 = 6u;   // bits that hold the part
+const SURFACE_PART_SHIFT: u32 = 1u;
+// What a surface is part of.
+const PART_OTHER: u32 = 0u;
+const PART_ROOF: u32 = 1u;
+const PART_WALL: u32 = 2u;      // with its windows and doors
+const PART_TERRAIN: u32 = 3u;   // terrain, roads, water, land use, the plain ground
 const SURFACES_PER_ROW: u32 = 4096u;
 
 struct Surface {

@@ -5,6 +5,9 @@
 // target 2  r32float    interpolated depth; only where the depth AOV is asked for. A face that shares its
 //                       plane takes its tested depth from the plane; its AOV must not depend on what else
 //                       the city holds, so it is always the face's own.
+//
+// Chunks that a hiding lens may reach have pipelines of their own, whose `cut` discards what is not there (K4: by its own
+// depth, before visibility): a discard anywhere costs early depth tests everywhere (decision 3).
 
 override SMOOTH: bool = false;  // whether some faces have a normal per vertex
 
@@ -32,6 +35,8 @@ struct Full {
     @location(2) own_depth: f32,
 }
 
+//@handlers
+
 // ---- flat faces
 
 @vertex
@@ -41,11 +46,13 @@ fn vertex(in: Vertex) -> Varying {
 
 @fragment
 fn plain(in: Varying) -> @location(0) u32 {
+    cut(in.clip.xy, in.clip.z, in.code);
     return in.code;
 }
 
 @fragment
 fn full(in: Varying) -> Full {
+    cut(in.clip.xy, in.clip.z, in.code);
     return Full(vec2u(in.code, 0u), vec4f(surface_at(in.code - 1u).color, 1.0), in.clip.z);
 }
 
@@ -65,19 +72,21 @@ fn vertex_smooth(in: Vertex) -> SmoothVarying {
 
 @fragment
 fn smooth_plain(in: SmoothVarying) -> @location(0) vec2u {
+    cut(in.clip.xy, in.clip.z, in.code);
     return vec2u(in.code, encode_normal(in.normal));
 }
 
 @fragment
 fn smooth_full(in: SmoothVarying) -> Full {
+    cut(in.clip.xy, in.clip.z, in.code);
     let code = vec2u(in.code, encode_normal(in.normal));
     return Full(code, vec4f(surface_at(in.code - 1u).color, 1.0), in.clip.z);
 }
 
 // ---- textured surfaces
 
-@group(2) @binding(0) var image: texture_2d<f32>;
-@group(2) @binding(1) var image_sampler: sampler;
+@group(3) @binding(0) var image: texture_2d<f32>;
+@group(3) @binding(1) var image_sampler: sampler;
 override ALPHA_CUTOFF: f32 = 0.0;
 
 struct TexturedVarying {
@@ -99,6 +108,7 @@ fn textured(in: TexturedVarying) -> Full {
     if texel.a < ALPHA_CUTOFF {
         discard;
     }
+    cut(in.clip.xy, in.clip.z, in.code);
     let code = vec2u(in.code, select(0u, encode_normal(in.normal), SMOOTH));
     return Full(code, vec4f(texel.rgb * surface_at(in.code - 1u).color, 1.0), in.clip.z);
 }
@@ -168,7 +178,9 @@ struct CoplanarPlain {
 
 @fragment
 fn coplanar_plain(in: CoplanarVarying) -> CoplanarPlain {
-    return CoplanarPlain(coplanar_code(in), depth_on_plane(in));
+    let depth = depth_on_plane(in);
+    cut(in.clip.xy, depth, in.code);
+    return CoplanarPlain(coplanar_code(in), depth);
 }
 
 struct CoplanarFull {
@@ -180,6 +192,8 @@ struct CoplanarFull {
 
 @fragment
 fn coplanar_full(in: CoplanarVarying) -> CoplanarFull {
+    let depth = depth_on_plane(in);
+    cut(in.clip.xy, depth, in.code);
     let color = vec4f(surface_at(in.code - 1u).color, 1.0);
-    return CoplanarFull(coplanar_code(in), color, in.clip.z, depth_on_plane(in));
+    return CoplanarFull(coplanar_code(in), color, in.clip.z, depth);
 }

@@ -37,7 +37,7 @@ const FAR_AWAY: f32 = 1e30;
 @group(1) @binding(6) var codes: texture_2d<u32>;
 @group(1) @binding(7) var scene_depth: texture_depth_2d;
 @group(1) @binding(8) var colors: texture_2d<f32>;
-@group(2) @binding(1) var<storage, read> object_colors: array<u32>;
+@group(2) @binding(1) var<storage, read> object_values: array<u32>;
 
 struct Corner {
     @builtin(position) @invariant clip: vec4f,

@@ -16,6 +16,9 @@ struct SpriteStage {
 
 @group(2) @binding(0) var<uniform> stage: SpriteStage;
 
+// Which kind of shape this pipeline is for.
+override KIND: u32 = SPHERE;
+
 @vertex
 fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0);
@@ -38,5 +41,5 @@ fn ends_of(span: Span) -> vec2f {
 
 @fragment
 fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2f {
-    return ends_of(span_of_shape(ray_of_pixel((at.xy + stage.origin) * stage.pixels_per_texel), stage.shape));
+    return ends_of(span_of_shape(ray_of_pixel((at.xy + stage.origin) * stage.pixels_per_texel), stage.shape, KIND));
 }

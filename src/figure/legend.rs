@@ -8,7 +8,7 @@ use crate::{
         thematic::{LegendKind, Rule, ThematicScale},
     },
     scene::Scene,
-    shader::effect::find,
+    shader::{PerObject, effect::find},
 };
 
 /// Legends of one picture at most.
@@ -65,7 +65,7 @@ pub fn legends(scene: &Scene, model: &CityModel, seen: &[bool]) -> Vec<Legend> {
 }
 
 fn is_thematic(used: &EffectUse) -> bool {
-    find(&used.effect).is_some_and(|definition| definition.object_colors)
+    find(&used.effect).is_some_and(|definition| definition.objects == Some(PerObject::Colors))
 }
 
 impl Legend {

@@ -10,13 +10,13 @@ use crate::{
         nearest::did_you_mean,
     },
     shader::{
-        effect::{DefaultValue, Fallback, MAX_LIST, ParameterDefinition, ParameterKind, effects, find},
+        effect::{DefaultValue, EffectKind, Fallback, MAX_LIST, ParameterDefinition, ParameterKind, effects, find},
         effect_file::RESERVED,
     },
 };
 
 /// Effects whose names are fixed but which this version does not have.
-pub const LATER: &[&str] = &["wireframe", "hidden-line", "eraser", "x-ray", "lod"];
+pub const LATER: &[&str] = &["wireframe", "hidden-line", "x-ray", "lod"];
 
 /// Something wrong with a use of an effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +55,12 @@ pub fn check(used: &EffectUse) -> Vec<EffectProblem> {
         && min >= max
     {
         problems.push(problem("min", format!("must be less than max = {max}, is {min}")));
+    }
+    if definition.kind == EffectKind::Hide {
+        let blended = [("blend", used.blend.is_some()), ("weight", used.weight.is_some())];
+        for (key, _) in blended.iter().filter(|(_, is_given)| *is_given) {
+            problems.push(problem(key, format!("\"{}\" hides things; there is nothing to blend", used.effect)));
+        }
     }
     if let Some(weight) = used.weight
         && !(0.0..=1.0).contains(&weight)
@@ -191,7 +197,7 @@ mod tests {
             for p in &effect.parameters {
                 assert!(p.doc.ends_with('.') && !RESERVED.contains(&p.name.as_str()), "{}.{}", effect.name, p.name);
                 // The shader reads every parameter, so every one has a value.
-                let reads = !effect.object_colors;
+                let reads = effect.shader_parameters().any(|(read, ..)| read.name == p.name);
                 assert!(!reads || p.is_required() || default_of(p).is_some(), "{}.{}", effect.name, p.name);
             }
         }

@@ -1,5 +1,6 @@
 //! What to show where: a lens = shapes + effects + order (V §3).
 
+pub mod chosen;
 pub mod classify;
 pub mod color;
 pub mod effect;

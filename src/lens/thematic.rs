@@ -122,7 +122,7 @@ fn year_of(text: &str) -> Option<f64> {
 }
 
 /// The category a value belongs to; `None` for no value.
-fn category_of(value: Value, strings: &Strings) -> Option<String> {
+pub fn category_of(value: Value, strings: &Strings) -> Option<String> {
     let text = match value {
         Value::Null => return None,
         Value::Boolean(b) => b.to_string(),

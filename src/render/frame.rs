@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! shadow map                    if the sun casts shadows and the map does not hold this view yet
+//! depth sprites                 of all lens volumes in view
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
-//! depth sprites                 of all lens volumes in view
 //! unfiltered, filter across,    for each neighbourhood filter in view: its lens' own image over the lens' bounds
 //! filter down                   and what the filter reaches beyond them, and the filter
 //! shade                         outside the lenses' screen bounds without them, inside with them
@@ -22,12 +22,13 @@ use crate::{
     render::{
         city::{Chunk, CityBuffers, Draw, Section, SectionKind, SeenChunk, draws_of},
         curtain::{self, Curtain},
+        cut::{Cut, CutPrograms, Cuts},
         eye::{PictureTile, view_uniform},
         furniture::{Furniture, FurnitureOnGpu},
         layout, light,
         operations::{Filter, Operations, invoker_table},
         pipelines::{GeometryKind, Key, ShadeTarget},
-        renderer::{Renderer, STAGE_STRIDE},
+        renderer::{Renderer, STAGE_STRIDE, Shadow},
         sprites::{self, Pages, Place},
         targets::Needs,
         volume::LensVolume,
@@ -154,20 +155,23 @@ impl Renderer {
         let plans = Plans::new(input, &seen);
         let filters = plans.filters.len() as u32;
         self.fit_targets(Needs { filters, ..needs(input, &pages, self.colored(), self.smooth(), sun_view.is_some()) });
-        let (keys, is_uber) = self.prepare(input, &seen, &plans, sun_view.is_some());
-        self.upload(input, sun_view.as_ref(), &seen, &plans, is_uber)?;
+        let cuts =
+            Cuts::new(input, |lens| seen.iter().any(|v| v.lens == lens), sun_view.as_ref(), plans.hiding.clone());
+        let (keys, is_uber) = self.prepare(input, &seen, &plans, &cuts, sun_view.is_some());
+        self.upload(input, sun_view.as_ref(), &seen, &plans, &cuts, is_uber)?;
         self.fit_groups();
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         if let Some(sun_view) = &sun_view {
-            self.shadow_pass(&mut encoder, &mut recorder, sun_view);
+            self.shadow_pass(&mut encoder, &mut recorder, input, sun_view, (&cuts, &keys.cuts));
         }
-        encoder = self.geometry_passes(encoder, &mut recorder, input)?;
+        // Before the city: what a lens hides is decided by them.
         if !seen.is_empty() {
             self.sprite_passes(&mut encoder, &mut recorder, &seen);
-            if wants_masks(input) {
-                self.clear_masks(&mut encoder, &mut recorder);
-            }
+        }
+        encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?;
+        if !seen.is_empty() && wants_masks(input) {
+            self.clear_masks(&mut encoder, &mut recorder);
         }
         self.filter_passes(&mut encoder, &mut recorder, input, &seen, &plans.filters, &keys);
         self.shade_pass(&mut encoder, &mut recorder, input, &seen, &keys);
@@ -259,6 +263,7 @@ impl Renderer {
         sun: Option<&View>,
         seen: &[SeenVolume],
         plans: &Plans,
+        cuts: &Cuts,
         is_uber: bool,
     ) -> Result<(), GpuError> {
         let Some(city) = &self.city else { return Ok(()) };
@@ -289,6 +294,7 @@ impl Renderer {
                 pad_0: [0; 3],
             });
         }
+        let sun_shapes = cuts.sun.as_ref().map(|cut| cut.shapes(input));
         let mut parameters = std::borrow::Cow::Borrowed(&input.operations.parameters);
         let (gpu, b) = (&self.gpu, &mut self.buffers);
         let mut stale = false;
@@ -309,8 +315,7 @@ impl Renderer {
         stale |= b.filter_stages.sync(gpu, &filter_stages)?;
         if is_uber {
             volumes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
-            let table = invoker_table([&plans.context, &plans.lenses], handlers()).unwrap_or_default();
-            stale |= b.invokers.sync(gpu, &table)?;
+            stale |= b.invokers.sync(gpu, &plans.table().unwrap_or_default())?;
         }
         stale |= b.view.sync(gpu, &[view])?;
         stale |= b.light.sync(gpu, &[light])?;
@@ -318,11 +323,21 @@ impl Renderer {
             let whole = PictureTile::whole(sun.size);
             stale |= b.sun_view.sync(gpu, &[view_uniform(sun, whole, DVec2::ZERO, 0, 0.0)])?;
         }
+        if let Some(shapes) = &sun_shapes {
+            stale |= b.eye.sync(gpu, &[shapes.eye])?;
+            stale |= b.shapes.sync(gpu, &shapes.shapes)?;
+            stale |= b.shape_planes.sync(gpu, &shapes.planes)?;
+            if let (true, Some(cut)) = (is_uber, &cuts.sun) {
+                let table = invoker_table([&Plan::default(), &Plan::default()], Some(&cut.plan), handlers())
+                    .unwrap_or_default();
+                stale |= b.shape_invokers.sync(gpu, &table)?;
+            }
+        }
         stale |= b.planes.sync(gpu, &planes)?;
         stale |= b.sprite_stages.sync(gpu, &stages)?;
         stale |= b.volumes.sync(gpu, &volumes)?;
         stale |= b.parameters.sync(gpu, &parameters)?;
-        stale |= b.object_colors.sync(gpu, &input.operations.object_colors)?;
+        stale |= b.object_values.sync(gpu, &input.operations.object_values)?;
         stale |= b.resolve.sync(gpu, &[input.samples as f32])?;
         if stale {
             self.groups = None;
@@ -331,16 +346,32 @@ impl Renderer {
     }
 
     /// Makes the pipelines this frame calls for, and no other; whether shading is the uber back end's.
-    fn prepare(&mut self, input: &FrameInput, seen: &[SeenVolume], plans: &Plans, shadows: bool) -> (ShadeKeys, bool) {
+    fn prepare(
+        &mut self,
+        input: &FrameInput,
+        seen: &[SeenVolume],
+        plans: &Plans,
+        cuts: &Cuts,
+        shadows: bool,
+    ) -> (ShadeKeys, bool) {
         let Some(city) = &self.city else { return (ShadeKeys::default(), false) };
         let colored = self.colored();
         let mut keys: Vec<Key> = Vec::new();
         if shadows {
-            keys.push(Key::Shadow);
+            keys.push(Key::Shadow(None));
         }
-        for section in &city.buffers.sections {
-            keys.push(geometry_key(section.kind, colored, city.buffers.smooth, input.measured));
-        }
+        let whole_key =
+            |section: &Section| geometry_key(section.kind, colored, city.buffers.smooth, input.measured, None);
+        keys.extend(city.buffers.sections.iter().map(whole_key));
+        // For all sections: a lens that moves compiles nothing.
+        let cut_keys = |picture: Option<&Program>, sun: Option<&Program>| -> Vec<Key> {
+            let of_section = |section: &Section, program: &Program| {
+                geometry_key(section.kind, colored, city.buffers.smooth, input.measured, Some(program.clone()))
+            };
+            let sections = city.buffers.sections.iter();
+            let sections = sections.flat_map(|section| picture.map(|program| of_section(section, program)));
+            sections.chain(sun.map(|program| Key::Shadow(Some(program.clone())))).collect()
+        };
         for volume in seen {
             keys.push(Key::Sprite(volume.kind));
         }
@@ -364,7 +395,9 @@ impl Renderer {
         let both_to =
             |target, program: Program| vec![shade_to(target, true, program.clone()), shade_to(target, false, program)];
         let both = |program: Program| both_to(target, program);
-        let parts = |context: Program, lenses: Program| ShadeKeys {
+        let parts = |context: Program, lenses: Program, city: Vec<Key>, cuts: CutPrograms| ShadeKeys {
+            city,
+            cuts,
             context: both(context),
             lenses: if seen.is_empty() { Vec::new() } else { both(lenses) },
             // Written out on either back end: a few steps without a lens.
@@ -374,16 +407,22 @@ impl Renderer {
                 .map(|f| both_to(ShadeTarget::Unfiltered, Program::Specialised(f.plan.clone())))
                 .collect(),
         };
-        let specialised =
-            || parts(Program::Specialised(plans.context.clone()), Program::Specialised(plans.lenses.clone()));
+        let specialised = || {
+            let cuts = cuts.specialised();
+            let city = cut_keys(cuts.picture.as_ref(), cuts.sun.as_ref());
+            let [context, lenses] = [&plans.context, &plans.lenses].map(|plan| Program::Specialised(plan.clone()));
+            parts(context, lenses, city, cuts)
+        };
         let uber = || {
             let uber = Program::Uber(input.operations.uber(haze(input) > 0.0, wants_masks(input)));
-            parts(uber.clone(), uber)
+            let hiding = input.operations.uber_hiding().map(Program::Uber);
+            let city = cut_keys(hiding.as_ref(), hiding.as_ref().filter(|_| shadows));
+            parts(uber.clone(), uber, city, cuts.uber(hiding))
         };
         let shade_keys = match input.backend {
             Backend::Specialised => specialised(),
             // More invokers than the table holds: written out, there is no limit.
-            _ if invoker_table([&plans.context, &plans.lenses], handlers()).is_err() => specialised(),
+            _ if plans.table().is_err() => specialised(),
             Backend::Uber => uber(),
             Backend::Adaptive => {
                 let wanted = specialised();
@@ -406,20 +445,33 @@ impl Renderer {
         }
         self.ran.extend(plans.context.effects());
         self.ran.extend(plans.lenses.effects());
+        self.ran.extend(cuts.all().flat_map(|cut| cut.plan.effects()));
         self.ran.sort_unstable();
         self.ran.dedup();
-        let is_uber = shade_keys.all().any(|key| matches!(key, Key::Shade { program: Program::Uber(_), .. }));
+        let is_uber = shade_keys.context.iter().any(|key| matches!(key, Key::Shade { program: Program::Uber(_), .. }));
         (shade_keys, is_uber)
     }
 
-    fn shadow_pass(&mut self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, sun: &View) {
-        let wanted = view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0);
-        if self.shadow_of == Some(wanted) {
+    fn shadow_pass(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        input: &FrameInput,
+        sun: &View,
+        (cuts, programs): (&Cuts, &CutPrograms),
+    ) {
+        let cut = cuts.sun.as_ref().zip(programs.sun.as_ref());
+        let wanted = Shadow {
+            view: view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0),
+            cut: cut.map(|(cut, program)| (program.clone(), cut.all_numbers(input))),
+        };
+        if self.shadow_of.as_ref() == Some(&wanted) {
             return;
         }
         self.shadow_of = Some(wanted);
         let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
-        let slot = recorder.begin("shadow map", "sun", &[], false);
+        let lenses = cut.map_or(&[][..], |(cut, _)| &cut.hiding.lenses);
+        let slot = recorder.begin("shadow map", "sun", lenses, false);
         let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow map"),
@@ -427,17 +479,29 @@ impl Renderer {
             timestamp_writes: writes,
             ..Default::default()
         });
-        pass.set_pipeline(self.pipelines.get(&Key::Shadow));
         pass.set_bind_group(0, &groups.sun_view, &[]);
-        pass.set_bind_group(1, &city.group, &[]);
         // Casters may stand before the picture's edge, never behind the sun.
         let frustum = sun.frustum(1.0);
         for section in &city.buffers.sections {
             let seen = CityBuffers::visible(section, &frustum, sun.camera.eye);
-            let (draws, triangles) = draws_of(seen.iter().map(|s| s.chunk));
+            let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
             pass.set_vertex_buffer(0, section.vertices.slice(..));
-            draw_ranges(&mut pass, &section.indices, &draws);
-            recorder.count(draws.len() as u32, triangles);
+            for (part, is_cut) in Cut::parts(cut.map(|(cut, _)| cut), &input.view, &chunks) {
+                let (draws, triangles) = draws_of(part.into_iter());
+                match cut.filter(|_| is_cut) {
+                    Some((_, program)) => {
+                        pass.set_pipeline(self.pipelines.get(&Key::Shadow(Some(program.clone()))));
+                        pass.set_bind_group(1, &groups.shapes_city, &[]);
+                        pass.set_bind_group(2, &groups.shapes, &[]);
+                    }
+                    None => {
+                        pass.set_pipeline(self.pipelines.get(&Key::Shadow(None)));
+                        pass.set_bind_group(1, &city.group, &[]);
+                    }
+                }
+                draw_ranges(&mut pass, &section.indices, &draws);
+                recorder.count(draws.len() as u32, triangles);
+            }
         }
     }
 
@@ -447,7 +511,9 @@ impl Renderer {
         mut encoder: wgpu::CommandEncoder,
         recorder: &mut Recorder,
         input: &FrameInput,
+        cuts: (&Cuts, &CutPrograms),
     ) -> Result<wgpu::CommandEncoder, GpuError> {
+        let cut = cuts.0.picture.as_ref().zip(cuts.1.picture.as_ref());
         let (Some(targets), Some(city)) = (&self.targets, &self.city) else { return Ok(encoder) };
         let frustum = input.view.frustum(1.0);
         let sections = &city.buffers.sections;
@@ -465,11 +531,11 @@ impl Renderer {
         let hanging = || sections.iter().zip(&seen).filter(|(section, _)| hangs(section)).flat_map(|(_, seen)| seen);
         let reach = if self.culls_hidden { curtain::reach(&input.view, hanging()) } else { None };
         let Some(reach) = reach else {
-            self.geometry_pass(&mut encoder, recorder, input, &part(&|_, _| true), ("geometry", true));
+            self.geometry_pass(&mut encoder, recorder, input, (&part(&|_, _| true), cut), ("geometry", true));
             return Ok(encoder);
         };
         let is_near = |section: &Section, s: &SeenChunk| hangs(section) && s.distance <= reach;
-        self.geometry_pass(&mut encoder, recorder, input, &part(&is_near), ("geometry", true));
+        self.geometry_pass(&mut encoder, recorder, input, (&part(&is_near), cut), ("geometry", true));
         let mut curtain = match self.curtain.take() {
             Some(curtain) if curtain.fits(&targets.depth.texture) => curtain,
             _ => Curtain::new(&self.gpu, input.tile.size)?,
@@ -479,7 +545,7 @@ impl Renderer {
         curtain.read(&self.gpu)?;
         let rest = part(&|section, s| !is_near(section, s) && !curtain.hides(&input.view, input.tile, &s.chunk.bounds));
         encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-        self.geometry_pass(&mut encoder, recorder, input, &rest, ("geometry beyond", false));
+        self.geometry_pass(&mut encoder, recorder, input, (&rest, cut), ("geometry beyond", false));
         self.curtain = Some(curtain);
         Ok(encoder)
     }
@@ -489,12 +555,13 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
         input: &FrameInput,
-        chunks: &[Vec<&Chunk>],
+        (chunks, cut): (&[Vec<&Chunk>], Option<(&Cut, &Program)>),
         (name, is_first): (&'static str, bool),
     ) {
         let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
         let colored = self.colored();
-        let slot = recorder.begin(name, "main", &[], true);
+        let lenses = cut.map_or(&[][..], |(cut, _)| &cut.hiding.lenses);
+        let slot = recorder.begin(name, "main", lenses, true);
         let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
         let targets_of =
             [Some(&targets.codes), colored.then_some(&targets.colors), input.measured.then_some(&targets.own_depth)];
@@ -527,22 +594,24 @@ impl Renderer {
             if chunks.is_empty() {
                 continue;
             }
-            let (draws, triangles) = draws_of(chunks.iter().copied());
-            pass.set_pipeline(self.pipelines.get(&geometry_key(
-                section.kind,
-                colored,
-                city.buffers.smooth,
-                input.measured,
-            )));
             pass.set_vertex_buffer(0, section.vertices.slice(..));
             if let Some(extra) = &section.extra {
                 pass.set_vertex_buffer(1, extra.slice(..));
             }
             if let Some(image) = image {
-                pass.set_bind_group(2, image, &[]);
+                pass.set_bind_group(3, image, &[]);
             }
-            draw_ranges(&mut pass, &section.indices, &draws);
-            counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
+            for (part, is_cut) in Cut::parts(cut.map(|(cut, _)| cut), &input.view, chunks) {
+                let (draws, triangles) = draws_of(part.into_iter());
+                let program = cut.filter(|_| is_cut).map(|(_, program)| program.clone());
+                if program.is_some() {
+                    pass.set_bind_group(2, &groups.lenses, &[]);
+                }
+                let key = geometry_key(section.kind, colored, city.buffers.smooth, input.measured, program);
+                pass.set_pipeline(self.pipelines.get(&key));
+                draw_ranges(&mut pass, &section.indices, &draws);
+                counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
+            }
         }
         if let Some(timer) = &recorder.timer {
             timer.end_count(&mut pass, slot);
@@ -810,11 +879,14 @@ struct ShadeKeys {
     lenses: Vec<Key>,
     /// For each filter, what shades the image that it reads.
     filters: Vec<Vec<Key>>,
+    /// What is hidden, and what draws the parts of the city where it is.
+    cuts: CutPrograms,
+    city: Vec<Key>,
 }
 
 impl ShadeKeys {
     fn all(&self) -> impl Iterator<Item = &Key> {
-        self.context.iter().chain(&self.lenses).chain(self.filters.iter().flatten())
+        self.context.iter().chain(&self.lenses).chain(self.filters.iter().flatten()).chain(&self.city)
     }
 }
 
@@ -823,6 +895,8 @@ struct Plans {
     context: Plan,
     lenses: Plan,
     filters: Vec<Filter>,
+    /// What is hidden in the picture.
+    hiding: Option<Plan>,
 }
 
 impl Plans {
@@ -834,7 +908,14 @@ impl Plans {
             true => Plan::default(),
             false => input.operations.lens_plan(&lenses, haze, wants_masks(input)),
         };
-        Self { filters, context: input.operations.context_plan(haze), lenses }
+        let context = input.operations.context_plan(haze);
+        let hiding = if seen.is_empty() { &context } else { &lenses }.hiding(handlers());
+        Self { filters, hiding, context: context.shading(handlers()), lenses: lenses.shading(handlers()) }
+    }
+
+    /// The invoker table of the picture; `Err` where it would be too long.
+    fn table(&self) -> Result<Vec<u32>, usize> {
+        invoker_table([&self.context, &self.lenses], self.hiding.as_ref(), handlers())
     }
 }
 
@@ -848,13 +929,13 @@ fn grown(part: PictureTile, by: [u32; 2], whole: PictureTile) -> PictureTile {
     PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] }
 }
 
-fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool) -> Key {
+fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool, cut: Option<Program>) -> Key {
     let section = match kind {
         SectionKind::Plain => GeometryKind::Plain,
         SectionKind::Textured { alpha_cutoff, .. } => GeometryKind::Textured(alpha_cutoff.to_bits()),
         SectionKind::Coplanar => GeometryKind::Coplanar,
     };
-    Key::Geometry { section, colored, smooth, measured }
+    Key::Geometry { section, colored, smooth, measured, cut }
 }
 
 /// Whether this sample writes the lens masks.

@@ -55,11 +55,10 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// An entry: object index or [`NO_OBJECT`], octahedral normal, natural colour in linear light, and whether light
-    /// leaves it alone.
-    pub fn new(object: u32, normal: u32, color: [f32; 3], unlit: bool) -> Self {
+    /// An entry: object index or [`NO_OBJECT`], octahedral normal, natural colour in linear light, flags.
+    pub fn new(object: u32, normal: u32, color: [f32; 3], flags: u32) -> Self {
         let [r, g, b] = color.map(|c| u32::from(palette::half(c)));
-        Self { object, normal, color_rg: r | g << 16, color_b_flags: b | if unlit { SURFACE_UNLIT << 16 } else { 0 } }
+        Self { object, normal, color_rg: r | g << 16, color_b_flags: b | flags << 16 }
     }
 }
 
@@ -67,6 +66,16 @@ impl Surface {
 pub const NO_OBJECT: u32 = u32::MAX;
 /// `lib/surface.wgsl`: light does not act on it.
 pub const SURFACE_UNLIT: u32 = 1;
+/// `lib/surface.wgsl`: the part stands above this bit of the flags.
+pub const SURFACE_PART_SHIFT: u32 = 1;
+/// `lib/surface.wgsl`: what a surface is part of.
+pub const PART_OTHER: u32 = 0;
+/// `lib/surface.wgsl`.
+pub const PART_ROOF: u32 = 1;
+/// `lib/surface.wgsl`.
+pub const PART_WALL: u32 = 2;
+/// `lib/surface.wgsl`.
+pub const PART_TERRAIN: u32 = 3;
 
 /// The plane of a face that shares it, as vertex attributes of `pass/geometry.wgsl`.
 #[repr(C)]
@@ -178,8 +187,7 @@ pub struct Part {
     pub styles: [u32; 2],
     pub outlines: [u32; 2],
     pub masks: [u32; 2],
-    /// An element of an array in a uniform buffer takes a multiple of 16 bytes.
-    pub pad_0: [u32; 2],
+    pub hides: [u32; 2],
 }
 
 /// `pass/furniture.wgsl`, per instance.
@@ -244,7 +252,7 @@ mod tests {
         let uber = Module::Shade(Program::Uber(Uber::default()));
         let checks = [
             (
-                &Module::Geometry,
+                &Module::Geometry(None),
                 host!(View {
                     view_from_world,
                     projection,
@@ -300,7 +308,7 @@ mod tests {
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin })),
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, size })),
             (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
-            (&uber, host!(Part { material, light, styles, outlines, masks, pad_0 })),
+            (&uber, host!(Part { material, light, styles, outlines, masks, hides })),
             (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),
             (
                 &Module::Furniture,

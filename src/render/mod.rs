@@ -6,10 +6,12 @@
 
 pub mod city;
 mod curtain;
+mod cut;
 pub mod edges;
 pub mod eye;
 pub mod frame;
 pub mod furniture;
+pub mod hiding;
 pub mod layout;
 pub mod light;
 pub mod operations;

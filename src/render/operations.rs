@@ -4,14 +4,15 @@ use crate::{
     city::CityModel,
     lens::{
         Class, EffectUse, Lens, LensBody,
+        chosen::chosen,
         effect::{default_of, in_floats},
         thematic::{ThematicError, ThematicScale},
     },
     render::layout,
     render::palette,
     shader::{
-        self, Blend, ClassTest, EffectDefinition, EffectKind, MOST_INVOKERS, Plan, PlanLens, Scope, Step, Uber,
-        scope_number,
+        self, Blend, ClassTest, EffectDefinition, EffectKind, MOST_INVOKERS, PerObject, Plan, PlanLens, Scope, Step,
+        Uber, scope_number,
     },
 };
 
@@ -63,8 +64,9 @@ pub struct Operations {
     pub outlines: Vec<(u32, u32)>,
     /// Parameters of all of them, in slots of four.
     pub parameters: Vec<[f32; 4]>,
-    /// Colours of objects, one run per thematic effect, sRGB bytes.
-    pub object_colors: Vec<u32>,
+    /// What effects read of each object, one run per use: colours, sRGB bytes; or whether it is chosen, that of no object
+    /// first.
+    pub object_values: Vec<u32>,
     /// What any frame of the scene may ask for, disabled lenses included.
     uber: Uber,
 }
@@ -113,7 +115,12 @@ impl Operations {
 
     /// The uber back end's module for a frame of the scene.
     pub fn uber(&self, haze: bool, masks: bool) -> Uber {
-        Uber { haze, masks, ..self.uber.clone() }
+        Uber { haze, masks, ..self.uber.clone() }.shading(shader::handlers())
+    }
+
+    /// The uber back end's part of the modules of geometry and shadow, where something may be hidden.
+    pub fn uber_hiding(&self) -> Option<Uber> {
+        self.uber.hiding(shader::handlers())
     }
 
     /// What shading has to do outside all lenses.
@@ -166,7 +173,8 @@ impl Operations {
     /// plan of the image it filters. That is its lens' own, unmasked: what the context does, then what the lens does to
     /// the same class before it (K3).
     pub fn filters(&self, seen: &[u32], haze: bool) -> Vec<Filter> {
-        let is_seen = |o: &&Operation| o.lens.is_none_or(|lens| seen.contains(&lens));
+        let hides = |o: &Operation| shader::handlers()[o.effect as usize].kind == EffectKind::Hide;
+        let is_seen = |o: &&Operation| !hides(o) && o.lens.is_none_or(|lens| seen.contains(&lens));
         let operations: Vec<&Operation> = self.list.iter().filter(is_seen).collect();
         let layer_of = |i: usize| operations[..i].iter().filter(|o| o.is_filter()).count() as u32;
         let filter = |(i, operation): (usize, &&Operation)| {
@@ -195,17 +203,27 @@ impl Operations {
         let definition = &shader::handlers()[number as usize];
         let first = self.parameters.len() as u32;
         let mut floats = Vec::new();
-        if definition.object_colors {
-            floats.push(self.object_colors.len() as f32);
-            let colors = ThematicScale::new(model, effect)?.object_colors(model);
-            self.object_colors.extend(colors.iter().map(|c| {
-                let [r, g, b] = c.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8);
-                u32::from_le_bytes([r, g, b, 255])
-            }));
-        }
         for (parameter, ..) in definition.shader_parameters() {
             let value = effect.parameters.get(&parameter.name).cloned().or_else(|| default_of(parameter));
             floats.extend(value.map_or_else(Vec::new, |value| in_floats(parameter, &value)));
+        }
+        let first_value = self.object_values.len() as f32;
+        match definition.objects {
+            None => {}
+            Some(PerObject::Colors) => {
+                let colors = ThematicScale::new(model, effect)?.object_colors(model);
+                self.object_values.extend(colors.iter().map(|c| {
+                    let [r, g, b] = c.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8);
+                    u32::from_le_bytes([r, g, b, 255])
+                }));
+                floats.push(first_value);
+            }
+            Some(PerObject::Chosen) => {
+                let chosen = chosen(model, effect)?;
+                self.object_values.push(u32::from(chosen.without_object));
+                self.object_values.extend(chosen.objects.iter().map(|&is_chosen| u32::from(is_chosen)));
+                floats.push(first_value);
+            }
         }
         floats.resize(definition.slots() as usize * 4, 0.0);
         self.parameters.extend(floats.as_chunks().0);
@@ -223,10 +241,20 @@ fn blend_of(effect: &EffectUse) -> Option<Blend> {
     effect.blend.filter(|b| *b != Blend::Replace || effect.weight.is_some()).or(effect.weight.map(|_| Blend::Replace))
 }
 
-/// The invoker table of the uber back end (H2), as `shader::uber` declares it, full: the context's plan, and the lenses'.
+/// The invoker table of the uber back end (H2), as `shader::uber` declares it, full: the context's plan and the lenses', and
+/// what is hidden.
 /// `Err` says how many invokers there are where they are too many.
-pub fn invoker_table(plans: [&Plan; 2], handlers: &[EffectDefinition]) -> Result<Vec<u32>, usize> {
+pub fn invoker_table(
+    plans: [&Plan; 2],
+    hiding: Option<&Plan>,
+    handlers: &[EffectDefinition],
+) -> Result<Vec<u32>, usize> {
     let mut invokers: Vec<layout::Invoker> = Vec::new();
+    let first = invokers.len() as u32;
+    if let Some(plan) = hiding {
+        invokers.extend(plan.steps.iter().map(|step| invoker(plan, step, &handlers[step.effect as usize])));
+    }
+    let hides = [first, invokers.len() as u32];
     let parts = plans.map(|plan| {
         let mut of = |kinds: &[EffectKind]| {
             let first = invokers.len() as u32;
@@ -254,7 +282,7 @@ pub fn invoker_table(plans: [&Plan; 2], handlers: &[EffectDefinition]) -> Result
         };
         let outlines = of_lenses(&|lens| lens.outline.is_some());
         let masks = of_lenses(&|_| plan.masks);
-        layout::Part { material, light, styles, outlines, masks, pad_0: [0; 2] }
+        layout::Part { material, light, styles, outlines, masks, hides }
     });
     if invokers.len() > MOST_INVOKERS as usize {
         return Err(invokers.len());

@@ -44,9 +44,11 @@ pub enum Key {
         smooth: bool,
         /// Whether interpolated depth is written, for the AOV.
         measured: bool,
+        /// What is hidden.
+        cut: Option<Program>,
     },
-    /// Depth from the sun.
-    Shadow,
+    /// Depth from the sun, and what is hidden from it.
+    Shadow(Option<Program>),
     /// Depth sprite of a volume, by the kind of shape (`layout::Shape::kind`).
     Sprite(u32),
     /// Shading.
@@ -113,7 +115,7 @@ pub struct Layouts {
     pub view: wgpu::BindGroupLayout,
     /// Geometry and shadow, group 1: surfaces.
     pub city: wgpu::BindGroupLayout,
-    /// Geometry, group 2: a texture.
+    /// Geometry, group 3: a texture.
     pub image: wgpu::BindGroupLayout,
     /// Sprite, group 1: planes of convex volumes.
     pub planes: wgpu::BindGroupLayout,
@@ -121,8 +123,12 @@ pub struct Layouts {
     pub stage: wgpu::BindGroupLayout,
     /// Shade, group 1: surfaces, light, targets.
     pub shade: wgpu::BindGroupLayout,
-    /// Shade, group 2: sprites, colours, parameters, volumes, masks.
+    /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks.
     pub lenses: wgpu::BindGroupLayout,
+    /// Shadow where something is hidden, group 1: surfaces, planes of convex volumes.
+    pub shapes_city: wgpu::BindGroupLayout,
+    /// And group 2: object values, parameters, invokers, the main view, shapes.
+    pub shapes: wgpu::BindGroupLayout,
     /// Filter, group 0: the stage at a dynamic offset, the image, parameters.
     pub filter: wgpu::BindGroupLayout,
     /// Resolve, group 0.
@@ -266,6 +272,18 @@ impl Layouts {
                     (6, S::FRAGMENT, image(T::Float { filterable: false }, D::D2Array)),
                 ],
             ),
+            shapes_city: layout(gpu, "surfaces and planes", &[(0, S::FRAGMENT, surfaces), (1, S::FRAGMENT, storage())]),
+            shapes: layout(
+                gpu,
+                "shapes",
+                &[
+                    (1, S::FRAGMENT, storage()),
+                    (2, S::FRAGMENT, uniform()),
+                    (5, S::FRAGMENT, uniform()),
+                    (7, S::VERTEX, uniform()),
+                    (8, S::FRAGMENT, storage()),
+                ],
+            ),
             filter: layout(
                 gpu,
                 "filter",
@@ -291,10 +309,13 @@ impl Layouts {
     fn make(&self, modules: &mut Modules, key: &Key) -> wgpu::RenderPipeline {
         let module = self.module(modules, key.module());
         let groups: Vec<Option<&wgpu::BindGroupLayout>> = match key {
-            Key::Geometry { section: GeometryKind::Textured(_), .. } => {
-                vec![Some(&self.view), Some(&self.city), Some(&self.image)]
+            Key::Geometry { section, cut, .. } => {
+                let lenses = cut.is_some().then_some(&self.lenses);
+                let image = matches!(section, GeometryKind::Textured(_)).then_some(&self.image);
+                vec![Some(&self.view), Some(&self.city), lenses, image]
             }
-            Key::Geometry { .. } | Key::Shadow | Key::Bare => vec![Some(&self.view), Some(&self.city)],
+            Key::Shadow(Some(_)) => vec![Some(&self.view), Some(&self.shapes_city), Some(&self.shapes)],
+            Key::Shadow(None) | Key::Bare => vec![Some(&self.view), Some(&self.city)],
             Key::Sprite(_) => vec![Some(&self.view), Some(&self.planes), Some(&self.stage)],
             Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
             Key::Filter(_) => vec![Some(&self.filter)],
@@ -428,8 +449,8 @@ fn per_vertex(array_stride: u64, attributes: &[wgpu::VertexAttribute]) -> Option
 impl Key {
     fn module(&self) -> Module {
         match self {
-            Self::Geometry { .. } => Module::Geometry,
-            Self::Shadow => Module::Shadow,
+            Self::Geometry { cut, .. } => Module::Geometry(cut.clone()),
+            Self::Shadow(cut) => Module::Shadow(cut.clone()),
             Self::Sprite(_) => Module::Sprite,
             Self::Shade { program, .. } => Module::Shade(program.clone()),
             Self::Filter(effect) => Module::Filter(*effect),
@@ -446,16 +467,20 @@ impl Key {
             list.iter().filter(|(on, _)| *on).map(|(_, name)| format!(" {name}")).collect()
         };
         match self {
-            Self::Geometry { section, colored, smooth, measured } => {
+            Self::Geometry { section, colored, smooth, measured, .. } => {
                 let kind = match section {
-                    GeometryKind::Plain => "geometry",
-                    GeometryKind::Textured(0) => "geometry textured",
-                    GeometryKind::Textured(_) => "geometry textured with holes",
-                    GeometryKind::Coplanar => "geometry coplanar",
+                    GeometryKind::Plain => "",
+                    GeometryKind::Textured(0) => " textured",
+                    GeometryKind::Textured(_) => " textured with holes",
+                    GeometryKind::Coplanar => " coplanar",
                 };
-                format!("{kind}{}", flags(&[(*colored, "colored"), (*smooth, "smooth"), (*measured, "measured")]))
+                format!(
+                    "{}{kind}{}",
+                    self.module().name(),
+                    flags(&[(*colored, "colored"), (*smooth, "smooth"), (*measured, "measured")])
+                )
             }
-            Self::Shadow => "shadow".to_owned(),
+            Self::Shadow(_) => self.module().name(),
             Self::Sprite(kind) => format!("depth sprite of a {}", shape_name(*kind)),
             Self::Shade { surface, textured, clay, target, shadows, .. } => {
                 let list = [
@@ -502,7 +527,7 @@ impl Key {
 
     fn entry_points(&self) -> (&'static str, Option<&'static str>) {
         match self {
-            Self::Geometry { section, colored, measured, smooth } => {
+            Self::Geometry { section, colored, measured, smooth, .. } => {
                 let full = *colored || *measured;
                 match (section, smooth) {
                     (GeometryKind::Plain, false) => ("vertex", Some(if full { "full" } else { "plain" })),
@@ -515,7 +540,7 @@ impl Key {
                     }
                 }
             }
-            Self::Shadow => ("vertex", None),
+            Self::Shadow(None) => ("vertex", None),
             Self::Shade { surface, .. } => ("vertex", Some(if *surface { "surface" } else { "background" })),
             _ => ("vertex", Some("fragment")),
         }
@@ -528,7 +553,7 @@ impl Key {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => {
                 vec![vertex, per_vertex(size_of::<layout::Plane>() as u64, PLANE)]
             }
-            Self::Geometry { .. } | Self::Shadow | Self::Bare => vec![vertex],
+            Self::Geometry { .. } | Self::Shadow(_) | Self::Bare => vec![vertex],
             Self::Furniture { .. } => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<layout::FurnitureItem>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -576,7 +601,7 @@ impl Key {
         use wgpu::CompareFunction as C;
         let compare = match self {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
-            Self::Geometry { .. } | Self::Shadow | Self::Bare => C::Greater,
+            Self::Geometry { .. } | Self::Shadow(_) | Self::Bare => C::Greater,
             // The triangle lies at depth 0, where nothing is stored.
             Self::Shade { surface: true, .. } => C::Less,
             Self::Shade { surface: false, .. } => C::Equal,

@@ -14,7 +14,7 @@ use crate::{
         synced::Synced,
         targets::{Needs, Target, Targets},
     },
-    shader::handlers,
+    shader::{Program, handlers},
 };
 
 /// Bytes between two dynamic offsets: what every adapter accepts.
@@ -32,7 +32,7 @@ pub struct Renderer {
     pub(super) groups: Option<Groups>,
     pub(super) shadow_sampler: wgpu::Sampler,
     /// What the shadow map holds; drawn again when it should hold something else.
-    pub(super) shadow_of: Option<layout::View>,
+    pub(super) shadow_of: Option<Shadow>,
     /// Whether chunks that nearer ones hide are left out where that pays: on software adapters.
     pub culls_hidden: bool,
     /// The effects that the frames since the last [`Renderer::begin_picture`] ran, ascending.
@@ -66,8 +66,22 @@ pub(super) struct Buffers {
     pub parameters: Synced,
     pub invokers: Synced,
     pub filter_stages: Synced,
-    pub object_colors: Synced,
+    pub object_values: Synced,
+    /// For the sun, where something is hidden: the main view, shapes of lens volumes, their planes, invokers.
+    pub eye: Synced,
+    pub shapes: Synced,
+    pub shape_planes: Synced,
+    pub shape_invokers: Synced,
     pub resolve: Synced,
+}
+
+/// What a shadow map shows.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Shadow {
+    /// The sun's view.
+    pub view: layout::View,
+    /// What is hidden from it, and all numbers that this depends on.
+    pub cut: Option<(Program, Vec<u8>)>,
 }
 
 /// Bind groups over buffers and targets; made anew when one of them was replaced.
@@ -79,6 +93,9 @@ pub(super) struct Groups {
     pub sprite_stage: wgpu::BindGroup,
     pub shade: wgpu::BindGroup,
     pub lenses: wgpu::BindGroup,
+    /// For the sun, where something is hidden.
+    pub shapes_city: wgpu::BindGroup,
+    pub shapes: wgpu::BindGroup,
     /// Across, and down; where the frame has filters.
     pub filters: Option<[wgpu::BindGroup; 2]>,
     pub resolve: wgpu::BindGroup,
@@ -100,7 +117,11 @@ impl Renderer {
             parameters: uniform("parameters")?,
             invokers: uniform("invoker table")?,
             filter_stages: uniform("filter stages")?,
-            object_colors: storage("object colours")?,
+            object_values: storage("object values")?,
+            eye: uniform("main view for the sun")?,
+            shapes: storage("lens shapes")?,
+            shape_planes: storage("planes of lens shapes")?,
+            shape_invokers: uniform("invoker table for the sun")?,
             resolve: uniform("resolve")?,
         };
         let shadow_sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -223,12 +244,30 @@ impl Renderer {
                 &p.lenses,
                 &[
                     (0, all_of(&targets.sprites)),
-                    (1, whole(b.object_colors.buffer())),
+                    (1, whole(b.object_values.buffer())),
                     (2, whole(b.parameters.buffer())),
                     (3, whole(b.volumes.buffer())),
                     (4, all_of(&targets.masks)),
                     (5, whole(b.invokers.buffer())),
                     (6, all_of(&targets.filtered)),
+                ],
+            ),
+            shapes_city: group(
+                gpu,
+                "surfaces and planes",
+                &p.shapes_city,
+                &[(0, wgpu::BindingResource::TextureView(&city.buffers.surfaces)), (1, whole(b.shape_planes.buffer()))],
+            ),
+            shapes: group(
+                gpu,
+                "shapes",
+                &p.shapes,
+                &[
+                    (1, whole(b.object_values.buffer())),
+                    (2, whole(b.parameters.buffer())),
+                    (5, whole(b.shape_invokers.buffer())),
+                    (7, whole(b.eye.buffer())),
+                    (8, whole(b.shapes.buffer())),
                 ],
             ),
             filters: (targets.needs.filters > 0).then(|| {

@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::{
-    city::{CityModel, NONE},
+    city::{CityModel, NONE, ObjectClass, StringId, Surface, decode_normal},
     gpu::{Gpu, GpuError},
     render::{layout, palette, textures::Textures},
 };
@@ -65,7 +65,12 @@ impl<'a> SurfaceTable<'a> {
 /// What the table says of a model surface (`NONE`: the plain ground) that faces a packed normal.
 pub(super) fn entry(model: &CityModel, textures: &Textures, surface: u32, normal: u32) -> layout::Surface {
     let Some(found) = model.surfaces.get(surface as usize) else {
-        return layout::Surface::new(layout::NO_OBJECT, normal, palette::linear_bytes(palette::PLAIN_GROUND), false);
+        return layout::Surface::new(
+            layout::NO_OBJECT,
+            normal,
+            palette::linear_bytes(palette::PLAIN_GROUND),
+            layout::PART_TERRAIN << layout::SURFACE_PART_SHIFT,
+        );
     };
     let material = model.materials.get(found.material as usize);
     let color = match material {
@@ -74,5 +79,31 @@ pub(super) fn entry(model: &CityModel, textures: &Textures, surface: u32, normal
         // A declared texture that is missing: most files say plain white beside it, so the quiet colours are better.
         _ => palette::linear_bytes(palette::natural(model, found)),
     };
-    layout::Surface::new(found.object, normal, color, material.is_some_and(|m| m.unlit))
+    let unlit = if material.is_some_and(|m| m.unlit) { layout::SURFACE_UNLIT } else { 0 };
+    let part = part_of(model, found, normal) << layout::SURFACE_PART_SHIFT;
+    layout::Surface::new(found.object, normal, color, unlit | part)
 }
+
+/// What a surface is part of: by its semantics; where a building has none, by which way it faces.
+fn part_of(model: &CityModel, surface: &Surface, normal: u32) -> u32 {
+    let class = model.objects[surface.object as usize].class;
+    if matches!(class, ObjectClass::Terrain | ObjectClass::Water | ObjectClass::Road | ObjectClass::Land) {
+        return layout::PART_TERRAIN;
+    }
+    let kind = (surface.kind != StringId(NONE)).then(|| model.strings.get(surface.kind));
+    match kind {
+        Some("RoofSurface" | "OuterCeilingSurface" | "OuterFloorSurface") => layout::PART_ROOF,
+        Some("WallSurface" | "InteriorWallSurface" | "ClosureSurface") => layout::PART_WALL,
+        Some("Window" | "WindowSurface" | "Door" | "DoorSurface") => layout::PART_WALL,
+        Some(_) => layout::PART_OTHER,
+        None if class == ObjectClass::Building => match decode_normal(normal).z {
+            z if z.abs() < STEEPEST_ROOF => layout::PART_WALL,
+            z if z > 0.0 => layout::PART_ROOF,
+            _ => layout::PART_OTHER,
+        },
+        None => layout::PART_OTHER,
+    }
+}
+
+/// Cosine of the slope from which on a face without semantics is a wall: 75°.
+const STEEPEST_ROOF: f64 = 0.259;

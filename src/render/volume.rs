@@ -108,15 +108,24 @@ impl LensVolume {
             }
             Volume::Convex(hull) => hull.faces().0,
         };
-        let mut low = DVec2::INFINITY;
-        let mut high = DVec2::NEG_INFINITY;
-        for corner in corners {
-            let p = view.pixel(corner).filter(|p| view.is_orthographic() || p.z > view.camera.near_m)?;
-            low = low.min(p.truncate());
-            high = high.max(p.truncate());
-        }
-        Some((low, high))
+        projected_corners(view, corners)
     }
+}
+
+/// Box around a box's projection, pixels, also beside the picture; `None` where it reaches behind the near plane.
+pub fn projected_box(view: &View, bounds: &Aabb) -> Option<(DVec2, DVec2)> {
+    projected_corners(view, bounds.corners())
+}
+
+fn projected_corners(view: &View, corners: impl IntoIterator<Item = DVec3>) -> Option<(DVec2, DVec2)> {
+    let mut low = DVec2::INFINITY;
+    let mut high = DVec2::NEG_INFINITY;
+    for corner in corners {
+        let p = view.pixel(corner).filter(|p| view.is_orthographic() || p.z > view.camera.near_m)?;
+        low = low.min(p.truncate());
+        high = high.max(p.truncate());
+    }
+    Some((low, high))
 }
 
 fn corners_of_box(center: DVec3, axes: DMat3, half: DVec3) -> Vec<DVec3> {

@@ -31,6 +31,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("blur"),
     built_in!("edges"),
     built_in!("iso-lines"),
+    built_in!("eraser"),
     built_in!("brick"),
     built_in!("gloss"),
     built_in!("glow"),
@@ -44,6 +45,8 @@ const FILES: &[(&str, &str)] = &[
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EffectKind {
+    /// Takes parts of the city away, before anything is seen of them.
+    Hide,
     /// Changes what surfaces are made of, before light falls on them.
     Material,
     /// Changes the light that falls on them.
@@ -60,11 +63,13 @@ pub enum EffectKind {
 
 impl EffectKind {
     /// All, in the order of their execution.
-    pub const ALL: [Self; 6] = [Self::Material, Self::Light, Self::Scene, Self::Air, Self::Post, Self::Filter];
+    pub const ALL: [Self; 7] =
+        [Self::Hide, Self::Material, Self::Light, Self::Scene, Self::Air, Self::Post, Self::Filter];
 
     /// As people read it.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Hide => "hiding",
             Self::Material => "material",
             Self::Light => "light",
             Self::Scene => "scene style",
@@ -74,9 +79,10 @@ impl EffectKind {
         }
     }
 
-    /// What its handlers take first and give back: name and type in WGSL.
+    /// What its handlers take first and, but for hiding ones, give back: name and type in WGSL.
     pub fn subject(self) -> (&'static str, &'static str) {
         match self {
+            Self::Hide => ("fragment", "Fragment"),
             Self::Material => ("material", "Material"),
             Self::Light => ("arriving", "vec3f"),
             Self::Scene | Self::Air | Self::Post => ("color", "vec3f"),
@@ -220,6 +226,16 @@ impl ParameterDefinition {
     }
 }
 
+/// What an effect reads of each object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PerObject {
+    /// A colour, by an attribute (K2); all its parameters are for the host.
+    Colors,
+    /// Whether an attribute chooses it ([`crate::lens::chosen`]).
+    Chosen,
+}
+
 /// One effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectDefinition {
@@ -235,8 +251,8 @@ pub struct EffectDefinition {
     pub doc: String,
     /// Its parameters.
     pub parameters: Vec<ParameterDefinition>,
-    /// Its WGSL has one colour per object, which the host makes of an attribute (K2).
-    pub object_colors: bool,
+    /// What its WGSL reads of each object, which the host makes of attributes.
+    pub objects: Option<PerObject>,
     /// Somebody else wrote it: what it returns is contained.
     pub is_users: bool,
     /// It looks at what it takes first, so it cannot stand in for what is below it.
@@ -261,14 +277,17 @@ impl EffectDefinition {
 
     /// The parameters that WGSL reads, in order.
     pub fn shader_parameters(&self) -> impl Iterator<Item = (&ParameterDefinition, &'static str, usize)> {
-        let all = self.parameters.iter().filter(|_| !self.object_colors);
+        let all = self
+            .parameters
+            .iter()
+            .filter(|p| self.objects != Some(PerObject::Colors) && !matches!(p.fallback, Fallback::Words(_)));
         all.filter_map(|p| p.kind.in_shader().map(|(type_name, floats)| (p, type_name, floats)))
     }
 
     /// How many `vec4f` its parameters take.
     pub fn slots(&self) -> u32 {
         let floats: usize = self.shader_parameters().map(|(_, _, floats)| floats).sum();
-        (floats + usize::from(self.object_colors)).div_ceil(4) as u32
+        (floats + usize::from(self.objects.is_some())).div_ceil(4) as u32
     }
 }
 

@@ -27,7 +27,9 @@ use toml::Spanned;
 
 use crate::shader::{
     Module, Plan, Program, Scope, Step,
-    effect::{DefaultValue, EffectDefinition, EffectKind, Fallback, Mode, ParameterDefinition, ParameterKind},
+    effect::{
+        DefaultValue, EffectDefinition, EffectKind, Fallback, Mode, ParameterDefinition, ParameterKind, PerObject,
+    },
     wgsl::{self, Declaration, Renamed, Token, TokenKind},
 };
 
@@ -69,8 +71,7 @@ struct Header {
     mode: Mode,
     spec: String,
     doc: String,
-    #[serde(default)]
-    object_colors: bool,
+    objects: Option<PerObject>,
     #[serde(default, rename = "parameter")]
     parameters: Vec<ParameterHeader>,
 }
@@ -162,7 +163,7 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
         spec: header.spec,
         doc: header.doc,
         parameters: Vec::new(),
-        object_colors: header.object_colors,
+        objects: header.objects,
         is_users,
         reads_below: false,
         source: String::new(),
@@ -210,8 +211,10 @@ fn body_of(text: &str) -> &str {
 fn signature(effect: &EffectDefinition) -> String {
     let parameters = if effect.slots() > 0 { ", p: Parameters" } else { "" };
     let (name, type_name) = effect.kind.subject();
-    if effect.kind == EffectKind::Filter {
-        return format!("fn effect({name}: {type_name}{parameters}) -> {type_name}");
+    match effect.kind {
+        EffectKind::Hide => return format!("fn effect({name}: {type_name}{parameters}) -> bool"),
+        EffectKind::Filter => return format!("fn effect({name}: {type_name}{parameters}) -> {type_name}"),
+        _ => {}
     }
     format!("fn effect({name}: {type_name}, point: Point{parameters}) -> {type_name}")
 }
@@ -263,7 +266,7 @@ fn word_constants(effect: &EffectDefinition) -> impl Iterator<Item = (String, us
 fn parameters_source(effect: &EffectDefinition) -> String {
     let mut fields: Vec<(String, &str, usize)> =
         effect.shader_parameters().map(|(p, type_name, floats)| (p.name.clone(), type_name, floats)).collect();
-    if effect.object_colors {
+    if effect.objects.is_some() {
         fields.push(("first".to_owned(), "u32", 1));
     }
     if fields.is_empty() {
@@ -378,18 +381,19 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         return Err(file.error(0, message));
     }
     let (effect, renamed) = read_with_names(path, text, true)?;
-    if effect.object_colors {
-        return Err(file.error(0, "object_colors is for effects of the program"));
+    if effect.objects.is_some() {
+        return Err(file.error(0, "objects is for effects of the program"));
     }
     check_control_flow(&file)?;
     check_cost(&file)?;
     if effect.mode != Mode::Local || effect.kind == EffectKind::Air {
-        let message = "mode, and kind = \"air\", are for handlers of the program; expected kind = material, light, scene, post or filter";
+        let message = "mode, and kind = \"air\", are for handlers of the program; expected kind = hide, material, light, scene, post or filter";
         return Err(file.error(0, message));
     }
     let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, layer: 0, blend: None }];
     let module = match effect.kind {
         EffectKind::Filter => Module::Filter(0),
+        EffectKind::Hide => Module::Geometry(Some(Program::Specialised(Plan { steps, ..Plan::default() }))),
         _ => Module::Shade(Program::Specialised(Plan { steps, ..Plan::default() })),
     };
     let source = module.source_with(std::slice::from_ref(&effect));
@@ -437,7 +441,11 @@ fn check_control_flow(file: &File) -> Result<(), FileError> {
             "loop" | "while" => {
                 return error("it may never end; expected for (var i = 0; i < NUMBER; i++), or no loop");
             }
-            "discard" => return error("an effect changes a colour; it cannot take the pixel away"),
+            "discard" => {
+                return error(
+                    "an effect cannot take the pixel away; kind = \"hide\" returns true where something is hidden",
+                );
+            }
             "for" if !is_bounded(&tokens, i, &word) => {
                 let message = format!(
                     "expected for (var i = NUMBER; i < NUMBER; i++) of at most {MOST_ROUNDS} rounds, whose body \
@@ -593,7 +601,7 @@ mod tests {
             ),
             (
                 HEADER.replace("post", "past"),
-                "my.wgsl:2:12: unknown variant `past`, expected one of `material`, `light`, `scene`, `air`, `post`, `filter`",
+                "my.wgsl:2:12: unknown variant `past`, expected one of `hide`, `material`, `light`, `scene`, `air`, `post`, `filter`",
             ),
             (HEADER.replace("spec", "spek"), "my.wgsl:3:5: unknown field `spek`"),
             (HEADER.to_owned(), "my.wgsl:5:1: expected `fn effect(color: vec3f, point: Point) -> vec3f`"),
@@ -622,7 +630,7 @@ mod tests {
                 "my.wgsl:6:10: expected for",
             ),
             (format!("{HEADER}{good}fn f() {{ for (var i = 0; i >= 0; i++) {{ }} }}"), "my.wgsl:6:10: expected for"),
-            (format!("{HEADER}{good}fn f() {{ discard; }}"), "my.wgsl:6:10: an effect changes a colour"),
+            (format!("{HEADER}{good}fn f() {{ discard; }}"), "my.wgsl:6:10: an effect cannot take the pixel away"),
             (format!("{HEADER}{good}fn f() {{ f(); }}"), "my.wgsl:6:4: this takes more"),
             (format!("{HEADER}{}{good}", "//\n".repeat(1_000_000)), "my.wgsl:1:1: an effect file has at most"),
         ] {

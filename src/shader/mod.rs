@@ -5,12 +5,13 @@
 
 pub mod effect;
 pub mod effect_file;
+mod hiding;
 mod plan;
 mod specialised;
 mod uber;
 pub mod wgsl;
 
-pub use effect::{EffectDefinition, EffectKind, Mode, effects, handlers};
+pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
 pub use plan::{Blend, ClassTest, Plan, PlanLens, Program, Scope, Step, Uber};
 pub use specialised::scope_number;
 pub use uber::{MOST_INVOKERS, MOST_SLOTS, MOST_VOLUMES};
@@ -29,11 +30,15 @@ files! {
     LIGHT = "lib/light.wgsl";
     BLEND = "lib/blend.wgsl";
     MATERIAL = "lib/material.wgsl";
+    CLASS = "lib/class.wgsl";
     LENS = "lib/lens.wgsl";
+    FRAGMENT = "lib/fragment.wgsl";
+    CUT = "lib/cut.wgsl";
     OUTLINE = "lib/outline.wgsl";
     FILTERED = "lib/filter.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
     SHADOW = "pass/shadow.wgsl";
+    SHADOW_CUT = "pass/shadow-cut.wgsl";
     SPRITE = "pass/sprite.wgsl";
     SHADE = "pass/shade.wgsl";
     FILTER = "pass/filter.wgsl";
@@ -46,10 +51,10 @@ files! {
 /// A module of the frame.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Module {
-    /// The opaque geometry pass.
-    Geometry,
-    /// Depth from the sun.
-    Shadow,
+    /// The opaque geometry pass, and what is hidden in it.
+    Geometry(Option<Program>),
+    /// Depth from the sun, and what is hidden from it.
+    Shadow(Option<Program>),
     /// The two stages of a volumetric depth sprite.
     Sprite,
     /// Deferred shading, and what the lenses make of it.
@@ -70,13 +75,12 @@ impl Module {
     /// A name for people and statistics.
     pub fn name(&self) -> String {
         match self {
-            Self::Geometry => "geometry".to_owned(),
-            Self::Shadow => "shadow".to_owned(),
+            Self::Geometry(hidden) => format!("geometry{}", hidden_name(hidden)),
+            Self::Shadow(hidden) => format!("shadow{}", hidden_name(hidden)),
             Self::Sprite => "sprite".to_owned(),
             Self::Shade(program) => {
-                let names: Vec<&str> =
-                    program.effects().iter().map(|&e| handlers()[e as usize].name.as_str()).collect();
-                let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
+                let names = names_of(program);
+                let names = if names.is_empty() { names } else { format!(" ({names})") };
                 let uber = if matches!(program, Program::Uber(_)) { " uber" } else { "" };
                 let lenses = if program.has().lenses { " lenses" } else { "" };
                 format!("shade{uber}{names}{lenses}")
@@ -102,8 +106,13 @@ impl Module {
     /// The whole WGSL text with the names of a plan's lenses in comments (H4).
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str]) -> String {
         let files: &[(&str, &str)] = match self {
-            Self::Geometry => &[VIEW, SURFACE, GEOMETRY],
-            Self::Shadow => &[VIEW, SURFACE, SHADOW],
+            Self::Geometry(None) => &[VIEW, SURFACE, GEOMETRY],
+            Self::Geometry(Some(program)) => match program.has().lenses {
+                true => &[VIEW, SURFACE, CLASS, LENS, FRAGMENT, CUT, GEOMETRY],
+                false => &[VIEW, SURFACE, FRAGMENT, CUT, GEOMETRY],
+            },
+            Self::Shadow(None) => &[VIEW, SHADOW],
+            Self::Shadow(Some(_)) => &[VIEW, SURFACE, CLASS, SHAPE, FRAGMENT, SHADOW_CUT],
             Self::Sprite => &[VIEW, SHAPE, SPRITE],
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
             Self::Filter(_) => &[FILTER],
@@ -121,6 +130,13 @@ impl Module {
                 text.replace("//@handlers\n", &specialised::source(plan, handlers, lenses))
             }
             Self::Shade(Program::Uber(uber)) => text.replace("//@handlers\n", &uber::source(uber, handlers)),
+            Self::Geometry(None) => text.replace("//@handlers\n", NOTHING_CUT),
+            Self::Geometry(Some(program)) => {
+                text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Classes::Sprites))
+            }
+            Self::Shadow(Some(program)) => {
+                text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Classes::Shapes))
+            }
             Self::Filter(effect) => text.replace("//@handlers\n", &specialised::kernel(&handlers[*effect as usize])),
             _ => text,
         }
@@ -135,6 +151,7 @@ impl Module {
         let optional = [
             (parts.blends || materials, BLEND),
             (materials, MATERIAL),
+            (parts.lenses, CLASS),
             (parts.lenses, LENS),
             (parts.outlines, OUTLINE),
             (filters, FILTERED),
@@ -142,6 +159,24 @@ impl Module {
         files.extend(optional.iter().filter(|(is_used, _)| *is_used).map(|(_, file)| *file));
         files.push(SHADE);
         files
+    }
+}
+
+/// Where nothing is hidden.
+const NOTHING_CUT: &str = "fn cut(at: vec2f, depth: f32, code: u32) {}\n";
+
+fn names_of(program: &Program) -> String {
+    let names: Vec<&str> = program.effects().iter().map(|&e| handlers()[e as usize].name.as_str()).collect();
+    names.join(", ")
+}
+
+fn hidden_name(hidden: &Option<Program>) -> String {
+    match hidden {
+        None => String::new(),
+        Some(program) => {
+            let uber = if matches!(program, Program::Uber(_)) { " uber" } else { "" };
+            format!(" cut{uber} ({})", names_of(program))
+        }
     }
 }
 
@@ -160,8 +195,8 @@ mod tests {
     }
 
     /// A scene of the context and two lenses whose steps are these effects, in order; `seed` chooses classes, blends,
-    /// outlines and masks. On both back ends.
-    fn programs(effects: &[u32], seed: usize) -> [Program; 2] {
+    /// outlines and masks. The modules that both back ends need for it.
+    fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         let scopes: Vec<Scope> = std::iter::once(Scope::Everywhere)
             .chain(ClassTest::ALL.into_iter().flat_map(|c| [Scope::Lens(0, c), Scope::Lens(1, c)]))
             .collect();
@@ -186,12 +221,19 @@ mod tests {
             haze: plan.haze,
             masks: plan.masks,
         };
-        [Program::Specialised(plan), Program::Uber(uber)]
+        let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();
+        let hiding = hiding.chain(uber.hiding(handlers()).map(Program::Uber));
+        let mut modules: Vec<Module> =
+            hiding.flat_map(|p| [Module::Geometry(Some(p.clone())), Module::Shadow(Some(p))]).collect();
+        modules.push(Module::Shade(Program::Specialised(plan.shading(handlers()))));
+        modules.push(Module::Shade(Program::Uber(uber.shading(handlers()))));
+        modules
     }
 
     fn all_modules() -> Vec<Module> {
         let plain = [Program::Specialised(Plan::default()), Program::Uber(Uber::default())];
-        let mut modules = vec![Module::Geometry, Module::Shadow, Module::Sprite, Module::Resolve, Module::Bare];
+        let mut modules =
+            vec![Module::Geometry(None), Module::Shadow(None), Module::Sprite, Module::Resolve, Module::Bare];
         modules.extend(plain.map(Module::Shade));
         let is_filter = |e: &u32| handlers()[*e as usize].kind == EffectKind::Filter;
         modules.extend(numbers().into_iter().filter(is_filter).map(Module::Filter));
@@ -217,9 +259,7 @@ mod tests {
     fn validate_all(lists: &[Vec<u32>]) {
         use rayon::prelude::*;
         lists.par_iter().enumerate().for_each(|(seed, list)| {
-            for program in programs(list, seed) {
-                validate(&Module::Shade(program));
-            }
+            modules(list, seed).iter().for_each(validate);
         });
     }
 

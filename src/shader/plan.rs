@@ -158,6 +158,23 @@ pub struct Uber {
     pub masks: bool,
 }
 
+impl Uber {
+    /// What of it says what is there; `None` where nothing may be hidden.
+    pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let effects = self.of(handlers, |kind| kind == EffectKind::Hide);
+        (!effects.is_empty()).then_some(Self { effects, lenses: self.lenses, ..Self::default() })
+    }
+
+    /// What of it says how things look.
+    pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
+        Self { effects: self.of(handlers, |kind| kind != EffectKind::Hide), ..self }
+    }
+
+    fn of(&self, handlers: &[EffectDefinition], is_wanted: impl Fn(EffectKind) -> bool) -> Vec<u32> {
+        self.effects.iter().copied().filter(|&e| is_wanted(handlers[e as usize].kind)).collect()
+    }
+}
+
 impl Program {
     /// Whether it has lenses, and whether it has outlines.
     pub fn has(&self) -> Parts {
@@ -231,6 +248,24 @@ impl Plan {
         handlers: &'a [EffectDefinition],
     ) -> impl DoubleEndedIterator<Item = (&'a Step, &'a EffectDefinition)> {
         self.steps.iter().map(|s| (s, &handlers[s.effect as usize])).filter(move |(_, h)| h.kind == kind)
+    }
+
+    /// What of it says what is there; `None` where nothing is hidden.
+    pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let steps: Vec<Step> = self.steps_of(EffectKind::Hide, handlers).map(|(step, _)| step.clone()).collect();
+        if steps.is_empty() {
+            return None;
+        }
+        // Their volumes keep their places.
+        let lens = |(i, lens): (usize, &PlanLens)| PlanLens { number: i as u32, outline: None, ..*lens };
+        let lenses = self.lenses.iter().enumerate().map(lens).collect();
+        Some(Self { lenses, steps, haze: false, masks: false })
+    }
+
+    /// What of it says how things look.
+    pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
+        self.steps.retain(|step| handlers[step.effect as usize].kind != EffectKind::Hide);
+        self
     }
 
     /// How many `vec4f` of the parameters it reads.

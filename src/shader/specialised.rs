@@ -276,6 +276,6 @@ pub fn scope_number(scope: Scope) -> u32 {
 }
 
 /// A text that cannot end the comment it stands in.
-fn one_line(text: &str) -> String {
+pub(super) fn one_line(text: &str) -> String {
     text.chars().take(60).map(|c| if c.is_control() || "\u{2028}\u{2029}".contains(c) { ' ' } else { c }).collect()
 }

@@ -1,7 +1,7 @@
 //! The uber back end (H3): every handler the scene may ask for in one module; which of them run, where, and with which
 //! parameters stands in the invoker table (H2), a uniform. Whatever lenses do, nothing is compiled.
 
-use std::fmt::Write as _;
+use std::{fmt::Write as _, sync::LazyLock};
 
 use crate::shader::{
     effect::{EffectDefinition, EffectKind, Mode},
@@ -30,7 +30,7 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     for (_, effect) in used(uber, handlers).filter(|(_, h)| h.kind != EffectKind::Filter) {
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
     }
-    text.push_str(&TABLE.replace("MOST_INVOKERS", &format!("{MOST_INVOKERS}")));
+    text.push_str(&TABLE_SOURCE);
     text.push_str(if uber.lenses { CLASSES } else { NO_CLASSES });
     text.push_str(&invoke(uber, "material", &[EffectKind::Material], handlers));
     text.push_str(&invoke(uber, "light", &[EffectKind::Light], handlers));
@@ -149,6 +149,10 @@ fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     STYLED.replace("                HIGHLIGHT\n", highlight)
 }
 
+/// The table, declared.
+pub(super) static TABLE_SOURCE: LazyLock<String> =
+    LazyLock::new(|| TABLE.replace("MOST_INVOKERS", &format!("{MOST_INVOKERS}")));
+
 /// As `render::layout` lays it out.
 const TABLE: &str = "// ==== the invoker table
 
@@ -170,6 +174,7 @@ struct Part {
     styles: vec2u,
     outlines: vec2u,
     masks: vec2u,
+    hides: vec2u,
 }
 
 struct InvokerTable {

@@ -1,0 +1,112 @@
+//! What is hidden in one frame, and by which programs the parts of the city that it may reach are drawn.
+
+use glam::DVec2;
+
+use crate::{
+    render::{
+        city::Chunk,
+        eye::{PictureTile, view_uniform},
+        frame::FrameInput,
+        hiding::Hiding,
+        layout,
+    },
+    shader::{Plan, Program, handlers},
+    view::View,
+};
+
+/// What is hidden from one eye.
+#[derive(Clone, Debug)]
+pub(super) struct Cut {
+    /// Where.
+    pub hiding: Hiding,
+    /// What.
+    pub plan: Plan,
+}
+
+/// What is hidden from the main view and from the sun; `None` where no hiding lens is in view.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cuts {
+    pub picture: Option<Cut>,
+    pub sun: Option<Cut>,
+}
+
+/// The programs that hide it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CutPrograms {
+    pub picture: Option<Program>,
+    pub sun: Option<Program>,
+}
+
+/// Shapes of lens volumes for the sun, in the main view's space.
+pub(super) struct Shapes {
+    pub eye: layout::View,
+    pub shapes: Vec<layout::Shape>,
+    pub planes: Vec<[f32; 4]>,
+}
+
+impl Cuts {
+    pub fn all(&self) -> impl Iterator<Item = &Cut> {
+        self.picture.iter().chain(&self.sun)
+    }
+
+    /// Written out.
+    pub fn specialised(&self) -> CutPrograms {
+        let program = |cut: &Option<Cut>| cut.as_ref().map(|cut| Program::Specialised(cut.plan.clone()));
+        CutPrograms { picture: program(&self.picture), sun: program(&self.sun) }
+    }
+
+    /// From the invoker table.
+    pub fn uber(&self, hiding: Option<Program>) -> CutPrograms {
+        let program = |cut: &Option<Cut>| cut.as_ref().and(hiding.clone());
+        CutPrograms { picture: program(&self.picture), sun: program(&self.sun) }
+    }
+}
+
+impl Cut {
+    /// Chunks it leaves alone, and those it may reach (`true`); empty parts are left out.
+    pub fn parts<'a>(cut: Option<&Self>, view: &View, chunks: &[&'a Chunk]) -> Vec<(Vec<&'a Chunk>, bool)> {
+        let is_reached = |chunk: &&&Chunk| cut.is_some_and(|cut| cut.hiding.touches(&chunk.bounds, view));
+        let (reached, whole): (Vec<&Chunk>, Vec<&Chunk>) = chunks.iter().partition(is_reached);
+        [(whole, false), (reached, true)].into_iter().filter(|(part, _)| !part.is_empty()).collect()
+    }
+
+    /// The shapes of its lenses.
+    pub fn shapes(&self, input: &FrameInput) -> Shapes {
+        let (mut shapes, mut planes) = (Vec::new(), Vec::new());
+        for volume in input.volumes.iter().filter(|v| self.hiding.lenses.contains(&v.lens)) {
+            shapes.push(volume.figures(&input.view, &mut planes));
+        }
+        let whole = PictureTile::whole(input.view.size);
+        Shapes { eye: view_uniform(&input.view, whole, DVec2::ZERO, 0, 0.0), shapes, planes }
+    }
+
+    /// All numbers that decide what is hidden from the sun.
+    pub fn all_numbers(&self, input: &FrameInput) -> Vec<u8> {
+        let Shapes { eye, shapes, planes } = self.shapes(input);
+        let mut bytes = bytemuck::bytes_of(&eye).to_vec();
+        bytes.extend_from_slice(bytemuck::cast_slice(&shapes));
+        bytes.extend_from_slice(bytemuck::cast_slice(&planes));
+        bytes.extend_from_slice(bytemuck::cast_slice(&input.operations.parameters));
+        bytes.extend_from_slice(bytemuck::cast_slice(&input.operations.object_values));
+        bytes
+    }
+}
+
+impl Cuts {
+    /// What is hidden in a frame. `picture`: what hides something in the picture, where the lenses that `is_seen` are.
+    pub fn new(input: &FrameInput, is_seen: impl Fn(u32) -> bool, sun: Option<&View>, picture: Option<Plan>) -> Self {
+        let of = |hiding: Hiding, plan: Option<Plan>| plan.map(|plan| Cut { hiding, plan });
+        let hiding =
+            |is_active: &dyn Fn(u32) -> bool| Hiding::new(input.operations, input.volumes, &input.view, is_active);
+        let sun = sun.and_then(|sun| {
+            let frustum = sun.frustum(1.0);
+            let hiding = hiding(&|lens| {
+                input.volumes.iter().any(|v| v.lens == lens && (v.everywhere || frustum.meets(&v.bounds)))
+            });
+            let own = input.volumes.iter().map(|v| v.lens).filter(|lens| hiding.lenses.contains(lens));
+            let plan = input.operations.lens_plan(&own.collect::<Vec<_>>(), false, false).hiding(handlers());
+            of(hiding, plan)
+        });
+        Self { picture: of(hiding(&is_seen), picture), sun }
+    }
+}

@@ -1,0 +1,140 @@
+//! What is there: `visible` and what it calls (architecture, decision 4), for the geometry pass and the shadow map, on both
+//! back ends. A hiding effect says for each fragment, by its own depth, whether it is taken away (K4).
+
+use std::fmt::Write as _;
+
+use crate::shader::{
+    effect::{EffectDefinition, EffectKind},
+    plan::{Plan, Program, Scope, Uber},
+    specialised::one_line,
+    uber::{MOST_SLOTS, MOST_VOLUMES, TABLE_SOURCE},
+};
+
+/// Where a fragment's classes come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Classes {
+    /// From the sprites of the picture.
+    Sprites,
+    /// From the shapes, wherever the fragment is.
+    Shapes,
+}
+
+/// `visible` and what it calls. `names` of a plan's lenses become comments.
+pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str], classes: Classes) -> String {
+    let (slots, volumes) = match program {
+        Program::Specialised(plan) => (plan.slots(handlers), plan.volumes()),
+        Program::Uber(_) => (MOST_SLOTS, MOST_VOLUMES),
+    };
+    let mut text = String::new();
+    if slots > 0 {
+        let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
+    }
+    if program.has().lenses && classes == Classes::Sprites {
+        let _ = writeln!(text, "@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {volumes}>;");
+    }
+    if program.has().lenses && classes == Classes::Shapes {
+        let _ = writeln!(
+            text,
+            "@group(2) @binding(8) var<storage, read> shapes: array<Shape>;  // in the main view's space"
+        );
+    }
+    text.push('\n');
+    for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {
+        let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
+    }
+    match program {
+        Program::Specialised(plan) => {
+            text.push_str("// ==== this scene\n\n");
+            specialised(&mut text, plan, handlers, names);
+        }
+        Program::Uber(uber) => uber_source(&mut text, uber, handlers),
+    }
+    text
+}
+
+fn call(handler: &EffectDefinition, first: &str) -> String {
+    let own = if handler.slots() == 0 { String::new() } else { format!(", {}({first})", handler.own("parameters")) };
+    format!("{}(fragment{own})", handler.wgsl_name())
+}
+
+fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], names: &[&str]) {
+    let steps = || plan.steps_of(EffectKind::Hide, handlers);
+    let mut lenses: Vec<u32> =
+        steps().filter_map(|(step, _)| if let Scope::Lens(lens, _) = step.scope { Some(lens) } else { None }).collect();
+    lenses.sort_unstable();
+    lenses.dedup();
+    for lens in lenses {
+        if let Some(name) = names.get(lens as usize) {
+            let _ = writeln!(text, "// {}", one_line(name));
+        }
+        let volumes: Vec<String> = plan.volumes_of(lens).map(|v| format!("class_of({v}u, fragment)")).collect();
+        let _ = writeln!(
+            text,
+            "fn classes_of_lens_{lens}(fragment: Fragment) -> u32 {{\n    return {};\n}}\n",
+            volumes.join("\n        | ")
+        );
+    }
+    text.push_str("fn visible(fragment: Fragment) -> bool {\n");
+    for (step, handler) in steps() {
+        let is_hidden = call(handler, &format!("{}u", step.parameters));
+        let condition = match step.scope {
+            Scope::Everywhere => is_hidden,
+            Scope::Lens(lens, class) => {
+                format!("{}(classes_of_lens_{lens}(fragment)) && {is_hidden}", class.function())
+            }
+        };
+        let _ = writeln!(text, "    if {condition} {{\n        return false;\n    }}");
+    }
+    text.push_str("    return true;\n}\n");
+}
+
+fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
+    text.push_str(&TABLE_SOURCE);
+    text.push_str(if uber.lenses { RUNS } else { RUNS_WITHOUT_LENSES });
+    text.push_str("fn hides(fragment: Fragment, by: Invoker) -> bool {\n    switch by.handler {\n");
+    for &number in &uber.effects {
+        let _ = writeln!(
+            text,
+            "        case {number}u: {{ return {}; }}",
+            call(&handlers[number as usize], "by.parameters")
+        );
+    }
+    text.push_str("        default: { return false; }\n    }\n}\n\n");
+    text.push_str(VISIBLE);
+}
+
+const RUNS: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
+    if by.scope == 0u {
+        return true;
+    }
+    var all = MISSED;
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        all |= class_of(v, fragment);
+    }
+    switch by.scope {
+        case 1u: { return is_inside(all); }
+        case 2u: { return is_in_front(all); }
+        case 3u: { return is_behind(all); }
+        default: { return is_rest(all); }
+    }
+}
+
+";
+
+const RUNS_WITHOUT_LENSES: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
+    return by.scope == 0u;
+}
+
+";
+
+const VISIBLE: &str = "fn visible(fragment: Fragment) -> bool {
+    let invokers = table.parts[1].hides;
+    for (var i = invokers.x; i < invokers.y; i++) {
+        let by = table.invokers[i];
+        if runs(by, fragment) && hides(fragment, by) {
+            return false;
+        }
+    }
+    return true;
+}
+";
