@@ -34,6 +34,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("eraser"),
     built_in!("brick"),
     built_in!("gloss"),
+    built_in!("marble"),
     built_in!("glow"),
     built_in!("lighting"),
     built_in!("lambert"),
