@@ -35,6 +35,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("brick"),
     built_in!("gloss"),
     built_in!("marble"),
+    built_in!("velvet"),
     built_in!("glow"),
     built_in!("lighting"),
     built_in!("lambert"),
