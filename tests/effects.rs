@@ -252,6 +252,46 @@ fn the_glow_of_one_lens_survives_the_colour_of_another() {
     }
 }
 
+#[test]
+fn marble_stays_in_the_stone_and_fades_with_distance() {
+    let mut studio = studio(&[citydata("square.city.json")]);
+    let mut draw = |eye: DVec3, target: DVec3, height_m: f64| {
+        let mut scene = scene(orthographic(eye, target, height_m), vec![]);
+        scene.style.effects = vec![with_numbers("marble", &[("polish", 0.0), ("scale", 7.3)])];
+        picture(&mut studio, &scene, SIZE)
+    };
+    // 160 pixels of 0.25 m. The eye crosses whole metres, zero and cubes of the lattice, and goes back along its view.
+    let (eye, target) = (DVec3::new(-3.2, -390.1, 190.3), DVec3::new(-3.2, 10.0, 0.0));
+    let back = (eye - target) * 0.2;
+    let still = draw(eye, target, 40.0);
+    let w = SIZE[0] as usize;
+    for pixels in [0_usize, 7, 31, 90] {
+        let right = DVec3::X * (0.25 * pixels as f64);
+        let moved = draw(eye + right + back, target + right, 40.0);
+        let pairs = (0..still.rgba.len()).filter(|i| i % w >= pixels).map(|i| (still.rgba[i], moved.rgba[i - pixels]));
+        let (mut all, mut other) = (0, 0);
+        for (a, b) in pairs {
+            all += 1;
+            other += u32::from((0..3).any(|c| a[c].abs_diff(b[c]) > 2));
+        }
+        // Edges of faces may fall on the other side of a pixel's middle.
+        assert!(other * 200 < all, "{pixels} pixels to the right: {other} of {all} changed");
+    }
+    // Ground, seen from above: what the veins make of it, by how large a pixel is.
+    let mut spread = |height_m: f64| {
+        let above = draw(DVec3::new(0.0, 0.0, 300.0), DVec3::ZERO, height_m);
+        let normals = above.normal.as_ref().expect("normals");
+        let is_flat = |i: &usize| normals[*i] == [0.0, 0.0, 1.0];
+        let lights: Vec<f64> = (0..w * SIZE[1] as usize).filter(is_flat).map(|i| f64::from(above.rgba[i][1])).collect();
+        let mean = lights.iter().sum::<f64>() / lights.len() as f64;
+        let of_squares = lights.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / lights.len() as f64;
+        assert!(lights.len() > 100);
+        (mean, of_squares.sqrt())
+    };
+    let (near, far) = (spread(40.0), spread(1200.0));
+    assert!(near.1 > 12.0 && far.1 < 1.0 && (near.0 - far.0).abs() < 15.0, "{near:?} {far:?}");
+}
+
 /// The passes that a lens with these effects adds to a plain frame, from what the kinds of effects are.
 fn predicted(effects: &[&str]) -> Vec<String> {
     let filters = effects.iter().filter(|e| **e == "blur").count();

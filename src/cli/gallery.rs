@@ -34,7 +34,15 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "market-square"
     "rotterdam-textures"
     "three-lenses"
+    "tiesel-3-22"
     "town"
+    "trapp-3-5-1"
+    "trapp-3-5-2-a"
+    "trapp-3-5-2-b"
+    "trapp-3-5-2-c"
+    "trapp-3-5-3-a"
+    "trapp-3-5-3-b"
+    "trapp-3-5-3-c"
     "vienna-roofs"
 };
 
