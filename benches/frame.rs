@@ -1,5 +1,5 @@
 //! What a frame costs: the plain frame against the bare lit draw of the same buffers, street against overview, and one
-//! colour lens against the plain frame.
+//! colour lens, and ten that overlap, against the plain frame.
 //!
 //! `cargo bench --bench frame [-- --pairs N]`: frames A and B are drawn in turn, and the median of their ratios is
 //! given with its 95 % interval; a target is met when the interval's upper end meets it. "All" is the plain frame with what
@@ -19,7 +19,7 @@ use veduta::{
     gpu::Gpu,
     measure::{
         ratio::{Estimate, in_turn, ratios},
-        stage::{lens, plain_scene, sphere_covering},
+        stage::{lens, plain_scene, sphere_around, sphere_covering},
     },
     render::picture::Studio,
     scene::{CitySpec, Scene},
@@ -59,14 +59,16 @@ fn main() {
     for (v, camera) in [("V1", overview(&studio.extent())), ("V2", street(&studio))] {
         let scene = plain_scene(camera);
         let lensed = with_lens(v, &scene, &mut studio);
+        let many = with_ten(v, &lensed, &mut studio);
         frames.push((format!("{v} bare"), Frame::Bare(view(&scene))));
         frames.push((format!("{v} all"), Frame::Unculled(scene.clone())));
         frames.push((format!("{v} plain"), Frame::Full(scene)));
         frames.push((format!("{v} lens"), Frame::Full(lensed)));
+        frames.push((format!("{v} ten"), Frame::Full(many)));
     }
     let named = |name: &str| {
         let found = frames.iter().find(|(n, _)| n == name);
-        &found.unwrap_or_else(|| panic!("no frame is called {name}; V1 or V2 with bare, all, plain or lens")).1
+        &found.unwrap_or_else(|| panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens or ten")).1
     };
     if let Some(name) = profile {
         // A bare draw takes targets and view from the frame before it.
@@ -80,8 +82,10 @@ fn main() {
     compare(&mut studio, pairs, named, ["V2 all", "V2 bare"], 1.45);
     compare(&mut studio, pairs, named, ["V2 plain", "V2 bare"], 1.45);
     compare(&mut studio, pairs, named, ["V2 plain", "V1 plain"], 0.50);
-    compare(&mut studio, pairs, named, ["V1 lens", "V1 plain"], 1.10);
-    compare(&mut studio, pairs, named, ["V2 lens", "V2 plain"], 1.10);
+    compare(&mut studio, pairs, named, ["V1 lens", "V1 plain"], 1.05);
+    compare(&mut studio, pairs, named, ["V2 lens", "V2 plain"], 1.05);
+    compare(&mut studio, pairs, named, ["V1 ten", "V1 plain"], 1.30);
+    compare(&mut studio, pairs, named, ["V2 ten", "V2 plain"], 1.30);
 }
 
 /// V1: the whole city in the frustum.
@@ -133,6 +137,31 @@ fn with_lens(v: &str, scene: &Scene, studio: &mut Studio) -> Scene {
         println!("{v}: a lens of {radius:.1} m covers a tenth of the picture");
     }
     Scene { lenses: vec![lens("lens", shape, &["greyscale"])], ..scene.clone() }
+}
+
+/// The effects of ten colour lenses, two of them neighbourhood filters.
+const TEN: [&str; 10] =
+    ["greyscale", "blur", "sepia", "invert", "darken", "brighten", "saturate", "posterise", "overlay", "blur"];
+
+/// Ten lenses around the one of `lensed`, a fifth of its radius away, each over a tenth of the picture. All overlap.
+fn with_ten(v: &str, lensed: &Scene, studio: &mut Studio) -> Scene {
+    let Some(&Shape::Sphere { center, radius }) = lensed.lenses.first().and_then(|l| l.shapes.first()) else {
+        panic!("the lens is a sphere");
+    };
+    let plain = Scene { lenses: Vec::new(), ..lensed.clone() };
+    let mut lenses = Vec::new();
+    for (i, effect) in TEN.into_iter().enumerate() {
+        let turn = std::f64::consts::TAU * i as f64 / TEN.len() as f64;
+        let center = center + 0.2 * radius * DVec3::new(turn.cos(), turn.sin(), 0.0);
+        let shape = sphere_around(studio, &plain, SIZE, 0.1, center, 4.0 * radius);
+        let shape = shape.unwrap_or_else(|error| panic!("{error}"));
+        if let Shape::Sphere { radius, .. } = shape {
+            print!("{}{radius:.1}", if i == 0 { format!("{v}: ten lenses of ") } else { ", ".to_owned() });
+        }
+        lenses.push(lens(effect, shape, &[effect]));
+    }
+    println!(" m");
+    Scene { lenses, ..plain }
 }
 
 /// Draws one frame to its end; takes milliseconds.

@@ -187,6 +187,49 @@ fn blur_is_a_gaussian_of_the_lens_own_unmasked_picture() {
 }
 
 #[test]
+fn what_filters_have_in_common_is_made_once() {
+    let mut stage = Stage::new();
+    let Shape::Sphere { center, .. } = stage.ball else { unreachable!("the stage has a ball") };
+    let mut blurs = |radii: [f64; 2]| {
+        let one = |i: usize| {
+            let center = center + DVec3::new([-25.0, 25.0][i], 0.0, 0.0);
+            let shape = Shape::Sphere { center, radius: 30.0 };
+            Lens {
+                effects: vec![with_numbers("blur", &[("radius", radii[i])])],
+                ..lens(&format!("{i}"), vec![shape], "blur")
+            }
+        };
+        let both = picture(&mut stage.studio, &scene(stage.camera, vec![one(0), one(1)]), SIZE);
+        let insides = [bits(&both, 0), bits(&both, 1)];
+        for (i, rgba) in both.rgba.iter().enumerate() {
+            assert!(insides[0][i] || insides[1][i] || *rgba == stage.plain.rgba[i]);
+        }
+        let made: Vec<String> = both.statistics.passes.iter().map(|p| p.name.clone()).collect();
+        let filter_passes = made.into_iter().filter(|name| name.contains("filter")).collect::<Vec<_>>();
+        (both, filter_passes)
+    };
+    let (equal, passes) = blurs([5.0, 5.0]);
+    assert_eq!(passes, ["unfiltered", "filter across", "filter down"]);
+    let (unequal, passes) = blurs([2.5, 5.0]);
+    assert_eq!(passes, ["unfiltered", "filter across", "filter down", "filter across", "filter down"]);
+    assert_eq!(unequal.statistics.pipelines.compiled, 0, "a radius is a parameter");
+    let insides = [bits(&equal, 0), bits(&equal, 1)];
+    let wanted = [2.5, 5.0].map(|radius| blurred(&stage.plain, radius));
+    let mut checked = [0; 2];
+    for i in 0..stage.plain.rgba.len() {
+        // The upper lens is drawn over the lower one.
+        let Some(lens) = [1, 0].into_iter().find(|l| insides[*l][i]) else { continue };
+        checked[lens] += 1;
+        for (both, wanted) in [(&equal, &wanted[1]), (&unequal, &wanted[lens])] {
+            let apart = wanted[i].iter().zip(both.rgba[i]).map(|(w, byte)| (w * 255.0 - f32::from(byte)).abs());
+            let apart = apart.fold(0.0, f32::max);
+            assert!(apart <= 2.0, "pixel {i} of lens {lens}: {apart}");
+        }
+    }
+    assert!(checked.into_iter().all(|n| n > 500), "{checked:?}");
+}
+
+#[test]
 fn blend_modes_and_weights_are_their_arithmetic() {
     use veduta::shader::Blend;
     let mut stage = Stage::new();

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
+
 use crate::{
     geom::{Aabb, Shape},
     lens::{Class, EffectUse, Lens, LensBody, LensKind},
@@ -84,35 +86,55 @@ pub fn lens(name: &str, shape: Shape, effects: &[&str]) -> Lens {
 
 /// See [`Stage::sphere_covering`]; `scene` has a camera and no lenses.
 pub fn sphere_covering(studio: &mut Studio, scene: &Scene, size: [u32; 2], share: f64) -> Result<Shape, RenderError> {
-    let mut request = Request {
-        size,
-        samples: 1,
-        transparent: false,
-        aovs: Aovs { depth: true, ..Aovs::default() },
-        statistics: false,
-        backend: Backend::default(),
-    };
+    let mut request = request(size);
+    request.aovs.depth = true;
     let depth = studio.render(scene, &request)?.depth.unwrap_or_default();
     let nothing =
         || RenderError::Scene("nothing of the city is in the picture; another city would be right".to_owned());
     let (pixel, distance) = nearest_to_the_middle(size, &depth).ok_or_else(nothing)?;
     let camera = studio.camera(scene, size);
     let center = View::new(camera, size, &Aabb::EMPTY)?.pixel_ray(pixel[0], pixel[1]).at(distance);
-    request.aovs = Aovs { lens_mask: true, ..Aovs::default() };
+    sphere_around(studio, scene, size, share, center, distance)
+}
+
+/// A sphere around `center`, so large that the surface inside it makes up `share` of the picture, but no larger than
+/// `most` metres; `scene` has a camera and no lenses.
+pub fn sphere_around(
+    studio: &mut Studio,
+    scene: &Scene,
+    size: [u32; 2],
+    share: f64,
+    center: DVec3,
+    most: f64,
+) -> Result<Shape, RenderError> {
+    let mut request = request(size);
+    request.aovs.lens_mask = true;
     let mut share_of = |radius: f64| -> Result<f64, RenderError> {
         let mut lensed = scene.clone();
         lensed.lenses = vec![lens("lens", Shape::Sphere { center, radius }, &["greyscale"])];
         let masks = studio.render(&lensed, &request)?.lens_mask.unwrap_or_default();
         let inside = masks.iter().flatten().filter(|bits| **bits & 1 == 1).count();
-        Ok(inside as f64 / depth.len() as f64)
+        Ok(inside as f64 / (f64::from(size[0]) * f64::from(size[1])))
     };
     // The shown surface inside it makes up the share, not its disc; it grows with the radius.
-    let (mut low, mut high) = (0.0, distance);
+    let (mut low, mut high) = (0.0, most);
     for _ in 0..16 {
         let middle = 0.5 * (low + high);
         if share_of(middle)? < share { low = middle } else { high = middle }
     }
     Ok(Shape::Sphere { center, radius: high })
+}
+
+/// One sample and no AOV.
+fn request(size: [u32; 2]) -> Request {
+    Request {
+        size,
+        samples: 1,
+        transparent: false,
+        aovs: Aovs::default(),
+        statistics: false,
+        backend: Backend::default(),
+    }
 }
 
 /// The pixel nearest to the middle that shows something, and its depth in metres.

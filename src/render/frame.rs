@@ -24,6 +24,7 @@ use crate::{
         curtain::{self, Curtain},
         cut::{Cut, CutPrograms, Cuts},
         eye::{PictureTile, view_uniform},
+        filters,
         furniture::{Furniture, FurnitureOnGpu},
         layout, light,
         operations::{Filter, Operations, invoker_table},
@@ -110,11 +111,11 @@ pub struct PassRecord {
 }
 
 /// A volume that may be seen, with its place among the stages.
-struct SeenVolume {
+pub(super) struct SeenVolume {
     index: usize,
-    lens: u32,
+    pub lens: u32,
     kind: u32,
-    bounds: PictureTile,
+    pub bounds: PictureTile,
     /// The part of the sprite that is kept, texels.
     sprite_bounds: PictureTile,
     /// Where it is kept.
@@ -122,20 +123,26 @@ struct SeenVolume {
 }
 
 /// Notes passes while they are recorded.
-struct Recorder<'a> {
-    timer: Option<&'a mut Timer>,
+pub(super) struct Recorder<'a> {
+    pub timer: Option<&'a mut Timer>,
     passes: Vec<PassRecord>,
 }
 
 impl Recorder<'_> {
-    fn begin(&mut self, name: &'static str, view: &'static str, lenses: &[u32], shades: bool) -> Option<Slot> {
+    pub(super) fn begin(
+        &mut self,
+        name: &'static str,
+        view: &'static str,
+        lenses: &[u32],
+        shades: bool,
+    ) -> Option<Slot> {
         let slot = self.timer.as_mut().and_then(|t| t.slot(shades));
         let index = slot.map(|s| s.index());
         self.passes.push(PassRecord { name, view, lenses: lenses.to_vec(), draws: 0, triangles: 0, slot: index });
         slot
     }
 
-    fn count(&mut self, draws: u32, triangles: u64) {
+    pub(super) fn count(&mut self, draws: u32, triangles: u64) {
         if let Some(pass) = self.passes.last_mut() {
             pass.draws += draws;
             pass.triangles += triangles;
@@ -165,7 +172,7 @@ impl Renderer {
         if let Some(sun_view) = &sun_view {
             self.shadow_pass(&mut encoder, &mut recorder, input, sun_view, (&cuts, &keys.cuts));
         }
-        // Before the city: what a lens hides is decided by them.
+        // Before the city: what a lens hides is decided by them, and a software adapter makes them while vertices are placed.
         if !seen.is_empty() {
             self.sprite_passes(&mut encoder, &mut recorder, &seen);
         }
@@ -173,7 +180,7 @@ impl Renderer {
         if !seen.is_empty() && wants_masks(input) {
             self.clear_masks(&mut encoder, &mut recorder);
         }
-        self.filter_passes(&mut encoder, &mut recorder, input, &seen, &plans.filters, &keys);
+        self.filter_passes(&mut encoder, &mut recorder, input, &seen, &plans.filters, &keys.filters);
         self.shade_pass(&mut encoder, &mut recorder, input, &seen, &keys);
         if input.samples > 1 && input.sample + 1 == input.samples {
             self.resolve_pass(&mut encoder, &mut recorder);
@@ -302,16 +309,11 @@ impl Renderer {
             // Their modules declare this array as long as it may be.
             parameters.to_mut().resize(MOST_SLOTS as usize, [0.0; 4]);
         }
-        let across_and_down = |f: &Filter| {
-            [[1, 0], [0, 1]].map(|step| layout::FilterStage {
-                step,
-                reach: f.reach as i32,
-                first: f.parameters,
-                size: input.tile.size.map(|s| s as i32),
-            })
-        };
+        for (filter, (_, slot)) in plans.uses() {
+            parameters.to_mut()[slot as usize][0] = filter as f32;
+        }
         let filter_stages: Vec<u8> =
-            plans.filters.iter().flat_map(across_and_down).flat_map(|stage| strided(&stage)).collect();
+            plans.filters.iter().flat_map(|f| filters::stages(f, input.tile.size)).flat_map(|s| strided(&s)).collect();
         stale |= b.filter_stages.sync(gpu, &filter_stages)?;
         if is_uber {
             volumes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
@@ -642,11 +644,12 @@ impl Renderer {
             let mut lenses: Vec<u32> = here().map(|(_, v)| v.lens).collect();
             lenses.dedup();
             let slot = recorder.begin("depth sprites", "main", &lenses, true);
-            // No entry, no exit.
-            let cleared = color_attachment(view, wgpu::Color { r: 0.0, g: 1.0, b: 0.0, a: 0.0 });
+            // Every texel that is read is written first.
+            let mut kept = color_attachment(view, wgpu::Color::TRANSPARENT);
+            kept.ops.load = wgpu::LoadOp::Load;
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("depth sprites"),
-                color_attachments: &[Some(cleared)],
+                color_attachments: &[Some(kept)],
                 timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
                 ..Default::default()
             });
@@ -721,81 +724,6 @@ impl Renderer {
         }
         drop(pass);
         recorder.count(drawn, u64::from(drawn));
-    }
-
-    /// Neighbourhood filters (K3): the lens' own image, unmasked, then the filter across and down.
-    fn filter_passes(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        input: &FrameInput,
-        seen: &[SeenVolume],
-        filters: &[Filter],
-        keys: &ShadeKeys,
-    ) {
-        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        let Some([across, down]) = &groups.filters else { return };
-        let whole = PictureTile::whole(input.tile.size);
-        for (layer, filter) in filters.iter().enumerate() {
-            let bounds = match filter.lens {
-                None => Some(whole),
-                Some(lens) => split(input.tile.size, seen.iter().filter(|v| v.lens == lens).map(|v| v.bounds)).0,
-            };
-            let Some(bounds) = bounds else { continue };
-            let lens: Vec<u32> = filter.lens.into_iter().collect();
-            let reach = filter.reach;
-            let mut pass_into =
-                |name: &'static str, target: &wgpu::TextureView, part: PictureTile, draw: &mut Draws| {
-                    let slot = recorder.begin(name, "main", &lens, true);
-                    let is_shading = target == &targets.unfiltered[0].view;
-                    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                        label: Some(name),
-                        color_attachments: &[Some(color_attachment(target, wgpu::Color::TRANSPARENT))],
-                        depth_stencil_attachment: is_shading.then_some(wgpu::RenderPassDepthStencilAttachment {
-                            view: &targets.depth.view,
-                            depth_ops: None, // only read
-                            stencil_ops: None,
-                        }),
-                        timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
-                        ..Default::default()
-                    });
-                    if let Some(timer) = &recorder.timer {
-                        timer.begin_count(&mut pass, slot);
-                    }
-                    scissor(&mut pass, part);
-                    let drawn = draw(&mut pass);
-                    if let Some(timer) = &recorder.timer {
-                        timer.end_count(&mut pass, slot);
-                    }
-                    drop(pass);
-                    recorder.count(drawn, u64::from(drawn));
-                };
-            let key = Key::Filter(filter.effect);
-            let stage = |direction: u64| ((2 * layer as u64 + direction) * STAGE_STRIDE) as u32;
-            let unfiltered = &targets.unfiltered;
-            pass_into("unfiltered", &unfiltered[0].view, grown(bounds, [reach, reach], whole), &mut |pass| {
-                pass.set_bind_group(0, &groups.view, &[]);
-                pass.set_bind_group(1, &groups.shade, &[]);
-                pass.set_bind_group(2, &groups.lenses, &[]);
-                for key in &keys.filters[layer] {
-                    pass.set_pipeline(self.pipelines.get(key));
-                    pass.draw(0..3, 0..1);
-                }
-                keys.filters[layer].len() as u32
-            });
-            pass_into("filter across", &unfiltered[1].view, grown(bounds, [0, reach], whole), &mut |pass| {
-                pass.set_pipeline(self.pipelines.get(&key));
-                pass.set_bind_group(0, across, &[stage(0)]);
-                pass.draw(0..3, 0..1);
-                1
-            });
-            pass_into("filter down", &targets.filtered.layers[layer], bounds, &mut |pass| {
-                pass.set_pipeline(self.pipelines.get(&key));
-                pass.set_bind_group(0, down, &[stage(1)]);
-                pass.draw(0..3, 0..1);
-                1
-            });
-        }
     }
 
     fn resolve_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
@@ -917,16 +845,11 @@ impl Plans {
     fn table(&self) -> Result<Vec<u32>, usize> {
         invoker_table([&self.context, &self.lenses], self.hiding.as_ref(), handlers())
     }
-}
 
-/// Draws into a pass; says how often.
-type Draws<'a> = dyn FnMut(&mut wgpu::RenderPass) -> u32 + 'a;
-
-/// A rectangle with so many pixels more on either side, inside the whole.
-fn grown(part: PictureTile, by: [u32; 2], whole: PictureTile) -> PictureTile {
-    let low: [u32; 2] = std::array::from_fn(|i| part.origin[i].saturating_sub(by[i]));
-    let high: [u32; 2] = std::array::from_fn(|i| (part.origin[i] + part.size[i] + by[i]).min(whole.size[i]));
-    PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] }
+    /// The uses of filters, each with the number of the image that it gets.
+    fn uses(&self) -> impl Iterator<Item = (usize, (Option<u32>, u32))> {
+        self.filters.iter().enumerate().flat_map(|(i, f)| f.uses.iter().map(move |u| (i, *u)))
+    }
 }
 
 fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool, cut: Option<Program>) -> Key {
@@ -1002,7 +925,10 @@ fn needs(input: &FrameInput, pages: &Pages, colors: bool, smooth: bool, shadows:
 }
 
 /// The bounds of all lenses, if any, and the up to four rectangles around them.
-fn split(size: [u32; 2], bounds: impl Iterator<Item = PictureTile>) -> (Option<PictureTile>, Vec<PictureTile>) {
+pub(super) fn split(
+    size: [u32; 2],
+    bounds: impl Iterator<Item = PictureTile>,
+) -> (Option<PictureTile>, Vec<PictureTile>) {
     let [w, h] = size;
     let all = bounds.fold(None, |all: Option<[u32; 4]>, b| {
         let [x0, y0, x1, y1] = [b.origin[0], b.origin[1], b.origin[0] + b.size[0], b.origin[1] + b.size[1]];
@@ -1024,7 +950,7 @@ fn strided<T: bytemuck::Pod>(value: &T) -> Vec<u8> {
     bytes
 }
 
-fn scissor(pass: &mut wgpu::RenderPass, part: PictureTile) {
+pub(super) fn scissor(pass: &mut wgpu::RenderPass, part: PictureTile) {
     pass.set_scissor_rect(part.origin[0], part.origin[1], part.size[0], part.size[1]);
 }
 
@@ -1035,7 +961,7 @@ fn draw_ranges(pass: &mut wgpu::RenderPass, indices: &wgpu::Buffer, draws: &[Dra
     }
 }
 
-fn color_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {
+pub(super) fn color_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {
     wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,

@@ -162,6 +162,8 @@ pub struct FilterStage {
     pub reach: i32,
     pub first: u32,
     pub size: [i32; 2],
+    pub columns: i32,
+    pub pad_0: u32,
 }
 
 /// `shader::uber`: one entry of the invoker table.
@@ -306,7 +308,7 @@ mod tests {
                 }),
             ),
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin })),
-            (&Module::Filter(blur), host!(FilterStage { step, reach, first, size })),
+            (&Module::Filter(blur), host!(FilterStage { step, reach, first, size, columns, pad_0 })),
             (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
             (&uber, host!(Part { material, light, styles, outlines, masks, hides })),
             (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),

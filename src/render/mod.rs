@@ -9,6 +9,7 @@ mod curtain;
 mod cut;
 pub mod edges;
 pub mod eye;
+mod filters;
 pub mod frame;
 pub mod furniture;
 pub mod hiding;

@@ -19,6 +19,9 @@ use crate::{
 /// Width of a lens outline, pixels.
 const OUTLINE_PX: f32 = 1.6;
 
+/// Different neighbourhood filters of a picture: each takes four of an image's 256 layers.
+pub const MOST_FILTERS: usize = 64;
+
 /// One use of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operation {
@@ -40,13 +43,13 @@ impl Operation {
     }
 }
 
-/// A neighbourhood filter of a frame.
+/// A neighbourhood filter of a frame: one for all uses that would make the same image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filter {
     /// Its handler.
     pub effect: u32,
-    /// Whose it is; `None`: the context's.
-    pub lens: Option<u32>,
+    /// Whose it is, `None`: the context's; and the slot of the parameters where each of them reads which image it is.
+    pub uses: Vec<(Option<u32>, u32)>,
     /// Its first slot of the parameters.
     pub parameters: u32,
     /// How far it looks to either side, pixels.
@@ -150,52 +153,55 @@ impl Operations {
 
     /// The list as steps; `place` finds a lens in the plan.
     fn steps(&self, place: impl Fn(u32) -> Option<u32>) -> Vec<Step> {
-        let mut filters = 0;
         let step = |operation: &Operation| {
             let scope = match operation.lens {
                 None => Scope::Everywhere,
                 Some(lens) => Scope::Lens(place(lens)?, class_test(operation.class)),
             };
-            let layer = filters;
-            filters += u32::from(operation.is_filter());
-            Some(Step {
-                layer,
-                effect: operation.effect,
-                scope,
-                parameters: operation.parameters,
-                blend: operation.blend,
-            })
+            Some(Step { effect: operation.effect, scope, parameters: operation.parameters, blend: operation.blend })
         };
         self.list.iter().filter_map(step).collect()
     }
 
-    /// The neighbourhood filters of the context and of the lenses `seen`, in the order of their layers: each with the
+    /// The neighbourhood filters of the context and of the lenses `seen`, in the order of their images: each with the
     /// plan of the image it filters. That is its lens' own, unmasked: what the context does, then what the lens does to
     /// the same class before it (K3).
     pub fn filters(&self, seen: &[u32], haze: bool) -> Vec<Filter> {
         let hides = |o: &Operation| shader::handlers()[o.effect as usize].kind == EffectKind::Hide;
         let is_seen = |o: &&Operation| !hides(o) && o.lens.is_none_or(|lens| seen.contains(&lens));
         let operations: Vec<&Operation> = self.list.iter().filter(is_seen).collect();
-        let layer_of = |i: usize| operations[..i].iter().filter(|o| o.is_filter()).count() as u32;
         let filter = |(i, operation): (usize, &&Operation)| {
             let is_own = |o: &Operation| o.lens.is_none() || (o.lens, o.class) == (operation.lens, operation.class);
-            let before = operations[..i].iter().enumerate().filter(|(_, o)| is_own(o));
-            let steps = before.map(|(k, o)| Step {
-                effect: o.effect,
-                scope: Scope::Everywhere,
-                parameters: o.parameters,
-                layer: layer_of(k),
-                blend: o.blend,
-            });
+            let step = |o: &&Operation| {
+                is_own(o).then_some(Step {
+                    effect: o.effect,
+                    scope: Scope::Everywhere,
+                    parameters: o.parameters,
+                    blend: o.blend,
+                })
+            };
+            let steps = operations[..i].iter().filter_map(step);
             Filter {
                 effect: operation.effect,
-                lens: operation.lens,
+                uses: vec![(operation.lens, operation.parameters + slots_of(operation))],
                 parameters: operation.parameters,
                 reach: self.parameters[operation.parameters as usize][0].ceil() as u32,
                 plan: Plan { steps: steps.collect(), haze, ..Plan::default() },
             }
         };
-        operations.iter().enumerate().filter(|(_, o)| o.is_filter()).map(filter).collect()
+        let mut filters: Vec<Filter> = Vec::new();
+        let numbers = |f: &Filter| {
+            let first = f.parameters as usize;
+            &self.parameters[first..first + shader::handlers()[f.effect as usize].slots() as usize]
+        };
+        for mut one in operations.iter().enumerate().filter(|(_, o)| o.is_filter()).map(filter) {
+            let makes_it = |f: &&mut Filter| (f.effect, &f.plan, numbers(f)) == (one.effect, &one.plan, numbers(&one));
+            match filters.iter_mut().find(makes_it) {
+                Some(same) => same.uses.append(&mut one.uses),
+                None => filters.push(one),
+            }
+        }
+        filters
     }
 
     fn add(&mut self, effect: &EffectUse, lens: Option<u32>, model: &CityModel) -> Result<(), ThematicError> {
@@ -227,6 +233,10 @@ impl Operations {
         }
         floats.resize(definition.slots() as usize * 4, 0.0);
         self.parameters.extend(floats.as_chunks().0);
+        if definition.kind == EffectKind::Filter {
+            // Which image holds what it made: a frame says it.
+            self.parameters.push([0.0; 4]);
+        }
         let blend = blend_of(effect);
         if blend.is_some() {
             self.parameters.push([effect.weight.unwrap_or(1.0) as f32, 0.0, 0.0, 0.0]);
@@ -234,6 +244,11 @@ impl Operations {
         self.list.push(Operation { effect: number, parameters: first, lens, class: effect.class, blend });
         Ok(())
     }
+}
+
+/// Of an operation's own parameters.
+fn slots_of(operation: &Operation) -> u32 {
+    shader::handlers()[operation.effect as usize].slots()
 }
 
 /// How a use is laid over what is below; one with a weight at least as paint.
@@ -303,7 +318,7 @@ fn invoker(plan: &Plan, step: &Step, handler: &EffectDefinition) -> layout::Invo
         scope: scope_number(step.scope),
         first_volume: volumes.start,
         volumes: volumes.len() as u32,
-        parameters: if handler.kind == EffectKind::Filter { step.layer } else { step.parameters },
+        parameters: if handler.kind == EffectKind::Filter { step.image(handler) } else { step.parameters },
         blend: step.blend.map_or(0, Blend::number),
         weight: step.weight(handler).unwrap_or(0),
         number: u32::from(handler.kind == EffectKind::Scene),

@@ -19,7 +19,7 @@ use crate::{
         eye::PictureTile,
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord},
         furniture::{self, Furniture},
-        operations::Operations,
+        operations::{MOST_FILTERS, Operations},
         stats::{self, Statistics},
         volume::LensVolume,
     },
@@ -286,9 +286,11 @@ impl Studio {
         }
         let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, &self.model)
             .map_err(|error| RenderError::Scene(error.to_string()))?;
+        let all: Vec<u32> = volumes.iter().map(|v| v.lens).collect();
         let counts = [
             ("volumes", volumes.len(), MOST_VOLUMES as usize),
             ("parameters of effects and outlines, in fours,", operations.parameters.len(), MOST_SLOTS as usize),
+            ("different neighbourhood filters", operations.filters(&all, false).len(), MOST_FILTERS),
         ];
         for (what, count, most) in counts {
             if count > most {

@@ -220,7 +220,7 @@ impl Layouts {
         let float = image(T::Float { filterable: false }, D::D2);
         let depth = image(T::Depth, D::D2);
         let surfaces = image(T::Uint, D::D2);
-        let sprites = image(T::Float { filterable: false }, D::D2Array);
+        let floats = image(T::Float { filterable: false }, D::D2Array);
         let masks = B::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
             format: MASKS,
@@ -263,13 +263,13 @@ impl Layouts {
                 gpu,
                 "lenses",
                 &[
-                    (0, S::FRAGMENT, sprites),
+                    (0, S::FRAGMENT, floats),
                     (1, S::FRAGMENT, storage()),
                     (2, S::FRAGMENT, uniform()),
                     (3, S::FRAGMENT, uniform()),
                     (4, S::FRAGMENT, masks),
                     (5, S::FRAGMENT, uniform()),
-                    (6, S::FRAGMENT, image(T::Float { filterable: false }, D::D2Array)),
+                    (6, S::FRAGMENT, floats),
                 ],
             ),
             shapes_city: layout(gpu, "surfaces and planes", &[(0, S::FRAGMENT, surfaces), (1, S::FRAGMENT, storage())]),
@@ -287,7 +287,7 @@ impl Layouts {
             filter: layout(
                 gpu,
                 "filter",
-                &[(0, S::FRAGMENT, dynamic), (1, S::FRAGMENT, float), (2, S::FRAGMENT, uniform())],
+                &[(0, S::FRAGMENT, dynamic), (1, S::FRAGMENT, floats), (2, S::FRAGMENT, uniform())],
             ),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
             furniture: layout(gpu, "furniture", &[(0, all, uniform()), (1, S::FRAGMENT, storage())]),
@@ -586,7 +586,8 @@ impl Key {
                 })]
             }
             Self::Sprite(_) => vec![Some(SPRITES.into())],
-            Self::Filter(_) | Self::Shade { target: ShadeTarget::Unfiltered, .. } => vec![Some(FILTERED.into())],
+            Self::Filter(_) => vec![Some(FILTERED.into()); 4],
+            Self::Shade { target: ShadeTarget::Unfiltered, .. } => vec![Some(FILTERED.into())],
             Self::Furniture { layered } => vec![Some(wgpu::ColorTargetState {
                 format: if *layered { FURNITURE_LAYER } else { PICTURE },
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),

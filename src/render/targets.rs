@@ -22,7 +22,7 @@ pub struct Needs {
     pub mask_layers: u32,
     /// Width and height of the pages of depth sprites and how many there are, 0 for none.
     pub sprites: [u32; 3],
-    /// Layers of what neighbourhood filters make, 0 for none.
+    /// How many images neighbourhood filters make, 0 for none.
     pub filters: u32,
     /// Side of the shadow map, 0 for none.
     pub shadow: u32,
@@ -60,9 +60,9 @@ pub struct Targets {
     pub masks: Target,
     /// Pages of volumetric depth sprites: stored depths of entries and exits.
     pub sprites: Target,
-    /// What a filter reads, and what is half done (1×1 where not needed).
+    /// What a filter reads, and what is half done: four narrow images (1×1 where not needed).
     pub unfiltered: [Target; 2],
-    /// What filters made, one layer each.
+    /// What filters made, four low images each, as `pass/filter.wgsl` explains.
     pub filtered: Target,
     /// Depth from the sun (1×1 where not needed).
     pub shadow: Target,
@@ -92,6 +92,8 @@ impl Targets {
         let make = |label: &str, size, format, usage| make_any(label, size, format, usage, false);
         let [w, h] = needs.size;
         let full = |on: bool| if on { [w, h, 1] } else { [1, 1, 1] };
+        let filtering =
+            |(label, size)| make_any(label, if needs.filters > 0 { size } else { [1; 3] }, FILTERED, drawn, true);
         let mask_size = if needs.mask_layers > 0 { [w, h, needs.mask_layers] } else { [1, 1, 1] };
         Self {
             needs,
@@ -103,14 +105,8 @@ impl Targets {
             sums: make("sums", full(needs.sums), sums, drawn),
             masks: make_any("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING, true),
             sprites: make_any("depth sprites", needs.sprites, SPRITES, drawn, true),
-            unfiltered: ["unfiltered", "half filtered"].map(|l| make(l, full(needs.filters > 0), FILTERED, drawn)),
-            filtered: make_any(
-                "filtered",
-                if needs.filters > 0 { [w, h, needs.filters] } else { [1; 3] },
-                FILTERED,
-                drawn,
-                true,
-            ),
+            unfiltered: [("unfiltered", [w, h, 1]), ("half filtered", [w.div_ceil(4), h, 4])].map(filtering),
+            filtered: filtering(("filtered", [4 * w.div_ceil(4), h.div_ceil(4), 4 * needs.filters])),
             shadow: make("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn),
         }
     }

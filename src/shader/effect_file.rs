@@ -390,7 +390,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         let message = "mode, and kind = \"air\", are for handlers of the program; expected kind = hide, material, light, scene, post or filter";
         return Err(file.error(0, message));
     }
-    let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, layer: 0, blend: None }];
+    let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, blend: None }];
     let module = match effect.kind {
         EffectKind::Filter => Module::Filter(0),
         EffectKind::Hide => Module::Geometry(Some(Program::Specialised(Plan { steps, ..Plan::default() }))),

@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     fn step(effect: u32, scope: Scope, blend: Option<Blend>) -> Step {
-        Step { effect, scope, parameters: 0, layer: 0, blend }
+        Step { effect, scope, parameters: 0, blend }
     }
 
     /// The numbers of all effects.

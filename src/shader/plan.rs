@@ -41,8 +41,6 @@ pub struct Step {
     pub scope: Scope,
     /// Its first `vec4f` of the parameters.
     pub parameters: u32,
-    /// Of a filter: the layer that holds what it made.
-    pub layer: u32,
     /// How it is laid over what is below it; its weight follows its parameters. `None`: it replaces that.
     pub blend: Option<Blend>,
 }
@@ -279,12 +277,18 @@ impl Plan {
 impl Step {
     /// Where its weight stands, if it is blended.
     pub fn weight(&self, handler: &EffectDefinition) -> Option<u32> {
-        self.blend.map(|_| self.parameters + handler.slots())
+        self.blend.map(|_| self.parameters + handler.slots() + u32::from(handler.kind == EffectKind::Filter))
+    }
+
+    /// Of a filter: where it stands which image holds what it made.
+    pub fn image(&self, handler: &EffectDefinition) -> u32 {
+        self.parameters + handler.slots()
     }
 
     /// The slot after its last one.
     fn end(&self, handler: &EffectDefinition) -> u32 {
-        self.parameters + handler.slots() + u32::from(self.blend.is_some())
+        let is_filter = handler.kind == EffectKind::Filter;
+        self.parameters + handler.slots() + u32::from(is_filter) + u32::from(self.blend.is_some())
     }
 
     /// Whether nothing of what is below it is left where it acts.

@@ -103,7 +103,7 @@ impl Writer<'_> {
             _ => format!(", {}({}u)", handler.own("parameters"), step.parameters),
         };
         let mut call = match handler.kind {
-            EffectKind::Filter => format!("filtered_at({}u, {point})", step.layer),
+            EffectKind::Filter => format!("filtered_at({}u, {point})", step.image(handler)),
             _ => format!("{name}({subject}, {point}{own})"),
         };
         let is_material = handler.kind == EffectKind::Material;
@@ -254,9 +254,15 @@ impl Writer<'_> {
 
 /// A filter's kernel, for `pass/filter.wgsl`.
 pub(super) fn kernel(filter: &EffectDefinition) -> String {
-    let own = if filter.slots() == 0 { String::new() } else { format!(", {}(stage.first)", filter.own("parameters")) };
-    let source = filter.source.trim_end();
-    format!("{source}\n\nfn kernel(offset: f32) -> f32 {{\n    return {}(offset{own});\n}}\n", filter.wgsl_name())
+    // Its radius, if nothing else, is a parameter.
+    format!(
+        "{}\n\nalias Own = {};\n\nfn own_parameters() -> Own {{\n    return {}(stage.first);\n}}\n\n\
+         fn kernel(offset: f32, own: Own) -> f32 {{\n    return {}(offset, own);\n}}\n",
+        filter.source.trim_end(),
+        filter.own("Parameters"),
+        filter.own("parameters"),
+        filter.wgsl_name()
+    )
 }
 
 /// Where masks are written.
