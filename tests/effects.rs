@@ -46,12 +46,15 @@ impl Stage {
         scene(self.camera, vec![lens])
     }
 
-    /// The picture with these effects inside the lens; outside it must be the plain one.
+    /// The picture with these effects inside the lens; outside it must be the plain one, but for lines of edges inside, which
+    /// cover pixels beside them.
     fn with(&mut self, effects: Vec<EffectUse>) -> Picture {
+        let names: Vec<String> = effects.iter().map(|e| e.effect.clone()).collect();
+        let lines = draws_lines(&names.iter().map(String::as_str).collect::<Vec<_>>());
         let scene = self.scene(effects);
         let picture = picture(&mut self.studio, &scene, SIZE);
         for (i, inside) in self.inside.iter().enumerate() {
-            assert!(*inside || picture.rgba[i] == self.plain.rgba[i], "pixel {i} outside the lens changed");
+            assert!(*inside || lines || picture.rgba[i] == self.plain.rgba[i], "pixel {i} outside the lens changed");
         }
         picture
     }
@@ -335,10 +338,16 @@ fn marble_stays_in_the_stone_and_fades_with_distance() {
     assert!(near.1 > 12.0 && far.1 < 1.0 && (near.0 - far.0).abs() < 15.0, "{near:?} {far:?}");
 }
 
+/// Whether some of these effects draw edges.
+fn draws_lines(effects: &[&str]) -> bool {
+    effects.iter().any(|e| ["wireframe", "hidden-line"].contains(e))
+}
+
 /// The passes that a lens with these effects adds to a plain frame, from what the kinds of effects are.
 fn predicted(effects: &[&str]) -> Vec<String> {
     let filters = effects.iter().filter(|e| **e == "blur").count();
     let mut names = vec!["depth sprites", "geometry", "clear lens masks"];
+    names.extend(draws_lines(effects).then_some("lines"));
     for _ in 0..filters {
         names.extend(["unfiltered", "filter across", "filter down"]);
     }
@@ -366,7 +375,8 @@ fn each_effect_and_each_pair_adds_its_own_passes_and_handlers() {
         // Beside geometry: the sprite of a sphere, shading without and with the lens, of surfaces and of the sky.
         let filters = names.iter().filter(|n| **n == "blur").count();
         let pipelines = statistics.pipelines.names.iter().filter(|n| !n.starts_with("geometry"));
-        assert_eq!(pipelines.count(), 1 + 4 + 3 * filters, "{:?}", statistics.pipelines.names);
+        let lines = usize::from(draws_lines(&names));
+        assert_eq!(pipelines.count(), 1 + 4 + 3 * filters + lines, "{:?}", statistics.pipelines.names);
     }
 }
 

@@ -12,14 +12,6 @@ struct Fragment {
     is_parallel: bool,          // whether the main view's rays are: it is orthographic
 }
 
-@group(2) @binding(1) var<storage, read> object_values: array<u32>;
-
-// Whether an object is one of those that an effect chose by an attribute; `first`: its parameter of this name. The values
-// begin with that of no object.
-fn is_chosen(first: u32, object: u32) -> bool {
-    return object_values[first + (object + 1u)] != 0u;
-}
-
 fn part_of(surface: Surface) -> u32 {
     return (surface.flags & SURFACE_PART) >> SURFACE_PART_SHIFT;
 }

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Effects whose names are fixed but which this version does not have.
-pub const LATER: &[&str] = &["wireframe", "hidden-line", "x-ray", "lod"];
+pub const LATER: &[&str] = &["x-ray", "lod"];
 
 /// Something wrong with a use of an effect.
 #[derive(Clone, Debug, PartialEq)]

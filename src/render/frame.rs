@@ -5,6 +5,7 @@
 //! depth sprites                 of all lens volumes in view
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
+//! lines                         edges, where effects draw them
 //! unfiltered, filter across,    for each neighbourhood filter in view: its lens' own image over the lens' bounds
 //! filter down                   and what the filter reaches beyond them, and the filter
 //! shade                         outside the lenses' screen bounds without them, inside with them
@@ -26,7 +27,7 @@ use crate::{
         eye::{PictureTile, view_uniform},
         filters,
         furniture::{Furniture, FurnitureOnGpu},
-        layout, light,
+        layout, light, lines,
         operations::{Filter, Operations, invoker_table},
         pipelines::{GeometryKind, Key, ShadeTarget},
         renderer::{Renderer, STAGE_STRIDE, Shadow},
@@ -161,11 +162,19 @@ impl Renderer {
         let sun_view = self.sun_view(input);
         let plans = Plans::new(input, &seen);
         let filters = plans.filters.len() as u32;
-        self.fit_targets(Needs { filters, ..needs(input, &pages, self.colored(), self.smooth(), sun_view.is_some()) });
+        let lines = if self.has_edges() { lines::draws(input, plans.lining.as_ref(), &plans.seen) } else { Vec::new() };
+        self.fit_targets(Needs {
+            filters,
+            lines: !lines.is_empty(),
+            ..needs(input, &pages, self.colored(), self.smooth(), sun_view.is_some())
+        });
         let cuts =
             Cuts::new(input, |lens| seen.iter().any(|v| v.lens == lens), sun_view.as_ref(), plans.hiding.clone());
         let (keys, is_uber) = self.prepare(input, &seen, &plans, &cuts, sun_view.is_some());
         self.upload(input, sun_view.as_ref(), &seen, &plans, &cuts, is_uber)?;
+        if self.buffers.line_stages.sync(&self.gpu, &lines::stages(&lines))? {
+            self.groups = None;
+        }
         self.fit_groups();
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
@@ -179,6 +188,9 @@ impl Renderer {
         encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?;
         if !seen.is_empty() && wants_masks(input) {
             self.clear_masks(&mut encoder, &mut recorder);
+        }
+        if let (false, Some(key)) = (lines.is_empty(), &keys.lines) {
+            self.lines_pass(&mut encoder, &mut recorder, input, &lines, key);
         }
         self.filter_passes(&mut encoder, &mut recorder, input, &seen, &plans.filters, &keys.filters);
         self.shade_pass(&mut encoder, &mut recorder, input, &seen, &keys);
@@ -330,7 +342,7 @@ impl Renderer {
             stale |= b.shapes.sync(gpu, &shapes.shapes)?;
             stale |= b.shape_planes.sync(gpu, &shapes.planes)?;
             if let (true, Some(cut)) = (is_uber, &cuts.sun) {
-                let table = invoker_table([&Plan::default(), &Plan::default()], Some(&cut.plan), handlers())
+                let table = invoker_table([&Plan::default(), &Plan::default()], [Some(&cut.plan), None], handlers())
                     .unwrap_or_default();
                 stale |= b.shape_invokers.sync(gpu, &table)?;
             }
@@ -397,29 +409,32 @@ impl Renderer {
         let both_to =
             |target, program: Program| vec![shade_to(target, true, program.clone()), shade_to(target, false, program)];
         let both = |program: Program| both_to(target, program);
-        let parts = |context: Program, lenses: Program, city: Vec<Key>, cuts: CutPrograms| ShadeKeys {
-            city,
-            cuts,
-            context: both(context),
-            lenses: if seen.is_empty() { Vec::new() } else { both(lenses) },
-            // Written out on either back end: a few steps without a lens.
-            filters: plans
-                .filters
-                .iter()
-                .map(|f| both_to(ShadeTarget::Unfiltered, Program::Specialised(f.plan.clone())))
-                .collect(),
-        };
+        let lines_key = |program: Program| Key::Lines { program, smooth };
+        let parts =
+            |context: Program, lenses: Program, city: Vec<Key>, cuts: CutPrograms, lines: Option<Program>| ShadeKeys {
+                lines: lines.map(lines_key),
+                city,
+                cuts,
+                context: both(context),
+                lenses: if seen.is_empty() { Vec::new() } else { both(lenses) },
+                // Written out on either back end: a few steps without a lens.
+                filters: plans
+                    .filters
+                    .iter()
+                    .map(|f| both_to(ShadeTarget::Unfiltered, Program::Specialised(f.plan.clone())))
+                    .collect(),
+            };
         let specialised = || {
             let cuts = cuts.specialised();
             let city = cut_keys(cuts.picture.as_ref(), cuts.sun.as_ref());
             let [context, lenses] = [&plans.context, &plans.lenses].map(|plan| Program::Specialised(plan.clone()));
-            parts(context, lenses, city, cuts)
+            parts(context, lenses, city, cuts, plans.lining.clone().map(Program::Specialised))
         };
         let uber = || {
             let uber = Program::Uber(input.operations.uber(haze(input) > 0.0, wants_masks(input)));
             let hiding = input.operations.uber_hiding().map(Program::Uber);
             let city = cut_keys(hiding.as_ref(), hiding.as_ref().filter(|_| shadows));
-            parts(uber.clone(), uber, city, cuts.uber(hiding))
+            parts(uber.clone(), uber, city, cuts.uber(hiding), input.operations.uber_lining().map(Program::Uber))
         };
         let shade_keys = match input.backend {
             Backend::Specialised => specialised(),
@@ -447,6 +462,7 @@ impl Renderer {
         }
         self.ran.extend(plans.context.effects());
         self.ran.extend(plans.lenses.effects());
+        self.ran.extend(plans.lining.iter().flat_map(|plan| plan.effects()));
         self.ran.extend(cuts.all().flat_map(|cut| cut.plan.effects()));
         self.ran.sort_unstable();
         self.ran.dedup();
@@ -704,6 +720,7 @@ impl Renderer {
         pass.set_bind_group(0, &groups.view, &[]);
         pass.set_bind_group(1, &groups.shade, &[]);
         pass.set_bind_group(2, &groups.lenses, &[]);
+        pass.set_bind_group(3, &groups.lines, &[]);
         let mut drawn = 0;
         let mut fill = |part: u32, keys: &[Key], parts: &[PictureTile]| {
             let parts: Vec<_> = parts.iter().filter(|p| p.size[0] > 0 && p.size[1] > 0).collect();
@@ -810,11 +827,18 @@ struct ShadeKeys {
     /// What is hidden, and what draws the parts of the city where it is.
     cuts: CutPrograms,
     city: Vec<Key>,
+    /// What draws lines.
+    lines: Option<Key>,
 }
 
 impl ShadeKeys {
     fn all(&self) -> impl Iterator<Item = &Key> {
-        self.context.iter().chain(&self.lenses).chain(self.filters.iter().flatten()).chain(&self.city)
+        self.context
+            .iter()
+            .chain(&self.lenses)
+            .chain(self.filters.iter().flatten())
+            .chain(&self.city)
+            .chain(&self.lines)
     }
 }
 
@@ -825,6 +849,10 @@ struct Plans {
     filters: Vec<Filter>,
     /// What is hidden in the picture.
     hiding: Option<Plan>,
+    /// What lines go through.
+    lining: Option<Plan>,
+    /// Lenses in view, in the order of the plans.
+    seen: Vec<u32>,
 }
 
 impl Plans {
@@ -837,13 +865,23 @@ impl Plans {
             false => input.operations.lens_plan(&lenses, haze, wants_masks(input)),
         };
         let context = input.operations.context_plan(haze);
-        let hiding = if seen.is_empty() { &context } else { &lenses }.hiding(handlers());
-        Self { filters, hiding, context: context.shading(handlers()), lenses: lenses.shading(handlers()) }
+        let whole = if seen.is_empty() { &context } else { &lenses };
+        let (hiding, lining) = (whole.hiding(handlers()), whole.lining(handlers()));
+        let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
+        numbers.dedup();
+        Self {
+            filters,
+            hiding,
+            lining,
+            seen: numbers,
+            context: context.shading(handlers()),
+            lenses: lenses.shading(handlers()),
+        }
     }
 
     /// The invoker table of the picture; `Err` where it would be too long.
     fn table(&self) -> Result<Vec<u32>, usize> {
-        invoker_table([&self.context, &self.lenses], self.hiding.as_ref(), handlers())
+        invoker_table([&self.context, &self.lenses], [self.hiding.as_ref(), self.lining.as_ref()], handlers())
     }
 
     /// The uses of filters, each with the number of the image that it gets.
@@ -920,6 +958,7 @@ fn needs(input: &FrameInput, pages: &Pages, colors: bool, smooth: bool, shadows:
         mask_layers: if input.masks && pages.count > 0 { 3 * input.lens_count.div_ceil(32) } else { 0 },
         sprites: [pages.size[0], pages.size[1], pages.count],
         filters: 0,
+        lines: false,
         shadow: if shadows { light::SHADOW_SIZE } else { 0 },
     }
 }
@@ -944,7 +983,7 @@ pub(super) fn split(
     }
 }
 
-fn strided<T: bytemuck::Pod>(value: &T) -> Vec<u8> {
+pub(super) fn strided<T: bytemuck::Pod>(value: &T) -> Vec<u8> {
     let mut bytes = bytemuck::bytes_of(value).to_vec();
     bytes.resize(STAGE_STRIDE as usize, 0);
     bytes

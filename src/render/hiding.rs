@@ -16,15 +16,41 @@ use crate::{
     view::View,
 };
 
-/// Where something may be hidden.
+/// Where something may be hidden, or drawn in lines.
 #[derive(Clone, Debug, PartialEq)]
-enum Reach {
+pub enum Reach {
     /// Anywhere.
     Everywhere,
     /// In a box, metres.
     Within(Aabb),
     /// In front of or behind what is seen between these pixels.
     Along(DVec2, DVec2),
+}
+
+impl Reach {
+    /// Whether it may have to do with something in a box.
+    pub fn touches(&self, bounds: &Aabb, view: &View) -> bool {
+        match self {
+            Self::Everywhere => true,
+            Self::Within(around) => around.meets(bounds),
+            Self::Along(low, high) => {
+                projected_box(view, bounds).is_none_or(|(near, far)| near.cmple(*high).all() && far.cmpge(*low).all())
+            }
+        }
+    }
+}
+
+/// Where one class of a lens is, or of the context (`None`), seen from the main view.
+pub fn reaches_of(lens: Option<u32>, class: Class, volumes: &[LensVolume], view: &View) -> Vec<Reach> {
+    let Some(lens) = lens else { return vec![Reach::Everywhere] };
+    let of_volume = |volume: &LensVolume| match class {
+        Class::Rest => Reach::Everywhere,
+        Class::Inside => Reach::Within(volume.bounds),
+        Class::Front | Class::Behind => {
+            projected_box(view, &volume.bounds).map_or(Reach::Everywhere, |(low, high)| Reach::Along(low, high))
+        }
+    };
+    volumes.iter().filter(|v| v.lens == lens).map(of_volume).collect()
 }
 
 /// Where the lenses of a frame, and its context, may hide something.
@@ -40,23 +66,10 @@ impl Hiding {
     pub fn new(operations: &Operations, volumes: &[LensVolume], view: &View, is_active: impl Fn(u32) -> bool) -> Self {
         let mut hiding = Self::default();
         let hides = |effect: u32| handlers()[effect as usize].kind == EffectKind::Hide;
-        for operation in operations.list.iter().filter(|o| hides(o.effect)) {
-            let Some(lens) = operation.lens else {
-                hiding.reaches.push(Reach::Everywhere);
-                continue;
-            };
-            if !is_active(lens) {
-                continue;
-            }
-            hiding.lenses.push(lens);
-            let own = volumes.iter().filter(|v| v.lens == lens);
-            hiding.reaches.extend(own.map(|volume| match operation.class {
-                Class::Rest => Reach::Everywhere,
-                Class::Inside => Reach::Within(volume.bounds),
-                Class::Front | Class::Behind => {
-                    projected_box(view, &volume.bounds).map_or(Reach::Everywhere, |(low, high)| Reach::Along(low, high))
-                }
-            }));
+        let is_active = |lens: Option<u32>| lens.is_none_or(&is_active);
+        for operation in operations.list.iter().filter(|o| hides(o.effect) && is_active(o.lens)) {
+            hiding.lenses.extend(operation.lens);
+            hiding.reaches.extend(reaches_of(operation.lens, operation.class, volumes, view));
         }
         hiding.lenses.dedup();
         hiding
@@ -64,12 +77,6 @@ impl Hiding {
 
     /// Whether something in a box may be hidden.
     pub fn touches(&self, bounds: &Aabb, view: &View) -> bool {
-        self.reaches.iter().any(|reach| match reach {
-            Reach::Everywhere => true,
-            Reach::Within(around) => around.meets(bounds),
-            Reach::Along(low, high) => {
-                projected_box(view, bounds).is_none_or(|(near, far)| near.cmple(*high).all() && far.cmpge(*low).all())
-            }
-        })
+        self.reaches.iter().any(|reach| reach.touches(bounds, view))
     }
 }

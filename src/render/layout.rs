@@ -154,6 +154,16 @@ pub struct LensVolume {
     pub pad_0: [u32; 3],
 }
 
+/// `pass/lines.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct LineStage {
+    pub width: f32,
+    pub step: u32,
+    pub flat_edges: u32,
+    pub reserved: u32,
+}
+
 /// `pass/filter.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -190,6 +200,9 @@ pub struct Part {
     pub outlines: [u32; 2],
     pub masks: [u32; 2],
     pub hides: [u32; 2],
+    pub lines: [u32; 2],
+    /// An element of an array in a uniform buffer takes a multiple of 16 bytes.
+    pub pad_0: [u32; 2],
 }
 
 /// `pass/furniture.wgsl`, per instance.
@@ -310,7 +323,7 @@ mod tests {
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin })),
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, size, columns, pad_0 })),
             (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
-            (&uber, host!(Part { material, light, styles, outlines, masks, hides })),
+            (&uber, host!(Part { material, light, styles, outlines, masks, hides, lines, pad_0 })),
             (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),
             (
                 &Module::Furniture,

@@ -15,6 +15,7 @@ pub mod furniture;
 pub mod hiding;
 pub mod layout;
 pub mod light;
+mod lines;
 pub mod operations;
 pub mod palette;
 pub mod picture;

@@ -112,6 +112,7 @@ impl Operations {
             lenses: !lenses.is_empty(),
             outlines: lenses.iter().any(|l| l.body == LensBody::Outline),
             blends: uses().any(|e| blend_of(e).is_some()),
+            lines: uses().any(|e| shader::effect::find(&e.effect).is_some_and(|h| h.lines)),
             ..Uber::default()
         }
     }
@@ -121,6 +122,16 @@ impl Operations {
         Uber { haze, masks, ..self.uber.clone() }.shading(shader::handlers())
     }
 
+    /// The uber back end's module of lines, where some may be drawn.
+    pub fn uber_lining(&self) -> Option<Uber> {
+        self.uber.lining(shader::handlers())
+    }
+
+    /// Whether the context or an enabled lens draws lines.
+    pub fn draws_lines(&self) -> bool {
+        self.list.iter().any(|o| shader::handlers()[o.effect as usize].lines)
+    }
+
     /// The uber back end's part of the modules of geometry and shadow, where something may be hidden.
     pub fn uber_hiding(&self) -> Option<Uber> {
         self.uber.hiding(shader::handlers())
@@ -128,7 +139,8 @@ impl Operations {
 
     /// What shading has to do outside all lenses.
     pub fn context_plan(&self, haze: bool) -> Plan {
-        Plan { steps: self.steps(|_| None), haze, ..Plan::default() }
+        let steps = self.steps(|_| None);
+        Plan { lines: draws_lines(&steps), steps, haze, ..Plan::default() }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending. With `masks`
@@ -148,7 +160,7 @@ impl Operations {
             numbers.push(lens);
         }
         let steps = self.steps(|lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32));
-        Plan { lenses, steps, haze, masks }
+        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks }
     }
 
     /// The list as steps; `place` finds a lens in the plan.
@@ -257,11 +269,11 @@ fn blend_of(effect: &EffectUse) -> Option<Blend> {
 }
 
 /// The invoker table of the uber back end (H2), as `shader::uber` declares it, full: the context's plan and the lenses', and
-/// what is hidden.
+/// what is hidden, and what lines go through.
 /// `Err` says how many invokers there are where they are too many.
 pub fn invoker_table(
     plans: [&Plan; 2],
-    hiding: Option<&Plan>,
+    [hiding, lining]: [Option<&Plan>; 2],
     handlers: &[EffectDefinition],
 ) -> Result<Vec<u32>, usize> {
     let mut invokers: Vec<layout::Invoker> = Vec::new();
@@ -270,6 +282,14 @@ pub fn invoker_table(
         invokers.extend(plan.steps.iter().map(|step| invoker(plan, step, &handlers[step.effect as usize])));
     }
     let hides = [first, invokers.len() as u32];
+    let first = invokers.len() as u32;
+    if let Some(plan) = lining {
+        invokers.extend(plan.steps.iter().map(|step| {
+            let handler = &handlers[step.effect as usize];
+            layout::Invoker { number: to_lines(handler), ..invoker(plan, step, handler) }
+        }));
+    }
+    let lines = [first, invokers.len() as u32];
     let parts = plans.map(|plan| {
         let mut of = |kinds: &[EffectKind]| {
             let first = invokers.len() as u32;
@@ -297,7 +317,7 @@ pub fn invoker_table(
         };
         let outlines = of_lenses(&|lens| lens.outline.is_some());
         let masks = of_lenses(&|_| plan.masks);
-        layout::Part { material, light, styles, outlines, masks, hides }
+        layout::Part { material, light, styles, outlines, masks, hides, lines, pad_0: [0; 2] }
     });
     if invokers.len() > MOST_INVOKERS as usize {
         return Err(invokers.len());
@@ -306,6 +326,22 @@ pub fn invoker_table(
     let mut words: Vec<u32> = bytemuck::cast_slice(&parts).to_vec();
     words.extend_from_slice(bytemuck::cast_slice(&invokers));
     Ok(words)
+}
+
+/// Whether some step draws lines.
+fn draws_lines(steps: &[Step]) -> bool {
+    steps.iter().any(|step| shader::handlers()[step.effect as usize].lines)
+}
+
+/// What a handler is to lines, as `shader::lining` numbers it.
+fn to_lines(handler: &EffectDefinition) -> u32 {
+    match (handler.kind, handler.lines) {
+        (EffectKind::Scene, false) => 1,
+        (EffectKind::Scene, true) => 2,
+        (EffectKind::Hide, false) => 3,
+        (EffectKind::Hide, true) => 4,
+        _ => 0,
+    }
 }
 
 fn invoker(plan: &Plan, step: &Step, handler: &EffectDefinition) -> layout::Invoker {
@@ -322,6 +358,17 @@ fn invoker(plan: &Plan, step: &Step, handler: &EffectDefinition) -> layout::Invo
         blend: step.blend.map_or(0, Blend::number),
         weight: step.weight(handler).unwrap_or(0),
         number: u32::from(handler.kind == EffectKind::Scene),
+    }
+}
+
+impl From<ClassTest> for Class {
+    fn from(test: ClassTest) -> Self {
+        match test {
+            ClassTest::Inside => Self::Inside,
+            ClassTest::Front => Self::Front,
+            ClassTest::Behind => Self::Behind,
+            ClassTest::Rest => Self::Rest,
+        }
     }
 }
 

@@ -201,6 +201,7 @@ impl Studio {
         let mut picture = Picture::empty(request, scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
+        self.find_edges(&prepared)?;
         for part in parts(request.size) {
             self.render_part(scene, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
         }
@@ -243,12 +244,22 @@ impl Studio {
         let prepared = self.prepare(scene)?;
         let view = self.view(scene, &prepared, request.size)?;
         let whole = PictureTile::whole(request.size);
+        self.find_edges(&prepared)?;
         let mut input = FrameInput { furniture, ..input(scene, request, &prepared, view, whole) };
         for sample in 0..input.samples {
             input.sample = sample;
             self.renderer.draw(&input, None)?;
         }
         Ok(())
+    }
+
+    /// Puts the city's edges on the card the first time that something draws lines.
+    fn find_edges(&mut self, prepared: &Prepared) -> Result<(), RenderError> {
+        if self.renderer.has_edges() || !prepared.operations.draws_lines() {
+            return Ok(());
+        }
+        let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_ref());
+        Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground })?)
     }
 
     /// The WGSL that shading runs where the scene's lenses are in the picture, or everywhere where none is (H4).

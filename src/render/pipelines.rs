@@ -6,7 +6,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
     gpu::Gpu,
-    render::layout,
+    render::{edges::Edge, layout},
     shader::{Module, Program},
 };
 
@@ -28,6 +28,8 @@ pub const FILTERED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub const SPRITES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// The picture: sRGB bytes.
 pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Lines before they are laid over the picture: linear, premultiplied.
+pub const LINES: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Furniture before it is laid over a transparent picture: linear, premultiplied.
 pub const FURNITURE_LAYER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
@@ -69,6 +71,13 @@ pub enum Key {
         smooth: bool,
         /// What is behind the city, as `pass/shade.wgsl` numbers it.
         background: u32,
+    },
+    /// Edges as lines, and whether normals are in the target.
+    Lines {
+        /// What lines go through.
+        program: Program,
+        /// Normals are in the target.
+        smooth: bool,
     },
     /// One direction of a neighbourhood filter, by its handler.
     Filter(u32),
@@ -129,6 +138,10 @@ pub struct Layouts {
     pub shapes_city: wgpu::BindGroupLayout,
     /// And group 2: object values, parameters, invokers, the main view, shapes.
     pub shapes: wgpu::BindGroupLayout,
+    /// Shade where there are lines, group 3: their layer.
+    pub lines: wgpu::BindGroupLayout,
+    /// Lines, group 3: the stage, at a dynamic offset.
+    pub line_stage: wgpu::BindGroupLayout,
     /// Filter, group 0: the stage at a dynamic offset, the image, parameters.
     pub filter: wgpu::BindGroupLayout,
     /// Resolve, group 0.
@@ -284,6 +297,8 @@ impl Layouts {
                     (8, S::FRAGMENT, storage()),
                 ],
             ),
+            lines: layout(gpu, "lines", &[(0, S::FRAGMENT, float)]),
+            line_stage: layout(gpu, "line stage", &[(0, all, dynamic)]),
             filter: layout(
                 gpu,
                 "filter",
@@ -317,7 +332,13 @@ impl Layouts {
             Key::Shadow(Some(_)) => vec![Some(&self.view), Some(&self.shapes_city), Some(&self.shapes)],
             Key::Shadow(None) | Key::Bare => vec![Some(&self.view), Some(&self.city)],
             Key::Sprite(_) => vec![Some(&self.view), Some(&self.planes), Some(&self.stage)],
-            Key::Shade { .. } => vec![Some(&self.view), Some(&self.shade), Some(&self.lenses)],
+            Key::Shade { program, .. } => {
+                let lines = program.has().lines.then_some(&self.lines);
+                vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), lines]
+            }
+            Key::Lines { .. } => {
+                vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), Some(&self.line_stage)]
+            }
             Key::Filter(_) => vec![Some(&self.filter)],
             Key::Resolve => vec![Some(&self.resolve)],
             Key::Furniture { .. } => vec![Some(&self.furniture)],
@@ -343,7 +364,7 @@ impl Layouts {
                 compilation_options: options.clone(),
                 buffers: &buffers,
             },
-            primitive: wgpu::PrimitiveState::default(),
+            primitive: wgpu::PrimitiveState { topology: key.topology(), ..Default::default() },
             depth_stencil: key.depth_test(),
             multisample: wgpu::MultisampleState::default(),
             fragment: fragment_entry.map(|entry| wgpu::FragmentState {
@@ -453,6 +474,7 @@ impl Key {
             Self::Shadow(cut) => Module::Shadow(cut.clone()),
             Self::Sprite(_) => Module::Sprite,
             Self::Shade { program, .. } => Module::Shade(program.clone()),
+            Self::Lines { program, .. } => Module::Lines(program.clone()),
             Self::Filter(effect) => Module::Filter(*effect),
             Self::Resolve => Module::Resolve,
             Self::Furniture { .. } => Module::Furniture,
@@ -493,7 +515,7 @@ impl Key {
                 ];
                 format!("{}{}", self.module().name(), flags(&list))
             }
-            Self::Filter(_) => self.module().name(),
+            Self::Filter(_) | Self::Lines { .. } => self.module().name(),
             Self::Resolve => "resolve".to_owned(),
             Self::Furniture { layered: false } => "furniture".to_owned(),
             Self::Furniture { layered: true } => "furniture in a layer".to_owned(),
@@ -520,6 +542,7 @@ impl Key {
                 ("SMOOTH", flag(*smooth)),
                 ("BACKGROUND", f64::from(*background)),
             ],
+            Self::Lines { smooth, .. } => vec![("SMOOTH", flag(*smooth))],
             Self::Sprite(kind) => vec![("KIND", f64::from(*kind))],
             _ => Vec::new(),
         }
@@ -554,12 +577,20 @@ impl Key {
                 vec![vertex, per_vertex(size_of::<layout::Plane>() as u64, PLANE)]
             }
             Self::Geometry { .. } | Self::Shadow(_) | Self::Bare => vec![vertex],
+            Self::Lines { .. } => vec![Some(Edge::LAYOUT)],
             Self::Furniture { .. } => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<layout::FurnitureItem>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
                 attributes: FURNITURE,
             })],
             _ => Vec::new(),
+        }
+    }
+
+    fn topology(&self) -> wgpu::PrimitiveTopology {
+        match self {
+            Self::Lines { .. } => wgpu::PrimitiveTopology::TriangleStrip,
+            _ => wgpu::PrimitiveTopology::TriangleList,
         }
     }
 
@@ -588,6 +619,11 @@ impl Key {
             Self::Sprite(_) => vec![Some(SPRITES.into())],
             Self::Filter(_) => vec![Some(FILTERED.into()); 4],
             Self::Shade { target: ShadeTarget::Unfiltered, .. } => vec![Some(FILTERED.into())],
+            Self::Lines { .. } => vec![Some(wgpu::ColorTargetState {
+                format: LINES,
+                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
             Self::Furniture { layered } => vec![Some(wgpu::ColorTargetState {
                 format: if *layered { FURNITURE_LAYER } else { PICTURE },
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
@@ -602,7 +638,7 @@ impl Key {
         use wgpu::CompareFunction as C;
         let compare = match self {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
-            Self::Geometry { .. } | Self::Shadow(_) | Self::Bare => C::Greater,
+            Self::Geometry { .. } | Self::Shadow(_) | Self::Bare | Self::Lines { .. } => C::Greater,
             // The triangle lies at depth 0, where nothing is stored.
             Self::Shade { surface: true, .. } => C::Less,
             Self::Shade { surface: false, .. } => C::Equal,
@@ -612,7 +648,7 @@ impl Key {
         };
         Some(wgpu::DepthStencilState {
             format: DEPTH,
-            depth_write_enabled: Some(!matches!(self, Self::Shade { .. })),
+            depth_write_enabled: Some(!matches!(self, Self::Shade { .. } | Self::Lines { .. })),
             depth_compare: Some(compare),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),

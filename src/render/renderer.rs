@@ -8,6 +8,7 @@ use crate::{
     render::{
         city::{CityBuffers, SectionKind, Shown},
         curtain::Curtain,
+        edges::EdgeBuffers,
         furniture::FurnitureOnGpu,
         layout,
         pipelines::{Layouts, Pipelines},
@@ -50,6 +51,8 @@ pub struct Renderer {
 pub(super) struct CityOnGpu {
     pub buffers: CityBuffers,
     pub group: wgpu::BindGroup,
+    /// Its edges, once something drew lines.
+    pub edges: Option<EdgeBuffers>,
     /// One per section: its texture's group.
     pub images: Vec<Option<wgpu::BindGroup>>,
 }
@@ -72,6 +75,7 @@ pub(super) struct Buffers {
     pub shapes: Synced,
     pub shape_planes: Synced,
     pub shape_invokers: Synced,
+    pub line_stages: Synced,
     pub resolve: Synced,
 }
 
@@ -96,6 +100,9 @@ pub(super) struct Groups {
     /// For the sun, where something is hidden.
     pub shapes_city: wgpu::BindGroup,
     pub shapes: wgpu::BindGroup,
+    /// The layer of lines, and where there are some the stage of one draw.
+    pub lines: wgpu::BindGroup,
+    pub line_stage: Option<wgpu::BindGroup>,
     /// Across, and down; where the frame has filters.
     pub filters: Option<[wgpu::BindGroup; 2]>,
     pub resolve: wgpu::BindGroup,
@@ -121,6 +128,7 @@ impl Renderer {
             eye: uniform("main view for the sun")?,
             shapes: storage("lens shapes")?,
             shape_planes: storage("planes of lens shapes")?,
+            line_stages: uniform("line stages")?,
             shape_invokers: uniform("invoker table for the sun")?,
             resolve: uniform("resolve")?,
         };
@@ -164,7 +172,7 @@ impl Renderer {
             _ => None,
         });
         let images = images.collect();
-        self.city = Some(CityOnGpu { group, images, buffers });
+        self.city = Some(CityOnGpu { group, images, buffers, edges: None });
         self.groups = None;
         self.shadow_of = None;
         self.generation += 1;
@@ -252,6 +260,15 @@ impl Renderer {
                     (6, all_of(&targets.filtered)),
                 ],
             ),
+            lines: group(gpu, "lines", &p.lines, &[(0, all_of(&targets.lines))]),
+            line_stage: targets.needs.lines.then(|| {
+                let stage = wgpu::BufferBinding {
+                    buffer: b.line_stages.buffer(),
+                    offset: 0,
+                    size: wgpu::BufferSize::new(size_of::<layout::LineStage>() as u64),
+                };
+                group(gpu, "line stage", &p.line_stage, &[(0, wgpu::BindingResource::Buffer(stage))])
+            }),
             shapes_city: group(
                 gpu,
                 "surfaces and planes",

@@ -2,7 +2,7 @@
 
 use crate::{
     gpu::Gpu,
-    render::pipelines::{CODES, COLORS, DEPTH, FILTERED, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES},
+    render::pipelines::{CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES},
 };
 
 /// What a frame needs beside codes, depth and the picture.
@@ -24,6 +24,8 @@ pub struct Needs {
     pub sprites: [u32; 3],
     /// How many images neighbourhood filters make, 0 for none.
     pub filters: u32,
+    /// A layer of lines.
+    pub lines: bool,
     /// Side of the shadow map, 0 for none.
     pub shadow: u32,
 }
@@ -64,6 +66,8 @@ pub struct Targets {
     pub unfiltered: [Target; 2],
     /// What filters made, four low images each, as `pass/filter.wgsl` explains.
     pub filtered: Target,
+    /// Lines over what is shaded, linear colours times opacity (1×1 where not needed).
+    pub lines: Target,
     /// Depth from the sun (1×1 where not needed).
     pub shadow: Target,
 }
@@ -107,6 +111,7 @@ impl Targets {
             sprites: make_any("depth sprites", needs.sprites, SPRITES, drawn, true),
             unfiltered: [("unfiltered", [w, h, 1]), ("half filtered", [w.div_ceil(4), h, 4])].map(filtering),
             filtered: filtering(("filtered", [4 * w.div_ceil(4), h.div_ceil(4), 4 * needs.filters])),
+            lines: make("lines", full(needs.lines), LINES, drawn),
             shadow: make("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn),
         }
     }

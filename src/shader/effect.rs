@@ -19,6 +19,8 @@ const FILES: &[(&str, &str)] = &[
     built_in!("cel"),
     built_in!("gooch"),
     built_in!("clay"),
+    built_in!("hidden-line"),
+    built_in!("wireframe"),
     built_in!("greyscale"),
     built_in!("sepia"),
     built_in!("invert"),
@@ -95,6 +97,11 @@ impl EffectKind {
     /// Whether its handlers take turns in lens order on the colour.
     pub fn is_style(self) -> bool {
         matches!(self, Self::Scene | Self::Post | Self::Filter)
+    }
+
+    /// Whether its handlers have a say in how a line looks: materials and light do not, nor does what is beside it.
+    pub fn touches_lines(self) -> bool {
+        matches!(self, Self::Hide | Self::Scene | Self::Post)
     }
 
     /// Whether its handlers run before the surface has a colour.
@@ -255,6 +262,8 @@ pub struct EffectDefinition {
     pub parameters: Vec<ParameterDefinition>,
     /// What its WGSL reads of each object, which the host makes of attributes.
     pub objects: Option<PerObject>,
+    /// It draws edges where it acts: with its parameters `line_color` and `line_width`.
+    pub lines: bool,
     /// Somebody else wrote it: what it returns is contained.
     pub is_users: bool,
     /// It looks at what it takes first, so it cannot stand in for what is below it.

@@ -43,6 +43,8 @@ const MOST_ROUNDS: u32 = 1024;
 const MOST_STEPS: u64 = 1_000_000;
 /// Pixels that a filter reaches to either side.
 pub const MOST_REACH: u32 = 64;
+/// Pixels that a line may be wide.
+pub const MOST_LINE_WIDTH: f64 = 64.0;
 /// Keys of a use of an effect that are no parameters.
 pub const RESERVED: &[&str] = &["effect", "class", "blend", "weight"];
 /// What every effect may use beside its own names.
@@ -72,6 +74,8 @@ struct Header {
     spec: String,
     doc: String,
     objects: Option<PerObject>,
+    #[serde(default)]
+    lines: bool,
     #[serde(default, rename = "parameter")]
     parameters: Vec<ParameterHeader>,
 }
@@ -164,6 +168,7 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
         doc: header.doc,
         parameters: Vec::new(),
         objects: header.objects,
+        lines: header.lines,
         is_users,
         reads_below: false,
         source: String::new(),
@@ -184,6 +189,19 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
     if effect.kind == EffectKind::Filter && !effect.parameters.first().is_some_and(reaches) {
         let message =
             format!("expected a first parameter \"radius\", a number of at most {MOST_REACH}: how far it reaches");
+        return Err(file.error(0, message));
+    }
+    let has = |name: &str, fits: fn(&ParameterKind) -> bool| {
+        effect.parameters.iter().any(|p| p.name == name && fits(&p.kind))
+    };
+    let has_lines = has("line_color", |kind| *kind == ParameterKind::Color)
+        && has("line_width", |kind| matches!(kind, ParameterKind::Number { max, .. } if *max <= MOST_LINE_WIDTH))
+        && matches!(effect.kind, EffectKind::Hide | EffectKind::Scene);
+    if effect.lines && !has_lines {
+        let message = format!(
+            "lines = true is for kind = \"hide\" or \"scene\" with parameters \"line_color\", a color, and \"line_width\", a \
+             number of at most {MOST_LINE_WIDTH}"
+        );
         return Err(file.error(0, message));
     }
     let tokens = wgsl::tokens(text);

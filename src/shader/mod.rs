@@ -6,6 +6,7 @@
 pub mod effect;
 pub mod effect_file;
 mod hiding;
+mod lining;
 mod plan;
 mod specialised;
 mod uber;
@@ -32,6 +33,10 @@ files! {
     MATERIAL = "lib/material.wgsl";
     CLASS = "lib/class.wgsl";
     LENS = "lib/lens.wgsl";
+    OBJECTS = "lib/objects.wgsl";
+    POINT = "lib/point.wgsl";
+    LINE = "lib/line.wgsl";
+    EDGE = "lib/edge.wgsl";
     FRAGMENT = "lib/fragment.wgsl";
     CUT = "lib/cut.wgsl";
     OUTLINE = "lib/outline.wgsl";
@@ -41,6 +46,7 @@ files! {
     SHADOW_CUT = "pass/shadow-cut.wgsl";
     SPRITE = "pass/sprite.wgsl";
     SHADE = "pass/shade.wgsl";
+    LINES = "pass/lines.wgsl";
     FILTER = "pass/filter.wgsl";
     RESOLVE = "pass/resolve.wgsl";
     FURNITURE = "pass/furniture.wgsl";
@@ -59,6 +65,8 @@ pub enum Module {
     Sprite,
     /// Deferred shading, and what the lenses make of it.
     Shade(Program),
+    /// Edges as lines, and what lenses make of them.
+    Lines(Program),
     /// One direction of a neighbourhood filter: the number of its handler.
     Filter(u32),
     /// The mean of samples.
@@ -85,6 +93,10 @@ impl Module {
                 let lenses = if program.has().lenses { " lenses" } else { "" };
                 format!("shade{uber}{names}{lenses}")
             }
+            Self::Lines(program) => {
+                let uber = if matches!(program, Program::Uber(_)) { " uber" } else { "" };
+                format!("lines{uber} ({})", names_of(program))
+            }
             Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
             Self::Resolve => "resolve".to_owned(),
             Self::Furniture => "furniture".to_owned(),
@@ -108,13 +120,14 @@ impl Module {
         let files: &[(&str, &str)] = match self {
             Self::Geometry(None) => &[VIEW, SURFACE, GEOMETRY],
             Self::Geometry(Some(program)) => match program.has().lenses {
-                true => &[VIEW, SURFACE, CLASS, LENS, FRAGMENT, CUT, GEOMETRY],
-                false => &[VIEW, SURFACE, FRAGMENT, CUT, GEOMETRY],
+                true => &[VIEW, SURFACE, CLASS, LENS, OBJECTS, FRAGMENT, CUT, GEOMETRY],
+                false => &[VIEW, SURFACE, OBJECTS, FRAGMENT, CUT, GEOMETRY],
             },
             Self::Shadow(None) => &[VIEW, SHADOW],
-            Self::Shadow(Some(_)) => &[VIEW, SURFACE, CLASS, SHAPE, FRAGMENT, SHADOW_CUT],
+            Self::Shadow(Some(_)) => &[VIEW, SURFACE, CLASS, SHAPE, OBJECTS, FRAGMENT, SHADOW_CUT],
             Self::Sprite => &[VIEW, SHAPE, SPRITE],
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
+            Self::Lines(program) => &Self::files_of_lines(program),
             Self::Filter(_) => &[FILTER],
             Self::Resolve => &[RESOLVE],
             Self::Furniture => &[FURNITURE],
@@ -130,6 +143,7 @@ impl Module {
                 text.replace("//@handlers\n", &specialised::source(plan, handlers, lenses))
             }
             Self::Shade(Program::Uber(uber)) => text.replace("//@handlers\n", &uber::source(uber, handlers)),
+            Self::Lines(program) => text.replace("//@handlers\n", &lining::source(program, handlers, lenses)),
             Self::Geometry(None) => text.replace("//@handlers\n", NOTHING_CUT),
             Self::Geometry(Some(program)) => {
                 text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Classes::Sprites))
@@ -142,12 +156,26 @@ impl Module {
         }
     }
 
+    /// The libraries that lines call.
+    fn files_of_lines(program: &Program) -> Vec<(&'static str, &'static str)> {
+        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT, OBJECTS, POINT, FRAGMENT, EDGE];
+        let parts = program.has();
+        if parts.blends {
+            files.push(BLEND);
+        }
+        if parts.lenses {
+            files.extend([CLASS, LENS]);
+        }
+        files.push(LINES);
+        files
+    }
+
     /// The libraries that shading calls, and no other.
     fn files_of_shade(program: &Program, handlers: &[EffectDefinition]) -> Vec<(&'static str, &'static str)> {
         let parts = program.has();
         let has = |kind| program.effects().iter().any(|&e| handlers[e as usize].kind == kind);
         let (materials, filters) = (has(EffectKind::Material), has(EffectKind::Filter));
-        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT];
+        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT, OBJECTS, POINT];
         let optional = [
             (parts.blends || materials, BLEND),
             (materials, MATERIAL),
@@ -155,6 +183,7 @@ impl Module {
             (parts.lenses, LENS),
             (parts.outlines, OUTLINE),
             (filters, FILTERED),
+            (parts.lines, LINE),
         ];
         files.extend(optional.iter().filter(|(is_used, _)| *is_used).map(|(_, file)| *file));
         files.push(SHADE);
@@ -209,6 +238,7 @@ mod tests {
         let outline = seed.is_multiple_of(2).then_some(3);
         let plan = Plan {
             lenses: vec![lens(0, 1, None), lens(40, 2, outline)],
+            lines: effects.iter().any(|&e| handlers()[e as usize].lines),
             steps,
             haze: seed.is_multiple_of(5),
             masks: seed.is_multiple_of(7),
@@ -220,11 +250,15 @@ mod tests {
             blends: plan.has_blends(),
             haze: plan.haze,
             masks: plan.masks,
+            lines: plan.lines,
         };
         let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();
         let hiding = hiding.chain(uber.hiding(handlers()).map(Program::Uber));
+        let lining = plan.lining(handlers()).map(Program::Specialised).into_iter();
+        let lining = lining.chain(uber.lining(handlers()).map(Program::Uber));
         let mut modules: Vec<Module> =
             hiding.flat_map(|p| [Module::Geometry(Some(p.clone())), Module::Shadow(Some(p))]).collect();
+        modules.extend(lining.map(Module::Lines));
         modules.push(Module::Shade(Program::Specialised(plan.shading(handlers()))));
         modules.push(Module::Shade(Program::Uber(uber.shading(handlers()))));
         modules

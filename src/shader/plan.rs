@@ -19,6 +19,8 @@ pub struct Plan {
     pub haze: bool,
     /// Whether every pixel's classes are written down, for AOVs and statistics.
     pub masks: bool,
+    /// Whether some effect draws lines.
+    pub lines: bool,
 }
 
 /// A lens of a plan.
@@ -154,6 +156,8 @@ pub struct Uber {
     pub haze: bool,
     /// Whether every pixel's classes are written down.
     pub masks: bool,
+    /// Whether some effects draw lines.
+    pub lines: bool,
 }
 
 impl Uber {
@@ -161,6 +165,12 @@ impl Uber {
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| kind == EffectKind::Hide);
         (!effects.is_empty()).then_some(Self { effects, lenses: self.lenses, ..Self::default() })
+    }
+
+    /// What of it lines go through; `None` where nobody may draw any.
+    pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let effects = self.of(handlers, EffectKind::touches_lines);
+        self.lines.then_some(Self { effects, lenses: self.lenses, blends: self.blends, lines: true, ..Self::default() })
     }
 
     /// What of it says how things look.
@@ -177,10 +187,15 @@ impl Program {
     /// Whether it has lenses, and whether it has outlines.
     pub fn has(&self) -> Parts {
         match self {
-            Self::Specialised(plan) => {
-                Parts { lenses: !plan.lenses.is_empty(), outlines: plan.has_outlines(), blends: plan.has_blends() }
+            Self::Specialised(plan) => Parts {
+                lenses: !plan.lenses.is_empty(),
+                outlines: plan.has_outlines(),
+                blends: plan.has_blends(),
+                lines: plan.lines,
+            },
+            Self::Uber(uber) => {
+                Parts { lenses: uber.lenses, outlines: uber.outlines, blends: uber.blends, lines: uber.lines }
             }
-            Self::Uber(uber) => Parts { lenses: uber.lenses, outlines: uber.outlines, blends: uber.blends },
         }
     }
 
@@ -202,6 +217,8 @@ pub struct Parts {
     pub outlines: bool,
     /// Blend modes.
     pub blends: bool,
+    /// Lines over what was shaded.
+    pub lines: bool,
 }
 
 impl Plan {
@@ -254,10 +271,20 @@ impl Plan {
         if steps.is_empty() {
             return None;
         }
-        // Their volumes keep their places.
+        let lenses = self.plain_lenses();
+        Some(Self { lenses, steps, ..Self::default() })
+    }
+
+    /// What of it lines go through; `None` where nobody draws any.
+    pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let steps = self.steps.iter().filter(|s| handlers[s.effect as usize].kind.touches_lines()).cloned().collect();
+        self.lines.then(|| Self { lenses: self.plain_lenses(), steps, lines: true, ..Self::default() })
+    }
+
+    /// Its lenses for passes that ask for nothing but their volumes, which keep their places.
+    fn plain_lenses(&self) -> Vec<PlanLens> {
         let lens = |(i, lens): (usize, &PlanLens)| PlanLens { number: i as u32, outline: None, ..*lens };
-        let lenses = self.lenses.iter().enumerate().map(lens).collect();
-        Some(Self { lenses, steps, haze: false, masks: false })
+        self.lenses.iter().enumerate().map(lens).collect()
     }
 
     /// What of it says how things look.

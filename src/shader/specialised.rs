@@ -25,15 +25,15 @@ pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str])
     text
 }
 
-struct Writer<'a> {
-    plan: &'a Plan,
-    handlers: &'a [EffectDefinition],
-    names: &'a [&'a str],
+pub(super) struct Writer<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) handlers: &'a [EffectDefinition],
+    pub(super) names: &'a [&'a str],
 }
 
 impl Writer<'_> {
     /// The uniforms that are read.
-    fn bindings(&self) -> String {
+    pub(super) fn bindings(&self) -> String {
         let mut text = String::new();
         let slots = self.plan.slots(self.handlers);
         if slots > 0 {
@@ -72,7 +72,7 @@ impl Writer<'_> {
     }
 
     /// Which classes of which lens a pixel is in.
-    fn classes(&self) -> String {
+    pub(super) fn classes(&self) -> String {
         let mut text = "struct Classes {\n".to_owned();
         let lenses = &self.plan.lenses;
         if lenses.is_empty() {
@@ -120,7 +120,7 @@ impl Writer<'_> {
     }
 
     /// `if condition { subject = call; }`.
-    fn statement(&self, step: &Step, handler: &EffectDefinition) -> String {
+    pub(super) fn statement(&self, step: &Step, handler: &EffectDefinition) -> String {
         let subject = match handler.kind {
             EffectKind::Material => "material",
             EffectKind::Light => "(*point).arriving",
@@ -210,11 +210,11 @@ impl Writer<'_> {
         text.push_str("fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n");
         let lines: Vec<(usize, u32)> =
             self.plan.lenses.iter().enumerate().filter_map(|(i, l)| l.outline.map(|line| (i, line))).collect();
-        if lines.is_empty() {
+        if lines.is_empty() && !self.plan.lines {
             text.push_str("    return start;\n}\n\n");
             return text;
         }
-        text.push_str("    var paint = start;\n");
+        text.push_str(if self.plan.lines { LINED } else { "    var paint = start;\n" });
         for (i, line) in lines {
             let _ = writeln!(
                 text,
@@ -264,6 +264,9 @@ pub(super) fn kernel(filter: &EffectDefinition) -> String {
         filter.wgsl_name()
     )
 }
+
+/// Lines of the city are below those of the lenses.
+pub(super) const LINED: &str = "    var paint = with_lines(start, pixel);\n";
 
 /// Where masks are written.
 pub(super) const MASKS: &str = "// Layers, per 32 lenses: inside, in front, behind.\n\

@@ -6,7 +6,7 @@ use std::{fmt::Write as _, sync::LazyLock};
 use crate::shader::{
     effect::{EffectDefinition, EffectKind, Mode},
     plan::Uber,
-    specialised::{MASKS, ONLY_SHOWN},
+    specialised::{LINED, MASKS, ONLY_SHOWN},
 };
 
 /// Entries of the invoker table.
@@ -31,13 +31,15 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
     }
     text.push_str(&TABLE_SOURCE);
-    text.push_str(if uber.lenses { CLASSES } else { NO_CLASSES });
+    text.push_str(classes(uber));
     text.push_str(&invoke(uber, "material", &[EffectKind::Material], handlers));
     text.push_str(&invoke(uber, "light", &[EffectKind::Light], handlers));
     text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post, EffectKind::Filter], handlers));
     text.push_str(&shade(uber, handlers));
     text.push_str(&styled(uber, handlers));
-    text.push_str(if uber.outlines { OUTLINES } else { NO_OUTLINES });
+    let outlines = if uber.outlines { OUTLINES } else { NO_OUTLINES };
+    let plain = "    var paint = start;\n";
+    text.push_str(&if uber.lines { outlines.replace(plain, LINED) } else { outlines.to_owned() });
     text.push_str("fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n");
     if uber.masks && uber.lenses {
         text.push_str(ONLY_SHOWN);
@@ -45,6 +47,11 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     }
     text.push_str("}\n");
     text
+}
+
+/// Which classes a place has, and which invokers run there.
+pub(super) fn classes(uber: &Uber) -> &'static str {
+    if uber.lenses { CLASSES } else { NO_CLASSES }
 }
 
 /// The handlers of the module, with their numbers.
@@ -65,7 +72,7 @@ fn has(uber: &Uber, kind: EffectKind, handlers: &[EffectDefinition]) -> bool {
 
 /// One handler of a prototype by its number, laid over what is below as its invoker says. Scene styles and post styles
 /// are one list.
-fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[EffectDefinition]) -> String {
+pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[EffectDefinition]) -> String {
     if !kinds.iter().any(|&kind| has(uber, kind, handlers)) {
         return String::new();
     }
@@ -175,6 +182,7 @@ struct Part {
     outlines: vec2u,
     masks: vec2u,
     hides: vec2u,
+    lines: vec2u,
 }
 
 struct InvokerTable {
@@ -271,7 +279,8 @@ const STYLED: &str = "fn styled(start: vec3f, point: Point, classes: Classes) ->
 ";
 
 const NO_OUTLINES: &str = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
-    return start;
+    var paint = start;
+    return paint;
 }
 
 ";

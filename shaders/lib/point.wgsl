@@ -1,0 +1,106 @@
+// The shown surface at a pixel, and what lies around it: what shading and its handlers look at.
+
+override SMOOTH: bool = false;      // whether normals are in the target, not with the surfaces
+override TEXTURED: bool = false;    // whether base colours are in a target of their own
+override CLAY: bool = false;        // one colour for everything
+
+// The shown surface at a pixel; `surface` is NO_SURFACE where there is none (D infinite).
+struct Point {
+    pixel: vec2i,
+    relative: vec3f,            // to the eye, world axes, metres
+    distance: f32,              // D, metres
+    depth: f32,                 // D as the depth target stores it; 0 = nothing
+    normal: vec3f,              // unit, towards the eye
+    surface: u32,
+    object: u32,                // or NO_OBJECT
+    natural: vec3f,             // its own colour, linear; where it has a texture, that of the material
+    base: vec3f,                // its colour before light, linear: clay, texture or natural
+    lit: bool,                  // whether light acts on it
+    sun: f32,                   // share of the sun that arrives, 0..1
+    arriving: vec3f,            // light on a white surface, linear
+    shade: f32,                 // its luminance, 0..1
+    highlight: vec3f,           // light that does not come out of its colour, linear
+}
+
+const NO_SURFACE: u32 = 0xffffffffu;
+const FAR_AWAY: f32 = 1e30;
+
+@group(1) @binding(6) var codes: texture_2d<u32>;
+@group(1) @binding(7) var scene_depth: texture_depth_2d;
+@group(1) @binding(8) var colors: texture_2d<f32>;
+
+fn base_color(point: Point, pixel: vec2i) -> vec3f {
+    if CLAY {
+        return vec3f(0.62, 0.585, 0.54);
+    }
+    if TEXTURED {
+        return textureLoad(colors, pixel, 0).rgb;
+    }
+    return point.natural;
+}
+
+fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
+    let code = textureLoad(codes, pixel, 0).xy;
+    var point: Point;
+    point.pixel = pixel;
+    point.depth = depth;
+    point.distance = distance_of_depth(depth);
+    point.relative = (ray.origin + point.distance * ray.direction) * view.view_from_world;
+    point.surface = code.x - 1u;
+    let surface = surface_at(point.surface);
+    point.normal = decode_normal(select(surface.normal, code.y, SMOOTH));
+    if dot(point.normal, ray.direction * view.view_from_world) > 0.0 {
+        point.normal = -point.normal;
+    }
+    point.object = surface.object;
+    point.natural = surface.color;
+    point.lit = CLAY || (surface.flags & SURFACE_UNLIT) == 0u;
+    point.base = base_color(point, pixel);
+    point.sun = sun_share(point.relative, point.normal);
+    point.arriving = irradiance(point.normal, point.sun);
+    point.shade = luminance(point.arriving);
+    return point;
+}
+
+fn nowhere(pixel: vec2i) -> Point {
+    return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), vec3f(0.0),
+                 false, 1.0, vec3f(1.0), 1.0, vec3f(0.0));
+}
+
+// What is shown beside a point, `offset` pixels away; at the picture's edge, what is at the edge.
+struct Beside {
+    depth: f32,                 // as Point's
+    normal: vec3f,              // unit; whichever way it faces
+    object: u32,                // or NO_OBJECT
+    surface: u32,               // or NO_SURFACE
+}
+
+fn beside(point: Point, offset: vec2i) -> Beside {
+    let pixel = clamp(point.pixel + offset, vec2i(0), vec2i(view.size) - 1);
+    let code = textureLoad(codes, pixel, 0).xy;
+    if code.x == 0u {
+        return Beside(0.0, vec3f(0.0, 0.0, 1.0), NO_OBJECT, NO_SURFACE);
+    }
+    let surface = surface_at(code.x - 1u);
+    let normal = decode_normal(select(surface.normal, code.y, SMOOTH));
+    return Beside(textureLoad(scene_depth, pixel, 0), normal, surface.object, code.x - 1u);
+}
+
+// Metres of the picture plane at a point that one pixel spans.
+fn metres_per_pixel(point: Point) -> f32 {
+    let at_one = 2.0 / (view.projection.y * view.size.y);
+    return abs(at_one) * select(point.distance, 1.0, view.orthographic == 1u);
+}
+
+// Where a point is in a grid of `period` metres (to the millimetre, at most 60 m), 0..period: the same wherever the eye is.
+fn within(point: Point, period: f32) -> vec3f {
+    let step = max(i32(round(period * 1000.0)), 1);
+    let whole = vec3f(((view.eye_whole % step) * 1000) % step) * 0.001;
+    let at = (whole + view.eye_fraction + point.relative) / period;
+    return (at - floor(at)) * period;
+}
+
+// What a user's effect returned, as a colour: no negative light, no infinity, nothing that is no number.
+fn contained(color: vec3f) -> vec3f {
+    return select(vec3f(0.0), min(color, vec3f(64.0)), color > vec3f(0.0));
+}

@@ -1,0 +1,62 @@
+// Edges of the city as lines, where a lens draws them (K2).
+//
+// A fragment of a line has classes by its own depth, not by that of the surface behind it (K4), and goes through the styles
+// of the lenses above the one that draws it.
+
+struct LineStage {
+    width: f32,                 // pixels
+    step: u32,                  // place of the effect that draws among all
+    flat_edges: u32,            // 1: also edges between faces that go on flat
+    reserved: u32,
+}
+
+@group(3) @binding(0) var<uniform> stage: LineStage;
+
+struct Line {
+    @builtin(position) clip: vec4f,
+    @location(0) line: vec3f,
+    @location(1) @interpolate(flat, either) ends: vec4f,
+    @location(2) @interpolate(flat, either) face_a: vec4f,
+    @location(3) @interpolate(flat, either) face_b: vec4f,
+    @location(4) @interpolate(flat, either) along: vec4f,
+    @location(5) @interpolate(flat, either) surface: u32,
+}
+
+@vertex
+fn vertex(edge: Edge, @builtin(vertex_index) i: u32) -> Line {
+    let made = edge_vertex(edge, i, stage.width);
+    let is_drawn = edge_class(edge) != EDGE_FLAT || stage.flat_edges == 1u;
+    let clip = select(vec4f(2.0, 2.0, 0.5, 1.0), made.clip, is_drawn);
+    return Line(clip, made.line, made.ends, made.face_a, made.face_b, made.along, edge_surface(edge));
+}
+
+//@handlers
+
+struct Pixel {
+    @location(0) color: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn fragment(in: Line) -> Pixel {
+    let pixel = vec2i(in.clip.xy);
+    let depth = edge_own_depth(in.line, in.ends);
+    let ray = ray_of_pixel(in.clip.xy);
+    let position = ray.origin + distance_of_depth(depth) * ray.direction;
+    let surface = surface_at(in.surface);
+    var point = nowhere(pixel);
+    point.depth = depth;
+    point.distance = -position.z;
+    point.relative = position * view.view_from_world;
+    point.normal = decode_normal(surface.normal);
+    point.surface = in.surface;
+    point.object = surface.object;
+    point.natural = surface.color;
+    point.base = surface.color;
+    let height = f32(view.eye_whole.z) + view.eye_fraction.z + point.relative.z;
+    let fragment = Fragment(pixel, depth, position, height, in.surface, surface.object, part_of(surface), point.normal,
+                            view.orthographic == 1u);
+    let seen = line_at(stage.step, point, fragment, classes_at(pixel, depth, 1u));
+    let opacity = seen.a * edge_coverage(in.line, stage.width);
+    return Pixel(vec4f(seen.rgb * opacity, opacity), edge_depth(in.line, in.ends, in.face_a, in.face_b, in.along));
+}

@@ -1,0 +1,162 @@
+//! How lines look: `line_at` and what it calls, for the pass that draws edges, on both back ends.
+//!
+//! A line belongs to the effect that draws it. Scene styles of lenses above replace it, if a scene style drew it, as they
+//! replace the surface it lies on; lines instead of surfaces stay. Post styles colour it as they colour surfaces; filters
+//! leave it sharp. What is hidden has no lines.
+
+use std::fmt::Write as _;
+
+use crate::shader::{
+    effect::{EffectDefinition, EffectKind},
+    plan::{Program, Scope, Step, Uber},
+    specialised::Writer,
+    uber::{self, MOST_SLOTS, MOST_VOLUMES, TABLE_SOURCE},
+};
+
+/// `line_at` and what it calls. `names` of a plan's lenses become comments.
+pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str]) -> String {
+    let mut text = match program {
+        Program::Specialised(plan) => Writer { plan, handlers, names }.bindings(),
+        Program::Uber(uber) => {
+            let volumes = format!("@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {MOST_VOLUMES}>;\n");
+            let volumes = if uber.lenses { volumes } else { String::new() };
+            format!("@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;\n{volumes}\n")
+        }
+    };
+    for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {
+        let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
+    }
+    match program {
+        Program::Specialised(plan) => {
+            text.push_str("// ==== this scene\n\n");
+            let writer = Writer { plan, handlers, names };
+            text.push_str(&writer.classes());
+            specialised(&mut text, &writer);
+        }
+        Program::Uber(uber) => uber_source(&mut text, uber, handlers),
+    }
+    text
+}
+
+fn parameters(handler: &EffectDefinition, first: &str) -> String {
+    if handler.slots() == 0 { String::new() } else { format!(", {}({first})", handler.own("parameters")) }
+}
+
+fn is_hidden(handler: &EffectDefinition, first: &str) -> String {
+    format!("{}(fragment{})", handler.wgsl_name(), parameters(handler, first))
+}
+
+/// `if a && b {\n body }`; the body alone where there is nothing to ask.
+fn branch(conditions: &[String], body: &str) -> String {
+    match conditions.is_empty() {
+        true => format!("    {body}\n"),
+        false => format!("    if {} {{\n        {body}\n    }}\n", conditions.join(" && ")),
+    }
+}
+
+fn specialised(text: &mut String, writer: &Writer) {
+    text.push_str("fn line_at(step: u32, point: Point, fragment: Fragment, classes: Classes) -> vec4f {\n");
+    text.push_str("    var color = vec3f(0.0);\n    var opacity = 0.0;\n");
+    let mut hidden = String::new();
+    // Scene styles that drew a line so far.
+    let mut drawn: Vec<usize> = Vec::new();
+    let steps = || writer.plan.steps.iter().map(|s| (s, &writer.handlers[s.effect as usize])).enumerate();
+    for (number, (step, handler)) in steps() {
+        let scope: Vec<String> = match step.scope {
+            Scope::Everywhere => Vec::new(),
+            Scope::Lens(lens, class) => vec![format!("{}(classes.lens_{lens})", class.function())],
+        };
+        let first = format!("{}u", step.parameters);
+        if handler.kind == EffectKind::Scene && !drawn.is_empty() {
+            let of: Vec<String> = drawn.iter().map(|d| format!("step == {d}u")).collect();
+            let conditions = [&[format!("({})", of.join(" || "))][..], &scope].concat();
+            text.push_str(&branch(&conditions, "opacity = 0.0;"));
+        }
+        match (handler.kind, handler.lines) {
+            (EffectKind::Post, _) => text.push_str(&writer.statement(step, handler)),
+            (EffectKind::Hide, false) => {
+                hidden.push_str(&branch(&[&scope[..], &[is_hidden(handler, &first)]].concat(), "opacity = 0.0;"));
+            }
+            (_, true) => {
+                let mut conditions = [&[format!("step == {number}u")][..], &scope].concat();
+                if handler.kind == EffectKind::Hide {
+                    conditions.push(is_hidden(handler, &first));
+                } else {
+                    drawn.push(number);
+                }
+                let color = format!("color = {}({first}).line_color;", handler.own("parameters"));
+                let body = format!("{color}\n        opacity = {};", weight(step, handler));
+                text.push_str(&branch(&conditions, &body));
+            }
+            _ => {}
+        }
+    }
+    text.push_str(&hidden);
+    text.push_str("    return vec4f(color, opacity);\n}\n");
+}
+
+fn weight(step: &Step, handler: &EffectDefinition) -> String {
+    step.weight(handler).map_or_else(|| "1.0".to_owned(), |slot| format!("parameters[{slot}].x"))
+}
+
+fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
+    text.push_str(&TABLE_SOURCE);
+    text.push_str(uber::classes(uber));
+    text.push_str(&uber::invoke(uber, "style", &[EffectKind::Post], handlers));
+    let own = |word: &str, type_name: &str, of: &dyn Fn(&EffectDefinition) -> Option<String>| {
+        let mut text = format!("fn {word} {{\n    switch by.handler {{\n");
+        for &number in &uber.effects {
+            if let Some(value) = of(&handlers[number as usize]) {
+                let _ = writeln!(text, "        case {number}u: {{ return {value}; }}");
+            }
+        }
+        let _ = write!(text, "        default: {{ return {type_name}; }}\n    }}\n}}\n\n");
+        text
+    };
+    text.push_str(&own("hides(fragment: Fragment, by: Invoker) -> bool", "false", &|h| {
+        (h.kind == EffectKind::Hide).then(|| is_hidden(h, "by.parameters"))
+    }));
+    text.push_str(&own("line_color(by: Invoker) -> vec3f", "vec3f(0.0)", &|h| {
+        h.lines.then(|| format!("{}(by.parameters).line_color", h.own("parameters")))
+    }));
+    let has_posts = uber.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Post);
+    let styled = if has_posts { "color = invoke_style(color, point, by);" } else { "" };
+    text.push_str(&LINE_AT.replace("STYLED", styled));
+}
+
+/// `by.number` says what an invoker is to lines: as `render::operations` writes it.
+const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, classes: Classes) -> vec4f {
+    var color = vec3f(0.0);
+    var opacity = 0.0;
+    var is_hidden = false;
+    let invokers = table.parts[1].lines;
+    let drawing = table.invokers[invokers.x + step];
+    for (var i = invokers.x; i < invokers.y; i++) {
+        let by = table.invokers[i];
+        if !runs(by, classes) {
+            continue;
+        }
+        if by.number == POST {
+            STYLED
+        }
+        if (by.number == SCENE || by.number == SCENE_WITH_LINES) && drawing.number == SCENE_WITH_LINES {
+            opacity = 0.0;
+        }
+        if by.number == HIDE && hides(fragment, by) {
+            is_hidden = true;
+        }
+        let draws = by.number == SCENE_WITH_LINES || (by.number == HIDE_WITH_LINES && hides(fragment, by));
+        if draws && i == invokers.x + step {
+            color = line_color(by);
+            opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u);
+        }
+    }
+    return vec4f(color, select(opacity, 0.0, is_hidden));
+}
+
+const POST: u32 = 0u;
+const SCENE: u32 = 1u;
+const SCENE_WITH_LINES: u32 = 2u;
+const HIDE: u32 = 3u;
+const HIDE_WITH_LINES: u32 = 4u;
+";
