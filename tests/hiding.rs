@@ -197,6 +197,27 @@ fn an_eye_inside_a_hiding_lens_sees_what_is_beyond() {
 }
 
 #[test]
+fn the_context_hides_without_a_lens() {
+    let (mut studio, camera, at) = town();
+    let nowhere = Shape::Sphere { center: at, radius: 1.0 };
+    for (class, lenses) in
+        [(Class::Rest, vec![]), (Class::Rest, vec![lens("grey", vec![nowhere.clone()], "greyscale")])]
+    {
+        let mut scene = scene(camera, lenses);
+        scene.sun.shadows = true;
+        scene.style.effects = vec![eraser(&[], Class::Inside)];
+        // Every ray is in the context.
+        let far = Shape::Sphere { center: at + DVec3::Z * 9000.0, radius: 1.0 };
+        let changed = compare(&mut studio, &scene, &far, class, &|model, t| !is_terrain(model, t));
+        assert!(changed == 0, "the plain picture has the same context");
+        scene.style.effects.clear();
+        let before = picture(&mut studio, &scene, SIZE).object_id;
+        scene.style.effects = vec![used("wireframe")];
+        assert!(picture(&mut studio, &scene, SIZE).object_id != before);
+    }
+}
+
+#[test]
 fn an_attribute_chooses_who_goes() {
     let (mut studio, camera, at) = town();
     let shape = Shape::Sphere { center: at, radius: 60.0 };

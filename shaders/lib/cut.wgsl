@@ -1,8 +1,4 @@
-// What lenses hide of the picture: classes come from the sprites, as in shading, so both agree at every pixel.
-
-fn class_of(volume: u32, fragment: Fragment) -> u32 {
-    return class_in(volumes[volume], fragment.pixel, fragment.depth);
-}
+// Taking away what lenses hide of the picture.
 
 // Takes the fragment away if it is hidden.
 fn cut(at: vec2f, depth: f32, code: u32) {

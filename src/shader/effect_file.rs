@@ -427,10 +427,14 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
             .map_or(0, |d| d.span.start),
     };
     let prefix = effect.own("");
-    let own = |message: String| message.replace(&prefix, "");
+    // Beside the file is the call: then the signature is wrong, whatever the parser makes of it.
+    let own = |at: Option<usize>, message: String| match at {
+        Some(at) if (begin..=begin + body.len()).contains(&at) => message.replace(&prefix, ""),
+        _ => format!("expected `{}`", signature(&effect)),
+    };
     let parsed = wgpu::naga::front::wgsl::parse_str(&source).map_err(|error| {
         let at = error.labels().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
-        file.error(place(at), own(error.message().to_owned()))
+        file.error(place(at), own(at, error.message().to_owned()))
     })?;
     let capabilities =
         wgpu::naga::valid::Capabilities::default() | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
@@ -443,7 +447,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
             message = format!("{message}: {inner}");
             source = inner.source();
         }
-        file.error(place(at), own(message))
+        file.error(place(at), own(at, message))
     })?;
     Ok(effect)
 }
@@ -632,7 +636,10 @@ mod tests {
                 format!("{HEADER}fn effect(color: vec3f, point: Point) -> vec3f {{\n    return colour;\n}}"),
                 "my.wgsl:6:12: no definition in scope",
             ),
-            (format!("{HEADER}fn effect(color: vec3f) -> vec3f {{ return color; }}"), "my.wgsl:5:4: "),
+            (
+                format!("{HEADER}fn effect(color: vec3f) -> vec3f {{ return color; }}"),
+                "my.wgsl:5:4: expected `fn effect(color: vec3f, point: Point) -> vec3f`",
+            ),
             (
                 format!(
                     "{HEADER}fn effect(color: vec3f, point: Point) -> vec3f {{\n    return vec3f(1.0, 2.0) + color;\n}}"
@@ -655,6 +662,42 @@ mod tests {
             let found = failure(&text);
             assert!(found.starts_with(expected), "{found}\nis not\n{expected}");
         }
+    }
+
+    #[test]
+    fn every_kind_that_users_write_is_taken() {
+        let header = |kind: &str| HEADER.replace("post", kind);
+        let radius = "//!\n//! [[parameter]]\n//! name = \"radius\"\n//! type = \"number\"\n//! range = [1, 9]\n//! default = 3\n\
+                      //! doc = \"How far.\"\n";
+        for (kind, text) in [
+            (
+                "hide",
+                "fn effect(fragment: Fragment) -> bool { return fragment.height > 6.0 && fragment.part != PART_TERRAIN; }",
+            ),
+            ("material", "fn effect(material: Material, point: Point) -> Material { return material; }"),
+            ("light", "fn effect(arriving: vec3f, point: Point) -> vec3f { return arriving * 0.5; }"),
+            ("scene", "fn effect(color: vec3f, point: Point) -> vec3f { return point.base; }"),
+            ("post", "fn effect(color: vec3f, point: Point) -> vec3f { return color.bgr; }"),
+        ] {
+            assert_eq!(
+                checked("my.wgsl", &format!("{}{text}", header(kind))).map(|e| e.name),
+                Ok("mine".to_owned()),
+                "{kind}"
+            );
+            let without = text.replacen("fn effect(", "fn effect(more: f32, ", 1);
+            assert!(
+                failure(&format!("{}{without}", header(kind))).starts_with("my.wgsl:5:4: expected `fn effect("),
+                "{kind}"
+            );
+        }
+        let kernel = "fn effect(offset: f32, p: Parameters) -> f32 { return exp(-offset * offset / p.radius); }";
+        assert!(checked("my.wgsl", &format!("{}{radius}{kernel}", header("filter"))).is_ok());
+        let lines = radius.replace("radius", "line_width");
+        let color = "//!\n//! [[parameter]]\n//! name = \"line_color\"\n//! type = \"color\"\n//! default = \"#102030\"\n//! doc = \"Which.\"\n";
+        let drawing = header("scene").replace("//! spec", "//! lines = true\n//! spec");
+        let body = "fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f { return vec3f(0.9); }";
+        assert!(checked("my.wgsl", &format!("{drawing}{lines}{color}{body}")).is_ok_and(|e| e.lines));
+        assert!(failure(&format!("{drawing}{color}{body}")).contains("\"line_width\""));
     }
 
     #[test]

@@ -39,6 +39,8 @@ files! {
     EDGE = "lib/edge.wgsl";
     FRAGMENT = "lib/fragment.wgsl";
     CUT = "lib/cut.wgsl";
+    CLASS_OF_SPRITE = "lib/class-of-sprite.wgsl";
+    CLASS_OF_SHAPE = "lib/class-of-shape.wgsl";
     OUTLINE = "lib/outline.wgsl";
     FILTERED = "lib/filter.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
@@ -120,11 +122,14 @@ impl Module {
         let files: &[(&str, &str)] = match self {
             Self::Geometry(None) => &[VIEW, SURFACE, GEOMETRY],
             Self::Geometry(Some(program)) => match program.has().lenses {
-                true => &[VIEW, SURFACE, CLASS, LENS, OBJECTS, FRAGMENT, CUT, GEOMETRY],
+                true => &[VIEW, SURFACE, CLASS, LENS, OBJECTS, FRAGMENT, CLASS_OF_SPRITE, CUT, GEOMETRY],
                 false => &[VIEW, SURFACE, OBJECTS, FRAGMENT, CUT, GEOMETRY],
             },
             Self::Shadow(None) => &[VIEW, SHADOW],
-            Self::Shadow(Some(_)) => &[VIEW, SURFACE, CLASS, SHAPE, OBJECTS, FRAGMENT, SHADOW_CUT],
+            Self::Shadow(Some(program)) => match program.has().lenses {
+                true => &[VIEW, SURFACE, CLASS, SHAPE, OBJECTS, FRAGMENT, CLASS_OF_SHAPE, SHADOW_CUT],
+                false => &[VIEW, SURFACE, OBJECTS, FRAGMENT, SHADOW_CUT],
+            },
             Self::Sprite => &[VIEW, SHAPE, SPRITE],
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
             Self::Lines(program) => &Self::files_of_lines(program),
@@ -300,6 +305,24 @@ mod tests {
     #[test]
     fn every_module_is_valid_wgsl() {
         all_modules().iter().for_each(validate);
+    }
+
+    #[test]
+    fn every_effect_of_the_context_is_valid_wgsl_without_a_lens() {
+        for number in numbers() {
+            let lines = handlers()[number as usize].lines;
+            let plan = Plan { steps: vec![step(number, Scope::Everywhere, None)], lines, ..Plan::default() };
+            let uber = Uber { effects: vec![number], lines, ..Uber::default() };
+            let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();
+            for program in hiding.chain(uber.hiding(handlers()).map(Program::Uber)) {
+                validate(&Module::Geometry(Some(program.clone())));
+                validate(&Module::Shadow(Some(program)));
+            }
+            let lining = plan.lining(handlers()).map(Program::Specialised).into_iter();
+            lining.chain(uber.lining(handlers()).map(Program::Uber)).for_each(|p| validate(&Module::Lines(p)));
+            validate(&Module::Shade(Program::Specialised(plan.shading(handlers()))));
+            validate(&Module::Shade(Program::Uber(uber.shading(handlers()))));
+        }
     }
 
     #[test]
