@@ -8,7 +8,7 @@ use veduta::{
     figure::scene_file::{self, Options},
     lens::{EffectUse, Lens, LensBody, Parameter},
     render::{
-        frame::Backend,
+        frame::{Backend, ShaderPart},
         picture::{Aovs, Picture, Request, Studio},
     },
     scene::Scene,
@@ -156,10 +156,16 @@ fn disabled_lenses_cost_nothing_and_change_nothing() {
 #[test]
 fn the_text_of_a_scene_is_readable_and_says_whose_it_is() {
     let (studio, scene) = town();
-    let text = studio.shader(&scene, SIZE, Backend::Specialised).expect("a text");
+    let text = studio.shader(&scene, SIZE, Backend::Specialised, ShaderPart::Shade).expect("a text");
     assert!(text.contains("lens_0: u32,  // lens 0"), "{text}");
     assert!(text.contains("if is_inside(classes.lens_0) {\n        color = sepia(color, point, sepia_parameters("));
     assert!(text.lines().all(|line| line.len() <= 160 && line.trim_end() == line), "a long line, or blanks at its end");
-    let uber = studio.shader(&scene, SIZE, Backend::Uber).expect("a text");
+    let uber = studio.shader(&scene, SIZE, Backend::Uber, ShaderPart::Shade).expect("a text");
     assert!(uber.contains("table.invokers") && !text.contains("table.invokers"));
+    let mut scene = scene;
+    scene.lenses[0].effects.push(used("wireframe"));
+    let part = |part: ShaderPart| studio.shader(&scene, SIZE, Backend::Specialised, part).expect("a text");
+    let wanted = "if is_inside(classes_of_lens_0(fragment)) && wireframe(fragment, wireframe_parameters(";
+    assert!(part(ShaderPart::Geometry).contains(wanted) && part(ShaderPart::Shadow).contains(wanted));
+    assert!(part(ShaderPart::Lines).contains("color = wireframe_parameters("));
 }

@@ -32,8 +32,8 @@ pub struct Arguments {
     /// Write a JSON array instead of text
     #[arg(long)]
     pub json: bool,
-    /// Say whether an effect file of your own is right, and do nothing else; repeatable
-    #[arg(long, value_name = "FILE.wgsl", conflicts_with_all = ["names", "json"])]
+    /// Say whether effect files of your own are right, and do nothing else
+    #[arg(long, value_name = "FILE.wgsl", num_args = 1.., conflicts_with_all = ["names", "json"])]
     pub check: Vec<PathBuf>,
 }
 
@@ -73,6 +73,8 @@ fn check(files: &[PathBuf]) -> Outcome {
     for file in files {
         let name = file.display().to_string();
         match crate::shader::effect_file::checked(&name, &text_of_file(file)?) {
+            Ok(effect) if effect::handlers().iter().any(|h| h.name == effect.name) => broken
+                .push(format!("{name}:1:1: there is an effect \"{}\" already; expected another name", effect.name)),
             Ok(effect) => output::print(&format!("{name}: \"{}\" is right\n", effect.name))?,
             Err(error) => broken.push(error.to_string()),
         }

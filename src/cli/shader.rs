@@ -4,18 +4,22 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::{
-    Failure, GlobalArguments, Outcome, output,
-    render::{
-        self,
-        arguments::{Shaders, Size, scene_among},
+use crate::{
+    cli::{
+        Failure, GlobalArguments, Outcome, output,
+        render::{
+            self,
+            arguments::{Shaders, Size, scene_among},
+        },
     },
+    render::frame::ShaderPart,
 };
 
 const EXAMPLES: &str = "\
 Examples:
   veduta shader scene.toml
   veduta shader scene.toml --shaders uber
+  veduta shader scene.toml --module geometry    what hides things
   veduta shader scene.toml --set lens.0.enabled=false > plain.wgsl
 
 What is printed is what the graphics card gets where the scene's lenses are in the picture (where there is none: the whole
@@ -37,6 +41,34 @@ pub struct Arguments {
     /// Which back end
     #[arg(long, value_name = "HOW", value_enum, default_value_t)]
     pub shaders: Shaders,
+    /// Which module
+    #[arg(long, value_name = "WHICH", value_enum, default_value_t)]
+    pub module: Part,
+}
+
+/// Modules that a scene's lenses have a part in.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Part {
+    /// How what is shown looks: styles, materials, light
+    #[default]
+    Shade,
+    /// What is there: hidings such as eraser and wireframe
+    Geometry,
+    /// What casts a shadow
+    Shadow,
+    /// Edges as lines: wireframe, hidden-line
+    Lines,
+}
+
+impl From<Part> for ShaderPart {
+    fn from(part: Part) -> Self {
+        match part {
+            Part::Shade => Self::Shade,
+            Part::Geometry => Self::Geometry,
+            Part::Shadow => Self::Shadow,
+            Part::Lines => Self::Lines,
+        }
+    }
 }
 
 /// Prints it.
@@ -51,6 +83,8 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         scene.figure.size = size.0;
     }
     let (studio, _) = render::open(&scene, &options, global)?;
-    let text = studio.shader(&scene, scene.figure.size, arguments.shaders.into()).map_err(Failure::failed)?;
+    let text = studio
+        .shader(&scene, scene.figure.size, arguments.shaders.into(), arguments.module.into())
+        .map_err(Failure::failed)?;
     output::print(&text)
 }

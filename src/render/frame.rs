@@ -36,7 +36,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun},
-    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, handlers},
+    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, Uber, handlers},
     view::View,
 };
 
@@ -80,6 +80,20 @@ pub struct FrameInput<'a> {
     pub samples: u32,
     /// What is drawn over the picture, after its last sample.
     pub furniture: &'a Furniture,
+}
+
+/// Modules that a scene's lenses have a part in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ShaderPart {
+    /// How what is shown looks.
+    #[default]
+    Shade,
+    /// What is there.
+    Geometry,
+    /// What casts a shadow.
+    Shadow,
+    /// Edges as lines.
+    Lines,
 }
 
 /// How shaders are made of what a scene asks for (H3). The picture is the same.
@@ -234,19 +248,30 @@ impl Renderer {
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    /// The text of the module that shades the lenses' part of the picture; without lenses in view the context's.
-    pub fn shader(&self, input: &FrameInput, lenses: &[Lens]) -> String {
+    /// The text of a module as it runs where the lenses are in the picture; without lenses in view everywhere.
+    pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
         let (seen, _) = seen_volumes(input);
         let plans = Plans::new(input, &seen);
-        let plan = if seen.is_empty() { plans.context } else { plans.lenses };
-        let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
-        numbers.dedup();
-        let names: Vec<&str> = numbers.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
-        let program = match input.backend {
+        let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
+        let (plan, operations) = (if seen.is_empty() { plans.context } else { plans.lenses }, input.operations);
+        let shade = match input.backend {
             Backend::Specialised => Program::Specialised(plan),
-            Backend::Uber | Backend::Adaptive => Program::Uber(input.operations.uber(plan.haze, plan.masks)),
+            Backend::Uber | Backend::Adaptive => Program::Uber(operations.uber(plan.haze, plan.masks)),
         };
-        Module::Shade(program).source_for_people(handlers(), &names)
+        let of = |plan: Option<Plan>, uber: Option<Uber>| match input.backend {
+            Backend::Specialised => plan.map(Program::Specialised),
+            Backend::Uber | Backend::Adaptive => uber.map(Program::Uber),
+        };
+        let module = match part {
+            ShaderPart::Shade => Module::Shade(shade),
+            ShaderPart::Geometry => Module::Geometry(of(plans.hiding, operations.uber_hiding())),
+            ShaderPart::Shadow => Module::Shadow(of(plans.hiding, operations.uber_hiding())),
+            ShaderPart::Lines => match of(plans.lining, operations.uber_lining()) {
+                Some(program) => Module::Lines(program),
+                None => return "// Nothing draws lines.\n".to_owned(),
+            },
+        };
+        module.source_for_people(handlers(), &names)
     }
 
     fn smooth(&self) -> bool {

@@ -17,7 +17,7 @@ use crate::{
         Renderer,
         city::Shown,
         eye::PictureTile,
-        frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord},
+        frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
         operations::{MOST_FILTERS, Operations},
         stats::{self, Statistics},
@@ -262,14 +262,20 @@ impl Studio {
         Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground })?)
     }
 
-    /// The WGSL that shading runs where the scene's lenses are in the picture, or everywhere where none is (H4).
-    pub fn shader(&self, scene: &Scene, size: [u32; 2], backend: Backend) -> Result<String, RenderError> {
+    /// The WGSL of a module that runs where the scene's lenses are in the picture, or everywhere where none is (H4).
+    pub fn shader(
+        &self,
+        scene: &Scene,
+        size: [u32; 2],
+        backend: Backend,
+        part: ShaderPart,
+    ) -> Result<String, RenderError> {
         let prepared = self.prepare(scene)?;
         let view = self.view(scene, &prepared, size)?;
         let request =
             Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false, backend };
         let input = input(scene, &request, &prepared, view, whole(size));
-        Ok(self.renderer.shader(&input, &scene.lenses))
+        Ok(self.renderer.shader(&input, &scene.lenses, part))
     }
 
     fn view(&self, scene: &Scene, prepared: &Prepared, size: [u32; 2]) -> Result<View, CameraError> {
