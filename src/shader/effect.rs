@@ -30,6 +30,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("overlay"),
     built_in!("discard-color"),
     built_in!("posterise"),
+    built_in!("engraving"),
     built_in!("blur"),
     built_in!("edges"),
     built_in!("iso-lines"),
