@@ -143,6 +143,26 @@ fn effects_do_what_their_arithmetic_says() {
     assert!(stage.farthest(vec![paint("screen")], blended(|a, b| 1.0 - (1.0 - a) * (1.0 - b))) <= 1);
 }
 
+#[test]
+fn an_engraving_gives_back_the_lightness_of_the_picture() {
+    let mut stage = Stage::new();
+    let luminance = |p: &[u8; 4]| {
+        let [r, g, b] = color::linear_from_srgb([p[0], p[1], p[2]].map(|c| f32::from(c) / 255.0));
+        f64::from(0.2126 * r + 0.7152 * g + 0.0722 * b)
+    };
+    for numbers in [vec![], vec![("spacing", 3.0), ("angle_deg", -70.0)]] {
+        let picture = stage.with(vec![with_numbers("engraving", &numbers)]);
+        let inside = || (0..stage.inside.len()).filter(|i| stage.inside[*i]);
+        let mean =
+            |picture: &Picture| inside().map(|i| luminance(&picture.rgba[i])).sum::<f64>() / inside().count() as f64;
+        let (wanted, found) = (mean(&stage.plain), mean(&picture));
+        // Lines are cut by borders of faces, and shares are kept off 0 and 1.
+        assert!((found / wanted - 1.0).abs() < 0.03, "{found}, not {wanted}");
+        let tones = inside().map(|i| picture.rgba[i][1]);
+        assert!(tones.clone().max() > Some(230) && tones.min() < Some(60), "no lines");
+    }
+}
+
 /// The picture blurred by hand, from its bytes: columns of rows, weights of the kernel, linear light.
 fn blurred(picture: &Picture, radius: f64) -> Vec<[f32; 3]> {
     let [w, h] = picture.size.map(|s| s as i64);
