@@ -76,7 +76,12 @@ pub fn unknown_effect(name: &str) -> String {
         let all: Vec<&str> = effects().map(|e| e.name.as_str()).collect();
         return format!("effect = \"{name}\" is not available yet; available: {}", all.join(", "));
     }
-    format!("there is no effect \"{name}\"{}", did_you_mean(name, effects().map(|e| e.name.as_str())))
+    match did_you_mean(name, effects().map(|e| e.name.as_str())) {
+        hint if hint.is_empty() => {
+            format!("there is no effect \"{name}\"; effects of your own come from a folder: --effects DIR")
+        }
+        hint => format!("there is no effect \"{name}\"{hint}"),
+    }
 }
 
 /// What is wrong with a parameter's value, if anything.

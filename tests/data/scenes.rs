@@ -1,11 +1,20 @@
-//! The shipped scenes of the shared data name what the cities have, and their lenses act on something.
+//! The shipped scenes of the shared data name what the cities have, their lenses act on something, and both back ends draw them
+//! alike.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use libtest_mimic::{Failed, Trial};
 use veduta::{
     city::load::{LoadOptions, Quiet, load},
     figure::scene_file::{self, Options},
+    gpu::Gpu,
+    render::{
+        frame::Backend,
+        picture::{Aovs, Request, Studio},
+    },
     scene::check_against,
 };
 
@@ -32,6 +41,16 @@ fn check(path: &Path) -> Result<(), Failed> {
         if !meets_some {
             return Err(format!("{} acts on fewer than five geometries", lens.name).into());
         }
+    }
+    let mut studio = Studio::new(Gpu::open()?, Arc::new(model), &scene.city)?;
+    let mut draw = |backend: Backend| {
+        let aovs = Aovs { depth: true, object_id: true, normal: false, lens_mask: true };
+        let request = Request { size: [240, 135], samples: 2, transparent: false, aovs, statistics: false, backend };
+        studio.render(&scene, &request)
+    };
+    let (a, b) = (draw(Backend::Specialised)?, draw(Backend::Uber)?);
+    if a.rgba != b.rgba || a.lens_mask != b.lens_mask || a.object_id != b.object_id {
+        return Err("the two back ends differ".into());
     }
     Ok(())
 }
