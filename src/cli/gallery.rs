@@ -33,6 +33,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "first-lens"
     "market-square"
     "rotterdam-textures"
+    "see-inside"
     "three-lenses"
     "tiesel-3-22"
     "town"
