@@ -77,8 +77,10 @@ static LOG: StderrLog = StderrLog;
 
 impl log::Log for StderrLog {
     fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
-        // The GPU stack tells its life at `info`; ours is what `-v` asks for.
-        metadata.level() <= log::Level::Warn
+        // The GPU stack tells its life at `info`; ours is what `-v` asks for. What its shader compiler finds wrong comes back as
+        // an error, and is told once.
+        let is_told_elsewhere = metadata.target().starts_with("naga");
+        (metadata.level() <= log::Level::Warn && !is_told_elsewhere)
             || metadata.target().starts_with("veduta")
             || log::max_level() == log::LevelFilter::Trace
     }

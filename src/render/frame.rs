@@ -195,7 +195,7 @@ impl Renderer {
         if let Some(sun_view) = &sun_view {
             self.shadow_pass(&mut encoder, &mut recorder, input, sun_view, (&cuts, &keys.cuts));
         }
-        // Before the city: what a lens hides is decided by them, and a software adapter makes them while vertices are placed.
+        // Before the city: what a lens hides is decided by them.
         if !seen.is_empty() {
             self.sprite_passes(&mut encoder, &mut recorder, &seen);
         }

@@ -441,15 +441,43 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
     let mut validator = wgpu::naga::valid::Validator::new(wgpu::naga::valid::ValidationFlags::all(), capabilities);
     validator.validate(&parsed).map_err(|error| {
         let at = error.spans().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
-        let mut message = error.as_inner().to_string();
-        let mut source: Option<&dyn std::error::Error> = std::error::Error::source(error.as_inner());
-        while let Some(inner) = source {
-            message = format!("{message}: {inner}");
-            source = inner.source();
-        }
-        file.error(place(at), own(at, message))
+        file.error(place(at), own(at, in_words(error.as_inner())))
     })?;
     Ok(effect)
+}
+
+/// What a validator's error says, without the numbers by which it knows things.
+fn in_words(error: &dyn std::error::Error) -> String {
+    let mut innermost = error;
+    while let Some(source) = innermost.source() {
+        innermost = source;
+    }
+    let message = innermost.to_string();
+    if message.contains("expression None does not match") {
+        return "not every way through the function returns a value".to_owned();
+    }
+    // `[7] (of type Vector { size: Tri, ... })` is a vec3f; other handles are left out.
+    let mut text = String::new();
+    let mut rest = message.as_str();
+    while let Some((before, after)) = rest.split_once('[') {
+        let (number, tail) = after.split_once(']').unwrap_or(("", after));
+        text.push_str(before);
+        if !number.bytes().all(|b| b.is_ascii_digit()) || number.is_empty() {
+            text.push('[');
+            rest = after;
+            continue;
+        }
+        rest = tail.trim_start();
+        if let Some((kind, tail)) = rest.strip_prefix("(of type ").and_then(|r| r.split_once("})")) {
+            let size = [("Bi", "vec2"), ("Tri", "vec3"), ("Quad", "vec4")]
+                .into_iter()
+                .find(|(word, _)| kind.contains(&format!("size: {word},")));
+            text.push_str(size.map_or("another type", |(_, name)| name));
+            rest = tail.strip_prefix(')').unwrap_or(tail);
+        }
+    }
+    text.push_str(rest);
+    text
 }
 
 /// Refuses what may never end, or leave a hole: `loop`, `while`, `discard`, and `for` but for
@@ -713,6 +741,21 @@ mod tests {
         assert!(failure(&format!("{HEADER}{chain}{effect}")).contains("steps per pixel"));
         let fine = "fn f() -> f32 { var s = 0.0; for (var i = 0; i < 64; i++) { s += f32(i); } return s; }\n";
         assert!(checked("my.wgsl", &format!("{HEADER}{fine}{effect}")).is_ok());
+    }
+
+    #[test]
+    fn what_a_validator_says_is_put_into_words() {
+        let effect =
+            |body: &str| format!("{HEADER}fn effect(color: vec3f, point: Point) -> vec3f {{\n    {body}\n}}\n");
+        let without = effect("if color.x > 0.5 { return color; }");
+        assert!(
+            failure(&without).ends_with(": not every way through the function returns a value"),
+            "{}",
+            failure(&without)
+        );
+        let mixed = effect("let two = color.xy;\n    return color + two;");
+        let said = failure(&mixed);
+        assert!(said.contains("vec3") && said.contains("vec2") && !said.contains('['), "{said}");
     }
 
     #[test]
