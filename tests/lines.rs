@@ -201,6 +201,40 @@ fn lenses_above_colour_lines_and_erasers_take_them() {
 }
 
 #[test]
+fn an_edge_stays_as_long_as_one_of_its_faces_does() {
+    let mut studio = studio(&[citydata("semantics.city.json")]);
+    let bounds = studio.extent();
+    let (at, size) = (bounds.center(), bounds.size().length());
+    let camera = Camera::looking(at + DVec3::new(-0.9, -1.1, 0.5) * size, at, 0.8);
+    let part = |part: &str| {
+        let parameters = [("part".to_owned(), Parameter::Text(part.into()))];
+        with(
+            part,
+            Shape::Sphere { center: at, radius: size },
+            vec![EffectUse { parameters: parameters.into(), ..used("eraser") }],
+        )
+    };
+    let paper = || with("paper", Shape::Sphere { center: at, radius: size }, vec![drawing("hidden-line")]);
+    let mut red = |lenses: Vec<Lens>| {
+        let picture = picture(&mut studio, &scene(camera, lenses), SIZE);
+        picture.rgba.iter().map(|p| p[..3] == [255, 0, 0]).collect::<Vec<bool>>()
+    };
+    let all = red(vec![paper()]);
+    let without_roofs = red(vec![paper(), part("roofs")]);
+    let kept = (0..all.len()).filter(|&i| all[i] && without_roofs[i]).count();
+    let count = all.iter().filter(|r| **r).count();
+    // The eaves are edges of walls too; what a gone roof hid may be seen besides.
+    assert!(count > 100 && kept * 10 > count * 6, "{kept} of {count}");
+    let nothing = red(vec![
+        paper(),
+        part("roofs"),
+        part("walls"),
+        with("rest", Shape::Sphere { center: at, radius: size }, vec![used("eraser")]),
+    ]);
+    assert!(!nothing.contains(&true));
+}
+
+#[test]
 fn lines_are_the_same_on_both_back_ends_and_everywhere_in_the_context() {
     let mut studio = synthetic(30);
     let number = studio.geometries[studio.geometries.len() / 2];

@@ -24,6 +24,7 @@ struct Edge {
     @location(5) normal_b: u32,     // right of it; the same as normal_a at a border
     @location(6) inward: vec2f,     // how far its faces go from the edge, metres
     @location(7) along: vec2u,      // and along it before its start and beyond its end, 2 halves each
+    @location(8) other: u32,        // surface of its second face; that of the first at a border
 }
 
 const EDGE_BORDER: u32 = 0u;

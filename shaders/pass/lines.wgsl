@@ -19,7 +19,7 @@ struct Line {
     @location(2) @interpolate(flat, either) face_a: vec4f,
     @location(3) @interpolate(flat, either) face_b: vec4f,
     @location(4) @interpolate(flat, either) along: vec4f,
-    @location(5) @interpolate(flat, either) surface: u32,
+    @location(5) @interpolate(flat, either) surfaces: vec2u,    // of the edge's faces
 }
 
 @vertex
@@ -27,7 +27,7 @@ fn vertex(edge: Edge, @builtin(vertex_index) i: u32) -> Line {
     let made = edge_vertex(edge, i, stage.width);
     let is_drawn = edge_class(edge) != EDGE_FLAT || stage.flat_edges == 1u;
     let clip = select(vec4f(2.0, 2.0, 0.5, 1.0), made.clip, is_drawn);
-    return Line(clip, made.line, made.ends, made.face_a, made.face_b, made.along, edge_surface(edge));
+    return Line(clip, made.line, made.ends, made.face_a, made.face_b, made.along, vec2u(edge_surface(edge), edge.other));
 }
 
 //@handlers
@@ -43,20 +43,27 @@ fn fragment(in: Line) -> Pixel {
     let depth = edge_own_depth(in.line, in.ends);
     let ray = ray_of_pixel(in.clip.xy);
     let position = ray.origin + distance_of_depth(depth) * ray.direction;
-    let surface = surface_at(in.surface);
+    let surface = surface_at(in.surfaces.x);
     var point = nowhere(pixel);
     point.depth = depth;
     point.distance = -position.z;
     point.relative = position * view.view_from_world;
     point.normal = decode_normal(surface.normal);
-    point.surface = in.surface;
+    point.surface = in.surfaces.x;
     point.object = surface.object;
     point.natural = surface.color;
     point.base = surface.color;
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + point.relative.z;
-    let fragment = Fragment(pixel, depth, position, height, in.surface, surface.object, part_of(surface), point.normal,
+    let fragment = Fragment(pixel, depth, position, height, in.surfaces.x, surface.object, part_of(surface), point.normal,
                             view.orthographic == 1u);
-    let seen = line_at(stage.step, point, fragment, classes_at(pixel, depth, 1u));
+    // The same place, on the other face: a line stays as long as one of its faces does.
+    let beyond = surface_at(in.surfaces.y);
+    var other = fragment;
+    other.surface = in.surfaces.y;
+    other.object = beyond.object;
+    other.part = part_of(beyond);
+    other.normal = decode_normal(beyond.normal);
+    let seen = line_at(stage.step, point, fragment, other, classes_at(pixel, depth, 1u));
     let opacity = seen.a * edge_coverage(in.line, stage.width);
     return Pixel(vec4f(seen.rgb * opacity, opacity), edge_depth(in.line, in.ends, in.face_a, in.face_b, in.along));
 }

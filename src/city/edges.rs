@@ -75,6 +75,8 @@ pub struct Edge {
     pub tile: u32,
     /// A triangle of the first face: index into [`CityModel::planes`].
     pub triangle: u32,
+    /// A triangle of the second face, and its tile; those of the first at a border.
+    pub other: (u32, u32),
     /// What it is.
     pub class: EdgeClass,
 }
@@ -325,6 +327,7 @@ fn edge_of(model: &CityModel, sides: &[Side], boxes: &[(Vec3, Vec3)], crease_deg
         extents: [0, second].map(|i| extent_of(model, &sides[i], &faces[i], boxes, is_opposed(i))),
         tile: sides[0].tile,
         triangle: from / 3,
+        other: (sides[second].tile, sides[second].corner / 3),
         class,
     }
 }

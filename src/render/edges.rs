@@ -43,29 +43,31 @@ pub struct Edge {
     pub normal_b: u32,
     pub inward: [f32; 2],
     pub along: [u32; 2],
+    pub other: u32,
 }
 
 impl Edge {
-    /// One per instance, locations 0 to 7.
+    /// One per instance, locations 0 to 8.
     pub const LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
         array_stride: size_of::<Self>() as u64,
         step_mode: wgpu::VertexStepMode::Instance,
         attributes: &wgpu::vertex_attr_array![
-            0 => Sint32x3, 1 => Uint32, 2 => Float32x3, 3 => Uint32, 4 => Float32x3, 5 => Uint32, 6 => Float32x2, 7 => Uint32x2
+            0 => Sint32x3, 1 => Uint32, 2 => Float32x3, 3 => Uint32, 4 => Float32x3, 5 => Uint32, 6 => Float32x2, 7 => Uint32x2, 8 => Uint32
         ],
     };
 
-    /// An edge of a tile at `origin`, whole metres, where the table of surfaces has its first face under `surface`.
-    pub fn new(edge: &edges::Edge, origin: IVec3, surface: u32) -> Self {
+    /// An edge of a tile at `origin`, whole metres, where the table of surfaces has its faces under `surfaces`.
+    pub fn new(edge: &edges::Edge, origin: IVec3, surfaces: [u32; 2]) -> Self {
         Self {
             origin: origin.to_array(),
-            surface: surface.min(NO_SURFACE) | (edge.class as u32) << CLASS_SHIFT,
+            surface: surfaces[0].min(NO_SURFACE) | (edge.class as u32) << CLASS_SHIFT,
             start: edge.ends[0],
             normal_a: edge.normals[0],
             end: edge.ends[1],
             normal_b: edge.normals[1],
             inward: edge.extents.map(|e| e.inward_m),
             along: edge.extents.map(|e| u32::from(half(e.before_m)) | u32::from(half(e.beyond_m)) << 16),
+            other: surfaces[1].min(NO_SURFACE),
         }
     }
 
@@ -138,11 +140,14 @@ fn gather(shown: &Shown, city: &CityBuffers, angles: &CreaseAngles) -> Vec<Edge>
         let (tile, run) = (&model.tiles[number as usize], of_tile.get(&number).copied().unwrap_or_default());
         known.clear();
         gathered.extend(run.iter().map(|edge| {
-            let [first, ..] = corners_of(model, tile, edge.triangle);
-            let surface = *known
-                .entry((first.surface, first.normal))
-                .or_insert_with(|| numbers.find(&surfaces::entry(model, &city.textures, first.surface, first.normal)));
-            Edge::new(edge, tile.origin, surface)
+            let faces = [(number, edge.triangle), edge.other];
+            let surfaces = faces.map(|(tile, triangle)| {
+                let [first, ..] = corners_of(model, &model.tiles[tile as usize], triangle);
+                *known.entry((first.surface, first.normal)).or_insert_with(|| {
+                    numbers.find(&surfaces::entry(model, &city.textures, first.surface, first.normal))
+                })
+            });
+            Edge::new(edge, tile.origin, surfaces)
         }));
     }
     gathered

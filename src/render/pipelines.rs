@@ -1,6 +1,13 @@
 //! Pipelines by canonical key, made when first needed, or off the frame; how many were made and met again is counted.
 
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, Sender, channel},
+    },
+    thread::JoinHandle,
+};
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -175,11 +182,26 @@ pub struct Pipelines {
     worker: Option<Worker>,
 }
 
-/// A thread that makes pipelines; it ends when its sender is dropped.
+/// A thread that makes pipelines. Dropping it waits for the one in hand: a driver that is torn down while it compiles may
+/// crash.
 #[derive(Debug)]
 struct Worker {
-    wanted: Sender<Key>,
+    /// `None` once no more are wanted.
+    wanted: Option<Sender<Key>>,
     ready: Receiver<(Key, wgpu::RenderPipeline)>,
+    is_over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Relaxed);
+        self.wanted = None;
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has said so.
+            let _ = thread.join();
+        }
+    }
 }
 
 impl Worker {
@@ -187,17 +209,22 @@ impl Worker {
     fn start(layouts: Layouts) -> Option<Self> {
         let (wanted, orders) = channel::<Key>();
         let (deliveries, ready) = channel();
+        let is_over = Arc::new(AtomicBool::new(false));
+        let is_enough = is_over.clone();
         let work = move || {
             let mut modules = Modules::default();
             for key in orders {
+                if is_enough.load(Ordering::Relaxed) {
+                    return;
+                }
                 let pipeline = layouts.make(&mut modules, &key);
                 if deliveries.send((key, pipeline)).is_err() {
                     return;
                 }
             }
         };
-        std::thread::Builder::new().name("pipelines".to_owned()).spawn(work).ok()?;
-        Some(Self { wanted, ready })
+        let thread = std::thread::Builder::new().name("pipelines".to_owned()).spawn(work).ok()?;
+        Some(Self { wanted: Some(wanted), ready, is_over, thread: Some(thread) })
     }
 }
 
@@ -427,7 +454,10 @@ impl Pipelines {
             if self.worker.is_none() {
                 self.worker = Worker::start(self.layouts.clone());
             }
-            let sent = self.worker.as_ref().is_some_and(|w| w.wanted.send(key.clone()).is_ok());
+            let sent = self
+                .worker
+                .as_ref()
+                .is_some_and(|w| w.wanted.as_ref().is_some_and(|wanted| wanted.send(key.clone()).is_ok()));
             if !sent {
                 self.worker = None;
                 self.asked.clear();

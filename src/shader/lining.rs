@@ -42,8 +42,10 @@ fn parameters(handler: &EffectDefinition, first: &str) -> String {
     if handler.slots() == 0 { String::new() } else { format!(", {}({first})", handler.own("parameters")) }
 }
 
-fn is_hidden(handler: &EffectDefinition, first: &str) -> String {
-    format!("{}(fragment{})", handler.wgsl_name(), parameters(handler, first))
+/// Whether a hiding takes both faces of an edge (`and`), or one of them (`or`).
+fn hides(handler: &EffectDefinition, first: &str, word: &str) -> String {
+    let of = |face: &str| format!("{}({face}{})", handler.wgsl_name(), parameters(handler, first));
+    format!("({} {word} {})", of("fragment"), of("other"))
 }
 
 /// `if a && b {\n body }`; the body alone where there is nothing to ask.
@@ -55,7 +57,9 @@ fn branch(conditions: &[String], body: &str) -> String {
 }
 
 fn specialised(text: &mut String, writer: &Writer) {
-    text.push_str("fn line_at(step: u32, point: Point, fragment: Fragment, classes: Classes) -> vec4f {\n");
+    text.push_str(
+        "fn line_at(step: u32, point: Point, fragment: Fragment, other: Fragment, classes: Classes) -> vec4f {\n",
+    );
     text.push_str("    var color = vec3f(0.0);\n    var opacity = 0.0;\n");
     let mut hidden = String::new();
     // Scene styles that drew a line so far.
@@ -75,12 +79,12 @@ fn specialised(text: &mut String, writer: &Writer) {
         match (handler.kind, handler.lines) {
             (EffectKind::Post, _) => text.push_str(&writer.statement(step, handler)),
             (EffectKind::Hide, false) => {
-                hidden.push_str(&branch(&[&scope[..], &[is_hidden(handler, &first)]].concat(), "opacity = 0.0;"));
+                hidden.push_str(&branch(&[&scope[..], &[hides(handler, &first, "&&")]].concat(), "opacity = 0.0;"));
             }
             (_, true) => {
                 let mut conditions = [&[format!("step == {number}u")][..], &scope].concat();
                 if handler.kind == EffectKind::Hide {
-                    conditions.push(is_hidden(handler, &first));
+                    conditions.push(hides(handler, &first, "||"));
                 } else {
                     drawn.push(number);
                 }
@@ -114,7 +118,7 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
         text
     };
     text.push_str(&own("hides(fragment: Fragment, by: Invoker) -> bool", "false", &|h| {
-        (h.kind == EffectKind::Hide).then(|| is_hidden(h, "by.parameters"))
+        (h.kind == EffectKind::Hide).then(|| format!("{}(fragment{})", h.wgsl_name(), parameters(h, "by.parameters")))
     }));
     text.push_str(&own("line_color(by: Invoker) -> vec3f", "vec3f(0.0)", &|h| {
         h.lines.then(|| format!("{}(by.parameters).line_color", h.own("parameters")))
@@ -125,7 +129,7 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
 }
 
 /// `by.number` says what an invoker is to lines: as `render::operations` writes it.
-const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, classes: Classes) -> vec4f {
+const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, other: Fragment, classes: Classes) -> vec4f {
     var color = vec3f(0.0);
     var opacity = 0.0;
     var is_hidden = false;
@@ -142,10 +146,10 @@ const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, c
         if (by.number == SCENE || by.number == SCENE_WITH_LINES) && drawing.number == SCENE_WITH_LINES {
             opacity = 0.0;
         }
-        if by.number == HIDE && hides(fragment, by) {
+        if by.number == HIDE && hides(fragment, by) && hides(other, by) {
             is_hidden = true;
         }
-        let draws = by.number == SCENE_WITH_LINES || (by.number == HIDE_WITH_LINES && hides(fragment, by));
+        let draws = by.number == SCENE_WITH_LINES || (by.number == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
         if draws && i == invokers.x + step {
             color = line_color(by);
             opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u);
