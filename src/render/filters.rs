@@ -4,8 +4,8 @@
 //! Filters that read the same image have it shaded once, and uses that would make the same image share it.
 
 use crate::render::{
-    eye::PictureTile,
-    frame::{FrameInput, Recorder, SeenVolume, color_attachment, scissor, split},
+    eye::{PictureTile, split},
+    frame::{FrameInput, Recorder, SeenVolume, color_attachment, scissor},
     layout,
     operations::Filter,
     pipelines::Key,

@@ -21,16 +21,16 @@ use crate::{
     gpu::{GpuError, Slot, Timer},
     lens::Lens,
     render::{
-        city::{Chunk, CityBuffers, Draw, Section, SectionKind, SeenChunk, draws_of},
-        curtain::{self, Curtain},
-        cut::{Cut, CutPrograms, Cuts},
-        eye::{PictureTile, view_uniform},
+        city::{CityBuffers, Section, SectionKind, draws_of},
+        city_passes::{draw_ranges, geometry_key},
+        cut::{CutPrograms, Cuts},
+        eye::{PictureTile, split, view_uniform},
         filters,
-        furniture::{Furniture, FurnitureOnGpu},
+        furniture::Furniture,
         layout, light, lines,
         operations::{Filter, Operations, invoker_table},
-        pipelines::{GeometryKind, Key, ShadeTarget},
-        renderer::{Renderer, STAGE_STRIDE, Shadow},
+        pipelines::{Key, ShadeTarget},
+        renderer::{Renderer, STAGE_STRIDE},
         sprites::{self, Pages, Place},
         targets::Needs,
         volume::LensVolume,
@@ -278,7 +278,7 @@ impl Renderer {
         self.city.as_ref().is_some_and(|c| c.buffers.smooth)
     }
 
-    fn colored(&self) -> bool {
+    pub(super) fn colored(&self) -> bool {
         self.city
             .as_ref()
             .is_some_and(|c| c.buffers.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { .. })))
@@ -495,173 +495,6 @@ impl Renderer {
         (shade_keys, is_uber)
     }
 
-    fn shadow_pass(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        input: &FrameInput,
-        sun: &View,
-        (cuts, programs): (&Cuts, &CutPrograms),
-    ) {
-        let cut = cuts.sun.as_ref().zip(programs.sun.as_ref());
-        let wanted = Shadow {
-            view: view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0),
-            cut: cut.map(|(cut, program)| (program.clone(), cut.all_numbers(input))),
-        };
-        if self.shadow_of.as_ref() == Some(&wanted) {
-            return;
-        }
-        self.shadow_of = Some(wanted);
-        let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
-        let lenses = cut.map_or(&[][..], |(cut, _)| &cut.hiding.lenses);
-        let slot = recorder.begin("shadow map", "sun", lenses, false);
-        let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("shadow map"),
-            depth_stencil_attachment: Some(depth_attachment(&targets.shadow.view, 0.0)),
-            timestamp_writes: writes,
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &groups.sun_view, &[]);
-        // Casters may stand before the picture's edge, never behind the sun.
-        let frustum = sun.frustum(1.0);
-        for section in &city.buffers.sections {
-            let seen = CityBuffers::visible(section, &frustum, sun.camera.eye);
-            let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
-            pass.set_vertex_buffer(0, section.vertices.slice(..));
-            for (part, is_cut) in Cut::parts(cut.map(|(cut, _)| cut), &input.view, &chunks) {
-                let (draws, triangles) = draws_of(part.into_iter());
-                match cut.filter(|_| is_cut) {
-                    Some((_, program)) => {
-                        pass.set_pipeline(self.pipelines.get(&Key::Shadow(Some(program.clone()))));
-                        pass.set_bind_group(1, &groups.shapes_city, &[]);
-                        pass.set_bind_group(2, &groups.shapes, &[]);
-                    }
-                    None => {
-                        pass.set_pipeline(self.pipelines.get(&Key::Shadow(None)));
-                        pass.set_bind_group(1, &city.group, &[]);
-                    }
-                }
-                draw_ranges(&mut pass, &section.indices, &draws);
-                recorder.count(draws.len() as u32, triangles);
-            }
-        }
-    }
-
-    /// The city, every triangle at most once: in one pass, or what is near first and then what it does not hide.
-    fn geometry_passes(
-        &mut self,
-        mut encoder: wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        input: &FrameInput,
-        cuts: (&Cuts, &CutPrograms),
-    ) -> Result<wgpu::CommandEncoder, GpuError> {
-        let cut = cuts.0.picture.as_ref().zip(cuts.1.picture.as_ref());
-        let (Some(targets), Some(city)) = (&self.targets, &self.city) else { return Ok(encoder) };
-        let frustum = input.view.frustum(1.0);
-        let sections = &city.buffers.sections;
-        let seen: Vec<Vec<SeenChunk>> =
-            sections.iter().map(|s| CityBuffers::visible(s, &frustum, input.view.camera.eye)).collect();
-        let part = |keep: &dyn Fn(&Section, &SeenChunk) -> bool| -> Vec<Vec<&Chunk>> {
-            let mut kept: Vec<Vec<&Chunk>> = Vec::new();
-            for (section, seen) in sections.iter().zip(&seen) {
-                kept.push(seen.iter().filter(|s| keep(section, s)).map(|s| s.chunk).collect());
-            }
-            kept
-        };
-        // Layers of coplanar faces stay together and last: the later one wins where depths are equal.
-        let hangs = |section: &Section| section.kind != SectionKind::Coplanar;
-        let hanging = || sections.iter().zip(&seen).filter(|(section, _)| hangs(section)).flat_map(|(_, seen)| seen);
-        let reach = if self.culls_hidden { curtain::reach(&input.view, hanging()) } else { None };
-        let Some(reach) = reach else {
-            self.geometry_pass(&mut encoder, recorder, input, (&part(&|_, _| true), cut), ("geometry", true));
-            return Ok(encoder);
-        };
-        let is_near = |section: &Section, s: &SeenChunk| hangs(section) && s.distance <= reach;
-        self.geometry_pass(&mut encoder, recorder, input, (&part(&is_near), cut), ("geometry", true));
-        let mut curtain = match self.curtain.take() {
-            Some(curtain) if curtain.fits(&targets.depth.texture) => curtain,
-            _ => Curtain::new(&self.gpu, input.tile.size)?,
-        };
-        curtain.copy(&mut encoder, &targets.depth.texture);
-        self.gpu.queue.submit([encoder.finish()]);
-        curtain.read(&self.gpu)?;
-        let rest = part(&|section, s| !is_near(section, s) && !curtain.hides(&input.view, input.tile, &s.chunk.bounds));
-        encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-        self.geometry_pass(&mut encoder, recorder, input, (&rest, cut), ("geometry beyond", false));
-        self.curtain = Some(curtain);
-        Ok(encoder)
-    }
-
-    fn geometry_pass(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        input: &FrameInput,
-        (chunks, cut): (&[Vec<&Chunk>], Option<(&Cut, &Program)>),
-        (name, is_first): (&'static str, bool),
-    ) {
-        let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
-        let colored = self.colored();
-        let lenses = cut.map_or(&[][..], |(cut, _)| &cut.hiding.lenses);
-        let slot = recorder.begin(name, "main", lenses, true);
-        let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
-        let targets_of =
-            [Some(&targets.codes), colored.then_some(&targets.colors), input.measured.then_some(&targets.own_depth)];
-        let colors = targets_of.map(|target| {
-            let mut attachment = color_attachment(&target?.view, wgpu::Color::TRANSPARENT);
-            if !is_first {
-                attachment.ops.load = wgpu::LoadOp::Load;
-            }
-            Some(attachment)
-        });
-        let count = if input.measured { 3 } else { 1 + usize::from(colored) };
-        let mut depth = depth_attachment(&targets.depth.view, 0.0);
-        if !is_first {
-            depth.depth_ops = Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store });
-        }
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(name),
-            color_attachments: &colors[..count],
-            depth_stencil_attachment: Some(depth),
-            timestamp_writes: writes,
-            ..Default::default()
-        });
-        if let Some(timer) = &recorder.timer {
-            timer.begin_count(&mut pass, slot);
-        }
-        pass.set_bind_group(0, &groups.view, &[]);
-        pass.set_bind_group(1, &city.group, &[]);
-        let mut counted = (0, 0);
-        for ((section, image), chunks) in city.buffers.sections.iter().zip(&city.images).zip(chunks) {
-            if chunks.is_empty() {
-                continue;
-            }
-            pass.set_vertex_buffer(0, section.vertices.slice(..));
-            if let Some(extra) = &section.extra {
-                pass.set_vertex_buffer(1, extra.slice(..));
-            }
-            if let Some(image) = image {
-                pass.set_bind_group(3, image, &[]);
-            }
-            for (part, is_cut) in Cut::parts(cut.map(|(cut, _)| cut), &input.view, chunks) {
-                let (draws, triangles) = draws_of(part.into_iter());
-                let program = cut.filter(|_| is_cut).map(|(_, program)| program.clone());
-                if program.is_some() {
-                    pass.set_bind_group(2, &groups.lenses, &[]);
-                }
-                let key = geometry_key(section.kind, colored, city.buffers.smooth, input.measured, program);
-                pass.set_pipeline(self.pipelines.get(&key));
-                draw_ranges(&mut pass, &section.indices, &draws);
-                counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
-            }
-        }
-        if let Some(timer) = &recorder.timer {
-            timer.end_count(&mut pass, slot);
-        }
-        recorder.count(counted.0, counted.1);
-    }
-
     fn clear_masks(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
         let Some(targets) = &self.targets else { return };
         for some in targets.masks.layers.chunks(4) {
@@ -784,64 +617,6 @@ impl Renderer {
     }
 }
 
-impl Renderer {
-    /// Title, caption and legends over the finished picture. Straight alpha cannot be blended by fixed function: over a
-    /// transparent picture they are drawn into a layer first.
-    fn furniture_passes(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        input: &FrameInput,
-    ) -> Result<(), GpuError> {
-        let Some(targets) = &self.targets else { return Ok(()) };
-        let furniture = match &mut self.furniture {
-            Some(furniture) => furniture,
-            none => none.insert(FurnitureOnGpu::new(&self.gpu)?),
-        };
-        let whole = input.view.size;
-        furniture.fit(&self.gpu, &self.pipelines, input.furniture, whole, input.tile, input.transparent)?;
-        if furniture.count() == 0 {
-            return Ok(());
-        }
-        let slot = recorder.begin("furniture", "main", &[], true);
-        let mut attachment = color_attachment(&targets.picture.view, wgpu::Color::TRANSPARENT);
-        match furniture.layer() {
-            Some(layer) => attachment.view = layer,
-            None => attachment.ops.load = wgpu::LoadOp::Load,
-        }
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("furniture"),
-            color_attachments: &[Some(attachment)],
-            timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
-            ..Default::default()
-        });
-        if let Some(timer) = &recorder.timer {
-            timer.begin_count(&mut pass, slot);
-        }
-        pass.set_pipeline(self.pipelines.get(&Key::Furniture { layered: input.transparent }));
-        furniture.draw(&mut pass);
-        if let Some(timer) = &recorder.timer {
-            timer.end_count(&mut pass, slot);
-        }
-        drop(pass);
-        recorder.count(1, 2 * u64::from(furniture.count()));
-        let Some(over) = furniture.copied(encoder, &targets.picture.texture) else { return Ok(()) };
-        let slot = recorder.begin("furniture over", "main", &[], false);
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("furniture over"),
-            color_attachments: &[Some(color_attachment(&targets.picture.view, wgpu::Color::TRANSPARENT))],
-            timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
-            ..Default::default()
-        });
-        pass.set_pipeline(self.pipelines.get(&Key::FurnitureOver));
-        pass.set_bind_group(0, over, &[]);
-        pass.draw(0..3, 0..1);
-        drop(pass);
-        recorder.count(1, 1);
-        Ok(())
-    }
-}
-
 /// The pipelines of the shade pass: outside the lenses' bounds, and inside; each for surfaces and for the background.
 #[derive(Clone, Debug, Default)]
 struct ShadeKeys {
@@ -915,15 +690,6 @@ impl Plans {
     }
 }
 
-fn geometry_key(kind: SectionKind, colored: bool, smooth: bool, measured: bool, cut: Option<Program>) -> Key {
-    let section = match kind {
-        SectionKind::Plain => GeometryKind::Plain,
-        SectionKind::Textured { alpha_cutoff, .. } => GeometryKind::Textured(alpha_cutoff.to_bits()),
-        SectionKind::Coplanar => GeometryKind::Coplanar,
-    };
-    Key::Geometry { section, colored, smooth, measured, cut }
-}
-
 /// Whether this sample writes the lens masks.
 fn wants_masks(input: &FrameInput) -> bool {
     input.masks && input.sample == 0
@@ -988,26 +754,6 @@ fn needs(input: &FrameInput, pages: &Pages, colors: bool, smooth: bool, shadows:
     }
 }
 
-/// The bounds of all lenses, if any, and the up to four rectangles around them.
-pub(super) fn split(
-    size: [u32; 2],
-    bounds: impl Iterator<Item = PictureTile>,
-) -> (Option<PictureTile>, Vec<PictureTile>) {
-    let [w, h] = size;
-    let all = bounds.fold(None, |all: Option<[u32; 4]>, b| {
-        let [x0, y0, x1, y1] = [b.origin[0], b.origin[1], b.origin[0] + b.size[0], b.origin[1] + b.size[1]];
-        Some(all.map_or([x0, y0, x1, y1], |a| [a[0].min(x0), a[1].min(y0), a[2].max(x1), a[3].max(y1)]))
-    });
-    let rect = |x0: u32, y0: u32, x1: u32, y1: u32| PictureTile { origin: [x0, y0], size: [x1 - x0, y1 - y0] };
-    match all {
-        None => (None, vec![rect(0, 0, w, h)]),
-        Some([x0, y0, x1, y1]) => (
-            Some(rect(x0, y0, x1, y1)),
-            vec![rect(0, 0, w, y0), rect(0, y1, w, h), rect(0, y0, x0, y1), rect(x1, y0, w, y1)],
-        ),
-    }
-}
-
 pub(super) fn strided<T: bytemuck::Pod>(value: &T) -> Vec<u8> {
     let mut bytes = bytemuck::bytes_of(value).to_vec();
     bytes.resize(STAGE_STRIDE as usize, 0);
@@ -1016,13 +762,6 @@ pub(super) fn strided<T: bytemuck::Pod>(value: &T) -> Vec<u8> {
 
 pub(super) fn scissor(pass: &mut wgpu::RenderPass, part: PictureTile) {
     pass.set_scissor_rect(part.origin[0], part.origin[1], part.size[0], part.size[1]);
-}
-
-fn draw_ranges(pass: &mut wgpu::RenderPass, indices: &wgpu::Buffer, draws: &[Draw]) {
-    pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-    for draw in draws {
-        pass.draw_indexed(draw.clone(), 0, 0..1);
-    }
 }
 
 pub(super) fn color_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {
@@ -1034,33 +773,10 @@ pub(super) fn color_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> 
     }
 }
 
-fn depth_attachment(view: &wgpu::TextureView, clear: f32) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+pub(super) fn depth_attachment(view: &wgpu::TextureView, clear: f32) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment {
         view,
         depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store }),
         stencil_ops: None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_parts_of_a_picture_cover_it_once() {
-        let tile = |x, y, w, h| PictureTile { origin: [x, y], size: [w, h] };
-        for bounds in [vec![], vec![tile(0, 0, 9, 7)], vec![tile(2, 1, 3, 3), tile(4, 3, 4, 4)], vec![tile(8, 6, 1, 1)]]
-        {
-            let (inside, outside) = split([9, 7], bounds.into_iter());
-            let mut hits = [[0; 9]; 7];
-            for part in outside.iter().chain(&inside) {
-                for y in part.origin[1]..part.origin[1] + part.size[1] {
-                    for x in part.origin[0]..part.origin[0] + part.size[0] {
-                        hits[y as usize][x as usize] += 1;
-                    }
-                }
-            }
-            assert!(hits.iter().flatten().all(|&h| h == 1), "{hits:?}");
-        }
     }
 }

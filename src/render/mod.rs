@@ -5,6 +5,7 @@
 //! This room knows no files and no commands.
 
 pub mod city;
+mod city_passes;
 mod curtain;
 mod cut;
 pub mod edges;
@@ -12,6 +13,7 @@ pub mod eye;
 mod filters;
 pub mod frame;
 pub mod furniture;
+mod furniture_passes;
 pub mod hiding;
 pub mod layout;
 pub mod light;
