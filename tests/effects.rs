@@ -366,7 +366,7 @@ fn draws_lines(effects: &[&str]) -> bool {
 /// The passes that a lens with these effects adds to a plain frame, from what the kinds of effects are.
 fn predicted(effects: &[&str]) -> Vec<String> {
     let filters = effects.iter().filter(|e| **e == "blur").count();
-    let mut names = vec!["depth sprites", "geometry", "clear lens masks"];
+    let mut names = vec!["geometry", "clear lens masks"];
     names.extend(draws_lines(effects).then_some("lines"));
     for _ in 0..filters {
         names.extend(["unfiltered", "filter across", "filter down"]);
@@ -392,11 +392,11 @@ fn each_effect_and_each_pair_adds_its_own_passes_and_handlers() {
         let mut wanted = names.clone();
         wanted.sort_unstable();
         assert_eq!(ran, wanted);
-        // Beside geometry: the sprite of a sphere, shading without and with the lens, of surfaces and of the sky.
+        // Beside geometry: shading without and with the lens, of surfaces and of the sky.
         let filters = names.iter().filter(|n| **n == "blur").count();
         let pipelines = statistics.pipelines.names.iter().filter(|n| !n.starts_with("geometry"));
         let lines = usize::from(draws_lines(&names));
-        assert_eq!(pipelines.count(), 1 + 4 + 3 * filters + lines, "{:?}", statistics.pipelines.names);
+        assert_eq!(pipelines.count(), 4 + 3 * filters + lines, "{:?}", statistics.pipelines.names);
     }
 }
 

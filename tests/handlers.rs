@@ -165,7 +165,7 @@ fn the_text_of_a_scene_is_readable_and_says_whose_it_is() {
     let mut scene = scene;
     scene.lenses[0].effects.push(used("wireframe"));
     let part = |part: ShaderPart| studio.shader(&scene, SIZE, Backend::Specialised, part).expect("a text");
-    let wanted = "if is_inside(classes_of_lens_0(fragment)) && wireframe(fragment, wireframe_parameters(";
+    let wanted = "if is_inside(classes_of_lens_0(sight_of(fragment))) && wireframe(fragment, wireframe_parameters(";
     assert!(part(ShaderPart::Geometry).contains(wanted) && part(ShaderPart::Shadow).contains(wanted));
     assert!(part(ShaderPart::Lines).contains("color = wireframe_parameters("));
 }

@@ -104,7 +104,7 @@ fn a_wireframe_has_the_edges_of_polygons_and_no_diagonals() {
     assert!(lines_are_at(&picture, &below, &view, &edges(), &[]) > 200);
     assert_eq!(picture.statistics.handlers, ["wireframe"]);
     let passes: Vec<&str> = picture.statistics.passes.iter().map(|p| p.name.as_str()).collect();
-    assert_eq!(passes, ["depth sprites", "geometry", "clear lens masks", "lines", "shade"]);
+    assert_eq!(passes, ["geometry", "clear lens masks", "lines", "shade"]);
 }
 
 #[test]

@@ -6,8 +6,11 @@ use glam::DVec3;
 use studio::*;
 use veduta::{
     geom::{Aabb, Shape},
-    lens::{Class, LensBody},
-    render::picture::{Aovs, Request, Studio},
+    lens::{Class, Lens, LensBody, LensSprite},
+    render::{
+        picture::{Aovs, Request, Studio},
+        stats::LensFigures,
+    },
     scene::{BaseStyle, Scene},
     view::{Camera, View},
 };
@@ -80,12 +83,29 @@ fn masks_of_all_shapes_are_right_to_the_pixel() {
         Camera::looking(at + DVec3::new(6.0, 3.0, -6.0), at + DVec3::new(60.0, 30.0, 0.0), 1.1),
     ] {
         for r in [12.0, 45.0] {
-            let lenses: Vec<_> = shapes(at, r).into_iter().map(|shape| lens("any", vec![shape], "greyscale")).collect();
+            // From its figures, and by its sprite.
+            let one = |(i, (shape, sprite)): (usize, (Shape, Option<LensSprite>))| Lens {
+                sprite,
+                ..lens(&format!("any {i}"), vec![shape], "greyscale")
+            };
+            let twice = |shape: Shape| [(shape.clone(), None), (shape, Some(LensSprite::default()))];
+            let lenses: Vec<_> = shapes(at, r).into_iter().flat_map(twice).enumerate().map(one).collect();
             let scene = scene(camera, lenses);
             let drawn = picture(&mut studio, &scene, SIZE);
             let view = view(camera, SIZE);
             for (i, lens) in scene.lenses.iter().enumerate() {
-                assert_eq!(wrong_pixels(&drawn, &view, lens, i, 1.0), 0, "{:?} from {}", lens.shapes[0], camera.eye);
+                let (wrong, of) = (wrong_pixels(&drawn, &view, lens, i), &lens.shapes[0]);
+                assert_eq!(wrong, 0, "{of:?} from {}, sprite {:?}", camera.eye, lens.sprite);
+            }
+            // The other classes: both tests look at the same ray.
+            for pair in drawn.statistics.lenses.as_chunks::<2>().0 {
+                let counts = |lens: &LensFigures| {
+                    let c = &lens.classified;
+                    [c.front, c.inside, c.behind, c.rest].map(|n| n.expect("a count"))
+                };
+                let apart: Vec<u64> =
+                    counts(&pair[0]).iter().zip(counts(&pair[1])).map(|(a, b)| a.abs_diff(b)).collect();
+                assert!(apart.iter().all(|&n| n <= 4), "{:?} and {:?}", counts(&pair[0]), counts(&pair[1]));
             }
         }
     }
@@ -100,7 +120,7 @@ fn several_volumes_of_one_lens_are_one_focus() {
     let camera = Camera::looking(at + DVec3::new(90.0, -120.0, 70.0), at, 0.9);
     let scene = scene(camera, vec![both]);
     let drawn = picture(&mut studio, &scene, SIZE);
-    assert_eq!(wrong_pixels(&drawn, &view(camera, SIZE), &scene.lenses[0], 0, 1.0), 0);
+    assert_eq!(wrong_pixels(&drawn, &view(camera, SIZE), &scene.lenses[0], 0), 0);
     assert!(bits(&drawn, 0).contains(&true));
 }
 

@@ -9,7 +9,12 @@ struct Fragment {
     object: u32,                // or NO_OBJECT
     part: u32,                  // PART_*
     normal: vec3f,              // unit, of its face
+    ray: Ray,                   // of the main view, through it
     is_parallel: bool,          // whether the main view's rays are: it is orthographic
+}
+
+fn sight_of(fragment: Fragment) -> Sight {
+    return Sight(fragment.pixel, fragment.depth, fragment.ray, -fragment.position.z, fragment.position, fragment.is_parallel);
 }
 
 fn part_of(surface: Surface) -> u32 {

@@ -1,41 +1,29 @@
-// The volumetric depth test (S5), on the sprites of the lens volumes in view.
+// The lens test from the shapes themselves (S7), for whatever has a closed form.
+//
+// Inside is asked of the place and needs no ray. Only what is not inside asks on which side of the volume it lies, and
+// whether its ray meets the volume at all. The volumes are convex: what is outside and nearer than the middle of the ray's
+// way through is in front.
 
-struct LensVolume {
-    @align(16) origin: vec2i,   // of its screen bounds, pixels
-    size: vec2i,
-    texels_per_pixel: vec2f,    // sprite against target
-    sprite: vec2f,              // texel that stands for the picture's corner, in the page
-    page: u32,
+fn class_in_shape(s: Shape, kind: u32, sight: Sight) -> u32 {
+    let span = span_of_shape(sight.ray, s, kind);
+    // Perspective rays start at the eye: what lies behind it is not seen, and nobody there looks past a lens.
+    let starts_at_eye = !sight.is_parallel;
+    let is_missed = span.enter > span.exit || (starts_at_eye && (span.exit <= 0.0 || sight.distance <= 0.0));
+    let side = select(BEHIND, FRONT, sight.distance < 0.5 * (span.enter + span.exit));
+    return inside_shape(s, kind, sight) | select(side, MISSED, is_missed || is_in_shape(s, kind, sight));
 }
 
-@group(2) @binding(0) var sprites: texture_2d_array<f32>;    // stored depth of the entry, and of the exit
-
-// Twin: `veduta::lens::classify`. On stored depths, which fall with distance: every comparison of S5 is turned
-// round, and none needs a division. An entry of 0 says that the eye is inside; a depth of 0, that nothing is there.
-fn classify(depth: f32, entry: f32, exit: f32) -> u32 {
-    return select(select(BEHIND, INSIDE, depth > exit), FRONT, entry > 0.0 && depth > entry);
+// INSIDE or nothing, for lenses that ask for no other class.
+fn inside_shape(s: Shape, kind: u32, sight: Sight) -> u32 {
+    return select(MISSED, INSIDE, is_in_shape(s, kind, sight));
 }
 
-fn is_in_bounds(v: LensVolume, pixel: vec2i) -> bool {
-    return all(pixel >= v.origin) && all(pixel < v.origin + v.size);
+fn is_in_shape(s: Shape, kind: u32, sight: Sight) -> bool {
+    return sight.distance < FAR_AWAY && holds(s, kind, sight.position);
 }
 
-fn sprite_texel(v: LensVolume, pixel: vec2i) -> vec2i {
-    return vec2i((vec2f(pixel) + 0.5) * v.texels_per_pixel + v.sprite);
-}
-
-// Exits hold 1, their clear value, where the ray misses the volume.
-fn covers(v: LensVolume, pixel: vec2i) -> bool {
-    return is_in_bounds(v, pixel) && textureLoad(sprites, sprite_texel(v, pixel), v.page, 0).y != 1.0;
-}
-
-// At a pixel within the volume's screen bounds.
-fn class_within(v: LensVolume, pixel: vec2i, depth: f32) -> u32 {
-    let ends = textureLoad(sprites, sprite_texel(v, pixel), v.page, 0).xy;
-    return select(MISSED, classify(depth, ends.x, ends.y), ends.y != 1.0);
-}
-
-// At any pixel.
-fn class_in(v: LensVolume, pixel: vec2i, depth: f32) -> u32 {
-    return select(MISSED, class_within(v, pixel, depth), is_in_bounds(v, pixel));
+// Whether the ray of a pixel's centre meets the volume.
+fn covers_shape(s: Shape, kind: u32, pixel: vec2i) -> bool {
+    let span = span_of_shape(ray_of_pixel(vec2f(pixel) + 0.5), s, kind);
+    return span.enter <= span.exit && (span.exit > 0.0 || view.orthographic == 1u);
 }

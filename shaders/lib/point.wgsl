@@ -23,7 +23,6 @@ struct Point {
 }
 
 const NO_SURFACE: u32 = 0xffffffffu;
-const FAR_AWAY: f32 = 1e30;
 
 @group(1) @binding(6) var codes: texture_2d<u32>;
 @group(1) @binding(7) var scene_depth: texture_depth_2d;

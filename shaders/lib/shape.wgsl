@@ -1,25 +1,23 @@
-// Lens volumes along a ray, in view space (L3, S1). The host computes every figure relative to the
+// Lens volumes, in view space (L3): whether they hold a place, and where they are along a ray (S1). The host computes every figure relative to the
 // eye in f64 before it rounds to f32; `crate::geom::Shape` is the f64 twin of the functions here.
 
 struct Shape {
     center: vec3f,              // metres
     kind: u32,                  // SPHERE, BOX, ...
     axis_x: vec3f,              // unit; box: its x edge
-    size_x: f32,                // sphere, cylinder: radius; box: half edge along axis_x
+    size_x: f32,                // sphere, cylinder: radius; box: half edge along axis_x; convex: number of its first plane
     axis_y: vec3f,              // box: its y edge
-    size_y: f32,
+    size_y: f32,                // box: half edge; convex: how many planes
     axis_z: vec3f,              // box: its z edge; cylinder: its axis
     size_z: f32,                // box: half edge; cylinder: half height
-    first_plane: u32,           // convex: its planes
-    plane_count: u32,
-    lens: u32,                  // which lens it belongs to, from 0
-    reserved: u32,
 }
 
 const SPHERE: u32 = 0u;
 const BOX: u32 = 1u;
 const CYLINDER: u32 = 2u;
 const CONVEX: u32 = 3u;
+// Not a shape: the volume is tested by its depth sprite.
+const SPRITE: u32 = 4u;
 
 // Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
 struct Span {
@@ -28,8 +26,6 @@ struct Span {
 }
 
 const EMPTY_SPAN = Span(1.0, -1.0);
-// "For ever": beyond any city, far below f32's overflow.
-const FAR_AWAY: f32 = 1e30;
 
 // The closest approach to the centre is subtracted as a vector, so the discriminant does not cancel
 // however far the sphere is (Hearn & Baker's form, cf. Ray Tracing Gems, ch. 7).
@@ -46,6 +42,11 @@ fn span_of_sphere(ray: Ray, center: vec3f, radius: f32) -> Span {
     return Span(middle - half, middle + half);
 }
 
+fn sphere_holds(s: Shape, p: vec3f) -> bool {
+    let o = p - s.center;
+    return dot(o, o) <= s.size_x * s.size_x;
+}
+
 // Between two parallel planes at -size and +size from the centre. A direction along the planes is
 // replaced by 2^-80, which keeps the answer of the ray's side.
 fn span_of_slab(offset: f32, slope: f32, size: f32) -> Span {
@@ -59,12 +60,24 @@ fn meet(a: Span, b: Span) -> Span {
     return Span(max(a.enter, b.enter), min(a.exit, b.exit));
 }
 
+fn box_holds(s: Shape, p: vec3f) -> bool {
+    let o = p - s.center;
+    return abs(dot(o, s.axis_x)) <= s.size_x && abs(dot(o, s.axis_y)) <= s.size_y && abs(dot(o, s.axis_z)) <= s.size_z;
+}
+
 fn span_of_box(ray: Ray, s: Shape) -> Span {
     let o = ray.origin - s.center;
     return meet(
         span_of_slab(dot(o, s.axis_x), dot(ray.direction, s.axis_x), s.size_x),
         meet(span_of_slab(dot(o, s.axis_y), dot(ray.direction, s.axis_y), s.size_y),
              span_of_slab(dot(o, s.axis_z), dot(ray.direction, s.axis_z), s.size_z)));
+}
+
+fn cylinder_holds(s: Shape, p: vec3f) -> bool {
+    let o = p - s.center;
+    let along = dot(o, s.axis_z);
+    let across = o - along * s.axis_z;
+    return abs(along) <= s.size_z && dot(across, across) <= s.size_x * s.size_x;
 }
 
 fn span_of_cylinder(ray: Ray, s: Shape) -> Span {
@@ -92,9 +105,19 @@ fn span_of_cylinder(ray: Ray, s: Shape) -> Span {
 
 @group(1) @binding(1) var<storage, read> planes: array<vec4f>; // n, d: inside where n.p <= d
 
-fn span_of_planes(ray: Ray, first: u32, count: u32) -> Span {
+fn convex_holds(s: Shape, p: vec3f) -> bool {
+    var is_below = true;
+    let first = u32(s.size_x);
+    for (var i = first; i < first + u32(s.size_y); i++) {
+        is_below = is_below && dot(planes[i].xyz, p) <= planes[i].w;
+    }
+    return is_below;
+}
+
+fn span_of_convex(ray: Ray, s: Shape) -> Span {
     var span = Span(-FAR_AWAY, FAR_AWAY);
-    for (var i = first; i < first + count; i++) {
+    let first = u32(s.size_x);
+    for (var i = first; i < first + u32(s.size_y); i++) {
         let plane = planes[i];
         let slope = dot(plane.xyz, ray.direction);
         let room = plane.w - dot(plane.xyz, ray.origin);
@@ -118,6 +141,16 @@ fn span_of_shape(ray: Ray, s: Shape, kind: u32) -> Span {
         case SPHERE: { return span_of_sphere(ray, s.center, s.size_x); }
         case BOX: { return span_of_box(ray, s); }
         case CYLINDER: { return span_of_cylinder(ray, s); }
-        default: { return span_of_planes(ray, s.first_plane, s.plane_count); }
+        default: { return span_of_convex(ray, s); }
+    }
+}
+
+// `kind`: as above.
+fn holds(s: Shape, kind: u32, p: vec3f) -> bool {
+    switch kind {
+        case SPHERE: { return sphere_holds(s, p); }
+        case BOX: { return box_holds(s, p); }
+        case CYLINDER: { return cylinder_holds(s, p); }
+        default: { return convex_holds(s, p); }
     }
 }

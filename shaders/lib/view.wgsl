@@ -35,6 +35,9 @@ fn clip_from_relative(relative: vec3f) -> vec4f {
     return vec4f(p.xy * view.projection.xy + view.projection.zw * distance, view.near, distance);
 }
 
+// "For ever": beyond any city, far below f32's overflow.
+const FAR_AWAY: f32 = 1e30;
+
 // A pixel's ray: the points origin + D * direction, in view space.
 struct Ray {
     origin: vec3f,

@@ -54,7 +54,7 @@ fn fragment(in: Line) -> Pixel {
     point.natural = surface.color;
     point.base = surface.color;
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + point.relative.z;
-    let fragment = Fragment(pixel, depth, position, height, in.surfaces.x, surface.object, part_of(surface), point.normal,
+    let fragment = Fragment(pixel, depth, position, height, in.surfaces.x, surface.object, part_of(surface), point.normal, ray,
                             view.orthographic == 1u);
     // The same place, on the other face: a line stays as long as one of its faces does.
     let beyond = surface_at(in.surfaces.y);
@@ -63,7 +63,7 @@ fn fragment(in: Line) -> Pixel {
     other.object = beyond.object;
     other.part = part_of(beyond);
     other.normal = decode_normal(beyond.normal);
-    let seen = line_at(stage.step, point, fragment, other, classes_at(pixel, depth, 1u));
+    let seen = line_at(stage.step, point, fragment, other, classes_at(sight_at(pixel, ray, depth), 1u));
     let opacity = seen.a * edge_coverage(in.line, stage.width);
     return Pixel(vec4f(seen.rgb * opacity, opacity), edge_depth(in.line, in.ends, in.face_a, in.face_b, in.along));
 }

@@ -36,8 +36,9 @@ fn finished(paint: vec4f, point: Point, pixel: vec2i, classes: Classes) -> vec4f
 @fragment
 fn surface(in: Corner) -> @location(0) vec4f {
     let pixel = vec2i(in.clip.xy);
-    var point = point_at(pixel, ray_of_pixel(in.clip.xy), textureLoad(scene_depth, pixel, 0));
-    let classes = classes_at(pixel, point.depth, in.part);
+    let ray = ray_of_pixel(in.clip.xy);
+    var point = point_at(pixel, ray, textureLoad(scene_depth, pixel, 0));
+    let classes = classes_at(sight_at(pixel, ray, point.depth), in.part);
     return finished(vec4f(shade(&point, classes), 1.0), point, pixel, classes);
 }
 
@@ -45,13 +46,14 @@ fn surface(in: Corner) -> @location(0) vec4f {
 @fragment
 fn background(in: Corner) -> @location(0) vec4f {
     let pixel = vec2i(in.clip.xy);
+    let ray = ray_of_pixel(in.clip.xy);
     var paint = vec4f(0.0);
     if BACKGROUND == SKY {
-        paint = vec4f(sky_color(ray_of_pixel(in.clip.xy).direction * view.view_from_world), 1.0);
+        paint = vec4f(sky_color(ray.direction * view.view_from_world), 1.0);
     } else if BACKGROUND == ONE_COLOR {
         paint = vec4f(light.zenith, 1.0);
     }
     let point = nowhere(pixel);
-    let classes = classes_at(pixel, 0.0, in.part);
+    let classes = classes_at(sight_at(pixel, ray, 0.0), in.part);
     return finished(vec4f(styled(paint.rgb, point, classes), paint.a), point, pixel, classes);
 }

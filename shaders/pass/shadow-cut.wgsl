@@ -23,8 +23,16 @@ fn vertex(@location(0) origin: vec3i, @location(1) surface: u32, @location(2) po
 @fragment
 fn fragment(in: Varying) {
     let surface = surface_at(in.surface);
+    let is_parallel = in.is_parallel == 1u;
+    // Behind the eye there is none; nobody asks for it there.
+    let distance = max(-in.position.z, 1e-30);
+    let along = vec3f(0.0, 0.0, -1.0);
+    var ray = Ray(vec3f(in.position.xy, 0.0), along);
+    if !is_parallel {
+        ray = Ray(vec3f(0.0), vec3f(in.position.xy / distance, -1.0));
+    }
     let fragment = Fragment(vec2i(in.clip.xy), in.clip.z, in.position, in.height, in.surface, surface.object,
-                            part_of(surface), decode_normal(surface.normal), in.is_parallel == 1u);
+                            part_of(surface), decode_normal(surface.normal), ray, is_parallel);
     if !visible(fragment) {
         discard;
     }

@@ -116,7 +116,7 @@ mod tests {
             shapes: vec![],
             effects,
             body: Default::default(),
-            sprite_resolution: None,
+            sprite: None,
         }
     }
 

@@ -32,8 +32,8 @@ pub struct Lens {
     pub effects: Vec<EffectUse>,
     /// How the lens body itself is drawn (L5).
     pub body: LensBody,
-    /// Pixels of its depth sprite along the longer side of the picture; `None`: as many as the picture has.
-    pub sprite_resolution: Option<u32>,
+    /// The volumetric depth sprite that it is tested by; `None`: from its shapes (S7).
+    pub sprite: Option<LensSprite>,
 }
 
 /// Kinds of lenses this version has.
@@ -42,6 +42,13 @@ pub enum LensKind {
     /// Restyles what is in it (K1).
     #[default]
     Color,
+}
+
+/// The volumetric depth sprite of a lens (S1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LensSprite {
+    /// Texels along the longer side of the picture; `None`: one per pixel.
+    pub resolution: Option<u32>,
 }
 
 /// How a lens body is drawn (L5).

@@ -80,7 +80,7 @@ pub fn lens(name: &str, shape: Shape, effects: &[&str]) -> Lens {
         shapes: vec![shape],
         effects: effects.iter().map(use_of).collect(),
         body: LensBody::None,
-        sprite_resolution: None,
+        sprite: None,
     }
 }
 

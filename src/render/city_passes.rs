@@ -155,7 +155,6 @@ impl Renderer {
             timer.begin_count(&mut pass, slot);
         }
         pass.set_bind_group(0, &groups.view, &[]);
-        pass.set_bind_group(1, &city.group, &[]);
         let mut counted = (0, 0);
         for ((section, image), chunks) in city.buffers.sections.iter().zip(&city.images).zip(chunks) {
             if chunks.is_empty() {
@@ -174,6 +173,7 @@ impl Renderer {
                 if program.is_some() {
                     pass.set_bind_group(2, &groups.lenses, &[]);
                 }
+                pass.set_bind_group(1, if program.is_some() { &groups.cut_city } else { &city.group }, &[]);
                 let key = geometry_key(section.kind, colored, city.buffers.smooth, input.measured, program);
                 pass.set_pipeline(self.pipelines.get(&key));
                 draw_ranges(&mut pass, &section.indices, &draws);

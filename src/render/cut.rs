@@ -9,6 +9,7 @@ use crate::{
         frame::FrameInput,
         hiding::Hiding,
         layout,
+        volume::shape_test,
     },
     shader::{Plan, Program, handlers},
     view::View,
@@ -56,9 +57,9 @@ impl Cuts {
     }
 
     /// From the invoker table.
-    pub fn uber(&self, hiding: Option<Program>) -> CutPrograms {
-        let program = |cut: &Option<Cut>| cut.as_ref().and(hiding.clone());
-        CutPrograms { picture: program(&self.picture), sun: program(&self.sun) }
+    pub fn uber(&self, [picture, sun]: [Option<Program>; 2]) -> CutPrograms {
+        let program = |cut: &Option<Cut>, hiding: Option<Program>| cut.as_ref().and(hiding);
+        CutPrograms { picture: program(&self.picture, picture), sun: program(&self.sun, sun) }
     }
 }
 
@@ -103,7 +104,9 @@ impl Cuts {
             let hiding = hiding(&|lens| {
                 input.volumes.iter().any(|v| v.lens == lens && (v.everywhere || frustum.meets(&v.bounds)))
             });
-            let own = input.volumes.iter().map(|v| v.lens).filter(|lens| hiding.lenses.contains(lens));
+            let own = input.volumes.iter().filter(|v| hiding.lenses.contains(&v.lens));
+            // What the picture's sprites hold says nothing of what only the sun sees.
+            let own = own.map(|v| (v.lens, shape_test(&v.volume)));
             let plan = input.operations.lens_plan(&own.collect::<Vec<_>>(), false, false).hiding(handlers());
             of(hiding, plan)
         });

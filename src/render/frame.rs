@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! shadow map                    if the sun casts shadows and the map does not hold this view yet
-//! depth sprites                 of all lens volumes in view
+//! depth sprites                 of the lens volumes in view that are tested by them
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
 //! lines                         edges, where effects draw them
@@ -19,7 +19,7 @@ use glam::DVec2;
 
 use crate::{
     gpu::{GpuError, Slot, Timer},
-    lens::Lens,
+    lens::{Lens, LensSprite},
     render::{
         city::{CityBuffers, Section, SectionKind, draws_of},
         city_passes::{draw_ranges, geometry_key},
@@ -33,10 +33,10 @@ use crate::{
         renderer::{Renderer, STAGE_STRIDE},
         sprites::{self, Pages, Place},
         targets::Needs,
-        volume::LensVolume,
+        volume::{LensVolume, shape_test},
     },
     scene::{Background, BaseStyle, Sun},
-    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, Uber, handlers},
+    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, Uber, VolumeTest, handlers},
     view::View,
 };
 
@@ -64,8 +64,6 @@ pub struct FrameInput<'a> {
     pub volumes: &'a [LensVolume],
     /// How many lenses the scene has, disabled ones included.
     pub lens_count: u32,
-    /// Sprite resolution of each volume's lens: texels along the longer side, `None` = one per pixel.
-    pub sprite_resolution: &'a [Option<u32>],
     /// What the context and the lenses do.
     pub operations: &'a Operations,
     /// How shaders are made of that.
@@ -129,10 +127,20 @@ pub struct PassRecord {
 pub(super) struct SeenVolume {
     index: usize,
     pub lens: u32,
-    kind: u32,
+    test: VolumeTest,
     pub bounds: PictureTile,
-    /// The part of the sprite that is kept, texels.
-    sprite_bounds: PictureTile,
+    /// Of one that is tested by its sprite.
+    sprite: Option<SeenSprite>,
+}
+
+/// The sprite of a volume that may be seen.
+struct SeenSprite {
+    /// The kind of shape that makes it.
+    shape: VolumeTest,
+    /// Its width and height, texels.
+    size: [u32; 2],
+    /// The part of it that is kept, texels.
+    bounds: PictureTile,
     /// Where it is kept.
     place: Place,
 }
@@ -180,7 +188,7 @@ impl Renderer {
         self.fit_targets(Needs {
             filters,
             lines: !lines.is_empty(),
-            ..needs(input, &pages, self.colored(), self.smooth(), sun_view.is_some())
+            ..needs(input, !seen.is_empty(), &pages, self.colored(), self.smooth(), sun_view.is_some())
         });
         let cuts =
             Cuts::new(input, |lens| seen.iter().any(|v| v.lens == lens), sun_view.as_ref(), plans.hiding.clone());
@@ -196,7 +204,7 @@ impl Renderer {
             self.shadow_pass(&mut encoder, &mut recorder, input, sun_view, (&cuts, &keys.cuts));
         }
         // Before the city: what a lens hides is decided by them.
-        if !seen.is_empty() {
+        if pages.count > 0 {
             self.sprite_passes(&mut encoder, &mut recorder, &seen);
         }
         encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?;
@@ -262,10 +270,16 @@ impl Renderer {
             Backend::Specialised => plan.map(Program::Specialised),
             Backend::Uber | Backend::Adaptive => uber.map(Program::Uber),
         };
+        let [picture, sun] = operations.uber_hiding();
+        let by_shapes = |mut plan: Plan| {
+            let shapes = seen.iter().map(|v| shape_test(&input.volumes[v.index].volume));
+            plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).zip(shapes).for_each(|(test, shape)| *test = shape);
+            plan
+        };
         let module = match part {
             ShaderPart::Shade => Module::Shade(shade),
-            ShaderPart::Geometry => Module::Geometry(of(plans.hiding, operations.uber_hiding())),
-            ShaderPart::Shadow => Module::Shadow(of(plans.hiding, operations.uber_hiding())),
+            ShaderPart::Geometry => Module::Geometry(of(plans.hiding, picture)),
+            ShaderPart::Shadow => Module::Shadow(of(plans.hiding.map(by_shapes), sun)),
             ShaderPart::Lines => match of(plans.lining, operations.uber_lining()) {
                 Some(program) => Module::Lines(program),
                 None => return "// Nothing draws lines.\n".to_owned(),
@@ -317,15 +331,20 @@ impl Renderer {
         let haze = haze(input) / radius;
         let view = view_uniform(&input.view, input.tile, jitter, input.sample, haze);
         let light = light::uniform(&input.sun, input.background, sun, input.view.camera.eye, radius);
-        let (mut stages, mut volumes, mut planes) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut stages, mut volumes, mut shapes, mut planes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for volume in seen {
-            let scale: [f32; 2] =
-                std::array::from_fn(|i| sprite_size(input, volume.lens)[i] as f32 / input.tile.size[i] as f32);
+            let shape = input.volumes[volume.index].figures(&input.view, &mut planes);
+            shapes.push(layout::Shape { kind: volume.test.number(), ..shape });
+            let Some(sprite) = &volume.sprite else {
+                volumes.push(bytemuck::Zeroable::zeroed());
+                continue;
+            };
+            let scale: [f32; 2] = std::array::from_fn(|i| sprite.size[i] as f32 / input.tile.size[i] as f32);
             // From the sprite's own texels to those of its page.
             let shift: [f32; 2] =
-                std::array::from_fn(|i| volume.place.origin[i] as f32 - volume.sprite_bounds.origin[i] as f32);
+                std::array::from_fn(|i| sprite.place.origin[i] as f32 - sprite.bounds.origin[i] as f32);
             stages.extend(strided(&layout::SpriteStage {
-                shape: input.volumes[volume.index].figures(&input.view, &mut planes),
+                shape,
                 pixels_per_texel: scale.map(|s| 1.0 / s),
                 origin: shift.map(|s| -s),
             }));
@@ -334,7 +353,7 @@ impl Renderer {
                 size: volume.bounds.size.map(|s| s as i32),
                 texels_per_pixel: scale,
                 sprite: shift,
-                page: volume.place.page,
+                page: sprite.place.page,
                 pad_0: [0; 3],
             });
         }
@@ -354,6 +373,7 @@ impl Renderer {
         stale |= b.filter_stages.sync(gpu, &filter_stages)?;
         if is_uber {
             volumes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
+            shapes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             stale |= b.invokers.sync(gpu, &plans.table().unwrap_or_default())?;
         }
         stale |= b.view.sync(gpu, &[view])?;
@@ -375,6 +395,7 @@ impl Renderer {
         stale |= b.planes.sync(gpu, &planes)?;
         stale |= b.sprite_stages.sync(gpu, &stages)?;
         stale |= b.volumes.sync(gpu, &volumes)?;
+        stale |= b.lens_shapes.sync(gpu, &shapes)?;
         stale |= b.parameters.sync(gpu, &parameters)?;
         stale |= b.object_values.sync(gpu, &input.operations.object_values)?;
         stale |= b.resolve.sync(gpu, &[input.samples as f32])?;
@@ -411,9 +432,7 @@ impl Renderer {
             let sections = sections.flat_map(|section| picture.map(|program| of_section(section, program)));
             sections.chain(sun.map(|program| Key::Shadow(Some(program.clone())))).collect()
         };
-        for volume in seen {
-            keys.push(Key::Sprite(volume.kind));
-        }
+        keys.extend(seen.iter().filter_map(|v| v.sprite.as_ref()).map(|s| Key::Sprite(s.shape)));
         let clay = input.base == BaseStyle::Clay;
         let smooth = city.buffers.smooth;
         let shade_to = |target, surface, program: Program| Key::Shade {
@@ -457,8 +476,8 @@ impl Renderer {
         };
         let uber = || {
             let uber = Program::Uber(input.operations.uber(haze(input) > 0.0, wants_masks(input)));
-            let hiding = input.operations.uber_hiding().map(Program::Uber);
-            let city = cut_keys(hiding.as_ref(), hiding.as_ref().filter(|_| shadows));
+            let hiding = input.operations.uber_hiding().map(|uber| uber.map(Program::Uber));
+            let city = cut_keys(hiding[0].as_ref(), hiding[1].as_ref().filter(|_| shadows));
             parts(uber.clone(), uber, city, cuts.uber(hiding), input.operations.uber_lining().map(Program::Uber))
         };
         let shade_keys = match input.backend {
@@ -510,12 +529,13 @@ impl Renderer {
         }
     }
 
-    /// The volumetric depth sprites (S1) of all volumes in view, page by page.
+    /// The volumetric depth sprites (S1) of the volumes in view that are tested by them, page by page.
     fn sprite_passes(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, seen: &[SeenVolume]) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
         for (page, view) in targets.sprites.layers.iter().enumerate() {
-            let here = || seen.iter().enumerate().filter(|(_, v)| v.place.page as usize == page);
-            let mut lenses: Vec<u32> = here().map(|(_, v)| v.lens).collect();
+            let sprites = || seen.iter().filter_map(|v| Some((v.lens, v.sprite.as_ref()?))).enumerate();
+            let here = || sprites().filter(|(_, (_, sprite))| sprite.place.page as usize == page);
+            let mut lenses: Vec<u32> = here().map(|(_, (lens, _))| lens).collect();
             lenses.dedup();
             let slot = recorder.begin("depth sprites", "main", &lenses, true);
             // Every texel that is read is written first.
@@ -532,10 +552,10 @@ impl Renderer {
             }
             pass.set_bind_group(0, &groups.view, &[]);
             pass.set_bind_group(1, &groups.planes, &[]);
-            for (stage, volume) in here() {
-                pass.set_pipeline(self.pipelines.get(&Key::Sprite(volume.kind)));
+            for (stage, (_, sprite)) in here() {
+                pass.set_pipeline(self.pipelines.get(&Key::Sprite(sprite.shape)));
                 pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
-                scissor(&mut pass, PictureTile { origin: volume.place.origin, size: volume.sprite_bounds.size });
+                scissor(&mut pass, PictureTile { origin: sprite.place.origin, size: sprite.bounds.size });
                 pass.draw(0..3, 0..1);
             }
             if let Some(timer) = &recorder.timer {
@@ -660,9 +680,10 @@ impl Plans {
         let haze = haze(input) > 0.0;
         let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         let filters = input.operations.filters(&lenses, haze);
+        let volumes: Vec<(u32, VolumeTest)> = seen.iter().map(|v| (v.lens, v.test)).collect();
         let lenses = match seen.is_empty() {
             true => Plan::default(),
-            false => input.operations.lens_plan(&lenses, haze, wants_masks(input)),
+            false => input.operations.lens_plan(&volumes, haze, wants_masks(input)),
         };
         let context = input.operations.context_plan(haze);
         let whole = if seen.is_empty() { &context } else { &lenses };
@@ -705,11 +726,10 @@ fn haze(input: &FrameInput) -> f64 {
     if input.view.is_orthographic() || input.base == BaseStyle::Clay { 0.0 } else { input.haze }
 }
 
-/// Texels of a lens' sprite.
-fn sprite_size(input: &FrameInput, lens: u32) -> [u32; 2] {
+/// Texels of a sprite.
+fn sprite_size(input: &FrameInput, sprite: LensSprite) -> [u32; 2] {
     let size = input.tile.size;
-    let wanted = input.sprite_resolution.get(lens as usize).copied().flatten();
-    let Some(longer) = wanted else { return size };
+    let Some(longer) = sprite.resolution else { return size };
     // The resolution is one of the whole picture; a tile of it has its share.
     let scale = f64::from(longer) / f64::from(input.view.size[0].max(input.view.size[1]));
     size.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, 16_384))
@@ -719,34 +739,40 @@ fn seen_volumes(input: &FrameInput) -> (Vec<SeenVolume>, Pages) {
     let mut seen = Vec::new();
     for (index, volume) in input.volumes.iter().enumerate() {
         let Some(bounds) = volume.screen_bounds(&input.view, input.tile) else { continue };
-        let sprite = sprite_size(input, volume.lens);
+        let (lens, test) = (volume.lens, volume.test());
+        let Some(sprite) = volume.sprite else {
+            seen.push(SeenVolume { index, lens, test, bounds, sprite: None });
+            continue;
+        };
+        let sprite = sprite_size(input, sprite);
         let to_texel = |i: usize, pixel: u32| f64::from(pixel) * f64::from(sprite[i]) / f64::from(input.tile.size[i]);
         let low: [u32; 2] = std::array::from_fn(|i| to_texel(i, bounds.origin[i]).floor() as u32);
         let high: [u32; 2] =
             std::array::from_fn(|i| (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i]));
         let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
-        let (lens, kind) = (volume.lens, volume.kind());
-        seen.push(SeenVolume { index, lens, kind, bounds, sprite_bounds, place: Place::default() });
+        let shape = shape_test(&volume.volume);
+        let sprite = Some(SeenSprite { shape, size: sprite, bounds: sprite_bounds, place: Place::default() });
+        seen.push(SeenVolume { index, lens, test, bounds, sprite });
     }
-    if seen.is_empty() {
+    let sizes: Vec<[u32; 2]> = seen.iter().filter_map(|v| v.sprite.as_ref()).map(|s| s.bounds.size).collect();
+    if sizes.is_empty() {
         return (seen, Pages::default());
     }
-    let sizes: Vec<[u32; 2]> = seen.iter().map(|v| v.sprite_bounds.size).collect();
     let pages = sprites::arrange(&sizes);
-    for (volume, place) in seen.iter_mut().zip(&pages.places) {
-        volume.place = *place;
+    for (sprite, place) in seen.iter_mut().filter_map(|v| v.sprite.as_mut()).zip(&pages.places) {
+        sprite.place = *place;
     }
     (seen, pages)
 }
 
-fn needs(input: &FrameInput, pages: &Pages, colors: bool, smooth: bool, shadows: bool) -> Needs {
+fn needs(input: &FrameInput, has_lenses: bool, pages: &Pages, colors: bool, smooth: bool, shadows: bool) -> Needs {
     Needs {
         size: input.tile.size,
         colors,
         smooth,
         own_depth: input.measured,
         sums: input.samples > 1,
-        mask_layers: if input.masks && pages.count > 0 { 3 * input.lens_count.div_ceil(32) } else { 0 },
+        mask_layers: if input.masks && has_lenses { 3 * input.lens_count.div_ceil(32) } else { 0 },
         sprites: [pages.size[0], pages.size[1], pages.count],
         filters: 0,
         lines: false,

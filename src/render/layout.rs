@@ -98,20 +98,7 @@ pub struct Shape {
     pub size_y: f32,
     pub axis_z: [f32; 3],
     pub size_z: f32,
-    pub first_plane: u32,
-    pub plane_count: u32,
-    pub lens: u32,
-    pub reserved: u32,
 }
-
-/// `lib/shape.wgsl`: kinds of shapes.
-pub const SPHERE: u32 = 0;
-/// `lib/shape.wgsl`.
-pub const BOX: u32 = 1;
-/// `lib/shape.wgsl`.
-pub const CYLINDER: u32 = 2;
-/// `lib/shape.wgsl`.
-pub const CONVEX: u32 = 3;
 
 /// `lib/light.wgsl`.
 #[repr(C)]
@@ -222,7 +209,7 @@ pub struct FurnitureItem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::{Module, Plan, PlanLens, Program, Uber};
+    use crate::shader::{Module, Plan, PlanLens, Program, Uber, VolumeTest};
 
     type Fields = Vec<(&'static str, usize)>;
 
@@ -261,7 +248,7 @@ mod tests {
 
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
-        let lens = PlanLens { number: 0, volumes: 1, outline: None };
+        let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], outline: None };
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
@@ -285,23 +272,7 @@ mod tests {
                     pad_2
                 }),
             ),
-            (
-                &Module::Sprite,
-                host!(Shape {
-                    center,
-                    kind,
-                    axis_x,
-                    size_x,
-                    axis_y,
-                    size_y,
-                    axis_z,
-                    size_z,
-                    first_plane,
-                    plane_count,
-                    lens,
-                    reserved
-                }),
-            ),
+            (&Module::Sprite, host!(Shape { center, kind, axis_x, size_x, axis_y, size_y, axis_z, size_z })),
             (
                 &shade,
                 host!(Light {

@@ -12,7 +12,7 @@ use crate::{
     render::palette,
     shader::{
         self, Blend, ClassTest, EffectDefinition, EffectKind, MOST_INVOKERS, PerObject, Plan, PlanLens, Scope, Step,
-        Uber, scope_number,
+        Uber, VolumeTest, scope_number,
     },
 };
 
@@ -72,18 +72,24 @@ pub struct Operations {
     pub object_values: Vec<u32>,
     /// What any frame of the scene may ask for, disabled lenses included.
     uber: Uber,
+    /// How their volumes are tested where sprites say nothing: for the sun.
+    shape_tests: Vec<VolumeTest>,
 }
 
 impl Operations {
     /// The operations of the context's effects and of the enabled lenses that have a volume; `visible[i]` says
-    /// whether lens i has one. Thematic colours are those of `model`'s objects.
+    /// whether lens i has one. `tests`: of the volumes of all lenses, in the picture and from the sun. Thematic colours are
+    /// those of `model`'s objects.
     pub fn new(
         context: &[EffectUse],
         lenses: &[Lens],
         visible: &[bool],
+        [tests, shape_tests]: [Vec<VolumeTest>; 2],
         model: &CityModel,
     ) -> Result<Self, ThematicError> {
-        let mut out = Self { uber: Self::uber_of(context, lenses), ..Self::default() };
+        let mut out =
+            Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(shape_tests), ..Self::default() };
+        out.uber.tests = each_once(tests);
         for effect in context {
             out.add(effect, None, model)?;
         }
@@ -109,7 +115,6 @@ impl Operations {
         effects.dedup();
         Uber {
             effects,
-            lenses: !lenses.is_empty(),
             outlines: lenses.iter().any(|l| l.body == LensBody::Outline),
             blends: uses().any(|e| blend_of(e).is_some()),
             lines: uses().any(|e| shader::effect::find(&e.effect).is_some_and(|h| h.lines)),
@@ -133,8 +138,10 @@ impl Operations {
     }
 
     /// The uber back end's part of the modules of geometry and shadow, where something may be hidden.
-    pub fn uber_hiding(&self) -> Option<Uber> {
-        self.uber.hiding(shader::handlers())
+    pub fn uber_hiding(&self) -> [Option<Uber>; 2] {
+        let picture = self.uber.hiding(shader::handlers());
+        let sun = picture.clone().map(|uber| Uber { tests: self.shape_tests.clone(), ..uber });
+        [picture, sun]
     }
 
     /// What shading has to do outside all lenses.
@@ -143,20 +150,20 @@ impl Operations {
         Plan { lines: draws_lines(&steps), steps, haze, ..Plan::default() }
     }
 
-    /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending. With `masks`
-    /// every pixel's classes are written down.
-    pub fn lens_plan(&self, seen: &[u32], haze: bool, masks: bool) -> Plan {
+    /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
+    /// tested. With `masks` every pixel's classes are written down.
+    pub fn lens_plan(&self, seen: &[(u32, VolumeTest)], haze: bool, masks: bool) -> Plan {
         let mut lenses: Vec<PlanLens> = Vec::new();
         let mut numbers = Vec::new();
-        for &lens in seen {
+        for &(lens, test) in seen {
             if numbers.last() == Some(&lens) {
-                lenses[numbers.len() - 1].volumes += 1;
+                lenses[numbers.len() - 1].volumes.push(test);
                 continue;
             }
             let line = self.outlines.iter().find(|(o, _)| *o == lens).map(|(_, first)| *first);
             // Without masks nobody asks for a lens' number: equal plans are equal then.
             let number = if masks { lens } else { numbers.len() as u32 };
-            lenses.push(PlanLens { number, volumes: 1, outline: line });
+            lenses.push(PlanLens { number, volumes: vec![test], outline: line });
             numbers.push(lens);
         }
         let steps = self.steps(|lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32));
@@ -258,6 +265,13 @@ impl Operations {
     }
 }
 
+/// Ascending, each once.
+fn each_once(mut tests: Vec<VolumeTest>) -> Vec<VolumeTest> {
+    tests.sort_unstable();
+    tests.dedup();
+    tests
+}
+
 /// Of an operation's own parameters.
 fn slots_of(operation: &Operation) -> u32 {
     shader::handlers()[operation.effect as usize].slots()
@@ -304,10 +318,10 @@ pub fn invoker_table(
             let first = invokers.len() as u32;
             let ones = (0..).zip(&plan.lenses).filter(|(_, lens)| is_one(lens));
             invokers.extend(ones.map(|(i, lens)| {
-                let volumes = plan.volumes_of(i);
+                let (first_volume, volumes) = plan.volumes_of(i);
                 layout::Invoker {
-                    first_volume: volumes.start,
-                    volumes: lens.volumes,
+                    first_volume,
+                    volumes: volumes.len() as u32,
                     parameters: lens.outline.unwrap_or(0),
                     number: lens.number,
                     ..layout::Invoker::default()
@@ -345,14 +359,14 @@ fn to_lines(handler: &EffectDefinition) -> u32 {
 }
 
 fn invoker(plan: &Plan, step: &Step, handler: &EffectDefinition) -> layout::Invoker {
-    let volumes = match step.scope {
-        Scope::Everywhere => 0..0,
+    let (first_volume, volumes) = match step.scope {
+        Scope::Everywhere => (0, &[][..]),
         Scope::Lens(lens, _) => plan.volumes_of(lens),
     };
     layout::Invoker {
         handler: step.effect,
         scope: scope_number(step.scope),
-        first_volume: volumes.start,
+        first_volume,
         volumes: volumes.len() as u32,
         parameters: if handler.kind == EffectKind::Filter { step.image(handler) } else { step.parameters },
         blend: step.blend.map_or(0, Blend::number),

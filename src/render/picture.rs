@@ -21,10 +21,10 @@ use crate::{
         furniture::{self, Furniture},
         operations::{MOST_FILTERS, Operations},
         stats::{self, Statistics},
-        volume::LensVolume,
+        volume::{LensVolume, shape_test},
     },
     scene::{CitySpec, Scene},
-    shader::{MOST_SLOTS, MOST_VOLUMES, effect_file::MOST_REACH},
+    shader::{MOST_SLOTS, MOST_VOLUMES, VolumeTest, effect_file::MOST_REACH},
     view::{Camera, CameraError, View, first_view},
 };
 
@@ -125,7 +125,6 @@ pub struct Studio {
 struct Prepared {
     volumes: Vec<LensVolume>,
     operations: Operations,
-    sprite_resolution: Vec<Option<u32>>,
 }
 
 impl Studio {
@@ -286,7 +285,7 @@ impl Studio {
 
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
     pub fn lenses_in_view(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<bool>, RenderError> {
-        let volumes = volumes_of(scene)?;
+        let (volumes, _) = volumes_of(scene)?;
         let view = View::new(self.camera(scene, size), size, &Aabb::EMPTY)?;
         let mut seen = vec![false; scene.lenses.len()];
         for volume in volumes.iter().filter(|v| v.screen_bounds(&view, whole(size)).is_some()) {
@@ -296,12 +295,12 @@ impl Studio {
     }
 
     fn prepare(&self, scene: &Scene) -> Result<Prepared, RenderError> {
-        let volumes = volumes_of(scene)?;
+        let (volumes, tests) = volumes_of(scene)?;
         let mut present = vec![false; scene.lenses.len()];
         for volume in &volumes {
             present[volume.lens as usize] = true;
         }
-        let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, &self.model)
+        let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &self.model)
             .map_err(|error| RenderError::Scene(error.to_string()))?;
         let all: Vec<u32> = volumes.iter().map(|v| v.lens).collect();
         let counts = [
@@ -315,8 +314,7 @@ impl Studio {
                 return Err(RenderError::Scene(message));
             }
         }
-        let sprite_resolution = scene.lenses.iter().map(|l| l.sprite_resolution).collect();
-        Ok(Prepared { volumes, operations, sprite_resolution })
+        Ok(Prepared { volumes, operations })
     }
 
     #[allow(clippy::too_many_arguments, reason = "one part of a picture; the arguments are the picture's own")]
@@ -482,22 +480,29 @@ impl Studio {
     }
 }
 
-/// The volumes of a scene's enabled lenses.
-fn volumes_of(scene: &Scene) -> Result<Vec<LensVolume>, RenderError> {
-    let mut volumes = Vec::new();
-    for (i, lens) in scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
-        // A lens without volume shows nothing and costs nothing.
+/// The volumes of a scene's enabled lenses; and how the volumes of all its lenses are tested, in the picture and from the
+/// sun.
+fn volumes_of(scene: &Scene) -> Result<(Vec<LensVolume>, [Vec<VolumeTest>; 2]), RenderError> {
+    let (mut volumes, mut tests) = (Vec::new(), [Vec::new(), Vec::new()]);
+    for (i, lens) in scene.lenses.iter().enumerate() {
         for shape in &lens.shapes {
-            let volume = shape
-                .volume()
-                .map_err(|error| RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name)))?;
-            if !volume.is_empty() {
-                let everywhere = lens.effects.iter().any(|e| e.class == Class::Rest);
-                volumes.push(LensVolume { lens: i as u32, bounds: volume.bounds(), volume, everywhere });
+            let volume = match shape.volume() {
+                Ok(volume) => volume,
+                Err(_) if !lens.enabled => continue,
+                Err(error) => return Err(RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name))),
+            };
+            let everywhere = lens.effects.iter().any(|e| e.class == Class::Rest);
+            let (lens_number, sprite) = (i as u32, lens.sprite);
+            let volume = LensVolume { lens: lens_number, bounds: volume.bounds(), volume, everywhere, sprite };
+            tests[0].push(volume.test());
+            tests[1].push(shape_test(&volume.volume));
+            // A lens without volume shows nothing and costs nothing.
+            if lens.enabled && !volume.volume.is_empty() {
+                volumes.push(volume);
             }
         }
     }
-    Ok(volumes)
+    Ok((volumes, tests))
 }
 
 fn input<'a>(
@@ -517,7 +522,6 @@ fn input<'a>(
         haze: HAZE,
         volumes: &prepared.volumes,
         lens_count: scene.lenses.len() as u32,
-        sprite_resolution: &prepared.sprite_resolution,
         operations: &prepared.operations,
         backend: request.backend,
         measured: request.aovs.depth,

@@ -14,7 +14,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::{
     gpu::Gpu,
     render::{edges::Edge, layout},
-    shader::{Module, Program},
+    shader::{Module, Program, VolumeTest},
 };
 
 /// Depth everywhere: reversed, f32.
@@ -59,7 +59,7 @@ pub enum Key {
     /// Depth from the sun, and what is hidden from it.
     Shadow(Option<Program>),
     /// Depth sprite of a volume, by the kind of shape (`layout::Shape::kind`).
-    Sprite(u32),
+    Sprite(VolumeTest),
     /// Shading.
     Shade {
         /// What the context and the lenses do.
@@ -137,13 +137,14 @@ pub struct Layouts {
     pub planes: wgpu::BindGroupLayout,
     /// Sprite, group 2: the stage, at a dynamic offset.
     pub stage: wgpu::BindGroupLayout,
-    /// Shade, group 1: surfaces, light, targets.
+    /// Shade, group 1: surfaces, planes of convex volumes, light, targets.
     pub shade: wgpu::BindGroupLayout,
-    /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks.
+    /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks,
+    /// invokers, filtered images, shapes.
     pub lenses: wgpu::BindGroupLayout,
-    /// Shadow where something is hidden, group 1: surfaces, planes of convex volumes.
-    pub shapes_city: wgpu::BindGroupLayout,
-    /// And group 2: object values, parameters, invokers, the main view, shapes.
+    /// Geometry and shadow where something is hidden, group 1: surfaces, planes of convex volumes.
+    pub cut_city: wgpu::BindGroupLayout,
+    /// Shadow where something is hidden, group 2: object values, parameters, invokers, the main view, shapes.
     pub shapes: wgpu::BindGroupLayout,
     /// Shade where there are lines, group 3: their layer.
     pub lines: wgpu::BindGroupLayout,
@@ -291,6 +292,7 @@ impl Layouts {
                 "shade",
                 &[
                     (0, S::FRAGMENT, surfaces),
+                    (1, S::FRAGMENT, storage()),
                     (3, S::FRAGMENT, uniform()),
                     (4, S::FRAGMENT, depth),
                     (5, S::FRAGMENT, compared),
@@ -310,9 +312,10 @@ impl Layouts {
                     (4, S::FRAGMENT, masks),
                     (5, S::FRAGMENT, uniform()),
                     (6, S::FRAGMENT, floats),
+                    (7, S::FRAGMENT, uniform()),
                 ],
             ),
-            shapes_city: layout(gpu, "surfaces and planes", &[(0, S::FRAGMENT, surfaces), (1, S::FRAGMENT, storage())]),
+            cut_city: layout(gpu, "surfaces and planes", &[(0, S::FRAGMENT, surfaces), (1, S::FRAGMENT, storage())]),
             shapes: layout(
                 gpu,
                 "shapes",
@@ -354,9 +357,10 @@ impl Layouts {
             Key::Geometry { section, cut, .. } => {
                 let lenses = cut.is_some().then_some(&self.lenses);
                 let image = matches!(section, GeometryKind::Textured(_)).then_some(&self.image);
-                vec![Some(&self.view), Some(&self.city), lenses, image]
+                let city = if cut.is_some() { &self.cut_city } else { &self.city };
+                vec![Some(&self.view), Some(city), lenses, image]
             }
-            Key::Shadow(Some(_)) => vec![Some(&self.view), Some(&self.shapes_city), Some(&self.shapes)],
+            Key::Shadow(Some(_)) => vec![Some(&self.view), Some(&self.cut_city), Some(&self.shapes)],
             Key::Shadow(None) | Key::Bare => vec![Some(&self.view), Some(&self.city)],
             Key::Sprite(_) => vec![Some(&self.view), Some(&self.planes), Some(&self.stage)],
             Key::Shade { program, .. } => {
@@ -477,12 +481,12 @@ impl Pipelines {
     }
 }
 
-fn shape_name(kind: u32) -> &'static str {
-    match kind {
-        layout::SPHERE => "sphere",
-        layout::BOX => "box",
-        layout::CYLINDER => "cylinder",
-        _ => "convex body",
+fn shape_name(shape: VolumeTest) -> &'static str {
+    match shape {
+        VolumeTest::Sphere => "sphere",
+        VolumeTest::Box => "box",
+        VolumeTest::Cylinder => "cylinder",
+        VolumeTest::Convex | VolumeTest::Sprite => "convex body",
     }
 }
 
@@ -573,7 +577,7 @@ impl Key {
                 ("BACKGROUND", f64::from(*background)),
             ],
             Self::Lines { smooth, .. } => vec![("SMOOTH", flag(*smooth))],
-            Self::Sprite(kind) => vec![("KIND", f64::from(*kind))],
+            Self::Sprite(kind) => vec![("KIND", f64::from(kind.number()))],
             _ => Vec::new(),
         }
     }

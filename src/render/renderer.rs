@@ -66,6 +66,7 @@ pub(super) struct Buffers {
     pub planes: Synced,
     pub sprite_stages: Synced,
     pub volumes: Synced,
+    pub lens_shapes: Synced,
     pub parameters: Synced,
     pub invokers: Synced,
     pub filter_stages: Synced,
@@ -97,7 +98,8 @@ pub(super) struct Groups {
     pub sprite_stage: wgpu::BindGroup,
     pub shade: wgpu::BindGroup,
     pub lenses: wgpu::BindGroup,
-    /// For the sun, where something is hidden.
+    /// Where something is hidden: from the picture, and from the sun.
+    pub cut_city: wgpu::BindGroup,
     pub shapes_city: wgpu::BindGroup,
     pub shapes: wgpu::BindGroup,
     /// The layer of lines, and where there are some the stage of one draw.
@@ -121,13 +123,14 @@ impl Renderer {
             planes: storage("lens planes")?,
             sprite_stages: uniform("sprite stages")?,
             volumes: uniform("lens volumes")?,
+            lens_shapes: uniform("lens shapes")?,
             parameters: uniform("parameters")?,
             invokers: uniform("invoker table")?,
             filter_stages: uniform("filter stages")?,
             object_values: storage("object values")?,
             eye: uniform("main view for the sun")?,
-            shapes: storage("lens shapes")?,
-            shape_planes: storage("planes of lens shapes")?,
+            shapes: storage("lens shapes for the sun")?,
+            shape_planes: storage("lens planes for the sun")?,
             line_stages: uniform("line stages")?,
             shape_invokers: uniform("invoker table for the sun")?,
             resolve: uniform("resolve")?,
@@ -227,6 +230,10 @@ impl Renderer {
                 wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size: wgpu::BufferSize::new(size as u64) };
             group(gpu, label, &p.stage, &[(0, wgpu::BindingResource::Buffer(binding))])
         };
+        let cut_city = |planes: &Synced| {
+            let surfaces = wgpu::BindingResource::TextureView(&city.buffers.surfaces);
+            group(gpu, "surfaces and planes", &p.cut_city, &[(0, surfaces), (1, whole(planes.buffer()))])
+        };
         self.groups = Some(Groups {
             view: group(gpu, "view", &p.view, &[(0, whole(b.view.buffer()))]),
             sun_view: group(gpu, "sun's view", &p.view, &[(0, whole(b.sun_view.buffer()))]),
@@ -238,6 +245,7 @@ impl Renderer {
                 &p.shade,
                 &[
                     (0, wgpu::BindingResource::TextureView(&city.buffers.surfaces)),
+                    (1, whole(b.planes.buffer())),
                     (3, whole(b.light.buffer())),
                     (4, all_of(&targets.shadow)),
                     (5, wgpu::BindingResource::Sampler(&self.shadow_sampler)),
@@ -258,6 +266,7 @@ impl Renderer {
                     (4, all_of(&targets.masks)),
                     (5, whole(b.invokers.buffer())),
                     (6, all_of(&targets.filtered)),
+                    (7, whole(b.lens_shapes.buffer())),
                 ],
             ),
             lines: group(gpu, "lines", &p.lines, &[(0, all_of(&targets.lines))]),
@@ -269,12 +278,8 @@ impl Renderer {
                 };
                 group(gpu, "line stage", &p.line_stage, &[(0, wgpu::BindingResource::Buffer(stage))])
             }),
-            shapes_city: group(
-                gpu,
-                "surfaces and planes",
-                &p.shapes_city,
-                &[(0, wgpu::BindingResource::TextureView(&city.buffers.surfaces)), (1, whole(b.shape_planes.buffer()))],
-            ),
+            cut_city: cut_city(&b.planes),
+            shapes_city: cut_city(&b.shape_planes),
             shapes: group(
                 gpu,
                 "shapes",

@@ -4,7 +4,9 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::{
     geom::{Aabb, Volume},
+    lens::LensSprite,
     render::{eye::PictureTile, layout},
+    shader::VolumeTest,
     view::View,
 };
 
@@ -22,16 +24,33 @@ pub struct LensVolume {
     pub bounds: Aabb,
     /// Whether its lens acts where rays miss it (class *rest*): then all of the picture is its business.
     pub everywhere: bool,
+    /// The sprite that it is tested by in the picture, if it is.
+    pub sprite: Option<LensSprite>,
+}
+
+/// How a volume is tested from its own figures.
+pub fn shape_test(volume: &Volume) -> VolumeTest {
+    match volume {
+        Volume::Sphere { .. } => VolumeTest::Sphere,
+        Volume::Box { .. } => VolumeTest::Box,
+        Volume::Cylinder { .. } => VolumeTest::Cylinder,
+        Volume::Convex(_) => VolumeTest::Convex,
+    }
 }
 
 impl LensVolume {
+    /// How it is tested in the picture.
+    pub fn test(&self) -> VolumeTest {
+        if self.sprite.is_some() { VolumeTest::Sprite } else { shape_test(&self.volume) }
+    }
+
     /// The volume's figures for an eye; its planes are appended to `planes`.
     pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
         let view_from_world = view.basis.view_from_world();
         let eye = view.camera.eye;
         let place = |p: DVec3| (view_from_world * (p - eye)).as_vec3().to_array();
         let turn = |v: DVec3| (view_from_world * v).as_vec3().to_array();
-        let mut out = layout::Shape { lens: self.lens, kind: self.kind(), ..Default::default() };
+        let mut out = layout::Shape { kind: shape_test(&self.volume).number(), ..Default::default() };
         match &self.volume {
             Volume::Sphere { center, radius } => {
                 out.center = place(*center);
@@ -53,8 +72,8 @@ impl LensVolume {
             }
             Volume::Convex(hull) => {
                 let (center, faces) = hull.planes();
-                out.first_plane = planes.len() as u32;
-                out.plane_count = faces.len() as u32;
+                out.size_x = planes.len() as f32;
+                out.size_y = faces.len() as f32;
                 planes.extend(faces.iter().map(|&(normal, offset)| {
                     let [x, y, z] = turn(normal);
                     [x, y, z, (offset + normal.dot(center - eye)) as f32]
@@ -62,16 +81,6 @@ impl LensVolume {
             }
         }
         out
-    }
-
-    /// The kind of shape, as the shader numbers it.
-    pub fn kind(&self) -> u32 {
-        match &self.volume {
-            Volume::Sphere { .. } => layout::SPHERE,
-            Volume::Box { .. } => layout::BOX,
-            Volume::Cylinder { .. } => layout::CYLINDER,
-            Volume::Convex(_) => layout::CONVEX,
-        }
     }
 
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
@@ -170,7 +179,7 @@ mod tests {
         ];
         for shape in shapes {
             let volume = shape.volume().expect("a volume");
-            let lens = LensVolume { lens: 0, bounds: volume.bounds(), volume, everywhere: false };
+            let lens = LensVolume { lens: 0, bounds: volume.bounds(), volume, everywhere: false, sprite: None };
             let (low, high) = lens.projected(&view).expect("it is in front of the eye");
             let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
             for (x, y) in (0..480).flat_map(|y| (0..640).map(move |x| (x, y))) {

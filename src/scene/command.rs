@@ -180,7 +180,7 @@ mod tests {
             shapes: vec![],
             effects: vec![],
             body: Default::default(),
-            sprite_resolution: None,
+            sprite: None,
         };
         let mut history = History::default();
         for name in ["a", "b", "c"] {

@@ -5,38 +5,36 @@ use std::fmt::Write as _;
 
 use crate::shader::{
     effect::{EffectDefinition, EffectKind},
+    lens_test,
     plan::{Plan, Program, Scope, Uber},
     specialised::one_line,
-    uber::{MOST_SLOTS, MOST_VOLUMES, TABLE_SOURCE},
+    uber::{MOST_SLOTS, TABLE_SOURCE},
 };
 
-/// Where a fragment's classes come from.
+/// Whose eye the module draws for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Classes {
-    /// From the sprites of the picture.
-    Sprites,
-    /// From the shapes, wherever the fragment is.
-    Shapes,
+pub(super) enum Eye {
+    /// The picture's.
+    Picture,
+    /// The sun's: of a place that the picture may not show, the shapes alone say where it is.
+    Sun,
 }
 
 /// `visible` and what it calls. `names` of a plan's lenses become comments.
-pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str], classes: Classes) -> String {
-    let (slots, volumes) = match program {
-        Program::Specialised(plan) => (plan.slots(handlers), plan.volumes()),
-        Program::Uber(_) => (MOST_SLOTS, MOST_VOLUMES),
+pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str], eye: Eye) -> String {
+    let slots = match program {
+        Program::Specialised(plan) => plan.slots(handlers),
+        Program::Uber(_) => MOST_SLOTS,
     };
     let mut text = String::new();
     if slots > 0 {
         let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
     }
-    if program.has().lenses && classes == Classes::Sprites {
-        let _ = writeln!(text, "@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {volumes}>;");
-    }
-    if program.has().lenses && classes == Classes::Shapes {
-        let _ = writeln!(
-            text,
-            "@group(2) @binding(8) var<storage, read> shapes: array<Shape>;  // in the main view's space"
-        );
+    match eye {
+        Eye::Picture => text.push_str(&lens_test::bindings(program)),
+        Eye::Sun if !program.has().lenses => {}
+        Eye::Sun => text
+            .push_str("@group(2) @binding(8) var<storage, read> shapes: array<Shape>;  // in the main view's space\n"),
     }
     text.push('\n');
     for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {
@@ -67,11 +65,10 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
         if let Some(name) = names.get(lens as usize) {
             let _ = writeln!(text, "// {}", one_line(name));
         }
-        let volumes: Vec<String> = plan.volumes_of(lens).map(|v| format!("class_of({v}u, fragment)")).collect();
         let _ = writeln!(
             text,
-            "fn classes_of_lens_{lens}(fragment: Fragment) -> u32 {{\n    return {};\n}}\n",
-            volumes.join("\n        | ")
+            "fn classes_of_lens_{lens}(sight: Sight) -> u32 {{\n    return {};\n}}\n",
+            lens_test::classes(plan, lens, "sight")
         );
     }
     text.push_str("fn visible(fragment: Fragment) -> bool {\n");
@@ -80,7 +77,7 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
         let condition = match step.scope {
             Scope::Everywhere => is_hidden,
             Scope::Lens(lens, class) => {
-                format!("{}(classes_of_lens_{lens}(fragment)) && {is_hidden}", class.function())
+                format!("{}(classes_of_lens_{lens}(sight_of(fragment))) && {is_hidden}", class.function())
             }
         };
         let _ = writeln!(text, "    if {condition} {{\n        return false;\n    }}");
@@ -90,7 +87,10 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
 
 fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     text.push_str(&TABLE_SOURCE);
-    text.push_str(if uber.lenses { RUNS } else { RUNS_WITHOUT_LENSES });
+    match uber.tests.is_empty() {
+        true => text.push_str(RUNS_WITHOUT_LENSES),
+        false => text.push_str(&(lens_test::class_of(&uber.tests) + RUNS)),
+    }
     text.push_str("fn hides(fragment: Fragment, by: Invoker) -> bool {\n    switch by.handler {\n");
     for &number in &uber.effects {
         let _ = writeln!(
@@ -109,7 +109,7 @@ const RUNS: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
     }
     var all = MISSED;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
-        all |= class_of(v, fragment);
+        all |= class_of(v, sight_of(fragment));
     }
     switch by.scope {
         case 1u: { return is_inside(all); }

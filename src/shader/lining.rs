@@ -8,19 +8,19 @@ use std::fmt::Write as _;
 
 use crate::shader::{
     effect::{EffectDefinition, EffectKind},
+    lens_test,
     plan::{Program, Scope, Step, Uber},
     specialised::Writer,
-    uber::{self, MOST_SLOTS, MOST_VOLUMES, TABLE_SOURCE},
+    uber::{self, MOST_SLOTS, TABLE_SOURCE},
 };
 
 /// `line_at` and what it calls. `names` of a plan's lenses become comments.
 pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str]) -> String {
     let mut text = match program {
         Program::Specialised(plan) => Writer { plan, handlers, names }.bindings(),
-        Program::Uber(uber) => {
-            let volumes = format!("@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {MOST_VOLUMES}>;\n");
-            let volumes = if uber.lenses { volumes } else { String::new() };
-            format!("@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;\n{volumes}\n")
+        Program::Uber(_) => {
+            let tests = lens_test::bindings(program);
+            format!("@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;\n{tests}\n")
         }
     };
     for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {
@@ -105,7 +105,7 @@ fn weight(step: &Step, handler: &EffectDefinition) -> String {
 
 fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     text.push_str(&TABLE_SOURCE);
-    text.push_str(uber::classes(uber));
+    text.push_str(&uber::classes(uber));
     text.push_str(&uber::invoke(uber, "style", &[EffectKind::Post], handlers));
     let own = |word: &str, type_name: &str, of: &dyn Fn(&EffectDefinition) -> Option<String>| {
         let mut text = format!("fn {word} {{\n    switch by.handler {{\n");

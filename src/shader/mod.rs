@@ -6,6 +6,7 @@
 pub mod effect;
 pub mod effect_file;
 mod hiding;
+mod lens_test;
 mod lining;
 mod plan;
 mod specialised;
@@ -13,7 +14,7 @@ mod uber;
 pub mod wgsl;
 
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
-pub use plan::{Blend, ClassTest, Plan, PlanLens, Program, Scope, Step, Uber};
+pub use plan::{Blend, ClassTest, Plan, PlanLens, Program, Scope, Step, Uber, VolumeTest};
 pub use specialised::scope_number;
 pub use uber::{MOST_INVOKERS, MOST_SLOTS, MOST_VOLUMES};
 
@@ -32,15 +33,15 @@ files! {
     BLEND = "lib/blend.wgsl";
     MATERIAL = "lib/material.wgsl";
     CLASS = "lib/class.wgsl";
+    SIGHT = "lib/sight.wgsl";
     LENS = "lib/lens.wgsl";
+    LENS_SPRITE = "lib/lens-sprite.wgsl";
     OBJECTS = "lib/objects.wgsl";
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
     EDGE = "lib/edge.wgsl";
     FRAGMENT = "lib/fragment.wgsl";
     CUT = "lib/cut.wgsl";
-    CLASS_OF_SPRITE = "lib/class-of-sprite.wgsl";
-    CLASS_OF_SHAPE = "lib/class-of-shape.wgsl";
     OUTLINE = "lib/outline.wgsl";
     FILTERED = "lib/filter.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
@@ -121,15 +122,13 @@ impl Module {
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str]) -> String {
         let files: &[(&str, &str)] = match self {
             Self::Geometry(None) => &[VIEW, SURFACE, GEOMETRY],
-            Self::Geometry(Some(program)) => match program.has().lenses {
-                true => &[VIEW, SURFACE, CLASS, LENS, OBJECTS, FRAGMENT, CLASS_OF_SPRITE, CUT, GEOMETRY],
-                false => &[VIEW, SURFACE, OBJECTS, FRAGMENT, CUT, GEOMETRY],
-            },
+            Self::Geometry(Some(program)) => {
+                &[&[VIEW, SURFACE, SIGHT], &lens_files(program)[..], &[OBJECTS, FRAGMENT, CUT, GEOMETRY]].concat()
+            }
             Self::Shadow(None) => &[VIEW, SHADOW],
-            Self::Shadow(Some(program)) => match program.has().lenses {
-                true => &[VIEW, SURFACE, CLASS, SHAPE, OBJECTS, FRAGMENT, CLASS_OF_SHAPE, SHADOW_CUT],
-                false => &[VIEW, SURFACE, OBJECTS, FRAGMENT, SHADOW_CUT],
-            },
+            Self::Shadow(Some(program)) => {
+                &[&[VIEW, SURFACE, SIGHT], &lens_files(program)[..], &[OBJECTS, FRAGMENT, SHADOW_CUT]].concat()
+            }
             Self::Sprite => &[VIEW, SHAPE, SPRITE],
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
             Self::Lines(program) => &Self::files_of_lines(program),
@@ -151,10 +150,10 @@ impl Module {
             Self::Lines(program) => text.replace("//@handlers\n", &lining::source(program, handlers, lenses)),
             Self::Geometry(None) => text.replace("//@handlers\n", NOTHING_CUT),
             Self::Geometry(Some(program)) => {
-                text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Classes::Sprites))
+                text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Eye::Picture))
             }
             Self::Shadow(Some(program)) => {
-                text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Classes::Shapes))
+                text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Eye::Sun))
             }
             Self::Filter(effect) => text.replace("//@handlers\n", &specialised::kernel(&handlers[*effect as usize])),
             _ => text,
@@ -163,14 +162,11 @@ impl Module {
 
     /// The libraries that lines call.
     fn files_of_lines(program: &Program) -> Vec<(&'static str, &'static str)> {
-        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT, OBJECTS, POINT, FRAGMENT, EDGE];
-        let parts = program.has();
-        if parts.blends {
+        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT, FRAGMENT, EDGE];
+        if program.has().blends {
             files.push(BLEND);
         }
-        if parts.lenses {
-            files.extend([CLASS, LENS]);
-        }
+        files.extend(lens_files(program));
         files.push(LINES);
         files
     }
@@ -180,12 +176,11 @@ impl Module {
         let parts = program.has();
         let has = |kind| program.effects().iter().any(|&e| handlers[e as usize].kind == kind);
         let (materials, filters) = (has(EffectKind::Material), has(EffectKind::Filter));
-        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT, OBJECTS, POINT];
+        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT];
+        files.extend(lens_files(program));
         let optional = [
             (parts.blends || materials, BLEND),
             (materials, MATERIAL),
-            (parts.lenses, CLASS),
-            (parts.lenses, LENS),
             (parts.outlines, OUTLINE),
             (filters, FILTERED),
             (parts.lines, LINE),
@@ -194,6 +189,13 @@ impl Module {
         files.push(SHADE);
         files
     }
+}
+
+/// The libraries of the lens tests that a program makes.
+fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
+    let parts = program.has();
+    let files = [(parts.lenses, CLASS), (parts.lenses, SHAPE), (parts.shapes, LENS), (parts.sprites, LENS_SPRITE)];
+    files.into_iter().filter(|(is_used, _)| *is_used).map(|(_, file)| file).collect()
 }
 
 /// Where nothing is hidden.
@@ -222,6 +224,24 @@ mod tests {
         Step { effect, scope, parameters: 0, blend }
     }
 
+    /// As the sun asks: no sprite tells it anything.
+    fn by_shapes(mut program: Program) -> Program {
+        let by_shape = |test: &mut VolumeTest| {
+            if *test == VolumeTest::Sprite {
+                *test = VolumeTest::Sphere;
+            }
+        };
+        match &mut program {
+            Program::Specialised(plan) => plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).for_each(by_shape),
+            Program::Uber(uber) => {
+                uber.tests.iter_mut().for_each(by_shape);
+                uber.tests.sort_unstable();
+                uber.tests.dedup();
+            }
+        }
+        program
+    }
+
     /// The numbers of all effects.
     fn numbers() -> Vec<u32> {
         let is_effect = |(_, h): &(usize, &EffectDefinition)| h.mode == Mode::Local;
@@ -239,10 +259,14 @@ mod tests {
             let blend = (i + seed).is_multiple_of(3).then(|| Blend::ALL[(i + seed) % 6]);
             steps.push(step(effect, scopes[(seed + 4 * i) % scopes.len()], blend));
         }
-        let lens = |number, volumes, outline| PlanLens { number, volumes, outline };
+        let lens = |number, volumes: &[usize], outline| PlanLens {
+            number,
+            volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % 5]).collect(),
+            outline,
+        };
         let outline = seed.is_multiple_of(2).then_some(3);
         let plan = Plan {
-            lenses: vec![lens(0, 1, None), lens(40, 2, outline)],
+            lenses: vec![lens(0, &[0], None), lens(40, &[1, 2], outline)],
             lines: effects.iter().any(|&e| handlers()[e as usize].lines),
             steps,
             haze: seed.is_multiple_of(5),
@@ -250,7 +274,11 @@ mod tests {
         };
         let uber = Uber {
             effects: plan.effects(),
-            lenses: true,
+            tests: {
+                let mut tests: Vec<VolumeTest> = plan.tests().collect();
+                tests.sort_unstable();
+                tests
+            },
             outlines: plan.has_outlines(),
             blends: plan.has_blends(),
             haze: plan.haze,
@@ -262,7 +290,7 @@ mod tests {
         let lining = plan.lining(handlers()).map(Program::Specialised).into_iter();
         let lining = lining.chain(uber.lining(handlers()).map(Program::Uber));
         let mut modules: Vec<Module> =
-            hiding.flat_map(|p| [Module::Geometry(Some(p.clone())), Module::Shadow(Some(p))]).collect();
+            hiding.flat_map(|p| [Module::Geometry(Some(p.clone())), Module::Shadow(Some(by_shapes(p)))]).collect();
         modules.extend(lining.map(Module::Lines));
         modules.push(Module::Shade(Program::Specialised(plan.shading(handlers()))));
         modules.push(Module::Shade(Program::Uber(uber.shading(handlers()))));
@@ -300,6 +328,14 @@ mod tests {
         lists.par_iter().enumerate().for_each(|(seed, list)| {
             modules(list, seed).iter().for_each(validate);
         });
+    }
+
+    #[test]
+    fn lens_tests_have_their_numbers_in_wgsl() {
+        for test in VolumeTest::ALL {
+            let line = format!("const {}: u32 = {}u;\n", test.constant(), test.number());
+            assert!(SHAPE.1.contains(&line), "lib/shape.wgsl lacks {line}");
+        }
     }
 
     #[test]

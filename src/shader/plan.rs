@@ -28,10 +28,46 @@ pub struct Plan {
 pub struct PlanLens {
     /// Its bit in the masks.
     pub number: u32,
-    /// How many of the frame's volumes are its own; they follow those of the lenses before it.
-    pub volumes: u32,
+    /// How each of its volumes is tested; among the frame's volumes they follow those of the lenses before it.
+    pub volumes: Vec<VolumeTest>,
     /// Place of its outline's parameters, where it shows one.
     pub outline: Option<u32>,
+}
+
+/// How it is decided where a place is with regard to a lens volume (S7).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum VolumeTest {
+    /// From the figures of a sphere.
+    Sphere,
+    /// Of an oriented box.
+    Box,
+    /// Of a cylinder.
+    Cylinder,
+    /// Of the planes of a convex polytope.
+    Convex,
+    /// By its volumetric depth sprite.
+    Sprite,
+}
+
+impl VolumeTest {
+    /// All of them, in the order of their numbers in `lib/shape.wgsl`.
+    pub const ALL: [Self; 5] = [Self::Sphere, Self::Box, Self::Cylinder, Self::Convex, Self::Sprite];
+
+    /// Its number, as `lib/shape.wgsl` knows it.
+    pub fn number(self) -> u32 {
+        Self::ALL.iter().position(|t| *t == self).unwrap_or(0) as u32
+    }
+
+    /// Its constant there.
+    pub fn constant(self) -> &'static str {
+        match self {
+            Self::Sphere => "SPHERE",
+            Self::Box => "BOX",
+            Self::Cylinder => "CYLINDER",
+            Self::Convex => "CONVEX",
+            Self::Sprite => "SPRITE",
+        }
+    }
 }
 
 /// One use of an effect.
@@ -146,8 +182,8 @@ pub enum Program {
 pub struct Uber {
     /// The scene's effects, ascending, each once; those of disabled lenses too.
     pub effects: Vec<u32>,
-    /// Whether there are lenses.
-    pub lenses: bool,
+    /// How the volumes of the scene's lenses are tested, ascending, each once; none: there are no lenses.
+    pub tests: Vec<VolumeTest>,
     /// Whether some of them show their silhouettes.
     pub outlines: bool,
     /// Whether some effects are blended.
@@ -164,13 +200,14 @@ impl Uber {
     /// What of it says what is there; `None` where nothing may be hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| kind == EffectKind::Hide);
-        (!effects.is_empty()).then_some(Self { effects, lenses: self.lenses, ..Self::default() })
+        (!effects.is_empty()).then(|| Self { effects, tests: self.tests.clone(), ..Self::default() })
     }
 
     /// What of it lines go through; `None` where nobody may draw any.
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
-        self.lines.then_some(Self { effects, lenses: self.lenses, blends: self.blends, lines: true, ..Self::default() })
+        let tests = self.tests.clone();
+        self.lines.then_some(Self { effects, tests, blends: self.blends, lines: true, ..Self::default() })
     }
 
     /// What of it says how things look.
@@ -189,13 +226,20 @@ impl Program {
         match self {
             Self::Specialised(plan) => Parts {
                 lenses: !plan.lenses.is_empty(),
+                shapes: plan.tests().any(|t| t != VolumeTest::Sprite),
+                sprites: plan.tests().any(|t| t == VolumeTest::Sprite),
                 outlines: plan.has_outlines(),
                 blends: plan.has_blends(),
                 lines: plan.lines,
             },
-            Self::Uber(uber) => {
-                Parts { lenses: uber.lenses, outlines: uber.outlines, blends: uber.blends, lines: uber.lines }
-            }
+            Self::Uber(uber) => Parts {
+                lenses: !uber.tests.is_empty(),
+                shapes: uber.tests.iter().any(|t| *t != VolumeTest::Sprite),
+                sprites: uber.tests.contains(&VolumeTest::Sprite),
+                outlines: uber.outlines,
+                blends: uber.blends,
+                lines: uber.lines,
+            },
         }
     }
 
@@ -211,8 +255,12 @@ impl Program {
 /// Which libraries a program calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parts {
-    /// The lens test.
+    /// The classes of lenses.
     pub lenses: bool,
+    /// The lens test from shapes.
+    pub shapes: bool,
+    /// The lens test by depth sprites.
+    pub sprites: bool,
     /// Silhouettes.
     pub outlines: bool,
     /// Blend modes.
@@ -247,13 +295,24 @@ impl Plan {
 
     /// Volumes of all its lenses.
     pub fn volumes(&self) -> u32 {
-        self.lenses.iter().map(|l| l.volumes).sum()
+        self.tests().count() as u32
     }
 
-    /// The volumes of one of its lenses.
-    pub fn volumes_of(&self, lens: u32) -> std::ops::Range<u32> {
-        let before: u32 = self.lenses[..lens as usize].iter().map(|l| l.volumes).sum();
-        before..before + self.lenses[lens as usize].volumes
+    /// How they are tested.
+    pub fn tests(&self) -> impl Iterator<Item = VolumeTest> {
+        self.lenses.iter().flat_map(|l| &l.volumes).copied()
+    }
+
+    /// Whether nobody asks for other classes of a lens than *inside*.
+    pub fn asks_inside_alone(&self, lens: u32) -> bool {
+        let is_other = |s: &Step| matches!(s.scope, Scope::Lens(l, class) if l == lens && class != ClassTest::Inside);
+        !self.masks && !self.steps.iter().any(is_other)
+    }
+
+    /// The volumes of one of its lenses: how many come before them, and how they are tested.
+    pub fn volumes_of(&self, lens: u32) -> (u32, &[VolumeTest]) {
+        let before = self.lenses[..lens as usize].iter().map(|l| l.volumes.len() as u32).sum();
+        (before, &self.lenses[lens as usize].volumes)
     }
 
     /// Its steps of one prototype, in the order of their execution.
@@ -283,7 +342,7 @@ impl Plan {
 
     /// Its lenses for passes that ask for nothing but their volumes, which keep their places.
     fn plain_lenses(&self) -> Vec<PlanLens> {
-        let lens = |(i, lens): (usize, &PlanLens)| PlanLens { number: i as u32, outline: None, ..*lens };
+        let lens = |(i, lens): (usize, &PlanLens)| PlanLens { number: i as u32, outline: None, ..lens.clone() };
         self.lenses.iter().enumerate().map(lens).collect()
     }
 

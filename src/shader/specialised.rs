@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use crate::shader::{
     effect::{EffectDefinition, EffectKind, Mode},
-    plan::{ClassTest, Plan, Scope, Step},
+    lens_test,
+    plan::{ClassTest, Plan, Program, Scope, Step},
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`. `names` of the plan's lenses
@@ -39,10 +40,7 @@ impl Writer<'_> {
         if slots > 0 {
             let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
         }
-        let volumes = self.plan.volumes();
-        if volumes > 0 {
-            let _ = writeln!(text, "@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {volumes}>;");
-        }
+        text.push_str(&lens_test::bindings(&Program::Specialised(self.plan.clone())));
         if self.plan.masks {
             text.push_str(MASKS);
         }
@@ -81,15 +79,9 @@ impl Writer<'_> {
         for i in 0..lenses.len() {
             let _ = writeln!(text, "    lens_{i}: u32,{}", self.comment(i));
         }
-        text.push_str(
-            "}\n\nfn classes_at(pixel: vec2i, depth: f32, part: u32) -> Classes {\n    var classes: Classes;\n",
-        );
-        // This part of the picture is the bounds of all volumes: where there is one, they are its own.
-        let test = if self.plan.volumes() == 1 { "class_within" } else { "class_in" };
+        text.push_str("}\n\nfn classes_at(sight: Sight, part: u32) -> Classes {\n    var classes: Classes;\n");
         for i in 0..lenses.len() {
-            let volumes: Vec<String> =
-                self.plan.volumes_of(i as u32).map(|v| format!("{test}(volumes[{v}], pixel, depth)")).collect();
-            let _ = writeln!(text, "    classes.lens_{i} = {};", volumes.join("\n        | "));
+            let _ = writeln!(text, "    classes.lens_{i} = {};", lens_test::classes(self.plan, i as u32, "sight"));
         }
         text.push_str("    return classes;\n}\n\n");
         text
@@ -201,9 +193,8 @@ impl Writer<'_> {
         if self.plan.has_outlines() {
             text.push_str("fn lens_covers(lens: u32, pixel: vec2i) -> bool {\n    switch lens {\n");
             for i in 0..self.plan.lenses.len() {
-                let volumes: Vec<String> =
-                    self.plan.volumes_of(i as u32).map(|v| format!("covers(volumes[{v}], pixel)")).collect();
-                let _ = writeln!(text, "        case {i}u: {{ return {}; }}", volumes.join(" || "));
+                let covers = lens_test::covers(self.plan, i as u32, "pixel");
+                let _ = writeln!(text, "        case {i}u: {{ return {covers}; }}");
             }
             text.push_str("        default: { return false; }\n    }\n}\n\n");
         }

@@ -5,7 +5,8 @@ use std::{fmt::Write as _, sync::LazyLock};
 
 use crate::shader::{
     effect::{EffectDefinition, EffectKind, Mode},
-    plan::Uber,
+    lens_test,
+    plan::{Program, Uber},
     specialised::{LINED, MASKS, ONLY_SHOWN},
 };
 
@@ -20,9 +21,7 @@ pub const MOST_SLOTS: u32 = 4096;
 pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;");
-    if uber.lenses {
-        let _ = writeln!(text, "@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {MOST_VOLUMES}>;");
-    }
+    text.push_str(&lens_test::bindings(&Program::Uber(uber.clone())));
     if uber.masks {
         text.push_str(MASKS);
     }
@@ -31,17 +30,20 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
     }
     text.push_str(&TABLE_SOURCE);
-    text.push_str(classes(uber));
+    text.push_str(&classes(uber));
     text.push_str(&invoke(uber, "material", &[EffectKind::Material], handlers));
     text.push_str(&invoke(uber, "light", &[EffectKind::Light], handlers));
     text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post, EffectKind::Filter], handlers));
     text.push_str(&shade(uber, handlers));
     text.push_str(&styled(uber, handlers));
+    if uber.outlines {
+        text.push_str(&lens_test::volume_covers(&uber.tests));
+    }
     let outlines = if uber.outlines { OUTLINES } else { NO_OUTLINES };
     let plain = "    var paint = start;\n";
     text.push_str(&if uber.lines { outlines.replace(plain, LINED) } else { outlines.to_owned() });
     text.push_str("fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n");
-    if uber.masks && uber.lenses {
+    if uber.masks && !uber.tests.is_empty() {
         text.push_str(ONLY_SHOWN);
         text.push_str(WRITE_CLASSES);
     }
@@ -50,8 +52,11 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
 }
 
 /// Which classes a place has, and which invokers run there.
-pub(super) fn classes(uber: &Uber) -> &'static str {
-    if uber.lenses { CLASSES } else { NO_CLASSES }
+pub(super) fn classes(uber: &Uber) -> String {
+    match uber.tests.is_empty() {
+        true => NO_CLASSES.to_owned(),
+        false => lens_test::class_of(&uber.tests) + CLASSES,
+    }
 }
 
 /// The handlers of the module, with their numbers.
@@ -198,7 +203,7 @@ const NO_CLASSES: &str = "struct Classes {
     part: u32,
 }
 
-fn classes_at(pixel: vec2i, depth: f32, part: u32) -> Classes {
+fn classes_at(sight: Sight, part: u32) -> Classes {
     return Classes(part);
 }
 
@@ -210,18 +215,17 @@ fn runs(by: Invoker, classes: Classes) -> bool {
 
 const CLASSES: &str = "struct Classes {
     part: u32,
-    pixel: vec2i,
-    depth: f32,
+    sight: Sight,
 }
 
-fn classes_at(pixel: vec2i, depth: f32, part: u32) -> Classes {
-    return Classes(part, pixel, depth);
+fn classes_at(sight: Sight, part: u32) -> Classes {
+    return Classes(part, sight);
 }
 
 fn classes_of(by: Invoker, classes: Classes) -> u32 {
     var all = MISSED;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
-        all |= class_in(volumes[v], classes.pixel, classes.depth);
+        all |= class_of(v, classes.sight);
     }
     return all;
 }
@@ -288,7 +292,7 @@ const NO_OUTLINES: &str = "fn outlines(start: vec4f, pixel: vec2i, classes: Clas
 const OUTLINES: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
     let by = table.invokers[lens];
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
-        if covers(volumes[v], pixel) {
+        if volume_covers(v, pixel) {
             return true;
         }
     }

@@ -26,7 +26,7 @@ pub fn trials() -> Vec<Trial> {
             let drawn = studio::picture(&mut studio, &scene, SIZE);
             let view = View::new(camera, SIZE, &Aabb::EMPTY)?;
             let covered = studio::bits(&drawn, 0).iter().filter(|b| **b).count();
-            let wrong = studio::wrong_pixels(&drawn, &view, &scene.lenses[0], 0, 1.0);
+            let wrong = studio::wrong_pixels(&drawn, &view, &scene.lenses[0], 0);
             if covered < 1000 || wrong > 0 {
                 return Err(format!("{wrong} wrong pixels, {covered} covered").into());
             }

@@ -73,7 +73,7 @@ pub fn lens(name: &str, shapes: Vec<Shape>, effect: &str) -> Lens {
         shapes,
         effects: vec![used(effect)],
         body: LensBody::None,
-        sprite_resolution: None,
+        sprite: None,
     }
 }
 
@@ -117,13 +117,15 @@ pub fn bits(picture: &Picture, lens: usize) -> Vec<bool> {
     planes[lens / 32].iter().map(|word| word >> (lens % 32) & 1 == 1).collect()
 }
 
-/// Pixels of the lens' mask that are wrong against f64, by how far the shown point is from the border; `slack_px`
-/// pixels around the border are the sprite's own (S7).
-pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, bit: usize, slack_px: f64) -> usize {
+/// Pixels of the lens' mask that are wrong against f64, by how far the shown point is from the border. A test from shapes
+/// may err within 8 · 2⁻²³ · max(D, |centre − eye|) of it, a sprite within a pixel besides (S7).
+pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, bit: usize) -> usize {
     let volumes: Vec<_> = lens.shapes.iter().map(|s| s.volume().expect("a volume")).collect();
     let depth = picture.depth.as_ref().expect("depth was asked for");
     let inside = bits(picture, bit);
     let [w, h] = picture.size;
+    let from_eye = |v: &veduta::geom::Volume| v.bounds().center().distance(view.camera.eye);
+    let farthest = volumes.iter().map(from_eye).fold(0.0, f64::max);
     let mut wrong = 0;
     for (i, (x, y)) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))).enumerate() {
         let d = f64::from(depth[i]);
@@ -133,7 +135,8 @@ pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, b
         }
         let p = view.pixel_ray(x, y).at(d);
         let distance = volumes.iter().map(|v| v.signed_distance(p)).fold(f64::INFINITY, f64::min);
-        if distance.abs() > slack_px * view.pixel_m(d) {
+        let texel = if lens.sprite.is_some() { view.pixel_m(d) } else { 0.0 };
+        if distance.abs() > texel + 8.0 * f64::from(f32::EPSILON) * d.max(farthest) {
             wrong += usize::from(inside[i] != (distance < 0.0));
         }
     }

@@ -350,9 +350,9 @@ pub const LENS: Table = Table {
         key(
             "sprite",
             Kind::Table(&SPRITE),
-            "as fine as the picture",
+            "none: from its shapes",
             "",
-            "Its volumetric depth sprite.",
+            "Has the lens tested by a volumetric depth sprite of it.",
             "{ resolution = 512 }",
         ),
     ],
@@ -361,7 +361,8 @@ pub const LENS: Table = Table {
 /// `sprite` of a lens.
 pub const SPRITE: Table = Table {
     name: "sprite",
-    doc: "The volumetric depth sprite that a lens is tested with.",
+    doc: "Has the lens tested by a volumetric depth sprite: a picture of where each ray enters and leaves it. Without, it is \
+          tested from its shapes: exact to the pixel, and faster; `{}` is a sprite as fine as the picture.",
     keys: &[key(
         "resolution",
         Kind::Integer { min: 16, max: 16_384 },

@@ -13,7 +13,7 @@ use crate::{
     },
     geom::Shape,
     lens::{
-        Class, EffectUse, Lens, LensBody, LensKind, Parameter, effect,
+        Class, EffectUse, Lens, LensBody, LensKind, LensSprite, Parameter, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -201,7 +201,7 @@ impl<'o> SceneReader<'o> {
             shapes,
             effects,
             body: if fields.text("body") == Some("none") { LensBody::None } else { LensBody::Outline },
-            sprite_resolution: sprite.and_then(|s| s.integer("resolution")),
+            sprite: sprite.map(|s| LensSprite { resolution: s.integer("resolution") }),
         }
     }
 

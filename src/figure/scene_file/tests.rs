@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::{
     geom::Shape,
-    lens::{Class, EffectUse, Lens, LensBody, LensKind, Parameter},
+    lens::{Class, EffectUse, Lens, LensBody, LensKind, LensSprite, Parameter},
     scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun},
     shader::Blend,
     view::{Camera, Projection},
@@ -311,9 +311,10 @@ fn effects() -> impl Strategy<Value = EffectUse> {
 prop_compose! {
     fn lenses()(shapes in prop::collection::vec(shapes(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), outline in any::<bool>(),
-        sprite_resolution in prop::option::of(16..16_384u32)) -> Lens {
+        sprite in prop::option::of(prop::option::of(16..16_384u32))) -> Lens {
+        let sprite = sprite.map(|resolution| LensSprite { resolution });
         let body = if outline { LensBody::Outline } else { LensBody::None };
-        Lens { name: String::new(), kind: LensKind::Color, enabled, color, shapes, effects: used, body, sprite_resolution }
+        Lens { name: String::new(), kind: LensKind::Color, enabled, color, shapes, effects: used, body, sprite }
     }
 }
 

@@ -130,8 +130,9 @@ impl Toml {
         }
         self.key_if(!lens.effects.is_empty(), "effects", &list(lens.effects.iter().map(effect)));
         self.key_if(lens.body == LensBody::None, "body", "\"none\"");
-        if let Some(resolution) = lens.sprite_resolution {
-            self.key("sprite", &format!("{{ resolution = {resolution} }}"));
+        if let Some(sprite) = lens.sprite {
+            let resolution = sprite.resolution.map(|resolution| format!(" resolution = {resolution} "));
+            self.key("sprite", &format!("{{{}}}", resolution.unwrap_or_default()));
         }
     }
 }

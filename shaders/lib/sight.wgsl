@@ -1,0 +1,16 @@
+// How a place is seen from the main eye, in its view space: what lens tests look at.
+
+struct Sight {
+    pixel: vec2i,
+    depth: f32,                 // as the depth target stores it; 0 = nothing there
+    ray: Ray,                   // through it
+    distance: f32,              // D, metres; FAR_AWAY where nothing is; 0 or less behind the eye
+    position: vec3f,            // metres
+    is_parallel: bool,          // whether all rays are: the view is orthographic
+}
+
+// What a pixel shows.
+fn sight_at(pixel: vec2i, ray: Ray, depth: f32) -> Sight {
+    let distance = select(FAR_AWAY, distance_of_depth(depth), depth > 0.0);
+    return Sight(pixel, depth, ray, distance, ray.origin + distance * ray.direction, view.orthographic == 1u);
+}
