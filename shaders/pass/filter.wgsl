@@ -40,7 +40,8 @@ fn weight_at(i: i32, own: Own) -> f32 {
 @fragment
 fn fragment(@builtin(position) at: vec4f) -> Four {
     let texel = vec2i(at.xy);
-    let layer = texel.x / stage.columns;
+    // A pixel's centre is half a pixel from any border, so this is exact; a software adapter divides integers lane by lane.
+    let layer = i32(at.x / f32(stage.columns));
     let pixel = vec2i(texel.x - layer * stage.columns, texel.y) * (1 + 3 * stage.step);
     let start = dot(pixel, stage.step);
     let length = dot(stage.size, stage.step);

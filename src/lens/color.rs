@@ -89,6 +89,29 @@ pub fn difference(a: Srgb, b: Srgb) -> f32 {
 mod tests {
     use super::*;
 
+    /// Twin of `cube_root` in `lib/color.wgsl`.
+    fn cube_root(x: f32) -> f32 {
+        let some = x.max(1e-18);
+        let mut root = f32::from_bits(((some.to_bits() as f32 * (1.0 / 3.0)) as u32) + 709_921_077);
+        for _ in 0..2 {
+            let cube = root * root * root;
+            root *= (cube + 2.0 * some) / (2.0 * cube + some);
+        }
+        root
+    }
+
+    #[test]
+    fn the_cube_root_of_shaders_is_right_to_two_units() {
+        for step in 0..200_000 {
+            let x = 10.0_f64.powf(f64::from(step) * 1e-4 - 18.0) as f32;
+            let exact = f64::from(x).cbrt();
+            assert!((f64::from(cube_root(x)) / exact - 1.0).abs() <= 2.0_f64.powi(-22), "{x}");
+        }
+        for small in [0.0, 1e-38, 1e-20, 9e-19] {
+            assert!((f64::from(cube_root(small)) - f64::from(small).cbrt()).abs() < 1.1e-6, "{small}");
+        }
+    }
+
     #[test]
     fn hex_is_read_and_written() {
         assert_eq!(parse_hex("#ff8000"), Some([1.0, 128.0 / 255.0, 0.0]));
