@@ -1,6 +1,6 @@
 // The volumetric depth test (S5), on the sprites of the lens volumes in view that have one.
 
-struct LensVolume {
+struct SpritePlace {
     @align(16) origin: vec2i,   // of its screen bounds, pixels
     size: vec2i,
     texels_per_pixel: vec2f,    // sprite against target
@@ -16,21 +16,21 @@ fn classify(depth: f32, entry: f32, exit: f32) -> u32 {
     return select(select(BEHIND, INSIDE, depth > exit), FRONT, entry > 0.0 && depth > entry);
 }
 
-fn is_in_bounds(v: LensVolume, pixel: vec2i) -> bool {
-    return all(pixel >= v.origin) && all(pixel < v.origin + v.size);
+fn is_in_bounds(s: SpritePlace, pixel: vec2i) -> bool {
+    return all(pixel >= s.origin) && all(pixel < s.origin + s.size);
 }
 
-fn sprite_texel(v: LensVolume, pixel: vec2i) -> vec2i {
-    return vec2i((vec2f(pixel) + 0.5) * v.texels_per_pixel + v.sprite);
+fn sprite_texel(s: SpritePlace, pixel: vec2i) -> vec2i {
+    return vec2i((vec2f(pixel) + 0.5) * s.texels_per_pixel + s.sprite);
 }
 
 // Exits hold 1, their clear value, where the ray misses the volume.
-fn covers_sprite(v: LensVolume, pixel: vec2i) -> bool {
-    return is_in_bounds(v, pixel) && textureLoad(sprites, sprite_texel(v, pixel), v.page, 0).y != 1.0;
+fn covers_sprite(s: SpritePlace, pixel: vec2i) -> bool {
+    return is_in_bounds(s, pixel) && textureLoad(sprites, sprite_texel(s, pixel), s.page, 0).y != 1.0;
 }
 
-fn class_in_sprite(v: LensVolume, sight: Sight) -> u32 {
-    let ends = textureLoad(sprites, sprite_texel(v, sight.pixel), v.page, 0).xy;
+fn class_in_sprite(s: SpritePlace, sight: Sight) -> u32 {
+    let ends = textureLoad(sprites, sprite_texel(s, sight.pixel), s.page, 0).xy;
     let class_here = select(MISSED, classify(sight.depth, ends.x, ends.y), ends.y != 1.0);
-    return select(MISSED, class_here, is_in_bounds(v, sight.pixel));
+    return select(MISSED, class_here, is_in_bounds(s, sight.pixel));
 }

@@ -331,12 +331,12 @@ impl Renderer {
         let haze = haze(input) / radius;
         let view = view_uniform(&input.view, input.tile, jitter, input.sample, haze);
         let light = light::uniform(&input.sun, input.background, sun, input.view.camera.eye, radius);
-        let (mut stages, mut volumes, mut shapes, mut planes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut stages, mut sprite_places, mut shapes, mut planes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for volume in seen {
             let shape = input.volumes[volume.index].figures(&input.view, &mut planes);
             shapes.push(layout::Shape { kind: volume.test.number(), ..shape });
             let Some(sprite) = &volume.sprite else {
-                volumes.push(bytemuck::Zeroable::zeroed());
+                sprite_places.push(bytemuck::Zeroable::zeroed());
                 continue;
             };
             let scale: [f32; 2] = std::array::from_fn(|i| sprite.size[i] as f32 / input.tile.size[i] as f32);
@@ -348,7 +348,7 @@ impl Renderer {
                 pixels_per_texel: scale.map(|s| 1.0 / s),
                 origin: shift.map(|s| -s),
             }));
-            volumes.push(layout::LensVolume {
+            sprite_places.push(layout::SpritePlace {
                 origin: volume.bounds.origin.map(|o| o as i32),
                 size: volume.bounds.size.map(|s| s as i32),
                 texels_per_pixel: scale,
@@ -372,7 +372,7 @@ impl Renderer {
             plans.filters.iter().flat_map(|f| filters::stages(f, input.tile.size)).flat_map(|s| strided(&s)).collect();
         stale |= b.filter_stages.sync(gpu, &filter_stages)?;
         if is_uber {
-            volumes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
+            sprite_places.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             shapes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             stale |= b.invokers.sync(gpu, &plans.table().unwrap_or_default())?;
         }
@@ -394,7 +394,7 @@ impl Renderer {
         }
         stale |= b.planes.sync(gpu, &planes)?;
         stale |= b.sprite_stages.sync(gpu, &stages)?;
-        stale |= b.volumes.sync(gpu, &volumes)?;
+        stale |= b.sprite_places.sync(gpu, &sprite_places)?;
         stale |= b.lens_shapes.sync(gpu, &shapes)?;
         stale |= b.parameters.sync(gpu, &parameters)?;
         stale |= b.object_values.sync(gpu, &input.operations.object_values)?;

@@ -128,10 +128,10 @@ pub struct SpriteStage {
     pub origin: [f32; 2],
 }
 
-/// `lib/lens.wgsl`.
+/// `lib/lens-sprite.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct LensVolume {
+pub struct SpritePlace {
     pub origin: [i32; 2],
     pub size: [i32; 2],
     pub texels_per_pixel: [f32; 2],
@@ -295,7 +295,7 @@ mod tests {
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, size, columns, pad_0 })),
             (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
             (&uber, host!(Part { material, light, styles, outlines, masks, hides, lines, pad_0 })),
-            (&shade, host!(LensVolume { origin, size, texels_per_pixel, sprite, page, pad_0 })),
+            (&shade, host!(SpritePlace { origin, size, texels_per_pixel, sprite, page, pad_0 })),
             (
                 &Module::Furniture,
                 host!(FurnitureItem { low, high, color, halo, radius, softness, first_texel, row_texels }),

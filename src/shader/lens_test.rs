@@ -16,7 +16,7 @@ pub(super) fn bindings(program: &Program) -> String {
     let parts = program.has();
     let mut text = String::new();
     if parts.sprites {
-        let _ = writeln!(text, "@group(2) @binding(3) var<uniform> volumes: array<LensVolume, {count}>;");
+        let _ = writeln!(text, "@group(2) @binding(3) var<uniform> sprite_places: array<SpritePlace, {count}>;");
     }
     // The uber back end reads of each volume there how it is tested.
     if parts.shapes {
@@ -27,7 +27,7 @@ pub(super) fn bindings(program: &Program) -> String {
 
 fn call(test: VolumeTest, volume: u32, [of_shape, of_sprite]: [&str; 2], place: &str) -> String {
     match test {
-        VolumeTest::Sprite => format!("{of_sprite}(volumes[{volume}], {place})"),
+        VolumeTest::Sprite => format!("{of_sprite}(sprite_places[{volume}], {place})"),
         _ => format!("{of_shape}(shapes[{volume}], {}, {place})", test.constant()),
     }
 }
@@ -53,7 +53,7 @@ pub(super) fn covers(plan: &Plan, lens: u32, pixel: &str) -> String {
 /// For the uber back end: a value of a volume by its number.
 fn by_number(tests: &[VolumeTest], words: [&str; 2], place: &str) -> String {
     let one = |test: VolumeTest| match test {
-        VolumeTest::Sprite => format!("{}(volumes[v], {place})", words[1]),
+        VolumeTest::Sprite => format!("{}(sprite_places[v], {place})", words[1]),
         _ => format!("{}(shapes[v], {}, {place})", words[0], test.constant()),
     };
     match tests {
