@@ -5,11 +5,12 @@
 
 use crate::render::{
     eye::{PictureTile, split},
-    frame::{FrameInput, Recorder, SeenVolume, color_attachment, scissor},
+    frame::{FrameInput, Recorder, color_attachment, scissor},
     layout,
     operations::Filter,
     pipelines::Key,
     renderer::{Renderer, STAGE_STRIDE},
+    seen::SeenVolume,
 };
 
 /// The stages of a filter, across and down, in a picture of this size.

@@ -19,7 +19,7 @@ use glam::DVec2;
 
 use crate::{
     gpu::{GpuError, Slot, Timer},
-    lens::{Lens, LensSprite},
+    lens::Lens,
     render::{
         city::{CityBuffers, Section, SectionKind, draws_of},
         city_passes::{draw_ranges, geometry_key},
@@ -31,7 +31,8 @@ use crate::{
         operations::{Filter, Operations, invoker_table},
         pipelines::{Key, ShadeTarget},
         renderer::{Renderer, STAGE_STRIDE},
-        sprites::{self, Pages, Place},
+        seen::{SeenVolume, seen_volumes},
+        sprites::Pages,
         targets::Needs,
         volume::{LensVolume, shape_test},
     },
@@ -121,28 +122,6 @@ pub struct PassRecord {
     pub triangles: u64,
     /// Where its measures stand.
     pub slot: Option<usize>,
-}
-
-/// A volume that may be seen, with its place among the stages.
-pub(super) struct SeenVolume {
-    index: usize,
-    pub lens: u32,
-    test: VolumeTest,
-    pub bounds: PictureTile,
-    /// Of one that is tested by its sprite.
-    sprite: Option<SeenSprite>,
-}
-
-/// The sprite of a volume that may be seen.
-struct SeenSprite {
-    /// The kind of shape that makes it.
-    shape: VolumeTest,
-    /// Its width and height, texels.
-    size: [u32; 2],
-    /// The part of it that is kept, texels.
-    bounds: PictureTile,
-    /// Where it is kept.
-    place: Place,
 }
 
 /// Notes passes while they are recorded.
@@ -724,45 +703,6 @@ fn wants_furniture(input: &FrameInput) -> bool {
 /// Haze per radius of the scene; none in orthographic views, which have no distance, nor on clay.
 fn haze(input: &FrameInput) -> f64 {
     if input.view.is_orthographic() || input.base == BaseStyle::Clay { 0.0 } else { input.haze }
-}
-
-/// Texels of a sprite.
-fn sprite_size(input: &FrameInput, sprite: LensSprite) -> [u32; 2] {
-    let size = input.tile.size;
-    let Some(longer) = sprite.resolution else { return size };
-    // The resolution is one of the whole picture; a tile of it has its share.
-    let scale = f64::from(longer) / f64::from(input.view.size[0].max(input.view.size[1]));
-    size.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, 16_384))
-}
-
-fn seen_volumes(input: &FrameInput) -> (Vec<SeenVolume>, Pages) {
-    let mut seen = Vec::new();
-    for (index, volume) in input.volumes.iter().enumerate() {
-        let Some(bounds) = volume.screen_bounds(&input.view, input.tile) else { continue };
-        let (lens, test) = (volume.lens, volume.test());
-        let Some(sprite) = volume.sprite else {
-            seen.push(SeenVolume { index, lens, test, bounds, sprite: None });
-            continue;
-        };
-        let sprite = sprite_size(input, sprite);
-        let to_texel = |i: usize, pixel: u32| f64::from(pixel) * f64::from(sprite[i]) / f64::from(input.tile.size[i]);
-        let low: [u32; 2] = std::array::from_fn(|i| to_texel(i, bounds.origin[i]).floor() as u32);
-        let high: [u32; 2] =
-            std::array::from_fn(|i| (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i]));
-        let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
-        let shape = shape_test(&volume.volume);
-        let sprite = Some(SeenSprite { shape, size: sprite, bounds: sprite_bounds, place: Place::default() });
-        seen.push(SeenVolume { index, lens, test, bounds, sprite });
-    }
-    let sizes: Vec<[u32; 2]> = seen.iter().filter_map(|v| v.sprite.as_ref()).map(|s| s.bounds.size).collect();
-    if sizes.is_empty() {
-        return (seen, Pages::default());
-    }
-    let pages = sprites::arrange(&sizes);
-    for (sprite, place) in seen.iter_mut().filter_map(|v| v.sprite.as_mut()).zip(&pages.places) {
-        sprite.place = *place;
-    }
-    (seen, pages)
 }
 
 fn needs(input: &FrameInput, has_lenses: bool, pages: &Pages, colors: bool, smooth: bool, shadows: bool) -> Needs {

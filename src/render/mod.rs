@@ -23,6 +23,7 @@ pub mod palette;
 pub mod picture;
 pub mod pipelines;
 pub mod renderer;
+mod seen;
 mod sprites;
 pub mod stats;
 mod surfaces;
