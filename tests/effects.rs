@@ -9,7 +9,7 @@ use studio::*;
 use veduta::{
     geom::Shape,
     lens::{EffectUse, Lens, Parameter, color},
-    render::picture::{Picture, Studio},
+    render::picture::{Aovs, Picture, Request, Studio},
     scene::Scene,
     shader::{EffectDefinition, EffectKind, effects},
     view::Camera,
@@ -198,7 +198,7 @@ fn blur_is_a_gaussian_of_the_lens_own_unmasked_picture() {
     let apart =
         |i: usize| (0..3).map(|c| (wanted[i][c] * 255.0 - f32::from(picture.rgba[i][c])).abs()).fold(0.0_f32, f32::max);
     let worst = (0..wanted.len()).filter(|i| stage.inside[*i]).map(apart).fold(0.0_f32, f32::max);
-    // Bytes of the plain picture are rounded, dark ones most in linear light; so are half floats and the result.
+    // Bytes of the plain picture are rounded, dark ones most in linear light; so are what the filter reads and the result.
     assert!(worst <= 2.0, "{worst}");
     // Another lens' style is not sampled: the blurred lens beside a black one is as without it.
     let mut scene = stage.scene(vec![with_numbers("blur", &[("radius", 5.0)])]);
@@ -207,6 +207,63 @@ fn blur_is_a_gaussian_of_the_lens_own_unmasked_picture() {
     scene.lenses.insert(0, below);
     let both = studio::picture(&mut stage.studio, &scene, SIZE);
     assert_eq!(both.rgba, picture.rgba);
+}
+
+#[test]
+fn a_transparent_picture_is_blurred_without_what_is_not_there() {
+    let mut stage = Stage::new();
+    // The whole city in a wide lens, and much sky over it.
+    let Shape::Sphere { center: at, .. } = stage.ball else { unreachable!("the stage has a ball") };
+    let ball = Shape::Sphere { center: at, radius: 1000.0 };
+    let camera = Camera::looking(at + DVec3::new(60.0, -200.0, 25.0), at + DVec3::new(0.0, 0.0, 20.0), 0.5);
+    let mut one = lens("all", vec![ball], "blur");
+    one.effects = vec![with_numbers("blur", &[("radius", 4.0)])];
+    let mut scene = scene(camera, vec![one]);
+    let request = Request {
+        size: SIZE,
+        samples: 1,
+        transparent: true,
+        aovs: Aovs::default(),
+        statistics: false,
+        backend: Default::default(),
+    };
+    let picture = stage.studio.render(&scene, &request).expect("a picture");
+    scene.lenses.clear();
+    let plain = stage.studio.render(&scene, &request).expect("a picture");
+    let alphas = |p: &Picture| p.rgba.iter().map(|c| c[3]).collect::<Vec<_>>();
+    assert!(alphas(&picture) == alphas(&plain), "the silhouette changed");
+    let [w, h] = SIZE.map(|s| s as i64);
+    let weight = |o: i64| (-0.5 * (2.5 * o as f64 / 4.0).powi(2)).exp();
+    let (mut checked, mut mixed) = (0, 0);
+    for i in (0..w * h).filter(|i| plain.rgba[*i as usize][3] == 255) {
+        let (x, y) = (i % w, i / w);
+        let (mut sum, mut weights, mut all) = ([0.0; 3], 0.0, 0.0);
+        for (dx, dy) in (-4..=4).flat_map(|dx| (-4..=4).map(move |dy| (dx, dy))) {
+            let (x, y) = (x + dx, y + dy);
+            if !(0..w).contains(&x) || !(0..h).contains(&y) {
+                continue;
+            }
+            let p = plain.rgba[(y * w + x) as usize];
+            let here = weight(dx) * weight(dy);
+            all += here;
+            if p[3] == 255 {
+                let c = color::linear_from_srgb([p[0], p[1], p[2]].map(|c| f32::from(c) / 255.0));
+                sum = [0, 1, 2].map(|k| sum[k] + here * f64::from(c[k]));
+                weights += here;
+            }
+        }
+        let wanted = color::srgb_from_linear(sum.map(|s| (s / weights) as f32)).map(|c| c * 255.0);
+        let found = picture.rgba[i as usize];
+        for c in 0..3 {
+            // Where little of the neighbourhood is there, rounding weighs more.
+            let tolerance = if weights > 0.5 * all { 2.0 } else { 5.0 };
+            let wrong = (wanted[c] - f32::from(found[c])).abs();
+            assert!(wrong <= tolerance, "pixel {x} {y}: {found:?}, not {wanted:?} of {weights}");
+        }
+        checked += 1;
+        mixed += u32::from(weights < 0.9 * all);
+    }
+    assert!(checked > 1000 && mixed > 100, "{checked} {mixed}");
 }
 
 #[test]
@@ -232,9 +289,9 @@ fn what_filters_have_in_common_is_made_once() {
         (both, filter_passes)
     };
     let (equal, passes) = blurs([5.0, 5.0]);
-    assert_eq!(passes, ["unfiltered", "filter across", "filter down"]);
+    assert_eq!(passes, ["unfiltered", "filter down", "filter across"]);
     let (unequal, passes) = blurs([2.5, 5.0]);
-    assert_eq!(passes, ["unfiltered", "filter across", "filter down", "filter across", "filter down"]);
+    assert_eq!(passes, ["unfiltered", "filter down", "filter across", "filter down", "filter across"]);
     assert_eq!(unequal.statistics.pipelines.compiled, 0, "a radius is a parameter");
     let insides = [bits(&equal, 0), bits(&equal, 1)];
     let wanted = [2.5, 5.0].map(|radius| blurred(&stage.plain, radius));
@@ -369,7 +426,7 @@ fn predicted(effects: &[&str]) -> Vec<String> {
     let mut names = vec!["geometry", "clear lens masks"];
     names.extend(draws_lines(effects).then_some("lines"));
     for _ in 0..filters {
-        names.extend(["unfiltered", "filter across", "filter down"]);
+        names.extend(["unfiltered", "filter down", "filter across"]);
     }
     names.push("shade");
     names.into_iter().map(str::to_owned).collect()

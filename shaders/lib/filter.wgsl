@@ -1,13 +1,18 @@
 // What neighbourhood filters made (K3): each is one lens' own image, filtered before anything masks it. Its pixels stand
-// where `pass/filter.wgsl` put them.
+// where `pass/filter.wgsl` put them. Of a transparent picture there are two images: colours times opacity, and opacity.
 
-@group(2) @binding(6) var filtered: texture_2d_array<f32>;     // linear, multiplied by opacity
+@group(2) @binding(6) var filtered: texture_2d_array<u32>;
 
 // `slot` of the parameters says which of them.
 fn filtered_at(slot: u32, point: Point) -> vec3f {
-    let columns = i32(textureDimensions(filtered).x >> 2u);
-    let place = vec2i((point.pixel.x & 3) * columns, 0) + (point.pixel >> vec2u(2u));
-    let layer = 4 * i32(parameters[slot].x) + (point.pixel.y & 3);
-    let sum = textureLoad(filtered, place, layer, 0);
-    return sum.rgb / max(sum.a, 1e-6);
+    let layer = i32(parameters[slot].x) + (point.pixel.y & 3);
+    let color = filtered_pixel(point.pixel, layer);
+    if BACKGROUND != NOTHING {
+        return color;
+    }
+    return color / max(filtered_pixel(point.pixel, layer + 4).x, 1e-6);
+}
+
+fn filtered_pixel(pixel: vec2i, layer: i32) -> vec3f {
+    return unpacked(textureLoad(filtered, pixel >> vec2u(2u), layer, 0)[pixel.x & 3]);
 }

@@ -55,6 +55,13 @@ fn irradiance(normal: vec3f, sun: f32) -> vec3f {
     return ambient + light.sun * (max(dot(normal, light.to_sun), 0.0) * sun);
 }
 
+// What is behind the city.
+override BACKGROUND: u32 = 0u;
+
+const SKY: u32 = 0u;
+const ONE_COLOR: u32 = 1u;
+const NOTHING: u32 = 2u;
+
 fn sky_color(direction: vec3f) -> vec3f {
     let height = clamp(direction.z * inverseSqrt(dot(direction, direction)), 0.0, 1.0);
     let low = 1.0 - height;

@@ -1,26 +1,28 @@
 // One direction of a separable neighbourhood filter (K3). The kernel is the effect's: a weight for each offset, in pixels.
 //
-// What a pixel costs is the texels it reads, so an invocation makes four pixels that follow each other in that direction:
-// they share most of what they read. Pixel p of a row or column is pixel p / 4 of target p % 4. Across makes four narrow
-// images; down reads these, and makes four low ones, in which the narrow ones stand side by side.
+// What a pixel costs is the texels it reads. So a texel holds four pixels that lie side by side across the filter's
+// direction, and an invocation makes four of these that follow each other in it: 16 pixels of 4 + 2 r reads. It writes them
+// turned, four pixels in its own direction to a texel: as the filter in the other direction reads them. Line k of the four
+// goes into target k.
 
 struct FilterStage {
     step: vec2i,                // to the next pixel: (1, 0) or (0, 1)
     reach: i32,                 // pixels on either side
     first: u32,                 // slot of the effect's parameters
-    size: vec2i,                // of the picture, pixels
-    columns: i32,               // of one layer of the image
+    length: i32,                // of the picture in the filter's direction, pixels
+    layers: i32,                // texels that follow each other stand in one layer, or in turn in four
+    layer: i32,                 // the first of these
 }
 
-struct Four {
-    @location(0) first: vec4f,
-    @location(1) second: vec4f,
-    @location(2) third: vec4f,
-    @location(3) fourth: vec4f,
+struct Lines {
+    @location(0) first: vec4u,
+    @location(1) second: vec4u,
+    @location(2) third: vec4u,
+    @location(3) fourth: vec4u,
 }
 
 @group(0) @binding(0) var<uniform> stage: FilterStage;
-@group(0) @binding(1) var image: texture_2d_array<f32>;    // linear, multiplied by opacity
+@group(0) @binding(1) var image: texture_2d_array<u32>;
 @group(0) @binding(2) var<uniform> parameters: array<vec4f, 4096>;
 
 @vertex
@@ -37,32 +39,47 @@ fn weight_at(i: i32, own: Own) -> f32 {
     return select(least, max(weight, least), i <= stage.reach && weight > 0.0 && weight < 1e6);
 }
 
+// The n-th texel in the filter's direction, of those that `beside` leads to.
+fn texel(n: i32, beside: vec2i) -> mat3x4f {
+    let is_turned = stage.layers == 4;
+    let place = beside + select(n, n >> 2u, is_turned) * stage.step;
+    return four_unpacked(textureLoad(image, place, stage.layer + select(0, n & 3, is_turned), 0));
+}
+
 @fragment
-fn fragment(@builtin(position) at: vec4f) -> Four {
-    let texel = vec2i(at.xy);
-    // A pixel's centre is half a pixel from any border, so this is exact; a software adapter divides integers lane by lane.
-    let layer = i32(at.x / f32(stage.columns));
-    let pixel = vec2i(texel.x - layer * stage.columns, texel.y) * (1 + 3 * stage.step);
-    let start = dot(pixel, stage.step);
-    let length = dot(stage.size, stage.step);
+fn fragment(@builtin(position) at: vec4f) -> Lines {
+    let block = vec2i(at.xy);
+    let beside = block * (1 - stage.step);
+    let start = 4 * dot(block, stage.step);
     let own = own_parameters();
-    var sums = mat4x4f();
+    var first = mat3x4f();
+    var second = mat3x4f();
+    var third = mat3x4f();
+    var fourth = mat3x4f();
     var weights = vec4f(0.0);
     // What the texel that is read weighs in each of the four.
     var here = vec4f(0.0);
     for (var i = -stage.reach; i < stage.reach + 4; i++) {
         here = vec4f(weight_at(i, own), here.xyz);
         // Beyond the picture nothing is known: the kernel is cut there.
-        let is_known = start + i >= 0 && start + i < length;
+        let is_known = start + i >= 0 && start + i < stage.length;
         let weighed = select(vec4f(0.0), here, is_known);
-        let color = textureLoad(image, pixel + i * stage.step, layer, 0);
-        sums[0] += weighed.x * color;
-        sums[1] += weighed.y * color;
-        sums[2] += weighed.z * color;
-        sums[3] += weighed.w * color;
+        let four = texel(start + i, beside);
+        first += weighed.x * four;
+        second += weighed.y * four;
+        third += weighed.z * four;
+        fourth += weighed.w * four;
         weights += weighed;
     }
     // Pixels beyond the picture have no weight.
-    weights = max(weights, vec4f(1e-30));
-    return Four(sums[0] / weights.x, sums[1] / weights.y, sums[2] / weights.z, sums[3] / weights.w);
+    let scale = 1.0 / max(weights, vec4f(1e-30));
+    let a = four_packed(first * scale.x);
+    let b = four_packed(second * scale.y);
+    let c = four_packed(third * scale.z);
+    let d = four_packed(fourth * scale.w);
+    return Lines(
+        vec4u(a.x, b.x, c.x, d.x),
+        vec4u(a.y, b.y, c.y, d.y),
+        vec4u(a.z, b.z, c.z, d.z),
+        vec4u(a.w, b.w, c.w, d.w));
 }

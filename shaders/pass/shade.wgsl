@@ -5,10 +5,6 @@
 // it from a table. Moving a lens or turning a parameter changes uniforms only.
 
 override SUMMED: bool = false;      // weighted by coverage, to be summed over samples
-override BACKGROUND: u32 = 0u;      // SKY, ONE_COLOR, NOTHING
-
-const SKY: u32 = 0u;
-const ONE_COLOR: u32 = 1u;
 
 struct Corner {
     @builtin(position) @invariant clip: vec4f,
@@ -35,6 +31,36 @@ fn finished(paint: vec4f, point: Point, pixel: vec2i, classes: Classes) -> vec4f
 // Where something stands: the stored depth is not 0. The depth test chooses, so that neither shader runs in vain.
 @fragment
 fn surface(in: Corner) -> @location(0) vec4f {
+    return paint_of_surface(in);
+}
+
+// Where nothing stands: the stored depth is its clear value, 0.
+@fragment
+fn background(in: Corner) -> @location(0) vec4f {
+    return paint_of_background(in);
+}
+
+// What a neighbourhood filter reads: colours times opacity, and of a transparent picture opacity.
+struct Unfiltered {
+    @location(0) color: u32,
+    @location(1) opacity: u32,
+}
+
+fn unfiltered(paint: vec4f) -> Unfiltered {
+    return Unfiltered(packed(paint.rgb * paint.a), packed(vec3f(paint.a)));
+}
+
+@fragment
+fn surface_unfiltered(in: Corner) -> Unfiltered {
+    return unfiltered(paint_of_surface(in));
+}
+
+@fragment
+fn background_unfiltered(in: Corner) -> Unfiltered {
+    return unfiltered(paint_of_background(in));
+}
+
+fn paint_of_surface(in: Corner) -> vec4f {
     let pixel = vec2i(in.clip.xy);
     let ray = ray_of_pixel(in.clip.xy);
     var point = point_at(pixel, ray, textureLoad(scene_depth, pixel, 0));
@@ -42,9 +68,7 @@ fn surface(in: Corner) -> @location(0) vec4f {
     return finished(vec4f(shade(&point, classes), 1.0), point, pixel, classes);
 }
 
-// Where nothing stands: the stored depth is its clear value, 0.
-@fragment
-fn background(in: Corner) -> @location(0) vec4f {
+fn paint_of_background(in: Corner) -> vec4f {
     let pixel = vec2i(in.clip.xy);
     let ray = ray_of_pixel(in.clip.xy);
     var paint = vec4f(0.0);

@@ -111,11 +111,14 @@ impl Gpu {
     async fn on(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let limits = adapter.limits();
-        if limits.max_storage_buffers_per_shader_stage < 6 || limits.max_compute_workgroups_per_dimension == 0 {
+        let is_too_small = limits.max_storage_buffers_per_shader_stage < 6
+            || limits.max_compute_workgroups_per_dimension == 0
+            || limits.max_color_attachment_bytes_per_sample < 64;
+        if is_too_small {
             return Err(GpuError::NoDevice {
                 adapter: describe(&info),
-                message: "it has too few storage buffers or no compute shaders; on Debian and Ubuntu the package \
-                          mesa-vulkan-drivers gives a software Vulkan adapter that has them"
+                message: "it has too few storage buffers, too small render targets or no compute shaders; on Debian and \
+                          Ubuntu the package mesa-vulkan-drivers gives a software Vulkan adapter that has them"
                     .to_owned(),
             });
         }

@@ -113,6 +113,22 @@ mod tests {
     }
 
     #[test]
+    fn what_filters_read_is_right_to_a_fraction_of_a_byte() {
+        // Twins of `packed` and `unpacked` in `lib/packed.wgsl`, one channel of so many levels.
+        let rounded = |linear: f32, levels: f32| {
+            let root = (levels * linear.sqrt() + 0.5).floor() * (1.0 / levels);
+            root * root
+        };
+        for step in 0..=100_000 {
+            let linear = step as f32 / 100_000.0;
+            for (levels, most) in [(2047.0, 0.09), (1023.0, 0.18)] {
+                let [exact, _, found] = srgb_from_linear([linear, 0.0, rounded(linear, levels)]);
+                assert!((exact - found).abs() * 255.0 <= most, "{linear}: {found}, not {exact}");
+            }
+        }
+    }
+
+    #[test]
     fn hex_is_read_and_written() {
         assert_eq!(parse_hex("#ff8000"), Some([1.0, 128.0 / 255.0, 0.0]));
         assert_eq!(parse_hex("#f80"), Some([1.0, 136.0 / 255.0, 0.0]));

@@ -1,7 +1,8 @@
 //! Neighbourhood filters (K3): a lens' own image, unmasked, shaded over the lens' bounds and what the filter reaches beyond
-//! them; then the filter across and down.
+//! them; then the filter down and across.
 //!
-//! Filters that read the same image have it shaded once, and uses that would make the same image share it.
+//! Filters that read the same image have it shaded once, and uses that would make the same image share it. A filter reads
+//! four pixels at once; that is what a copy to a texture of other texels is for.
 
 use crate::render::{
     eye::{PictureTile, split},
@@ -11,18 +12,29 @@ use crate::render::{
     pipelines::Key,
     renderer::{Renderer, STAGE_STRIDE},
     seen::SeenVolume,
+    targets::{Targets, row_bytes},
 };
 
-/// The stages of a filter, across and down, in a picture of this size.
-pub(super) fn stages(filter: &Filter, size: [u32; 2]) -> [layout::FilterStage; 2] {
-    [([1, 0], size[0]), ([0, 1], size[0].div_ceil(4))].map(|(step, columns)| layout::FilterStage {
+/// The stages of a filter in a picture of this size: for each of its images down, and across.
+pub(super) fn stages(filter: &Filter, size: [u32; 2], images: usize) -> Vec<layout::FilterStage> {
+    let stage = |step, length, layers, layer: usize| layout::FilterStage {
         step,
         reach: filter.reach as i32,
         first: filter.parameters,
-        size: size.map(|s| s as i32),
-        columns: columns as i32,
+        length: length as i32,
+        layers,
+        layer: layer as i32,
         pad_0: 0,
-    })
+    };
+    (0..images).flat_map(|image| [stage([0, 1], size[1], 1, image), stage([1, 0], size[0], 4, 0)]).collect()
+}
+
+/// Where a filter's image is shaded.
+enum Into<'a> {
+    /// Tested against the city.
+    Shaded(&'a [wgpu::TextureView]),
+    /// Each of the four lines of a block.
+    Lines(&'a [wgpu::TextureView]),
 }
 
 impl Renderer {
@@ -37,57 +49,53 @@ impl Renderer {
         keys: &[Vec<Key>],
     ) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        let Some([across, down]) = &groups.filters else { return };
+        let Some([down, across]) = &groups.filters else { return };
         let size = input.tile.size;
         let whole = PictureTile::whole(size);
         let areas: Vec<Vec<PictureTile>> = filters.iter().map(|f| areas_of(f, size, seen)).collect();
-        let columns = size[0].div_ceil(4);
+        let images = targets.needs.filter_images as usize;
         for (i, filter) in filters.iter().enumerate() {
             // A filter reads no image that a later one makes: those that read the same image may as well come first.
             if filters[..i].iter().any(|f| f.plan == filter.plan) {
                 continue;
             }
             let same = || (i..).zip(&filters[i..]).filter(|(_, f)| f.plan == filter.plan);
-            let wanted: Vec<PictureTile> =
-                same().flat_map(|(k, f)| areas[k].iter().map(|area| grown(*area, [f.reach; 2], whole))).collect();
+            let around = |(k, f): (usize, &Filter)| -> Vec<PictureTile> {
+                areas[k].iter().map(|area| in_fours(grown(*area, [f.reach; 2], whole), whole)).collect()
+            };
+            let wanted = merged(same().flat_map(around).collect());
             let lenses: Vec<u32> = same().flat_map(|(_, f)| lenses_of(f)).collect();
-            let unfiltered = [&targets.unfiltered[0].layers[0]];
-            self.filter_pass(encoder, recorder, "unfiltered", &lenses, &unfiltered, &mut |pass| {
+            let into = Into::Shaded(&targets.unfiltered.layers);
+            self.filter_pass(encoder, recorder, "unfiltered", &lenses, &into, &mut |pass| {
                 pass.set_bind_group(0, &groups.view, &[]);
                 pass.set_bind_group(1, &groups.shade, &[]);
                 pass.set_bind_group(2, &groups.lenses, &[]);
                 let mut drawn = 0;
-                let rectangles = merged(wanted.clone());
                 for key in &keys[i] {
                     pass.set_pipeline(self.pipelines.get(key));
-                    drawn += fill(pass, rectangles.iter().copied());
+                    drawn += fill(pass, wanted.iter().copied());
                 }
                 drawn
             });
+            gather_fours(encoder, targets, &wanted);
             for (k, filter) in same() {
                 let lenses: Vec<u32> = lenses_of(filter).collect();
                 let key = Key::Filter(filter.effect);
-                let stage = |direction: usize| ((2 * k + direction) as u64 * STAGE_STRIDE) as u32;
-                let half: Vec<&wgpu::TextureView> = targets.unfiltered[1].layers.iter().collect();
-                self.filter_pass(encoder, recorder, "filter across", &lenses, &half, &mut |pass| {
-                    pass.set_pipeline(self.pipelines.get(&key));
-                    pass.set_bind_group(0, across, &[stage(0)]);
-                    let rows = areas[k].iter().map(|area| grown(*area, [0, filter.reach], whole)).collect();
-                    fill(pass, merged(rows).into_iter().map(|area| quartered(area, 0)))
-                });
-                let low: Vec<&wgpu::TextureView> = targets.filtered.layers[4 * k..4 * k + 4].iter().collect();
-                self.filter_pass(encoder, recorder, "filter down", &lenses, &low, &mut |pass| {
-                    pass.set_pipeline(self.pipelines.get(&key));
-                    pass.set_bind_group(0, down, &[stage(1)]);
-                    let quarters = areas[k].iter().map(|area| quartered(quartered(*area, 0), 1));
-                    let beside = |part: PictureTile| {
-                        (0..4).map(move |n| PictureTile {
-                            origin: [part.origin[0] + n * columns, part.origin[1]],
-                            ..part
-                        })
+                let columns: Vec<PictureTile> =
+                    areas[k].iter().map(|area| in_fours(grown(*area, [filter.reach, 0], whole), whole)).collect();
+                for image in 0..images {
+                    let stage = |direction| ((2 * (k * images + image) + direction) as u64 * STAGE_STRIDE) as u32;
+                    let lines = 4 * (k * images + image);
+                    let mut filter_in = |name, group, direction, into: &[wgpu::TextureView], parts: &[PictureTile]| {
+                        self.filter_pass(encoder, recorder, name, &lenses, &Into::Lines(into), &mut |pass| {
+                            pass.set_pipeline(self.pipelines.get(&key));
+                            pass.set_bind_group(0, group, &[stage(direction)]);
+                            fill(pass, merged(parts.to_vec()).into_iter().map(blocks))
+                        });
                     };
-                    fill(pass, quarters.flat_map(beside))
-                });
+                    filter_in("filter down", down, 0, &targets.fours[1].layers, &columns);
+                    filter_in("filter across", across, 1, &targets.filtered.layers[lines..lines + 4], &areas[k]);
+                }
             }
         }
     }
@@ -98,12 +106,13 @@ impl Renderer {
         recorder: &mut Recorder,
         name: &'static str,
         lenses: &[u32],
-        into: &[&wgpu::TextureView],
+        into: &Into,
         draw: &mut dyn FnMut(&mut wgpu::RenderPass) -> u32,
     ) {
         let Some(targets) = &self.targets else { return };
         let slot = recorder.begin(name, "main", lenses, true);
-        let attachments: Vec<_> = into
+        let (Into::Shaded(views) | Into::Lines(views)) = into;
+        let attachments: Vec<_> = views
             .iter()
             .map(|view| {
                 // Every texel that is read with any weight is written first.
@@ -112,8 +121,7 @@ impl Renderer {
                 Some(kept)
             })
             .collect();
-        // What shades is tested against the city; a filter is not.
-        let is_shading = into.len() == 1;
+        let is_shading = matches!(into, Into::Shaded(_));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(name),
             color_attachments: &attachments,
@@ -134,6 +142,32 @@ impl Renderer {
         }
         drop(pass);
         recorder.count(drawn, u64::from(drawn));
+    }
+}
+
+/// Makes one texel of four pixels that stand side by side: the same bytes.
+fn gather_fours(encoder: &mut wgpu::CommandEncoder, targets: &Targets, parts: &[PictureTile]) {
+    let size = targets.needs.size;
+    let row = row_bytes(size);
+    let layers = targets.needs.filter_images;
+    for part in parts {
+        let [x, y] = part.origin;
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: u64::from(y) * u64::from(row) + u64::from(4 * x),
+            bytes_per_row: Some(row),
+            rows_per_image: Some(size[1]),
+        };
+        let bytes = wgpu::TexelCopyBufferInfo { buffer: &targets.unfiltered_bytes, layout };
+        let at = |texture, x| wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d { x, y, z: 0 },
+            aspect: wgpu::TextureAspect::All,
+        };
+        let extent = |width| wgpu::Extent3d { width, height: part.size[1], depth_or_array_layers: layers };
+        encoder.copy_texture_to_buffer(at(&targets.unfiltered.texture, x), bytes, extent(part.size[0]));
+        let fours = at(&targets.fours[0].texture, x / 4);
+        encoder.copy_buffer_to_texture(bytes, fours, extent(part.size[0].div_ceil(4)));
     }
 }
 
@@ -203,12 +237,9 @@ fn grown(part: PictureTile, by: [u32; 2], whole: PictureTile) -> PictureTile {
     PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] }
 }
 
-/// Where a rectangle is in images that hold every fourth pixel along an axis.
-fn quartered(mut part: PictureTile, axis: usize) -> PictureTile {
-    let end = (part.origin[axis] + part.size[axis]).div_ceil(4);
-    part.origin[axis] /= 4;
-    part.size[axis] = end - part.origin[axis];
-    part
+/// Where a rectangle of whole fours is in images of blocks of four by four pixels.
+fn blocks(part: PictureTile) -> PictureTile {
+    PictureTile { origin: part.origin.map(|o| o / 4), size: part.size.map(|s| s.div_ceil(4)) }
 }
 
 #[cfg(test)]
@@ -230,13 +261,17 @@ mod tests {
     }
 
     #[test]
-    fn quarters_hold_every_pixel() {
-        for (x, w) in [(0, 1), (3, 1), (3, 2), (4, 4), (5, 8)] {
-            let quarter = quartered(tile(x, 7, w, 2), 0);
+    fn blocks_hold_every_pixel() {
+        let whole = tile(0, 0, 13, 30);
+        for (x, w) in [(0, 1), (3, 1), (3, 2), (4, 4), (5, 8), (11, 2)] {
+            let fours = in_fours(tile(x, 7, w, 2), whole);
+            assert_eq!(fours.origin[0] % 4, 0);
+            assert!(fours.origin[0] + fours.size[0] <= whole.size[0]);
+            let blocks = blocks(fours);
             for pixel in x..x + w {
-                assert!((quarter.origin[0]..quarter.origin[0] + quarter.size[0]).contains(&(pixel / 4)));
+                assert!((blocks.origin[0]..blocks.origin[0] + blocks.size[0]).contains(&(pixel / 4)));
             }
-            assert_eq!((quarter.origin[1], quarter.size[1]), (7, 2));
+            assert_eq!((blocks.origin[1], blocks.size[1]), (1, 2));
         }
     }
 }

@@ -6,8 +6,8 @@
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
 //! lines                         edges, where effects draw them
-//! unfiltered, filter across,    for each neighbourhood filter in view: its lens' own image over the lens' bounds
-//! filter down                   and what the filter reaches beyond them, and the filter
+//! unfiltered, filter down,      for each neighbourhood filter in view: its lens' own image over the lens' bounds
+//! filter across                 and what the filter reaches beyond them, and the filter
 //! shade                         outside the lenses' screen bounds without them, inside with them
 //! resolve                       the mean of the samples, after the last of several
 //! furniture                     title, caption, legends: over the last sample
@@ -29,7 +29,7 @@ use crate::{
         furniture::Furniture,
         layout, light, lines,
         operations::{Filter, Operations, invoker_table},
-        pipelines::{Key, ShadeTarget},
+        pipelines::{Behind, Key, ShadeTarget},
         renderer::{Renderer, STAGE_STRIDE},
         seen::{SeenVolume, seen_volumes},
         sprites::Pages,
@@ -166,9 +166,10 @@ impl Renderer {
         let lines = if self.has_edges() { lines::draws(input, plans.lining.as_ref(), &plans.seen) } else { Vec::new() };
         self.fit_targets(Needs {
             filters,
+            filter_images: if filters > 0 { behind(input).images() as u32 } else { 0 },
             lines: !lines.is_empty(),
             ..needs(input, !seen.is_empty(), &pages, self.colored(), self.smooth(), sun_view.is_some())
-        });
+        })?;
         let cuts =
             Cuts::new(input, |lens| seen.iter().any(|v| v.lens == lens), sun_view.as_ref(), plans.hiding.clone());
         let (keys, is_uber) = self.prepare(input, &seen, &plans, &cuts, sun_view.is_some());
@@ -345,10 +346,10 @@ impl Renderer {
             parameters.to_mut().resize(MOST_SLOTS as usize, [0.0; 4]);
         }
         for (filter, (_, slot)) in plans.uses() {
-            parameters.to_mut()[slot as usize][0] = filter as f32;
+            parameters.to_mut()[slot as usize][0] = (4 * behind(input).images() * filter) as f32;
         }
-        let filter_stages: Vec<u8> =
-            plans.filters.iter().flat_map(|f| filters::stages(f, input.tile.size)).flat_map(|s| strided(&s)).collect();
+        let stages_of = |f| filters::stages(f, input.tile.size, behind(input).images());
+        let filter_stages: Vec<u8> = plans.filters.iter().flat_map(stages_of).flat_map(|s| strided(&s)).collect();
         stale |= b.filter_stages.sync(gpu, &filter_stages)?;
         if is_uber {
             sprite_places.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
@@ -422,11 +423,7 @@ impl Renderer {
             clay,
             shadows,
             smooth,
-            background: match input.background {
-                _ if input.transparent => 2,
-                Background::Color(_) => 1,
-                Background::Sky => 0,
-            },
+            behind: behind(input),
         };
         let target = if input.samples > 1 { ShadeTarget::Sums } else { ShadeTarget::Picture };
         let both_to =
@@ -715,8 +712,18 @@ fn needs(input: &FrameInput, has_lenses: bool, pages: &Pages, colors: bool, smoo
         mask_layers: if input.masks && has_lenses { 3 * input.lens_count.div_ceil(32) } else { 0 },
         sprites: [pages.size[0], pages.size[1], pages.count],
         filters: 0,
+        filter_images: 0,
         lines: false,
         shadow: if shadows { light::SHADOW_SIZE } else { 0 },
+    }
+}
+
+/// What is behind the city.
+fn behind(input: &FrameInput) -> Behind {
+    match input.background {
+        _ if input.transparent => Behind::Nothing,
+        Background::Color(_) => Behind::OneColor,
+        Background::Sky => Behind::Sky,
     }
 }
 

@@ -158,8 +158,9 @@ pub struct FilterStage {
     pub step: [i32; 2],
     pub reach: i32,
     pub first: u32,
-    pub size: [i32; 2],
-    pub columns: i32,
+    pub length: i32,
+    pub layers: i32,
+    pub layer: i32,
     pub pad_0: u32,
 }
 
@@ -292,7 +293,7 @@ mod tests {
                 }),
             ),
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin })),
-            (&Module::Filter(blur), host!(FilterStage { step, reach, first, size, columns, pad_0 })),
+            (&Module::Filter(blur), host!(FilterStage { step, reach, first, length, layers, layer, pad_0 })),
             (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
             (&uber, host!(Part { material, light, styles, outlines, masks, hides, lines, pad_0 })),
             (&shade, host!(SpritePlace { origin, size, texels_per_pixel, sprite, page, pad_0 })),

@@ -19,8 +19,8 @@ use crate::{
 /// Width of a lens outline, pixels.
 const OUTLINE_PX: f32 = 1.6;
 
-/// Different neighbourhood filters of a picture: each takes four of an image's 256 layers.
-pub const MOST_FILTERS: usize = 64;
+/// Different neighbourhood filters of a picture: each takes four of an image's 256 layers, of a transparent picture eight.
+pub const MOST_FILTERS: usize = 32;
 
 /// One use of an effect.
 #[derive(Clone, Debug, PartialEq)]

@@ -29,8 +29,10 @@ pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 pub const OWN_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// One bit per lens and class.
 pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// Linear colours times opacity, to 11 bits: what neighbourhood filters read and write.
-pub const FILTERED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// A colour or an opacity as `lib/packed.wgsl` packs it: what neighbourhood filters start from.
+pub const UNFILTERED: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// Four of these: what they read and write.
+pub const FILTERED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// Stored depths of an entry and of an exit: volumetric depth sprites.
 pub const SPRITES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// The picture: sRGB bytes.
@@ -76,8 +78,8 @@ pub enum Key {
         shadows: bool,
         /// Normals are in the target.
         smooth: bool,
-        /// What is behind the city, as `pass/shade.wgsl` numbers it.
-        background: u32,
+        /// What is behind the city.
+        behind: Behind,
     },
     /// Edges as lines, and whether normals are in the target.
     Lines {
@@ -108,8 +110,26 @@ pub enum ShadeTarget {
     Picture,
     /// The sum of samples, weighted by coverage.
     Sums,
-    /// What a filter reads, weighted by coverage.
+    /// What a filter reads: colours weighted by coverage, and where the picture is transparent their opacity.
     Unfiltered,
+}
+
+/// What is behind the city, as `lib/light.wgsl` numbers it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Behind {
+    /// The sky.
+    Sky = 0,
+    /// One colour.
+    OneColor = 1,
+    /// The picture is transparent.
+    Nothing = 2,
+}
+
+impl Behind {
+    /// Images that a neighbourhood filter has of such a picture: colours, and of a transparent one opacity.
+    pub fn images(self) -> usize {
+        1 + usize::from(self == Self::Nothing)
+    }
 }
 
 /// Kinds of geometry sections, as far as pipelines differ.
@@ -262,6 +282,7 @@ impl Layouts {
         let depth = image(T::Depth, D::D2);
         let surfaces = image(T::Uint, D::D2);
         let floats = image(T::Float { filterable: false }, D::D2Array);
+        let packed = image(T::Uint, D::D2Array);
         let masks = B::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
             format: MASKS,
@@ -311,7 +332,7 @@ impl Layouts {
                     (3, S::FRAGMENT, uniform()),
                     (4, S::FRAGMENT, masks),
                     (5, S::FRAGMENT, uniform()),
-                    (6, S::FRAGMENT, floats),
+                    (6, S::FRAGMENT, packed),
                     (7, S::FRAGMENT, uniform()),
                 ],
             ),
@@ -332,7 +353,7 @@ impl Layouts {
             filter: layout(
                 gpu,
                 "filter",
-                &[(0, S::FRAGMENT, dynamic), (1, S::FRAGMENT, floats), (2, S::FRAGMENT, uniform())],
+                &[(0, S::FRAGMENT, dynamic), (1, S::FRAGMENT, packed), (2, S::FRAGMENT, uniform())],
             ),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
             furniture: layout(gpu, "furniture", &[(0, all, uniform()), (1, S::FRAGMENT, storage())]),
@@ -568,13 +589,13 @@ impl Key {
                 }
                 list
             }
-            Self::Shade { textured, clay, target, shadows, smooth, background, .. } => vec![
+            Self::Shade { textured, clay, target, shadows, smooth, behind, .. } => vec![
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
-                ("SUMMED", flag(*target != ShadeTarget::Picture)),
+                ("SUMMED", flag(*target == ShadeTarget::Sums)),
                 ("SHADOWS", flag(*shadows)),
                 ("SMOOTH", flag(*smooth)),
-                ("BACKGROUND", f64::from(*background)),
+                ("BACKGROUND", f64::from(*behind as u32)),
             ],
             Self::Lines { smooth, .. } => vec![("SMOOTH", flag(*smooth))],
             Self::Sprite(kind) => vec![("KIND", f64::from(kind.number()))],
@@ -598,7 +619,15 @@ impl Key {
                 }
             }
             Self::Shadow(None) => ("vertex", None),
-            Self::Shade { surface, .. } => ("vertex", Some(if *surface { "surface" } else { "background" })),
+            Self::Shade { surface, target, .. } => {
+                let fragment = match (surface, *target == ShadeTarget::Unfiltered) {
+                    (true, false) => "surface",
+                    (false, false) => "background",
+                    (true, true) => "surface_unfiltered",
+                    (false, true) => "background_unfiltered",
+                };
+                ("vertex", Some(fragment))
+            }
             _ => ("vertex", Some("fragment")),
         }
     }
@@ -652,7 +681,9 @@ impl Key {
             }
             Self::Sprite(_) => vec![Some(SPRITES.into())],
             Self::Filter(_) => vec![Some(FILTERED.into()); 4],
-            Self::Shade { target: ShadeTarget::Unfiltered, .. } => vec![Some(FILTERED.into())],
+            Self::Shade { target: ShadeTarget::Unfiltered, behind, .. } => {
+                vec![Some(UNFILTERED.into()); behind.images()]
+            }
             Self::Lines { .. } => vec![Some(wgpu::ColorTargetState {
                 format: LINES,
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),

@@ -105,7 +105,7 @@ pub(super) struct Groups {
     /// The layer of lines, and where there are some the stage of one draw.
     pub lines: wgpu::BindGroup,
     pub line_stage: Option<wgpu::BindGroup>,
-    /// Across, and down; where the frame has filters.
+    /// Down, and across; where the frame has filters.
     pub filters: Option<[wgpu::BindGroup; 2]>,
     pub resolve: wgpu::BindGroup,
 }
@@ -209,13 +209,14 @@ impl Renderer {
     }
 
     /// Makes the targets fit; what is there is kept where it does.
-    pub(super) fn fit_targets(&mut self, needs: Needs) {
+    pub(super) fn fit_targets(&mut self, needs: Needs) -> Result<(), GpuError> {
         if self.targets.as_ref().is_none_or(|t| t.needs != needs) {
             self.targets = None;
-            self.targets = Some(Targets::new(&self.gpu, needs, self.pipelines.layouts.sums));
+            self.targets = Some(Targets::new(&self.gpu, needs, self.pipelines.layouts.sums)?);
             self.groups = None;
             self.shadow_of = None;
         }
+        Ok(())
     }
 
     /// Makes the bind groups if something they bind was replaced.
@@ -293,7 +294,7 @@ impl Renderer {
                 ],
             ),
             filters: (targets.needs.filters > 0).then(|| {
-                targets.unfiltered.each_ref().map(|image| {
+                targets.fours.each_ref().map(|image| {
                     let stage = wgpu::BufferBinding {
                         buffer: b.filter_stages.buffer(),
                         offset: 0,

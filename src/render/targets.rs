@@ -1,8 +1,8 @@
 //! What a view draws into: allocated once per size, and only what the scene needs.
 
 use crate::{
-    gpu::Gpu,
-    render::pipelines::{CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES},
+    gpu::{Gpu, GpuError},
+    render::pipelines::{CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, UNFILTERED},
 };
 
 /// What a frame needs beside codes, depth and the picture.
@@ -22,8 +22,10 @@ pub struct Needs {
     pub mask_layers: u32,
     /// Width and height of the pages of depth sprites and how many there are, 0 for none.
     pub sprites: [u32; 3],
-    /// How many images neighbourhood filters make, 0 for none.
+    /// How many neighbourhood filters there are, 0 for none.
     pub filters: u32,
+    /// How many images each of them makes ([`crate::render::pipelines::Behind::images`]), 0 for none.
+    pub filter_images: u32,
     /// A layer of lines.
     pub lines: bool,
     /// Side of the shadow map, 0 for none.
@@ -62,9 +64,13 @@ pub struct Targets {
     pub masks: Target,
     /// Pages of volumetric depth sprites: stored depths of entries and exits.
     pub sprites: Target,
-    /// What a filter reads, and what is half done: four narrow images (1×1 where not needed).
-    pub unfiltered: [Target; 2],
-    /// What filters made, four low images each, as `pass/filter.wgsl` explains.
+    /// What a filter starts from, a layer for each of its images (1×1 where not needed).
+    pub unfiltered: Target,
+    /// The bytes of these, on their way to where four pixels are one texel; rows of [`row_bytes`].
+    pub unfiltered_bytes: wgpu::Buffer,
+    /// What a filter reads: the same, and what is half done (1×1 where not needed).
+    pub fours: [Target; 2],
+    /// What filters made, as `pass/filter.wgsl` explains: four layers for each image (1×1 where not needed).
     pub filtered: Target,
     /// Lines over what is shaded, linear colours times opacity (1×1 where not needed).
     pub lines: Target,
@@ -74,7 +80,7 @@ pub struct Targets {
 
 impl Targets {
     /// Allocates what is needed.
-    pub fn new(gpu: &Gpu, needs: Needs, sums: wgpu::TextureFormat) -> Self {
+    pub fn new(gpu: &Gpu, needs: Needs, sums: wgpu::TextureFormat) -> Result<Self, GpuError> {
         use wgpu::TextureUsages as U;
         let drawn = U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC;
         let make_any = |label: &str, size: [u32; 3], format, usage, layered: bool| {
@@ -96,10 +102,13 @@ impl Targets {
         let make = |label: &str, size, format, usage| make_any(label, size, format, usage, false);
         let [w, h] = needs.size;
         let full = |on: bool| if on { [w, h, 1] } else { [1, 1, 1] };
-        let filtering =
-            |(label, size)| make_any(label, if needs.filters > 0 { size } else { [1; 3] }, FILTERED, drawn, true);
+        let images = needs.filter_images;
+        let filtering = |label: &str, size, format, usage| {
+            make_any(label, if needs.filters > 0 { size } else { [1; 3] }, format, usage, true)
+        };
+        let [fours_wide, fours_high] = needs.size.map(|side| side.div_ceil(4));
         let mask_size = if needs.mask_layers > 0 { [w, h, needs.mask_layers] } else { [1, 1, 1] };
-        Self {
+        Ok(Self {
             needs,
             codes: make("codes", [w, h, 1], if needs.smooth { SMOOTH_CODES } else { CODES }, drawn),
             depth: make("depth", [w, h, 1], DEPTH, drawn),
@@ -109,10 +118,24 @@ impl Targets {
             sums: make("sums", full(needs.sums), sums, drawn),
             masks: make_any("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING, true),
             sprites: make_any("depth sprites", needs.sprites, SPRITES, drawn, true),
-            unfiltered: [("unfiltered", [w, h, 1]), ("half filtered", [w.div_ceil(4), h, 4])].map(filtering),
-            filtered: filtering(("filtered", [4 * w.div_ceil(4), h.div_ceil(4), 4 * needs.filters])),
+            unfiltered: filtering("unfiltered", [w, h, images], UNFILTERED, U::RENDER_ATTACHMENT | U::COPY_SRC),
+            unfiltered_bytes: gpu.empty_buffer(
+                "unfiltered",
+                wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+                u64::from(row_bytes(needs.size)) * u64::from(h * images),
+            )?,
+            fours: [
+                filtering("four by four", [fours_wide, h, images], FILTERED, U::TEXTURE_BINDING | U::COPY_DST),
+                filtering("half filtered", [fours_wide, fours_high, 4], FILTERED, drawn),
+            ],
+            filtered: filtering("filtered", [fours_wide, fours_high, 4 * images * needs.filters], FILTERED, drawn),
             lines: make("lines", full(needs.lines), LINES, drawn),
             shadow: make("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn),
-        }
+        })
     }
+}
+
+/// Bytes of a row in [`Targets::unfiltered_bytes`].
+pub fn row_bytes(size: [u32; 2]) -> u32 {
+    (16 * size[0].div_ceil(4)).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }

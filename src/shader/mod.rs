@@ -28,6 +28,7 @@ files! {
     VIEW = "lib/view.wgsl";
     SURFACE = "lib/surface.wgsl";
     COLOR = "lib/color.wgsl";
+    PACKED = "lib/packed.wgsl";
     SHAPE = "lib/shape.wgsl";
     LIGHT = "lib/light.wgsl";
     BLEND = "lib/blend.wgsl";
@@ -132,7 +133,7 @@ impl Module {
             Self::Sprite => &[VIEW, SHAPE, SPRITE],
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
             Self::Lines(program) => &Self::files_of_lines(program),
-            Self::Filter(_) => &[FILTER],
+            Self::Filter(_) => &[PACKED, FILTER],
             Self::Resolve => &[RESOLVE],
             Self::Furniture => &[FURNITURE],
             Self::FurnitureOver => &[FURNITURE_OVER],
@@ -176,7 +177,7 @@ impl Module {
         let parts = program.has();
         let has = |kind| program.effects().iter().any(|&e| handlers[e as usize].kind == kind);
         let (materials, filters) = (has(EffectKind::Material), has(EffectKind::Filter));
-        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT];
+        let mut files = vec![VIEW, SURFACE, COLOR, PACKED, LIGHT, OBJECTS, POINT, SIGHT];
         files.extend(lens_files(program));
         let optional = [
             (parts.blends || materials, BLEND),
