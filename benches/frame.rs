@@ -64,11 +64,12 @@ fn main() {
         frames.push((format!("{v} all"), Frame::Unculled(scene.clone())));
         frames.push((format!("{v} plain"), Frame::Full(scene)));
         frames.push((format!("{v} lens"), Frame::Full(lensed)));
+        frames.push((format!("{v} ten all"), Frame::Unculled(many.clone())));
         frames.push((format!("{v} ten"), Frame::Full(many)));
     }
     let named = |name: &str| {
         let found = frames.iter().find(|(n, _)| n == name);
-        &found.unwrap_or_else(|| panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens or ten")).1
+        &found.unwrap_or_else(|| panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten or ten all")).1
     };
     if let Some(name) = profile {
         // A bare draw takes targets and view from the frame before it.
@@ -85,6 +86,7 @@ fn main() {
     compare(&mut studio, pairs, named, ["V1 lens", "V1 plain"], 1.05);
     compare(&mut studio, pairs, named, ["V2 lens", "V2 plain"], 1.05);
     compare(&mut studio, pairs, named, ["V1 ten", "V1 plain"], 1.30);
+    compare(&mut studio, pairs, named, ["V2 ten all", "V2 all"], 1.30);
     compare(&mut studio, pairs, named, ["V2 ten", "V2 plain"], 1.30);
 }
 

@@ -92,20 +92,65 @@ mod tests {
     /// Twin of `cube_root` in `lib/color.wgsl`.
     fn cube_root(x: f32) -> f32 {
         let some = x.max(1e-18);
-        let mut root = f32::from_bits(((some.to_bits() as f32 * (1.0 / 3.0)) as u32) + 709_921_077);
-        for _ in 0..2 {
-            let cube = root * root * root;
-            root *= (cube + 2.0 * some) / (2.0 * cube + some);
-        }
-        root
+        let mut inverse = f32::from_bits(1_419_900_000 - (some.to_bits() as f32 * (1.0 / 3.0)) as u32);
+        let off = 1.0 - some * inverse * (inverse * inverse);
+        inverse *= 1.0 + off * (1.0 / 3.0 + off * (2.0 / 9.0));
+        inverse += inverse * ((1.0 - some * inverse * (inverse * inverse)) * (1.0 / 3.0));
+        some * inverse * inverse
+    }
+
+    /// Twin of `linear_from_srgb` there.
+    fn polynomial_linear(c: f32) -> f32 {
+        let sum = horner(
+            c,
+            [
+                0.056_043_09,
+                -0.255_237_43,
+                0.511_841_3,
+                -0.639_369_67,
+                0.795_216_05,
+                0.496_140_2,
+                0.034_492_476,
+                0.000_875_111_5,
+            ],
+        );
+        if c <= 0.040_45 { c / 12.92 } else { sum.min(1.0) }
+    }
+
+    /// Twin of `srgb_from_linear` there.
+    fn polynomial_srgb(c: f32) -> f32 {
+        let sum = horner(
+            c.sqrt().sqrt(),
+            [0.064_873_32, -0.306_036_98, 0.638_769_45, -0.838_965_36, 1.360_225_6, 0.140_776_78, -0.059_641_75],
+        );
+        if c <= 0.003_130_8 { 12.92 * c } else { sum.min(1.0) }
+    }
+
+    fn horner<const N: usize>(x: f32, coefficients: [f32; N]) -> f32 {
+        coefficients.into_iter().reduce(|sum, c| sum * x + c).unwrap_or(0.0)
     }
 
     #[test]
-    fn the_cube_root_of_shaders_is_right_to_two_units() {
+    fn the_polynomials_of_shaders_are_srgb() {
+        for step in 0..=100_000_u32 {
+            let c = f64::from(step) / 100_000.0;
+            let linear = if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+            assert!((f64::from(polynomial_linear(c as f32)) - linear).abs() <= 2.5e-6, "{c}");
+            let srgb = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+            assert!((f64::from(polynomial_srgb(c as f32)) - srgb).abs() <= 2e-6, "{c}");
+        }
+        for byte in 0..=255_u8 {
+            let back = polynomial_srgb(polynomial_linear(f32::from(byte) / 255.0)) * 255.0;
+            assert!((back - f32::from(byte)).abs() < 0.01, "{byte} became {back}");
+        }
+    }
+
+    #[test]
+    fn the_cube_root_of_shaders_is_right_to_four_units() {
         for step in 0..200_000 {
             let x = 10.0_f64.powf(f64::from(step) * 1e-4 - 18.0) as f32;
             let exact = f64::from(x).cbrt();
-            assert!((f64::from(cube_root(x)) / exact - 1.0).abs() <= 2.0_f64.powi(-22), "{x}");
+            assert!((f64::from(cube_root(x)) / exact - 1.0).abs() <= 2.0_f64.powi(-21), "{x}");
         }
         for small in [0.0, 1e-38, 1e-20, 9e-19] {
             assert!((f64::from(cube_root(small)) - f64::from(small).cbrt()).abs() < 1.1e-6, "{small}");
