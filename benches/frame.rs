@@ -69,7 +69,11 @@ fn main() {
     }
     let named = |name: &str| {
         let found = frames.iter().find(|(n, _)| n == name);
-        &found.unwrap_or_else(|| panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten or ten all")).1
+        &found
+            .unwrap_or_else(|| {
+                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten or ten all")
+            })
+            .1
     };
     if let Some(name) = profile {
         // A bare draw takes targets and view from the frame before it.

@@ -117,9 +117,10 @@ impl Gpu {
         if is_too_small {
             return Err(GpuError::NoDevice {
                 adapter: describe(&info),
-                message: "it has too few storage buffers, too small render targets or no compute shaders; on Debian and \
+                message:
+                    "it has too few storage buffers, too small render targets or no compute shaders; on Debian and \
                           Ubuntu the package mesa-vulkan-drivers gives a software Vulkan adapter that has them"
-                    .to_owned(),
+                        .to_owned(),
             });
         }
         let descriptor = wgpu::DeviceDescriptor {

@@ -2,7 +2,9 @@
 
 use crate::{
     gpu::{Gpu, GpuError},
-    render::pipelines::{CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, UNFILTERED},
+    render::pipelines::{
+        CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, UNFILTERED,
+    },
 };
 
 /// What a frame needs beside codes, depth and the picture.
