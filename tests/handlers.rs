@@ -6,6 +6,7 @@ use glam::DVec3;
 use studio::{lens, scene, shapes, synthetic, used};
 use veduta::{
     figure::scene_file::{self, Options},
+    geom::Shape,
     lens::{EffectUse, Lens, LensBody, Parameter},
     render::{
         frame::{Backend, ShaderPart},
@@ -33,11 +34,16 @@ fn lenses() -> Vec<Lens> {
         vec![EffectUse { class: veduta::lens::Class::Behind, ..used("darken") }, used("overlay")],
     ];
     let all = shapes(DVec3::new(20.0, 20.0, 5.0), 40.0);
-    let make = |(i, (shape, effects)): (usize, (_, Vec<EffectUse>))| {
+    let make = |(i, effects): (usize, Vec<EffectUse>)| {
         let body = if i % 2 == 0 { LensBody::Outline } else { LensBody::None };
-        Lens { effects, body, ..lens(&format!("lens {i}"), vec![shape], "sepia") }
+        Lens { effects, body, ..lens(&format!("lens {i}"), every_fourth(&all, i), "sepia") }
     };
-    all.into_iter().zip(effects).enumerate().map(make).collect()
+    effects.into_iter().enumerate().map(make).collect()
+}
+
+/// The shapes of one of four lenses that share them.
+fn every_fourth(all: &[Shape], first: usize) -> Vec<Shape> {
+    all.iter().skip(first).step_by(4).cloned().collect()
 }
 
 fn town() -> (Studio, Scene) {
@@ -103,8 +109,9 @@ fn moving_toggling_and_changing_parameters_compile_nothing() {
     }
     scene.lenses.reverse();
     check(&scene, "order");
-    for (i, shape) in shapes(DVec3::new(-10.0, 35.0, 8.0), 25.0).into_iter().rev().enumerate() {
-        scene.lenses[i].shapes = vec![shape];
+    let moved: Vec<Shape> = shapes(DVec3::new(-10.0, 35.0, 8.0), 25.0).into_iter().rev().collect();
+    for (i, lens) in scene.lenses.iter_mut().enumerate() {
+        lens.shapes = every_fourth(&moved, i);
     }
     check(&scene, "moved");
     scene.lenses[0].shapes = shapes(DVec3::new(0.0, 5000.0, 8.0), 25.0);

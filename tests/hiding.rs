@@ -163,7 +163,9 @@ fn what_is_shown_is_what_rays_meet_first_of_what_is_left() {
             let class = effect.class;
             let scene = scene(camera, vec![with(effect, &shape)]);
             let changed = compare(&mut studio, &scene, &shape, class, hidden);
-            assert!(changed > 20, "{shape:?} {class:?}: only {changed} pixels changed");
+            // Behind a small volume there is little but sky.
+            let least = if class == Class::Behind { 4 } else { 20 };
+            assert!(changed > least, "{shape:?} {class:?}: only {changed} pixels changed");
         };
         check(eraser(&[], Class::Inside), &|model, t| !is_terrain(model, t));
         let all = [("keep_terrain", Parameter::Boolean(false))];

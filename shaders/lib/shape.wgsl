@@ -4,20 +4,23 @@
 struct Shape {
     center: vec3f,              // metres
     kind: u32,                  // SPHERE, BOX, ...
-    axis_x: vec3f,              // unit; box: its x edge
-    size_x: f32,                // sphere, cylinder: radius; box: half edge along axis_x; convex: number of its first plane
-    axis_y: vec3f,              // box: its y edge
-    size_y: f32,                // box: half edge; convex: how many planes
-    axis_z: vec3f,              // box: its z edge; cylinder: its axis
-    size_z: f32,                // box: half edge; cylinder: half height
+    axis_x: vec3f,              // box: its x edge, unit; ellipsoid: its x axis over the radius there
+    size_x: f32,                // sphere, cylinder: radius; box: half edge along axis_x; convex: number of its first plane;
+                                // frustum: radius at its middle
+    axis_y: vec3f,              // box, ellipsoid: as axis_x
+    size_y: f32,                // box: half edge; convex: how many planes; frustum: what the radius grows by along its axis
+    axis_z: vec3f,              // box, ellipsoid: as axis_x; cylinder, frustum: its axis, unit
+    size_z: f32,                // box: half edge; cylinder, frustum: half height
 }
 
 const SPHERE: u32 = 0u;
 const BOX: u32 = 1u;
 const CYLINDER: u32 = 2u;
 const CONVEX: u32 = 3u;
+const ELLIPSOID: u32 = 4u;
+const FRUSTUM: u32 = 5u;
 // Not a shape: the volume is tested by its depth sprite.
-const SPRITE: u32 = 4u;
+const SPRITE: u32 = 6u;
 
 // Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
 struct Span {
@@ -103,6 +106,65 @@ fn span_of_cylinder(ray: Ray, s: Shape) -> Span {
     return meet(ends, Span(middle - half, middle + half));
 }
 
+// From the shape's middle, in the measure in which an ellipsoid is a ball of radius 1.
+fn in_ellipsoid(s: Shape, v: vec3f) -> vec3f {
+    return vec3f(dot(v, s.axis_x), dot(v, s.axis_y), dot(v, s.axis_z));
+}
+
+fn ellipsoid_holds(s: Shape, p: vec3f) -> bool {
+    let o = in_ellipsoid(s, p - s.center);
+    return dot(o, o) <= 1.0;
+}
+
+fn span_of_ellipsoid(ray: Ray, s: Shape) -> Span {
+    let own = Ray(in_ellipsoid(s, ray.origin - s.center), in_ellipsoid(s, ray.direction));
+    return span_of_sphere(own, vec3f(0.0), 1.0);
+}
+
+fn frustum_holds(s: Shape, p: vec3f) -> bool {
+    let o = p - s.center;
+    let along = dot(o, s.axis_z);
+    let across = o - along * s.axis_z;
+    let radius = s.size_x + s.size_y * along;
+    return abs(along) <= s.size_z && dot(across, across) <= radius * radius;
+}
+
+// |across| <= radius along the ray is a quadratic, set up around the point of the ray nearest the middle: two cones that meet
+// in the tip, of which the ends leave one.
+fn span_of_frustum(ray: Ray, s: Shape) -> Span {
+    let nearest = -dot(ray.origin - s.center, ray.direction) / dot(ray.direction, ray.direction);
+    let o = ray.origin - s.center + nearest * ray.direction;
+    let rise = dot(ray.direction, s.axis_z);
+    let height = dot(o, s.axis_z);
+    let across = ray.direction - rise * s.axis_z;
+    let o_across = o - height * s.axis_z;
+    let radius = s.size_x + s.size_y * height;
+    let growth = s.size_y * rise;
+    let a = dot(across, across) - growth * growth;
+    let b = dot(o_across, across) - radius * growth;
+    let c = dot(o_across, o_across) - radius * radius;
+    let ends = span_of_slab(height, rise, s.size_z);
+    var side = Span(-FAR_AWAY, FAR_AWAY);
+    let discriminant = b * b - a * c;
+    if discriminant < 0.0 {
+        // Only where it is steeper than the side does it stay within one of the cones.
+        side = Span(select(FAR_AWAY, -FAR_AWAY, a < 0.0), FAR_AWAY);
+    } else {
+        let q = -(b + select(-sqrt(discriminant), sqrt(discriminant), b >= 0.0));
+        let first = select(q / a, select(-FAR_AWAY, FAR_AWAY, growth > 0.0), abs(a) < 1e-30);
+        let second = select(c / q, 0.0, abs(q) < 1e-30);
+        let low = min(first, second);
+        let high = max(first, second);
+        side = Span(low, high);
+        if a < 0.0 {
+            // In one cone up to the first, in the other from the second on.
+            side = Span(select(-FAR_AWAY, high, growth > 0.0), select(low, FAR_AWAY, growth > 0.0));
+        }
+    }
+    let span = meet(ends, side);
+    return Span(span.enter + nearest, span.exit + nearest);
+}
+
 @group(1) @binding(1) var<storage, read> planes: array<vec4f>; // n, d: inside where n.p <= d
 
 fn convex_holds(s: Shape, p: vec3f) -> bool {
@@ -141,6 +203,8 @@ fn span_of_shape(ray: Ray, s: Shape, kind: u32) -> Span {
         case SPHERE: { return span_of_sphere(ray, s.center, s.size_x); }
         case BOX: { return span_of_box(ray, s); }
         case CYLINDER: { return span_of_cylinder(ray, s); }
+        case ELLIPSOID: { return span_of_ellipsoid(ray, s); }
+        case FRUSTUM: { return span_of_frustum(ray, s); }
         default: { return span_of_convex(ray, s); }
     }
 }
@@ -151,6 +215,8 @@ fn holds(s: Shape, kind: u32, p: vec3f) -> bool {
         case SPHERE: { return sphere_holds(s, p); }
         case BOX: { return box_holds(s, p); }
         case CYLINDER: { return cylinder_holds(s, p); }
+        case ELLIPSOID: { return ellipsoid_holds(s, p); }
+        case FRUSTUM: { return frustum_holds(s, p); }
         default: { return convex_holds(s, p); }
     }
 }

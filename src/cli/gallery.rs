@@ -45,6 +45,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "trapp-3-5-3-b"
     "trapp-3-5-3-c"
     "vienna-roofs"
+    "vienna-shapes"
 };
 
 /// Arguments of `veduta gallery`.

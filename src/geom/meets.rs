@@ -30,6 +30,23 @@ impl Volume {
                 let flat: Vec<DVec2> = part.iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect();
                 distance_to_origin(&flat) <= *radius
             }
+            Self::Ellipsoid { center, radii, rotation } => {
+                let [a, b, c] = corners.map(|p| rotation.conjugate() * (p - *center) / *radii);
+                nearest_to_origin(a, b, c).length_squared() <= 1.0
+            }
+            Self::Frustum { center, radii, half, axis } => {
+                let local = corners.map(|p| p - *center);
+                let slope = (radii[1] - radii[0]) / (2.0 * half);
+                let middle = 0.5 * (radii[0] + radii[1]);
+                let radius = |p: DVec3| middle + slope * p.dot(*axis);
+                // A cone is a cylinder seen from its tip: divided by the radius there, what is convex stays so. Without the
+                // tip, where the radius is less than 1e-12 of the largest.
+                let tip = (-slope * *axis, middle - 1e-12 * radii[0].max(radii[1]));
+                let part = clipped(&local, [(*axis, *half), (-*axis, *half), tip]);
+                let (u, v) = axis.any_orthonormal_pair();
+                let flat: Vec<DVec2> = part.iter().map(|p| DVec2::new(p.dot(u), p.dot(v)) / radius(*p)).collect();
+                distance_to_origin(&flat) <= 1.0
+            }
             Self::Convex(hull) => {
                 let (center, planes) = hull.planes();
                 let local = corners.map(|p| p - center);
@@ -131,6 +148,19 @@ mod tests {
             },
             Shape::Cylinder { center: DVec3::ONE, radius: 2.0, height: 5.0, axis: DVec3::new(0.48, 0.6, 0.64) },
             Shape::Convex { points: cube },
+            Shape::Ellipsoid {
+                center: DVec3::ONE,
+                radii: DVec3::new(4.0, 1.5, 2.5),
+                rotation: glam::DQuat::from_rotation_x(0.7),
+            },
+            Shape::Frustum {
+                center: DVec3::ONE,
+                radius: 3.0,
+                top_radius: 1.0,
+                height: 5.0,
+                axis: DVec3::new(0.48, 0.6, 0.64),
+            },
+            Shape::Frustum { center: DVec3::ONE, radius: 0.0, top_radius: 3.0, height: 4.0, axis: DVec3::X },
         ]
         .iter()
         .map(|s| s.volume().unwrap())

@@ -507,6 +507,8 @@ fn shape_name(shape: VolumeTest) -> &'static str {
         VolumeTest::Sphere => "sphere",
         VolumeTest::Box => "box",
         VolumeTest::Cylinder => "cylinder",
+        VolumeTest::Ellipsoid => "ellipsoid",
+        VolumeTest::Frustum => "cone",
         VolumeTest::Convex | VolumeTest::Sprite => "convex body",
     }
 }

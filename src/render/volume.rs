@@ -35,6 +35,8 @@ pub fn shape_test(volume: &Volume) -> VolumeTest {
         Volume::Box { .. } => VolumeTest::Box,
         Volume::Cylinder { .. } => VolumeTest::Cylinder,
         Volume::Convex(_) => VolumeTest::Convex,
+        Volume::Ellipsoid { .. } => VolumeTest::Ellipsoid,
+        Volume::Frustum { .. } => VolumeTest::Frustum,
     }
 }
 
@@ -68,6 +70,21 @@ impl LensVolume {
                 out.center = place(*center);
                 out.axis_z = turn(*axis);
                 out.size_x = *radius as f32;
+                out.size_z = *half as f32;
+            }
+            Volume::Ellipsoid { center, radii, rotation } => {
+                let axes = DMat3::from_quat(*rotation);
+                out.center = place(*center);
+                // In its own measure it is a ball of radius 1.
+                out.axis_x = turn(axes.x_axis / radii.x);
+                out.axis_y = turn(axes.y_axis / radii.y);
+                out.axis_z = turn(axes.z_axis / radii.z);
+            }
+            Volume::Frustum { center, radii: [bottom, top], half, axis } => {
+                out.center = place(*center);
+                out.axis_z = turn(*axis);
+                out.size_x = (0.5 * (bottom + top)) as f32;
+                out.size_y = ((top - bottom) / (2.0 * half)) as f32;
                 out.size_z = *half as f32;
             }
             Volume::Convex(hull) => {
@@ -114,6 +131,14 @@ impl LensVolume {
             Volume::Cylinder { center, radius, half, axis } => {
                 let (x, y) = axis.any_orthonormal_pair();
                 corners_of_box(*center, DMat3::from_cols(x, y, *axis), DVec3::new(*radius, *radius, *half))
+            }
+            Volume::Ellipsoid { center, radii, rotation } => {
+                corners_of_box(*center, DMat3::from_quat(*rotation), *radii)
+            }
+            Volume::Frustum { center, radii: [bottom, top], half, axis } => {
+                let (x, y) = axis.any_orthonormal_pair();
+                let radius = bottom.max(*top);
+                corners_of_box(*center, DMat3::from_cols(x, y, *axis), DVec3::new(radius, radius, *half))
             }
             Volume::Convex(hull) => hull.faces().0,
         };

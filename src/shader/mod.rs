@@ -262,7 +262,7 @@ mod tests {
         }
         let lens = |number, volumes: &[usize], outline| PlanLens {
             number,
-            volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % 5]).collect(),
+            volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % VolumeTest::ALL.len()]).collect(),
             outline,
         };
         let outline = seed.is_multiple_of(2).then_some(3);

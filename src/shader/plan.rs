@@ -45,13 +45,18 @@ pub enum VolumeTest {
     Cylinder,
     /// Of the planes of a convex polytope.
     Convex,
+    /// Of an ellipsoid.
+    Ellipsoid,
+    /// Of a cone, cut or not.
+    Frustum,
     /// By its volumetric depth sprite.
     Sprite,
 }
 
 impl VolumeTest {
     /// All of them, in the order of their numbers in `lib/shape.wgsl`.
-    pub const ALL: [Self; 5] = [Self::Sphere, Self::Box, Self::Cylinder, Self::Convex, Self::Sprite];
+    pub const ALL: [Self; 7] =
+        [Self::Sphere, Self::Box, Self::Cylinder, Self::Convex, Self::Ellipsoid, Self::Frustum, Self::Sprite];
 
     /// Its number, as `lib/shape.wgsl` knows it.
     pub fn number(self) -> u32 {
@@ -65,6 +70,8 @@ impl VolumeTest {
             Self::Box => "BOX",
             Self::Cylinder => "CYLINDER",
             Self::Convex => "CONVEX",
+            Self::Ellipsoid => "ELLIPSOID",
+            Self::Frustum => "FRUSTUM",
             Self::Sprite => "SPRITE",
         }
     }

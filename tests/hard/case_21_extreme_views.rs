@@ -131,6 +131,9 @@ fn a_lens_of_zero_size_holds_nothing_and_a_negative_one_is_refused() {
         format!("kind = \"box\", {center}, size = [0, 0, 0]"),
         format!("kind = \"cylinder\", {center}, radius = 0, height = 9"),
         format!("kind = \"cylinder\", {center}, radius = 9, height = 0"),
+        format!("kind = \"ellipsoid\", {center}, radii = [0, 5, 5]"),
+        format!("kind = \"cone\", {center}, radius = 0, height = 9"),
+        format!("kind = \"frustum\", {center}, radius = 9, top_radius = 2, height = 0"),
     ] {
         let volume = lens(&shape).unwrap().volume().unwrap();
         let middle = DVec3::new(85_000.5, 446_010.25, 300.0);

@@ -96,6 +96,9 @@ pub fn shapes(at: DVec3, r: f64) -> Vec<Shape> {
         Shape::Box { center: at, size: DVec3::new(1.6, 1.1, 0.9) * r, rotation: turn },
         Shape::Cylinder { center: at, radius: 0.7 * r, height: 1.3 * r, axis: turn * DVec3::Z },
         Shape::Convex { points },
+        Shape::Ellipsoid { center: at, radii: DVec3::new(1.1, 0.5, 0.8) * r, rotation: turn },
+        Shape::Frustum { center: at, radius: 0.8 * r, top_radius: 0.5 * r, height: 1.3 * r, axis: turn * DVec3::Z },
+        Shape::Frustum { center: at, radius: 0.9 * r, top_radius: 0.0, height: 1.4 * r, axis: DVec3::Z },
     ]
 }
 

@@ -415,46 +415,71 @@ pub const FIGURE: Table = Table {
     ],
 };
 
-const SHAPE_KIND: Key = key("kind", Kind::Text, "", "", "Which shape.", "\"sphere\"");
+/// The key that says which shape it is; `name` in quotes.
+const fn shape_kind(name: &'static str) -> Key {
+    key("kind", Kind::Text, "", "", "Which shape.", name)
+}
+
 const CENTER: Key = key("center", Kind::Point, "", "m", "The middle of the body.", "[78600.0, 457950.0, 10.0]");
 const RADIUS: Key = key("radius", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "Radius; 0 holds nothing.", "60.0");
 
+const HEIGHT: Key = key("height", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "From end to end.", "80.0");
+const AXIS: Key = key("axis", Kind::Direction, "[0, 0, 1]", "", "Its direction, of any length but 0.", "[0, 0, 1]");
+const ROTATION: Key = key(
+    "rotation_deg",
+    Kind::Angles,
+    "[0, 0, 0]",
+    "degrees",
+    "`[yaw, pitch, roll]`: yaw turns it counter-clockwise seen from above (0: its x is east), pitch then lifts its x end, roll then turns it about its own x.",
+    "[30.0, 0.0, 0.0]",
+);
+
 /// Shapes of lenses.
 pub const SHAPES: &[Table] = &[
-    Table { name: "sphere", doc: "A ball.", keys: &[SHAPE_KIND, CENTER, RADIUS] },
+    Table { name: "sphere", doc: "A ball.", keys: &[shape_kind("\"sphere\""), CENTER, RADIUS] },
+    Table {
+        name: "ellipsoid",
+        doc: "A ball stretched along its own axes.",
+        keys: &[
+            shape_kind("\"ellipsoid\""),
+            CENTER,
+            key("radii", Kind::Lengths, "", "m", "Half its extent along its own x, y, z.", "[80.0, 40.0, 20.0]"),
+            ROTATION,
+        ],
+    },
     Table {
         name: "box",
         doc: "A box.",
         keys: &[
-            SHAPE_KIND,
+            shape_kind("\"box\""),
             CENTER,
             key("size", Kind::Lengths, "", "m", "Full edges along its own x, y, z.", "[40.0, 20.0, 30.0]"),
-            key(
-                "rotation_deg",
-                Kind::Angles,
-                "[0, 0, 0]",
-                "degrees",
-                "`[yaw, pitch, roll]`: yaw turns it counter-clockwise seen from above (0: its x is east), pitch then lifts its x end, roll then turns it about its own x.",
-                "[30.0, 0.0, 0.0]",
-            ),
+            ROTATION,
         ],
     },
+    Table { name: "cylinder", doc: "A cylinder.", keys: &[shape_kind("\"cylinder\""), CENTER, RADIUS, HEIGHT, AXIS] },
     Table {
-        name: "cylinder",
-        doc: "A cylinder.",
+        name: "cone",
+        doc: "A cone; its middle is half way up its axis, its tip at the axis' end.",
+        keys: &[shape_kind("\"cone\""), CENTER, RADIUS, HEIGHT, AXIS],
+    },
+    Table {
+        name: "frustum",
+        doc: "A cone without its tip.",
         keys: &[
-            SHAPE_KIND,
+            shape_kind("\"frustum\""),
             CENTER,
-            RADIUS,
-            key("height", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "From end to end.", "80.0"),
-            key("axis", Kind::Direction, "[0, 0, 1]", "", "Its direction, of any length but 0.", "[0, 0, 1]"),
+            key("radius", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "Where the axis begins.", "60.0"),
+            key("top_radius", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "Where the axis ends.", "20.0"),
+            HEIGHT,
+            AXIS,
         ],
     },
     Table {
         name: "convex",
         doc: "The convex hull of points.",
         keys: &[
-            SHAPE_KIND,
+            shape_kind("\"convex\""),
             key(
                 "points",
                 Kind::Points,
@@ -469,9 +494,6 @@ pub const SHAPES: &[Table] = &[
 
 /// Shapes of later versions.
 pub const LATER_SHAPES: &[&str] = &[
-    "ellipsoid",
-    "cone",
-    "frustum",
     "polytope",
     "mesh",
     "mask",

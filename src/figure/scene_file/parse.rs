@@ -375,23 +375,29 @@ impl<'o> SceneReader<'o> {
 
 fn built_shape(kind: &str, fields: &Fields) -> Option<Shape> {
     let center = fields.point("center");
+    let turned = || rotation(fields.node("rotation_deg").and_then(Node::numbers::<3>).unwrap_or([0.0; 3]));
+    let axis = || {
+        let axis = fields.point("axis").unwrap_or(DVec3::Z);
+        // A unit axis stays as it is, to the bit: written and read again it must not drift.
+        if (axis.length_squared() - 1.0).abs() < 1e-15 { Some(axis) } else { axis.try_normalize() }
+    };
     Some(match kind {
         "sphere" => Shape::Sphere { center: center?, radius: fields.number("radius")? },
-        "box" => {
-            let angles = fields.node("rotation_deg").and_then(Node::numbers::<3>).unwrap_or([0.0; 3]);
-            Shape::Box { center: center?, size: fields.point("size")?, rotation: rotation(angles) }
-        }
-        "cylinder" => {
-            let axis = fields.point("axis").unwrap_or(DVec3::Z);
-            // A unit axis stays as it is, to the bit: written and read again it must not drift.
-            let axis = if (axis.length_squared() - 1.0).abs() < 1e-15 { axis } else { axis.try_normalize()? };
-            Shape::Cylinder {
-                center: center?,
-                radius: fields.number("radius")?,
-                height: fields.number("height")?,
-                axis,
-            }
-        }
+        "ellipsoid" => Shape::Ellipsoid { center: center?, radii: fields.point("radii")?, rotation: turned() },
+        "box" => Shape::Box { center: center?, size: fields.point("size")?, rotation: turned() },
+        "cylinder" => Shape::Cylinder {
+            center: center?,
+            radius: fields.number("radius")?,
+            height: fields.number("height")?,
+            axis: axis()?,
+        },
+        "cone" | "frustum" => Shape::Frustum {
+            center: center?,
+            radius: fields.number("radius")?,
+            top_radius: if kind == "cone" { 0.0 } else { fields.number("top_radius")? },
+            height: fields.number("height")?,
+            axis: axis()?,
+        },
         _ => {
             let points = fields.node("points").and_then(Node::list)?;
             Shape::Convex { points: points.iter().filter_map(|p| p.numbers::<3>().map(DVec3::from)).collect() }

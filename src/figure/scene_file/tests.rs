@@ -145,11 +145,11 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"shpere\" }",
-            "shape.kind: must be one of sphere, box, cylinder, convex, is \"shpere\"; did you mean \"sphere\"?",
+            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, is \"shpere\"; did you mean \"sphere\"?",
         ),
         (
-            "shape = { kind = \"ellipsoid\" }",
-            "shape.kind: kind = \"ellipsoid\" is not available yet; available: sphere, box, cylinder, convex",
+            "shape = { kind = \"corridor\" }",
+            "shape.kind: kind = \"corridor\" is not available yet; available: sphere, ellipsoid, box, cylinder, cone, frustum, convex",
         ),
         ("shape = { center = [0, 0, 0] }", "shape.kind: is missing: one of sphere"),
         ("shape = \"sphere\"", "shape: must be a table { kind = ..., ... }, is \"sphere\""),
@@ -165,6 +165,15 @@ fn every_mistake_in_a_lens_is_named() {
         (
             "shape = { kind = \"cylinder\", center = [0,0,0], radius = 1, height = 1, axis = [0,0,0] }",
             "shape.axis: must be [x, y, z], not all 0",
+        ),
+        (
+            "shape = { kind = \"ellipsoid\", center = [0,0,0], radii = 3 }",
+            "shape.radii: must be [x, y, z], three numbers ≥ 0, is 3",
+        ),
+        ("shape = { kind = \"frustum\", center = [0,0,0], radius = 3, height = 2 }", "shape.top_radius: is missing"),
+        (
+            "shape = { kind = \"cone\", center = [0,0,0], radius = 3, top_radius = 1, height = 2 }",
+            "shape.top_radius: unknown key",
         ),
         (
             "shape = { kind = \"box\", center = [0,0,0], size = [1, -1, 1] }",
@@ -273,6 +282,17 @@ fn shapes() -> impl Strategy<Value = Shape> {
         (point(), 0.0..1e3f64, 0.0..1e3f64, point()).prop_filter_map("an axis", |(center, radius, height, a)| {
             Some(Shape::Cylinder { center, radius, height, axis: a.try_normalize()? })
         }),
+        (point(), prop::array::uniform3(0.0..1e3f64), angles()).prop_map(|(center, r, a)| Shape::Ellipsoid {
+            center,
+            radii: r.into(),
+            rotation: rotation(a)
+        }),
+        (point(), 0.0..1e3f64, prop_oneof![Just(0.0), 0.0..1e3f64], 0.0..1e3f64, point()).prop_filter_map(
+            "an axis",
+            |(center, radius, top_radius, height, a)| {
+                Some(Shape::Frustum { center, radius, top_radius, height, axis: a.try_normalize()? })
+            }
+        ),
         prop::collection::vec(point(), 5..9).prop_map(|points| Shape::Convex { points }),
     ]
 }
@@ -360,7 +380,8 @@ fn same(a: &Scene, b: &Scene) -> bool {
     let mut b = b.clone();
     for (la, lb) in a.lenses.iter().zip(&mut b.lenses) {
         for (sa, sb) in la.shapes.iter().zip(&mut lb.shapes) {
-            if let (Shape::Box { rotation: ra, .. }, Shape::Box { rotation: rb, .. }) = (sa, sb)
+            if let (Shape::Box { rotation: ra, .. }, Shape::Box { rotation: rb, .. })
+            | (Shape::Ellipsoid { rotation: ra, .. }, Shape::Ellipsoid { rotation: rb, .. }) = (sa, sb)
                 && ra.dot(*rb).abs() > 1.0 - 1e-12
             {
                 *rb = *ra;

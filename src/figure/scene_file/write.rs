@@ -189,27 +189,55 @@ fn shape(shape: &Shape) -> String {
             format!("{{ kind = \"sphere\", center = {}, radius = {} }}", point(*center), number(*radius))
         }
         Shape::Box { center, size, rotation: turn } => {
-            let angles = angles(*turn);
-            let turned = if angles == [0.0; 3] {
-                String::new()
-            } else {
-                format!(", rotation_deg = {}", list(angles.map(number)))
-            };
-            format!("{{ kind = \"box\", center = {}, size = {}{turned} }}", point(*center), point(*size))
+            format!("{{ kind = \"box\", center = {}, size = {}{} }}", point(*center), point(*size), turned(*turn))
         }
         Shape::Cylinder { center, radius, height, axis } => {
-            let tilted = if *axis == DVec3::Z { String::new() } else { format!(", axis = {}", point(*axis)) };
             format!(
-                "{{ kind = \"cylinder\", center = {}, radius = {}, height = {}{tilted} }}",
+                "{{ kind = \"cylinder\", center = {}, radius = {}, height = {}{} }}",
                 point(*center),
                 number(*radius),
-                number(*height)
+                number(*height),
+                tilted(*axis)
+            )
+        }
+        Shape::Ellipsoid { center, radii, rotation: turn } => {
+            format!(
+                "{{ kind = \"ellipsoid\", center = {}, radii = {}{} }}",
+                point(*center),
+                point(*radii),
+                turned(*turn)
+            )
+        }
+        Shape::Frustum { center, radius, top_radius, height, axis } => {
+            let (kind, top) = match *top_radius {
+                0.0 => ("cone", String::new()),
+                top => ("frustum", format!(", top_radius = {}", number(top))),
+            };
+            format!(
+                "{{ kind = \"{kind}\", center = {}, radius = {}{top}, height = {}{} }}",
+                point(*center),
+                number(*radius),
+                number(*height),
+                tilted(*axis)
             )
         }
         Shape::Convex { points } => {
             format!("{{ kind = \"convex\", points = {} }}", list(points.iter().map(|p| point(*p))))
         }
     }
+}
+
+/// The key of a rotation, where there is one.
+fn turned(rotation: DQuat) -> String {
+    match angles(rotation) {
+        [0.0, 0.0, 0.0] => String::new(),
+        angles => format!(", rotation_deg = {}", list(angles.map(number))),
+    }
+}
+
+/// The key of an axis that is not upright.
+fn tilted(axis: DVec3) -> String {
+    if axis == DVec3::Z { String::new() } else { format!(", axis = {}", point(axis)) }
 }
 
 /// Yaw, pitch and roll of a rotation, degrees: the inverse of [`rotation`], with as few decimals as it takes.

@@ -51,7 +51,7 @@ const GROWTH: f64 = 1.0 + 1e-5;
 
 impl Volume {
     /// A closed convex mesh that holds the whole shape: what a renderer draws to reach all pixels of an analytic
-    /// volume. Boxes and polytopes: their faces exactly. Spheres and cylinders: circumscribed, at most 4 % wider.
+    /// volume. Boxes and polytopes: their faces exactly. Round ones: circumscribed, at most 4 % wider.
     /// Empty where the volume is.
     pub fn bounding_mesh(&self) -> Mesh {
         match self {
@@ -71,7 +71,15 @@ impl Volume {
             }
             Self::Cylinder { center, radius, half, axis } => {
                 let outer = radius / (0.5 * TAU / f64::from(BOUNDING_SIDES)).cos() * GROWTH;
-                prism(*center, outer, *half * GROWTH, *axis, BOUNDING_SIDES)
+                prism(*center, [outer; 2], *half * GROWTH, *axis, BOUNDING_SIDES)
+            }
+            Self::Ellipsoid { center, radii, rotation } => {
+                let ball = Self::Sphere { center: DVec3::ZERO, radius: 1.0 }.bounding_mesh();
+                stretched(ball, *center, *radii, *rotation)
+            }
+            Self::Frustum { center, radii, half, axis } => {
+                let wider = GROWTH / (0.5 * TAU / f64::from(BOUNDING_SIDES)).cos();
+                prism(*center, radii.map(|r| r * wider), *half * GROWTH, *axis, BOUNDING_SIDES)
             }
             Self::Box { .. } | Self::Convex(_) => self.surface_mesh(BOUNDING_SIDES),
         }
@@ -88,7 +96,12 @@ impl Volume {
                 let level = (f64::from(segments) / 5.0).log2().ceil().clamp(0.0, 6.0);
                 placed(icosphere(level as u32), *center, *radius)
             }
-            Self::Cylinder { center, radius, half, axis } => prism(*center, *radius, *half, *axis, segments),
+            Self::Cylinder { center, radius, half, axis } => prism(*center, [*radius; 2], *half, *axis, segments),
+            Self::Ellipsoid { center, radii, rotation } => {
+                let ball = Self::Sphere { center: DVec3::ZERO, radius: 1.0 }.surface_mesh(segments);
+                stretched(ball, *center, *radii, *rotation)
+            }
+            Self::Frustum { center, radii, half, axis } => prism(*center, *radii, *half, *axis, segments),
             Self::Box { center, half, rotation } => cuboid(*center, *half, *rotation),
             Self::Convex(hull) => {
                 let (points, triangles) = hull.faces();
@@ -105,6 +118,13 @@ fn placed(mut unit: Mesh, center: DVec3, scale: f64) -> Mesh {
     unit
 }
 
+fn stretched(mut unit: Mesh, center: DVec3, radii: DVec3, rotation: DQuat) -> Mesh {
+    for p in &mut unit.points {
+        *p = center + rotation * (radii * *p);
+    }
+    unit
+}
+
 /// Corner `i` of a box: bits 0, 1, 2 choose + on x, y, z, as in [`crate::geom::Aabb::corners`].
 fn cuboid(center: DVec3, half: DVec3, rotation: DQuat) -> Mesh {
     let sign = |i: u32, bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
@@ -113,15 +133,16 @@ fn cuboid(center: DVec3, half: DVec3, rotation: DQuat) -> Mesh {
     Mesh { points, triangles: quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect() }
 }
 
-/// A regular prism around `axis` (unit); the last two points are the middles of bottom and top.
-fn prism(center: DVec3, radius: f64, half: f64, axis: DVec3, sides: u32) -> Mesh {
+/// A regular prism around `axis` (unit), of these radii at bottom and top; the last two points are the middles of these.
+fn prism(center: DVec3, radii: [f64; 2], half: f64, axis: DVec3, sides: u32) -> Mesh {
     let (u, v) = axis.any_orthonormal_pair();
     let spoke = |i: u32| {
         let (sin, cos) = (TAU * f64::from(i) / f64::from(sides)).sin_cos();
-        radius * (cos * u + sin * v)
+        cos * u + sin * v
     };
-    let ring = |h: f64| (0..sides).map(move |i| center + h * axis + spoke(i));
-    let points = ring(-half).chain(ring(half)).chain([center - half * axis, center + half * axis]).collect();
+    let ring = |radius: f64, h: f64| (0..sides).map(move |i| center + h * axis + radius * spoke(i));
+    let points =
+        ring(radii[0], -half).chain(ring(radii[1], half)).chain([center - half * axis, center + half * axis]).collect();
     let (bottom, top) = (2 * sides, 2 * sides + 1);
     let triangles = (0..sides)
         .flat_map(|i| {

@@ -44,6 +44,28 @@ pub enum Shape {
         /// Unit.
         axis: DVec3,
     },
+    /// A ball that is stretched along its own axes.
+    Ellipsoid {
+        /// Its middle, metres.
+        center: DVec3,
+        /// Half its extent along its own x, y, z, metres, ≥ 0.
+        radii: DVec3,
+        /// Turns its axes into the world's.
+        rotation: DQuat,
+    },
+    /// A cone, or what is left of one without its tip; `axis` unit, `center` = the middle of its axis.
+    Frustum {
+        /// Its middle, metres.
+        center: DVec3,
+        /// Where the axis begins, metres, ≥ 0.
+        radius: f64,
+        /// Where the axis ends, metres, ≥ 0; 0: a cone.
+        top_radius: f64,
+        /// Full height, metres, ≥ 0.
+        height: f64,
+        /// Unit.
+        axis: DVec3,
+    },
     /// The convex hull of points.
     Convex {
         /// At least four, not on one plane; metres.
@@ -104,6 +126,26 @@ pub enum Volume {
         /// Unit.
         axis: DVec3,
     },
+    /// An ellipsoid.
+    Ellipsoid {
+        /// Its middle, metres.
+        center: DVec3,
+        /// Half its extent along its axes, metres.
+        radii: DVec3,
+        /// Turns its axes into the world's.
+        rotation: DQuat,
+    },
+    /// A cone, cut or not: half height, unit axis.
+    Frustum {
+        /// Its middle, metres.
+        center: DVec3,
+        /// Where the axis begins, and where it ends, metres, ≥ 0.
+        radii: [f64; 2],
+        /// Half the height, metres.
+        half: f64,
+        /// Unit.
+        axis: DVec3,
+    },
     /// A convex polytope.
     Convex(Hull),
 }
@@ -131,6 +173,20 @@ impl Shape {
                 let axis = axis.try_normalize().ok_or(ShapeError::NoAxis)?;
                 Ok(Volume::Cylinder { center: *center, radius: *radius, half: 0.5 * height, axis })
             }
+            Self::Ellipsoid { center, radii, rotation } => {
+                finite(center.is_finite() && radii.is_finite() && rotation.is_finite() && rotation.length() > 0.0)?;
+                length("radii", radii.min_element())?;
+                Ok(Volume::Ellipsoid { center: *center, radii: *radii, rotation: rotation.normalize() })
+            }
+            Self::Frustum { center, radius, top_radius, height, axis } => {
+                let is_finite = [*radius, *top_radius, *height].iter().all(|n| n.is_finite());
+                finite(center.is_finite() && is_finite && axis.is_finite())?;
+                length("radius", *radius)?;
+                length("top_radius", *top_radius)?;
+                length("height", *height)?;
+                let axis = axis.try_normalize().ok_or(ShapeError::NoAxis)?;
+                Ok(Volume::Frustum { center: *center, radii: [*radius, *top_radius], half: 0.5 * height, axis })
+            }
             Self::Convex { points } => Hull::new(points).map(Volume::Convex),
         }
     }
@@ -143,6 +199,8 @@ impl Volume {
             Self::Sphere { radius, .. } => *radius <= 0.0,
             Self::Box { half, .. } => half.min_element() <= 0.0,
             Self::Cylinder { radius, half, .. } => radius.min(*half) <= 0.0,
+            Self::Ellipsoid { radii, .. } => radii.min_element() <= 0.0,
+            Self::Frustum { radii, half, .. } => radii[0].max(radii[1]).min(*half) <= 0.0,
             Self::Convex(_) => false,
         }
     }
@@ -171,6 +229,20 @@ impl Volume {
                 let side = round(o - along_o * *axis, across(d, *axis), *radius)?;
                 both(side, slab(along_o, along_d, *half)?)
             }
+            Self::Ellipsoid { center, radii, rotation } => {
+                // A ball in its own measure.
+                let back = rotation.conjugate();
+                round(back * (ray.origin - *center) / *radii, back * ray.direction / *radii, 1.0)?
+            }
+            Self::Frustum { center, radii, half, axis } => {
+                let (o, d) = (ray.origin - *center, ray.direction);
+                let (along_o, along_d) = (o.dot(*axis), d.dot(*axis));
+                let ends = slab(along_o, along_d, *half)?;
+                let slope = (radii[1] - radii[0]) / (2.0 * half);
+                let middle = 0.5 * (radii[0] + radii[1]);
+                let (o, d) = ((o - along_o * *axis, along_o), (across(d, *axis), along_d));
+                both(ends, cone(o, d, middle, slope, ends)?)
+            }
             Self::Convex(hull) => hull.entry_exit(ray)?,
         };
         (entry < exit).then_some((entry, exit))
@@ -190,6 +262,14 @@ impl Volume {
                 let q = DVec2::new((v - along * *axis).length() - radius, along.abs() - half);
                 q.max(DVec2::ZERO).length() + q.max_element().min(0.0)
             }
+            Self::Ellipsoid { center, radii, rotation } => {
+                distance_of_ellipsoid(rotation.conjugate() * (p - *center), *radii)
+            }
+            Self::Frustum { center, radii, half, axis } => {
+                let v = p - *center;
+                let along = v.dot(*axis);
+                distance_of_frustum(DVec2::new((v - along * *axis).length(), along), *radii, *half)
+            }
             Self::Convex(hull) => hull.signed_distance(p),
         }
     }
@@ -207,6 +287,15 @@ impl Volume {
                 // A disc of normal n reaches r·√(1 − nᵢ²) along axis i.
                 let disc = (DVec3::ONE - *axis * *axis).max(DVec3::ZERO).map(f64::sqrt);
                 around(*center, *half * axis.abs() + *radius * disc)
+            }
+            Self::Ellipsoid { center, radii, rotation } => {
+                let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|a| *rotation * a);
+                let squares: DVec3 = (0..3).map(|i| (radii[i] * axes[i]) * (radii[i] * axes[i])).sum();
+                around(*center, squares.map(f64::sqrt))
+            }
+            Self::Frustum { center, radii, half, axis } => {
+                let disc = (DVec3::ONE - *axis * *axis).max(DVec3::ZERO).map(f64::sqrt);
+                around(*center - *half * *axis, radii[0] * disc).union(around(*center + *half * *axis, radii[1] * disc))
             }
             Self::Convex(hull) => hull.bounds(),
         }
@@ -253,6 +342,93 @@ fn round(o: DVec3, d: DVec3, radius: f64) -> Option<(f64, f64)> {
         let half = (left / a).sqrt();
         (middle - half, middle + half)
     })
+}
+
+/// Where `|o + t·d| ≤ middle + slope·(z_o + t·z_d)` between two ends within which the right side is ≥ 0: o and d across
+/// the axis, and along it.
+///
+/// The quadratic is set up around the point of the line nearest the middle, as for [`round`].
+fn cone(o: (DVec3, f64), d: (DVec3, f64), middle: f64, slope: f64, ends: (f64, f64)) -> Option<(f64, f64)> {
+    let all = d.0.length_squared() + d.1 * d.1;
+    let start = if all > 0.0 { -(o.0.dot(d.0) + o.1 * d.1) / all } else { 0.0 };
+    let (near, z) = (o.0 + start * d.0, o.1 + start * d.1);
+    let (radius, growth) = (middle + slope * z, slope * d.1);
+    // a t² + 2 b t + c ≤ 0
+    let a = (d.0.length() - growth.abs()) * (d.0.length() + growth.abs());
+    let b = near.dot(d.0) - radius * growth;
+    let c = (near.length() - radius.abs()) * (near.length() + radius.abs());
+    let ends = (ends.0 - start, ends.1 - start);
+    let moved = |(entry, exit): (f64, f64)| Some((entry + start, exit + start));
+    let left = b * b - a * c;
+    if a > 0.0 {
+        // It crosses one of the two cones that meet in the tip, and is inside between.
+        if left <= 0.0 {
+            return None;
+        }
+        let q = -(b + left.sqrt().copysign(b));
+        let (s, t) = (q / a, if q == 0.0 { 0.0 } else { c / q });
+        return moved((s.min(t), s.max(t)));
+    }
+    // Steeper than the side: in one cone up to a point, in the other from a point on.
+    if left < 0.0 || (a == 0.0 && b == 0.0) {
+        return if c <= 0.0 { moved(ends) } else { None };
+    }
+    let q = -(b + left.sqrt().copysign(b));
+    let roots = [if a == 0.0 { f64::NAN } else { q / a }, if q == 0.0 { 0.0 } else { c / q }];
+    // Between the ends the one whose radius is not negative.
+    let is_right = |t: f64| !t.is_nan() && radius + growth * t >= -1e-12 * (radius.abs() + (growth * t).abs());
+    let border = roots.into_iter().filter(|t| is_right(*t));
+    let border = if growth > 0.0 { border.fold(f64::NAN, f64::max) } else { border.fold(f64::NAN, f64::min) };
+    match border {
+        t if t.is_nan() => None,
+        t if growth > 0.0 => moved((t, f64::INFINITY)),
+        t => moved((f64::NEG_INFINITY, t)),
+    }
+}
+
+/// From a point in the ellipsoid's own axes to its border, negative inside.
+///
+/// The nearest point is x with xᵢ = eᵢ² yᵢ / (t + eᵢ²), t the largest root of Σ (eᵢ yᵢ / (t + eᵢ²))² = 1 (Eberly, *Distance
+/// from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid*). t is counted from −min eᵢ², where the points that have
+/// several nearest ones find it.
+fn distance_of_ellipsoid(p: DVec3, radii: DVec3) -> f64 {
+    if radii.min_element() <= 0.0 {
+        // A disc, a line or a point: a ball around what it is in holds it.
+        return (p.abs() - radii).max(DVec3::ZERO).length();
+    }
+    let y = p.abs().max(1e-30 * radii);
+    let least = radii.min_element() * radii.min_element();
+    let above = radii * radii - least;
+    let (mut low, mut high) = (0.0, (radii * y).length());
+    for _ in 0..220 {
+        let s = 0.5 * (low + high);
+        if s <= low || s >= high {
+            break;
+        }
+        if (radii * y / (s + above)).length_squared() > 1.0 { low = s } else { high = s }
+    }
+    let nearest = radii * radii * y / (high + above);
+    let distance = (y - nearest).length();
+    if (p / radii).length_squared() <= 1.0 { -distance } else { distance }
+}
+
+/// From a point (away from the axis, along it) to the border of a cone with its tip cut off, negative inside.
+fn distance_of_frustum(p: DVec2, [bottom, top]: [f64; 2], half: f64) -> f64 {
+    let corners = [DVec2::new(bottom, -half), DVec2::new(top, half)];
+    let side = corners[1] - corners[0];
+    // To the right of the side, seen from the first corner, is outside.
+    let beyond_side = (p - corners[0]).perp_dot(side) / side.length();
+    let inside = beyond_side.max(p.y.abs() - half);
+    if inside <= 0.0 {
+        return inside;
+    }
+    let to_segment = |a: DVec2, b: DVec2| {
+        let along = b - a;
+        let t = if along == DVec2::ZERO { 0.0 } else { ((p - a).dot(along) / along.length_squared()).clamp(0.0, 1.0) };
+        (p - a - t * along).length()
+    };
+    let caps = corners.map(|c| to_segment(DVec2::new(0.0, c.y), c));
+    caps[0].min(caps[1]).min(to_segment(corners[0], corners[1]))
 }
 
 #[cfg(test)]

@@ -18,6 +18,13 @@ fn shapes() -> impl Strategy<Value = Shape> {
         (point(5.0), 0.1..8.0f64, 0.1..9.0f64, rotation()).prop_map(|(center, radius, height, turn)| {
             Shape::Cylinder { center, radius, height, axis: turn * DVec3::Z }
         }),
+        (point(5.0), prop::array::uniform3(0.1..8.0f64), rotation())
+            .prop_map(|(center, r, rotation)| { Shape::Ellipsoid { center, radii: r.into(), rotation } }),
+        (point(5.0), 0.1..8.0f64, prop_oneof![Just(0.0), 0.1..8.0f64], 0.1..9.0f64, rotation()).prop_map(
+            |(center, radius, top_radius, height, turn)| {
+                Shape::Frustum { center, radius, top_radius, height, axis: turn * DVec3::Z }
+            }
+        ),
         prop::collection::vec(point(6.0), 5..30).prop_map(|points| Shape::Convex { points }),
         // A lattice makes coplanar and collinear points the rule.
         prop::collection::vec(prop::array::uniform3(-2..3i32), 12..40).prop_map(|p| Shape::Convex {
@@ -38,6 +45,16 @@ fn holds(shape: &Shape, p: DVec3) -> bool {
         Shape::Cylinder { center, radius, height, axis } => {
             let v = p - *center;
             v.cross(*axis).length() <= *radius && 2.0 * v.dot(*axis).abs() <= *height
+        }
+        Shape::Ellipsoid { center, radii, rotation } => {
+            let m = glam::DMat3::from_quat(*rotation);
+            let v = p - *center;
+            (0..3).map(|i| (v.dot(m.col(i)) / radii[i]).powi(2)).sum::<f64>() <= 1.0
+        }
+        Shape::Frustum { center, radius, top_radius, height, axis } => {
+            let v = p - *center;
+            let up = v.dot(*axis) / height + 0.5;
+            (0.0..=1.0).contains(&up) && v.cross(*axis).length() <= radius + up * (top_radius - radius)
         }
         // Inside a hull iff no plane through three of its points has all points on one side and p on the other.
         Shape::Convex { points } => {
@@ -123,6 +140,10 @@ proptest! {
             Shape::Sphere { center, radius } => Shape::Sphere { center: *center + shift, radius: *radius },
             Shape::Box { center, size, rotation } => Shape::Box { center: *center + shift, size: *size, rotation: *rotation },
             Shape::Cylinder { center, radius, height, axis } => Shape::Cylinder { center: *center + shift, radius: *radius, height: *height, axis: *axis },
+            Shape::Ellipsoid { center, radii, rotation } => Shape::Ellipsoid { center: *center + shift, radii: *radii, rotation: *rotation },
+            Shape::Frustum { center, radius, top_radius, height, axis } => {
+                Shape::Frustum { center: *center + shift, radius: *radius, top_radius: *top_radius, height: *height, axis: *axis }
+            }
             Shape::Convex { points } => Shape::Convex { points: points.iter().map(|p| *p + shift).collect() },
         };
         let (Ok(here), Ok(there)) = (shape.volume(), moved.volume()) else { return Ok(()) };
@@ -203,6 +224,9 @@ fn a_shape_without_volume_holds_nothing() {
         Shape::Sphere { center: DVec3::ZERO, radius: 0.0 },
         Shape::Box { center: DVec3::ZERO, size: DVec3::new(1.0, 1.0, 0.0), rotation: DQuat::IDENTITY },
         Shape::Cylinder { center: DVec3::ZERO, radius: 1.0, height: 0.0, axis: DVec3::Z },
+        Shape::Ellipsoid { center: DVec3::ZERO, radii: DVec3::new(1.0, 0.0, 1.0), rotation: DQuat::IDENTITY },
+        Shape::Frustum { center: DVec3::ZERO, radius: 1.0, top_radius: 0.0, height: 0.0, axis: DVec3::Z },
+        Shape::Frustum { center: DVec3::ZERO, radius: 0.0, top_radius: 0.0, height: 1.0, axis: DVec3::Z },
     ] {
         let volume = shape.volume().unwrap();
         assert!(volume.is_empty() && !volume.contains(DVec3::ZERO));
@@ -223,6 +247,52 @@ fn tangents_miss_and_rays_in_a_face_are_inside() {
     let still = |origin| cube.entry_exit(&Ray { origin, direction: DVec3::ZERO });
     assert_eq!(still(DVec3::ZERO), Some(EVERYWHERE));
     assert_eq!(still(DVec3::splat(3.0)), None);
+}
+
+#[test]
+fn rays_along_the_side_and_the_axis_of_a_cone() {
+    // Half angle 45°, tip at (0, 0, 1).
+    let tip_up = Shape::Frustum { center: DVec3::ZERO, radius: 2.0, top_radius: 0.0, height: 2.0, axis: DVec3::Z };
+    let cone = tip_up.volume().unwrap();
+    let span = |origin: [f64; 3], direction: [f64; 3]| {
+        cone.entry_exit(&Ray { origin: origin.into(), direction: direction.into() })
+    };
+    assert_eq!(span([0.0, 0.0, 9.0], [0.0, 0.0, -1.0]), Some((8.0, 10.0)));
+    // Beside the axis and along it: the side at height 0.5.
+    assert_eq!(span([0.5, 0.0, 9.0], [0.0, 0.0, -1.0]), Some((8.5, 10.0)));
+    assert_eq!(span([0.5, 0.0, -9.0], [0.0, 0.0, 1.0]), Some((8.0, 9.5)));
+    // Within the side, and parallel to it: inside and outside.
+    assert_eq!(span([-1.0, 0.0, -1.0], [1.0, 0.0, 1.0]), Some((0.0, 1.5)));
+    assert_eq!(span([3.0, 0.0, -1.0], [-1.0, 0.0, 1.0]), None);
+    // Through the other half of the double cone, above the tip.
+    assert_eq!(span([-9.0, 0.0, 1.5], [1.0, 0.0, 0.0]), None);
+    // Just below the tip.
+    let (entry, exit) = span([-9.0, 0.0, 1.0 - 1e-9], [1.0, 0.0, 0.0]).unwrap();
+    assert!((exit - entry - 2e-9).abs() < 1e-14);
+}
+
+#[test]
+fn distances_to_an_ellipsoid_are_known_on_its_axes() {
+    let radii = DVec3::new(5.0, 2.0, 1.0);
+    let body = Shape::Ellipsoid { center: DVec3::ONE, radii, rotation: DQuat::IDENTITY }.volume().unwrap();
+    let distance = |p: DVec3| body.signed_distance(DVec3::ONE + p);
+    assert!((distance(DVec3::ZERO) + 1.0).abs() < 1e-12, "the shortest radius");
+    for i in 0..3 {
+        let axis = DVec3::AXES[i];
+        assert!((distance((radii[i] + 3.0) * axis) - 3.0).abs() < 1e-12);
+        assert!(distance(radii[i] * axis).abs() < 1e-12);
+    }
+    // On the longest axis, within the evolute, two points of the border are nearest.
+    let brute = |p: DVec3| {
+        let at = |i: i32| 1e-4 * f64::from(i);
+        (0..62_832)
+            .map(|i| (DVec3::new(5.0 * at(i).cos(), 0.0, at(i).sin()) - p).length())
+            .fold(f64::INFINITY, f64::min)
+    };
+    for x in [0.5, 2.0, 4.5] {
+        let p = DVec3::X * x;
+        assert!((distance(p) + brute(p)).abs() < 1e-6, "{x}");
+    }
 }
 
 #[test]
