@@ -85,7 +85,7 @@ fn view_of(scene: &Scene) -> View {
 
 fn places(scene: &Scene, picture: &Picture, lens: usize) -> Vec<Place> {
     let view = view_of(scene);
-    let volumes: Vec<_> = scene.lenses[lens].shapes.iter().map(|s| s.volume().expect("a volume")).collect();
+    let volumes: Vec<_> = scene.lenses[lens].shapes.iter().flat_map(|s| s.volumes().expect("volumes")).collect();
     let depth = picture.depth.as_ref().expect("depth was asked for");
     let place = |i: usize| {
         let d = f64::from(depth[i]);

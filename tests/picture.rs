@@ -8,6 +8,7 @@ use veduta::{
     geom::{Aabb, Shape},
     lens::{Class, Lens, LensBody, LensSprite},
     render::{
+        frame::Backend,
         picture::{Aovs, Request, Studio},
         stats::LensFigures,
     },
@@ -108,6 +109,28 @@ fn masks_of_all_shapes_are_right_to_the_pixel() {
                 assert!(apart.iter().all(|&n| n <= 4), "{:?} and {:?}", counts(&pair[0]), counts(&pair[1]));
             }
         }
+    }
+}
+
+#[test]
+fn the_mask_of_a_corridor_is_that_of_its_bodies() {
+    let mut studio = synthetic(60);
+    let at = house(&studio, 0.5);
+    let points = [[-60.0, -20.0, 2.0], [-10.0, 0.0, 2.0], [20.0, 40.0, 9.0], [20.0, 40.0, 15.0], [70.0, 35.0, 4.0]];
+    let points = points.into_iter().map(|p| at + DVec3::from(p)).collect();
+    let route = lens("route", vec![Shape::Corridor { points, width: 14.0, height: 22.0 }], "sepia");
+    for camera in [
+        Camera::looking(at + DVec3::new(90.0, -120.0, 70.0), at, 0.9),
+        Camera::looking(at + DVec3::new(-50.0, -16.0, 2.0), at, 1.1),
+    ] {
+        let scene = scene(camera, vec![route.clone()]);
+        let drawn = picture(&mut studio, &scene, SIZE);
+        assert_eq!(wrong_pixels(&drawn, &view(camera, SIZE), &route, 0), 0);
+        assert!(bits(&drawn, 0).iter().filter(|b| **b).count() > 300);
+        let request =
+            Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend: Backend::Uber };
+        let other = studio.render(&scene, &request).expect("a picture");
+        assert!(other.rgba == drawn.rgba && other.lens_mask == drawn.lens_mask, "the back ends differ");
     }
 }
 

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use veduta::{
     city::load::{LoadOptions, Quiet, load},
     figure::scene_file::{self, Options},
-    geom::Volume,
     scene::{Scene, check_against},
     view::View,
 };
@@ -35,8 +34,7 @@ fn all_of_them_are_read_described_and_read_again() {
         assert_eq!(again, scene, "{}", path.display());
         let view = View::new(scene.camera.expect("a camera"), scene.figure.size, &veduta::geom::Aabb::EMPTY).unwrap();
         for lens in &scene.lenses {
-            for shape in &lens.shapes {
-                let volume: Volume = shape.volume().unwrap();
+            for volume in lens.shapes.iter().flat_map(|shape| shape.volumes().unwrap()) {
                 let at = view.pixel(volume.bounds().center()).expect("in front of the eye");
                 assert!(
                     (0.0..f64::from(scene.figure.size[0])).contains(&at.x),
@@ -64,7 +62,8 @@ fn those_of_the_built_in_town_name_what_it_has() {
     for (path, scene) in scenes {
         assert_eq!(check_against(&scene, &model), [], "{}", path.display());
         for lens in &scene.lenses {
-            let meets = lens.shapes.iter().any(|s| s.volume().unwrap().bounds().meets(&model.extent()));
+            let meets =
+                lens.shapes.iter().flat_map(|s| s.volumes().unwrap()).any(|v| v.bounds().meets(&model.extent()));
             assert!(meets, "{}: {} acts on nothing", path.display(), lens.name);
         }
     }

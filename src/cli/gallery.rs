@@ -28,6 +28,7 @@ macro_rules! scenes {
 /// The scenes that ship with the program, by name; a test holds the list against the folder.
 pub const SCENES: &[(&str, &str)] = scenes! {
     "delft-age"
+    "delft-route"
     "delft-streets"
     "den-haag-sphere"
     "first-lens"

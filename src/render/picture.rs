@@ -486,19 +486,21 @@ fn volumes_of(scene: &Scene) -> Result<(Vec<LensVolume>, [Vec<VolumeTest>; 2]), 
     let (mut volumes, mut tests) = (Vec::new(), [Vec::new(), Vec::new()]);
     for (i, lens) in scene.lenses.iter().enumerate() {
         for shape in &lens.shapes {
-            let volume = match shape.volume() {
-                Ok(volume) => volume,
+            let bodies = match shape.volumes() {
+                Ok(bodies) => bodies,
                 Err(_) if !lens.enabled => continue,
                 Err(error) => return Err(RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name))),
             };
             let everywhere = lens.effects.iter().any(|e| e.class == Class::Rest);
-            let (lens_number, sprite) = (i as u32, lens.sprite);
-            let volume = LensVolume { lens: lens_number, bounds: volume.bounds(), volume, everywhere, sprite };
-            tests[0].push(volume.test());
-            tests[1].push(shape_test(&volume.volume));
-            // A lens without volume shows nothing and costs nothing.
-            if lens.enabled && !volume.volume.is_empty() {
-                volumes.push(volume);
+            for volume in bodies {
+                let (lens_number, sprite) = (i as u32, lens.sprite);
+                let volume = LensVolume { lens: lens_number, bounds: volume.bounds(), volume, everywhere, sprite };
+                tests[0].push(volume.test());
+                tests[1].push(shape_test(&volume.volume));
+                // A lens without volume shows nothing and costs nothing.
+                if lens.enabled && !volume.volume.is_empty() {
+                    volumes.push(volume);
+                }
             }
         }
     }

@@ -8,7 +8,10 @@ use std::{
 
 use libtest_mimic::{Failed, Trial};
 use veduta::{
-    city::load::{LoadOptions, Quiet, load},
+    city::{
+        Geometry,
+        load::{LoadOptions, Quiet, load},
+    },
     figure::scene_file::{self, Options},
     gpu::Gpu,
     render::{
@@ -34,11 +37,10 @@ fn check(path: &Path) -> Result<(), Failed> {
         return Err(problem.to_string().into());
     }
     for lens in &scene.lenses {
-        let meets_some = lens.shapes.iter().any(|shape| {
-            let bounds = shape.volume().map(|v| v.bounds());
-            bounds.is_ok_and(|b| model.geometries.iter().filter(|g| g.bounds.meets(&b)).count() >= 5)
-        });
-        if !meets_some {
+        let bounds: Vec<_> =
+            lens.shapes.iter().flat_map(|s| s.volumes().unwrap_or_default()).map(|v| v.bounds()).collect();
+        let meets = |g: &&Geometry| bounds.iter().any(|b| g.bounds.meets(b));
+        if model.geometries.iter().filter(meets).count() < 5 {
             return Err(format!("{} acts on fewer than five geometries", lens.name).into());
         }
     }

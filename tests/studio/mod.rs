@@ -123,7 +123,7 @@ pub fn bits(picture: &Picture, lens: usize) -> Vec<bool> {
 /// Pixels of the lens' mask that are wrong against f64, by how far the shown point is from the border. A test from shapes
 /// may err within 8 · 2⁻²³ · max(D, |centre − eye|) of it, a sprite within a pixel besides (S7).
 pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, bit: usize) -> usize {
-    let volumes: Vec<_> = lens.shapes.iter().map(|s| s.volume().expect("a volume")).collect();
+    let volumes: Vec<_> = lens.shapes.iter().flat_map(|s| s.volumes().expect("volumes")).collect();
     let depth = picture.depth.as_ref().expect("depth was asked for");
     let inside = bits(picture, bit);
     let [w, h] = picture.size;

@@ -197,7 +197,7 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
             each(-FAR_M..=FAR_M) && node.numbers::<3>().and_then(|v| DVec3::from(v).try_normalize()).is_some()
         }
         Kind::Angles => each(-360.0..=360.0),
-        Kind::Points => return wrong_points(kind, node),
+        Kind::Points(_) => return wrong_points(kind, node),
         Kind::Color => color(node).is_some(),
         Kind::Background => node.text() == Some("sky") || color(node).is_some(),
         Kind::Lod => lod(node).is_some(),

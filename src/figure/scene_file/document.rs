@@ -157,8 +157,8 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Point | Kind::Direction => three(-keys::FAR_M, keys::FAR_M),
         Kind::Lengths => three(0.0, keys::FAR_M),
         Kind::Angles => three(-360.0, 360.0),
-        Kind::Points => {
-            json!({ "type": "array", "items": three(-keys::FAR_M, keys::FAR_M), "minItems": 4, "maxItems": 4096 })
+        Kind::Points(least) => {
+            json!({ "type": "array", "items": three(-keys::FAR_M, keys::FAR_M), "minItems": least, "maxItems": 4096 })
         }
         Kind::Color => color(),
         Kind::Background => json!({ "anyOf": [{ "const": "sky" }, color()] }),

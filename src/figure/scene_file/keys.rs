@@ -40,8 +40,8 @@ pub enum Kind {
     Direction,
     /// `[yaw, pitch, roll]` in degrees, each within ±360.
     Angles,
-    /// At least four points.
-    Points,
+    /// At least so many points.
+    Points(usize),
     /// `"#rrggbb"` or `[r, g, b]`.
     Color,
     /// `"sky"` or a colour.
@@ -482,7 +482,7 @@ pub const SHAPES: &[Table] = &[
             shape_kind("\"convex\""),
             key(
                 "points",
-                Kind::Points,
+                Kind::Points(4),
                 "",
                 "m",
                 "At least four, not all on one plane; at most 4096.",
@@ -490,22 +490,35 @@ pub const SHAPES: &[Table] = &[
             ),
         ],
     },
+    Table {
+        name: "corridor",
+        doc: "What lies along a line, such as a route: within half the width of it seen from above, and half the height above and below it. Corners are round.",
+        keys: &[
+            shape_kind("\"corridor\""),
+            key(
+                "points",
+                Kind::Points(2),
+                "",
+                "m",
+                "The line; at least two points, at most 4096.",
+                "[[0, 0, 2], [60, 10, 2], [90, 80, 5]]",
+            ),
+            key("width", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "From side to side.", "12.0"),
+            key(
+                "height",
+                Kind::Number { min: 0.0, max: FAR_M },
+                "",
+                "m",
+                "From its floor to its top; the line is in the middle.",
+                "30.0",
+            ),
+        ],
+    },
 ];
 
 /// Shapes of later versions.
-pub const LATER_SHAPES: &[&str] = &[
-    "polytope",
-    "mesh",
-    "mask",
-    "mask3d",
-    "corridor",
-    "objects",
-    "thematic",
-    "union",
-    "intersection",
-    "difference",
-    "flat",
-];
+pub const LATER_SHAPES: &[&str] =
+    &["polytope", "mesh", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference", "flat"];
 
 /// Classes of an effect's use.
 pub const CLASSES: &[&str] = &["inside", "front", "behind", "rest"];
@@ -526,7 +539,7 @@ impl Kind {
             Self::Lengths => "[x, y, z], three numbers ≥ 0".into(),
             Self::Direction => "[x, y, z], not all 0".into(),
             Self::Angles => "[yaw, pitch, roll], three numbers -360 to 360".into(),
-            Self::Points => "a list of at least four points [x, y, z]".into(),
+            Self::Points(least) => format!("a list of at least {least} points [x, y, z]"),
             Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Background => "\"sky\" or a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Lod => "a level of detail like \"2\" or \"1.3\"".into(),

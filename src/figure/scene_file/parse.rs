@@ -260,8 +260,8 @@ impl<'o> SceneReader<'o> {
         };
         let fields = self.checker.fields(node, table, &[], place.clone());
         let shape = built_shape(table.name, &fields)?;
-        if let Err(error) = shape.volume() {
-            let key = if table.name == "convex" { "points" } else { "" };
+        if let Err(error) = shape.volumes() {
+            let key = if fields.given("points") { "points" } else { "" };
             self.checker.note(place, key, node.line, error.to_string());
         }
         Some(shape)
@@ -381,6 +381,10 @@ fn built_shape(kind: &str, fields: &Fields) -> Option<Shape> {
         // A unit axis stays as it is, to the bit: written and read again it must not drift.
         if (axis.length_squared() - 1.0).abs() < 1e-15 { Some(axis) } else { axis.try_normalize() }
     };
+    let points = || {
+        let list = fields.node("points").and_then(Node::list)?;
+        Some(list.iter().filter_map(|p| p.numbers::<3>().map(DVec3::from)).collect())
+    };
     Some(match kind {
         "sphere" => Shape::Sphere { center: center?, radius: fields.number("radius")? },
         "ellipsoid" => Shape::Ellipsoid { center: center?, radii: fields.point("radii")?, rotation: turned() },
@@ -398,10 +402,10 @@ fn built_shape(kind: &str, fields: &Fields) -> Option<Shape> {
             height: fields.number("height")?,
             axis: axis()?,
         },
-        _ => {
-            let points = fields.node("points").and_then(Node::list)?;
-            Shape::Convex { points: points.iter().filter_map(|p| p.numbers::<3>().map(DVec3::from)).collect() }
+        "corridor" => {
+            Shape::Corridor { points: points()?, width: fields.number("width")?, height: fields.number("height")? }
         }
+        _ => Shape::Convex { points: points()? },
     })
 }
 

@@ -145,11 +145,15 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"shpere\" }",
-            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, is \"shpere\"; did you mean \"sphere\"?",
+            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, corridor, is \"shpere\"; did you mean \"sphere\"?",
         ),
         (
-            "shape = { kind = \"corridor\" }",
-            "shape.kind: kind = \"corridor\" is not available yet; available: sphere, ellipsoid, box, cylinder, cone, frustum, convex",
+            "shape = { kind = \"mesh\" }",
+            "shape.kind: kind = \"mesh\" is not available yet; available: sphere, ellipsoid, box, cylinder, cone, frustum, convex, corridor",
+        ),
+        (
+            "shape = { kind = \"corridor\", points = [[0, 0, 0]], width = 3, height = 2 }",
+            "shape.points: a line needs at least 2 points, has 1",
         ),
         ("shape = { center = [0, 0, 0] }", "shape.kind: is missing: one of sphere"),
         ("shape = \"sphere\"", "shape: must be a table { kind = ..., ... }, is \"sphere\""),
@@ -294,6 +298,8 @@ fn shapes() -> impl Strategy<Value = Shape> {
             }
         ),
         prop::collection::vec(point(), 5..9).prop_map(|points| Shape::Convex { points }),
+        (prop::collection::vec(point(), 2..9), 0.0..1e3f64, 0.0..1e3f64)
+            .prop_map(|(points, width, height)| Shape::Corridor { points, width, height }),
     ]
 }
 

@@ -224,6 +224,12 @@ fn shape(shape: &Shape) -> String {
         Shape::Convex { points } => {
             format!("{{ kind = \"convex\", points = {} }}", list(points.iter().map(|p| point(*p))))
         }
+        Shape::Corridor { points, width, height } => format!(
+            "{{ kind = \"corridor\", points = {}, width = {}, height = {} }}",
+            list(points.iter().map(|p| point(*p))),
+            number(*width),
+            number(*height)
+        ),
     }
 }
 

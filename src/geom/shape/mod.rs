@@ -4,6 +4,7 @@
 //! `entry ≤ t < exit` (L4). A ray that only touches (a tangent, a corner) has `entry = exit`: it misses. A ray that
 //! runs within a face is inside it. A body without volume (radius 0, an edge 0) holds nothing.
 
+mod corridor;
 mod hull;
 mod mesh;
 
@@ -71,6 +72,15 @@ pub enum Shape {
         /// At least four, not on one plane; metres.
         points: Vec<DVec3>,
     },
+    /// What lies along a line: within half the width of it seen from above, and half the height above and below it.
+    Corridor {
+        /// At least two, metres.
+        points: Vec<DVec3>,
+        /// Full width, metres, ≥ 0.
+        width: f64,
+        /// Full height, metres, ≥ 0.
+        height: f64,
+    },
 }
 
 /// Why a shape is no volume.
@@ -88,8 +98,14 @@ pub enum ShapeError {
     /// Too few points for a volume.
     #[error("a convex hull needs at least 4 points that differ, has {0}")]
     FewPoints(usize),
+    /// Too few points for a line.
+    #[error("a line needs at least 2 points, has {0}")]
+    ShortLine(usize),
+    /// The shape is the union of several volumes, [`Shape::volumes`].
+    #[error("a corridor is several volumes")]
+    Several,
     /// More points than a lens needs.
-    #[error("a convex hull may have at most {max} points, has {0}", max = hull::MAX_POINTS)]
+    #[error("a shape may have at most {max} points, has {0}", max = hull::MAX_POINTS)]
     ManyPoints(usize),
     /// All points lie on one plane (or line).
     #[error("all {0} points lie on one plane: the hull has no volume; move one of them off it")]
@@ -151,7 +167,25 @@ pub enum Volume {
 }
 
 impl Shape {
-    /// Checks the shape and prepares it.
+    /// Checks the shape and prepares it: the volumes whose union it is, none where it is known to hold nothing.
+    pub fn volumes(&self) -> Result<Vec<Volume>, ShapeError> {
+        match self {
+            Self::Corridor { points, width, height } => {
+                let sizes = [("width", *width), ("height", *height)];
+                if let Some((name, value)) = sizes.into_iter().find(|(_, v)| !v.is_finite() || *v < 0.0) {
+                    return Err(if value.is_finite() {
+                        ShapeError::Negative(name, value)
+                    } else {
+                        ShapeError::NotFinite
+                    });
+                }
+                corridor::bodies(points, *width, *height)
+            }
+            _ => self.volume().map(|volume| vec![volume]),
+        }
+    }
+
+    /// Checks the shape and prepares it, if it is one volume.
     pub fn volume(&self) -> Result<Volume, ShapeError> {
         let finite = |ok: bool| if ok { Ok(()) } else { Err(ShapeError::NotFinite) };
         let length = |name, value: f64| if value >= 0.0 { Ok(()) } else { Err(ShapeError::Negative(name, value)) };
@@ -188,6 +222,7 @@ impl Shape {
                 Ok(Volume::Frustum { center: *center, radii: [*radius, *top_radius], half: 0.5 * height, axis })
             }
             Self::Convex { points } => Hull::new(points).map(Volume::Convex),
+            Self::Corridor { .. } => Err(ShapeError::Several),
         }
     }
 }

@@ -56,6 +56,7 @@ fn holds(shape: &Shape, p: DVec3) -> bool {
             let up = v.dot(*axis) / height + 0.5;
             (0.0..=1.0).contains(&up) && v.cross(*axis).length() <= radius + up * (top_radius - radius)
         }
+        Shape::Corridor { .. } => unreachable!("corridors have their own test"),
         // Inside a hull iff no plane through three of its points has all points on one side and p on the other.
         Shape::Convex { points } => {
             let n = points.len();
@@ -145,6 +146,7 @@ proptest! {
                 Shape::Frustum { center: *center + shift, radius: *radius, top_radius: *top_radius, height: *height, axis: *axis }
             }
             Shape::Convex { points } => Shape::Convex { points: points.iter().map(|p| *p + shift).collect() },
+            Shape::Corridor { .. } => unreachable!("corridors have their own test"),
         };
         let (Ok(here), Ok(there)) = (shape.volume(), moved.volume()) else { return Ok(()) };
         prop_assert!((here.signed_distance(origin) - there.signed_distance(origin + shift)).abs() < 1e-6);
