@@ -94,6 +94,19 @@ fn the_shipped_scenes_of_built_in_cities_are_the_same_on_both() {
 }
 
 #[test]
+fn a_lens_of_no_volume_at_all_shows_nothing_on_either() {
+    let (mut studio, mut scene) = town();
+    scene.lenses.clear();
+    let plain = draw(&mut studio, &scene, Backend::Specialised).rgba;
+    let points = vec![DVec3::ZERO, DVec3::X * 40.0];
+    let nothing = vec![Shape::Corridor { points, width: 0.0, height: 9.0 }];
+    scene.lenses = vec![Lens { body: LensBody::Outline, ..lens("nothing", nothing, "sepia") }];
+    for backend in [Backend::Specialised, Backend::Uber] {
+        assert!(draw(&mut studio, &scene, backend).rgba == plain, "{backend:?}");
+    }
+}
+
+#[test]
 fn moving_toggling_and_changing_parameters_compile_nothing() {
     let (mut studio, mut scene) = town();
     draw(&mut studio, &scene, Backend::Uber);

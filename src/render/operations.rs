@@ -90,6 +90,8 @@ impl Operations {
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(shape_tests), ..Self::default() };
         out.uber.tests = each_once(tests);
+        // Lenses of no volume at all have no silhouettes.
+        out.uber.outlines &= !out.uber.tests.is_empty();
         for effect in context {
             out.add(effect, None, model)?;
         }
