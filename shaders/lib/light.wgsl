@@ -17,7 +17,6 @@ struct Light {
     scene_radius: f32,          // metres
 }
 
-@group(1) @binding(3) var<uniform> light: Light;
 @group(1) @binding(4) var shadow_map: texture_depth_2d;
 @group(1) @binding(5) var shadow_sampler: sampler_comparison;
 

@@ -18,8 +18,6 @@ struct View {
     haze: f32,                  // 1 / metres; 0 = none
 }
 
-@group(0) @binding(0) var<uniform> view: View;
-
 // A world position relative to the eye, world axes.
 fn relative_to_eye(whole: vec3i, offset: vec3f) -> vec3f {
     return (vec3f(whole - view.eye_whole) - view.eye_fraction) + offset;

@@ -10,6 +10,7 @@ struct LineStage {
     reserved: u32,
 }
 
+@group(1) @binding(3) var<uniform> light: Light;
 @group(3) @binding(0) var<uniform> stage: LineStage;
 
 struct Line {

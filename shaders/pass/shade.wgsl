@@ -6,15 +6,84 @@
 
 override SUMMED: bool = false;      // weighted by coverage, to be summed over samples
 
+@group(0) @binding(0) var<uniform> view_uniform: View;
+@group(1) @binding(3) var<uniform> light_uniform: Light;
+
+// What fragments read of uniforms is carried to them with the triangle, flat: in a fragment the software adapter reads each
+// number of a uniform lane by lane, thirty instructions long, and what is flat it has at hand. These are what libraries,
+// effects and handlers read; `take` fills them.
+var<private> view: View;
+var<private> light: Light;
+
 struct Corner {
     @builtin(position) @invariant clip: vec4f,
-    @location(0) @interpolate(flat, either) part: u32,      // of the picture: the context's, or the lenses'
+    @location(0) @interpolate(flat, either) part: vec4u,        // of the picture: the context's, or the lenses'; view's words
+    @location(1) @interpolate(flat, either) view_x: vec4f,      // columns of view_from_world; near
+    @location(2) @interpolate(flat, either) view_y: vec4f,      // far
+    @location(3) @interpolate(flat, either) view_z: vec4f,      // haze
+    @location(4) @interpolate(flat, either) across: vec4f,
+    @location(5) @interpolate(flat, either) sun: vec4f,         // shadow_depth_step
+    @location(6) @interpolate(flat, either) to_sun: vec4f,      // shadow_texel
+    @location(7) @interpolate(flat, either) sky: vec4f,         // scene_radius
+    @location(8) @interpolate(flat, either) ground: vec4f,      // width of the target
+    @location(9) @interpolate(flat, either) zenith: vec4f,      // its height
+    @location(10) @interpolate(flat, either) horizon: vec3f,
+    @location(11) @interpolate(flat, either) shadow_x: vec4f,   // rows of shadow_from_relative
+    @location(12) @interpolate(flat, either) shadow_y: vec4f,
+    @location(13) @interpolate(flat, either) shadow_z: vec4f,
+//@carried
 }
 
 // At depth 0, and exactly there: the depth test chooses between surface and background.
 @vertex
 fn vertex(@builtin(vertex_index) i: u32, @builtin(instance_index) part: u32) -> Corner {
-    return Corner(vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0), part);
+    let v = view_uniform;
+    let l = light_uniform;
+    let shadow = transpose(l.shadow_from_relative);
+    var corner: Corner;
+    corner.clip = vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0);
+    corner.part = vec4u(part, v.orthographic, v.sample_index, 0u);
+    corner.view_x = vec4f(v.view_from_world[0], v.near);
+    corner.view_y = vec4f(v.view_from_world[1], v.far);
+    corner.view_z = vec4f(v.view_from_world[2], v.haze);
+    corner.across = v.across_from_pixel;
+    corner.sun = vec4f(l.sun, l.shadow_depth_step);
+    corner.to_sun = vec4f(l.to_sun, l.shadow_texel);
+    corner.sky = vec4f(l.sky, l.scene_radius);
+    corner.ground = vec4f(l.ground, v.size.x);
+    corner.zenith = vec4f(l.zenith, v.size.y);
+    corner.horizon = l.horizon;
+    corner.shadow_x = shadow[0];
+    corner.shadow_y = shadow[1];
+    corner.shadow_z = shadow[2];
+    carry(&corner);
+    return corner;
+}
+
+// What is not carried is seldom read.
+fn take(in: Corner) {
+    view.view_from_world = mat3x3f(in.view_x.xyz, in.view_y.xyz, in.view_z.xyz);
+    view.projection = view_uniform.projection;
+    view.across_from_pixel = in.across;
+    view.near = in.view_x.w;
+    view.far = in.view_y.w;
+    view.orthographic = in.part.y;
+    view.sample_index = in.part.z;
+    view.eye_whole = view_uniform.eye_whole;
+    view.eye_fraction = view_uniform.eye_fraction;
+    view.size = vec2f(in.ground.w, in.zenith.w);
+    view.haze = in.view_z.w;
+    light.to_sun = in.to_sun.xyz;
+    light.shadow_texel = in.to_sun.w;
+    light.sun = in.sun.xyz;
+    light.shadow_depth_step = in.sun.w;
+    light.sky = in.sky.xyz;
+    light.ground = in.ground.xyz;
+    light.shadow_from_relative = transpose(mat4x4f(in.shadow_x, in.shadow_y, in.shadow_z, vec4f(0.0, 0.0, 0.0, 1.0)));
+    light.zenith = in.zenith.xyz;
+    light.horizon = in.horizon;
+    light.scene_radius = in.sky.w;
+    take_own(in);
 }
 
 //@handlers
@@ -61,14 +130,16 @@ fn background_unfiltered(in: Corner) -> Unfiltered {
 }
 
 fn paint_of_surface(in: Corner) -> vec4f {
+    take(in);
     let pixel = vec2i(in.clip.xy);
     let ray = ray_of_pixel(in.clip.xy);
     var point = point_at(pixel, ray, textureLoad(scene_depth, pixel, 0));
-    let classes = classes_at(sight_at(pixel, ray, point.depth), in.part);
+    let classes = classes_at(sight_at(pixel, ray, point.depth), in.part.x);
     return finished(vec4f(shade(&point, classes), 1.0), point, pixel, classes);
 }
 
 fn paint_of_background(in: Corner) -> vec4f {
+    take(in);
     let pixel = vec2i(in.clip.xy);
     let ray = ray_of_pixel(in.clip.xy);
     var paint = vec4f(0.0);
@@ -78,6 +149,6 @@ fn paint_of_background(in: Corner) -> vec4f {
         paint = vec4f(light.zenith, 1.0);
     }
     let point = nowhere(pixel);
-    let classes = classes_at(sight_at(pixel, ray, 0.0), in.part);
+    let classes = classes_at(sight_at(pixel, ray, 0.0), in.part.x);
     return finished(vec4f(styled(paint.rgb, point, classes), paint.a), point, pixel, classes);
 }

@@ -265,7 +265,7 @@ impl Renderer {
                 None => return "// Nothing draws lines.\n".to_owned(),
             },
         };
-        module.source_for_people(handlers(), &names)
+        module.source_for_people(handlers(), &names, self.gpu.device.limits().max_inter_stage_shader_variables)
     }
 
     fn smooth(&self) -> bool {

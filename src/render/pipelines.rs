@@ -314,7 +314,7 @@ impl Layouts {
                 &[
                     (0, S::FRAGMENT, surfaces),
                     (1, S::FRAGMENT, storage()),
-                    (3, S::FRAGMENT, uniform()),
+                    (3, all, uniform()),
                     (4, S::FRAGMENT, depth),
                     (5, S::FRAGMENT, compared),
                     (6, S::FRAGMENT, image(T::Uint, D::D2)),
@@ -328,12 +328,12 @@ impl Layouts {
                 &[
                     (0, S::FRAGMENT, floats),
                     (1, S::FRAGMENT, storage()),
-                    (2, S::FRAGMENT, uniform()),
+                    (2, all, uniform()),
                     (3, S::FRAGMENT, uniform()),
                     (4, S::FRAGMENT, masks),
                     (5, S::FRAGMENT, uniform()),
                     (6, S::FRAGMENT, packed),
-                    (7, S::FRAGMENT, uniform()),
+                    (7, all, uniform()),
                 ],
             ),
             cut_city: layout(gpu, "surfaces and planes", &[(0, S::FRAGMENT, surfaces), (1, S::FRAGMENT, storage())]),
@@ -363,10 +363,11 @@ impl Layouts {
     }
 
     fn module(&self, modules: &mut Modules, module: Module) -> wgpu::ShaderModule {
+        let room = self.device.limits().max_inter_stage_shader_variables;
         let make = |m: &Module| {
             self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(&m.name()),
-                source: wgpu::ShaderSource::Wgsl(m.source().into()),
+                source: wgpu::ShaderSource::Wgsl(m.source_for_people(crate::shader::handlers(), &[], room).into()),
             })
         };
         modules.entry(module.clone()).or_insert_with(|| make(&module)).clone()

@@ -296,10 +296,15 @@ impl EffectDefinition {
         all.filter_map(|p| p.kind.in_shader().map(|(type_name, floats)| (p, type_name, floats)))
     }
 
+    /// How many numbers its WGSL reads of its parameters: the first value per object is one.
+    pub fn floats(&self) -> usize {
+        let floats: usize = self.shader_parameters().map(|(_, _, floats)| floats).sum();
+        floats + usize::from(self.objects.is_some())
+    }
+
     /// How many `vec4f` its parameters take.
     pub fn slots(&self) -> u32 {
-        let floats: usize = self.shader_parameters().map(|(_, _, floats)| floats).sum();
-        (floats + usize::from(self.objects.is_some())).div_ceil(4) as u32
+        self.floats().div_ceil(4) as u32
     }
 }
 

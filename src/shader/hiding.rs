@@ -31,7 +31,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
     }
     match eye {
-        Eye::Picture => text.push_str(&lens_test::bindings(program)),
+        Eye::Picture => text.push_str(&lens_test::bindings(program, false)),
         Eye::Sun if !program.has().lenses => {}
         Eye::Sun => text
             .push_str("@group(2) @binding(8) var<storage, read> shapes: array<Shape>;  // in the main view's space\n"),

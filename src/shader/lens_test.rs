@@ -7,8 +7,9 @@ use crate::shader::{
     uber::MOST_VOLUMES,
 };
 
-/// The uniforms that the tests of a program read in the picture.
-pub(super) fn bindings(program: &Program) -> String {
+/// The uniforms that the tests of a program read in the picture; `carried`: the shapes reach fragments as
+/// [`crate::shader::carried`] has it.
+pub(super) fn bindings(program: &Program, carried: bool) -> String {
     let count = match program {
         Program::Specialised(plan) => plan.volumes(),
         Program::Uber(_) => MOST_VOLUMES,
@@ -20,9 +21,16 @@ pub(super) fn bindings(program: &Program) -> String {
     }
     // The uber back end reads of each volume there how it is tested.
     if parts.shapes {
-        let _ = writeln!(text, "@group(2) @binding(7) var<uniform> shapes: array<Shape, {count}>;  // in view space");
+        text.push_str(&uniform(7, "shapes", &format!("array<Shape, {count}>"), carried));
     }
     text
+}
+
+/// A uniform array, and where it is carried what it is carried into.
+pub(super) fn uniform(binding: u32, name: &str, array: &str, carried: bool) -> String {
+    let whole = if carried { "_uniform" } else { "" };
+    let own = if carried { format!("var<private> {name}: {array};\n") } else { String::new() };
+    format!("@group(2) @binding({binding}) var<uniform> {name}{whole}: {array};\n{own}")
 }
 
 fn call(test: VolumeTest, volume: u32, [of_shape, of_sprite]: [&str; 2], place: &str) -> String {

@@ -17,9 +17,9 @@ use crate::shader::{
 /// `line_at` and what it calls. `names` of a plan's lenses become comments.
 pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str]) -> String {
     let mut text = match program {
-        Program::Specialised(plan) => Writer { plan, handlers, names }.bindings(),
+        Program::Specialised(plan) => Writer { plan, handlers, names }.bindings(false),
         Program::Uber(_) => {
-            let tests = lens_test::bindings(program);
+            let tests = lens_test::bindings(program, false);
             format!("@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;\n{tests}\n")
         }
     };

@@ -3,6 +3,7 @@
 //! No wgpu handle lives here. Entry points stand in `shaders/pass` alone; everything else is importable
 //! and free of side effects.
 
+mod carried;
 pub mod effect;
 pub mod effect_file;
 mod hiding;
@@ -13,6 +14,7 @@ mod specialised;
 mod uber;
 pub mod wgsl;
 
+pub use carried::LEAST_CARRIED;
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
 pub use plan::{Blend, ClassTest, Plan, PlanLens, Program, Scope, Step, Uber, VolumeTest};
 pub use specialised::scope_number;
@@ -26,6 +28,7 @@ macro_rules! files {
 
 files! {
     VIEW = "lib/view.wgsl";
+    VIEW_UNIFORM = "lib/view-uniform.wgsl";
     SURFACE = "lib/surface.wgsl";
     COLOR = "lib/color.wgsl";
     PACKED = "lib/packed.wgsl";
@@ -116,38 +119,46 @@ impl Module {
 
     /// The whole WGSL text, where a program's numbers count these handlers.
     pub fn source_with(&self, handlers: &[EffectDefinition]) -> String {
-        self.source_for_people(handlers, &[])
+        self.source_for_people(handlers, &[], LEAST_CARRIED)
     }
 
-    /// The whole WGSL text with the names of a plan's lenses in comments (H4).
-    pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str]) -> String {
+    /// The whole WGSL text with the names of a plan's lenses in comments (H4), for an adapter that carries so many vectors
+    /// from vertices to fragments: [`LEAST_CARRIED`] or more.
+    pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], room: u32) -> String {
         let files: &[(&str, &str)] = match self {
-            Self::Geometry(None) => &[VIEW, SURFACE, GEOMETRY],
+            Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, GEOMETRY],
             Self::Geometry(Some(program)) => {
-                &[&[VIEW, SURFACE, SIGHT], &lens_files(program)[..], &[OBJECTS, FRAGMENT, CUT, GEOMETRY]].concat()
+                &[&[VIEW, VIEW_UNIFORM, SURFACE, SIGHT], &lens_files(program)[..], &[OBJECTS, FRAGMENT, CUT, GEOMETRY]]
+                    .concat()
             }
-            Self::Shadow(None) => &[VIEW, SHADOW],
+            Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SHADOW],
             Self::Shadow(Some(program)) => {
-                &[&[VIEW, SURFACE, SIGHT], &lens_files(program)[..], &[OBJECTS, FRAGMENT, SHADOW_CUT]].concat()
+                &[&[VIEW, VIEW_UNIFORM, SURFACE, SIGHT], &lens_files(program)[..], &[OBJECTS, FRAGMENT, SHADOW_CUT]]
+                    .concat()
             }
-            Self::Sprite => &[VIEW, SHAPE, SPRITE],
+            Self::Sprite => &[VIEW, VIEW_UNIFORM, SHAPE, SPRITE],
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
             Self::Lines(program) => &Self::files_of_lines(program),
             Self::Filter(_) => &[PACKED, FILTER],
             Self::Resolve => &[RESOLVE],
             Self::Furniture => &[FURNITURE],
             Self::FurnitureOver => &[FURNITURE_OVER],
-            Self::Bare => &[VIEW, SURFACE, BARE],
+            Self::Bare => &[VIEW, VIEW_UNIFORM, SURFACE, BARE],
         };
         let mut text = String::new();
         for (path, source) in files {
             text.push_str(&format!("// ==== {path}\n\n{source}\n"));
         }
         match self {
-            Self::Shade(Program::Specialised(plan)) => {
-                text.replace("//@handlers\n", &specialised::source(plan, handlers, lenses))
+            Self::Shade(program) => {
+                let (own, of_scene) = match program {
+                    Program::Specialised(plan) => {
+                        (carried::of_plan(plan, handlers, room), specialised::source(plan, handlers, lenses))
+                    }
+                    Program::Uber(uber) => (carried::nothing(), uber::source(uber, handlers)),
+                };
+                text.replace("//@carried\n", &own.members).replace("//@handlers\n", &(own.functions + &of_scene))
             }
-            Self::Shade(Program::Uber(uber)) => text.replace("//@handlers\n", &uber::source(uber, handlers)),
             Self::Lines(program) => text.replace("//@handlers\n", &lining::source(program, handlers, lenses)),
             Self::Geometry(None) => text.replace("//@handlers\n", NOTHING_CUT),
             Self::Geometry(Some(program)) => {
@@ -163,7 +174,7 @@ impl Module {
 
     /// The libraries that lines call.
     fn files_of_lines(program: &Program) -> Vec<(&'static str, &'static str)> {
-        let mut files = vec![VIEW, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT, FRAGMENT, EDGE];
+        let mut files = vec![VIEW, VIEW_UNIFORM, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT, FRAGMENT, EDGE];
         if program.has().blends {
             files.push(BLEND);
         }

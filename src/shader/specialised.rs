@@ -12,7 +12,7 @@ use crate::shader::{
 /// become comments.
 pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str]) -> String {
     let writer = Writer { plan, handlers, names };
-    let mut text = writer.bindings();
+    let mut text = writer.bindings(true);
     for effect in writer.used() {
         let _ = write!(text, "// ==== effect {}\n\n{}\n", effect.name, effect.source.trim_end());
         text.push('\n');
@@ -33,14 +33,14 @@ pub(super) struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// The uniforms that are read.
-    pub(super) fn bindings(&self) -> String {
+    /// The uniforms that are read, as [`lens_test::bindings`].
+    pub(super) fn bindings(&self, carried: bool) -> String {
         let mut text = String::new();
         let slots = self.plan.slots(self.handlers);
         if slots > 0 {
-            let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
+            text.push_str(&lens_test::uniform(2, "parameters", &format!("array<vec4f, {slots}>"), carried));
         }
-        text.push_str(&lens_test::bindings(&Program::Specialised(self.plan.clone())));
+        text.push_str(&lens_test::bindings(&Program::Specialised(self.plan.clone()), carried));
         if self.plan.masks {
             text.push_str(MASKS);
         }

@@ -21,7 +21,7 @@ pub const MOST_SLOTS: u32 = 4096;
 pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;");
-    text.push_str(&lens_test::bindings(&Program::Uber(uber.clone())));
+    text.push_str(&lens_test::bindings(&Program::Uber(uber.clone()), false));
     if uber.masks {
         text.push_str(MASKS);
     }

@@ -60,6 +60,7 @@ struct Segment { p: vec3f, q: vec3f, guard: vec2f }
 pub fn source() -> String {
     [
         include_str!("../../../shaders/lib/view.wgsl"),
+        include_str!("../../../shaders/lib/view-uniform.wgsl"),
         include_str!("../../../shaders/lib/surface.wgsl"),
         include_str!("../../../shaders/lib/edge.wgsl"),
         ENTRIES,

@@ -1,0 +1,120 @@
+//! What fragments of the specialised back end read of a scene's uniforms, carried to them flat with the triangle:
+//! `pass/shade.wgsl` says why.
+
+use std::fmt::Write as _;
+
+use crate::shader::{
+    effect::{EffectDefinition, EffectKind},
+    plan::{Plan, VolumeTest},
+};
+
+/// How many vectors `pass/shade.wgsl` itself carries.
+const FIRST: u32 = 14;
+/// How many an adapter carries at least (WebGPU's `maxInterStageShaderVariables`).
+pub const LEAST_CARRIED: u32 = 16;
+const AXES: [&str; 4] = ["x", "y", "z", "w"];
+
+/// A vector or a number of one of the uniform arrays.
+struct Item {
+    array: &'static str,
+    place: String,
+    width: usize,
+}
+
+/// Members of `Corner`; `carry`, which fills them; `take_own`, which gives them to what reads them.
+pub(super) struct Carried {
+    pub(super) members: String,
+    pub(super) functions: String,
+}
+
+/// Where nothing of the scene is carried.
+pub(super) fn nothing() -> Carried {
+    carried(Vec::new(), 0)
+}
+
+/// What a plan reads; `room` is how many vectors the adapter carries. What finds no room is read where it stands.
+pub(super) fn of_plan(plan: &Plan, handlers: &[EffectDefinition], room: u32) -> Carried {
+    let mut items = Vec::new();
+    for (i, test) in plan.tests().enumerate() {
+        let item = |&(member, width): &(&str, usize)| Item { array: "shapes", place: format!("[{i}].{member}"), width };
+        items.extend(members(test).iter().map(item));
+    }
+    for (slot, floats) in slots_read(plan, handlers) {
+        match floats {
+            4 => items.push(Item { array: "parameters", place: format!("[{slot}]"), width: 4 }),
+            _ => items.extend(AXES[..floats].iter().map(|axis| Item {
+                array: "parameters",
+                place: format!("[{slot}].{axis}"),
+                width: 1,
+            })),
+        }
+    }
+    carried(items, room.saturating_sub(FIRST) as usize)
+}
+
+/// What `lib/shape.wgsl` reads of a shape that is tested so, and how many numbers that is.
+fn members(test: VolumeTest) -> &'static [(&'static str, usize)] {
+    match test {
+        VolumeTest::Sphere => &[("center", 3), ("size_x", 1)],
+        VolumeTest::Box => {
+            &[("axis_x", 3), ("size_x", 1), ("axis_y", 3), ("size_y", 1), ("axis_z", 3), ("size_z", 1), ("center", 3)]
+        }
+        VolumeTest::Cylinder => &[("center", 3), ("size_x", 1), ("axis_z", 3), ("size_z", 1)],
+        VolumeTest::Convex => &[("size_x", 1), ("size_y", 1)],
+        VolumeTest::Ellipsoid => &[("center", 3), ("axis_x", 3), ("axis_y", 3), ("axis_z", 3)],
+        VolumeTest::Frustum => &[("center", 3), ("size_x", 1), ("axis_z", 3), ("size_z", 1), ("size_y", 1)],
+        VolumeTest::Sprite => &[],
+    }
+}
+
+/// The parameters' slots that a plan reads, and how many numbers of each, at most 4.
+fn slots_read(plan: &Plan, handlers: &[EffectDefinition]) -> Vec<(u32, usize)> {
+    let mut slots = Vec::new();
+    for step in &plan.steps {
+        let handler = &handlers[step.effect as usize];
+        match handler.kind {
+            EffectKind::Filter => slots.push((step.image(handler), 1)),
+            _ => slots.extend(
+                (step.parameters..).zip((0..handler.floats()).step_by(4).map(|d| (handler.floats() - d).min(4))),
+            ),
+        }
+        slots.extend(step.weight(handler).map(|slot| (slot, 1)));
+    }
+    let lines = plan.lenses.iter().filter_map(|l| l.outline);
+    slots.extend(lines.flat_map(|first| [(first, 4), (first + 1, 1)]));
+    slots
+}
+
+fn carried(items: Vec<Item>, room: usize) -> Carried {
+    // First fit: a sphere is one vector, and so are four numbers of four effects.
+    let mut vectors: Vec<(usize, Vec<Item>)> = Vec::new();
+    let mut left = Vec::new();
+    for item in items {
+        match vectors.iter().position(|(width, _)| width + item.width <= 4) {
+            Some(i) => {
+                vectors[i].0 += item.width;
+                vectors[i].1.push(item);
+            }
+            None if vectors.len() < room => vectors.push((item.width, vec![item])),
+            None => left.push(item),
+        }
+    }
+    let mut members = String::new();
+    let mut carry = "fn carry(corner: ptr<function, Corner>) {\n".to_owned();
+    let mut take = "fn take_own(in: Corner) {\n".to_owned();
+    for (i, (width, held)) in vectors.iter().enumerate() {
+        let _ = writeln!(members, "    @location({}) @interpolate(flat, either) own_{i}: vec4f,", FIRST as usize + i);
+        let given: Vec<String> = held.iter().map(|item| format!("{}_uniform{}", item.array, item.place)).collect();
+        let _ = writeln!(carry, "    (*corner).own_{i} = vec4f({}{});", given.join(", "), ", 0.0".repeat(4 - width));
+        let mut at = 0;
+        for item in held {
+            let of = AXES[at..at + item.width].concat();
+            let _ = writeln!(take, "    {}{} = in.own_{i}.{of};", item.array, item.place);
+            at += item.width;
+        }
+    }
+    for item in &left {
+        let _ = writeln!(take, "    {0}{1} = {0}_uniform{1};", item.array, item.place);
+    }
+    Carried { members, functions: format!("{carry}}}\n\n{take}}}\n\n") }
+}
