@@ -21,13 +21,29 @@ struct Lines {
     @location(3) fourth: vec4u,
 }
 
-@group(0) @binding(0) var<uniform> stage: FilterStage;
+@group(0) @binding(0) var<uniform> stage_uniform: FilterStage;
 @group(0) @binding(1) var image: texture_2d_array<u32>;
-@group(0) @binding(2) var<uniform> parameters: array<vec4f, 4096>;
+@group(0) @binding(2) var<uniform> parameters_uniform: array<vec4f, 4096>;
+
+// Carried with the triangle: `pass/shade.wgsl` says why.
+var<private> stage: FilterStage;
+
+struct Corner {
+    @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat, either) way: vec4i,         // step, reach, length
+    @location(1) @interpolate(flat, either) layers: vec2i,      // layers, layer
+//@carried
+}
 
 @vertex
-fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0);
+fn vertex(@builtin(vertex_index) i: u32) -> Corner {
+    let s = stage_uniform;
+    var corner: Corner;
+    corner.clip = vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0);
+    corner.way = vec4i(s.step, s.reach, s.length);
+    corner.layers = vec2i(s.layers, s.layer);
+    carry(&corner, s.first);
+    return corner;
 }
 
 //@handlers
@@ -47,8 +63,10 @@ fn texel(n: i32, beside: vec2i) -> mat3x4f {
 }
 
 @fragment
-fn fragment(@builtin(position) at: vec4f) -> Lines {
-    let block = vec2i(at.xy);
+fn fragment(in: Corner) -> Lines {
+    stage = FilterStage(in.way.xy, in.way.z, 0u, in.way.w, in.layers.x, in.layers.y);
+    take_own(in);
+    let block = vec2i(in.clip.xy);
     let beside = block * (1 - stage.step);
     let start = 4 * dot(block, stage.step);
     let own = own_parameters();

@@ -6,7 +6,7 @@
 
 use crate::render::{
     eye::{PictureTile, split},
-    frame::{FrameInput, Recorder, color_attachment, scissor},
+    frame::{FrameInput, Recorder, behind, color_attachment, scissor},
     layout,
     operations::Filter,
     pipelines::Key,
@@ -53,7 +53,7 @@ impl Renderer {
         let size = input.tile.size;
         let whole = PictureTile::whole(size);
         let areas: Vec<Vec<PictureTile>> = filters.iter().map(|f| areas_of(f, size, seen)).collect();
-        let images = targets.needs.filter_images as usize;
+        let images = behind(input).images();
         for (i, filter) in filters.iter().enumerate() {
             // A filter reads no image that a later one makes: those that read the same image may as well come first.
             if filters[..i].iter().any(|f| f.plan == filter.plan) {
@@ -65,7 +65,7 @@ impl Renderer {
             };
             let wanted = merged(same().flat_map(around).collect());
             let lenses: Vec<u32> = same().flat_map(|(_, f)| lenses_of(f)).collect();
-            let into = Into::Shaded(&targets.unfiltered.layers);
+            let into = Into::Shaded(&targets.unfiltered.layers[..images]);
             self.filter_pass(encoder, recorder, "unfiltered", &lenses, &into, &mut |pass| {
                 pass.set_bind_group(0, &groups.view, &[]);
                 pass.set_bind_group(1, &groups.shade, &[]);
@@ -77,7 +77,7 @@ impl Renderer {
                 }
                 drawn
             });
-            gather_fours(encoder, targets, &wanted);
+            gather_fours(encoder, targets, &wanted, images as u32);
             for (k, filter) in same() {
                 let lenses: Vec<u32> = lenses_of(filter).collect();
                 let key = Key::Filter(filter.effect);
@@ -146,10 +146,9 @@ impl Renderer {
 }
 
 /// Makes one texel of four pixels that stand side by side: the same bytes.
-fn gather_fours(encoder: &mut wgpu::CommandEncoder, targets: &Targets, parts: &[PictureTile]) {
+fn gather_fours(encoder: &mut wgpu::CommandEncoder, targets: &Targets, parts: &[PictureTile], layers: u32) {
     let size = targets.needs.size;
     let row = row_bytes(size);
-    let layers = targets.needs.filter_images;
     for part in parts {
         let [x, y] = part.origin;
         let layout = wgpu::TexelCopyBufferLayout {

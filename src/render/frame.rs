@@ -185,11 +185,11 @@ impl Renderer {
         }
         // Before the city: what a lens hides is decided by them.
         if pages.count > 0 {
-            self.sprite_passes(&mut encoder, &mut recorder, &seen);
+            self.sprite_passes(&mut encoder, &mut recorder, &seen, pages.count);
         }
         encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?;
         if !seen.is_empty() && wants_masks(input) {
-            self.clear_masks(&mut encoder, &mut recorder);
+            self.clear_masks(&mut encoder, &mut recorder, input);
         }
         if let (false, Some(key)) = (lines.is_empty(), &keys.lines) {
             self.lines_pass(&mut encoder, &mut recorder, input, &lines, key);
@@ -490,9 +490,10 @@ impl Renderer {
         (shade_keys, is_uber)
     }
 
-    fn clear_masks(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
+    fn clear_masks(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, input: &FrameInput) {
         let Some(targets) = &self.targets else { return };
-        for some in targets.masks.layers.chunks(4) {
+        let layers = mask_layers(input) as usize;
+        for some in targets.masks.layers[..layers].chunks(4) {
             let slot = recorder.begin(CLEAR_MASKS, "main", &[], false);
             let attachments: Vec<_> =
                 some.iter().map(|view| Some(color_attachment(view, wgpu::Color::TRANSPARENT))).collect();
@@ -506,9 +507,15 @@ impl Renderer {
     }
 
     /// The volumetric depth sprites (S1) of the volumes in view that are tested by them, page by page.
-    fn sprite_passes(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, seen: &[SeenVolume]) {
+    fn sprite_passes(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        seen: &[SeenVolume],
+        pages: u32,
+    ) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        for (page, view) in targets.sprites.layers.iter().enumerate() {
+        for (page, view) in targets.sprites.layers[..pages as usize].iter().enumerate() {
             let sprites = || seen.iter().filter_map(|v| Some((v.lens, v.sprite.as_ref()?))).enumerate();
             let here = || sprites().filter(|(_, (_, sprite))| sprite.place.page as usize == page);
             let mut lenses: Vec<u32> = here().map(|(_, (lens, _))| lens).collect();
@@ -692,6 +699,11 @@ fn wants_masks(input: &FrameInput) -> bool {
     input.masks && input.sample == 0
 }
 
+/// Three classes, and a bit for each lens.
+fn mask_layers(input: &FrameInput) -> u32 {
+    3 * input.lens_count.div_ceil(32)
+}
+
 /// Whether this sample is the last and something stands over the picture.
 fn wants_furniture(input: &FrameInput) -> bool {
     !input.furniture.is_empty() && input.sample + 1 == input.samples
@@ -709,7 +721,7 @@ fn needs(input: &FrameInput, has_lenses: bool, pages: &Pages, colors: bool, smoo
         smooth,
         own_depth: input.measured,
         sums: input.samples > 1,
-        mask_layers: if input.masks && has_lenses { 3 * input.lens_count.div_ceil(32) } else { 0 },
+        mask_layers: if input.masks && has_lenses { mask_layers(input) } else { 0 },
         sprites: [pages.size[0], pages.size[1], pages.count],
         filters: 0,
         filter_images: 0,
@@ -719,7 +731,7 @@ fn needs(input: &FrameInput, has_lenses: bool, pages: &Pages, colors: bool, smoo
 }
 
 /// What is behind the city.
-fn behind(input: &FrameInput) -> Behind {
+pub(super) fn behind(input: &FrameInput) -> Behind {
     match input.background {
         _ if input.transparent => Behind::Nothing,
         Background::Color(_) => Behind::OneColor,

@@ -350,11 +350,7 @@ impl Layouts {
             ),
             lines: layout(gpu, "lines", &[(0, S::FRAGMENT, float)]),
             line_stage: layout(gpu, "line stage", &[(0, all, dynamic)]),
-            filter: layout(
-                gpu,
-                "filter",
-                &[(0, S::FRAGMENT, dynamic), (1, S::FRAGMENT, packed), (2, S::FRAGMENT, uniform())],
-            ),
+            filter: layout(gpu, "filter", &[(0, all, dynamic), (1, S::FRAGMENT, packed), (2, all, uniform())]),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
             furniture: layout(gpu, "furniture", &[(0, all, uniform()), (1, S::FRAGMENT, storage())]),
             furniture_over: layout(gpu, "furniture over", &[(0, S::FRAGMENT, float), (1, S::FRAGMENT, float)]),

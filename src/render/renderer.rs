@@ -210,12 +210,17 @@ impl Renderer {
 
     /// Makes the targets fit; what is there is kept where it does.
     pub(super) fn fit_targets(&mut self, needs: Needs) -> Result<(), GpuError> {
-        if self.targets.as_ref().is_none_or(|t| t.needs != needs) {
-            self.targets = None;
-            self.targets = Some(Targets::new(&self.gpu, needs, self.pipelines.layouts.sums)?);
-            self.groups = None;
+        if self.targets.as_ref().is_some_and(|t| t.serve(&needs)) {
+            return Ok(());
+        }
+        self.groups = None;
+        let before = self.targets.take();
+        let shadow = before.as_ref().map(|t| t.shadow.texture.clone());
+        let targets = Targets::new(&self.gpu, needs, self.pipelines.layouts.sums, before)?;
+        if shadow.is_none_or(|shadow| shadow != targets.shadow.texture) {
             self.shadow_of = None;
         }
+        self.targets = Some(targets);
         Ok(())
     }
 

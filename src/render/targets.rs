@@ -34,15 +34,47 @@ pub struct Needs {
     pub shadow: u32,
 }
 
+impl Needs {
+    /// What serves this and `before` alike: a target once made for pictures of a size is kept while they have that size, so
+    /// that a lens that comes and goes, or is switched on and off, allocates nothing.
+    fn with(self, before: &Self) -> Self {
+        if self.size != before.size || self.smooth != before.smooth {
+            return self;
+        }
+        Self {
+            size: self.size,
+            smooth: self.smooth,
+            colors: self.colors || before.colors,
+            own_depth: self.own_depth || before.own_depth,
+            sums: self.sums || before.sums,
+            mask_layers: self.mask_layers.max(before.mask_layers),
+            sprites: std::array::from_fn(|i| self.sprites[i].max(before.sprites[i])),
+            filters: self.filters.max(before.filters),
+            filter_images: self.filter_images.max(before.filter_images),
+            lines: self.lines || before.lines,
+            shadow: self.shadow.max(before.shadow),
+        }
+    }
+}
+
 /// A texture and the view of all of it.
 #[derive(Debug)]
 pub struct Target {
+    /// What it is called.
+    label: &'static str,
     /// The texture.
     pub texture: wgpu::Texture,
     /// All of it.
     pub view: wgpu::TextureView,
     /// Its layers one by one, where there are several.
     pub layers: Vec<wgpu::TextureView>,
+}
+
+impl Target {
+    fn is(&self, label: &str, [width, height, depth_or_array_layers]: [u32; 3], format: wgpu::TextureFormat) -> bool {
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers };
+        self.label == label && self.texture.size() == size && self.texture.format() == format
+    }
 }
 
 /// All targets of a view.
@@ -81,12 +113,47 @@ pub struct Targets {
 }
 
 impl Targets {
-    /// Allocates what is needed.
-    pub fn new(gpu: &Gpu, needs: Needs, sums: wgpu::TextureFormat) -> Result<Self, GpuError> {
+    /// Whether a frame with these needs can be drawn into them.
+    pub fn serve(&self, needs: &Needs) -> bool {
+        needs.with(&self.needs) == self.needs
+    }
+
+    fn taken_apart(self) -> (Vec<Target>, wgpu::Buffer) {
+        let Self { codes, depth, colors, own_depth, picture, sums, masks, sprites, unfiltered, filtered, .. } = self;
+        let [four, half] = self.fours;
+        let targets = vec![
+            codes,
+            depth,
+            colors,
+            own_depth,
+            picture,
+            sums,
+            masks,
+            sprites,
+            unfiltered,
+            four,
+            half,
+            filtered,
+            self.lines,
+            self.shadow,
+        ];
+        (targets, self.unfiltered_bytes)
+    }
+
+    /// Makes them, of `before` as many as are the same.
+    pub fn new(gpu: &Gpu, needs: Needs, sums: wgpu::TextureFormat, before: Option<Self>) -> Result<Self, GpuError> {
         use wgpu::TextureUsages as U;
+        let needs = before.as_ref().map_or(needs, |before| needs.with(&before.needs));
+        // Room for another size is only there when this is gone.
+        let before = before.filter(|before| before.needs.size == needs.size);
+        let (kept, kept_bytes) = before.map(Self::taken_apart).unzip();
+        let mut kept = kept.unwrap_or_default();
         let drawn = U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC;
-        let make_any = |label: &str, size: [u32; 3], format, usage, layered: bool| {
+        let mut make_any = |label: &'static str, size: [u32; 3], format, usage, layered: bool| {
             let size = size.map(|side| side.max(1));
+            if let Some(same) = kept.iter().position(|t| t.is(label, size, format)) {
+                return kept.swap_remove(same);
+            }
             let texture = gpu.texture(label, size, 1, format, usage);
             let array = layered.then_some(wgpu::TextureViewDimension::D2Array);
             let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension: array, ..Default::default() });
@@ -99,40 +166,58 @@ impl Targets {
                 })
             };
             let layers = if layered { (0..size[2]).map(layer).collect() } else { Vec::new() };
-            Target { view, layers, texture }
+            Target { label, view, layers, texture }
         };
-        let make = |label: &str, size, format, usage| make_any(label, size, format, usage, false);
         let [w, h] = needs.size;
         let full = |on: bool| if on { [w, h, 1] } else { [1, 1, 1] };
         let images = needs.filter_images;
-        let filtering = |label: &str, size, format, usage| {
-            make_any(label, if needs.filters > 0 { size } else { [1; 3] }, format, usage, true)
-        };
+        let filtering = |size: [u32; 3]| if needs.filters > 0 { size } else { [1; 3] };
         let [fours_wide, fours_high] = needs.size.map(|side| side.div_ceil(4));
+        let bytes = u64::from(row_bytes(needs.size)) * u64::from(h * images);
         let mask_size = if needs.mask_layers > 0 { [w, h, needs.mask_layers] } else { [1, 1, 1] };
         Ok(Self {
             needs,
-            codes: make("codes", [w, h, 1], if needs.smooth { SMOOTH_CODES } else { CODES }, drawn),
-            depth: make("depth", [w, h, 1], DEPTH, drawn),
-            colors: make("colors", full(needs.colors), COLORS, drawn),
-            own_depth: make("own depth", full(needs.own_depth), OWN_DEPTH, drawn),
-            picture: make("picture", [w, h, 1], PICTURE, drawn),
-            sums: make("sums", full(needs.sums), sums, drawn),
+            codes: make_any("codes", [w, h, 1], if needs.smooth { SMOOTH_CODES } else { CODES }, drawn, false),
+            depth: make_any("depth", [w, h, 1], DEPTH, drawn, false),
+            colors: make_any("colors", full(needs.colors), COLORS, drawn, false),
+            own_depth: make_any("own depth", full(needs.own_depth), OWN_DEPTH, drawn, false),
+            picture: make_any("picture", [w, h, 1], PICTURE, drawn, false),
+            sums: make_any("sums", full(needs.sums), sums, drawn, false),
             masks: make_any("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING, true),
             sprites: make_any("depth sprites", needs.sprites, SPRITES, drawn, true),
-            unfiltered: filtering("unfiltered", [w, h, images], UNFILTERED, U::RENDER_ATTACHMENT | U::COPY_SRC),
-            unfiltered_bytes: gpu.empty_buffer(
+            unfiltered: make_any(
                 "unfiltered",
-                wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-                u64::from(row_bytes(needs.size)) * u64::from(h * images),
-            )?,
+                filtering([w, h, images]),
+                UNFILTERED,
+                U::RENDER_ATTACHMENT | U::COPY_SRC,
+                true,
+            ),
+            unfiltered_bytes: match kept_bytes.filter(|buffer| buffer.size() == bytes) {
+                Some(same) => same,
+                None => {
+                    let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+                    gpu.empty_buffer("unfiltered", usage, bytes)?
+                }
+            },
             fours: [
-                filtering("four by four", [fours_wide, h, images], FILTERED, U::TEXTURE_BINDING | U::COPY_DST),
-                filtering("half filtered", [fours_wide, fours_high, 4], FILTERED, drawn),
+                make_any(
+                    "four by four",
+                    filtering([fours_wide, h, images]),
+                    FILTERED,
+                    U::TEXTURE_BINDING | U::COPY_DST,
+                    true,
+                ),
+                make_any("half filtered", filtering([fours_wide, fours_high, 4]), FILTERED, drawn, true),
             ],
-            filtered: filtering("filtered", [fours_wide, fours_high, 4 * images * needs.filters], FILTERED, drawn),
-            lines: make("lines", full(needs.lines), LINES, drawn),
-            shadow: make("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn),
+            filtered: make_any(
+                "filtered",
+                filtering([fours_wide, fours_high, 4 * images * needs.filters]),
+                FILTERED,
+                drawn,
+                true,
+            ),
+            lines: make_any("lines", full(needs.lines), LINES, drawn, false),
+            shadow: make_any("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn, false),
         })
     }
 }

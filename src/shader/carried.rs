@@ -32,6 +32,23 @@ pub(super) fn nothing() -> Carried {
     carried(Vec::new(), 0)
 }
 
+/// The parameters of a filter's kernel, which stand from `first` on.
+pub(super) fn of_filter(filter: &EffectDefinition) -> Carried {
+    let (mut members, mut carry, mut take) = (String::new(), String::new(), String::new());
+    const OWN: u32 = 2;
+    for i in 0..filter.slots() {
+        if OWN + i >= LEAST_CARRIED {
+            let _ = writeln!(take, "    parameters[{i}] = parameters_uniform[stage_uniform.first + {i}u];");
+            continue;
+        }
+        let _ = writeln!(members, "    @location({}) @interpolate(flat, either) own_{i}: vec4f,", OWN + i);
+        let _ = writeln!(carry, "    (*corner).own_{i} = parameters_uniform[first + {i}u];");
+        let _ = writeln!(take, "    parameters[{i}] = in.own_{i};");
+    }
+    let carry = format!("fn carry(corner: ptr<function, Corner>, first: u32) {{\n{carry}}}");
+    Carried { members, functions: format!("{carry}\n\nfn take_own(in: Corner) {{\n{take}}}\n\n") }
+}
+
 /// What a plan reads; `room` is how many vectors the adapter carries. What finds no room is read where it stands.
 pub(super) fn of_plan(plan: &Plan, handlers: &[EffectDefinition], room: u32) -> Carried {
     let mut items = Vec::new();

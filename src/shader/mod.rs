@@ -167,7 +167,12 @@ impl Module {
             Self::Shadow(Some(program)) => {
                 text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Eye::Sun))
             }
-            Self::Filter(effect) => text.replace("//@handlers\n", &specialised::kernel(&handlers[*effect as usize])),
+            Self::Filter(effect) => {
+                let filter = &handlers[*effect as usize];
+                let own = carried::of_filter(filter);
+                text.replace("//@carried\n", &own.members)
+                    .replace("//@handlers\n", &(own.functions + &specialised::kernel(filter)))
+            }
             _ => text,
         }
     }

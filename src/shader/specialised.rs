@@ -247,8 +247,9 @@ impl Writer<'_> {
 pub(super) fn kernel(filter: &EffectDefinition) -> String {
     // Its radius, if nothing else, is a parameter.
     format!(
-        "{}\n\nalias Own = {};\n\nfn own_parameters() -> Own {{\n    return {}(stage.first);\n}}\n\n\
-         fn kernel(offset: f32, own: Own) -> f32 {{\n    return {}(offset, own);\n}}\n",
+        "var<private> parameters: array<vec4f, {}>;\n\n{}\n\nalias Own = {};\n\n\
+         fn own_parameters() -> Own {{\n    return {}(0u);\n}}\n\nfn kernel(offset: f32, own: Own) -> f32 {{\n    return {}(offset, own);\n}}\n",
+        filter.slots(),
         filter.source.trim_end(),
         filter.own("Parameters"),
         filter.own("parameters"),
