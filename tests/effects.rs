@@ -466,6 +466,23 @@ fn dragging_a_parameter_compiles_nothing() {
     assert_eq!(again.statistics.pipelines.compiled, 0);
 }
 
+#[test]
+fn a_lens_that_comes_and_goes_allocates_once() {
+    let mut stage = Stage::new();
+    let lensed = stage.with(vec![used("blur")]);
+    assert!(lensed.statistics.frame.allocations > 0, "its images");
+    let plain = scene(stage.camera, vec![]);
+    let without = picture(&mut stage.studio, &plain, SIZE);
+    let again = stage.with(vec![used("blur")]);
+    for (seen, before) in [(&without, &stage.plain), (&again, &lensed)] {
+        assert_eq!(seen.statistics.frame.allocations, 0);
+        assert!(seen.statistics.passes.iter().all(|p| p.name != "shadow map"), "the sun and the city are the same");
+        assert!(seen.rgba == before.rgba, "what is in the targets from other pictures shows");
+    }
+    let cleared = |p: &Picture| p.statistics.passes.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+    assert!(!cleared(&without).iter().any(|name| name == "clear lens masks"), "{:?}", cleared(&without));
+}
+
 // ---- effect files
 
 struct Folder(PathBuf);

@@ -326,17 +326,20 @@ mod tests {
     }
 
     fn validate(module: &Module) {
-        let source = module.source();
-        let parsed = match wgpu::naga::front::wgsl::parse_str(&source) {
+        validate_text(&module.name(), &module.source());
+    }
+
+    fn validate_text(name: &str, source: &str) {
+        let parsed = match wgpu::naga::front::wgsl::parse_str(source) {
             Ok(parsed) => parsed,
-            Err(error) => panic!("{}: {}", module.name(), error.emit_to_string(&source)),
+            Err(error) => panic!("{name}: {}", error.emit_to_string(source)),
         };
         let mut validator = wgpu::naga::valid::Validator::new(
             wgpu::naga::valid::ValidationFlags::all(),
             wgpu::naga::valid::Capabilities::default() | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,
         );
         if let Err(error) = validator.validate(&parsed) {
-            panic!("{}: {}", module.name(), error.emit_to_string(&source));
+            panic!("{name}: {}", error.emit_to_string(source));
         }
     }
 
@@ -345,6 +348,21 @@ mod tests {
         lists.par_iter().enumerate().for_each(|(seed, list)| {
             modules(list, seed).iter().for_each(validate);
         });
+    }
+
+    #[test]
+    fn what_finds_no_room_is_read_where_it_stands() {
+        let lens = |number| PlanLens { number, volumes: VolumeTest::ALL.to_vec(), outline: None };
+        let plan = Plan { lenses: (0..9).map(lens).collect(), ..Plan::default() };
+        let module = Module::Shade(Program::Specialised(plan));
+        for room in [14, LEAST_CARRIED, 31, 1000] {
+            let source = module.source_for_people(handlers(), &[], room);
+            validate_text(&module.name(), &source);
+            let members = source.matches("@interpolate(flat, either)").count() as u32;
+            let left = source.matches(" = shapes_uniform[").count();
+            assert!(members <= room.max(14), "{members} vectors where {room} fit");
+            assert_eq!(left > 0, room < 1000, "{left} are left with room for {room}");
+        }
     }
 
     #[test]
