@@ -471,6 +471,17 @@ fn a_lens_that_comes_and_goes_allocates_once() {
     let mut stage = Stage::new();
     let lensed = stage.with(vec![used("blur")]);
     assert!(lensed.statistics.frame.allocations > 0, "its images");
+    // A transparent picture has filters read and write more images, which stay.
+    let blurred = stage.scene(vec![used("blur")]);
+    let transparent = Request {
+        size: SIZE,
+        samples: 1,
+        transparent: true,
+        aovs: Aovs::default(),
+        statistics: false,
+        backend: Default::default(),
+    };
+    stage.studio.render(&blurred, &transparent).expect("a picture");
     let plain = scene(stage.camera, vec![]);
     let without = picture(&mut stage.studio, &plain, SIZE);
     let again = stage.with(vec![used("blur")]);

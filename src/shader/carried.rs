@@ -10,8 +10,8 @@ use crate::shader::{
 
 /// How many vectors `pass/shade.wgsl` itself carries.
 const FIRST: u32 = 14;
-/// How many an adapter carries at least (WebGPU's `maxInterStageShaderVariables`).
-pub const LEAST_CARRIED: u32 = 16;
+/// How many an adapter carries at least: OpenGL ES 3.0's and WebGPU's compatibility mode, whose full one has 16.
+pub const LEAST_CARRIED: u32 = 15;
 const AXES: [&str; 4] = ["x", "y", "z", "w"];
 
 /// A vector or a number of one of the uniform arrays.
