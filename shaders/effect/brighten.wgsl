@@ -11,7 +11,6 @@
 //! doc = "How far to white: 0 = not at all, 1 = white."
 
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
-    let lab = oklab_from_linear(color);
-    let lifted = vec3f(mix(lab.x, 1.0, p.amount), (1.0 - p.amount) * lab.yz);
-    return max(linear_from_oklab(lifted), vec3f(0.0));
+    // In OKLab towards white, whose roots are 1.
+    return max(linear_from_roots(mix(cone_roots(color), vec3f(1.0), p.amount)), vec3f(0.0));
 }

@@ -12,8 +12,9 @@
 //! doc = "How many steps."
 
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
-    let lab = oklab_from_linear(color);
-    let lightness = min(lab.x, 0.9999);
-    let step = (floor(lightness * p.steps) + 0.5) / p.steps;
-    return max(linear_from_oklab(vec3f(step, lab.yz * (step / max(lab.x, 0.01)))), vec3f(0.0));
+    let roots = cone_roots(color);
+    let lightness = lightness_of_roots(roots);
+    let step = (floor(min(lightness, 0.9999) * p.steps) + 0.5) / p.steps;
+    // Chroma follows lightness.
+    return max(linear_from_roots(step + (step / max(lightness, 0.01)) * (roots - lightness)), vec3f(0.0));
 }

@@ -11,6 +11,8 @@
 //! doc = "Chroma times this: 0 = grey, 1 = as it is."
 
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
-    let lab = oklab_from_linear(color);
-    return max(linear_from_oklab(vec3f(lab.x, p.factor * lab.yz)), vec3f(0.0));
+    // In OKLab away from the grey of the same lightness, or towards it.
+    let roots = cone_roots(color);
+    let grey = lightness_of_roots(roots);
+    return max(linear_from_roots(grey + p.factor * (roots - grey)), vec3f(0.0));
 }

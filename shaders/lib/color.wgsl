@@ -46,26 +46,40 @@ fn cube_root(x: vec3f) -> vec3f {
     return some * inverse * inverse;
 }
 
-fn oklab_from_linear(c: vec3f) -> vec3f {
+// OKLab is a turn and a stretch of the cube roots of what three kinds of cones take up, and grey has three equal roots. What
+// only moves lightness, or only scales what is beside it, is done on the roots: it is less, and the same.
+fn cone_roots(c: vec3f) -> vec3f {
     let lms = vec3f(
         dot(c, vec3f(0.4122214708, 0.5363325363, 0.0514459929)),
         dot(c, vec3f(0.2119034982, 0.6806995451, 0.1073969566)),
         dot(c, vec3f(0.0883024619, 0.2817188376, 0.6299787005)));
-    let r = cube_root(max(lms, vec3f(0.0)));
-    return vec3f(
-        dot(r, vec3f(0.2104542553, 0.7936177850, -0.0040720468)),
-        dot(r, vec3f(1.9779984951, -2.4285922050, 0.4505937099)),
-        dot(r, vec3f(0.0259040371, 0.7827717662, -0.8086757660)));
+    return cube_root(max(lms, vec3f(0.0)));
 }
 
-fn linear_from_oklab(lab: vec3f) -> vec3f {
-    let r = vec3f(
-        dot(lab, vec3f(1.0, 0.3963377774, 0.2158037573)),
-        dot(lab, vec3f(1.0, -0.1055613458, -0.0638541728)),
-        dot(lab, vec3f(1.0, -0.0894841775, -1.2914855480)));
+// OKLab's lightness.
+fn lightness_of_roots(r: vec3f) -> f32 {
+    return dot(r, vec3f(0.2104542553, 0.7936177850, -0.0040720468));
+}
+
+fn linear_from_roots(r: vec3f) -> vec3f {
     let lms = r * r * r;
     return vec3f(
         dot(lms, vec3f(4.0767416621, -3.3077115913, 0.2309699292)),
         dot(lms, vec3f(-1.2684380046, 2.6097574011, -0.3413193965)),
         dot(lms, vec3f(-0.0041960863, -0.7034186147, 1.7076147010)));
+}
+
+fn oklab_from_linear(c: vec3f) -> vec3f {
+    let r = cone_roots(c);
+    return vec3f(
+        lightness_of_roots(r),
+        dot(r, vec3f(1.9779984951, -2.4285922050, 0.4505937099)),
+        dot(r, vec3f(0.0259040371, 0.7827717662, -0.8086757660)));
+}
+
+fn linear_from_oklab(lab: vec3f) -> vec3f {
+    return linear_from_roots(vec3f(
+        dot(lab, vec3f(1.0, 0.3963377774, 0.2158037573)),
+        dot(lab, vec3f(1.0, -0.1055613458, -0.0638541728)),
+        dot(lab, vec3f(1.0, -0.0894841775, -1.2914855480))));
 }

@@ -36,10 +36,10 @@ struct Corner {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) i: u32) -> Corner {
+fn vertex(@location(0) at: vec2f) -> Corner {
     let s = stage_uniform;
     var corner: Corner;
-    corner.clip = vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0);
+    corner.clip = vec4f(at, 0.0, 1.0);
     corner.way = vec4i(s.step, s.reach, s.length);
     corner.layers = vec2i(s.layers, s.layer);
     carry(&corner, s.first);

@@ -36,12 +36,12 @@ struct Corner {
 
 // At depth 0, and exactly there: the depth test chooses between surface and background.
 @vertex
-fn vertex(@builtin(vertex_index) i: u32, @builtin(instance_index) part: u32) -> Corner {
+fn vertex(@location(0) at: vec2f, @builtin(instance_index) part: u32) -> Corner {
     let v = view_uniform;
     let l = light_uniform;
     let shadow = transpose(l.shadow_from_relative);
     var corner: Corner;
-    corner.clip = vec4f(f32(i32(i & 1u) * 4 - 1), f32(i32(i >> 1u) * 4 - 1), 0.0, 1.0);
+    corner.clip = vec4f(at, 0.0, 1.0);
     corner.part = vec4u(part, v.orthographic, v.sample_index, 0u);
     corner.view_x = vec4f(v.view_from_world[0], v.near);
     corner.view_y = vec4f(v.view_from_world[1], v.far);
@@ -100,48 +100,53 @@ fn finished(paint: vec4f, point: Point, pixel: vec2i, classes: Classes) -> vec4f
 // Where something stands: the stored depth is not 0. The depth test chooses, so that neither shader runs in vain.
 @fragment
 fn surface(in: Corner) -> @location(0) vec4f {
-    return paint_of_surface(in);
+    take(in);
+    let pixel = vec2i(in.clip.xy);
+    return paint_of_surface(pixel, in.clip.xy, textureLoad(scene_depth, pixel, 0), in.part.x);
 }
 
 // Where nothing stands: the stored depth is its clear value, 0.
 @fragment
 fn background(in: Corner) -> @location(0) vec4f {
-    return paint_of_background(in);
+    take(in);
+    return paint_of_background(vec2i(in.clip.xy), in.clip.xy, in.part.x);
 }
 
 // What a neighbourhood filter reads: colours times opacity, and of a transparent picture opacity.
 struct Unfiltered {
-    @location(0) color: u32,
-    @location(1) opacity: u32,
+    @location(0) color: vec4u,
+    @location(1) opacity: vec4u,
 }
 
-fn unfiltered(paint: vec4f) -> Unfiltered {
-    return Unfiltered(packed(paint.rgb * paint.a), packed(vec3f(paint.a)));
-}
-
+// Four pixels that lie side by side are one of its texels, whatever stands there.
 @fragment
-fn surface_unfiltered(in: Corner) -> Unfiltered {
-    return unfiltered(paint_of_surface(in));
-}
-
-@fragment
-fn background_unfiltered(in: Corner) -> Unfiltered {
-    return unfiltered(paint_of_background(in));
-}
-
-fn paint_of_surface(in: Corner) -> vec4f {
+fn unfiltered(in: Corner) -> Unfiltered {
     take(in);
-    let pixel = vec2i(in.clip.xy);
-    let ray = ray_of_pixel(in.clip.xy);
-    var point = point_at(pixel, ray, textureLoad(scene_depth, pixel, 0));
-    let classes = classes_at(sight_at(pixel, ray, point.depth), in.part.x);
+    let first = vec2i(in.clip.xy) * vec2i(4, 1);
+    var four: Unfiltered;
+    for (var i = 0; i < 4; i++) {
+        let pixel = first + vec2i(i, 0);
+        let middle = vec2f(pixel) + 0.5;
+        let depth = textureLoad(scene_depth, pixel, 0);
+        var paint = paint_of_background(pixel, middle, in.part.x);
+        if depth > 0.0 {
+            paint = paint_of_surface(pixel, middle, depth, in.part.x);
+        }
+        four.color = vec4u(four.color.yzw, packed(paint.rgb * paint.a));
+        four.opacity = vec4u(four.opacity.yzw, packed(vec3f(paint.a)));
+    }
+    return four;
+}
+
+fn paint_of_surface(pixel: vec2i, middle: vec2f, depth: f32, part: u32) -> vec4f {
+    let ray = ray_of_pixel(middle);
+    var point = point_at(pixel, ray, depth);
+    let classes = classes_at(sight_at(pixel, ray, point.depth), part);
     return finished(vec4f(shade(&point, classes), 1.0), point, pixel, classes);
 }
 
-fn paint_of_background(in: Corner) -> vec4f {
-    take(in);
-    let pixel = vec2i(in.clip.xy);
-    let ray = ray_of_pixel(in.clip.xy);
+fn paint_of_background(pixel: vec2i, middle: vec2f, part: u32) -> vec4f {
+    let ray = ray_of_pixel(middle);
     var paint = vec4f(0.0);
     if BACKGROUND == SKY {
         paint = vec4f(sky_color(ray.direction * view.view_from_world), 1.0);
@@ -149,6 +154,6 @@ fn paint_of_background(in: Corner) -> vec4f {
         paint = vec4f(light.zenith, 1.0);
     }
     let point = nowhere(pixel);
-    let classes = classes_at(sight_at(pixel, ray, 0.0), in.part.x);
+    let classes = classes_at(sight_at(pixel, ray, 0.0), part);
     return finished(vec4f(styled(paint.rgb, point, classes), paint.a), point, pixel, classes);
 }

@@ -84,26 +84,6 @@ pub fn relative(world: DVec3, eye: DVec3) -> Vec3 {
     (world - eye).as_vec3()
 }
 
-/// The bounds of all lenses, if any, and the up to four rectangles around them.
-pub(super) fn split(
-    size: [u32; 2],
-    bounds: impl Iterator<Item = PictureTile>,
-) -> (Option<PictureTile>, Vec<PictureTile>) {
-    let [w, h] = size;
-    let all = bounds.fold(None, |all: Option<[u32; 4]>, b| {
-        let [x0, y0, x1, y1] = [b.origin[0], b.origin[1], b.origin[0] + b.size[0], b.origin[1] + b.size[1]];
-        Some(all.map_or([x0, y0, x1, y1], |a| [a[0].min(x0), a[1].min(y0), a[2].max(x1), a[3].max(y1)]))
-    });
-    let rect = |x0: u32, y0: u32, x1: u32, y1: u32| PictureTile { origin: [x0, y0], size: [x1 - x0, y1 - y0] };
-    match all {
-        None => (None, vec![rect(0, 0, w, h)]),
-        Some([x0, y0, x1, y1]) => (
-            Some(rect(x0, y0, x1, y1)),
-            vec![rect(0, 0, w, y0), rect(0, y1, w, h), rect(0, y0, x0, y1), rect(x1, y0, w, y1)],
-        ),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,24 +111,6 @@ mod tests {
             let found = pixel_by_uniform(&view, &uniform, world);
             let moved = expected - DVec2::new(origin[0].into(), origin[1].into()) - jitter;
             assert!((found - moved).length() < 1e-3, "{found} is not {moved}");
-        }
-    }
-
-    #[test]
-    fn the_parts_of_a_picture_cover_it_once() {
-        let tile = |x, y, w, h| PictureTile { origin: [x, y], size: [w, h] };
-        for bounds in [vec![], vec![tile(0, 0, 9, 7)], vec![tile(2, 1, 3, 3), tile(4, 3, 4, 4)], vec![tile(8, 6, 1, 1)]]
-        {
-            let (inside, outside) = split([9, 7], bounds.into_iter());
-            let mut hits = [[0; 9]; 7];
-            for part in outside.iter().chain(&inside) {
-                for y in part.origin[1]..part.origin[1] + part.size[1] {
-                    for x in part.origin[0]..part.origin[0] + part.size[0] {
-                        hits[y as usize][x as usize] += 1;
-                    }
-                }
-            }
-            assert!(hits.iter().flatten().all(|&h| h == 1), "{hits:?}");
         }
     }
 }

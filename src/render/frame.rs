@@ -8,12 +8,14 @@
 //! lines                         edges, where effects draw them
 //! unfiltered, filter down,      for each neighbourhood filter in view: its lens' own image over the lens' bounds
 //! filter across                 and what the filter reaches beyond them, and the filter
-//! shade                         outside the lenses' screen bounds without them, inside with them
+//! shade                         outside of where lenses may be seen without them, inside with them
 //! resolve                       the mean of the samples, after the last of several
 //! furniture                     title, caption, legends: over the last sample
 //! ```
 //!
 //! A pass that the scene does not call for is not in the list (U3).
+
+use std::ops::Range;
 
 use glam::DVec2;
 
@@ -24,14 +26,15 @@ use crate::{
         city::{CityBuffers, Section, SectionKind, draws_of},
         city_passes::{draw_ranges, geometry_key},
         cut::{CutPrograms, Cuts},
-        eye::{PictureTile, split, view_uniform},
+        eye::{PictureTile, view_uniform},
         filters,
         furniture::Furniture,
         layout, light, lines,
+        octagon::Mesh,
         operations::{Filter, Operations, invoker_table},
-        pipelines::{Behind, Key, ShadeTarget},
+        pipelines::{Behind, Key, ShadeTarget, Shown},
         renderer::{Renderer, STAGE_STRIDE},
-        seen::{SeenVolume, seen_volumes},
+        seen::{SeenVolume, part_of, seen_volumes},
         sprites::Pages,
         targets::Needs,
         volume::{LensVolume, shape_test},
@@ -177,6 +180,14 @@ impl Renderer {
         if self.buffers.line_stages.sync(&self.gpu, &lines::stages(&lines))? {
             self.groups = None;
         }
+        let mut mesh = Mesh::default();
+        let size = input.tile.size;
+        let shade_parts = match part_of(seen.iter()) {
+            Some(part) => [mesh.add_beyond(part, size), mesh.add(part, size, [1, 1])],
+            None => [mesh.all(), 0..0],
+        };
+        let filter_parts = filters::parts(&plans.filters, size, &seen, &mut mesh);
+        self.buffers.mesh.sync(&self.gpu, &mesh.corners)?;
         self.fit_groups();
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
@@ -194,8 +205,8 @@ impl Renderer {
         if let (false, Some(key)) = (lines.is_empty(), &keys.lines) {
             self.lines_pass(&mut encoder, &mut recorder, input, &lines, key);
         }
-        self.filter_passes(&mut encoder, &mut recorder, input, &seen, &plans.filters, &keys.filters);
-        self.shade_pass(&mut encoder, &mut recorder, input, &seen, &keys);
+        self.filter_passes(&mut encoder, &mut recorder, input, (&plans.filters, &filter_parts), &keys.filters);
+        self.shade_pass(&mut encoder, &mut recorder, input, shade_parts, &keys);
         if input.samples > 1 && input.sample + 1 == input.samples {
             self.resolve_pass(&mut encoder, &mut recorder);
         }
@@ -415,9 +426,9 @@ impl Renderer {
         keys.extend(seen.iter().filter_map(|v| v.sprite.as_ref()).map(|s| Key::Sprite(s.shape)));
         let clay = input.base == BaseStyle::Clay;
         let smooth = city.buffers.smooth;
-        let shade_to = |target, surface, program: Program| Key::Shade {
+        let shade_to = |target, shown, program: Program| Key::Shade {
             program,
-            surface,
+            shown,
             target,
             textured: colored && !clay,
             clay,
@@ -426,9 +437,9 @@ impl Renderer {
             behind: behind(input),
         };
         let target = if input.samples > 1 { ShadeTarget::Sums } else { ShadeTarget::Picture };
-        let both_to =
-            |target, program: Program| vec![shade_to(target, true, program.clone()), shade_to(target, false, program)];
-        let both = |program: Program| both_to(target, program);
+        let both = |program: Program| {
+            [Shown::Surface, Shown::Background].map(|shown| shade_to(target, shown, program.clone())).to_vec()
+        };
         let lines_key = |program: Program| Key::Lines { program, smooth };
         let parts =
             |context: Program, lenses: Program, city: Vec<Key>, cuts: CutPrograms, lines: Option<Program>| ShadeKeys {
@@ -441,7 +452,7 @@ impl Renderer {
                 filters: plans
                     .filters
                     .iter()
-                    .map(|f| both_to(ShadeTarget::Unfiltered, Program::Specialised(f.plan.clone())))
+                    .map(|f| shade_to(ShadeTarget::Unfiltered, Shown::Any, Program::Specialised(f.plan.clone())))
                     .collect(),
             };
         let specialised = || {
@@ -555,7 +566,7 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
         input: &FrameInput,
-        seen: &[SeenVolume],
+        [outside, inside]: [Range<u32>; 2],
         keys: &ShadeKeys,
     ) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
@@ -582,26 +593,21 @@ impl Renderer {
         pass.set_bind_group(1, &groups.shade, &[]);
         pass.set_bind_group(2, &groups.lenses, &[]);
         pass.set_bind_group(3, &groups.lines, &[]);
-        let mut drawn = 0;
-        let mut fill = |part: u32, keys: &[Key], parts: &[PictureTile]| {
-            let parts: Vec<_> = parts.iter().filter(|p| p.size[0] > 0 && p.size[1] > 0).collect();
-            for key in keys.iter().filter(|_| !parts.is_empty()) {
+        pass.set_vertex_buffer(0, self.buffers.mesh.buffer().slice(..));
+        let (mut drawn, mut triangles) = (0, 0);
+        for (part, keys, corners) in [(0, &keys.context, outside), (1, &keys.lenses, inside)] {
+            for key in keys.iter().filter(|_| !corners.is_empty()) {
                 pass.set_pipeline(self.pipelines.get(key));
-                for rectangle in &parts {
-                    scissor(&mut pass, **rectangle);
-                    pass.draw(0..3, part..part + 1);
-                    drawn += 1;
-                }
+                pass.draw(corners.clone(), part..part + 1);
+                drawn += 1;
+                triangles += corners.len() as u64 / 3;
             }
-        };
-        let (inside, outside) = split(input.tile.size, seen.iter().map(|v| v.bounds));
-        fill(0, &keys.context, &outside);
-        fill(1, &keys.lenses, inside.as_slice());
+        }
         if let Some(timer) = &recorder.timer {
             timer.end_count(&mut pass, slot);
         }
         drop(pass);
-        recorder.count(drawn, u64::from(drawn));
+        recorder.count(drawn, triangles);
     }
 
     fn resolve_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
@@ -626,7 +632,7 @@ struct ShadeKeys {
     context: Vec<Key>,
     lenses: Vec<Key>,
     /// For each filter, what shades the image that it reads.
-    filters: Vec<Vec<Key>>,
+    filters: Vec<Key>,
     /// What is hidden, and what draws the parts of the city where it is.
     cuts: CutPrograms,
     city: Vec<Key>,
@@ -636,12 +642,7 @@ struct ShadeKeys {
 
 impl ShadeKeys {
     fn all(&self) -> impl Iterator<Item = &Key> {
-        self.context
-            .iter()
-            .chain(&self.lenses)
-            .chain(self.filters.iter().flatten())
-            .chain(&self.city)
-            .chain(&self.lines)
+        self.context.iter().chain(&self.lenses).chain(&self.filters).chain(&self.city).chain(&self.lines)
     }
 }
 

@@ -18,6 +18,7 @@ pub mod hiding;
 pub mod layout;
 pub mod light;
 mod lines;
+pub mod octagon;
 pub mod operations;
 pub mod palette;
 pub mod picture;

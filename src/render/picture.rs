@@ -288,7 +288,7 @@ impl Studio {
         let (volumes, _) = volumes_of(scene)?;
         let view = View::new(self.camera(scene, size), size, &Aabb::EMPTY)?;
         let mut seen = vec![false; scene.lenses.len()];
-        for volume in volumes.iter().filter(|v| v.screen_bounds(&view, whole(size)).is_some()) {
+        for volume in volumes.iter().filter(|v| v.seen_part(&view, whole(size)).is_some()) {
             seen[volume.lens as usize] = true;
         }
         Ok(seen)
@@ -435,10 +435,7 @@ impl Studio {
         let pipelines = self.renderer.pipelines();
         let city = self.renderer.city();
         let lens_seen = |i: usize| {
-            prepared
-                .volumes
-                .iter()
-                .any(|v| v.lens as usize == i && v.screen_bounds(view, whole(request.size)).is_some())
+            prepared.volumes.iter().any(|v| v.lens as usize == i && v.seen_part(view, whole(request.size)).is_some())
         };
         Statistics {
             adapter: stats::Adapter {

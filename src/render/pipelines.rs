@@ -29,9 +29,7 @@ pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 pub const OWN_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// One bit per lens and class.
 pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// A colour or an opacity as `lib/packed.wgsl` packs it: what neighbourhood filters start from.
-pub const UNFILTERED: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// Four of these: what they read and write.
+/// Four colours or opacities as `lib/packed.wgsl` packs them: what neighbourhood filters read and write.
 pub const FILTERED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// Stored depths of an entry and of an exit: volumetric depth sprites.
 pub const SPRITES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
@@ -66,8 +64,8 @@ pub enum Key {
     Shade {
         /// What the context and the lenses do.
         program: Program,
-        /// Which pixels: those that show a surface, or those that show what is behind the city.
-        surface: bool,
+        /// Which pixels.
+        shown: Shown,
         /// Base colours come from a target.
         textured: bool,
         /// One clay colour.
@@ -101,6 +99,17 @@ pub enum Key {
     FurnitureOver,
     /// One lit pass without anything else: what benchmarks compare with.
     Bare,
+}
+
+/// Pixels that shading is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Shown {
+    /// Those that show a surface.
+    Surface,
+    /// Those that show what is behind the city.
+    Background,
+    /// All; four at once.
+    Any,
 }
 
 /// Where shading goes.
@@ -514,6 +523,7 @@ const VERTEX: &[wgpu::VertexAttribute] =
     &wgpu::vertex_attr_array![0 => Sint32x3, 1 => Uint32, 2 => Float32x3, 3 => Uint32];
 const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x2];
 const PLANE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x3, 5 => Sint32x3, 6 => Float32];
+const CORNER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Float32x2];
 const FURNITURE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![
     0 => Float32x2, 1 => Float32x2, 2 => Float32x4, 3 => Float32x4, 4 => Float32, 5 => Float32, 6 => Uint32, 7 => Uint32];
 
@@ -558,9 +568,9 @@ impl Key {
             }
             Self::Shadow(_) => self.module().name(),
             Self::Sprite(kind) => format!("depth sprite of a {}", shape_name(*kind)),
-            Self::Shade { surface, textured, clay, target, shadows, .. } => {
+            Self::Shade { shown, textured, clay, target, shadows, .. } => {
                 let list = [
-                    (!*surface, "background"),
+                    (*shown == Shown::Background, "background"),
                     (*textured, "textured"),
                     (*clay, "clay"),
                     (*target == ShadeTarget::Sums, "summed"),
@@ -618,12 +628,11 @@ impl Key {
                 }
             }
             Self::Shadow(None) => ("vertex", None),
-            Self::Shade { surface, target, .. } => {
-                let fragment = match (surface, *target == ShadeTarget::Unfiltered) {
-                    (true, false) => "surface",
-                    (false, false) => "background",
-                    (true, true) => "surface_unfiltered",
-                    (false, true) => "background_unfiltered",
+            Self::Shade { shown, .. } => {
+                let fragment = match shown {
+                    Shown::Surface => "surface",
+                    Shown::Background => "background",
+                    Shown::Any => "unfiltered",
                 };
                 ("vertex", Some(fragment))
             }
@@ -640,6 +649,7 @@ impl Key {
             }
             Self::Geometry { .. } | Self::Shadow(_) | Self::Bare => vec![vertex],
             Self::Lines { .. } => vec![Some(Edge::LAYOUT)],
+            Self::Shade { .. } | Self::Filter(_) => vec![per_vertex(8, CORNER)],
             Self::Furniture { .. } => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<layout::FurnitureItem>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -681,7 +691,7 @@ impl Key {
             Self::Sprite(_) => vec![Some(SPRITES.into())],
             Self::Filter(_) => vec![Some(FILTERED.into()); 4],
             Self::Shade { target: ShadeTarget::Unfiltered, behind, .. } => {
-                vec![Some(UNFILTERED.into()); behind.images()]
+                vec![Some(FILTERED.into()); behind.images()]
             }
             Self::Lines { .. } => vec![Some(wgpu::ColorTargetState {
                 format: LINES,
@@ -704,9 +714,14 @@ impl Key {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
             Self::Geometry { .. } | Self::Shadow(_) | Self::Bare | Self::Lines { .. } => C::Greater,
             // The triangle lies at depth 0, where nothing is stored.
-            Self::Shade { surface: true, .. } => C::Less,
-            Self::Shade { surface: false, .. } => C::Equal,
-            Self::Sprite(_) | Self::Filter(_) | Self::Resolve | Self::Furniture { .. } | Self::FurnitureOver => {
+            Self::Shade { shown: Shown::Surface, .. } => C::Less,
+            Self::Shade { shown: Shown::Background, .. } => C::Equal,
+            Self::Shade { shown: Shown::Any, .. }
+            | Self::Sprite(_)
+            | Self::Filter(_)
+            | Self::Resolve
+            | Self::Furniture { .. }
+            | Self::FurnitureOver => {
                 return None;
             }
         };

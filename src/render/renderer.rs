@@ -78,6 +78,8 @@ pub(super) struct Buffers {
     pub shape_invokers: Synced,
     pub line_stages: Synced,
     pub resolve: Synced,
+    /// Triangles over parts of the picture.
+    pub mesh: Synced,
 }
 
 /// What a shadow map shows.
@@ -134,6 +136,7 @@ impl Renderer {
             line_stages: uniform("line stages")?,
             shape_invokers: uniform("invoker table for the sun")?,
             resolve: uniform("resolve")?,
+            mesh: Synced::new(&gpu, "parts of the picture", U::VERTEX)?,
         };
         let shadow_sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadow"),
@@ -216,7 +219,7 @@ impl Renderer {
         self.groups = None;
         let before = self.targets.take();
         let shadow = before.as_ref().map(|t| t.shadow.texture.clone());
-        let targets = Targets::new(&self.gpu, needs, self.pipelines.layouts.sums, before)?;
+        let targets = Targets::new(&self.gpu, needs, self.pipelines.layouts.sums, before);
         if shadow.is_none_or(|shadow| shadow != targets.shadow.texture) {
             self.shadow_of = None;
         }
@@ -299,7 +302,7 @@ impl Renderer {
                 ],
             ),
             filters: (targets.needs.filters > 0).then(|| {
-                targets.fours.each_ref().map(|image| {
+                [&targets.unfiltered, &targets.half_filtered].map(|image| {
                     let stage = wgpu::BufferBinding {
                         buffer: b.filter_stages.buffer(),
                         offset: 0,

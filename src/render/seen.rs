@@ -5,6 +5,7 @@ use crate::{
     render::{
         eye::PictureTile,
         frame::FrameInput,
+        octagon::Octagon,
         sprites::{self, Pages, Place},
         volume::shape_test,
     },
@@ -16,6 +17,8 @@ pub(super) struct SeenVolume {
     pub index: usize,
     pub lens: u32,
     pub test: VolumeTest,
+    /// Where it may be seen, and the rectangle around that.
+    pub part: Octagon,
     pub bounds: PictureTile,
     /// Of one that is tested by its sprite.
     pub sprite: Option<SeenSprite>,
@@ -46,10 +49,11 @@ fn sprite_size(input: &FrameInput, sprite: LensSprite) -> [u32; 2] {
 pub(super) fn seen_volumes(input: &FrameInput) -> (Vec<SeenVolume>, Pages) {
     let mut seen = Vec::new();
     for (index, volume) in input.volumes.iter().enumerate() {
-        let Some(bounds) = volume.screen_bounds(&input.view, input.tile) else { continue };
+        let Some(part) = volume.seen_part(&input.view, input.tile) else { continue };
+        let bounds = part.rectangle();
         let (lens, test) = (volume.lens, volume.test());
         let Some(sprite) = volume.sprite else {
-            seen.push(SeenVolume { index, lens, test, bounds, sprite: None });
+            seen.push(SeenVolume { index, lens, test, part, bounds, sprite: None });
             continue;
         };
         let sprite = sprite_size(input, sprite);
@@ -60,7 +64,7 @@ pub(super) fn seen_volumes(input: &FrameInput) -> (Vec<SeenVolume>, Pages) {
         let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
         let shape = shape_test(&volume.volume);
         let sprite = Some(SeenSprite { shape, size: sprite, bounds: sprite_bounds, place: Place::default() });
-        seen.push(SeenVolume { index, lens, test, bounds, sprite });
+        seen.push(SeenVolume { index, lens, test, part, bounds, sprite });
     }
     let sizes: Vec<[u32; 2]> = seen.iter().filter_map(|v| v.sprite.as_ref()).map(|s| s.bounds.size).collect();
     if sizes.is_empty() {
@@ -71,4 +75,9 @@ pub(super) fn seen_volumes(input: &FrameInput) -> (Vec<SeenVolume>, Pages) {
         sprite.place = *place;
     }
     (seen, pages)
+}
+
+/// The part of a picture that holds all that may be seen of volumes; `None` without any.
+pub(super) fn part_of<'a>(seen: impl Iterator<Item = &'a SeenVolume>) -> Option<Octagon> {
+    seen.map(|volume| volume.part).reduce(Octagon::with)
 }

@@ -1,10 +1,8 @@
 //! What a view draws into: allocated once per size, and only what the scene needs.
 
 use crate::{
-    gpu::{Gpu, GpuError},
-    render::pipelines::{
-        CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, UNFILTERED,
-    },
+    gpu::Gpu,
+    render::pipelines::{CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES},
 };
 
 /// What a frame needs beside codes, depth and the picture.
@@ -98,13 +96,11 @@ pub struct Targets {
     pub masks: Target,
     /// Pages of volumetric depth sprites: stored depths of entries and exits.
     pub sprites: Target,
-    /// What a filter starts from, a layer for each of its images (1×1 where not needed).
+    /// What a filter starts from, four pixels to a texel, a layer for each of its images (1×1 where not needed).
     pub unfiltered: Target,
-    /// The bytes of these, on their way to where four pixels are one texel; rows of [`row_bytes`].
-    pub unfiltered_bytes: wgpu::Buffer,
-    /// What a filter reads: the same, and what is half done (1×1 where not needed).
-    pub fours: [Target; 2],
-    /// What filters made, as `pass/filter.wgsl` explains: four layers for each image (1×1 where not needed).
+    /// What it has done in one direction, as `pass/filter.wgsl` explains, in four layers (1×1 where not needed).
+    pub half_filtered: Target,
+    /// What filters made: four layers for each image (1×1 where not needed).
     pub filtered: Target,
     /// Lines over what is shaded, linear colours times opacity (1×1 where not needed).
     pub lines: Target,
@@ -118,10 +114,10 @@ impl Targets {
         needs.with(&self.needs) == self.needs
     }
 
-    fn taken_apart(self) -> (Vec<Target>, wgpu::Buffer) {
-        let Self { codes, depth, colors, own_depth, picture, sums, masks, sprites, unfiltered, filtered, .. } = self;
-        let [four, half] = self.fours;
-        let targets = vec![
+    fn taken_apart(self) -> Vec<Target> {
+        let Self { codes, depth, colors, own_depth, picture, sums, masks, sprites, unfiltered, half_filtered, .. } =
+            self;
+        vec![
             codes,
             depth,
             colors,
@@ -131,23 +127,20 @@ impl Targets {
             masks,
             sprites,
             unfiltered,
-            four,
-            half,
-            filtered,
+            half_filtered,
+            self.filtered,
             self.lines,
             self.shadow,
-        ];
-        (targets, self.unfiltered_bytes)
+        ]
     }
 
     /// Makes them, of `before` as many as are the same.
-    pub fn new(gpu: &Gpu, needs: Needs, sums: wgpu::TextureFormat, before: Option<Self>) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, needs: Needs, sums: wgpu::TextureFormat, before: Option<Self>) -> Self {
         use wgpu::TextureUsages as U;
         let needs = before.as_ref().map_or(needs, |before| needs.with(&before.needs));
         // Room for another size is only there when this is gone.
         let before = before.filter(|before| before.needs.size == needs.size);
-        let (kept, kept_bytes) = before.map(Self::taken_apart).unzip();
-        let mut kept = kept.unwrap_or_default();
+        let mut kept = before.map(Self::taken_apart).unwrap_or_default();
         let drawn = U::RENDER_ATTACHMENT | U::TEXTURE_BINDING | U::COPY_SRC;
         let mut make_any = |label: &'static str, size: [u32; 3], format, usage, layered: bool| {
             let size = size.map(|side| side.max(1));
@@ -173,9 +166,8 @@ impl Targets {
         let images = needs.filter_images;
         let filtering = |size: [u32; 3]| if needs.filters > 0 { size } else { [1; 3] };
         let [fours_wide, fours_high] = needs.size.map(|side| side.div_ceil(4));
-        let bytes = u64::from(row_bytes(needs.size)) * u64::from(h * images);
         let mask_size = if needs.mask_layers > 0 { [w, h, needs.mask_layers] } else { [1, 1, 1] };
-        Ok(Self {
+        Self {
             needs,
             codes: make_any("codes", [w, h, 1], if needs.smooth { SMOOTH_CODES } else { CODES }, drawn, false),
             depth: make_any("depth", [w, h, 1], DEPTH, drawn, false),
@@ -185,30 +177,8 @@ impl Targets {
             sums: make_any("sums", full(needs.sums), sums, drawn, false),
             masks: make_any("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING, true),
             sprites: make_any("depth sprites", needs.sprites, SPRITES, drawn, true),
-            unfiltered: make_any(
-                "unfiltered",
-                filtering([w, h, images]),
-                UNFILTERED,
-                U::RENDER_ATTACHMENT | U::COPY_SRC,
-                true,
-            ),
-            unfiltered_bytes: match kept_bytes.filter(|buffer| buffer.size() == bytes) {
-                Some(same) => same,
-                None => {
-                    let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-                    gpu.empty_buffer("unfiltered", usage, bytes)?
-                }
-            },
-            fours: [
-                make_any(
-                    "four by four",
-                    filtering([fours_wide, h, images]),
-                    FILTERED,
-                    U::TEXTURE_BINDING | U::COPY_DST,
-                    true,
-                ),
-                make_any("half filtered", filtering([fours_wide, fours_high, 4]), FILTERED, drawn, true),
-            ],
+            unfiltered: make_any("unfiltered", filtering([fours_wide, h, images]), FILTERED, drawn, true),
+            half_filtered: make_any("half filtered", filtering([fours_wide, fours_high, 4]), FILTERED, drawn, true),
             filtered: make_any(
                 "filtered",
                 filtering([fours_wide, fours_high, 4 * images * needs.filters]),
@@ -218,11 +188,6 @@ impl Targets {
             ),
             lines: make_any("lines", full(needs.lines), LINES, drawn, false),
             shadow: make_any("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn, false),
-        })
+        }
     }
-}
-
-/// Bytes of a row in [`Targets::unfiltered_bytes`].
-pub fn row_bytes(size: [u32; 2]) -> u32 {
-    (16 * size[0].div_ceil(4)).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }

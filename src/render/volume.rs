@@ -5,13 +5,13 @@ use glam::{DMat3, DVec2, DVec3};
 use crate::{
     geom::{Aabb, Volume},
     lens::LensSprite,
-    render::{eye::PictureTile, layout},
+    render::{eye::PictureTile, layout, octagon::Octagon},
     shader::VolumeTest,
     view::View,
 };
 
 /// Pixels around a volume's projection that may still show its outline.
-const MARGIN_PX: f64 = 4.0;
+const MARGIN_PX: i32 = 4;
 
 /// A volume of one lens.
 #[derive(Clone, Debug)]
@@ -101,27 +101,22 @@ impl LensVolume {
     }
 
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
-    pub fn screen_bounds(&self, view: &View, tile: PictureTile) -> Option<PictureTile> {
+    pub fn seen_part(&self, view: &View, tile: PictureTile) -> Option<Octagon> {
+        let whole = Octagon::whole(tile.size);
         if self.everywhere {
-            return Some(PictureTile::whole(tile.size));
+            return Some(whole);
         }
-        if self.bounds.is_empty() || !view.frustum(MARGIN_PX).meets(&self.bounds) {
+        if self.bounds.is_empty() || !view.frustum(MARGIN_PX.into()).meets(&self.bounds) {
             return None;
         }
-        let whole = Some(PictureTile::whole(tile.size));
         // What lies beside or behind the eye bounds nothing.
-        let Some((low, high)) = self.projected(view) else { return whole };
-        let origin = DVec2::new(tile.origin[0].into(), tile.origin[1].into());
-        let size = DVec2::new(tile.size[0].into(), tile.size[1].into());
-        let low = (low - origin - MARGIN_PX).floor().clamp(DVec2::ZERO, size);
-        let high = (high - origin + MARGIN_PX).ceil().clamp(DVec2::ZERO, size);
-        let extent = high - low;
-        (extent.x > 0.0 && extent.y > 0.0)
-            .then_some(PictureTile { origin: [low.x as u32, low.y as u32], size: [extent.x as u32, extent.y as u32] })
+        let Some((low, high)) = self.projected(view) else { return Some(whole) };
+        Octagon::around(low, high).grown([MARGIN_PX; 2]).within(tile)
     }
 
-    /// Box around its projection, pixels; `None` where it reaches behind the near plane.
-    fn projected(&self, view: &View) -> Option<(DVec2, DVec2)> {
+    /// The least and the most of x, y, x + y and x - y in its projection, pixels; `None` where it reaches behind the near
+    /// plane.
+    fn projected(&self, view: &View) -> Option<([f64; 4], [f64; 4])> {
         let corners = match &self.volume {
             Volume::Sphere { center, radius } if !view.is_orthographic() => {
                 return projected_sphere(view, *center, *radius);
@@ -148,16 +143,22 @@ impl LensVolume {
 
 /// Box around a box's projection, pixels, also beside the picture; `None` where it reaches behind the near plane.
 pub fn projected_box(view: &View, bounds: &Aabb) -> Option<(DVec2, DVec2)> {
-    projected_corners(view, bounds.corners())
+    let ([x0, y0, ..], [x1, y1, ..]) = projected_corners(view, bounds.corners())?;
+    Some((DVec2::new(x0, y0), DVec2::new(x1, y1)))
 }
 
-fn projected_corners(view: &View, corners: impl IntoIterator<Item = DVec3>) -> Option<(DVec2, DVec2)> {
-    let mut low = DVec2::INFINITY;
-    let mut high = DVec2::NEG_INFINITY;
+/// Of a point: x, y, x + y, x - y.
+fn along(p: DVec2) -> [f64; 4] {
+    [p.x, p.y, p.x + p.y, p.x - p.y]
+}
+
+fn projected_corners(view: &View, corners: impl IntoIterator<Item = DVec3>) -> Option<([f64; 4], [f64; 4])> {
+    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
     for corner in corners {
         let p = view.pixel(corner).filter(|p| view.is_orthographic() || p.z > view.camera.near_m)?;
-        low = low.min(p.truncate());
-        high = high.max(p.truncate());
+        for (i, at) in along(p.truncate()).into_iter().enumerate() {
+            (low[i], high[i]) = (low[i].min(at), high[i].max(at));
+        }
     }
     Some((low, high))
 }
@@ -167,21 +168,30 @@ fn corners_of_box(center: DVec3, axes: DMat3, half: DVec3) -> Vec<DVec3> {
     (0..8).map(|i| center + axes * (half * DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)))).collect()
 }
 
-/// Box around a sphere's ellipse in a perspective picture: in the plane of an image axis and the view axis, the sphere
-/// is a disc, and the ellipse ends where the eye's tangents to it go (Mara and McGuire 2013).
-fn projected_sphere(view: &View, center: DVec3, radius: f64) -> Option<(DVec2, DVec2)> {
+/// What bounds a sphere's ellipse in a perspective picture, as [`LensVolume::projected`]: in the plane of an image direction
+/// and the view axis, the sphere is a disc, and the ellipse ends where the eye's tangents to it go (Mara and McGuire 2013).
+fn projected_sphere(view: &View, center: DVec3, radius: f64) -> Option<([f64; 4], [f64; 4])> {
     let c = view.basis.view_from_world() * (center - view.camera.eye);
     let depth = -c.z;
     if depth - radius <= view.camera.near_m {
         return None;
     }
     let world_from_view = view.basis.view_from_world().transpose();
-    let pixel = |slope: DVec2| view.pixel(view.camera.eye + world_from_view * slope.extend(-1.0) * depth);
-    let across = DVec2::new(c.x, c.y);
-    let reach = radius * (across * across + depth * depth - radius * radius).map(f64::sqrt);
     let inv = 1.0 / (depth * depth - radius * radius);
-    let (a, b) = (pixel((across * depth - reach) * inv)?, pixel((across * depth + reach) * inv)?);
-    Some((a.truncate().min(b.truncate()), a.truncate().max(b.truncate())))
+    let (mut low, mut high) = ([0.0; 4], [0.0; 4]);
+    // Pixels are square, and their rows go down.
+    for (i, direction) in [[1.0, 0.0], [0.0, -1.0], [1.0, -1.0], [1.0, 1.0]].into_iter().enumerate() {
+        let direction = DVec2::from(direction).normalize_or(DVec2::X);
+        let across = direction.dot(c.truncate());
+        let reach = radius * (across * across + depth * depth - radius * radius).sqrt();
+        let end = |slope: f64| {
+            let at = world_from_view * (slope * inv * direction).extend(-1.0) * depth;
+            Some(along(view.pixel(view.camera.eye + at)?.truncate())[i])
+        };
+        let ends = [end(across * depth - reach)?, end(across * depth + reach)?];
+        (low[i], high[i]) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    }
+    Some((low, high))
 }
 
 #[cfg(test)]
@@ -206,19 +216,21 @@ mod tests {
             let volume = shape.volume().expect("a volume");
             let lens = LensVolume { lens: 0, bounds: volume.bounds(), volume, everywhere: false, sprite: None };
             let (low, high) = lens.projected(&view).expect("it is in front of the eye");
-            let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+            let (mut least, mut most) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
             for (x, y) in (0..480).flat_map(|y| (0..640).map(move |x| (x, y))) {
                 if lens.volume.entry_exit(&view.pixel_ray(x, y)).is_some() {
-                    let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                    (least, most) = (least.min(p), most.max(p));
+                    let at = along(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+                    for i in 0..4 {
+                        (least[i], most[i]) = (least[i].min(at[i]), most[i].max(at[i]));
+                    }
                 }
             }
-            assert!(least.cmpge(low).all() && most.cmple(high).all(), "{low} {high} does not hold {least} {most}");
-            // A sharp corner may pass between the centres of some rows.
-            assert!(
-                (least - low).max_element() < 3.0 && (high - most).max_element() < 3.0,
-                "{low} {high} {least} {most}"
-            );
+            for i in 0..4 {
+                assert!(least[i] >= low[i] && most[i] <= high[i], "{low:?} {high:?} do not hold {least:?} {most:?}");
+                // A sharp corner may pass between the centres of some rows.
+                let apart = (least[i] - low[i]).max(high[i] - most[i]);
+                assert!(apart < 3.0, "{low:?} {high:?} {least:?} {most:?}");
+            }
         }
     }
 }

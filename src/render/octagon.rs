@@ -1,0 +1,302 @@
+//! What of a picture a lens may touch: an octagon with sides along the rows, the columns and both diagonals. It is what
+//! shading and filters are drawn over; a rectangle around a ball holds a quarter more pixels than the ball shows.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use crate::render::eye::PictureTile;
+
+/// The pixels between four pairs of parallel lines: x, y, x + y and x - y, pixels from the picture's upper left corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Octagon {
+    low: [i32; 4],
+    high: [i32; 4],
+}
+
+/// Beyond any picture, and far from overflowing.
+const FAR: f64 = 1e6;
+
+impl Octagon {
+    /// The whole picture.
+    pub fn whole(size: [u32; 2]) -> Self {
+        let [w, h] = size.map(|side| side as i32);
+        Self { low: [0, 0, 0, -h], high: [w, h, w + h, w] }
+    }
+
+    /// Around what lies between these values of x, y, x + y and x - y; whole pixels.
+    pub fn around(low: [f64; 4], high: [f64; 4]) -> Self {
+        Self {
+            low: low.map(|v| v.floor().clamp(-FAR, FAR) as i32),
+            high: high.map(|v| v.ceil().clamp(-FAR, FAR) as i32),
+        }
+    }
+
+    /// The least that holds both.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            low: std::array::from_fn(|i| self.low[i].min(other.low[i])),
+            high: std::array::from_fn(|i| self.high[i].max(other.high[i])),
+        }
+    }
+
+    /// With so many pixels more to the left and right, and above and below.
+    pub fn grown(self, [x, y]: [i32; 2]) -> Self {
+        let by = [x, y, x + y, x + y];
+        Self { low: std::array::from_fn(|i| self.low[i] - by[i]), high: std::array::from_fn(|i| self.high[i] + by[i]) }
+    }
+
+    /// As a part of the picture sees it whose upper left corner is `origin`; `None` where nothing of it is in the part.
+    pub fn within(self, part: PictureTile) -> Option<Self> {
+        let [x, y] = part.origin.map(|o| o as i32);
+        let from = [x, y, x + y, x - y];
+        let moved = Self {
+            low: std::array::from_fn(|i| self.low[i] - from[i]),
+            high: std::array::from_fn(|i| self.high[i] - from[i]),
+        };
+        let whole = Self::whole(part.size);
+        let cut = Self {
+            low: std::array::from_fn(|i| moved.low[i].max(whole.low[i])),
+            high: std::array::from_fn(|i| moved.high[i].min(whole.high[i])),
+        };
+        (cut.area() > 0.0).then_some(cut)
+    }
+
+    /// The rectangle around its first two pairs of lines; of an octagon inside its picture.
+    pub fn rectangle(&self) -> PictureTile {
+        let at = |i: usize| self.low[i].max(0) as u32;
+        let length = |i: usize| (self.high[i].max(0) as u32).saturating_sub(at(i));
+        PictureTile { origin: [at(0), at(1)], size: [length(0), length(1)] }
+    }
+
+    /// Its corners in order; three to eight, or none. Exact: they lie on halves of pixels.
+    fn corners(&self) -> Vec<DVec2> {
+        let [x0, y0, ..] = self.low.map(f64::from);
+        let [x1, y1, ..] = self.high.map(f64::from);
+        let mut corners = vec![DVec2::new(x0, y0), DVec2::new(x1, y0), DVec2::new(x1, y1), DVec2::new(x0, y1)];
+        if x1 <= x0 || y1 <= y0 {
+            return Vec::new();
+        }
+        for (i, direction) in [(2, DVec2::new(1.0, 1.0)), (3, DVec2::new(1.0, -1.0))] {
+            for (direction, most) in [(direction, f64::from(self.high[i])), (-direction, -f64::from(self.low[i]))] {
+                corners = cut(&corners, direction, most);
+            }
+        }
+        corners
+    }
+
+    /// Pixels.
+    pub fn area(&self) -> f64 {
+        let corners = self.corners();
+        let next = corners.iter().cycle().skip(1);
+        0.5 * corners.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f64>()
+    }
+
+    /// Triangles that cover it once; three corners each, pixels.
+    pub fn triangles(&self) -> Vec<DVec2> {
+        let corners = self.corners();
+        let n = corners.len();
+        // From side to side: few blocks of pixels lie on two of them.
+        let zigzag = |i: usize| corners[if i.is_multiple_of(2) { i / 2 } else { n - 1 - i / 2 }];
+        (2..n).flat_map(|i| [zigzag(i - 2), zigzag(i - 1), zigzag(i)]).collect()
+    }
+
+    /// Triangles that cover once what of a picture it leaves.
+    pub fn beyond(&self, size: [u32; 2]) -> Vec<DVec2> {
+        let end = DVec2::new(size[0].into(), size[1].into());
+        let corners = self.corners();
+        let (low, high) = corners.iter().fold((end, DVec2::ZERO), |(low, high), c| (low.min(*c), high.max(*c)));
+        let mut triangles = Vec::new();
+        let mut rectangle = |a: DVec2, b: DVec2| {
+            if a.cmplt(b).all() {
+                let (c, d) = (DVec2::new(b.x, a.y), DVec2::new(a.x, b.y));
+                triangles.extend([a, c, d, d, c, b]);
+            }
+        };
+        if corners.is_empty() {
+            rectangle(DVec2::ZERO, end);
+            return triangles;
+        }
+        rectangle(DVec2::ZERO, DVec2::new(end.x, low.y));
+        rectangle(DVec2::new(0.0, high.y), end);
+        rectangle(DVec2::new(0.0, low.y), DVec2::new(low.x, high.y));
+        rectangle(DVec2::new(high.x, low.y), DVec2::new(end.x, high.y));
+        for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            // A slanted side cuts a corner off the rectangle around it.
+            if a.x != b.x && a.y != b.y {
+                let [one, other] = [DVec2::new(a.x, b.y), DVec2::new(b.x, a.y)];
+                let is_corner = |c: DVec2| (c.x == low.x || c.x == high.x) && (c.y == low.y || c.y == high.y);
+                triangles.extend([*a, if is_corner(one) { one } else { other }, *b]);
+            }
+        }
+        triangles
+    }
+}
+
+/// Triangles over parts of pictures, as the vertex shaders of shading and filters take them: corners in clip space.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Three to a triangle.
+    pub corners: Vec<[f32; 2]>,
+}
+
+impl Mesh {
+    /// Adds a part of a target whose texels are blocks of so many pixels: all blocks that hold a pixel of it. Which corners
+    /// these are.
+    pub fn add(&mut self, part: Octagon, size: [u32; 2], block: [u32; 2]) -> Range<u32> {
+        // A pixel's centre is so near to that of its block.
+        let grown = part.grown(block.map(|side| side as i32 / 2));
+        let target = in_blocks(size, block);
+        match grown.within(PictureTile::whole(target)) {
+            None => 0..0,
+            Some(part) if part.area() == f64::from(target[0]) * f64::from(target[1]) => self.all(),
+            Some(part) => self.triangles(&part.triangles(), target),
+        }
+    }
+
+    /// Adds what of a picture a part leaves.
+    pub fn add_beyond(&mut self, part: Octagon, size: [u32; 2]) -> Range<u32> {
+        self.triangles(&part.beyond(size), size)
+    }
+
+    /// Adds all of a target, by one triangle: no block of pixels lies on two.
+    pub fn all(&mut self) -> Range<u32> {
+        self.pushed([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]].into_iter())
+    }
+
+    fn triangles(&mut self, triangles: &[DVec2], size: [u32; 2]) -> Range<u32> {
+        let target = DVec2::new(size[0].into(), size[1].into());
+        let clip = |p: &DVec2| (DVec2::new(-1.0, 1.0) + *p * DVec2::new(2.0, -2.0) / target).as_vec2().to_array();
+        self.pushed(triangles.iter().map(clip))
+    }
+
+    fn pushed(&mut self, corners: impl Iterator<Item = [f32; 2]>) -> Range<u32> {
+        let first = self.corners.len() as u32;
+        self.corners.extend(corners);
+        first..self.corners.len() as u32
+    }
+}
+
+/// Pixels that all blocks of a picture hold.
+fn in_blocks(size: [u32; 2], block: [u32; 2]) -> [u32; 2] {
+    std::array::from_fn(|i| size[i].next_multiple_of(block[i]))
+}
+
+/// What of a convex polygon lies on one side of a line.
+fn cut(corners: &[DVec2], direction: DVec2, most: f64) -> Vec<DVec2> {
+    let over = |c: DVec2| direction.dot(c) - most;
+    let mut kept = Vec::with_capacity(corners.len() + 1);
+    for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+        let (from, to) = (over(*a), over(*b));
+        if from <= 0.0 {
+            kept.push(*a);
+        }
+        if from < 0.0 && to > 0.0 || from > 0.0 && to < 0.0 {
+            let crossing = *a + (*b - *a) * (from / (from - to));
+            kept.push((2.0 * crossing).round() * 0.5);
+        }
+    }
+    kept.dedup();
+    kept
+}
+
+/// The same octagons; two become one where that is no larger than both.
+pub fn merged(mut parts: Vec<Octagon>) -> Vec<Octagon> {
+    let mut i = 0;
+    while i < parts.len() {
+        let joined = |k: usize| (k, parts[i].with(parts[k]));
+        let fits = |(k, all): &(usize, Octagon)| all.area() <= parts[i].area() + parts[*k].area();
+        match (i + 1..parts.len()).map(joined).find(fits) {
+            Some((k, all)) => {
+                parts.swap_remove(k);
+                parts[i] = all;
+                // What did not fit one of them may fit both.
+                i = 0;
+            }
+            None => i += 1,
+        }
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn octagon(low: [i32; 4], high: [i32; 4]) -> Octagon {
+        Octagon { low, high }
+    }
+
+    /// How many of these triangles hold a point that is on no line between pixels.
+    fn hits(triangles: &[DVec2], p: DVec2) -> usize {
+        let side = |a: DVec2, b: DVec2| (b - a).perp_dot(p - a) > 0.0;
+        let holds = |[a, b, c]: [DVec2; 3]| {
+            let sides = [side(a, b), side(b, c), side(c, a)];
+            sides == [true; 3] || sides == [false; 3]
+        };
+        triangles.as_chunks().0.iter().filter(|t| holds(**t)).count()
+    }
+
+    #[test]
+    fn what_it_covers_and_what_it_leaves_are_the_picture_once() {
+        let size = [23, 17];
+        let part = PictureTile::whole(size);
+        let mut some = vec![
+            octagon([3, 2, 9, -9], [15, 14, 24, 9]),
+            octagon([3, 2, 5, -11], [15, 14, 29, 13]),
+            // A side of no length, a triangle, a sliver, all of it, corners on halves of pixels.
+            octagon([4, 4, 12, -4], [12, 12, 20, 4]),
+            octagon([0, 0, 0, -17], [23, 17, 9, 23]),
+            octagon([-50, 3, 20, -99], [50, 9, 21, 99]),
+            octagon([-9, -9, -99, -99], [99, 99, 99, 99]),
+            octagon([0, 0, 11, -5], [23, 17, 26, 6]),
+        ];
+        some.push(some[0].with(some[4]));
+        some.push(some[1].grown([5, 1]));
+        let mut slanted = 0;
+        for octagon in some.into_iter().filter_map(|o| o.within(part)) {
+            let (inside, outside) = (octagon.triangles(), octagon.beyond(size));
+            slanted += usize::from(octagon.area() < f64::from(octagon.rectangle().size.iter().product::<u32>()));
+            let mut area = 0.0;
+            for (x, y) in (0..17).flat_map(|y| (0..23).map(move |x| (x, y))) {
+                // Beside the centre, so that no side goes through it.
+                let p = DVec2::new(f64::from(x) + 0.4999, f64::from(y) + 0.49);
+                let lines = [p.x, p.y, p.x + p.y, p.x - p.y];
+                let is_in = (0..4).all(|i| (f64::from(octagon.low[i])..f64::from(octagon.high[i])).contains(&lines[i]));
+                let found = [hits(&inside, p), hits(&outside, p)];
+                assert_eq!(found, [usize::from(is_in), usize::from(!is_in)], "{octagon:?} at {x} {y}");
+                area += f64::from(u8::from(is_in));
+            }
+            assert!((area - octagon.area()).abs() <= 12.0, "{octagon:?}: {area} pixels, {}", octagon.area());
+        }
+        assert!(slanted > 5, "{slanted}");
+    }
+
+    #[test]
+    fn it_is_nothing_beside_the_picture() {
+        let one = octagon([3, 2, 5, -11], [15, 14, 29, 13]);
+        assert_eq!(one.within(PictureTile { origin: [15, 0], size: [9, 9] }), None);
+        assert_eq!(one.within(PictureTile { origin: [0, 14], size: [9, 9] }), None);
+        // The corner that its slanted side leaves.
+        assert_eq!(one.within(PictureTile { origin: [3, 2], size: [0, 9] }), None);
+        assert!(
+            octagon([3, 2, 9, -11], [15, 14, 29, 13]).within(PictureTile { origin: [3, 2], size: [2, 2] }).is_none()
+        );
+        let part = PictureTile { origin: [2, 4], size: [40, 40] };
+        let seen = one.within(part).expect("it is seen");
+        assert_eq!(seen.rectangle(), PictureTile { origin: [1, 0], size: [12, 10] });
+    }
+
+    #[test]
+    fn those_that_overlap_much_become_one_and_nothing_is_lost() {
+        let tile = |x: i32, y: i32, w: i32, h: i32| {
+            octagon([x, y, x + y, x - y - h], [x + w, y + h, x + w + y + h, x + w - y])
+        };
+        assert_eq!(merged(vec![tile(0, 0, 10, 10), tile(0, 1, 10, 10)]), [tile(0, 0, 10, 11)]);
+        let apart = vec![tile(0, 0, 2, 2), tile(90, 90, 2, 2)];
+        assert_eq!(merged(apart.clone()), apart);
+        // Two halves of a square, then its other half.
+        let three = vec![tile(0, 0, 4, 4), tile(4, 4, 4, 4), tile(4, 0, 4, 4), tile(0, 4, 4, 4)];
+        assert_eq!(merged(three), [tile(0, 0, 8, 8)]);
+    }
+}
