@@ -62,6 +62,10 @@ fn texel(n: i32, beside: vec2i) -> mat3x4f {
     return four_unpacked(textureLoad(image, place, stage.layer + select(0, n & 3, is_turned), 0));
 }
 
+fn is_known(n: i32) -> bool {
+    return n >= 0 && n < stage.length;
+}
+
 @fragment
 fn fragment(in: Corner) -> Lines {
     stage = FilterStage(in.way.xy, in.way.z, 0u, in.way.w, in.layers.x, in.layers.y);
@@ -75,19 +79,21 @@ fn fragment(in: Corner) -> Lines {
     var third = mat3x4f();
     var fourth = mat3x4f();
     var weights = vec4f(0.0);
-    // What the texel that is read weighs in each of the four.
-    var here = vec4f(0.0);
-    for (var i = -stage.reach; i < stage.reach + 4; i++) {
-        here = vec4f(weight_at(i, own), here.xyz);
+    // What the texel that is read weighs in each of the four. Two texels at a time; there is an even number of them.
+    var odd = vec4f(0.0);
+    for (var i = -stage.reach; i < stage.reach + 4; i += 2) {
+        let even = vec4f(weight_at(i, own), odd.xyz);
+        odd = vec4f(weight_at(i + 1, own), even.xyz);
         // Beyond the picture nothing is known: the kernel is cut there.
-        let is_known = start + i >= 0 && start + i < stage.length;
-        let weighed = select(vec4f(0.0), here, is_known);
-        let four = texel(start + i, beside);
-        first += weighed.x * four;
-        second += weighed.y * four;
-        third += weighed.z * four;
-        fourth += weighed.w * four;
-        weights += weighed;
+        let a = select(vec4f(0.0), even, is_known(start + i));
+        let b = select(vec4f(0.0), odd, is_known(start + i + 1));
+        let p = texel(start + i, beside);
+        let q = texel(start + i + 1, beside);
+        first += a.x * p + b.x * q;
+        second += a.y * p + b.y * q;
+        third += a.z * p + b.z * q;
+        fourth += a.w * p + b.w * q;
+        weights += a + b;
     }
     // Pixels beyond the picture have no weight.
     let scale = 1.0 / max(weights, vec4f(1e-30));

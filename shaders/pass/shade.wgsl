@@ -127,10 +127,10 @@ fn unfiltered(in: Corner) -> Unfiltered {
     for (var i = 0; i < 4; i++) {
         let pixel = first + vec2i(i, 0);
         let middle = vec2f(pixel) + 0.5;
-        let depth = textureLoad(scene_depth, pixel, 0);
+        // Asked of the codes: many plans need no depth.
         var paint = paint_of_background(pixel, middle, in.part.x);
-        if depth > 0.0 {
-            paint = paint_of_surface(pixel, middle, depth, in.part.x);
+        if textureLoad(codes, pixel, 0).x != 0u {
+            paint = paint_of_surface(pixel, middle, textureLoad(scene_depth, pixel, 0), in.part.x);
         }
         four.color = vec4u(four.color.yzw, packed(paint.rgb * paint.a));
         four.opacity = vec4u(four.opacity.yzw, packed(vec3f(paint.a)));

@@ -12,7 +12,7 @@ use crate::{
     },
     geom::Aabb,
     gpu::{Gpu, GpuError, Timer},
-    lens::Class,
+    lens::{Class, LensBody},
     render::{
         Renderer,
         city::Shown,
@@ -489,9 +489,11 @@ fn volumes_of(scene: &Scene) -> Result<(Vec<LensVolume>, [Vec<VolumeTest>; 2]), 
                 Err(error) => return Err(RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name))),
             };
             let everywhere = lens.effects.iter().any(|e| e.class == Class::Rest);
+            let has_outline = lens.body == LensBody::Outline;
             for volume in bodies {
                 let (lens_number, sprite) = (i as u32, lens.sprite);
-                let volume = LensVolume { lens: lens_number, bounds: volume.bounds(), volume, everywhere, sprite };
+                let bounds = volume.bounds();
+                let volume = LensVolume { lens: lens_number, bounds, volume, everywhere, has_outline, sprite };
                 tests[0].push(volume.test());
                 tests[1].push(shape_test(&volume.volume));
                 // A lens without volume shows nothing and costs nothing.

@@ -10,8 +10,10 @@ use crate::{
     view::View,
 };
 
-/// Pixels around a volume's projection that may still show its outline.
-const MARGIN_PX: i32 = 4;
+/// Pixels around a volume's projection that may still show its outline, or be where a coarse sprite has it.
+const WIDE_MARGIN_PX: i32 = 4;
+/// Without these: for samples beside the pixels' centres, and what rounding moves.
+const MARGIN_PX: i32 = 2;
 
 /// A volume of one lens.
 #[derive(Clone, Debug)]
@@ -24,6 +26,8 @@ pub struct LensVolume {
     pub bounds: Aabb,
     /// Whether its lens acts where rays miss it (class *rest*): then all of the picture is its business.
     pub everywhere: bool,
+    /// Whether a line is drawn around its silhouette.
+    pub has_outline: bool,
     /// The sprite that it is tested by in the picture, if it is.
     pub sprite: Option<LensSprite>,
 }
@@ -106,12 +110,13 @@ impl LensVolume {
         if self.everywhere {
             return Some(whole);
         }
-        if self.bounds.is_empty() || !view.frustum(MARGIN_PX.into()).meets(&self.bounds) {
+        let margin = if self.has_outline || self.sprite.is_some() { WIDE_MARGIN_PX } else { MARGIN_PX };
+        if self.bounds.is_empty() || !view.frustum(margin.into()).meets(&self.bounds) {
             return None;
         }
         // What lies beside or behind the eye bounds nothing.
         let Some((low, high)) = self.projected(view) else { return Some(whole) };
-        Octagon::around(low, high).grown([MARGIN_PX; 2]).within(tile)
+        Octagon::around(low, high).grown([margin; 2]).within(tile)
     }
 
     /// The least and the most of x, y, x + y and x - y in its projection, pixels; `None` where it reaches behind the near
@@ -214,7 +219,8 @@ mod tests {
         ];
         for shape in shapes {
             let volume = shape.volume().expect("a volume");
-            let lens = LensVolume { lens: 0, bounds: volume.bounds(), volume, everywhere: false, sprite: None };
+            let bounds = volume.bounds();
+            let lens = LensVolume { lens: 0, bounds, volume, everywhere: false, has_outline: false, sprite: None };
             let (low, high) = lens.projected(&view).expect("it is in front of the eye");
             let (mut least, mut most) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
             for (x, y) in (0..480).flat_map(|y| (0..640).map(move |x| (x, y))) {
