@@ -34,9 +34,9 @@ fn luminance(c: vec3f) -> f32 {
     return dot(c, vec3f(0.2126, 0.7152, 0.0722));
 }
 
-// Of x >= 0, within 2^-21 of it above 1e-18, and within 1.1e-6 below, without a power or a division. Less a third of the
-// exponent is a first guess of the inverse root, off by 4 % at most; a step of third order and one of Newton's leave rounding.
-// Its twin is tested.
+// Within 2^-21 of it above 1e-18, and within 1.1e-6 for what is less, which counts as 1e-18; without a power or a division. Less
+// a third of the exponent is a first guess of the inverse root, off by 4 % at most; a step of third order and one of Newton's
+// leave rounding. Its twin is tested.
 fn cube_root(x: vec3f) -> vec3f {
     let some = max(x, vec3f(1e-18));
     var inverse = bitcast<vec3f>(1419900000 - vec3i(vec3f(bitcast<vec3i>(some)) * (1.0 / 3.0)));
@@ -53,7 +53,7 @@ fn cone_roots(c: vec3f) -> vec3f {
         dot(c, vec3f(0.4122214708, 0.5363325363, 0.0514459929)),
         dot(c, vec3f(0.2119034982, 0.6806995451, 0.1073969566)),
         dot(c, vec3f(0.0883024619, 0.2817188376, 0.6299787005)));
-    return cube_root(max(lms, vec3f(0.0)));
+    return cube_root(lms);
 }
 
 // OKLab's lightness.

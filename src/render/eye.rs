@@ -18,6 +18,11 @@ impl PictureTile {
     pub fn whole(size: [u32; 2]) -> Self {
         Self { origin: [0, 0], size }
     }
+
+    /// Whether it holds no pixel.
+    pub fn is_empty(&self) -> bool {
+        self.size.contains(&0)
+    }
 }
 
 /// An eye position split so that subtracting it from whole metres is exact.

@@ -181,10 +181,10 @@ impl Renderer {
             self.groups = None;
         }
         let mut mesh = Mesh::default();
-        let size = input.tile.size;
+        let (size, whole) = (input.tile.size, PictureTile::whole(input.tile.size));
         let shade_parts = match part_of(seen.iter()) {
-            Some(part) => [mesh.add_beyond(part, size), mesh.add(part, size, [1, 1])],
-            None => [mesh.all(), 0..0],
+            Some(part) => [vec![(mesh.add_beyond(part, size), whole)], mesh.add_cut(part, size)],
+            None => [vec![(mesh.all(), whole)], Vec::new()],
         };
         let filter_parts = filters::parts(&plans.filters, size, &seen, &mut mesh);
         self.buffers.mesh.sync(&self.gpu, &mesh.corners)?;
@@ -566,7 +566,7 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
         input: &FrameInput,
-        [outside, inside]: [Range<u32>; 2],
+        [outside, inside]: [Vec<(Range<u32>, PictureTile)>; 2],
         keys: &ShadeKeys,
     ) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
@@ -595,12 +595,16 @@ impl Renderer {
         pass.set_bind_group(3, &groups.lines, &[]);
         pass.set_vertex_buffer(0, self.buffers.mesh.buffer().slice(..));
         let (mut drawn, mut triangles) = (0, 0);
-        for (part, keys, corners) in [(0, &keys.context, outside), (1, &keys.lenses, inside)] {
-            for key in keys.iter().filter(|_| !corners.is_empty()) {
+        for (part, keys, pieces) in [(0, &keys.context, outside), (1, &keys.lenses, inside)] {
+            let drawn_pieces = || pieces.iter().filter(|(corners, tile)| !corners.is_empty() && !tile.is_empty());
+            for key in keys.iter().filter(|_| drawn_pieces().next().is_some()) {
                 pass.set_pipeline(self.pipelines.get(key));
-                pass.draw(corners.clone(), part..part + 1);
-                drawn += 1;
-                triangles += corners.len() as u64 / 3;
+                for (corners, tile) in drawn_pieces() {
+                    scissor(&mut pass, *tile);
+                    pass.draw(corners.clone(), part..part + 1);
+                    drawn += 1;
+                    triangles += corners.len() as u64 / 3;
+                }
             }
         }
         if let Some(timer) = &recorder.timer {

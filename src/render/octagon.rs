@@ -69,7 +69,13 @@ impl Octagon {
         PictureTile { origin: [at(0), at(1)], size: [length(0), length(1)] }
     }
 
-    /// Its corners in order; three to eight, or none. Exact: they lie on halves of pixels.
+    /// Its slanted sides, as `around` says: half a pixel farther out, so that none goes through the centre of a pixel, where a
+    /// card that rounds would draw it twice or not at all.
+    fn slants(&self) -> [[f64; 2]; 2] {
+        [2, 3].map(|i| [f64::from(self.low[i]) - 0.5, f64::from(self.high[i]) + 0.5])
+    }
+
+    /// Its corners in order; three to eight, or none.
     fn corners(&self) -> Vec<DVec2> {
         let [x0, y0, ..] = self.low.map(f64::from);
         let [x1, y1, ..] = self.high.map(f64::from);
@@ -77,10 +83,9 @@ impl Octagon {
         if x1 <= x0 || y1 <= y0 {
             return Vec::new();
         }
-        for (i, direction) in [(2, DVec2::new(1.0, 1.0)), (3, DVec2::new(1.0, -1.0))] {
-            for (direction, most) in [(direction, f64::from(self.high[i])), (-direction, -f64::from(self.low[i]))] {
-                corners = cut(&corners, direction, most);
-            }
+        for ([low, high], direction) in self.slants().into_iter().zip([DVec2::new(1.0, 1.0), DVec2::new(1.0, -1.0)]) {
+            corners = cut(&corners, direction, high);
+            corners = cut(&corners, -direction, -low);
         }
         corners
     }
@@ -101,24 +106,51 @@ impl Octagon {
         (2..n).flat_map(|i| [zigzag(i - 2), zigzag(i - 1), zigzag(i)]).collect()
     }
 
-    /// Triangles that cover once what of a picture it leaves.
+    /// The same as one triangle for its left half and one for its right, each with the rectangle that cuts it; `None` where a
+    /// side of one half reaches into the other. No block of pixels lies on two triangles then.
+    pub fn halves(&self) -> Option<[([DVec2; 3], PictureTile); 2]> {
+        let [[s0, s1], [d0, d1]] = self.slants();
+        let PictureTile { origin: [x, y], size: [w, h] } = self.rectangle();
+        let [y0, y1] = [y, y + h].map(f64::from);
+        // Between the slanted sides of the left half and those of the right, at the border of a block.
+        let from = (s0 - y0).max(d0 + y1).max(x.into());
+        let middle = (from / 4.0).ceil() * 4.0;
+        if middle > (s1 - y1).min(d1 + y0).min((x + w).into()) {
+            return None;
+        }
+        let half = |[s, d]: [f64; 2], along: f64| {
+            // Where its two slanted sides would meet.
+            let tip = 0.5 * DVec2::new(s + d, s - d);
+            let reach = (tip.x - middle).abs() + 1.0;
+            [tip, tip + DVec2::new(along * reach, -reach), tip + DVec2::new(along * reach, reach)]
+        };
+        let wide = middle as u32 - x;
+        let left = PictureTile { origin: [x, y], size: [wide, h] };
+        let right = PictureTile { origin: [x + wide, y], size: [w - wide, h] };
+        Some([(half([s0, d0], 1.0), left), (half([s1, d1], -1.0), right)])
+    }
+
+    /// Triangles that cover once what of a picture it leaves; they reach beyond the picture.
     pub fn beyond(&self, size: [u32; 2]) -> Vec<DVec2> {
         let end = DVec2::new(size[0].into(), size[1].into());
         let corners = self.corners();
         let (low, high) = corners.iter().fold((end, DVec2::ZERO), |(low, high), c| (low.min(*c), high.max(*c)));
         let mut triangles = Vec::new();
+        // Above and below one triangle each: few blocks of pixels lie on two.
+        let broad = DVec2::new(end.x, 0.0);
+        for (level, away) in [(low.y, -low.y), (high.y, end.y - high.y)] {
+            let side = DVec2::new(0.0, level);
+            let beyond = DVec2::new(0.5 * end.x, level + 2.0 * away);
+            if away != 0.0 {
+                triangles.extend([side - broad, side + 2.0 * broad, beyond]);
+            }
+        }
         let mut rectangle = |a: DVec2, b: DVec2| {
             if a.cmplt(b).all() {
                 let (c, d) = (DVec2::new(b.x, a.y), DVec2::new(a.x, b.y));
                 triangles.extend([a, c, d, d, c, b]);
             }
         };
-        if corners.is_empty() {
-            rectangle(DVec2::ZERO, end);
-            return triangles;
-        }
-        rectangle(DVec2::ZERO, DVec2::new(end.x, low.y));
-        rectangle(DVec2::new(0.0, high.y), end);
         rectangle(DVec2::new(0.0, low.y), DVec2::new(low.x, high.y));
         rectangle(DVec2::new(high.x, low.y), DVec2::new(end.x, high.y));
         for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
@@ -151,6 +183,16 @@ impl Mesh {
             None => 0..0,
             Some(part) if part.area() == f64::from(target[0]) * f64::from(target[1]) => self.all(),
             Some(part) => self.triangles(&part.triangles(), target),
+        }
+    }
+
+    /// Adds a part of a picture in as few triangles as it takes, each cut by a rectangle.
+    pub fn add_cut(&mut self, part: Octagon, size: [u32; 2]) -> Vec<(Range<u32>, PictureTile)> {
+        let whole = PictureTile::whole(size);
+        let is_all = part.area() == f64::from(size[0]) * f64::from(size[1]);
+        match part.halves().filter(|_| !is_all) {
+            Some(halves) => halves.map(|(half, tile)| (self.triangles(&half, size), tile)).to_vec(),
+            None => vec![(self.add(part, size, [1, 1]), whole)],
         }
     }
 
@@ -192,8 +234,7 @@ fn cut(corners: &[DVec2], direction: DVec2, most: f64) -> Vec<DVec2> {
             kept.push(*a);
         }
         if from < 0.0 && to > 0.0 || from > 0.0 && to < 0.0 {
-            let crossing = *a + (*b - *a) * (from / (from - to));
-            kept.push((2.0 * crossing).round() * 0.5);
+            kept.push(*a + (*b - *a) * (from / (from - to)));
         }
     }
     kept.dedup();
@@ -244,7 +285,7 @@ mod tests {
         let mut some = vec![
             octagon([3, 2, 9, -9], [15, 14, 24, 9]),
             octagon([3, 2, 5, -11], [15, 14, 29, 13]),
-            // A side of no length, a triangle, a sliver, all of it, corners on halves of pixels.
+            // A side of no length, a triangle, a sliver, all of it, sides that meet between pixels.
             octagon([4, 4, 12, -4], [12, 12, 20, 4]),
             octagon([0, 0, 0, -17], [23, 17, 9, 23]),
             octagon([-50, 3, 20, -99], [50, 9, 21, 99]),
@@ -253,23 +294,34 @@ mod tests {
         ];
         some.push(some[0].with(some[4]));
         some.push(some[1].grown([5, 1]));
-        let mut slanted = 0;
+        let (mut slanted, mut halved) = (0, 0);
         for octagon in some.into_iter().filter_map(|o| o.within(part)) {
-            let (inside, outside) = (octagon.triangles(), octagon.beyond(size));
+            let (inside, outside, halves) = (octagon.triangles(), octagon.beyond(size), octagon.halves());
+            halved += usize::from(halves.is_some());
             slanted += usize::from(octagon.area() < f64::from(octagon.rectangle().size.iter().product::<u32>()));
             let mut area = 0.0;
             for (x, y) in (0..17).flat_map(|y| (0..23).map(move |x| (x, y))) {
                 // Beside the centre, so that no side goes through it.
                 let p = DVec2::new(f64::from(x) + 0.4999, f64::from(y) + 0.49);
                 let lines = [p.x, p.y, p.x + p.y, p.x - p.y];
-                let is_in = (0..4).all(|i| (f64::from(octagon.low[i])..f64::from(octagon.high[i])).contains(&lines[i]));
+                let out = [0.0, 0.0, 0.5, 0.5];
+                let range = |i: usize| f64::from(octagon.low[i]) - out[i]..f64::from(octagon.high[i]) + out[i];
+                let is_in = (0..4).all(|i| range(i).contains(&lines[i]));
                 let found = [hits(&inside, p), hits(&outside, p)];
+                if let Some(halves) = &halves {
+                    let holds = |t: &PictureTile| {
+                        let at = [p.x as u32, p.y as u32];
+                        (0..2).all(|i| (t.origin[i]..t.origin[i] + t.size[i]).contains(&at[i]))
+                    };
+                    let drawn: usize = halves.iter().filter(|(_, t)| holds(t)).map(|(half, _)| hits(half, p)).sum();
+                    assert_eq!(drawn, usize::from(is_in), "halves of {octagon:?} at {x} {y}");
+                }
                 assert_eq!(found, [usize::from(is_in), usize::from(!is_in)], "{octagon:?} at {x} {y}");
                 area += f64::from(u8::from(is_in));
             }
             assert!((area - octagon.area()).abs() <= 12.0, "{octagon:?}: {area} pixels, {}", octagon.area());
         }
-        assert!(slanted > 5, "{slanted}");
+        assert!(slanted > 5 && halved > 2, "{slanted} {halved}");
     }
 
     #[test]
@@ -280,7 +332,7 @@ mod tests {
         // The corner that its slanted side leaves.
         assert_eq!(one.within(PictureTile { origin: [3, 2], size: [0, 9] }), None);
         assert!(
-            octagon([3, 2, 9, -11], [15, 14, 29, 13]).within(PictureTile { origin: [3, 2], size: [2, 2] }).is_none()
+            octagon([3, 2, 12, -11], [15, 14, 29, 13]).within(PictureTile { origin: [3, 2], size: [2, 2] }).is_none()
         );
         let part = PictureTile { origin: [2, 4], size: [40, 40] };
         let seen = one.within(part).expect("it is seen");
