@@ -197,7 +197,8 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
             each(-FAR_M..=FAR_M) && node.numbers::<3>().and_then(|v| DVec3::from(v).try_normalize()).is_some()
         }
         Kind::Angles => each(-360.0..=360.0),
-        Kind::Points(_) => return wrong_points(kind, node),
+        Kind::Points(_) => return wrong_rows::<3>(kind, node, "point", "[x, y, z], three", FAR_M),
+        Kind::Planes(_) => return wrong_rows::<4>(kind, node, "plane", "[x, y, z, d], four", f64::MAX),
         Kind::Color => color(node).is_some(),
         Kind::Background => node.text() == Some("sky") || color(node).is_some(),
         Kind::Lod => lod(node).is_some(),
@@ -225,11 +226,11 @@ fn wrong_word(kind: &Kind, now: &[&str], later: &[&str], node: &Node) -> Option<
     }
 }
 
-fn wrong_points(kind: &Kind, node: &Node) -> Option<String> {
+fn wrong_rows<const N: usize>(kind: &Kind, node: &Node, name: &str, right: &str, most: f64) -> Option<String> {
     let Some(list) = node.list() else { return Some(format!("must be {}, is {}", kind.describe(), node.quoted())) };
-    let bad = |n: &Node| !n.numbers::<3>().is_some_and(|v| v.iter().all(|c| c.abs() <= FAR_M));
+    let bad = |n: &Node| !n.numbers::<N>().is_some_and(|v| v.iter().all(|c| c.abs() <= most));
     let at = list.iter().position(bad)?;
-    Some(format!("point {at} must be [x, y, z], three finite numbers, is {}", list[at].quoted()))
+    Some(format!("{name} {at} must be {right} finite numbers, is {}", list[at].quoted()))
 }
 
 /// A level of detail, as a text or a number.

@@ -160,6 +160,10 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Points(least) => {
             json!({ "type": "array", "items": three(-keys::FAR_M, keys::FAR_M), "minItems": least, "maxItems": 4096 })
         }
+        Kind::Planes(least) => {
+            let four = json!({ "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4 });
+            json!({ "type": "array", "items": four, "minItems": least, "maxItems": 64 })
+        }
         Kind::Color => color(),
         Kind::Background => json!({ "anyOf": [{ "const": "sky" }, color()] }),
         Kind::Lod => json!({ "type": ["string", "number"], "pattern": "^ *[0-9](\\.[0-9]0*)? *$" }),

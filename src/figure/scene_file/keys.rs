@@ -42,6 +42,8 @@ pub enum Kind {
     Angles,
     /// At least so many points.
     Points(usize),
+    /// At least so many planes `[x, y, z, d]`.
+    Planes(usize),
     /// `"#rrggbb"` or `[r, g, b]`.
     Color,
     /// `"sky"` or a colour.
@@ -491,6 +493,21 @@ pub const SHAPES: &[Table] = &[
         ],
     },
     Table {
+        name: "polytope",
+        doc: "The body between planes.",
+        keys: &[
+            shape_kind("\"polytope\""),
+            key(
+                "planes",
+                Kind::Planes(4),
+                "",
+                "",
+                "Planes `[nx, ny, nz, d]`, at most 64: inside is where nx x + ny y + nz z ≤ d for each of them. The normal points outwards and has any length but 0; with length 1, d is in metres. They must close the body on all sides.",
+                "[[1, 0, 0, 9], [-1, 0, 0, 0], [0, 1, 0, 9], [0, -1, 0, 0], [0, 0, 1, 9], [0, 0, -1, 0]]",
+            ),
+        ],
+    },
+    Table {
         name: "corridor",
         doc: "What lies along a line, such as a route: within half the width of it seen from above, and half the height above and below it. Corners are round.",
         keys: &[
@@ -518,7 +535,7 @@ pub const SHAPES: &[Table] = &[
 
 /// Shapes of later versions.
 pub const LATER_SHAPES: &[&str] =
-    &["polytope", "mesh", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference", "flat"];
+    &["mesh", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference", "flat"];
 
 /// Classes of an effect's use.
 pub const CLASSES: &[&str] = &["inside", "front", "behind", "rest"];
@@ -540,6 +557,7 @@ impl Kind {
             Self::Direction => "[x, y, z], not all 0".into(),
             Self::Angles => "[yaw, pitch, roll], three numbers -360 to 360".into(),
             Self::Points(least) => format!("a list of at least {least} points [x, y, z]"),
+            Self::Planes(least) => format!("a list of at least {least} planes [x, y, z, d]"),
             Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Background => "\"sky\" or a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Lod => "a level of detail like \"2\" or \"1.3\"".into(),

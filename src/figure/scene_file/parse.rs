@@ -261,7 +261,7 @@ impl<'o> SceneReader<'o> {
         let fields = self.checker.fields(node, table, &[], place.clone());
         let shape = built_shape(table.name, &fields)?;
         if let Err(error) = shape.volumes() {
-            let key = if fields.given("points") { "points" } else { "" };
+            let key = ["points", "planes"].into_iter().find(|key| fields.given(key)).unwrap_or("");
             self.checker.note(place, key, node.line, error.to_string());
         }
         Some(shape)
@@ -404,6 +404,10 @@ fn built_shape(kind: &str, fields: &Fields) -> Option<Shape> {
         },
         "corridor" => {
             Shape::Corridor { points: points()?, width: fields.number("width")?, height: fields.number("height")? }
+        }
+        "polytope" => {
+            let list = fields.node("planes").and_then(Node::list)?;
+            Shape::Polytope { planes: list.iter().filter_map(Node::numbers::<4>).collect() }
         }
         _ => Shape::Convex { points: points()? },
     })

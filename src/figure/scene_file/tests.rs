@@ -145,11 +145,11 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"shpere\" }",
-            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, corridor, is \"shpere\"; did you mean \"sphere\"?",
+            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, is \"shpere\"; did you mean \"sphere\"?",
         ),
         (
             "shape = { kind = \"mesh\" }",
-            "shape.kind: kind = \"mesh\" is not available yet; available: sphere, ellipsoid, box, cylinder, cone, frustum, convex, corridor",
+            "shape.kind: kind = \"mesh\" is not available yet; available: sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor",
         ),
         (
             "shape = { kind = \"corridor\", points = [[0, 0, 0]], width = 3, height = 2 }",
@@ -161,6 +161,14 @@ fn every_mistake_in_a_lens_is_named() {
         (
             "shapes = [{ kind = \"convex\", points = [[0,0,0],[1,0,0],[0,1,0],[1,1,0]] }]",
             "shapes.0.points: all 4 points lie on one plane",
+        ),
+        (
+            "shape = { kind = \"polytope\", planes = [[1,0,0,9],[-1,0,0,0],[0,1,0,9],[0,-1,0,0],[0,0,1,9]] }",
+            "shape.planes: the planes must close a body",
+        ),
+        (
+            "shape = { kind = \"polytope\", planes = [[1,0,0,9],[-1,0,0],[0,1,0,9],[0,-1,0,0]] }",
+            "shape.planes: plane 1 must be [x, y, z, d], four finite numbers, is [-1, 0, 0]",
         ),
         (
             "shape = { kind = \"convex\", points = [[0,0,0],[1,0],[0,1,0],[1,1,0]] }",
@@ -298,6 +306,10 @@ fn shapes() -> impl Strategy<Value = Shape> {
             }
         ),
         prop::collection::vec(point(), 5..9).prop_map(|points| Shape::Convex { points }),
+        (point(), prop::array::uniform6(0.1..1e3f64)).prop_map(|(at, ends)| {
+            let sides = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z].into_iter().zip(ends);
+            Shape::Polytope { planes: sides.map(|(n, d)| [n.x, n.y, n.z, d + n.dot(at)]).collect() }
+        }),
         (prop::collection::vec(point(), 2..9), 0.0..1e3f64, 0.0..1e3f64)
             .prop_map(|(points, width, height)| Shape::Corridor { points, width, height }),
     ]

@@ -224,6 +224,9 @@ fn shape(shape: &Shape) -> String {
         Shape::Convex { points } => {
             format!("{{ kind = \"convex\", points = {} }}", list(points.iter().map(|p| point(*p))))
         }
+        Shape::Polytope { planes } => {
+            format!("{{ kind = \"polytope\", planes = {} }}", list(planes.iter().map(|p| list(p.map(number)))))
+        }
         Shape::Corridor { points, width, height } => format!(
             "{{ kind = \"corridor\", points = {}, width = {}, height = {} }}",
             list(points.iter().map(|p| point(*p))),

@@ -13,19 +13,19 @@ use crate::geom::{Aabb, Ray, shape::ShapeError};
 pub const MAX_POINTS: usize = 4096;
 
 /// A hull thinner than this has no usable inside, metres.
-const THIN_M: f64 = 1e-6;
+pub(super) const THIN_M: f64 = 1e-6;
 
 /// A convex polytope.
 #[derive(Clone, Debug)]
 pub struct Hull {
     /// Near the middle of the points; everything else is relative to it, which keeps the digits.
-    center: DVec3,
+    pub(super) center: DVec3,
     /// Corners, relative to `center`.
-    corners: Vec<DVec3>,
+    pub(super) corners: Vec<DVec3>,
     /// Corners of each triangle, counter-clockwise from outside.
-    triangles: Vec<[u32; 3]>,
+    pub(super) triangles: Vec<[u32; 3]>,
     /// One per face: unit normal outwards, distance from `center`.
-    planes: Vec<(DVec3, f64)>,
+    pub(super) planes: Vec<(DVec3, f64)>,
 }
 
 /// Exact: positive where `d` is on the outer side of the triangle `a b c` (counter-clockwise from outside).

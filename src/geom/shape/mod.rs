@@ -7,6 +7,7 @@
 mod corridor;
 mod hull;
 mod mesh;
+mod polytope;
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -72,6 +73,11 @@ pub enum Shape {
         /// At least four, not on one plane; metres.
         points: Vec<DVec3>,
     },
+    /// The body between planes: where `n · p ≤ d` for each of them.
+    Polytope {
+        /// `[n.x, n.y, n.z, d]`: the normal outwards, of any length but 0; with one of length 1, `d` is in metres.
+        planes: Vec<[f64; 4]>,
+    },
     /// What lies along a line: within half the width of it seen from above, and half the height above and below it.
     Corridor {
         /// At least two, metres.
@@ -107,6 +113,20 @@ pub enum ShapeError {
     /// More points than a lens needs.
     #[error("a shape may have at most {max} points, has {0}", max = hull::MAX_POINTS)]
     ManyPoints(usize),
+    /// More planes than a lens needs.
+    #[error("a polytope may have at most {max} planes, has {0}", max = polytope::MAX_PLANES)]
+    ManyPlanes(usize),
+    /// A plane without direction.
+    #[error("plane {0} must have a normal, is 0, 0, 0")]
+    NoNormal(usize),
+    /// The planes leave it open to some side.
+    #[error(
+        "the planes must close a body: it is open to some side, so add the plane that is missing, or turn one round"
+    )]
+    Open,
+    /// No point is on the inner side of all planes, or only a flat figure.
+    #[error("the planes leave nothing between them: turn those round whose normal points inwards")]
+    Nothing,
     /// All points lie on one plane (or line).
     #[error("all {0} points lie on one plane: the hull has no volume; move one of them off it")]
     Flat(usize),
@@ -222,6 +242,7 @@ impl Shape {
                 Ok(Volume::Frustum { center: *center, radii: [*radius, *top_radius], half: 0.5 * height, axis })
             }
             Self::Convex { points } => Hull::new(points).map(Volume::Convex),
+            Self::Polytope { planes } => polytope::between(planes).map(Volume::Convex),
             Self::Corridor { .. } => Err(ShapeError::Several),
         }
     }

@@ -26,11 +26,30 @@ fn shapes() -> impl Strategy<Value = Shape> {
             }
         ),
         prop::collection::vec(point(6.0), 5..30).prop_map(|points| Shape::Convex { points }),
+        polytopes(),
         // A lattice makes coplanar and collinear points the rule.
         prop::collection::vec(prop::array::uniform3(-2..3i32), 12..40).prop_map(|p| Shape::Convex {
             points: p.into_iter().map(|[x, y, z]| DVec3::new(x.into(), y.into(), z.into())).collect()
         }),
     ]
+}
+
+/// A box turned somehow, with corners cut off by planes of any length of normal; some lie beside it.
+fn polytopes() -> impl Strategy<Value = Shape> {
+    let cuts = prop::collection::vec((point(1.0), 0.5..6.0f64), 0..9);
+    (point(5.0), point(3.0), prop::array::uniform6(0.3..6.0f64), cuts, 0.1..9.0f64).prop_map(
+        |(center, turn, box_ends, cuts, length)| {
+            let turn = DQuat::from_scaled_axis(turn);
+            let sides = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z];
+            let sides = sides.map(|n| turn * n).into_iter().zip(box_ends);
+            let planes = sides.chain(cuts.into_iter().filter_map(|(n, d)| Some((n.try_normalize()?, d))));
+            let plane = |(n, d): (DVec3, f64)| {
+                let n = length * n;
+                [n.x, n.y, n.z, length * d + n.dot(center)]
+            };
+            Shape::Polytope { planes: planes.map(plane).collect() }
+        },
+    )
 }
 
 /// Membership by the definition of each shape, written apart from the code under test.
@@ -56,6 +75,7 @@ fn holds(shape: &Shape, p: DVec3) -> bool {
             let up = v.dot(*axis) / height + 0.5;
             (0.0..=1.0).contains(&up) && v.cross(*axis).length() <= radius + up * (top_radius - radius)
         }
+        Shape::Polytope { planes } => planes.iter().all(|[x, y, z, d]| DVec3::new(*x, *y, *z).dot(p) <= *d),
         Shape::Corridor { .. } => unreachable!("corridors have their own test"),
         // Inside a hull iff no plane through three of its points has all points on one side and p on the other.
         Shape::Convex { points } => {
@@ -146,6 +166,9 @@ proptest! {
                 Shape::Frustum { center: *center + shift, radius: *radius, top_radius: *top_radius, height: *height, axis: *axis }
             }
             Shape::Convex { points } => Shape::Convex { points: points.iter().map(|p| *p + shift).collect() },
+            Shape::Polytope { planes } => Shape::Polytope {
+                planes: planes.iter().map(|[x, y, z, d]| [*x, *y, *z, d + DVec3::new(*x, *y, *z).dot(shift)]).collect(),
+            },
             Shape::Corridor { .. } => unreachable!("corridors have their own test"),
         };
         let (Ok(here), Ok(there)) = (shape.volume(), moved.volume()) else { return Ok(()) };
@@ -305,4 +328,51 @@ fn a_far_eye_still_hits_a_small_ball() {
     let (entry, exit) = ball.entry_exit(&ray(1.0 - 1e-9)).unwrap();
     assert!((exit - entry - 2.0 * (2e-9_f64).sqrt()).abs() < 1e-7);
     assert_eq!(ball.entry_exit(&ray(1.0 + 1e-9)), None);
+}
+
+#[test]
+fn planes_make_the_body_between_them() {
+    let cube = [
+        [1.0, 0.0, 0.0, 9.0],
+        [-2.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 9.0],
+        [0.0, -1.0, 0.0, 0.0],
+        [0.0, 0.0, 3.0, 27.0],
+        [0.0, 0.0, -1.0, 0.0],
+    ];
+    let of = |planes: &[[f64; 4]]| Shape::Polytope { planes: planes.to_vec() }.volume();
+    let volume = of(&cube).expect("a cube");
+    assert_eq!(volume.bounds(), Aabb { min: DVec3::ZERO, max: DVec3::splat(9.0) });
+    // A plane given twice, one that touches a corner, one beside it: the same body of twelve triangles.
+    let more = [cube.as_slice(), &[cube[0], [1.0, 1.0, 1.0, 27.0], [0.0, 0.0, 1.0, 50.0]]].concat();
+    let Ok(Volume::Convex(hull)) = of(&more) else { panic!("a cube") };
+    assert_eq!(hull.planes().1.len(), 6);
+    let (corners, triangles) = hull.faces();
+    assert_eq!((corners.len(), triangles.len()), (8, 12));
+    // Their sum of signed volumes is the cube's: all are counter-clockwise from outside.
+    let signed = |[a, b, c]: &[u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|i| corners[*i as usize]);
+        a.dot(b.cross(c)) / 6.0
+    };
+    assert!((triangles.iter().map(signed).sum::<f64>() - 729.0).abs() < 1e-9);
+    // A pyramid of many sides, whose planes all meet in one corner, far from the origin.
+    let far = DVec3::new(85_000.0, 446_000.0, 3.0);
+    let mut pyramid = vec![[0.0, 0.0, -1.0, -far.z]];
+    for i in 0..24 {
+        let turn = std::f64::consts::TAU * f64::from(i) / 24.0;
+        let n = DVec3::new(turn.cos(), turn.sin(), 1.0);
+        pyramid.push([n.x, n.y, n.z, n.dot(far + 10.0 * DVec3::Z)]);
+    }
+    let Ok(Volume::Convex(hull)) = of(&pyramid) else { panic!("a pyramid") };
+    assert_eq!((hull.faces().0.len(), hull.planes().1.len()), (25, 25));
+    assert_eq!(of(&cube[..5]).expect_err("no floor"), ShapeError::Open);
+    assert_eq!(of(&cube[..4]).expect_err("a shaft"), ShapeError::Open);
+    assert_eq!(of(&[cube[0], cube[1], cube[0], cube[1]]).expect_err("a slab"), ShapeError::Open);
+    let outwards = cube.map(|[x, y, z, d]| [-x, -y, -z, -d]);
+    assert_eq!(of(&outwards).expect_err("all turned round"), ShapeError::Nothing);
+    let mut flat = cube;
+    flat[4][3] = 0.0;
+    assert_eq!(of(&flat).expect_err("no height"), ShapeError::Nothing);
+    assert_eq!(of(&[cube.as_slice(), &[[0.0, 0.0, 0.0, 1.0]]].concat()).expect_err("none"), ShapeError::NoNormal(6));
+    assert_eq!(of(&[[1.0, 0.0, 0.0, 1.0]; 65]).expect_err("too many"), ShapeError::ManyPlanes(65));
 }
