@@ -21,9 +21,15 @@ pub(super) fn between(planes: &[[f64; 4]]) -> Result<Hull, ShapeError> {
             return Err(ShapeError::NotFinite);
         }
         let [x, y, z, offset] = *plane;
+        // First by its largest part: the square of a long normal has no number.
         let normal = DVec3::new(x, y, z);
-        let unit = normal.try_normalize().ok_or(ShapeError::NoNormal(i))?;
-        units.push((unit, offset / normal.length()));
+        let largest = normal.abs().max_element();
+        let unit = (normal / largest).try_normalize().ok_or(ShapeError::NoNormal(i))?;
+        let distance = offset / largest / (normal / largest).length();
+        if !distance.is_finite() {
+            return Err(ShapeError::NotFinite);
+        }
+        units.push((unit, distance));
     }
     if is_open(&units) {
         return Err(ShapeError::Open);

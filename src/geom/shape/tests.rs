@@ -374,5 +374,9 @@ fn planes_make_the_body_between_them() {
     flat[4][3] = 0.0;
     assert_eq!(of(&flat).expect_err("no height"), ShapeError::Nothing);
     assert_eq!(of(&[cube.as_slice(), &[[0.0, 0.0, 0.0, 1.0]]].concat()).expect_err("none"), ShapeError::NoNormal(6));
+    let long = cube.map(|plane| plane.map(|v| 1e300 * v));
+    assert_eq!(of(&long).expect("a cube of long normals").bounds(), volume.bounds());
+    assert_eq!(of(&cube.map(|[x, y, z, d]| [1e-300 * x, y, z, 1e300 * d])).expect_err("far"), ShapeError::NotFinite);
+    assert_eq!(of(&cube.map(|plane| plane.map(|v| 1e-300 * v))).expect("short").bounds(), volume.bounds());
     assert_eq!(of(&[[1.0, 0.0, 0.0, 1.0]; 65]).expect_err("too many"), ShapeError::ManyPlanes(65));
 }
