@@ -209,6 +209,18 @@ fn blur_is_a_gaussian_of_the_lens_own_unmasked_picture() {
     assert_eq!(both.rgba, picture.rgba);
 }
 
+/// One sample, nothing behind the city.
+fn transparent() -> Request {
+    Request {
+        size: SIZE,
+        samples: 1,
+        transparent: true,
+        aovs: Aovs::default(),
+        statistics: false,
+        backend: Default::default(),
+    }
+}
+
 #[test]
 fn a_transparent_picture_is_blurred_without_what_is_not_there() {
     let mut stage = Stage::new();
@@ -219,14 +231,7 @@ fn a_transparent_picture_is_blurred_without_what_is_not_there() {
     let mut one = lens("all", vec![ball], "blur");
     one.effects = vec![with_numbers("blur", &[("radius", 4.0)])];
     let mut scene = scene(camera, vec![one]);
-    let request = Request {
-        size: SIZE,
-        samples: 1,
-        transparent: true,
-        aovs: Aovs::default(),
-        statistics: false,
-        backend: Default::default(),
-    };
+    let request = transparent();
     let picture = stage.studio.render(&scene, &request).expect("a picture");
     scene.lenses.clear();
     let plain = stage.studio.render(&scene, &request).expect("a picture");
@@ -473,15 +478,7 @@ fn a_lens_that_comes_and_goes_allocates_once() {
     assert!(lensed.statistics.frame.allocations > 0, "its images");
     // A transparent picture has filters read and write more images, which stay.
     let blurred = stage.scene(vec![used("blur")]);
-    let transparent = Request {
-        size: SIZE,
-        samples: 1,
-        transparent: true,
-        aovs: Aovs::default(),
-        statistics: false,
-        backend: Default::default(),
-    };
-    stage.studio.render(&blurred, &transparent).expect("a picture");
+    stage.studio.render(&blurred, &transparent()).expect("a picture");
     let plain = scene(stage.camera, vec![]);
     let without = picture(&mut stage.studio, &plain, SIZE);
     let again = stage.with(vec![used("blur")]);
