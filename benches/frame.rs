@@ -17,6 +17,7 @@ use veduta::{
     city::load::{LoadOptions, Quiet, load},
     geom::{Aabb, Shape},
     gpu::Gpu,
+    lens::Focus,
     measure::{
         ratio::{Estimate, in_turn, ratios},
         stage::{lens, plain_scene, sphere_around, sphere_covering},
@@ -151,7 +152,8 @@ const TEN: [&str; 10] =
 
 /// Ten lenses around the one of `lensed`, a fifth of its radius away, each over a tenth of the picture. All overlap.
 fn with_ten(v: &str, lensed: &Scene, studio: &mut Studio) -> Scene {
-    let Some(&Shape::Sphere { center, radius }) = lensed.lenses.first().and_then(|l| l.shapes.first()) else {
+    let Some(&Focus::Shape(Shape::Sphere { center, radius })) = lensed.lenses.first().and_then(|l| l.shapes.first())
+    else {
         panic!("the lens is a sphere");
     };
     let plain = Scene { lenses: Vec::new(), ..lensed.clone() };

@@ -14,7 +14,7 @@ use studio::*;
 use veduta::{
     figure::scene_file::{self, Options},
     geom::{Aabb, Shape},
-    lens::{EffectUse, LensBody, Parameter, color},
+    lens::{EffectUse, Focus, LensBody, Parameter, color},
     render::picture::{Picture, Studio},
     scene::{Scene, Sun},
     view::View,
@@ -356,9 +356,9 @@ fn trapp_3_5_3_the_three_lenses_have_three_shapes() {
         assert!(scene.lenses.iter().all(|lens| lens.shapes == scene.lenses[0].shapes));
         scene.lenses[0].shapes.clone()
     });
-    assert!(matches!(shapes[0][..], [Shape::Box { .. }]));
-    assert!(matches!(shapes[1][..], [Shape::Convex { .. }]));
-    assert!(matches!(shapes[2][..], [Shape::Sphere { .. }]));
+    assert!(matches!(shapes[0][..], [Focus::Shape(Shape::Box { .. })]));
+    assert!(matches!(shapes[1][..], [Focus::Shape(Shape::Convex { .. })]));
+    assert!(matches!(shapes[2][..], [Focus::Shape(Shape::Sphere { .. })]));
 }
 
 // ---- Tiesel, figure 3.22

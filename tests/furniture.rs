@@ -142,7 +142,7 @@ fn who_asks_for_nothing_pays_nothing() {
         },
         {
             let mut scene = scene_of(thematic("function"));
-            scene.lenses[0].shapes = vec![Shape::Sphere { center: DVec3::new(0.0, -5e4, 0.0), radius: 10.0 }];
+            scene.lenses[0].shapes = vec![Shape::Sphere { center: DVec3::new(0.0, -5e4, 0.0), radius: 10.0 }.into()];
             scene
         },
     ];

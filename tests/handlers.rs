@@ -7,7 +7,7 @@ use studio::{lens, scene, shapes, synthetic, used};
 use veduta::{
     figure::scene_file::{self, Options},
     geom::Shape,
-    lens::{EffectUse, Lens, LensBody, Parameter},
+    lens::{EffectUse, Focus, Lens, LensBody, Parameter},
     render::{
         frame::{Backend, ShaderPart},
         picture::{Aovs, Picture, Request, Studio},
@@ -42,7 +42,7 @@ fn lenses() -> Vec<Lens> {
 }
 
 /// The shapes of one of four lenses that share them.
-fn every_fourth(all: &[Shape], first: usize) -> Vec<Shape> {
+fn every_fourth(all: &[Focus], first: usize) -> Vec<Focus> {
     all.iter().skip(first).step_by(4).cloned().collect()
 }
 
@@ -122,7 +122,7 @@ fn moving_toggling_and_changing_parameters_compile_nothing() {
     }
     scene.lenses.reverse();
     check(&scene, "order");
-    let moved: Vec<Shape> = shapes(DVec3::new(-10.0, 35.0, 8.0), 25.0).into_iter().rev().collect();
+    let moved: Vec<Focus> = shapes(DVec3::new(-10.0, 35.0, 8.0), 25.0).into_iter().rev().collect();
     for (i, lens) in scene.lenses.iter_mut().enumerate() {
         lens.shapes = every_fourth(&moved, i);
     }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use studio::*;
 use veduta::{
     geom::{Aabb, Shape},
-    lens::{Class, Lens, LensBody, LensSprite},
+    lens::{Class, Focus, Lens, LensBody, LensSprite, classify},
     render::{
         frame::Backend,
         picture::{Aovs, Request, Studio},
@@ -85,11 +85,11 @@ fn masks_of_all_shapes_are_right_to_the_pixel() {
     ] {
         for r in [12.0, 45.0] {
             // From its figures, and by its sprite.
-            let one = |(i, (shape, sprite)): (usize, (Shape, Option<LensSprite>))| Lens {
+            let one = |(i, (shape, sprite)): (usize, (Focus, Option<LensSprite>))| Lens {
                 sprite,
                 ..lens(&format!("any {i}"), vec![shape], "greyscale")
             };
-            let twice = |shape: Shape| [(shape.clone(), None), (shape, Some(LensSprite::default()))];
+            let twice = |shape: Focus| [(shape.clone(), None), (shape, Some(LensSprite::default()))];
             let lenses: Vec<_> = shapes(at, r).into_iter().flat_map(twice).enumerate().map(one).collect();
             let scene = scene(camera, lenses);
             let drawn = picture(&mut studio, &scene, SIZE);
@@ -108,6 +108,39 @@ fn masks_of_all_shapes_are_right_to_the_pixel() {
                     counts(&pair[0]).iter().zip(counts(&pair[1])).map(|(a, b)| a.abs_diff(b)).collect();
                 assert!(apart.iter().all(|&n| n <= 4), "{:?} and {:?}", counts(&pair[0]), counts(&pair[1]));
             }
+        }
+    }
+}
+
+#[test]
+fn classes_of_concave_shapes_and_combinations_are_those_of_their_intervals() {
+    let mut studio = synthetic(60);
+    let at = house(&studio, 0.5);
+    for camera in [
+        Camera::looking(at + DVec3::new(90.0, -120.0, 70.0), at, 0.9),
+        orthographic(at + DVec3::new(90.0, -120.0, 70.0), at, 160.0),
+        // Inside of some, in the hole of the ring, beside what was cut away.
+        Camera::looking(at + DVec3::new(2.0, 1.0, 1.0), at + DVec3::new(60.0, 30.0, -6.0), 1.1),
+        Camera::looking(at + DVec3::new(25.0, 0.0, 3.0), at + DVec3::new(-60.0, 12.0, -4.0), 1.1),
+    ] {
+        let concave: Vec<Focus> = shapes(at, 30.0).split_off(7);
+        let one = |(i, shape): (usize, Focus)| lens(&format!("any {i}"), vec![shape], "greyscale");
+        let scene = scene(camera, concave.into_iter().enumerate().map(one).collect());
+        let drawn = picture(&mut studio, &scene, SIZE);
+        let (view, depth) = (view(camera, SIZE), drawn.depth.as_ref().expect("depth"));
+        for (lens, figures) in scene.lenses.iter().zip(&drawn.statistics.lenses) {
+            let reference = Reference::of(&lens.shapes[0]);
+            let mut expected = [0_u64; 4];
+            for (i, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
+                let class = classify(&reference.intervals(&view.pixel_ray(x, y)), depth[i].into());
+                expected[class as usize] += 1;
+            }
+            let c = &figures.classified;
+            let found = [c.inside, c.front, c.behind, c.rest].map(|n| n.expect("a count"));
+            // Rays that graze an edge, and places on the border.
+            let apart = (0..4).map(|i| found[i].abs_diff(expected[i])).max().unwrap_or(0);
+            assert!(apart <= 4, "{:?} from {}: {found:?}, by intervals {expected:?}", lens.shapes[0], camera.eye);
+            assert!(found[0] > 50, "{:?} from {}", lens.shapes[0], camera.eye);
         }
     }
 }

@@ -14,7 +14,8 @@ struct Fragment {
 }
 
 fn sight_of(fragment: Fragment) -> Sight {
-    return Sight(fragment.pixel, fragment.depth, fragment.ray, -fragment.position.z, fragment.position, fragment.is_parallel);
+    return Sight(fragment.pixel, fragment.depth, fragment.ray, -fragment.position.z, fragment.position, fragment.is_parallel,
+                 fragment.object);
 }
 
 fn part_of(surface: Surface) -> u32 {

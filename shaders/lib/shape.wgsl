@@ -4,13 +4,13 @@
 struct Shape {
     center: vec3f,              // metres
     kind: u32,                  // SPHERE, BOX, ...
-    axis_x: vec3f,              // box: its x edge, unit; ellipsoid: its x axis over the radius there
+    axis_x: vec3f,              // box: its x edge, unit; ellipsoid: its x axis over the radius there; solid: its x axis
     size_x: f32,                // sphere, cylinder: radius; box: half edge along axis_x; convex: number of its first plane;
-                                // frustum: radius at its middle
-    axis_y: vec3f,              // box, ellipsoid: as axis_x
+                                // frustum: radius at its middle; solid: number of its first entry
+    axis_y: vec3f,              // box, ellipsoid, solid: as axis_x
     size_y: f32,                // box: half edge; convex: how many planes; frustum: what the radius grows by along its axis
-    axis_z: vec3f,              // box, ellipsoid: as axis_x; cylinder, frustum: its axis, unit
-    size_z: f32,                // box: half edge; cylinder, frustum: half height
+    axis_z: vec3f,              // box, ellipsoid, solid: as axis_x; cylinder, frustum: its axis, unit
+    size_z: f32,                // box: half edge; cylinder, frustum: half height; solid: 1 where the eye is inside
 }
 
 const SPHERE: u32 = 0u;
@@ -19,8 +19,15 @@ const CYLINDER: u32 = 2u;
 const CONVEX: u32 = 3u;
 const ELLIPSOID: u32 = 4u;
 const FRUSTUM: u32 = 5u;
-// Not a shape: the volume is tested by its depth sprite.
-const SPRITE: u32 = 6u;
+const SOLID: u32 = 6u;
+// Not shapes: a solid whose sides a depth sprite tells; a volume that is tested by its depth sprite.
+const SOLID_SPRITE: u32 = 7u;
+const SPRITE: u32 = 8u;
+// No volume: what belongs to chosen objects; size_x = where their marks begin among the values of objects.
+const MEMBERS: u32 = 9u;
+// A combination of volumes; one whose sides a depth sprite tells.
+const COMBINED: u32 = 10u;
+const COMBINED_SPRITE: u32 = 11u;
 
 // Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
 struct Span {

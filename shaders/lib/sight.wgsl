@@ -7,10 +7,11 @@ struct Sight {
     distance: f32,              // D, metres; FAR_AWAY where nothing is; 0 or less behind the eye
     position: vec3f,            // metres
     is_parallel: bool,          // whether all rays are: the view is orthographic
+    object: u32,                // that it belongs to, or NO_OBJECT
 }
 
 // What a pixel shows.
-fn sight_at(pixel: vec2i, ray: Ray, depth: f32) -> Sight {
+fn sight_at(pixel: vec2i, ray: Ray, depth: f32, object: u32) -> Sight {
     let distance = select(FAR_AWAY, distance_of_depth(depth), depth > 0.0);
-    return Sight(pixel, depth, ray, distance, ray.origin + distance * ray.direction, view.orthographic == 1u);
+    return Sight(pixel, depth, ray, distance, ray.origin + distance * ray.direction, view.orthographic == 1u, object);
 }

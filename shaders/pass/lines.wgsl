@@ -64,7 +64,7 @@ fn fragment(in: Line) -> Pixel {
     other.object = beyond.object;
     other.part = part_of(beyond);
     other.normal = decode_normal(beyond.normal);
-    let seen = line_at(stage.step, point, fragment, other, classes_at(sight_at(pixel, ray, depth), 1u));
+    let seen = line_at(stage.step, point, fragment, other, classes_at(sight_at(pixel, ray, depth, surface.object), 1u));
     let opacity = seen.a * edge_coverage(in.line, stage.width);
     return Pixel(vec4f(seen.rgb * opacity, opacity), edge_depth(in.line, in.ends, in.face_a, in.face_b, in.along));
 }

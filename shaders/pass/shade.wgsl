@@ -141,7 +141,7 @@ fn unfiltered(in: Corner) -> Unfiltered {
 fn paint_of_surface(pixel: vec2i, middle: vec2f, depth: f32, part: u32) -> vec4f {
     let ray = ray_of_pixel(middle);
     var point = point_at(pixel, ray, depth);
-    let classes = classes_at(sight_at(pixel, ray, point.depth), part);
+    let classes = classes_at(sight_at(pixel, ray, point.depth, point.object), part);
     return finished(vec4f(shade(&point, classes), 1.0), point, pixel, classes);
 }
 
@@ -154,6 +154,6 @@ fn paint_of_background(pixel: vec2i, middle: vec2f, part: u32) -> vec4f {
         paint = vec4f(light.zenith, 1.0);
     }
     let point = nowhere(pixel);
-    let classes = classes_at(sight_at(pixel, ray, 0.0), part);
+    let classes = classes_at(sight_at(pixel, ray, 0.0, NO_OBJECT), part);
     return finished(vec4f(styled(paint.rgb, point, classes), paint.a), point, pixel, classes);
 }

@@ -52,12 +52,13 @@ impl Volume {
                 let local = corners.map(|p| p - center);
                 !clipped(&local, planes.iter().copied()).is_empty()
             }
+            Self::Solid(placed) => placed.solid.meets_triangle(&corners.map(|p| placed.local(p))),
         }
     }
 }
 
 /// The point of a triangle that is nearest to the origin (Ericson, *Real-Time Collision Detection*, 5.1.5).
-fn nearest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
+pub(super) fn nearest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     let (ab, ac) = (b - a, c - a);
     let (d1, d2) = (-ab.dot(a), -ac.dot(a));
     if d1 <= 0.0 && d2 <= 0.0 {

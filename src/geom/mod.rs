@@ -2,6 +2,7 @@
 
 pub mod aabb;
 pub mod bvh;
+pub mod combination;
 pub mod exact;
 mod meets;
 pub mod plane;
@@ -11,4 +12,4 @@ pub mod triangulate;
 
 pub use aabb::Aabb;
 pub use ray::Ray;
-pub use shape::{Shape, Volume};
+pub use shape::{Shape, Solid, Volume};

@@ -1,6 +1,9 @@
 //! The volumetric depth test on the CPU: where a surface lies with regard to a lens (L4, S3, S5).
 
-use crate::lens::Class;
+use crate::{
+    geom::{Ray, Volume, shape::solid::FaceCrossing},
+    lens::Class,
+};
 
 /// Where a sight line crosses the border of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +65,18 @@ pub fn classify(intervals: &[(f64, f64)], d: f64) -> Class {
         Class::Behind
     } else {
         Class::Rest
+    }
+}
+
+/// Where a line of sight is inside of a volume, ascending and apart; `t` of the ray in place of D.
+pub fn intervals(volume: &Volume, ray: &Ray) -> Vec<(f64, f64)> {
+    match volume {
+        Volume::Solid(placed) => {
+            let crossings = placed.solid.crossings(&placed.local_ray(ray));
+            let crossing = |c: &FaceCrossing| Crossing { depth: c.t, step: c.step };
+            intervals_of(&crossings.iter().map(crossing).collect::<Vec<_>>())
+        }
+        _ => volume.entry_exit(ray).into_iter().collect(),
     }
 }
 

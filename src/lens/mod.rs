@@ -4,16 +4,19 @@ pub mod chosen;
 pub mod classify;
 pub mod color;
 pub mod effect;
+pub mod focus;
 pub mod nearest;
 pub mod ramp;
+pub mod solids;
 pub mod sprite;
 pub mod thematic;
 
 use std::collections::BTreeMap;
 
 pub use classify::classify;
+pub use focus::Focus;
 
-use crate::{geom::Shape, shader::Blend};
+use crate::shader::Blend;
 
 /// A lens (L1).
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +30,7 @@ pub struct Lens {
     /// Its own colour, sRGB 0..1: outline, legend, halo.
     pub color: [f32; 3],
     /// Its focus areas: inside where any of them is (L1).
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<Focus>,
     /// What it does, in order (K1: at most one scene style).
     pub effects: Vec<EffectUse>,
     /// How the lens body itself is drawn (L5).

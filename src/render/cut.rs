@@ -9,7 +9,6 @@ use crate::{
         frame::FrameInput,
         hiding::Hiding,
         layout,
-        volume::shape_test,
     },
     shader::{Plan, Program, handlers},
     view::View,
@@ -106,7 +105,7 @@ impl Cuts {
             });
             let own = input.volumes.iter().filter(|v| hiding.lenses.contains(&v.lens));
             // What the picture's sprites hold says nothing of what only the sun sees.
-            let own = own.map(|v| (v.lens, shape_test(&v.volume)));
+            let own = own.map(|v| (v.lens, v.body.test(), v.body.kinds()));
             let plan = input.operations.lens_plan(&own.collect::<Vec<_>>(), false, false).hiding(handlers());
             of(hiding, plan)
         });

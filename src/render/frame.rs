@@ -15,7 +15,7 @@
 //!
 //! A pass that the scene does not call for is not in the list (U3).
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use glam::DVec2;
 
@@ -35,12 +35,14 @@ use crate::{
         pipelines::{Behind, Key, ShadeTarget, Shown},
         renderer::{Renderer, STAGE_STRIDE},
         seen::{SeenVolume, part_of, seen_volumes},
+        solids::SolidTable,
+        sprite_passes,
         sprites::Pages,
         targets::Needs,
-        volume::{LensVolume, shape_test},
+        volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun},
-    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, Uber, VolumeTest, handlers},
+    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, Uber, handlers},
     view::View,
 };
 
@@ -68,6 +70,8 @@ pub struct FrameInput<'a> {
     pub volumes: &'a [LensVolume],
     /// How many lenses the scene has, disabled ones included.
     pub lens_count: u32,
+    /// The solids among them.
+    pub solids: &'a Arc<SolidTable>,
     /// What the context and the lenses do.
     pub operations: &'a Operations,
     /// How shaders are made of that.
@@ -171,6 +175,7 @@ impl Renderer {
             filters,
             filter_images: if filters > 0 { behind(input).images() as u32 } else { 0 },
             lines: !lines.is_empty(),
+            sprite_depth: seen.iter().any(|v| v.test.has_faces()),
             ..needs(input, !seen.is_empty(), &pages, self.colored(), self.smooth(), sun_view.is_some())
         })?;
         let cuts =
@@ -196,7 +201,7 @@ impl Renderer {
         }
         // Before the city: what a lens hides is decided by them.
         if pages.count > 0 {
-            self.sprite_passes(&mut encoder, &mut recorder, &seen, pages.count);
+            self.sprite_passes(&mut encoder, &mut recorder, input, &seen, pages.count);
         }
         encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?;
         if !seen.is_empty() && wants_masks(input) {
@@ -263,7 +268,7 @@ impl Renderer {
         };
         let [picture, sun] = operations.uber_hiding();
         let by_shapes = |mut plan: Plan| {
-            let shapes = seen.iter().map(|v| shape_test(&input.volumes[v.index].volume));
+            let shapes = seen.iter().map(|v| input.volumes[v.index].body.test());
             plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).zip(shapes).for_each(|(test, shape)| *test = shape);
             plan
         };
@@ -330,23 +335,11 @@ impl Renderer {
                 sprite_places.push(bytemuck::Zeroable::zeroed());
                 continue;
             };
-            let scale: [f32; 2] = std::array::from_fn(|i| sprite.size[i] as f32 / input.tile.size[i] as f32);
-            // From the sprite's own texels to those of its page.
-            let shift: [f32; 2] =
-                std::array::from_fn(|i| sprite.place.origin[i] as f32 - sprite.bounds.origin[i] as f32);
-            stages.extend(strided(&layout::SpriteStage {
-                shape,
-                pixels_per_texel: scale.map(|s| 1.0 / s),
-                origin: shift.map(|s| -s),
-            }));
-            sprite_places.push(layout::SpritePlace {
-                origin: volume.bounds.origin.map(|o| o as i32),
-                size: volume.bounds.size.map(|s| s as i32),
-                texels_per_pixel: scale,
-                sprite: shift,
-                page: sprite.place.page,
-                pad_0: [0; 3],
-            });
+            let body = &input.volumes[volume.index].body;
+            let (own, place) =
+                sprite_passes::layouts(shape, (volume, sprite), body, &input.view, input.tile, self.page_size());
+            stages.extend(own.iter().flat_map(strided));
+            sprite_places.push(place);
         }
         let sun_shapes = cuts.sun.as_ref().map(|cut| cut.shapes(input));
         let mut parameters = std::borrow::Cow::Borrowed(&input.operations.parameters);
@@ -382,6 +375,12 @@ impl Renderer {
                     .unwrap_or_default();
                 stale |= b.shape_invokers.sync(gpu, &table)?;
             }
+        }
+        if self.solids_of.as_ref().is_none_or(|before| !Arc::ptr_eq(before, input.solids)) {
+            stale |= b.solids.sync(gpu, &input.solids.words)?;
+            b.solid_corners.sync(gpu, &input.solids.corners)?;
+            self.solids_of = Some(input.solids.clone());
+            self.shadow_of = None;
         }
         stale |= b.planes.sync(gpu, &planes)?;
         stale |= b.sprite_stages.sync(gpu, &stages)?;
@@ -423,7 +422,8 @@ impl Renderer {
             let sections = sections.flat_map(|section| picture.map(|program| of_section(section, program)));
             sections.chain(sun.map(|program| Key::Shadow(Some(program.clone())))).collect()
         };
-        keys.extend(seen.iter().filter_map(|v| v.sprite.as_ref()).map(|s| Key::Sprite(s.shape)));
+        let with_sprites = seen.iter().filter(|v| v.sprite.is_some());
+        keys.extend(with_sprites.flat_map(|v| sprite_passes::keys(&input.volumes[v.index].body)));
         let clay = input.base == BaseStyle::Clay;
         let smooth = city.buffers.smooth;
         let shade_to = |target, shown, program: Program| Key::Shade {
@@ -514,50 +514,6 @@ impl Renderer {
                 timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
                 ..Default::default()
             });
-        }
-    }
-
-    /// The volumetric depth sprites (S1) of the volumes in view that are tested by them, page by page.
-    fn sprite_passes(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        seen: &[SeenVolume],
-        pages: u32,
-    ) {
-        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        for (page, view) in targets.sprites.layers[..pages as usize].iter().enumerate() {
-            let sprites = || seen.iter().filter_map(|v| Some((v.lens, v.sprite.as_ref()?))).enumerate();
-            let here = || sprites().filter(|(_, (_, sprite))| sprite.place.page as usize == page);
-            let mut lenses: Vec<u32> = here().map(|(_, (lens, _))| lens).collect();
-            lenses.dedup();
-            let slot = recorder.begin("depth sprites", "main", &lenses, true);
-            // Every texel that is read is written first.
-            let mut kept = color_attachment(view, wgpu::Color::TRANSPARENT);
-            kept.ops.load = wgpu::LoadOp::Load;
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("depth sprites"),
-                color_attachments: &[Some(kept)],
-                timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
-                ..Default::default()
-            });
-            if let Some(timer) = &recorder.timer {
-                timer.begin_count(&mut pass, slot);
-            }
-            pass.set_bind_group(0, &groups.view, &[]);
-            pass.set_bind_group(1, &groups.planes, &[]);
-            for (stage, (_, sprite)) in here() {
-                pass.set_pipeline(self.pipelines.get(&Key::Sprite(sprite.shape)));
-                pass.set_bind_group(2, &groups.sprite_stage, &[stage as u32 * STAGE_STRIDE as u32]);
-                scissor(&mut pass, PictureTile { origin: sprite.place.origin, size: sprite.bounds.size });
-                pass.draw(0..3, 0..1);
-            }
-            if let Some(timer) = &recorder.timer {
-                timer.end_count(&mut pass, slot);
-            }
-            drop(pass);
-            let drawn = here().count() as u32;
-            recorder.count(drawn, u64::from(drawn));
         }
     }
 
@@ -668,7 +624,7 @@ impl Plans {
         let haze = haze(input) > 0.0;
         let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         let filters = input.operations.filters(&lenses, haze);
-        let volumes: Vec<(u32, VolumeTest)> = seen.iter().map(|v| (v.lens, v.test)).collect();
+        let volumes: Vec<_> = seen.iter().map(|v| (v.lens, v.test, v.leaves.clone())).collect();
         let lenses = match seen.is_empty() {
             true => Plan::default(),
             false => input.operations.lens_plan(&volumes, haze, wants_masks(input)),
@@ -728,6 +684,7 @@ fn needs(input: &FrameInput, has_lenses: bool, pages: &Pages, colors: bool, smoo
         sums: input.samples > 1,
         mask_layers: if input.masks && has_lenses { mask_layers(input) } else { 0 },
         sprites: [pages.size[0], pages.size[1], pages.count],
+        sprite_depth: false,
         filters: 0,
         filter_images: 0,
         lines: false,

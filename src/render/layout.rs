@@ -126,6 +126,9 @@ pub struct SpriteStage {
     pub shape: Shape,
     pub pixels_per_texel: [f32; 2],
     pub origin: [f32; 2],
+    pub clip_scale: [f32; 2],
+    pub clip_shift: [f32; 2],
+    pub leaves: [u32; 4],
 }
 
 /// `lib/lens-sprite.wgsl`.
@@ -249,7 +252,7 @@ mod tests {
 
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
-        let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], outline: None };
+        let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], outline: None };
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
@@ -292,7 +295,7 @@ mod tests {
                     scene_radius
                 }),
             ),
-            (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin })),
+            (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin, clip_scale, clip_shift, leaves })),
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, length, layers, layer, pad_0 })),
             (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
             (&uber, host!(Part { material, light, styles, outlines, masks, hides, lines, pad_0 })),

@@ -4,6 +4,7 @@
 //! [`frame`] lists the passes of one sample; [`renderer`] holds what stays on the graphics card.
 //! This room knows no files and no commands.
 
+mod body;
 pub mod city;
 mod city_passes;
 mod curtain;
@@ -16,6 +17,7 @@ pub mod furniture;
 mod furniture_passes;
 pub mod hiding;
 pub mod layout;
+mod lens_volumes;
 pub mod light;
 mod lines;
 pub mod octagon;
@@ -25,6 +27,8 @@ pub mod picture;
 pub mod pipelines;
 pub mod renderer;
 mod seen;
+pub mod solids;
+mod sprite_passes;
 mod sprites;
 pub mod stats;
 mod surfaces;

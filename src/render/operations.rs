@@ -4,9 +4,9 @@ use crate::{
     city::CityModel,
     lens::{
         Class, EffectUse, Lens, LensBody,
-        chosen::chosen,
+        chosen::{Choice, ChoiceError, chosen},
         effect::{default_of, in_floats},
-        thematic::{ThematicError, ThematicScale},
+        thematic::ThematicScale,
     },
     render::layout,
     render::palette,
@@ -78,18 +78,19 @@ pub struct Operations {
 
 impl Operations {
     /// The operations of the context's effects and of the enabled lenses that have a volume; `visible[i]` says
-    /// whether lens i has one. `tests`: of the volumes of all lenses, in the picture and from the sun. Thematic colours are
+    /// whether lens i has one. `tests`: of the volumes of all lenses, in the picture and from the sun, and what leaves their combinations have. Thematic colours are
     /// those of `model`'s objects.
     pub fn new(
         context: &[EffectUse],
         lenses: &[Lens],
         visible: &[bool],
-        [tests, shape_tests]: [Vec<VolumeTest>; 2],
+        [tests, shape_tests, leaves]: [Vec<VolumeTest>; 3],
         model: &CityModel,
-    ) -> Result<Self, ThematicError> {
+    ) -> Result<Self, ChoiceError> {
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(shape_tests), ..Self::default() };
         out.uber.tests = each_once(tests);
+        out.uber.leaves = each_once(leaves);
         // Lenses of no volume at all have no silhouettes.
         out.uber.outlines &= !out.uber.tests.is_empty();
         for effect in context {
@@ -153,19 +154,22 @@ impl Operations {
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
-    /// tested. With `masks` every pixel's classes are written down.
-    pub fn lens_plan(&self, seen: &[(u32, VolumeTest)], haze: bool, masks: bool) -> Plan {
+    /// tested, and what the leaves of a combination are. With `masks` every pixel's classes are written down.
+    pub fn lens_plan(&self, seen: &[(u32, VolumeTest, Vec<VolumeTest>)], haze: bool, masks: bool) -> Plan {
         let mut lenses: Vec<PlanLens> = Vec::new();
         let mut numbers = Vec::new();
-        for &(lens, test) in seen {
+        for (lens, test, leaves) in seen {
+            let (lens, test) = (*lens, *test);
             if numbers.last() == Some(&lens) {
-                lenses[numbers.len() - 1].volumes.push(test);
+                let of = &mut lenses[numbers.len() - 1];
+                of.volumes.push(test);
+                of.leaves = each_once([&of.leaves[..], leaves].concat());
                 continue;
             }
             let line = self.outlines.iter().find(|(o, _)| *o == lens).map(|(_, first)| *first);
             // Without masks nobody asks for a lens' number: equal plans are equal then.
             let number = if masks { lens } else { numbers.len() as u32 };
-            lenses.push(PlanLens { number, volumes: vec![test], outline: line });
+            lenses.push(PlanLens { number, volumes: vec![test], leaves: leaves.clone(), outline: line });
             numbers.push(lens);
         }
         let steps = self.steps(|lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32));
@@ -225,7 +229,16 @@ impl Operations {
         filters
     }
 
-    fn add(&mut self, effect: &EffectUse, lens: Option<u32>, model: &CityModel) -> Result<(), ThematicError> {
+    /// Marks objects for a lens test by object; where the marks begin.
+    pub fn add_members(&mut self, objects: &[bool]) -> u32 {
+        let first = self.object_values.len() as u32;
+        // That of no object first.
+        self.object_values.push(0);
+        self.object_values.extend(objects.iter().map(|&is_chosen| u32::from(is_chosen)));
+        first
+    }
+
+    fn add(&mut self, effect: &EffectUse, lens: Option<u32>, model: &CityModel) -> Result<(), ChoiceError> {
         let Some(number) = shader::effect::number_of(&effect.effect) else { return Ok(()) };
         let definition = &shader::handlers()[number as usize];
         let first = self.parameters.len() as u32;
@@ -246,7 +259,7 @@ impl Operations {
                 floats.push(first_value);
             }
             Some(PerObject::Chosen) => {
-                let chosen = chosen(model, effect)?;
+                let chosen = chosen(model, &Choice::of_effect(effect))?;
                 self.object_values.push(u32::from(chosen.without_object));
                 self.object_values.extend(chosen.objects.iter().map(|&is_chosen| u32::from(is_chosen)));
                 floats.push(first_value);

@@ -1,6 +1,9 @@
 //! A picture, its AOVs and its statistics, from a scene and a city: the shown surface written down.
 
-use std::{sync::Arc, time::Instant};
+use std::{
+    sync::{Arc, Mutex, PoisonError},
+    time::Instant,
+};
 
 use crate::{
     city::{
@@ -12,19 +15,25 @@ use crate::{
     },
     geom::Aabb,
     gpu::{Gpu, GpuError, Timer},
-    lens::{Class, LensBody},
+    lens::{
+        Class,
+        solids::{ShownCity, Solids},
+    },
     render::{
         Renderer,
+        body::{Body, Leaf, PlacedLeaf},
         city::Shown,
         eye::PictureTile,
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
+        lens_volumes::{LensVolumes, volumes_of},
         operations::{MOST_FILTERS, Operations},
+        solids::SolidTable,
         stats::{self, Statistics},
-        volume::{LensVolume, shape_test},
+        volume::LensVolume,
     },
     scene::{CitySpec, Scene},
-    shader::{MOST_SLOTS, MOST_VOLUMES, VolumeTest, effect_file::MOST_REACH},
+    shader::{MOST_SLOTS, MOST_VOLUMES, effect_file::MOST_REACH},
     view::{Camera, CameraError, View, first_view},
 };
 
@@ -119,11 +128,15 @@ pub struct Studio {
     pub load: stats::Load,
     /// How [`Studio::redraw`] makes shaders.
     pub backend: Backend,
+    /// Solids of lenses made so far, and as the card reads them.
+    solids: Mutex<Solids>,
+    solid_table: Mutex<Arc<SolidTable>>,
 }
 
 /// Everything of a scene that does not depend on the eye.
 struct Prepared {
     volumes: Vec<LensVolume>,
+    solids: Arc<SolidTable>,
     operations: Operations,
 }
 
@@ -155,6 +168,8 @@ impl Studio {
             ground,
             load: stats::Load::default(),
             backend: Backend::default(),
+            solids: Mutex::default(),
+            solid_table: Mutex::default(),
         })
     }
 
@@ -285,7 +300,7 @@ impl Studio {
 
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
     pub fn lenses_in_view(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<bool>, RenderError> {
-        let (volumes, _) = volumes_of(scene)?;
+        let volumes = self.volumes(scene)?.volumes;
         let view = View::new(self.camera(scene, size), size, &Aabb::EMPTY)?;
         let mut seen = vec![false; scene.lenses.len()];
         for volume in volumes.iter().filter(|v| v.seen_part(&view, whole(size)).is_some()) {
@@ -294,14 +309,33 @@ impl Studio {
         Ok(seen)
     }
 
+    fn volumes(&self, scene: &Scene) -> Result<LensVolumes, RenderError> {
+        let city = ShownCity { model: &self.model, geometries: &self.geometries };
+        let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
+        volumes_of(scene, city, &mut solids).map_err(RenderError::Scene)
+    }
+
     fn prepare(&self, scene: &Scene) -> Result<Prepared, RenderError> {
-        let (volumes, tests) = volumes_of(scene)?;
+        let mut found = self.volumes(scene)?;
+        let solids = {
+            let mut kept = self.solid_table.lock().unwrap_or_else(PoisonError::into_inner);
+            *kept = found.place_solids(&kept).map_err(RenderError::Scene)?;
+            kept.clone()
+        };
+        let LensVolumes { mut volumes, tests } = found;
         let mut present = vec![false; scene.lenses.len()];
         for volume in &volumes {
             present[volume.lens as usize] = true;
         }
-        let operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &self.model)
+        let mut operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &self.model)
             .map_err(|error| RenderError::Scene(error.to_string()))?;
+        for volume in &mut volumes {
+            for leaf in volume.body.leaves_mut() {
+                if let Leaf::Members(members) = &leaf.leaf {
+                    leaf.place.first = operations.add_members(&members.objects);
+                }
+            }
+        }
         let all: Vec<u32> = volumes.iter().map(|v| v.lens).collect();
         let counts = [
             ("volumes", volumes.len(), MOST_VOLUMES as usize),
@@ -314,7 +348,7 @@ impl Studio {
                 return Err(RenderError::Scene(message));
             }
         }
-        Ok(Prepared { volumes, operations })
+        Ok(Prepared { volumes, solids, operations })
     }
 
     #[allow(clippy::too_many_arguments, reason = "one part of a picture; the arguments are the picture's own")]
@@ -477,35 +511,6 @@ impl Studio {
     }
 }
 
-/// The volumes of a scene's enabled lenses; and how the volumes of all its lenses are tested, in the picture and from the
-/// sun.
-fn volumes_of(scene: &Scene) -> Result<(Vec<LensVolume>, [Vec<VolumeTest>; 2]), RenderError> {
-    let (mut volumes, mut tests) = (Vec::new(), [Vec::new(), Vec::new()]);
-    for (i, lens) in scene.lenses.iter().enumerate() {
-        for shape in &lens.shapes {
-            let bodies = match shape.volumes() {
-                Ok(bodies) => bodies,
-                Err(_) if !lens.enabled => continue,
-                Err(error) => return Err(RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name))),
-            };
-            let everywhere = lens.effects.iter().any(|e| e.class == Class::Rest);
-            let has_outline = lens.body == LensBody::Outline;
-            for volume in bodies {
-                let (lens_number, sprite) = (i as u32, lens.sprite);
-                let bounds = volume.bounds();
-                let volume = LensVolume { lens: lens_number, bounds, volume, everywhere, has_outline, sprite };
-                tests[0].push(volume.test());
-                tests[1].push(shape_test(&volume.volume));
-                // A lens without volume shows nothing and costs nothing.
-                if lens.enabled && !volume.volume.is_empty() {
-                    volumes.push(volume);
-                }
-            }
-        }
-    }
-    Ok((volumes, tests))
-}
-
 fn input<'a>(
     scene: &Scene,
     request: &Request,
@@ -522,6 +527,7 @@ fn input<'a>(
         transparent: request.transparent,
         haze: HAZE,
         volumes: &prepared.volumes,
+        solids: &prepared.solids,
         lens_count: scene.lenses.len() as u32,
         operations: &prepared.operations,
         backend: request.backend,
@@ -566,7 +572,10 @@ fn lens_figures(
         classified: if volumes.is_empty() {
             stats::Classified::default()
         } else {
-            stats::Classified { front: Some(front), inside: Some(inside), behind: Some(behind), rest: Some(rest) }
+            // By object nothing is in front or behind.
+            let has_sides = volumes.iter().any(|v| v.body.has_sides());
+            let side = |count| has_sides.then_some(count);
+            stats::Classified { front: side(front), inside: Some(inside), behind: side(behind), rest: Some(rest) }
         },
     }
 }
@@ -580,11 +589,19 @@ fn objects_meeting(studio: &Studio, volumes: &[&LensVolume]) -> u64 {
         if met.contains(&geometry.object) {
             continue;
         }
+        let is_member = |v: &&LensVolume| match &v.body {
+            Body::One(PlacedLeaf { leaf: Leaf::Members(m), .. }) => m.objects[geometry.object as usize],
+            _ => false,
+        };
+        if volumes.iter().any(is_member) {
+            met.insert(geometry.object);
+            continue;
+        }
         let near: Vec<_> = volumes.iter().filter(|v| v.bounds.meets(&geometry.bounds)).collect();
         let hit = |tile: &crate::city::Tile| {
             (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
                 let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + model.indices[i + k]));
-                near.iter().any(|v| v.volume.meets_triangle(&corners))
+                near.iter().any(|v| v.body.meets(&corners, geometry.object))
             })
         };
         if !near.is_empty() && model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {

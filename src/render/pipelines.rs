@@ -58,6 +58,10 @@ pub enum Key {
     },
     /// Depth from the sun, and what is hidden from it.
     Shadow(Option<Program>),
+    /// One of the draws that make the depth sprite of a solid.
+    SolidSprite(SolidStage),
+    /// One of those of a combination, and what its leaves are.
+    CombinedSprite(SolidStage, Vec<VolumeTest>),
     /// Depth sprite of a volume, by the kind of shape (`layout::Shape::kind`).
     Sprite(VolumeTest),
     /// Shading.
@@ -123,6 +127,32 @@ pub enum ShadeTarget {
     Unfiltered,
 }
 
+/// The draws that make the depth sprites of solids and combinations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SolidStage {
+    /// Nothing is there yet.
+    Missed,
+    /// Where rays enter first.
+    Nearest,
+    /// Where they leave last.
+    Farthest,
+    /// Of a combination, where rays enter first by the ends of its closed forms.
+    NearestForm,
+    /// Where they leave last.
+    FarthestForm,
+    /// Of a combination, where rays enter first through faces of its solids.
+    NearestFace,
+    /// Where they leave last.
+    FarthestFace,
+}
+
+impl SolidStage {
+    /// Whether it writes where rays enter.
+    pub fn is_nearest(self) -> bool {
+        matches!(self, Self::Nearest | Self::NearestForm | Self::NearestFace)
+    }
+}
+
 /// What is behind the city, as `lib/light.wgsl` numbers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Behind {
@@ -162,16 +192,16 @@ pub struct Layouts {
     pub city: wgpu::BindGroupLayout,
     /// Geometry, group 3: a texture.
     pub image: wgpu::BindGroupLayout,
-    /// Sprite, group 1: planes of convex volumes.
+    /// Sprite, group 1: planes of convex volumes, faces of solids.
     pub planes: wgpu::BindGroupLayout,
     /// Sprite, group 2: the stage, at a dynamic offset.
     pub stage: wgpu::BindGroupLayout,
-    /// Shade, group 1: surfaces, planes of convex volumes, light, targets.
+    /// Shade, group 1: surfaces, planes of convex volumes, faces of solids, light, targets.
     pub shade: wgpu::BindGroupLayout,
     /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks,
     /// invokers, filtered images, shapes.
     pub lenses: wgpu::BindGroupLayout,
-    /// Geometry and shadow where something is hidden, group 1: surfaces, planes of convex volumes.
+    /// Geometry and shadow where something is hidden, group 1: surfaces, planes of convex volumes, faces of solids.
     pub cut_city: wgpu::BindGroupLayout,
     /// Shadow where something is hidden, group 2: object values, parameters, invokers, the main view, shapes.
     pub shapes: wgpu::BindGroupLayout,
@@ -315,14 +345,15 @@ impl Layouts {
                 "image",
                 &[(0, S::FRAGMENT, image(T::Float { filterable: true }, D::D2)), (1, S::FRAGMENT, filtered)],
             ),
-            planes: layout(gpu, "planes", &[(1, S::FRAGMENT, storage())]),
-            stage: layout(gpu, "stage", &[(0, S::FRAGMENT, dynamic)]),
+            planes: layout(gpu, "planes", &[(1, S::FRAGMENT, storage()), (2, S::FRAGMENT, storage())]),
+            stage: layout(gpu, "stage", &[(0, all, dynamic)]),
             shade: layout(
                 gpu,
                 "shade",
                 &[
                     (0, S::FRAGMENT, surfaces),
                     (1, S::FRAGMENT, storage()),
+                    (2, S::FRAGMENT, storage()),
                     (3, all, uniform()),
                     (4, S::FRAGMENT, depth),
                     (5, S::FRAGMENT, compared),
@@ -345,7 +376,11 @@ impl Layouts {
                     (7, all, uniform()),
                 ],
             ),
-            cut_city: layout(gpu, "surfaces and planes", &[(0, S::FRAGMENT, surfaces), (1, S::FRAGMENT, storage())]),
+            cut_city: layout(
+                gpu,
+                "surfaces and planes",
+                &[(0, S::FRAGMENT, surfaces), (1, S::FRAGMENT, storage()), (2, S::FRAGMENT, storage())],
+            ),
             shapes: layout(
                 gpu,
                 "shapes",
@@ -389,7 +424,9 @@ impl Layouts {
             }
             Key::Shadow(Some(_)) => vec![Some(&self.view), Some(&self.cut_city), Some(&self.shapes)],
             Key::Shadow(None) | Key::Bare => vec![Some(&self.view), Some(&self.city)],
-            Key::Sprite(_) => vec![Some(&self.view), Some(&self.planes), Some(&self.stage)],
+            Key::Sprite(_) | Key::SolidSprite(_) | Key::CombinedSprite(..) => {
+                vec![Some(&self.view), Some(&self.planes), Some(&self.stage)]
+            }
             Key::Shade { program, .. } => {
                 let lines = program.has().lines.then_some(&self.lines);
                 vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), lines]
@@ -515,7 +552,9 @@ fn shape_name(shape: VolumeTest) -> &'static str {
         VolumeTest::Cylinder => "cylinder",
         VolumeTest::Ellipsoid => "ellipsoid",
         VolumeTest::Frustum => "cone",
-        VolumeTest::Convex | VolumeTest::Sprite => "convex body",
+        VolumeTest::Solid | VolumeTest::SolidSprite => "solid",
+        VolumeTest::Combined | VolumeTest::CombinedSprite => "combination",
+        VolumeTest::Convex | VolumeTest::Sprite | VolumeTest::Members => "convex body",
     }
 }
 
@@ -523,6 +562,7 @@ const VERTEX: &[wgpu::VertexAttribute] =
     &wgpu::vertex_attr_array![0 => Sint32x3, 1 => Uint32, 2 => Float32x3, 3 => Uint32];
 const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x2];
 const PLANE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x3, 5 => Sint32x3, 6 => Float32];
+const SOLID_CORNER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Float32x3];
 const CORNER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Float32x2];
 const FURNITURE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![
     0 => Float32x2, 1 => Float32x2, 2 => Float32x4, 3 => Float32x4, 4 => Float32, 5 => Float32, 6 => Uint32, 7 => Uint32];
@@ -536,7 +576,8 @@ impl Key {
         match self {
             Self::Geometry { cut, .. } => Module::Geometry(cut.clone()),
             Self::Shadow(cut) => Module::Shadow(cut.clone()),
-            Self::Sprite(_) => Module::Sprite,
+            Self::CombinedSprite(_, kinds) => Module::CombinedSprite(kinds.clone()),
+            Self::Sprite(_) | Self::SolidSprite(_) => Module::Sprite,
             Self::Shade { program, .. } => Module::Shade(program.clone()),
             Self::Lines { program, .. } => Module::Lines(program.clone()),
             Self::Filter(effect) => Module::Filter(*effect),
@@ -568,6 +609,16 @@ impl Key {
             }
             Self::Shadow(_) => self.module().name(),
             Self::Sprite(kind) => format!("depth sprite of a {}", shape_name(*kind)),
+            Self::SolidSprite(stage) | Self::CombinedSprite(stage, _) => match stage {
+                SolidStage::Missed => "depth sprite of a solid",
+                SolidStage::Nearest => "depth sprite of a solid, nearest",
+                SolidStage::Farthest => "depth sprite of a solid, farthest",
+                SolidStage::NearestForm => "depth sprite of a combination, nearest of its forms",
+                SolidStage::FarthestForm => "depth sprite of a combination, farthest of its forms",
+                SolidStage::NearestFace => "depth sprite of a combination, nearest of its faces",
+                SolidStage::FarthestFace => "depth sprite of a combination, farthest of its faces",
+            }
+            .to_owned(),
             Self::Shade { shown, textured, clay, target, shadows, .. } => {
                 let list = [
                     (*shown == Shown::Background, "background"),
@@ -636,6 +687,13 @@ impl Key {
                 };
                 ("vertex", Some(fragment))
             }
+            Self::SolidSprite(SolidStage::Missed) => ("vertex", Some("missed")),
+            Self::SolidSprite(SolidStage::Nearest) => ("vertex_of_solid", Some("nearest")),
+            Self::SolidSprite(SolidStage::Farthest) => ("vertex_of_solid", Some("farthest")),
+            Self::CombinedSprite(SolidStage::NearestForm, _) => ("vertex", Some("nearest_form")),
+            Self::CombinedSprite(SolidStage::FarthestForm, _) => ("vertex", Some("farthest_form")),
+            Self::CombinedSprite(SolidStage::NearestFace, _) => ("vertex_of_solid", Some("nearest_face")),
+            Self::CombinedSprite(SolidStage::FarthestFace, _) => ("vertex_of_solid", Some("farthest_face")),
             _ => ("vertex", Some("fragment")),
         }
     }
@@ -650,6 +708,10 @@ impl Key {
             Self::Geometry { .. } | Self::Shadow(_) | Self::Bare => vec![vertex],
             Self::Lines { .. } => vec![Some(Edge::LAYOUT)],
             Self::Shade { .. } | Self::Filter(_) => vec![per_vertex(8, CORNER)],
+            Self::SolidSprite(SolidStage::Nearest | SolidStage::Farthest)
+            | Self::CombinedSprite(SolidStage::NearestFace | SolidStage::FarthestFace, _) => {
+                vec![per_vertex(12, SOLID_CORNER)]
+            }
             Self::Furniture { .. } => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<layout::FurnitureItem>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
@@ -688,7 +750,11 @@ impl Key {
                     write_mask: wgpu::ColorWrites::ALL,
                 })]
             }
-            Self::Sprite(_) => vec![Some(SPRITES.into())],
+            Self::Sprite(_) | Self::SolidSprite(SolidStage::Missed) => vec![Some(SPRITES.into())],
+            Self::SolidSprite(stage) | Self::CombinedSprite(stage, _) => {
+                let write_mask = if stage.is_nearest() { wgpu::ColorWrites::RED } else { wgpu::ColorWrites::GREEN };
+                vec![Some(wgpu::ColorTargetState { format: SPRITES, blend: None, write_mask })]
+            }
             Self::Filter(_) => vec![Some(FILTERED.into()); 4],
             Self::Shade { target: ShadeTarget::Unfiltered, behind, .. } => {
                 vec![Some(FILTERED.into()); behind.images()]
@@ -711,8 +777,16 @@ impl Key {
     fn depth_test(&self) -> Option<wgpu::DepthStencilState> {
         use wgpu::CompareFunction as C;
         let compare = match self {
+            Self::SolidSprite(SolidStage::Missed) => return None,
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
             Self::Geometry { .. } | Self::Shadow(_) | Self::Bare | Self::Lines { .. } => C::Greater,
+            Self::SolidSprite(stage) | Self::CombinedSprite(stage, _) => {
+                if stage.is_nearest() {
+                    C::Greater
+                } else {
+                    C::Less
+                }
+            }
             // The triangle lies at depth 0, where nothing is stored.
             Self::Shade { shown: Shown::Surface, .. } => C::Less,
             Self::Shade { shown: Shown::Background, .. } => C::Equal,

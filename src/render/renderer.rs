@@ -3,6 +3,8 @@
 //! It refuses to know files, commands and windows. Between two equal frames it allocates and uploads
 //! nothing; [`Gpu::allocations`] and [`Gpu::uploads`] prove it.
 
+use std::sync::Arc;
+
 use crate::{
     gpu::{Gpu, GpuError},
     render::{
@@ -12,6 +14,7 @@ use crate::{
         furniture::FurnitureOnGpu,
         layout,
         pipelines::{Layouts, Pipelines},
+        solids::SolidTable,
         synced::Synced,
         targets::{Needs, Target, Targets},
     },
@@ -38,6 +41,8 @@ pub struct Renderer {
     pub culls_hidden: bool,
     /// The effects that the frames since the last [`Renderer::begin_picture`] ran, ascending.
     pub(super) ran: Vec<u32>,
+    /// The solids that the card holds.
+    pub(super) solids_of: Option<Arc<SolidTable>>,
     /// The near depth of the last frame that culled by it.
     pub(super) curtain: Option<Curtain>,
     /// Titles, captions and legends, once a picture had some.
@@ -64,6 +69,9 @@ pub(super) struct Buffers {
     pub sun_view: Synced,
     pub light: Synced,
     pub planes: Synced,
+    /// Solids: their columns and faces, and the corners of their faces to draw.
+    pub solids: Synced,
+    pub solid_corners: Synced,
     pub sprite_stages: Synced,
     pub sprite_places: Synced,
     pub lens_shapes: Synced,
@@ -123,6 +131,8 @@ impl Renderer {
             sun_view: uniform("sun's view")?,
             light: uniform("light")?,
             planes: storage("lens planes")?,
+            solids: storage("solids of lenses")?,
+            solid_corners: Synced::new(&gpu, "corners of solids", U::VERTEX)?,
             sprite_stages: uniform("sprite stages")?,
             sprite_places: uniform("places of depth sprites")?,
             lens_shapes: uniform("lens shapes")?,
@@ -157,6 +167,7 @@ impl Renderer {
             curtain: None,
             furniture: None,
             ran: Vec::new(),
+            solids_of: None,
             generation: 0,
             gpu,
         })
@@ -241,12 +252,17 @@ impl Renderer {
         };
         let cut_city = |planes: &Synced| {
             let surfaces = wgpu::BindingResource::TextureView(&city.buffers.surfaces);
-            group(gpu, "surfaces and planes", &p.cut_city, &[(0, surfaces), (1, whole(planes.buffer()))])
+            group(
+                gpu,
+                "surfaces and planes",
+                &p.cut_city,
+                &[(0, surfaces), (1, whole(planes.buffer())), (2, whole(b.solids.buffer()))],
+            )
         };
         self.groups = Some(Groups {
             view: group(gpu, "view", &p.view, &[(0, whole(b.view.buffer()))]),
             sun_view: group(gpu, "sun's view", &p.view, &[(0, whole(b.sun_view.buffer()))]),
-            planes: group(gpu, "planes", &p.planes, &[(1, whole(b.planes.buffer()))]),
+            planes: group(gpu, "planes", &p.planes, &[(1, whole(b.planes.buffer())), (2, whole(b.solids.buffer()))]),
             sprite_stage: stage_group("sprite stage", &b.sprite_stages, size_of::<layout::SpriteStage>()),
             shade: group(
                 gpu,
@@ -255,6 +271,7 @@ impl Renderer {
                 &[
                     (0, wgpu::BindingResource::TextureView(&city.buffers.surfaces)),
                     (1, whole(b.planes.buffer())),
+                    (2, whole(b.solids.buffer())),
                     (3, whole(b.light.buffer())),
                     (4, all_of(&targets.shadow)),
                     (5, wgpu::BindingResource::Sampler(&self.shadow_sampler)),

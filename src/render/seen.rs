@@ -7,7 +7,6 @@ use crate::{
         frame::FrameInput,
         octagon::Octagon,
         sprites::{self, Pages, Place},
-        volume::shape_test,
     },
     shader::VolumeTest,
 };
@@ -17,6 +16,8 @@ pub(super) struct SeenVolume {
     pub index: usize,
     pub lens: u32,
     pub test: VolumeTest,
+    /// What the leaves of a combination are.
+    pub leaves: Vec<VolumeTest>,
     /// Where it may be seen, and the rectangle around that.
     pub part: Octagon,
     pub bounds: PictureTile,
@@ -26,8 +27,6 @@ pub(super) struct SeenVolume {
 
 /// The sprite of a volume that may be seen.
 pub(super) struct SeenSprite {
-    /// The kind of shape that makes it.
-    pub shape: VolumeTest,
     /// Its width and height, texels.
     pub size: [u32; 2],
     /// The part of it that is kept, texels.
@@ -51,20 +50,20 @@ pub(super) fn seen_volumes(input: &FrameInput) -> (Vec<SeenVolume>, Pages) {
     for (index, volume) in input.volumes.iter().enumerate() {
         let Some(part) = volume.seen_part(&input.view, input.tile) else { continue };
         let bounds = part.rectangle();
-        let (lens, test) = (volume.lens, volume.test());
-        let Some(sprite) = volume.sprite else {
-            seen.push(SeenVolume { index, lens, test, part, bounds, sprite: None });
+        let (lens, test) = (volume.lens, volume.test(input.masks && input.sample == 0));
+        let leaves = volume.body.kinds();
+        if !test.has_sprite() {
+            seen.push(SeenVolume { index, lens, test, leaves, part, bounds, sprite: None });
             continue;
-        };
-        let sprite = sprite_size(input, sprite);
+        }
+        let sprite = sprite_size(input, volume.sprite.unwrap_or_default());
         let to_texel = |i: usize, pixel: u32| f64::from(pixel) * f64::from(sprite[i]) / f64::from(input.tile.size[i]);
         let low: [u32; 2] = std::array::from_fn(|i| to_texel(i, bounds.origin[i]).floor() as u32);
         let high: [u32; 2] =
             std::array::from_fn(|i| (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i]));
         let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
-        let shape = shape_test(&volume.volume);
-        let sprite = Some(SeenSprite { shape, size: sprite, bounds: sprite_bounds, place: Place::default() });
-        seen.push(SeenVolume { index, lens, test, part, bounds, sprite });
+        let sprite = Some(SeenSprite { size: sprite, bounds: sprite_bounds, place: Place::default() });
+        seen.push(SeenVolume { index, lens, test, leaves, part, bounds, sprite });
     }
     let sizes: Vec<[u32; 2]> = seen.iter().filter_map(|v| v.sprite.as_ref()).map(|s| s.bounds.size).collect();
     if sizes.is_empty() {

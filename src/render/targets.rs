@@ -22,6 +22,8 @@ pub struct Needs {
     pub mask_layers: u32,
     /// Width and height of the pages of depth sprites and how many there are, 0 for none.
     pub sprites: [u32; 3],
+    /// Whether sprites are made with a depth test.
+    pub sprite_depth: bool,
     /// How many neighbourhood filters there are, 0 for none.
     pub filters: u32,
     /// How many images each of them makes ([`crate::render::pipelines::Behind::images`]), 0 for none.
@@ -47,6 +49,7 @@ impl Needs {
             sums: self.sums || before.sums,
             mask_layers: self.mask_layers.max(before.mask_layers),
             sprites: std::array::from_fn(|i| self.sprites[i].max(before.sprites[i])),
+            sprite_depth: self.sprite_depth || before.sprite_depth,
             filters: self.filters.max(before.filters),
             filter_images: self.filter_images.max(before.filter_images),
             lines: self.lines || before.lines,
@@ -96,6 +99,8 @@ pub struct Targets {
     pub masks: Target,
     /// Pages of volumetric depth sprites: stored depths of entries and exits.
     pub sprites: Target,
+    /// Depth of a page of sprites while one is made (1×1 where not needed).
+    pub sprite_depth: Target,
     /// What a filter starts from, four pixels to a texel, a layer for each of its images (1×1 where not needed).
     pub unfiltered: Target,
     /// What it has done in one direction, as `pass/filter.wgsl` explains, in four layers (1×1 where not needed).
@@ -131,6 +136,7 @@ impl Targets {
             self.filtered,
             self.lines,
             self.shadow,
+            self.sprite_depth,
         ]
     }
 
@@ -177,6 +183,13 @@ impl Targets {
             sums: make_any("sums", full(needs.sums), sums, drawn, false),
             masks: make_any("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING, true),
             sprites: make_any("depth sprites", needs.sprites, SPRITES, drawn, true),
+            sprite_depth: make_any(
+                "depth of sprites",
+                if needs.sprite_depth { [needs.sprites[0], needs.sprites[1], 1] } else { [1; 3] },
+                DEPTH,
+                U::RENDER_ATTACHMENT,
+                false,
+            ),
             unfiltered: make_any("unfiltered", filtering([fours_wide, h, images]), FILTERED, drawn, true),
             half_filtered: make_any("half filtered", filtering([fours_wide, fours_high, 4]), FILTERED, drawn, true),
             filtered: make_any(

@@ -5,7 +5,12 @@ use glam::{DMat3, DVec2, DVec3};
 use crate::{
     geom::{Aabb, Volume},
     lens::LensSprite,
-    render::{eye::PictureTile, layout, octagon::Octagon},
+    render::{
+        body::{Body, Leaf, PlacedLeaf},
+        eye::PictureTile,
+        layout,
+        octagon::Octagon,
+    },
     shader::VolumeTest,
     view::View,
 };
@@ -20,8 +25,8 @@ const MARGIN_PX: i32 = 1;
 pub struct LensVolume {
     /// Which lens, from 0.
     pub lens: u32,
-    /// The volume, model coordinates; not empty.
-    pub volume: Volume,
+    /// What it is; not empty.
+    pub body: Body,
     /// Box around it, metres.
     pub bounds: Aabb,
     /// Whether its lens acts where rays miss it (class *rest*): then all of the picture is its business.
@@ -30,78 +35,39 @@ pub struct LensVolume {
     pub has_outline: bool,
     /// The sprite that it is tested by in the picture, if it is.
     pub sprite: Option<LensSprite>,
-}
-
-/// How a volume is tested from its own figures.
-pub fn shape_test(volume: &Volume) -> VolumeTest {
-    match volume {
-        Volume::Sphere { .. } => VolumeTest::Sphere,
-        Volume::Box { .. } => VolumeTest::Box,
-        Volume::Cylinder { .. } => VolumeTest::Cylinder,
-        Volume::Convex(_) => VolumeTest::Convex,
-        Volume::Ellipsoid { .. } => VolumeTest::Ellipsoid,
-        Volume::Frustum { .. } => VolumeTest::Frustum,
-    }
+    /// Whether its lens acts on other classes than *inside*.
+    pub asks_sides: bool,
 }
 
 impl LensVolume {
-    /// How it is tested in the picture.
-    pub fn test(&self) -> VolumeTest {
-        if self.sprite.is_some() { VolumeTest::Sprite } else { shape_test(&self.volume) }
+    /// How it is tested in the picture; `masks`: all classes are asked for.
+    pub fn test(&self, masks: bool) -> VolumeTest {
+        let with_sides = masks || self.asks_sides || self.has_outline || self.sprite.is_some();
+        match self.body.test() {
+            VolumeTest::Members => VolumeTest::Members,
+            VolumeTest::Solid if with_sides => VolumeTest::SolidSprite,
+            VolumeTest::Combined if with_sides => VolumeTest::CombinedSprite,
+            own @ (VolumeTest::Solid | VolumeTest::Combined) => own,
+            _ if self.sprite.is_some() => VolumeTest::Sprite,
+            own => own,
+        }
     }
 
-    /// The volume's figures for an eye; its planes are appended to `planes`.
+    /// All ways in which frames may test it, in the picture and from the sun.
+    pub fn tests(&self) -> [Vec<VolumeTest>; 2] {
+        let own = self.body.test();
+        let picture = match own {
+            // As a frame asks for its sides or not.
+            VolumeTest::Solid => vec![own, VolumeTest::SolidSprite],
+            VolumeTest::Combined => vec![own, VolumeTest::CombinedSprite],
+            _ => vec![self.test(false)],
+        };
+        [picture, vec![own]]
+    }
+
+    /// The body's figures for an eye; planes and leaves are appended to `planes`.
     pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
-        let view_from_world = view.basis.view_from_world();
-        let eye = view.camera.eye;
-        let place = |p: DVec3| (view_from_world * (p - eye)).as_vec3().to_array();
-        let turn = |v: DVec3| (view_from_world * v).as_vec3().to_array();
-        let mut out = layout::Shape { kind: shape_test(&self.volume).number(), ..Default::default() };
-        match &self.volume {
-            Volume::Sphere { center, radius } => {
-                out.center = place(*center);
-                out.size_x = *radius as f32;
-            }
-            Volume::Box { center, half, rotation } => {
-                let axes = DMat3::from_quat(*rotation);
-                out.center = place(*center);
-                out.axis_x = turn(axes.x_axis);
-                out.axis_y = turn(axes.y_axis);
-                out.axis_z = turn(axes.z_axis);
-                [out.size_x, out.size_y, out.size_z] = half.as_vec3().to_array();
-            }
-            Volume::Cylinder { center, radius, half, axis } => {
-                out.center = place(*center);
-                out.axis_z = turn(*axis);
-                out.size_x = *radius as f32;
-                out.size_z = *half as f32;
-            }
-            Volume::Ellipsoid { center, radii, rotation } => {
-                let axes = DMat3::from_quat(*rotation);
-                out.center = place(*center);
-                // In its own measure it is a ball of radius 1.
-                out.axis_x = turn(axes.x_axis / radii.x);
-                out.axis_y = turn(axes.y_axis / radii.y);
-                out.axis_z = turn(axes.z_axis / radii.z);
-            }
-            Volume::Frustum { center, radii: [bottom, top], half, axis } => {
-                out.center = place(*center);
-                out.axis_z = turn(*axis);
-                out.size_x = (0.5 * (bottom + top)) as f32;
-                out.size_y = ((top - bottom) / (2.0 * half)) as f32;
-                out.size_z = *half as f32;
-            }
-            Volume::Convex(hull) => {
-                let (center, faces) = hull.planes();
-                out.size_x = planes.len() as f32;
-                out.size_y = faces.len() as f32;
-                planes.extend(faces.iter().map(|&(normal, offset)| {
-                    let [x, y, z] = turn(normal);
-                    [x, y, z, (offset + normal.dot(center - eye)) as f32]
-                }));
-            }
-        }
-        out
+        self.body.figures(view, planes)
     }
 
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
@@ -122,7 +88,10 @@ impl LensVolume {
     /// The least and the most of x, y, x + y and x - y in its projection, pixels; `None` where it reaches behind the near
     /// plane.
     fn projected(&self, view: &View) -> Option<([f64; 4], [f64; 4])> {
-        let corners = match &self.volume {
+        let Body::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) = &self.body else {
+            return projected_corners(view, self.bounds.corners());
+        };
+        let corners = match volume {
             Volume::Sphere { center, radius } if !view.is_orthographic() => {
                 return projected_sphere(view, *center, *radius);
             }
@@ -141,6 +110,7 @@ impl LensVolume {
                 corners_of_box(*center, DMat3::from_cols(x, y, *axis), DVec3::new(radius, radius, *half))
             }
             Volume::Convex(hull) => hull.faces().0,
+            Volume::Solid(placed) => placed.solid.bounds().corners().map(|c| placed.world(c)).to_vec(),
         };
         projected_corners(view, corners)
     }
@@ -220,11 +190,19 @@ mod tests {
         for shape in shapes {
             let volume = shape.volume().expect("a volume");
             let bounds = volume.bounds();
-            let lens = LensVolume { lens: 0, bounds, volume, everywhere: false, has_outline: false, sprite: None };
+            let lens = LensVolume {
+                lens: 0,
+                bounds,
+                body: Body::One(Leaf::Volume(volume.clone()).into()),
+                everywhere: false,
+                has_outline: false,
+                sprite: None,
+                asks_sides: false,
+            };
             let (low, high) = lens.projected(&view).expect("it is in front of the eye");
             let (mut least, mut most) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
             for (x, y) in (0..480).flat_map(|y| (0..640).map(move |x| (x, y))) {
-                if lens.volume.entry_exit(&view.pixel_ray(x, y)).is_some() {
+                if volume.entry_exit(&view.pixel_ray(x, y)).is_some() {
                     let at = along(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
                     for i in 0..4 {
                         (least[i], most[i]) = (least[i].min(at[i]), most[i].max(at[i]));

@@ -80,6 +80,11 @@ fn members(test: VolumeTest) -> &'static [(&'static str, usize)] {
         VolumeTest::Convex => &[("size_x", 1), ("size_y", 1)],
         VolumeTest::Ellipsoid => &[("center", 3), ("axis_x", 3), ("axis_y", 3), ("axis_z", 3)],
         VolumeTest::Frustum => &[("center", 3), ("size_x", 1), ("axis_z", 3), ("size_z", 1), ("size_y", 1)],
+        VolumeTest::Solid | VolumeTest::SolidSprite => {
+            &[("center", 3), ("size_x", 1), ("axis_x", 3), ("size_z", 1), ("axis_y", 3), ("axis_z", 3)]
+        }
+        VolumeTest::Combined | VolumeTest::CombinedSprite => &[("size_x", 1), ("size_y", 1), ("size_z", 1)],
+        VolumeTest::Members => &[("size_x", 1)],
         VolumeTest::Sprite => &[],
     }
 }

@@ -33,8 +33,15 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
     match eye {
         Eye::Picture => text.push_str(&lens_test::bindings(program, false)),
         Eye::Sun if !program.has().lenses => {}
-        Eye::Sun => text
-            .push_str("@group(2) @binding(8) var<storage, read> shapes: array<Shape>;  // in the main view's space\n"),
+        Eye::Sun => {
+            text.push_str(
+                "@group(2) @binding(8) var<storage, read> shapes: array<Shape>;  // in the main view's space\n",
+            );
+            if program.has().combinations {
+                text.push('\n');
+                text.push_str(&lens_test::leaves(&program.leaves()));
+            }
+        }
     }
     text.push('\n');
     for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {

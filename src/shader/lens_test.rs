@@ -23,6 +23,10 @@ pub(super) fn bindings(program: &Program, carried: bool) -> String {
     if parts.shapes {
         text.push_str(&uniform(7, "shapes", &format!("array<Shape, {count}>"), carried));
     }
+    if parts.combinations {
+        text.push('\n');
+        text.push_str(&leaves(&program.leaves()));
+    }
     text
 }
 
@@ -33,59 +37,119 @@ pub(super) fn uniform(binding: u32, name: &str, array: &str, carried: bool) -> S
     format!("@group(2) @binding({binding}) var<uniform> {name}{whole}: {array};\n{own}")
 }
 
-fn call(test: VolumeTest, volume: u32, [of_shape, of_sprite]: [&str; 2], place: &str) -> String {
-    match test {
-        VolumeTest::Sprite => format!("{of_sprite}(sprite_places[{volume}], {place})"),
-        _ => format!("{of_shape}(shapes[{volume}], {}, {place})", test.constant()),
+/// What is asked of a volume.
+#[derive(Clone, Copy)]
+enum Question {
+    /// Its classes.
+    Classes,
+    /// Whether a place is inside.
+    Inside,
+    /// Whether a pixel's ray meets it.
+    Covers,
+}
+
+/// A question to a volume by its number, about a `place`.
+fn call(question: Question, test: VolumeTest, volume: &str, place: &str) -> String {
+    use {Question as Q, VolumeTest as T};
+    let (shape, sprite) = (format!("shapes[{volume}]"), format!("sprite_places[{volume}]"));
+    match (question, test) {
+        (Q::Covers, T::Members) => format!("covers_members({shape}, {place})"),
+        (_, T::Members) => format!("inside_members({shape}, {place})"),
+        (Q::Covers, T::Sprite | T::SolidSprite | T::CombinedSprite) => format!("covers_sprite({sprite}, {place})"),
+        (_, T::Sprite) => format!("class_in_sprite({sprite}, {place})"),
+        (Q::Classes, T::SolidSprite) => format!("class_in_solid({shape}, {sprite}, {place})"),
+        (Q::Inside, T::Combined | T::CombinedSprite) => format!("inside_combined({shape}, {place})"),
+        (Q::Classes, T::CombinedSprite) => format!("class_in_combined({shape}, {sprite}, {place})"),
+        (Q::Classes, T::Combined) => format!("class_by_leaves({shape}, {place})"),
+        (Q::Covers, T::Combined) => format!("covers_by_leaves({shape}, {place})"),
+        (Q::Inside, T::Solid | T::SolidSprite) => format!("inside_solid({shape}, {place})"),
+        (Q::Classes, T::Solid) => format!("class_by_faces({shape}, {place})"),
+        (Q::Covers, T::Solid) => format!("covers_by_faces({shape}, {place})"),
+        (Q::Classes, _) => format!("class_in_shape({shape}, {}, {place})", test.constant()),
+        (Q::Inside, _) => format!("inside_shape({shape}, {}, {place})", test.constant()),
+        (Q::Covers, _) => format!("covers_shape({shape}, {}, {place})", test.constant()),
     }
 }
 
-/// A value of all volumes of a plan's lens.
-fn joined(plan: &Plan, lens: u32, words: [&str; 2], place: &str, operator: &str) -> String {
+/// A question to all volumes of a plan's lens.
+fn joined(plan: &Plan, lens: u32, question: Question, place: &str, operator: &str) -> String {
     let (first, tests) = plan.volumes_of(lens);
-    let calls: Vec<String> = (first..).zip(tests).map(|(volume, test)| call(*test, volume, words, place)).collect();
+    let calls: Vec<String> =
+        (first..).zip(tests).map(|(volume, test)| call(question, *test, &volume.to_string(), place)).collect();
     calls.join(operator)
 }
 
 /// The classes of a place with regard to one lens of a plan.
 pub(super) fn classes(plan: &Plan, lens: u32, sight: &str) -> String {
-    let of_shape = if plan.asks_inside_alone(lens) { "inside_shape" } else { "class_in_shape" };
-    joined(plan, lens, [of_shape, "class_in_sprite"], sight, "\n        | ")
+    let question = if plan.asks_inside_alone(lens) { Question::Inside } else { Question::Classes };
+    joined(plan, lens, question, sight, "\n        | ")
 }
 
 /// Whether one lens of a plan covers a pixel.
 pub(super) fn covers(plan: &Plan, lens: u32, pixel: &str) -> String {
-    joined(plan, lens, ["covers_shape", "covers_sprite"], pixel, " || ")
+    joined(plan, lens, Question::Covers, pixel, " || ")
 }
 
-/// For the uber back end: a value of a volume by its number.
-fn by_number(tests: &[VolumeTest], words: [&str; 2], place: &str) -> String {
-    let one = |test: VolumeTest| match test {
-        VolumeTest::Sprite => format!("{}(sprite_places[v], {place})", words[1]),
-        _ => format!("{}(shapes[v], {}, {place})", words[0], test.constant()),
-    };
+/// For the uber back end: a question to a volume by its number.
+fn by_number(tests: &[VolumeTest], question: Question, place: &str) -> String {
     match tests {
         [] => String::new(),
-        [only] => format!("    return {};\n", one(*only)),
+        [only] => format!("    return {};\n", call(question, *only, "v", place)),
         [first, rest @ ..] => {
             let mut text = "    switch shapes[v].kind {\n".to_owned();
             for test in rest {
-                let _ = writeln!(text, "        case {}: {{ return {}; }}", test.constant(), one(*test));
+                let answer = call(question, *test, "v", place);
+                let _ = writeln!(text, "        case {}: {{ return {answer}; }}", test.constant());
             }
-            let _ = writeln!(text, "        default: {{ return {}; }}\n    }}", one(*first));
+            let answer = call(question, *first, "v", place);
+            let _ = writeln!(text, "        default: {{ return {answer}; }}\n    }}");
             text
         }
     }
 }
 
+/// `leaf_holds` and `span_of_leaf`, for leaves of combinations of these kinds.
+pub(super) fn leaves(kinds: &[VolumeTest]) -> String {
+    let of = |head: &str, end: &str, answer: &dyn Fn(VolumeTest) -> String| {
+        let mut text = format!("fn {head} {{\n");
+        match kinds {
+            [only] => {
+                let _ = writeln!(text, "    return {};", answer(*only));
+            }
+            _ => {
+                text.push_str("    switch kind {\n");
+                for kind in kinds {
+                    let _ = writeln!(text, "        case {}: {{ return {}; }}", kind.constant(), answer(*kind));
+                }
+                let _ = writeln!(text, "        default: {{ return {end}; }}\n    }}");
+            }
+        }
+        text + "}\n\n"
+    };
+    let holds = |kind: VolumeTest| match kind {
+        VolumeTest::Solid => "solid_holds(leaf.shape, p)".to_owned(),
+        VolumeTest::Members => "is_chosen(u32(leaf.first), object)".to_owned(),
+        _ => format!("holds(leaf.shape, {}, p)", kind.constant()),
+    };
+    // A solid's ends are not asked for here; a choice of objects is the box around them.
+    let span = |kind: VolumeTest| match kind {
+        VolumeTest::Solid => "EMPTY_SPAN".to_owned(),
+        VolumeTest::Members => "span_of_shape(ray, s, BOX)".to_owned(),
+        _ => format!("span_of_shape(ray, s, {})", kind.constant()),
+    };
+    let holds = of("leaf_holds(leaf: Leaf, p: vec3f, object: u32) -> bool", "false", &holds);
+    let spans = of("span_of_leaf(ray: Ray, s: Shape) -> Span", "EMPTY_SPAN", &span);
+    holds.replace("switch kind", "switch leaf.shape.kind") + &spans.replace("switch kind", "switch s.kind")
+}
+
 /// `class_of`, for the uber back end.
 pub(super) fn class_of(tests: &[VolumeTest]) -> String {
-    let body = by_number(tests, ["class_in_shape", "class_in_sprite"], "sight");
+    let body = by_number(tests, Question::Classes, "sight");
     format!("fn class_of(v: u32, sight: Sight) -> u32 {{\n{body}}}\n\n")
 }
 
 /// `volume_covers`, for the uber back end.
 pub(super) fn volume_covers(tests: &[VolumeTest]) -> String {
-    let body = by_number(tests, ["covers_shape", "covers_sprite"], "pixel");
+    let body = by_number(tests, Question::Covers, "pixel");
     format!("fn volume_covers(v: u32, pixel: vec2i) -> bool {{\n{body}}}\n\n")
 }

@@ -40,6 +40,13 @@ files! {
     SIGHT = "lib/sight.wgsl";
     LENS = "lib/lens.wgsl";
     LENS_SPRITE = "lib/lens-sprite.wgsl";
+    SOLID = "lib/solid.wgsl";
+    MEMBERS = "lib/members.wgsl";
+    MEMBER_OUTLINE = "lib/member-outline.wgsl";
+    SOLID_SPRITE = "lib/solid-sprite.wgsl";
+    COMBINED = "lib/combined.wgsl";
+    COMBINED_SPRITE = "lib/combined-sprite.wgsl";
+    COMBINED_PASS = "pass/combined-sprite.wgsl";
     OBJECTS = "lib/objects.wgsl";
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
@@ -70,6 +77,8 @@ pub enum Module {
     Shadow(Option<Program>),
     /// The two stages of a volumetric depth sprite.
     Sprite,
+    /// Those of a combination, and what its leaves are.
+    CombinedSprite(Vec<VolumeTest>),
     /// Deferred shading, and what the lenses make of it.
     Shade(Program),
     /// Edges as lines, and what lenses make of them.
@@ -93,6 +102,7 @@ impl Module {
             Self::Geometry(hidden) => format!("geometry{}", hidden_name(hidden)),
             Self::Shadow(hidden) => format!("shadow{}", hidden_name(hidden)),
             Self::Sprite => "sprite".to_owned(),
+            Self::CombinedSprite(_) => "sprite of a combination".to_owned(),
             Self::Shade(program) => {
                 let names = names_of(program);
                 let names = if names.is_empty() { names } else { format!(" ({names})") };
@@ -137,6 +147,9 @@ impl Module {
                     .concat()
             }
             Self::Sprite => &[VIEW, VIEW_UNIFORM, SHAPE, SPRITE],
+            Self::CombinedSprite(_) => {
+                &[VIEW, VIEW_UNIFORM, SIGHT, CLASS, SHAPE, SOLID, COMBINED, SPRITE, COMBINED_PASS]
+            }
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
             Self::Lines(program) => &Self::files_of_lines(program),
             Self::Filter(_) => &[PACKED, FILTER],
@@ -148,6 +161,9 @@ impl Module {
         let mut text = String::new();
         for (path, source) in files {
             text.push_str(&format!("// ==== {path}\n\n{source}\n"));
+        }
+        if let Self::CombinedSprite(kinds) = self {
+            text.push_str(&lens_test::leaves(kinds));
         }
         match self {
             Self::Shade(program) => {
@@ -199,6 +215,7 @@ impl Module {
             (parts.blends || materials, BLEND),
             (materials, MATERIAL),
             (parts.outlines, OUTLINE),
+            (parts.outlines && parts.members, MEMBER_OUTLINE),
             (filters, FILTERED),
             (parts.lines, LINE),
         ];
@@ -211,7 +228,17 @@ impl Module {
 /// The libraries of the lens tests that a program makes.
 fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
     let parts = program.has();
-    let files = [(parts.lenses, CLASS), (parts.lenses, SHAPE), (parts.shapes, LENS), (parts.sprites, LENS_SPRITE)];
+    let files = [
+        (parts.lenses, CLASS),
+        (parts.lenses, SHAPE),
+        (parts.shapes, LENS),
+        (parts.sprites, LENS_SPRITE),
+        (parts.members, MEMBERS),
+        (parts.solids, SOLID),
+        (parts.side_sprites, SOLID_SPRITE),
+        (parts.combinations, COMBINED),
+        (parts.combined_sprites, COMBINED_SPRITE),
+    ];
     files.into_iter().filter(|(is_used, _)| *is_used).map(|(_, file)| file).collect()
 }
 
@@ -241,12 +268,25 @@ mod tests {
         Step { effect, scope, parameters: 0, blend }
     }
 
+    /// All that a combination may be made of.
+    const LEAVES: [VolumeTest; 8] = [
+        VolumeTest::Sphere,
+        VolumeTest::Box,
+        VolumeTest::Cylinder,
+        VolumeTest::Convex,
+        VolumeTest::Ellipsoid,
+        VolumeTest::Frustum,
+        VolumeTest::Solid,
+        VolumeTest::Members,
+    ];
+
     /// As the sun asks: no sprite tells it anything.
     fn by_shapes(mut program: Program) -> Program {
-        let by_shape = |test: &mut VolumeTest| {
-            if *test == VolumeTest::Sprite {
-                *test = VolumeTest::Sphere;
-            }
+        let by_shape = |test: &mut VolumeTest| match test {
+            VolumeTest::Sprite => *test = VolumeTest::Sphere,
+            VolumeTest::SolidSprite => *test = VolumeTest::Solid,
+            VolumeTest::CombinedSprite => *test = VolumeTest::Combined,
+            _ => {}
         };
         match &mut program {
             Program::Specialised(plan) => plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).for_each(by_shape),
@@ -279,6 +319,7 @@ mod tests {
         let lens = |number, volumes: &[usize], outline| PlanLens {
             number,
             volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % VolumeTest::ALL.len()]).collect(),
+            leaves: LEAVES[seed % 8..].to_vec(),
             outline,
         };
         let outline = seed.is_multiple_of(2).then_some(3);
@@ -296,6 +337,7 @@ mod tests {
                 tests.sort_unstable();
                 tests
             },
+            leaves: LEAVES[seed % 8..].to_vec(),
             outlines: plan.has_outlines(),
             blends: plan.has_blends(),
             haze: plan.haze,
@@ -319,6 +361,8 @@ mod tests {
         let mut modules =
             vec![Module::Geometry(None), Module::Shadow(None), Module::Sprite, Module::Resolve, Module::Bare];
         modules.extend(plain.map(Module::Shade));
+        modules.push(Module::CombinedSprite(LEAVES.to_vec()));
+        modules.extend(LEAVES.map(|kind| Module::CombinedSprite(vec![kind])));
         let is_filter = |e: &u32| handlers()[*e as usize].kind == EffectKind::Filter;
         modules.extend(numbers().into_iter().filter(is_filter).map(Module::Filter));
         modules.extend([Module::Furniture, Module::FurnitureOver]);
@@ -352,7 +396,8 @@ mod tests {
 
     #[test]
     fn what_finds_no_room_is_read_where_it_stands() {
-        let lens = |number| PlanLens { number, volumes: VolumeTest::ALL.to_vec(), outline: None };
+        let lens =
+            |number| PlanLens { number, volumes: VolumeTest::ALL.to_vec(), leaves: LEAVES.to_vec(), outline: None };
         let plan = Plan { lenses: (0..9).map(lens).collect(), ..Plan::default() };
         let module = Module::Shade(Program::Specialised(plan));
         for room in [14, LEAST_CARRIED, 31, 1000] {

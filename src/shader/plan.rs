@@ -30,6 +30,8 @@ pub struct PlanLens {
     pub number: u32,
     /// How each of its volumes is tested; among the frame's volumes they follow those of the lenses before it.
     pub volumes: Vec<VolumeTest>,
+    /// What the leaves of its combinations are, ascending, each once.
+    pub leaves: Vec<VolumeTest>,
     /// Place of its outline's parameters, where it shows one.
     pub outline: Option<u32>,
 }
@@ -49,18 +51,55 @@ pub enum VolumeTest {
     Ellipsoid,
     /// Of a cone, cut or not.
     Frustum,
+    /// Of the faces of a solid of any form; cheap for *inside* alone.
+    Solid,
+    /// Of the faces, and of a volumetric depth sprite what is in front and behind.
+    SolidSprite,
     /// By its volumetric depth sprite.
     Sprite,
+    /// By the object that a place belongs to.
+    Members,
+    /// Of the leaves of a combination; cheap for *inside* alone.
+    Combined,
+    /// Of the leaves, and of a volumetric depth sprite what is in front and behind.
+    CombinedSprite,
 }
 
 impl VolumeTest {
     /// All of them, in the order of their numbers in `lib/shape.wgsl`.
-    pub const ALL: [Self; 7] =
-        [Self::Sphere, Self::Box, Self::Cylinder, Self::Convex, Self::Ellipsoid, Self::Frustum, Self::Sprite];
+    pub const ALL: [Self; 12] = [
+        Self::Sphere,
+        Self::Box,
+        Self::Cylinder,
+        Self::Convex,
+        Self::Ellipsoid,
+        Self::Frustum,
+        Self::Solid,
+        Self::SolidSprite,
+        Self::Sprite,
+        Self::Members,
+        Self::Combined,
+        Self::CombinedSprite,
+    ];
 
     /// Its number, as `lib/shape.wgsl` knows it.
     pub fn number(self) -> u32 {
         Self::ALL.iter().position(|t| *t == self).unwrap_or(0) as u32
+    }
+
+    /// Whether it reads a volumetric depth sprite.
+    pub fn has_sprite(self) -> bool {
+        matches!(self, Self::Sprite | Self::SolidSprite | Self::CombinedSprite)
+    }
+
+    /// Whether it may read the faces of a solid.
+    pub fn has_faces(self) -> bool {
+        matches!(self, Self::Solid | Self::SolidSprite) || self.has_leaves()
+    }
+
+    /// Whether it reads the leaves of a combination.
+    pub fn has_leaves(self) -> bool {
+        matches!(self, Self::Combined | Self::CombinedSprite)
     }
 
     /// Its constant there.
@@ -72,7 +111,12 @@ impl VolumeTest {
             Self::Convex => "CONVEX",
             Self::Ellipsoid => "ELLIPSOID",
             Self::Frustum => "FRUSTUM",
+            Self::Solid => "SOLID",
+            Self::SolidSprite => "SOLID_SPRITE",
             Self::Sprite => "SPRITE",
+            Self::Members => "MEMBERS",
+            Self::Combined => "COMBINED",
+            Self::CombinedSprite => "COMBINED_SPRITE",
         }
     }
 }
@@ -191,6 +235,8 @@ pub struct Uber {
     pub effects: Vec<u32>,
     /// How the volumes of the scene's lenses are tested, ascending, each once; none: there are no lenses.
     pub tests: Vec<VolumeTest>,
+    /// What the leaves of their combinations are, ascending, each once.
+    pub leaves: Vec<VolumeTest>,
     /// Whether some of them show their silhouettes.
     pub outlines: bool,
     /// Whether some effects are blended.
@@ -207,14 +253,19 @@ impl Uber {
     /// What of it says what is there; `None` where nothing may be hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| kind == EffectKind::Hide);
-        (!effects.is_empty()).then(|| Self { effects, tests: self.tests.clone(), ..Self::default() })
+        (!effects.is_empty()).then(|| Self {
+            effects,
+            tests: self.tests.clone(),
+            leaves: self.leaves.clone(),
+            ..Self::default()
+        })
     }
 
     /// What of it lines go through; `None` where nobody may draw any.
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
-        let tests = self.tests.clone();
-        self.lines.then_some(Self { effects, tests, blends: self.blends, lines: true, ..Self::default() })
+        let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
+        self.lines.then_some(Self { effects, tests, leaves, blends: self.blends, lines: true, ..Self::default() })
     }
 
     /// What of it says how things look.
@@ -228,25 +279,41 @@ impl Uber {
 }
 
 impl Program {
-    /// Whether it has lenses, and whether it has outlines.
+    /// Which libraries it calls.
     pub fn has(&self) -> Parts {
+        let (tests, has_lenses) = match self {
+            Self::Specialised(plan) => (plan.tests().collect(), !plan.lenses.is_empty()),
+            Self::Uber(uber) => (uber.tests.clone(), !uber.tests.is_empty()),
+        };
+        let (outlines, blends, lines) = match self {
+            Self::Specialised(plan) => (plan.has_outlines(), plan.has_blends(), plan.lines),
+            Self::Uber(uber) => (uber.outlines, uber.blends, uber.lines),
+        };
+        Parts {
+            lenses: has_lenses,
+            shapes: tests.iter().any(|t| *t != VolumeTest::Sprite),
+            members: tests.contains(&VolumeTest::Members),
+            sprites: tests.iter().any(|t| t.has_sprite()),
+            solids: tests.iter().any(|t| t.has_faces()),
+            side_sprites: tests.iter().any(|t| t.has_faces() && t.has_sprite()),
+            combinations: tests.iter().any(|t| t.has_leaves()),
+            combined_sprites: tests.contains(&VolumeTest::CombinedSprite),
+            outlines,
+            blends,
+            lines,
+        }
+    }
+
+    /// What the leaves of its combinations are, ascending, each once.
+    pub fn leaves(&self) -> Vec<VolumeTest> {
         match self {
-            Self::Specialised(plan) => Parts {
-                lenses: !plan.lenses.is_empty(),
-                shapes: plan.tests().any(|t| t != VolumeTest::Sprite),
-                sprites: plan.tests().any(|t| t == VolumeTest::Sprite),
-                outlines: plan.has_outlines(),
-                blends: plan.has_blends(),
-                lines: plan.lines,
-            },
-            Self::Uber(uber) => Parts {
-                lenses: !uber.tests.is_empty(),
-                shapes: uber.tests.iter().any(|t| *t != VolumeTest::Sprite),
-                sprites: uber.tests.contains(&VolumeTest::Sprite),
-                outlines: uber.outlines,
-                blends: uber.blends,
-                lines: uber.lines,
-            },
+            Self::Specialised(plan) => {
+                let mut all: Vec<VolumeTest> = plan.lenses.iter().flat_map(|l| &l.leaves).copied().collect();
+                all.sort_unstable();
+                all.dedup();
+                all
+            }
+            Self::Uber(uber) => uber.leaves.clone(),
         }
     }
 
@@ -268,6 +335,16 @@ pub struct Parts {
     pub shapes: bool,
     /// The lens test by depth sprites.
     pub sprites: bool,
+    /// Membership by object.
+    pub members: bool,
+    /// The lens test from the faces of solids.
+    pub solids: bool,
+    /// The sides of solids and combinations by depth sprites.
+    pub side_sprites: bool,
+    /// The lens test from the leaves of combinations.
+    pub combinations: bool,
+    /// Their sides by depth sprites.
+    pub combined_sprites: bool,
     /// Silhouettes.
     pub outlines: bool,
     /// Blend modes.

@@ -135,7 +135,7 @@ fn a_lens_of_zero_size_holds_nothing_and_a_negative_one_is_refused() {
         format!("kind = \"cone\", {center}, radius = 0, height = 9"),
         format!("kind = \"frustum\", {center}, radius = 9, top_radius = 2, height = 0"),
     ] {
-        let volume = lens(&shape).unwrap().volume().unwrap();
+        let volume = lens(&shape).unwrap().volumes().unwrap().remove(0);
         let middle = DVec3::new(85_000.5, 446_010.25, 300.0);
         assert!(!volume.contains(middle), "{shape}");
         for direction in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(1.0, -2.0, 0.5), DVec3::ZERO] {

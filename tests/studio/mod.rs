@@ -10,15 +10,15 @@ use std::{
     },
 };
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use veduta::{
     city::{
         load::{LoadOptions, Quiet, load},
         synth,
     },
-    geom::Shape,
+    geom::{Ray, Shape, Volume, combination::Operation},
     gpu::Gpu,
-    lens::{Class, EffectUse, Lens, LensBody, LensKind},
+    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind, classify::intervals},
     render::picture::{Aovs, Picture, Request, Studio},
     scene::{CitySpec, Scene, Sun},
     view::{Camera, Projection},
@@ -64,13 +64,13 @@ pub fn scene(camera: Camera, lenses: Vec<Lens>) -> Scene {
 }
 
 /// A colour lens with one effect, without outline.
-pub fn lens(name: &str, shapes: Vec<Shape>, effect: &str) -> Lens {
+pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effect: &str) -> Lens {
     Lens {
         name: name.into(),
         kind: LensKind::Color,
         enabled: true,
         color: [0.8, 0.1, 0.1],
-        shapes,
+        shapes: shapes.into_iter().map(Into::into).collect(),
         effects: vec![used(effect)],
         body: LensBody::None,
         sprite: None,
@@ -82,8 +82,81 @@ pub fn used(effect: &str) -> EffectUse {
     EffectUse { effect: effect.into(), class: Class::Inside, blend: None, weight: None, parameters: BTreeMap::new() }
 }
 
+/// What a focus area holds, in f64, from its parts.
+pub enum Reference {
+    /// The union of volumes.
+    Volumes(Vec<Volume>),
+    /// A combination.
+    Combined(Operation, Vec<Reference>),
+}
+
+impl Reference {
+    /// Of a focus area that needs no city.
+    pub fn of(focus: &Focus) -> Self {
+        match focus {
+            Focus::Combined { how, parts } => Self::Combined(*how, parts.iter().map(Self::of).collect()),
+            other => Self::Volumes(other.volumes().expect("volumes")),
+        }
+    }
+
+    /// No further from the border than this, negative inside.
+    pub fn distance(&self, p: DVec3) -> f64 {
+        match self {
+            Self::Volumes(all) => all.iter().map(|v| v.signed_distance(p)).fold(f64::INFINITY, f64::min),
+            Self::Combined(how, parts) => {
+                let join = |a: f64, b: f64| match how {
+                    Operation::Union => a.min(b),
+                    Operation::Intersection => a.max(b),
+                    Operation::Difference => a.max(-b),
+                };
+                parts.iter().map(|part| part.distance(p)).reduce(join).expect("parts")
+            }
+        }
+    }
+
+    /// Where a ray is inside, ascending and apart.
+    pub fn intervals(&self, ray: &Ray) -> Vec<(f64, f64)> {
+        let mut ends: Vec<f64> = Vec::new();
+        self.ends(ray, &mut ends);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        let mut found: Vec<(f64, f64)> = Vec::new();
+        for pair in ends.windows(2).filter(|pair| self.holds(ray, pair[0].midpoint(pair[1]))) {
+            match found.last_mut() {
+                Some(last) if last.1 == pair[0] => last.1 = pair[1],
+                _ => found.push((pair[0], pair[1])),
+            }
+        }
+        found
+    }
+
+    fn ends(&self, ray: &Ray, ends: &mut Vec<f64>) {
+        match self {
+            Self::Volumes(all) => ends.extend(all.iter().flat_map(|v| intervals(v, ray)).flat_map(|(a, b)| [a, b])),
+            Self::Combined(_, parts) => parts.iter().for_each(|part| part.ends(ray, ends)),
+        }
+    }
+
+    fn holds(&self, ray: &Ray, t: f64) -> bool {
+        match self {
+            Self::Volumes(all) => all.iter().flat_map(|v| intervals(v, ray)).any(|(a, b)| a <= t && t < b),
+            Self::Combined(how, parts) => {
+                parts.iter().map(|part| part.holds(ray, t)).reduce(|a, b| how.joins(a, b)).expect("parts")
+            }
+        }
+    }
+
+    /// The middle of the box around it.
+    pub fn center(&self) -> DVec3 {
+        match self {
+            Self::Volumes(all) => all[0].bounds().center(),
+            Self::Combined(_, parts) => parts[0].center(),
+        }
+    }
+}
+
 /// One of each shape around a point, about `r` metres in size.
-pub fn shapes(at: DVec3, r: f64) -> Vec<Shape> {
+pub fn shapes(at: DVec3, r: f64) -> Vec<Focus> {
     let turn = DQuat::from_rotation_z(0.6) * DQuat::from_rotation_x(0.35);
     let points = (0..24)
         .map(|i| {
@@ -91,7 +164,9 @@ pub fn shapes(at: DVec3, r: f64) -> Vec<Shape> {
             at + r * DVec3::new((t * 1.7).sin(), (t * 2.9).cos(), (t * 0.8).sin())
         })
         .collect();
-    vec![
+    let plan = |corners: &[[f64; 2]]| corners.iter().map(|c| at.truncate() + r * DVec2::from(*c)).collect::<Vec<_>>();
+    let outline = [[-1.0, -0.8], [0.9, -0.9], [1.0, 0.7], [0.2, 0.6], [0.1, -0.2], [-0.3, 0.9], [-0.9, 0.5]];
+    let closed = [
         Shape::Sphere { center: at, radius: r },
         Shape::Box { center: at, size: DVec3::new(1.6, 1.1, 0.9) * r, rotation: turn },
         Shape::Cylinder { center: at, radius: 0.7 * r, height: 1.3 * r, axis: turn * DVec3::Z },
@@ -99,7 +174,31 @@ pub fn shapes(at: DVec3, r: f64) -> Vec<Shape> {
         Shape::Ellipsoid { center: at, radii: DVec3::new(1.1, 0.5, 0.8) * r, rotation: turn },
         Shape::Frustum { center: at, radius: 0.8 * r, top_radius: 0.5 * r, height: 1.3 * r, axis: turn * DVec3::Z },
         Shape::Frustum { center: at, radius: 0.9 * r, top_radius: 0.0, height: 1.4 * r, axis: DVec3::Z },
-    ]
+    ];
+    let concave = [
+        Focus::Prism {
+            points: plan(&outline),
+            holes: vec![plan(&[[0.3, -0.6], [0.6, -0.6], [0.5, -0.3]])],
+            base: at.z - 0.5 * r,
+            height: 0.9 * r,
+        },
+        Focus::Mesh { file: "citydata/ring.obj".into(), at, rotation: turn, scale: 0.8 * r },
+    ];
+    let ball = |by: DVec3, radius: f64| Focus::from(Shape::Sphere { center: at + r * by, radius: radius * r });
+    let slab = Shape::Box { center: at, size: DVec3::new(3.0, 0.7, 3.0) * r, rotation: turn };
+    let bitten = [ball(DVec3::ZERO, 1.0), slab.clone().into(), ball(DVec3::new(0.7, 0.3, 0.4), 0.6)];
+    let ring = Focus::Mesh { file: "citydata/ring.obj".into(), at, rotation: DQuat::IDENTITY, scale: 0.8 * r };
+    let combined = [
+        Focus::Combined { how: Operation::Difference, parts: bitten.to_vec() },
+        Focus::Combined {
+            how: Operation::Union,
+            parts: vec![
+                Focus::Combined { how: Operation::Intersection, parts: vec![ring, slab.into()] },
+                ball(DVec3::new(0.0, -0.9, 0.0), 0.4),
+            ],
+        },
+    ];
+    closed.into_iter().map(Focus::from).chain(concave).chain(combined).collect()
 }
 
 /// An orthographic camera.
@@ -123,12 +222,11 @@ pub fn bits(picture: &Picture, lens: usize) -> Vec<bool> {
 /// Pixels of the lens' mask that are wrong against f64, by how far the shown point is from the border. A test from shapes
 /// may err within 8 · 2⁻²³ · max(D, |centre − eye|) of it, a sprite within a pixel besides (S7).
 pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, bit: usize) -> usize {
-    let volumes: Vec<_> = lens.shapes.iter().flat_map(|s| s.volumes().expect("volumes")).collect();
+    let parts: Vec<Reference> = lens.shapes.iter().map(Reference::of).collect();
     let depth = picture.depth.as_ref().expect("depth was asked for");
     let inside = bits(picture, bit);
     let [w, h] = picture.size;
-    let from_eye = |v: &veduta::geom::Volume| v.bounds().center().distance(view.camera.eye);
-    let farthest = volumes.iter().map(from_eye).fold(0.0, f64::max);
+    let farthest = parts.iter().map(|p| p.center().distance(view.camera.eye)).fold(0.0, f64::max);
     let mut wrong = 0;
     for (i, (x, y)) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))).enumerate() {
         let d = f64::from(depth[i]);
@@ -137,7 +235,7 @@ pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, b
             continue;
         }
         let p = view.pixel_ray(x, y).at(d);
-        let distance = volumes.iter().map(|v| v.signed_distance(p)).fold(f64::INFINITY, f64::min);
+        let distance = parts.iter().map(|part| part.distance(p)).fold(f64::INFINITY, f64::min);
         let texel = if lens.sprite.is_some() { view.pixel_m(d) } else { 0.0 };
         if distance.abs() > texel + 8.0 * f64::from(f32::EPSILON) * d.max(farthest) {
             wrong += usize::from(inside[i] != (distance < 0.0));

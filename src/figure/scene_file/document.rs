@@ -110,8 +110,13 @@ pub fn schema() -> Value {
     let mut schema = object(&keys::ROOT);
     schema.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
     schema.insert("title".into(), "Veduta scene".into());
+    // Shapes may hold shapes.
+    schema.insert("$defs".into(), json!({ "shape": shapes() }));
     Value::Object(schema)
 }
+
+/// Where the schema describes shapes.
+const SHAPE: &str = "#/$defs/shape";
 
 /// The schema as the file `docs/scene.schema.json` holds it.
 pub fn schema_text() -> String {
@@ -138,7 +143,7 @@ fn object(table: &Table) -> Map<String, Value> {
     if !required.is_empty() {
         map.insert("required".into(), required.into());
     }
-    if table.keys.iter().any(|k| k.name == "shapes") {
+    if table.keys.iter().any(|k| k.name == "shape") {
         map.insert("oneOf".into(), json!([{ "required": ["shape"] }, { "required": ["shapes"] }]));
     }
     map.insert("additionalProperties".into(), false.into());
@@ -147,6 +152,7 @@ fn object(table: &Table) -> Map<String, Value> {
 
 fn of_kind(kind: &Kind) -> Value {
     let three = |min: f64, max: f64| json!({ "type": "array", "items": { "type": "number", "minimum": min, "maximum": max }, "minItems": 3, "maxItems": 3 });
+    let two = |min: f64| json!({ "type": "array", "items": { "type": "number", "minimum": min, "maximum": keys::FAR_M }, "minItems": 2, "maxItems": 2 });
     match kind {
         Kind::Integer { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
         Kind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
@@ -160,6 +166,12 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Points(least) => {
             json!({ "type": "array", "items": three(-keys::FAR_M, keys::FAR_M), "minItems": least, "maxItems": 4096 })
         }
+        Kind::PlanPoint => two(-keys::FAR_M),
+        Kind::PlanLengths => two(0.0),
+        Kind::PlanPoints(least) => json!({ "type": "array", "items": two(-keys::FAR_M), "minItems": least }),
+        Kind::Rings => {
+            json!({ "type": "array", "items": { "type": "array", "items": two(-keys::FAR_M), "minItems": 3 } })
+        }
         Kind::Planes(least) => {
             let four = json!({ "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4 });
             json!({ "type": "array", "items": four, "minItems": least, "maxItems": 64 })
@@ -172,8 +184,8 @@ fn of_kind(kind: &Kind) -> Value {
         }
         Kind::Table(table) => Value::Object(object(table)),
         Kind::Tables(table) => json!({ "type": "array", "items": object(table) }),
-        Kind::Shape => shapes(),
-        Kind::Shapes => json!({ "type": "array", "items": shapes(), "minItems": 1 }),
+        Kind::Shape => json!({ "$ref": SHAPE }),
+        Kind::Shapes => json!({ "type": "array", "items": { "$ref": SHAPE }, "minItems": 1 }),
         Kind::Effects => json!({ "type": "array", "items": { "anyOf": effects() } }),
     }
 }

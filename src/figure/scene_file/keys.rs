@@ -42,6 +42,14 @@ pub enum Kind {
     Angles,
     /// At least so many points.
     Points(usize),
+    /// `[x, y]`, each within ± [`FAR_M`].
+    PlanPoint,
+    /// `[x, y]`, each 0 to [`FAR_M`].
+    PlanLengths,
+    /// At least so many points `[x, y]`.
+    PlanPoints(usize),
+    /// Lists of at least three points `[x, y]`.
+    Rings,
     /// At least so many planes `[x, y, z, d]`.
     Planes(usize),
     /// `"#rrggbb"` or `[r, g, b]`.
@@ -436,6 +444,53 @@ const ROTATION: Key = key(
     "[30.0, 0.0, 0.0]",
 );
 
+const BASE: Key = key("base", Kind::Number { min: -FAR_M, max: FAR_M }, "", "m", "Height of its foot.", "0.0");
+const HIGH: Key =
+    key("height", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "From its foot to its top; 0 holds nothing.", "80.0");
+const IDS: Key = key(
+    "ids",
+    Kind::Texts,
+    "none: `attribute`",
+    "",
+    "Ids of city objects; their parts belong to them.",
+    "[\"town-hall\"]",
+);
+const ATTRIBUTE: Key = key(
+    "attribute",
+    Kind::Text,
+    "none: `ids`",
+    "",
+    "Objects that have this attribute; one without it takes its parent's.",
+    "\"yearOfConstruction\"",
+);
+const VALUES: Key = key("values", Kind::Texts, "any", "", "Only where the attribute is one of these.", "[\"school\"]");
+const MIN: Key = key(
+    "min",
+    Kind::Number { min: f64::MIN, max: f64::MAX },
+    "none",
+    "the attribute's",
+    "Only where the attribute is at least this.",
+    "1900.0",
+);
+const MAX: Key = key(
+    "max",
+    Kind::Number { min: f64::MIN, max: f64::MAX },
+    "none",
+    "the attribute's",
+    "Only where the attribute is at most this.",
+    "1945.0",
+);
+const EXCEPT: Key = key("except", Kind::Boolean, "false", "", "All other objects instead.", "true");
+
+const PARTS: Key = key(
+    "shapes",
+    Kind::Shapes,
+    "",
+    "",
+    "The shapes, of any kind, combinations too; at most 64 in all.",
+    "[{ kind = \"sphere\", center = [0, 0, 0], radius = 9 }, { kind = \"sphere\", center = [5, 0, 0], radius = 9 }]",
+);
+
 /// Shapes of lenses.
 pub const SHAPES: &[Table] = &[
     Table { name: "sphere", doc: "A ball.", keys: &[shape_kind("\"sphere\""), CENTER, RADIUS] },
@@ -531,11 +586,111 @@ pub const SHAPES: &[Table] = &[
             ),
         ],
     },
+    Table {
+        name: "mesh",
+        doc: "What the faces of a file enclose; it may be concave, in several parts, or touch and cross itself. Faces turned the wrong way and small holes are mended.",
+        keys: &[
+            shape_kind("\"mesh\""),
+            key(
+                "file",
+                Kind::Text,
+                "",
+                "",
+                "The file, of any format that cities are read from, relative to the scene file.",
+                "\"lens.obj\"",
+            ),
+            key("at", Kind::Point, "[0, 0, 0]", "m", "Where its origin is put.", "[78600.0, 457950.0, 10.0]"),
+            ROTATION,
+            key(
+                "scale",
+                Kind::Number { min: 0.0, max: FAR_M },
+                "1",
+                "metres per unit",
+                "Its size; more than 0.",
+                "2.5",
+            ),
+        ],
+    },
+    Table {
+        name: "mask",
+        doc: "What stands over a polygon, such as a district, or over the light pixels of an image.",
+        keys: &[
+            shape_kind("\"mask\""),
+            key(
+                "points",
+                Kind::PlanPoints(3),
+                "none: `image`",
+                "m",
+                "The polygon's corners `[x, y]` along its border, either way round.",
+                "[[0, 0], [90, 0], [60, 80]]",
+            ),
+            key("holes", Kind::Rings, "none", "m", "Corners of its holes.", "[[[40, 10], [50, 10], [50, 20]]]"),
+            key(
+                "image",
+                Kind::Text,
+                "none: `points`",
+                "",
+                "A PNG or JPEG, relative to the scene file. A pixel is in where it is opaque and at least as light as mid grey. North is up.",
+                "\"district.png\"",
+            ),
+            key("corner", Kind::PlanPoint, "none", "m", "Of an image: its south-west corner.", "[78000.0, 457000.0]"),
+            key("size", Kind::PlanLengths, "none", "m", "Of an image: its width and height in plan.", "[400.0, 300.0]"),
+            BASE,
+            HIGH,
+        ],
+    },
+    Table {
+        name: "mask3d",
+        doc: "The light pixels of images that lie on each other, layer by layer.",
+        keys: &[
+            shape_kind("\"mask3d\""),
+            key(
+                "images",
+                Kind::Texts,
+                "",
+                "",
+                "One PNG or JPEG per layer, bottom to top, all of one size; as for `mask`.",
+                "[\"low.png\", \"high.png\"]",
+            ),
+            key(
+                "corner",
+                Kind::Point,
+                "",
+                "m",
+                "The south-west corner of the lowest layer.",
+                "[78000.0, 457000.0, 0.0]",
+            ),
+            key("size", Kind::Lengths, "", "m", "Full extent along x, y, z.", "[40.0, 30.0, 20.0]"),
+        ],
+    },
+    Table {
+        name: "objects",
+        doc: "The union of the volumes of city objects, as they are shown; open ones are closed.",
+        keys: &[shape_kind("\"objects\""), IDS, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
+    },
+    Table {
+        name: "thematic",
+        doc: "Everything that belongs to city objects, wherever it is: membership by object, not by place. Nothing is in front of it or behind it.",
+        keys: &[shape_kind("\"thematic\""), IDS, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
+    },
+    Table { name: "union", doc: "What is in any of some shapes.", keys: &[shape_kind("\"union\""), PARTS] },
+    Table {
+        name: "intersection",
+        doc: "What is in all of some shapes.",
+        keys: &[shape_kind("\"intersection\""), PARTS],
+    },
+    Table {
+        name: "difference",
+        doc: "What is in the first of some shapes and in none of the others.",
+        keys: &[shape_kind("\"difference\""), PARTS],
+    },
 ];
 
 /// Shapes of later versions.
-pub const LATER_SHAPES: &[&str] =
-    &["mesh", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference", "flat"];
+pub const LATER_SHAPES: &[&str] = &["flat"];
+
+/// Shapes that are made from files, images, polygons or the city ([`crate::lens::Focus`]).
+pub const FOCUSES: &[&str] = &["mesh", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference"];
 
 /// Classes of an effect's use.
 pub const CLASSES: &[&str] = &["inside", "front", "behind", "rest"];
@@ -557,6 +712,10 @@ impl Kind {
             Self::Direction => "[x, y, z], not all 0".into(),
             Self::Angles => "[yaw, pitch, roll], three numbers -360 to 360".into(),
             Self::Points(least) => format!("a list of at least {least} points [x, y, z]"),
+            Self::PlanPoint => "[x, y], two finite numbers".into(),
+            Self::PlanLengths => "[width, height], two numbers ≥ 0".into(),
+            Self::PlanPoints(least) => format!("a list of at least {least} points [x, y]"),
+            Self::Rings => "a list of rings, each a list of at least 3 points [x, y]".into(),
             Self::Planes(least) => format!("a list of at least {least} planes [x, y, z, d]"),
             Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Background => "\"sky\" or a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),

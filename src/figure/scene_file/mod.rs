@@ -5,6 +5,7 @@
 
 pub mod check;
 pub mod document;
+mod focus;
 pub mod keys;
 mod node;
 mod parse;

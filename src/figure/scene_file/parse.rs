@@ -7,13 +7,14 @@ use glam::{DQuat, DVec3};
 use crate::{
     figure::scene_file::{
         check::{Checker, Fields, Place, lod},
+        focus::Reader,
         keys::{self, CLASSES, Kind},
         node::{Data, Node},
         paths::{Options, PathProblem},
     },
-    geom::Shape,
+    geom::{Shape, combination::Operation},
     lens::{
-        Class, EffectUse, Lens, LensBody, LensKind, LensSprite, Parameter, effect,
+        Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -205,7 +206,7 @@ impl<'o> SceneReader<'o> {
         }
     }
 
-    fn shapes(&mut self, fields: &Fields) -> Vec<Shape> {
+    fn shapes(&mut self, fields: &Fields) -> Vec<Focus> {
         match (fields.given("shape"), fields.given("shapes")) {
             (true, true) => {
                 let message = "is given together with shape: put all of them into shapes";
@@ -226,7 +227,7 @@ impl<'o> SceneReader<'o> {
             .collect()
     }
 
-    fn shape(&mut self, node: &Node, place: &Place) -> Option<Shape> {
+    fn shape(&mut self, node: &Node, place: &Place) -> Option<Focus> {
         let Data::Table(entries) = &node.data else {
             self.checker.note(
                 place,
@@ -259,12 +260,25 @@ impl<'o> SceneReader<'o> {
             return None;
         };
         let fields = self.checker.fields(node, table, &[], place.clone());
+        if let Some(how) = Operation::ALL.into_iter().find(|how| how.word() == table.name) {
+            let nodes = fields.node("shapes").and_then(Node::list)?;
+            let part =
+                |(i, node): (usize, &Node)| self.shape(node, &fields.place.within(&format!("shapes.{i}"), node.line));
+            let parts: Vec<Focus> = nodes.iter().enumerate().filter_map(part).collect();
+            return (parts.len() == nodes.len()).then_some(Focus::Combined { how, parts });
+        }
+        let turn = rotation(fields.node("rotation_deg").and_then(Node::numbers::<3>).unwrap_or([0.0; 3]));
+        let (checker, options, lacks_data) = (&mut self.checker, self.options, &mut self.lacks_data);
+        let mut reader = Reader { checker, options, lacks_data };
+        if keys::FOCUSES.contains(&table.name) {
+            return reader.focus(table.name, &fields, turn);
+        }
         let shape = built_shape(table.name, &fields)?;
         if let Err(error) = shape.volumes() {
             let key = ["points", "planes"].into_iter().find(|key| fields.given(key)).unwrap_or("");
             self.checker.note(place, key, node.line, error.to_string());
         }
-        Some(shape)
+        Some(shape.into())
     }
 
     fn effects(&mut self, fields: &Fields, in_lens: bool) -> Vec<EffectUse> {

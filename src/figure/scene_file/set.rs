@@ -185,7 +185,7 @@ fn in_list(list: &mut Vec<Value>, name: &str, key: &str, rest: &[String], value:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{geom::Shape, scene::BaseStyle, view::Projection};
+    use crate::{geom::Shape, lens::Focus, scene::BaseStyle, view::Projection};
 
     const SCENE: &str = r#"
 veduta = 1
@@ -211,7 +211,7 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
     #[test]
     fn values_are_set_by_place_and_by_name() {
         let radius = |s: &Scene| match s.lenses[0].shapes[0] {
-            Shape::Sphere { radius, .. } => radius,
+            Focus::Shape(Shape::Sphere { radius, .. }) => radius,
             _ => f64::NAN,
         };
         assert_eq!(radius(&after("lens.0.shape.radius=80").unwrap()), 80.0);

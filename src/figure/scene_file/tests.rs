@@ -1,10 +1,10 @@
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    geom::Shape,
-    lens::{Class, EffectUse, Lens, LensBody, LensKind, LensSprite, Parameter},
+    geom::{Shape, combination::Operation},
+    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, chosen::Choice},
     scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun},
     shader::Blend,
     view::{Camera, Projection},
@@ -51,7 +51,7 @@ effects = ["sepia", { effect = "thematic", attribute = "yearOfConstruction", cla
     assert_eq!(scene.city.files, [std::path::PathBuf::from("city.city.json")]);
     assert_eq!(scene.pois, [Poi { name: "hall".into(), place: PoiPlace::Object("ID".into()) }]);
     let lens = &scene.lenses[0];
-    assert_eq!(lens.shapes, [Shape::Sphere { center: DVec3::new(4.0, 5.0, 6.0), radius: 60.0 }]);
+    assert_eq!(lens.shapes, [Shape::Sphere { center: DVec3::new(4.0, 5.0, 6.0), radius: 60.0 }.into()]);
     assert_eq!(
         (lens.effects[0].effect.as_str(), lens.effects[1].text("attribute")),
         ("sepia", Some("yearOfConstruction"))
@@ -145,12 +145,57 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"shpere\" }",
-            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, is \"shpere\"; did you mean \"sphere\"?",
+            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, mesh, mask, mask3d, objects, thematic, union, intersection, difference, is \"shpere\"; did you mean \"sphere\"?",
         ),
         (
-            "shape = { kind = \"mesh\" }",
-            "shape.kind: kind = \"mesh\" is not available yet; available: sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor",
+            "shape = { kind = \"flat\" }",
+            "shape.kind: kind = \"flat\" is not available yet; available: sphere, ellipsoid, box,",
         ),
+        ("shape = { kind = \"union\" }", "shape.shapes: is missing: The shapes, of any kind"),
+        (
+            "shape = { kind = \"union\", shapes = [{ kind = \"sphere\", center = [0,0,0], radius = 1 }, { kind = \"box\", center = [0,0,0] }] }",
+            "shape.shapes.1.size: is missing",
+        ),
+        ("shape = { kind = \"mesh\" }", "shape.file: is missing: The file, of any format"),
+        (
+            "shape = { kind = \"mesh\", file = \"a.obj\", scale = 0 }",
+            "s.toml:3: [lens.0] shape.scale: must be > 0, is 0",
+        ),
+        (
+            "shape = { kind = \"mask\", base = 0, height = 3 }",
+            "shape.image: is missing: give image = \"FILE\" or points",
+        ),
+        (
+            "shape = { kind = \"mask\", image = \"a.png\", points = [[0,0],[1,0],[0,1]], base = 0, height = 3 }",
+            "shape.image: is given together with points: a mask is one of them",
+        ),
+        (
+            "shape = { kind = \"mask\", image = \"a.png\", base = 0, height = 3 }",
+            "shape.corner: is missing: an image needs",
+        ),
+        (
+            "shape = { kind = \"mask\", points = [[0,0],[1,0],[0,1,2]], base = 0, height = 3 }",
+            "shape.points: point 2 must be [x, y], two finite numbers, is [0, 1, 2]",
+        ),
+        (
+            "shape = { kind = \"mask\", points = [[0,0],[9,9],[9,0],[0,9]], base = 0, height = 3 }",
+            "shape.points: the polygon crosses itself",
+        ),
+        (
+            "shape = { kind = \"mask\", points = [[0,0],[9,0],[0,9]], corner = [0,0], base = 0, height = 3 }",
+            "shape.corner: has a meaning only with image",
+        ),
+        (
+            "shape = { kind = \"mask3d\", images = [], corner = [0,0,0], size = [1,1,1] }",
+            "shape.images: must name at least one image",
+        ),
+        ("shape = { kind = \"objects\" }", "shape.ids: is missing: give ids = [\"ID\", ...] or attribute = \"NAME\""),
+        (
+            "shape = { kind = \"thematic\", ids = [\"a\"], attribute = \"b\" }",
+            "shape.attribute: is given together with ids",
+        ),
+        ("shape = { kind = \"thematic\", ids = [] }", "shape.ids: must name at least one object"),
+        ("shape = { kind = \"thematic\", ids = [\"a\"], min = 3 }", "shape.min: has a meaning only with attribute"),
         (
             "shape = { kind = \"corridor\", points = [[0, 0, 0]], width = 3, height = 2 }",
             "shape.points: a line needs at least 2 points, has 1",
@@ -255,7 +300,8 @@ fn deep_nesting_is_an_error_and_not_a_crash() {
 #[test]
 fn a_zero_size_lens_is_a_lens_that_holds_nothing() {
     let scene = read_text(&lens_text("shape = { kind = \"sphere\", center = [0, 0, 0], radius = 0 }")).unwrap();
-    assert!(scene.lenses[0].shapes[0].volume().unwrap().is_empty());
+    let Focus::Shape(shape) = &scene.lenses[0].shapes[0] else { panic!("a sphere") };
+    assert!(shape.volume().unwrap().is_empty());
 }
 
 #[test]
@@ -315,6 +361,65 @@ fn shapes() -> impl Strategy<Value = Shape> {
     ]
 }
 
+fn plan() -> impl Strategy<Value = DVec2> {
+    prop::array::uniform2(-1e6..1e6f64).prop_map(DVec2::from)
+}
+
+fn choices() -> impl Strategy<Value = Choice> {
+    let ids = prop::collection::vec("[a-z\"]{1,5}", 1..3).prop_map(|ids| (ids, None));
+    let attribute = (".{1,5}", prop::option::of(prop::collection::vec(".{1,4}", 0..3)))
+        .prop_map(|(name, values)| (Vec::new(), Some((name, values))));
+    (prop_oneof![ids, attribute], prop::option::of(-1e3..1e3f64), any::<bool>()).prop_map(|((ids, of), min, except)| {
+        let (attribute, values) = of.map_or((None, None), |(name, values)| (Some(name), values));
+        let min = min.filter(|_| attribute.is_some());
+        Choice { ids, attribute, values, min, max: min.map(|m| m + 1.0), except }
+    })
+}
+
+fn focuses() -> impl Strategy<Value = Focus> {
+    plain_focuses().prop_recursive(2, 6, 3, |inner| {
+        (prop::sample::select(Operation::ALL.to_vec()), prop::collection::vec(inner, 1..3))
+            .prop_map(|(how, parts)| Focus::Combined { how, parts })
+    })
+}
+
+fn plain_focuses() -> impl Strategy<Value = Focus> {
+    let angles = prop::array::uniform3(-1800..1800i32).prop_map(|a| a.map(|a| f64::from(a) / 10.0));
+    // With area, and a smaller one in it.
+    let ring = (plan(), 1.0..1e3f64).prop_map(|(at, size)| {
+        let corners =
+            move |size: f64| [[0.0, 0.0], [3.0, 0.4], [1.0, 2.0]].map(|c| at + size * (DVec2::from(c) - 1.0)).to_vec();
+        (corners(size), corners(0.3 * size))
+    });
+    let size = || prop::array::uniform2(0.0..1e3f64).prop_map(DVec2::from);
+    prop_oneof![
+        4 => shapes().prop_map(Focus::from),
+        1 => (point(), angles, 0.1..1e3f64).prop_map(|(at, a, scale)| Focus::Mesh {
+            file: "b.obj".into(),
+            at,
+            rotation: rotation(a),
+            scale
+        }),
+        1 => (ring, any::<bool>(), -1e3..1e3f64, 0.0..1e3f64).prop_map(|((points, hole), holed, base, height)| {
+            Focus::Prism { points, holes: if holed { vec![hole] } else { vec![] }, base, height }
+        }),
+        1 => (plan(), size(), -1e3..1e3f64, 0.0..1e3f64).prop_map(|(corner, size, base, height)| Focus::Mask {
+            image: "m.png".into(),
+            corner,
+            size,
+            base,
+            height
+        }),
+        1 => (point(), prop::array::uniform3(0.0..1e3f64)).prop_map(|(corner, size)| Focus::Mask3d {
+            images: vec!["0.png".into(), "1.png".into()],
+            corner,
+            size: size.into()
+        }),
+        1 => choices().prop_map(Focus::Objects),
+        1 => choices().prop_map(Focus::Thematic),
+    ]
+}
+
 fn effects() -> impl Strategy<Value = EffectUse> {
     let class = prop_oneof![Just(Class::Inside), Just(Class::Front), Just(Class::Behind), Just(Class::Rest)];
     let used = |effect: &str, class, parameters: Vec<(&str, Parameter)>| EffectUse {
@@ -347,7 +452,7 @@ fn effects() -> impl Strategy<Value = EffectUse> {
 }
 
 prop_compose! {
-    fn lenses()(shapes in prop::collection::vec(shapes(), 1..3), used in prop::collection::vec(effects(), 0..2),
+    fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), outline in any::<bool>(),
         sprite in prop::option::of(prop::option::of(16..16_384u32))) -> Lens {
         let sprite = sprite.map(|resolution| LensSprite { resolution });
@@ -397,16 +502,26 @@ prop_compose! {
 fn same(a: &Scene, b: &Scene) -> bool {
     let mut b = b.clone();
     for (la, lb) in a.lenses.iter().zip(&mut b.lenses) {
-        for (sa, sb) in la.shapes.iter().zip(&mut lb.shapes) {
-            if let (Shape::Box { rotation: ra, .. }, Shape::Box { rotation: rb, .. })
-            | (Shape::Ellipsoid { rotation: ra, .. }, Shape::Ellipsoid { rotation: rb, .. }) = (sa, sb)
-                && ra.dot(*rb).abs() > 1.0 - 1e-12
-            {
-                *rb = *ra;
-            }
-        }
+        la.shapes.iter().zip(&mut lb.shapes).for_each(|(sa, sb)| turn_alike(sa, sb));
     }
     *a == b
+}
+
+/// Gives `b` the rotations of `a` where they agree within a rounding.
+fn turn_alike(a: &Focus, b: &mut Focus) {
+    let turns = match (a, b) {
+        (Focus::Combined { parts: a, .. }, Focus::Combined { parts: b, .. }) => {
+            a.iter().zip(b).for_each(|(a, b)| turn_alike(a, b));
+            None
+        }
+        (Focus::Shape(Shape::Box { rotation: ra, .. }), Focus::Shape(Shape::Box { rotation: rb, .. }))
+        | (Focus::Shape(Shape::Ellipsoid { rotation: ra, .. }), Focus::Shape(Shape::Ellipsoid { rotation: rb, .. }))
+        | (Focus::Mesh { rotation: ra, .. }, Focus::Mesh { rotation: rb, .. }) => Some((ra, rb)),
+        _ => None,
+    };
+    if let Some((ra, rb)) = turns.filter(|(ra, rb)| ra.dot(**rb).abs() > 1.0 - 1e-12) {
+        *rb = *ra;
+    }
 }
 
 proptest! {

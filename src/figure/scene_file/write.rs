@@ -11,7 +11,7 @@ use crate::{
     },
     geom::Shape,
     lens::{
-        Class, EffectUse, Lens, LensBody, Parameter,
+        Class, EffectUse, Focus, Lens, LensBody, Parameter,
         color::{parse_hex, to_hex},
     },
     scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun},
@@ -34,7 +34,7 @@ pub fn write(scene: &Scene, options: &Options) -> String {
     out.sun(&scene.sun);
     out.style(&scene.style);
     scene.pois.iter().for_each(|poi| out.poi(poi));
-    scene.lenses.iter().enumerate().for_each(|(i, lens)| out.lens(i, lens));
+    scene.lenses.iter().enumerate().for_each(|(i, lens)| out.lens(i, lens, options));
     let figure = Figure::default();
     if scene.figure != figure {
         out.head("[figure]");
@@ -118,15 +118,15 @@ impl Toml {
         }
     }
 
-    fn lens(&mut self, index: usize, lens: &Lens) {
+    fn lens(&mut self, index: usize, lens: &Lens, options: &Options) {
         self.head("[[lens]]");
         self.key("name", &quoted(&lens.name));
         self.key("kind", "\"color\"");
         self.key_if(!lens.enabled, "enabled", "false");
         self.key_if(lens.color != lens_color(index), "color", &color(lens.color));
         match &lens.shapes[..] {
-            [one] => self.key("shape", &shape(one)),
-            many => self.key("shapes", &list(many.iter().map(shape))),
+            [one] => self.key("shape", &focus(one, options)),
+            many => self.key("shapes", &list(many.iter().map(|one| focus(one, options)))),
         }
         self.key_if(!lens.effects.is_empty(), "effects", &list(lens.effects.iter().map(effect)));
         self.key_if(lens.body == LensBody::None, "body", "\"none\"");
@@ -137,16 +137,16 @@ impl Toml {
     }
 }
 
-fn list(items: impl IntoIterator<Item = String>) -> String {
+pub(super) fn list(items: impl IntoIterator<Item = String>) -> String {
     format!("[{}]", items.into_iter().collect::<Vec<_>>().join(", "))
 }
 
 /// The shortest text that reads back as the same f64.
-fn number(n: f64) -> String {
+pub(super) fn number(n: f64) -> String {
     format!("{n:?}")
 }
 
-fn point(p: DVec3) -> String {
+pub(super) fn point(p: DVec3) -> String {
     list(p.to_array().map(number))
 }
 
@@ -181,6 +181,14 @@ fn degrees(radians: f64) -> f64 {
 /// `n` with 0, 1, ... 13 decimals.
 fn rounded(n: f64) -> impl Iterator<Item = f64> {
     (0..=13).filter_map(move |digits| format!("{n:.digits$}").parse().ok()).map(|d: f64| d + 0.0)
+}
+
+/// A focus area as its table.
+pub(super) fn focus(focus: &Focus, options: &Options) -> String {
+    match focus {
+        Focus::Shape(one) => shape(one),
+        other => super::focus::written(other, options).unwrap_or_default(),
+    }
 }
 
 fn shape(shape: &Shape) -> String {
@@ -237,7 +245,7 @@ fn shape(shape: &Shape) -> String {
 }
 
 /// The key of a rotation, where there is one.
-fn turned(rotation: DQuat) -> String {
+pub(super) fn turned(rotation: DQuat) -> String {
     match angles(rotation) {
         [0.0, 0.0, 0.0] => String::new(),
         angles => format!(", rotation_deg = {}", list(angles.map(number))),

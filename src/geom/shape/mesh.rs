@@ -50,8 +50,8 @@ const BOUNDING_SIDES: u32 = 48;
 const GROWTH: f64 = 1.0 + 1e-5;
 
 impl Volume {
-    /// A closed convex mesh that holds the whole shape: what a renderer draws to reach all pixels of an analytic
-    /// volume. Boxes and polytopes: their faces exactly. Round ones: circumscribed, at most 4 % wider.
+    /// A closed mesh that holds the whole shape, convex where that is: what a renderer draws to reach all pixels of an analytic
+    /// volume. Boxes, polytopes and solids: their faces exactly. Round ones: circumscribed, at most 4 % wider.
     /// Empty where the volume is.
     pub fn bounding_mesh(&self) -> Mesh {
         match self {
@@ -81,7 +81,7 @@ impl Volume {
                 let wider = GROWTH / (0.5 * TAU / f64::from(BOUNDING_SIDES)).cos();
                 prism(*center, radii.map(|r| r * wider), *half * GROWTH, *axis, BOUNDING_SIDES)
             }
-            Self::Box { .. } | Self::Convex(_) => self.surface_mesh(BOUNDING_SIDES),
+            Self::Box { .. } | Self::Convex(_) | Self::Solid(_) => self.surface_mesh(BOUNDING_SIDES),
         }
     }
 
@@ -106,6 +106,13 @@ impl Volume {
             Self::Convex(hull) => {
                 let (points, triangles) = hull.faces();
                 Mesh { points, triangles: triangles.to_vec() }
+            }
+            Self::Solid(placed) => {
+                let faces = placed.solid.faces();
+                Mesh {
+                    points: faces.iter().flatten().map(|p| placed.world(*p)).collect(),
+                    triangles: (0..faces.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+                }
             }
         }
     }

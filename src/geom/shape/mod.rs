@@ -8,11 +8,13 @@ mod corridor;
 mod hull;
 mod mesh;
 mod polytope;
+pub mod solid;
 
 use glam::{DQuat, DVec2, DVec3};
 
 pub use hull::Hull;
 pub use mesh::Mesh;
+pub use solid::{PlacedSolid, Solid};
 
 use crate::geom::{Aabb, Ray};
 
@@ -127,6 +129,21 @@ pub enum ShapeError {
     /// No point is on the inner side of all planes, or only a flat figure.
     #[error("the planes leave nothing between them: turn those round whose normal points inwards")]
     Nothing,
+    /// A polygon is none.
+    #[error("{}", solid::words_for(.0))]
+    Ring(crate::geom::triangulate::Refusal),
+    /// Layers of a 3D mask differ in size.
+    #[error("layer {0} has {1:?} pixels, the first has {2:?}: all layers need the same size")]
+    Layers(usize, [u32; 2], [u32; 2]),
+    /// A mask without a single pixel.
+    #[error("the mask is empty: a pixel belongs to it where it is opaque and at least as bright as mid grey")]
+    EmptyMask,
+    /// More faces than a lens needs.
+    #[error("a solid may have at most {max} triangles, has {0}", max = solid::MAX_FACES)]
+    ManyFaces(usize),
+    /// Faces that enclose nothing.
+    #[error("the faces enclose no volume")]
+    NoBody,
     /// All points lie on one plane (or line).
     #[error("all {0} points lie on one plane: the hull has no volume; move one of them off it")]
     Flat(usize),
@@ -184,6 +201,8 @@ pub enum Volume {
     },
     /// A convex polytope.
     Convex(Hull),
+    /// A solid of any form.
+    Solid(PlacedSolid),
 }
 
 impl Shape {
@@ -257,16 +276,20 @@ impl Volume {
             Self::Cylinder { radius, half, .. } => radius.min(*half) <= 0.0,
             Self::Ellipsoid { radii, .. } => radii.min_element() <= 0.0,
             Self::Frustum { radii, half, .. } => radii[0].max(radii[1]).min(*half) <= 0.0,
-            Self::Convex(_) => false,
+            Self::Convex(_) | Self::Solid(_) => false,
         }
     }
 
     /// Whether the closed body holds `p`.
     pub fn contains(&self, p: DVec3) -> bool {
-        self.signed_distance(p) <= 0.0 && !self.is_empty()
+        match self {
+            Self::Solid(placed) => placed.solid.winding(placed.local(p)) != 0,
+            _ => self.signed_distance(p) <= 0.0 && !self.is_empty(),
+        }
     }
 
-    /// Where the line of `ray` enters and leaves: inside for `entry ≤ t < exit`. Both may be negative (behind the
+    /// Where the line of `ray` enters and leaves: inside for `entry ≤ t < exit`; of a solid, which it may leave and enter again
+    /// in between, the first and the last crossing ([`Solid::crossings`] has all of them). Both may be negative (behind the
     /// origin). `None`: it misses. A ray without direction is everywhere inside or misses.
     pub fn entry_exit(&self, ray: &Ray) -> Option<(f64, f64)> {
         if self.is_empty() {
@@ -300,6 +323,11 @@ impl Volume {
                 both(ends, cone(o, d, middle, slope, ends)?)
             }
             Self::Convex(hull) => hull.entry_exit(ray)?,
+            Self::Solid(placed) => {
+                let crossings = placed.solid.crossings(&placed.local_ray(ray));
+                let ends = (f64::INFINITY, f64::NEG_INFINITY);
+                crossings.iter().fold(ends, |(low, high), c| (low.min(c.t), high.max(c.t)))
+            }
         };
         (entry < exit).then_some((entry, exit))
     }
@@ -327,6 +355,11 @@ impl Volume {
                 distance_of_frustum(DVec2::new((v - along * *axis).length(), along), *radii, *half)
             }
             Self::Convex(hull) => hull.signed_distance(p),
+            Self::Solid(placed) => {
+                let local = placed.local(p);
+                let distance = placed.solid.distance(local);
+                if placed.solid.winding(local) != 0 { -distance } else { distance }
+            }
         }
     }
 
@@ -354,6 +387,7 @@ impl Volume {
                 around(*center - *half * *axis, radii[0] * disc).union(around(*center + *half * *axis, radii[1] * disc))
             }
             Self::Convex(hull) => hull.bounds(),
+            Self::Solid(placed) => Aabb::from_points(placed.solid.bounds().corners().map(|c| placed.world(c))),
         }
     }
 }

@@ -1,0 +1,127 @@
+// Boolean combinations of volumes (L3): their leaves in the order of a stack machine. A leaf is pushed; then come the
+// operations that follow it. What is inside is decided at the place; the sides, along the ray, by the ends of the leaves, at
+// which alone a combination can begin or end. A choice of objects counts as the box around them there. `leaf_holds` and `span_of_leaf`
+// know the kinds of leaves that a module needs. Twin: `veduta::geom::combination`.
+
+const UNION: u32 = 1u;
+const INTERSECTION: u32 = 2u;
+const DIFFERENCE: u32 = 3u;
+
+struct Leaf {
+    shape: Shape,
+    first: f32,                 // of members: where their marks begin; `shape` is the box around them
+    operations: u32,            // two bits each, the first in the lowest; 0 ends them
+}
+
+// Of a combination, `size_x` is where its leaves begin among the planes, five of these to each; `size_y` how many there are.
+fn leaf_at(s: Shape, i: u32) -> Leaf {
+    let at = u32(s.size_x) + 5u * i;
+    let center = planes[at];
+    let x = planes[at + 1u];
+    let y = planes[at + 2u];
+    let z = planes[at + 3u];
+    let own = planes[at + 4u];
+    return Leaf(Shape(center.xyz, u32(own.x), x.xyz, x.w, y.xyz, y.w, z.xyz, z.w), own.z, u32(own.y));
+}
+
+// Puts a leaf on the stack of bits and does what follows it.
+fn pushed(stack: u32, is_in: bool, operations: u32) -> u32 {
+    var bits = stack << 1u | u32(is_in);
+    for (var left = operations; left != 0u; left >>= 2u) {
+        let top = bits & 1u;
+        let below = bits >> 1u & 1u;
+        let operation = left & 3u;
+        let joined = select(select(below & (1u - top), below & top, operation == INTERSECTION), below | top, operation == UNION);
+        bits = bits >> 2u << 1u | joined;
+    }
+    return bits;
+}
+
+fn inside_combined(s: Shape, sight: Sight) -> u32 {
+    var bits = 0u;
+    for (var i = 0u; i < u32(s.size_y); i++) {
+        let leaf = leaf_at(s, i);
+        bits = pushed(bits, leaf_holds(leaf, sight.position, sight.object), leaf.operations);
+    }
+    return select(MISSED, INSIDE, bits == 1u && sight.distance < FAR_AWAY);
+}
+
+// Where one ray is inside of each leaf; of solids nothing.
+var<private> spans: array<Span, 64>;
+
+fn find_spans(s: Shape, ray: Ray) {
+    for (var i = 0u; i < u32(s.size_y); i++) {
+        let leaf = leaf_at(s, i).shape;
+        let span = span_of_leaf(ray, leaf);
+        spans[i] = Span(span.enter, select(span.exit, span.enter, span.exit < span.enter));
+    }
+}
+
+// Whether that ray is inside just after `t` (just before it): leaves of closed forms by where they begin and end, solids by the
+// place, but `own`, which says itself what it is there.
+fn is_within(s: Shape, ray: Ray, t: f32, is_after: bool, own: u32, is_in_own: bool) -> bool {
+    var bits = 0u;
+    for (var i = 0u; i < u32(s.size_y); i++) {
+        let leaf = leaf_at(s, i);
+        let span = spans[i];
+        var is_in = select(span.enter < t && t <= span.exit, span.enter <= t && t < span.exit, is_after);
+        if leaf.shape.kind == SOLID {
+            is_in = leaf_holds(leaf, ray.origin + t * ray.direction, 0u);
+        }
+        bits = pushed(bits, select(is_in, is_in_own, i == own), leaf.operations);
+    }
+    return bits == 1u;
+}
+
+const NO_LEAF: u32 = 0xffffffffu;
+
+// Where a ray enters first and leaves last, of what lies in front of the eye, by the ends of its closed forms alone.
+fn span_of_forms(s: Shape, ray: Ray, starts_at_eye: bool) -> Span {
+    find_spans(s, ray);
+    var span = Span(FAR_AWAY, -FAR_AWAY);
+    for (var end = 0u; end < 2u * u32(s.size_y); end++) {
+        let own = spans[end / 2u];
+        let t = select(own.enter, own.exit, end % 2u == 1u);
+        let before = is_within(s, ray, t, false, NO_LEAF, false);
+        let after = is_within(s, ray, t, true, NO_LEAF, false);
+        let is_end = own.enter < own.exit && before != after && (!starts_at_eye || t > 0.0);
+        span.enter = select(span.enter, min(span.enter, t), is_end && after);
+        span.exit = select(span.exit, max(span.exit, t), is_end && before);
+    }
+    return span;
+}
+
+// The same for the ends of its solids too, each face asked: of a place that the picture may not show.
+fn class_by_leaves(s: Shape, sight: Sight) -> u32 {
+    let starts_at_eye = !sight.is_parallel;
+    var span = span_of_forms(s, sight.ray, starts_at_eye);
+    for (var i = 0u; i < u32(s.size_y); i++) {
+        let leaf = leaf_at(s, i).shape;
+        if leaf.kind != SOLID {
+            continue;
+        }
+        let sizes = solids[u32(leaf.size_x) + 1u];
+        for (var f = 0u; f < sizes.w; f++) {
+            let hit = face_hit(sight.ray, leaf, f);
+            if !hit.is_met || (starts_at_eye && hit.t <= 0.0) {
+                continue;
+            }
+            let before = is_within(s, sight.ray, hit.t, false, i, !hit.is_entry);
+            let after = is_within(s, sight.ray, hit.t, true, i, hit.is_entry);
+            span.enter = select(span.enter, min(span.enter, hit.t), after && !before);
+            span.exit = select(span.exit, max(span.exit, hit.t), before && !after);
+        }
+    }
+    // 1: the eye is inside.
+    span.enter = select(span.enter, 0.0, starts_at_eye && s.size_z > 0.5 && span.exit > -FAR_AWAY);
+    let is_missed = span.enter > span.exit || (starts_at_eye && sight.distance <= 0.0);
+    let is_before = sight.distance < span.enter;
+    let side = side_of_solid(is_missed, is_before, sight.distance >= span.exit);
+    return select(side, INSIDE, inside_combined(s, sight) == INSIDE);
+}
+
+// Whether the ray of a pixel's centre meets it.
+fn covers_by_leaves(s: Shape, pixel: vec2i) -> bool {
+    let span = span_of_forms(s, ray_of_pixel(vec2f(pixel) + 0.5), view.orthographic == 0u);
+    return span.enter < span.exit;
+}

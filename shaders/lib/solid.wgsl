@@ -1,0 +1,123 @@
+// Solids of any form (L3): the winding number of their surface about a place, counted along the line straight up from it in the
+// solid's own coordinates. Twin: `veduta::geom::shape::Solid`, which says how.
+
+// Of each solid: low x, y of the columns, columns per metre in x, y (f32); columns in x and y, fours of words that the next
+// list takes, number of faces; where the faces of each column begin; the faces, four entries each: corners by x, and whether
+// that is their turn (1 or -1); upward normal, and how much higher than its first corner an upright face counts as above.
+@group(1) @binding(2) var<storage, read> solids: array<vec4u>;
+
+struct SolidFace {
+    a: vec3f,
+    b: vec3f,
+    c: vec3f,
+    turn: i32,
+    normal: vec3f,
+    rise: f32,
+}
+
+fn in_solid(s: Shape, v: vec3f) -> vec3f {
+    return vec3f(dot(v, s.axis_x), dot(v, s.axis_y), dot(v, s.axis_z));
+}
+
+fn solid_face(at: u32) -> SolidFace {
+    let a = solids[at];
+    let normal = bitcast<vec4f>(solids[at + 3u]);
+    return SolidFace(bitcast<vec3f>(a.xyz), bitcast<vec3f>(solids[at + 1u].xyz), bitcast<vec3f>(solids[at + 2u].xyz),
+                     bitcast<i32>(a.w), normal.xyz, normal.w);
+}
+
+// Whether the line from a place towards +y crosses an edge that runs to the right.
+fn is_under_edge(left: vec3f, right: vec3f, at: vec2f) -> bool {
+    let along = right.xy - left.xy;
+    let to = at - left.xy;
+    return left.x <= at.x && at.x < right.x && along.x * to.y < along.y * to.x;
+}
+
+fn solid_holds(s: Shape, p: vec3f) -> bool {
+    let o = in_solid(s, p - s.center);
+    let first = u32(s.size_x);
+    let grid = bitcast<vec4f>(solids[first]);
+    let sizes = solids[first + 1u];
+    let column = floor((o.xy - grid.xy) * grid.zw);
+    if !(all(column >= vec2f(0.0)) && all(column < vec2f(sizes.xy))) {
+        return false;
+    }
+    let number = u32(column.y) * sizes.x + u32(column.x);
+    let begin = solids[first + 2u + number / 4u][number % 4u];
+    let end = solids[first + 2u + (number + 1u) / 4u][(number + 1u) % 4u];
+    var winding = 0;
+    for (var i = begin; i < end; i++) {
+        let face = solid_face(first + 2u + sizes.z + 4u * i);
+        let turns = face.turn * (i32(is_under_edge(face.a, face.c, o.xy)) - i32(is_under_edge(face.a, face.b, o.xy))
+            - i32(is_under_edge(face.b, face.c, o.xy)));
+        let height = dot(face.normal, o - face.a) - face.rise;
+        winding += select(0, turns, height < 0.0 || (height == 0.0 && turns > 0));
+    }
+    return winding != 0;
+}
+
+fn inside_solid(s: Shape, sight: Sight) -> u32 {
+    return select(MISSED, INSIDE, sight.distance < FAR_AWAY && solid_holds(s, sight.position));
+}
+
+// Where a ray crosses a face of a solid, if it does (Moller and Trumbore).
+struct FaceHit {
+    is_met: bool,
+    is_entry: bool,
+    t: f32,
+}
+
+fn face_hit(ray: Ray, s: Shape, number: u32) -> FaceHit {
+    let origin = in_solid(s, ray.origin - s.center);
+    let direction = in_solid(s, ray.direction);
+    let first = u32(s.size_x);
+    let face = solid_face(first + 2u + solids[first + 1u].z + 4u * number);
+    let along_b = face.b - face.a;
+    let along_c = face.c - face.a;
+    let across = cross(direction, along_c);
+    let slope = dot(along_b, across);
+    let to = origin - face.a;
+    let u = dot(to, across) / slope;
+    let around = cross(to, along_b);
+    let v = dot(direction, around) / slope;
+    let is_met = slope != 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0;
+    // Corners are in the order of x; `turn` says whether that is theirs.
+    return FaceHit(is_met, slope * f32(face.turn) > 0.0, dot(along_c, around) / slope);
+}
+
+// First and last crossing of a ray with the surface, each face asked; `size_z` is 1 where the eye is inside. What lies behind
+// the eye is not seen.
+fn span_of_solid(ray: Ray, s: Shape, starts_at_eye: bool) -> Span {
+    let sizes = solids[u32(s.size_x) + 1u];
+    var span = Span(FAR_AWAY, -FAR_AWAY);
+    for (var i = 0u; i < sizes.w; i++) {
+        let hit = face_hit(ray, s, i);
+        let is_seen = hit.is_met && (!starts_at_eye || hit.t > 0.0);
+        span = Span(select(span.enter, min(span.enter, hit.t), is_seen), select(span.exit, max(span.exit, hit.t), is_seen));
+    }
+    if span.exit > -FAR_AWAY && starts_at_eye && s.size_z > 0.5 {
+        span.enter = 0.0;
+    }
+    return span;
+}
+
+// The sides of what is not inside, from where the ray enters first and leaves last.
+fn side_of_solid(is_missed: bool, is_before: bool, is_after: bool) -> u32 {
+    let between = FRONT | BEHIND;
+    return select(select(select(between, BEHIND, is_after), FRONT, is_before), MISSED, is_missed);
+}
+
+// From the faces alone: of a place that the picture may not show.
+fn class_by_faces(s: Shape, sight: Sight) -> u32 {
+    let span = span_of_solid(sight.ray, s, !sight.is_parallel);
+    let is_missed = span.enter > span.exit || (!sight.is_parallel && sight.distance <= 0.0);
+    let is_before = sight.distance < span.enter;
+    let side = side_of_solid(is_missed, is_before, sight.distance >= span.exit);
+    return select(side, INSIDE, inside_solid(s, sight) == INSIDE);
+}
+
+// Whether the ray of a pixel's centre meets it.
+fn covers_by_faces(s: Shape, pixel: vec2i) -> bool {
+    let span = span_of_solid(ray_of_pixel(vec2f(pixel) + 0.5), s, view.orthographic == 0u);
+    return span.enter <= span.exit;
+}

@@ -1,0 +1,111 @@
+//! The faces of a solid by where they stand in plan.
+
+use glam::{DVec2, DVec3};
+
+use crate::geom::{Aabb, shape::solid::upward};
+
+/// Columns per side, at most.
+const MOST: f64 = 512.0;
+/// Faces reach this part of the extent further than they are: the column of a place is computed in f32.
+const ROUNDING: f64 = 1e-6;
+
+/// A grid in plan; each of its columns lists the faces that stand over or under it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Columns {
+    low: DVec2,
+    per_metre: DVec2,
+    count: [u32; 2],
+    /// Where the list of each column begins; one more for the end of the last.
+    starts: Vec<u32>,
+    faces: Vec<u32>,
+}
+
+impl Columns {
+    /// About as many columns as faces.
+    pub fn new(faces: &[[DVec3; 3]], bounds: &Aabb) -> Self {
+        let size = bounds.size().truncate();
+        let low = bounds.min.truncate();
+        let side = (size.x * size.y / faces.len().max(1) as f64).sqrt().max(size.max_element() / MOST);
+        let count = [size.x, size.y].map(|s| (s / side).ceil().clamp(1.0, MOST) as u32);
+        let grown = size * (1.0 + 2.0 * ROUNDING);
+        let low = low - size * ROUNDING;
+        // As an f32 holds them, so that both sides find the same column.
+        let low = low.as_vec2().as_dvec2();
+        let per_metre = (DVec2::new(count[0].into(), count[1].into()) / grown).as_vec2().as_dvec2();
+        let mut columns = Self { low, per_metre, count, starts: Vec::new(), faces: Vec::new() };
+        let margin = ROUNDING * size.max_element();
+        let places: Vec<[[u32; 2]; 2]> = faces
+            .iter()
+            .map(|face| {
+                let flat = face.map(DVec3::truncate);
+                let (near, far) = (flat[0].min(flat[1]).min(flat[2]), flat[0].max(flat[1]).max(flat[2]));
+                [columns.nearest(near - margin), columns.nearest(far + margin)]
+            })
+            .collect();
+        let mut lists = vec![0_u32; (count[0] * count[1]) as usize + 1];
+        let all = |[low, high]: [[u32; 2]; 2]| {
+            (low[1]..=high[1]).flat_map(move |y| (low[0]..=high[0]).map(move |x| (y * count[0] + x) as usize))
+        };
+        for place in &places {
+            all(*place).for_each(|cell| lists[cell + 1] += 1);
+        }
+        for i in 1..lists.len() {
+            lists[i] += lists[i - 1];
+        }
+        columns.starts.clone_from(&lists);
+        columns.faces = vec![0; lists.last().copied().unwrap_or(0) as usize];
+        for (face, place) in places.iter().enumerate() {
+            for cell in all(*place) {
+                columns.faces[lists[cell] as usize] = face as u32;
+                lists[cell] += 1;
+            }
+        }
+        columns
+    }
+
+    fn cell(&self, p: DVec2) -> DVec2 {
+        ((p - self.low) * self.per_metre).floor()
+    }
+
+    /// The column of a place, or the one nearest to it.
+    fn nearest(&self, p: DVec2) -> [u32; 2] {
+        let cell = self.cell(p);
+        [0, 1].map(|i| cell[i].clamp(0.0, f64::from(self.count[i] - 1)) as u32)
+    }
+
+    /// The faces that may stand over a place in plan.
+    pub fn at(&self, p: DVec2) -> &[u32] {
+        let cell = self.cell(p);
+        let is_in = (0..2).all(|i| cell[i] >= 0.0 && cell[i] < f64::from(self.count[i]));
+        if !is_in {
+            return &[];
+        }
+        let cell = (cell.y as u32 * self.count[0] + cell.x as u32) as usize;
+        &self.faces[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// As `lib/solid.wgsl` reads it: the grid, where each column's faces begin, the faces of all columns.
+    pub fn words(&self, faces: &[[DVec3; 3]]) -> Vec<[u32; 4]> {
+        let bits = |v: f64| (v as f32).to_bits();
+        let mut words = vec![
+            [bits(self.low.x), bits(self.low.y), bits(self.per_metre.x), bits(self.per_metre.y)],
+            [self.count[0], self.count[1], self.starts.len().div_ceil(4) as u32, self.faces.len() as u32],
+        ];
+        words.extend(self.starts.chunks(4).map(|some| std::array::from_fn(|i| some.get(i).copied().unwrap_or(0))));
+        for &face in &self.faces {
+            let corners = &faces[face as usize];
+            // By x, so that every edge runs to the right; `turn` says whether that is their order.
+            let mut order = [0, 1, 2];
+            order.sort_by(|a, b| corners[*a].x.total_cmp(&corners[*b].x));
+            let is_even = matches!(order, [0, 1, 2] | [1, 2, 0] | [2, 0, 1]);
+            let [a, b, c] = order.map(|i| corners[i]);
+            let (normal, rise) = upward(&[a, b, c]);
+            let turn: i32 = if is_even { 1 } else { -1 };
+            words.push([bits(a.x), bits(a.y), bits(a.z), turn.cast_unsigned()]);
+            words.push([bits(b.x), bits(b.y), bits(b.z), 0]);
+            words.push([bits(c.x), bits(c.y), bits(c.z), 0]);
+            words.push([bits(normal.x), bits(normal.y), bits(normal.z), bits(rise)]);
+        }
+        words
+    }
+}

@@ -1,0 +1,112 @@
+//! Where a lens acts: its focus areas (L1, L3).
+
+use std::path::PathBuf;
+
+use glam::{DQuat, DVec2, DVec3};
+
+use crate::{
+    city::CityModel,
+    geom::{Shape, Volume, combination::Operation},
+    lens::{
+        chosen::Choice,
+        solids::{ShownCity, Solids},
+    },
+};
+
+/// A focus area of a lens.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Focus {
+    /// A volume given by its figures.
+    Shape(Shape),
+    /// What the faces of a file enclose, in any format that cities are read from.
+    Mesh {
+        /// The file.
+        file: PathBuf,
+        /// Where its origin is put, metres.
+        at: DVec3,
+        /// Turns its axes into the world's.
+        rotation: DQuat,
+        /// Metres per unit of the file, > 0.
+        scale: f64,
+    },
+    /// What stands over a polygon.
+    Prism {
+        /// Its corners in plan, metres.
+        points: Vec<DVec2>,
+        /// Corners of its holes.
+        holes: Vec<Vec<DVec2>>,
+        /// Where it begins, metres.
+        base: f64,
+        /// How high it is, metres, ≥ 0.
+        height: f64,
+    },
+    /// What stands over the light pixels of an image.
+    Mask {
+        /// The image: a pixel is in where it is opaque and at least as light as mid grey.
+        image: PathBuf,
+        /// South-west corner in plan, metres.
+        corner: DVec2,
+        /// Extent in plan, metres, ≥ 0.
+        size: DVec2,
+        /// Where it begins, metres.
+        base: f64,
+        /// How high it is, metres, ≥ 0.
+        height: f64,
+    },
+    /// The light pixels of images that lie on each other.
+    Mask3d {
+        /// One per layer, bottom to top.
+        images: Vec<PathBuf>,
+        /// South-west corner, below, metres.
+        corner: DVec3,
+        /// Extent, metres, ≥ 0.
+        size: DVec3,
+    },
+    /// The union of the volumes of city objects.
+    Objects(Choice),
+    /// Everything that belongs to city objects, wherever it is.
+    Thematic(Choice),
+    /// A boolean combination: the first part with the second, that with the third, and so on.
+    Combined {
+        /// How.
+        how: Operation,
+        /// At least one.
+        parts: Vec<Focus>,
+    },
+}
+
+impl From<Shape> for Focus {
+    fn from(shape: Shape) -> Self {
+        Self::Shape(shape)
+    }
+}
+
+impl Focus {
+    /// What is wrong with its numbers: the key, and what would be right.
+    pub fn check(&self) -> Option<(&'static str, String)> {
+        let lengths: Vec<(&str, f64)> = match self {
+            Self::Prism { height, .. } => vec![("height", *height)],
+            Self::Mask { size, height, .. } => vec![("size", size.min_element()), ("height", *height)],
+            Self::Mask3d { size, .. } => vec![("size", size.min_element())],
+            Self::Mesh { scale, .. } if *scale <= 0.0 => return Some(("scale", format!("must be > 0, is {scale}"))),
+            _ => Vec::new(),
+        };
+        lengths.into_iter().find(|(_, v)| *v < 0.0).map(|(key, v)| (key, format!("must be ≥ 0, is {v}")))
+    }
+
+    /// The volumes whose union it is, without a city ([`Solids::volumes`]): of city objects and combinations none.
+    pub fn volumes(&self) -> Result<Vec<Volume>, String> {
+        let city = ShownCity { model: &CityModel::default(), geometries: &[] };
+        Solids::default().volumes(self, city).map_err(|(_, message)| message)
+    }
+
+    /// Whether its figures say that it holds nothing: a length of 0.
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Prism { height, .. } => *height <= 0.0,
+            Self::Mask { size, height, .. } => size.min_element().min(*height) <= 0.0,
+            Self::Mask3d { size, .. } => size.min_element() <= 0.0,
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,332 @@
+//! What decides what is inside of a lens: volumes, membership by object, and combinations of them.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+
+use crate::{
+    geom::{
+        Aabb, Volume,
+        combination::{self, Operation},
+    },
+    render::{layout, solids::SolidPlace},
+    shader::VolumeTest,
+    view::View,
+};
+
+/// A body of a lens.
+#[derive(Clone, Debug)]
+pub enum Body {
+    /// A leaf alone.
+    One(PlacedLeaf),
+    /// A combination: its leaves, each with the operations after it.
+    Combined(Vec<(PlacedLeaf, Vec<Operation>)>),
+}
+
+/// What decides by itself what is inside.
+#[derive(Clone, Debug)]
+pub enum Leaf {
+    /// A volume, model coordinates.
+    Volume(Volume),
+    /// Membership by object.
+    Members(Members),
+}
+
+/// City objects, with all that belongs to them wherever it is.
+#[derive(Clone, Debug)]
+pub struct Members {
+    /// One per object of the city.
+    pub objects: Arc<[bool]>,
+    /// Box around what is shown of them, metres.
+    pub bounds: Aabb,
+}
+
+/// A leaf, and where the card has what belongs to it.
+#[derive(Clone, Debug)]
+pub struct PlacedLeaf {
+    /// The leaf.
+    pub leaf: Leaf,
+    /// Of a solid, where its faces stand; of members, `first` is where their marks begin among the objects' values.
+    pub place: SolidPlace,
+}
+
+impl From<Leaf> for PlacedLeaf {
+    fn from(leaf: Leaf) -> Self {
+        Self { leaf, place: SolidPlace::default() }
+    }
+}
+
+/// Triangles are told from combinations down to parts of this size, metres.
+const FINEST_M: f64 = 1e-3;
+
+impl Body {
+    /// Its leaves.
+    pub fn leaves(&self) -> impl Iterator<Item = &PlacedLeaf> {
+        let (one, many) = match self {
+            Self::One(leaf) => (Some(leaf), &[][..]),
+            Self::Combined(program) => (None, &program[..]),
+        };
+        one.into_iter().chain(many.iter().map(|(leaf, _)| leaf))
+    }
+
+    /// Its leaves.
+    pub fn leaves_mut(&mut self) -> impl Iterator<Item = &mut PlacedLeaf> {
+        let (one, many) = match self {
+            Self::One(leaf) => (Some(leaf), &mut [][..]),
+            Self::Combined(program) => (None, &mut program[..]),
+        };
+        one.into_iter().chain(many.iter_mut().map(|(leaf, _)| leaf))
+    }
+
+    /// How it is tested from its own figures.
+    pub fn test(&self) -> VolumeTest {
+        match self {
+            Self::One(leaf) => leaf.leaf.test(),
+            Self::Combined(_) => VolumeTest::Combined,
+        }
+    }
+
+    /// What its leaves are, if it is a combination; ascending, each once.
+    pub fn kinds(&self) -> Vec<VolumeTest> {
+        let Self::Combined(program) = self else { return Vec::new() };
+        let mut kinds: Vec<VolumeTest> = program.iter().map(|(leaf, _)| leaf.leaf.test()).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        kinds
+    }
+
+    /// Whether it holds nothing.
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::One(leaf) => leaf.leaf.is_empty(),
+            Self::Combined(_) => self.bounds().is_empty(),
+        }
+    }
+
+    /// Box around it, metres.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Self::One(leaf) => leaf.leaf.bounds(),
+            Self::Combined(program) => {
+                let join = |operation, a: Aabb, b: Aabb| match operation {
+                    Operation::Union => a.union(b),
+                    Operation::Intersection => Aabb { min: a.min.max(b.min), max: a.max.min(b.max) },
+                    Operation::Difference => a,
+                };
+                combination::fold(program, |leaf| leaf.leaf.bounds(), join).unwrap_or(Aabb::EMPTY)
+            }
+        }
+    }
+
+    /// Whether anything is in front of it or behind it: not of choices of objects alone.
+    pub fn has_sides(&self) -> bool {
+        self.leaves().any(|leaf| matches!(leaf.leaf, Leaf::Volume(_)))
+    }
+
+    /// Whether a perspective view's rays start inside of it; a choice of objects counts as the box around them.
+    pub fn holds_eye(&self, view: &View) -> bool {
+        let holds = |leaf: &PlacedLeaf| match &leaf.leaf {
+            Leaf::Volume(volume) => volume.contains(view.camera.eye),
+            Leaf::Members(members) => {
+                let eye = view.camera.eye;
+                eye.cmpge(members.bounds.min).all() && eye.cmple(members.bounds.max).all()
+            }
+        };
+        !view.is_orthographic()
+            && match self {
+                Self::One(leaf) => matches!(leaf.leaf, Leaf::Volume(_)) && holds(leaf),
+                Self::Combined(program) => combination::holds(program, holds),
+            }
+    }
+
+    /// Whether a closed triangle of an object and the body share a point; of combinations to [`FINEST_M`].
+    pub fn meets(&self, corners: &[DVec3; 3], object: u32) -> bool {
+        match self {
+            Self::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) => volume.meets_triangle(corners),
+            Self::One(PlacedLeaf { leaf: Leaf::Members(members), .. }) => members.objects[object as usize],
+            Self::Combined(program) => self.meets_part(program, corners, object),
+        }
+    }
+
+    /// By the distance of a triangle's middle from the border, which a combination of distances never overrates: what is further
+    /// away than the corners is decided, the rest is cut in two.
+    fn meets_part(&self, program: &[(PlacedLeaf, Vec<Operation>)], corners: &[DVec3; 3], object: u32) -> bool {
+        let mut parts = vec![*corners];
+        while let Some([a, b, c]) = parts.pop() {
+            let middle = (a + b + c) / 3.0;
+            let distance = |leaf: &PlacedLeaf| match &leaf.leaf {
+                Leaf::Volume(volume) => volume.signed_distance(middle),
+                Leaf::Members(members) if members.objects[object as usize] => f64::NEG_INFINITY,
+                Leaf::Members(_) => f64::INFINITY,
+            };
+            let join = |operation, a: f64, b: f64| match operation {
+                Operation::Union => a.min(b),
+                Operation::Intersection => a.max(b),
+                Operation::Difference => a.max(-b),
+            };
+            let distance = combination::fold(program, distance, join).unwrap_or(f64::INFINITY);
+            let radius = [a, b, c].iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
+            if distance <= 0.0 {
+                return true;
+            }
+            if distance > radius || radius < FINEST_M {
+                continue;
+            }
+            // Across the longest edge.
+            let edges = [(a, b, c), (b, c, a), (c, a, b)];
+            let longest = edges.into_iter().max_by(|x, y| x.0.distance(x.1).total_cmp(&y.0.distance(y.1)));
+            let (p, q, r) = longest.unwrap_or((a, b, c));
+            let half = p.midpoint(q);
+            parts.extend([[p, half, r], [half, q, r]]);
+        }
+        false
+    }
+
+    /// Its figures for an eye; planes and leaves are appended to `planes`.
+    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
+        let program = match self {
+            Self::One(leaf) => return leaf.figures(view, planes),
+            Self::Combined(program) => program,
+        };
+        let leaf = |(leaf, then): &(PlacedLeaf, Vec<Operation>)| match &leaf.leaf {
+            // The box around them stands for them where it matters what a ray goes through.
+            Leaf::Members(members) => {
+                let half = 0.5 * members.bounds.size();
+                let around = Volume::Box { center: members.bounds.center(), half, rotation: glam::DQuat::IDENTITY };
+                let figures = PlacedLeaf::from(Leaf::Volume(around)).figures(view, &mut Vec::new());
+                let kind = VolumeTest::Members.number();
+                (layout::Shape { kind, ..figures }, leaf.place.first as f32, then.clone())
+            }
+            Leaf::Volume(_) => (leaf.figures(view, planes), 0.0, then.clone()),
+        };
+        let leaves: Vec<_> = program.iter().map(leaf).collect();
+        let out = layout::Shape {
+            kind: VolumeTest::Combined.number(),
+            size_x: planes.len() as f32,
+            size_y: leaves.len() as f32,
+            size_z: f32::from(u8::from(self.holds_eye(view))),
+            ..Default::default()
+        };
+        for (s, first, then) in leaves {
+            let row = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
+            // Two bits for each, the first in the lowest.
+            let operations = then.iter().rev().fold(0, |all, operation| all << 2 | *operation as u32);
+            planes.extend([
+                row(s.center, 0.0),
+                row(s.axis_x, s.size_x),
+                row(s.axis_y, s.size_y),
+                row(s.axis_z, s.size_z),
+                [s.kind as f32, operations as f32, first, 0.0],
+            ]);
+        }
+        out
+    }
+}
+
+impl Leaf {
+    /// How it is tested from its own figures.
+    pub fn test(&self) -> VolumeTest {
+        let volume = match self {
+            Self::Members(_) => return VolumeTest::Members,
+            Self::Volume(volume) => volume,
+        };
+        match volume {
+            Volume::Sphere { .. } => VolumeTest::Sphere,
+            Volume::Box { .. } => VolumeTest::Box,
+            Volume::Cylinder { .. } => VolumeTest::Cylinder,
+            Volume::Convex(_) => VolumeTest::Convex,
+            Volume::Ellipsoid { .. } => VolumeTest::Ellipsoid,
+            Volume::Frustum { .. } => VolumeTest::Frustum,
+            Volume::Solid(_) => VolumeTest::Solid,
+        }
+    }
+
+    /// Whether it holds nothing.
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Volume(volume) => volume.is_empty(),
+            Self::Members(members) => members.bounds.is_empty(),
+        }
+    }
+
+    /// Box around it, metres.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Self::Volume(volume) => volume.bounds(),
+            Self::Members(members) => members.bounds,
+        }
+    }
+}
+
+impl PlacedLeaf {
+    /// Its figures for an eye; its planes are appended to `planes`.
+    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
+        let view_from_world = view.basis.view_from_world();
+        let eye = view.camera.eye;
+        let place = |p: DVec3| (view_from_world * (p - eye)).as_vec3().to_array();
+        let turn = |v: DVec3| (view_from_world * v).as_vec3().to_array();
+        let first = self.place.first;
+        let mut out = layout::Shape { kind: self.leaf.test().number(), ..Default::default() };
+        let volume = match &self.leaf {
+            Leaf::Members(_) => {
+                out.size_x = first as f32;
+                return out;
+            }
+            Leaf::Volume(volume) => volume,
+        };
+        match volume {
+            Volume::Sphere { center, radius } => {
+                out.center = place(*center);
+                out.size_x = *radius as f32;
+            }
+            Volume::Box { center, half, rotation } => {
+                let axes = DMat3::from_quat(*rotation);
+                out.center = place(*center);
+                out.axis_x = turn(axes.x_axis);
+                out.axis_y = turn(axes.y_axis);
+                out.axis_z = turn(axes.z_axis);
+                [out.size_x, out.size_y, out.size_z] = half.as_vec3().to_array();
+            }
+            Volume::Cylinder { center, radius, half, axis } => {
+                out.center = place(*center);
+                out.axis_z = turn(*axis);
+                out.size_x = *radius as f32;
+                out.size_z = *half as f32;
+            }
+            Volume::Ellipsoid { center, radii, rotation } => {
+                let axes = DMat3::from_quat(*rotation);
+                out.center = place(*center);
+                // In its own measure it is a ball of radius 1.
+                out.axis_x = turn(axes.x_axis / radii.x);
+                out.axis_y = turn(axes.y_axis / radii.y);
+                out.axis_z = turn(axes.z_axis / radii.z);
+            }
+            Volume::Frustum { center, radii: [bottom, top], half, axis } => {
+                out.center = place(*center);
+                out.axis_z = turn(*axis);
+                out.size_x = (0.5 * (bottom + top)) as f32;
+                out.size_y = ((top - bottom) / (2.0 * half)) as f32;
+                out.size_z = *half as f32;
+            }
+            Volume::Solid(placed) => {
+                let axes = DMat3::from_quat(placed.rotation);
+                out.center = place(placed.at);
+                out.axis_x = turn(axes.x_axis);
+                out.axis_y = turn(axes.y_axis);
+                out.axis_z = turn(axes.z_axis);
+                out.size_x = first as f32;
+                out.size_z = f32::from(u8::from(volume.contains(eye) && !view.is_orthographic()));
+            }
+            Volume::Convex(hull) => {
+                let (center, faces) = hull.planes();
+                out.size_x = planes.len() as f32;
+                out.size_y = faces.len() as f32;
+                planes.extend(faces.iter().map(|&(normal, offset)| {
+                    let [x, y, z] = turn(normal);
+                    [x, y, z, (offset + normal.dot(center - eye)) as f32]
+                }));
+            }
+        }
+        out
+    }
+}

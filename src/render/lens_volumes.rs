@@ -1,0 +1,157 @@
+//! The lens volumes of a scene: its focus areas, resolved.
+
+use std::sync::Arc;
+
+use crate::{
+    geom::{
+        Aabb, Solid, Volume,
+        combination::{self, Operation, Tree},
+    },
+    lens::{
+        Class, Focus, Lens, LensBody,
+        chosen::chosen,
+        solids::{FocusError, ShownCity, Solids, key_of},
+    },
+    render::{
+        body::{Body, Leaf, Members, PlacedLeaf},
+        solids::{MOST_ENTRIES, SolidTable},
+        volume::LensVolume,
+    },
+    scene::Scene,
+    shader::VolumeTest,
+};
+
+/// Leaves of a combination, at most.
+pub const MOST_LEAVES: usize = 64;
+/// What a combination keeps in mind at once, at most: bits of a word.
+const MOST_DEPTH: usize = 32;
+/// Operations after one leaf, at most: two bits each of what an f32 holds exactly.
+const MOST_OPERATIONS: usize = 12;
+
+/// The volumes of a scene's enabled lenses, and how the volumes of all its lenses may be tested.
+#[derive(Debug, Default)]
+pub struct LensVolumes {
+    /// Bottom lens first.
+    pub volumes: Vec<LensVolume>,
+    /// In the picture, and from the sun; and what the leaves of combinations are.
+    pub tests: [Vec<VolumeTest>; 3],
+}
+
+/// Resolves the focus areas of a scene. An error names the key of the scene file.
+pub fn volumes_of(scene: &Scene, city: ShownCity, solids: &mut Solids) -> Result<LensVolumes, String> {
+    let mut all = LensVolumes::default();
+    for (i, lens) in scene.lenses.iter().enumerate() {
+        for (j, focus) in lens.shapes.iter().enumerate() {
+            let bodies = match bodies_of(focus, city, solids) {
+                Ok(bodies) => bodies,
+                Err(_) if !lens.enabled => continue,
+                Err((key, message)) => {
+                    let place = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
+                    let dot = if key.is_empty() { "" } else { "." };
+                    return Err(format!("[lens.{i}] {place}{dot}{key}: {message}"));
+                }
+            };
+            for body in bodies {
+                let volume = volume_of(i as u32, lens, body);
+                let [picture, sun] = volume.tests();
+                all.tests[0].extend(picture);
+                all.tests[1].extend(sun);
+                all.tests[2].extend(volume.body.kinds());
+                // A lens without volume shows nothing and costs nothing.
+                if lens.enabled && !volume.body.is_empty() {
+                    all.volumes.push(volume);
+                }
+            }
+        }
+    }
+    solids.forget_others();
+    Ok(all)
+}
+
+fn volume_of(number: u32, lens: &Lens, body: Body) -> LensVolume {
+    LensVolume {
+        lens: number,
+        bounds: body.bounds(),
+        body,
+        everywhere: lens.effects.iter().any(|e| e.class == Class::Rest),
+        has_outline: lens.body == LensBody::Outline,
+        sprite: lens.sprite,
+        asks_sides: lens.effects.iter().any(|e| e.class != Class::Inside),
+    }
+}
+
+/// The bodies whose union a focus area is.
+fn bodies_of(focus: &Focus, city: ShownCity, solids: &mut Solids) -> Result<Vec<Body>, FocusError> {
+    if !matches!(focus, Focus::Combined { .. }) {
+        return Ok(leaves_of(focus, city, solids)?.into_iter().map(|leaf| Body::One(leaf.into())).collect());
+    }
+    let program = tree_of(focus, city, solids)?.program();
+    let operations = program.iter().map(|(_, then)| then.len()).max().unwrap_or(0);
+    let limits = [
+        ("parts", program.len(), MOST_LEAVES),
+        ("parts within parts", combination::depth(&program), MOST_DEPTH),
+        ("parts within parts", operations, MOST_OPERATIONS),
+    ];
+    if let Some((what, count, most)) = limits.into_iter().find(|(_, count, most)| count > most) {
+        return Err(("shapes", format!("a combination may have at most {most} {what}, has {count}")));
+    }
+    Ok(match program.len() {
+        0 => Vec::new(),
+        1 => program.into_iter().map(|(leaf, _)| Body::One(leaf)).collect(),
+        _ => vec![Body::Combined(program)],
+    })
+}
+
+fn tree_of(focus: &Focus, city: ShownCity, solids: &mut Solids) -> Result<Tree<PlacedLeaf>, FocusError> {
+    match focus {
+        Focus::Combined { how, parts } => {
+            let trees: Result<Vec<_>, _> = parts.iter().map(|part| tree_of(part, city, solids)).collect();
+            Ok(Tree::joined(*how, trees?))
+        }
+        _ => {
+            let leaves = leaves_of(focus, city, solids)?;
+            let trees = leaves.into_iter().map(|leaf| match leaf.is_empty() {
+                true => Tree::Nothing,
+                false => Tree::Leaf(leaf.into()),
+            });
+            Ok(Tree::joined(Operation::Union, trees))
+        }
+    }
+}
+
+/// The leaves whose union a focus area is that is no combination.
+fn leaves_of(focus: &Focus, city: ShownCity, solids: &mut Solids) -> Result<Vec<Leaf>, FocusError> {
+    let Focus::Thematic(choice) = focus else {
+        return Ok(solids.volumes(focus, city)?.into_iter().map(Leaf::Volume).collect());
+    };
+    let objects = chosen(city.model, choice).map_err(|e| (key_of(choice), e.to_string()))?.objects;
+    let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);
+    let bounds = shown.filter(|g| objects[g.object as usize]).fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
+    Ok(vec![Leaf::Members(Members { objects: objects.into(), bounds })])
+}
+
+impl LensVolumes {
+    /// Gives every solid its place in the table of all of them, which is made anew where `before` does not hold just these.
+    pub fn place_solids(&mut self, before: &Arc<SolidTable>) -> Result<Arc<SolidTable>, String> {
+        let solids = || self.volumes.iter().flat_map(|v| v.body.leaves()).filter_map(|leaf| solid_of(&leaf.leaf));
+        let table = match before.holds(solids()) {
+            true => before.clone(),
+            false => Arc::new(SolidTable::new(solids()).map_err(|entries| {
+                format!("the solids of the lenses take {entries} entries together; one picture takes {MOST_ENTRIES}")
+            })?),
+        };
+        for leaf in self.volumes.iter_mut().flat_map(|v| v.body.leaves_mut()) {
+            if let Some(place) = solid_of(&leaf.leaf).and_then(|solid| table.place(solid)) {
+                leaf.place = place.clone();
+            }
+        }
+        Ok(table)
+    }
+}
+
+fn solid_of(leaf: &Leaf) -> Option<&Arc<Solid>> {
+    match leaf {
+        Leaf::Volume(Volume::Solid(placed)) => Some(&placed.solid),
+        _ => None,
+    }
+}
