@@ -119,9 +119,9 @@ fn classes_of_concave_shapes_and_combinations_are_those_of_their_intervals() {
     for camera in [
         Camera::looking(at + DVec3::new(90.0, -120.0, 70.0), at, 0.9),
         orthographic(at + DVec3::new(90.0, -120.0, 70.0), at, 160.0),
-        // Inside of some, in the hole of the ring, beside what was cut away.
-        Camera::looking(at + DVec3::new(2.0, 1.0, 1.0), at + DVec3::new(60.0, 30.0, -6.0), 1.1),
-        Camera::looking(at + DVec3::new(25.0, 0.0, 3.0), at + DVec3::new(-60.0, 12.0, -4.0), 1.1),
+        // Over the roofs, inside of some and in the hole of the ring; and beside what was cut away.
+        Camera::looking(at + DVec3::new(2.0, 1.0, 10.0), at + DVec3::new(60.0, 30.0, -6.0), 1.1),
+        Camera::looking(at + DVec3::new(25.0, 0.0, 9.0), at + DVec3::new(-60.0, 12.0, -4.0), 1.1),
     ] {
         let concave: Vec<Focus> = shapes(at, 30.0).split_off(7);
         let one = |(i, shape): (usize, Focus)| lens(&format!("any {i}"), vec![shape], "greyscale");
@@ -132,7 +132,10 @@ fn classes_of_concave_shapes_and_combinations_are_those_of_their_intervals() {
             let reference = Reference::of(&lens.shapes[0]);
             let mut expected = [0_u64; 4];
             for (i, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
-                let class = classify(&reference.intervals(&view.pixel_ray(x, y)), depth[i].into());
+                // What a ray grazes for less than a millimetre a card may miss.
+                let mut along = reference.intervals(&view.pixel_ray(x, y));
+                along.retain(|(entry, exit)| exit - entry > 1e-3);
+                let class = classify(&along, depth[i].into());
                 expected[class as usize] += 1;
             }
             let c = &figures.classified;
@@ -140,7 +143,7 @@ fn classes_of_concave_shapes_and_combinations_are_those_of_their_intervals() {
             // Rays that graze an edge, and places on the border.
             let apart = (0..4).map(|i| found[i].abs_diff(expected[i])).max().unwrap_or(0);
             assert!(apart <= 4, "{:?} from {}: {found:?}, by intervals {expected:?}", lens.shapes[0], camera.eye);
-            assert!(found[0] > 50, "{:?} from {}", lens.shapes[0], camera.eye);
+            assert!(found[0] > 20, "{:?} from {}: {found:?}", lens.shapes[0], camera.eye);
         }
     }
 }
