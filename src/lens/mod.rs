@@ -4,6 +4,7 @@ pub mod chosen;
 pub mod classify;
 pub mod color;
 pub mod effect;
+pub mod intersection;
 pub mod nearest;
 pub mod ramp;
 pub mod sprite;

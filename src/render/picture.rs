@@ -1,6 +1,9 @@
 //! A picture, its AOVs and its statistics, from a scene and a city: the shown surface written down.
 
-use std::{sync::Arc, time::Instant};
+use std::{
+    sync::{Arc, OnceLock},
+    time::Instant,
+};
 
 use crate::{
     city::{
@@ -9,10 +12,11 @@ use crate::{
         decode_normal,
         ground::{Ground, plain_ground},
         shown::shown_geometries,
+        spatial::SpatialIndex,
     },
-    geom::Aabb,
+    geom::{Aabb, Volume},
     gpu::{Gpu, GpuError, Timer},
-    lens::{Class, LensBody},
+    lens::{Class, LensBody, intersection},
     render::{
         Renderer,
         city::Shown,
@@ -119,6 +123,8 @@ pub struct Studio {
     pub load: stats::Load,
     /// How [`Studio::redraw`] makes shaders.
     pub backend: Backend,
+    /// Where the shown triangles are, made for the first picture whose lenses are counted.
+    index: OnceLock<SpatialIndex>,
 }
 
 /// Everything of a scene that does not depend on the eye.
@@ -155,6 +161,7 @@ impl Studio {
             ground,
             load: stats::Load::default(),
             backend: Backend::default(),
+            index: OnceLock::new(),
         })
     }
 
@@ -573,25 +580,12 @@ fn lens_figures(
 
 /// City objects of which a shown triangle meets one of the volumes; exact in f64.
 fn objects_meeting(studio: &Studio, volumes: &[&LensVolume]) -> u64 {
-    let model = &studio.model;
-    let mut met = rustc_hash::FxHashSet::default();
-    for &g in &studio.geometries {
-        let geometry = &model.geometries[g as usize];
-        if met.contains(&geometry.object) {
-            continue;
-        }
-        let near: Vec<_> = volumes.iter().filter(|v| v.bounds.meets(&geometry.bounds)).collect();
-        let hit = |tile: &crate::city::Tile| {
-            (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
-                let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + model.indices[i + k]));
-                near.iter().any(|v| v.volume.meets_triangle(&corners))
-            })
-        };
-        if !near.is_empty() && model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {
-            met.insert(geometry.object);
-        }
+    if volumes.is_empty() {
+        return 0;
     }
-    met.len() as u64
+    let index = studio.index.get_or_init(|| SpatialIndex::build(&studio.model, &studio.geometries));
+    let volumes: Vec<Volume> = volumes.iter().map(|v| v.volume.clone()).collect();
+    intersection::objects_meeting(&studio.model, index, &intersection::regions(&[&volumes])).len() as u64
 }
 
 impl Picture {
