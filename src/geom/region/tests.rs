@@ -196,13 +196,13 @@ fn boxes_and_polytopes_are_decided_as_integers_decide() {
     };
     let (mut met, mut missed, mut spanned, mut empty) = (0, 0, 0, 0);
     for _ in 0..40_000 {
-        // Millimetres around a city far from the origin.
+        // Millimetres around a city far from the origin; whole metres, or a millimetre off them: all but touching is common.
         let place = [85_000_000, 447_000_000, 3_000];
         let mut volumes = Vec::new();
         let mut planes: Vec<([i64; 3], i64)> = Vec::new();
         for _ in 0..number(1, 3) {
-            let from = [0; 3].map(|_: i64| number(-11_000, -1_000));
-            let to = from.map(|c| c + number(4_000, 14_000));
+            let from = [0; 3].map(|_: i64| 1000 * number(-11, -1) + number(-1, 1));
+            let to = from.map(|c| c + 1000 * number(4, 14) + number(-1, 1));
             let axis = |i: usize, by: i64| [0, 1, 2].map(|k| if k == i { by } else { 0 });
             let mut own: Vec<([i64; 3], i64)> =
                 (0..3).flat_map(|i| [(axis(i, 1), to[i]), (axis(i, -1), -from[i])]).collect();
@@ -222,7 +222,7 @@ fn boxes_and_polytopes_are_decided_as_integers_decide() {
         if volumes.is_empty() {
             continue;
         }
-        let triangle = [0; 3].map(|_: i64| [0; 3].map(|_: i64| number(-25_000, 25_000)));
+        let triangle = [0; 3].map(|_: i64| [0; 3].map(|_: i64| 1000 * number(-25, 25) + number(-1, 1)));
         let world = triangle.map(|p| DVec3::from([0, 1, 2].map(|i| (p[i] + place[i]) as f64 / 1000.0)));
         // All a million times finer, each plane moved out or in by a unit: between them lies what f64 cannot decide.
         let moved = |by: i64| planes.iter().map(|(n, d)| (*n, d * 1_000_000 + by)).collect::<Vec<_>>();
@@ -259,5 +259,7 @@ fn touching_volumes_have_a_point_in_common_and_no_volumes_have_none() {
     assert!(Region::common(&[ball(0.0), cube(2.000_001)]).is_none());
     assert!(Region::common(&[]).is_none());
     let nothing = Volume::Sphere { center: DVec3::ZERO, radius: 0.0 };
-    assert!(Region::common(&[nothing.clone()]).is_none() && Region::common(&[ball(0.0), nothing]).is_none());
+    assert!(
+        Region::common(std::slice::from_ref(&nothing)).is_none() && Region::common(&[ball(0.0), nothing]).is_none()
+    );
 }
