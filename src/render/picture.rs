@@ -203,7 +203,7 @@ impl Studio {
     ) -> Result<Picture, RenderError> {
         let started = Instant::now();
         let prepared = self.prepare(scene)?;
-        let view = self.view(scene, &prepared, request.size)?;
+        let view = self.view(scene, request.size)?;
         let mut picture = Picture::empty(request, scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
@@ -248,7 +248,7 @@ impl Studio {
 
     fn draw_with(&mut self, scene: &Scene, request: &Request, furniture: &Furniture) -> Result<(), RenderError> {
         let prepared = self.prepare(scene)?;
-        let view = self.view(scene, &prepared, request.size)?;
+        let view = self.view(scene, request.size)?;
         let whole = PictureTile::whole(request.size);
         self.find_edges(&prepared)?;
         let mut input = FrameInput { furniture, ..input(scene, request, &prepared, view, whole) };
@@ -277,17 +277,16 @@ impl Studio {
         part: ShaderPart,
     ) -> Result<String, RenderError> {
         let prepared = self.prepare(scene)?;
-        let view = self.view(scene, &prepared, size)?;
+        let view = self.view(scene, size)?;
         let request =
             Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false, backend };
         let input = input(scene, &request, &prepared, view, whole(size));
         Ok(self.renderer.shader(&input, &scene.lenses, part))
     }
 
-    fn view(&self, scene: &Scene, prepared: &Prepared, size: [u32; 2]) -> Result<View, CameraError> {
+    fn view(&self, scene: &Scene, size: [u32; 2]) -> Result<View, CameraError> {
         let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
-        View::new(self.camera(scene, size), size, &reach)
+        View::new(self.camera(scene, size), size, &drawn)
     }
 
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
