@@ -27,7 +27,7 @@ fn lenses(count: usize, studio: &Studio, numbers: &mut Numbers) -> Vec<Lens> {
         let center = extent.center() + 0.5 * extent.size() * in_cube(numbers);
         // Half of them on a house.
         let house = studio.geometries[numbers.below(studio.geometries.len() as u64) as usize];
-        let center = if i % 2 == 0 { center } else { studio.model.geometries[house as usize].bounds.center() };
+        let center = [center, studio.model.geometries[house as usize].bounds.center()][i % 2];
         let r = 0.1 * (0.5 * extent.size().length() / 0.1).powf(share(numbers).sqrt());
         let kind = numbers.below(KINDS as u64) as usize;
         let mut shapes: Vec<Shape> = vec![shape(kind, center, r, numbers)];

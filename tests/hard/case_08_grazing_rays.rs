@@ -1,16 +1,15 @@
 //! Case 8: view rays that graze a sphere, a cylinder or an edge of a box: never NaN, and a wrong answer only inside the
 //! stated band. Oracle: the sign of the discriminant, and the slab test, in `i128`.
 
-use std::collections::BTreeMap;
-
 use glam::{DQuat, DVec3};
 use veduta::{
     geom::{Ray, Shape},
-    lens::{Class, EffectUse, Lens, LensSprite, Parameter},
+    lens::Class,
     view::Camera,
 };
 
 use crate::{
+    lenses::{painted, painted_class},
     oracle::{Numbers, P3},
     studio,
 };
@@ -115,27 +114,11 @@ fn direction(x: i64, y: i64) -> P3 {
     [2 * x + 1 - i64::from(SIZE[0]), 2 * i64::from(SIZE[1]), i64::from(SIZE[1]) - 2 * y - 1]
 }
 
-/// A lens that paints each class in its own colour.
-fn painted(shape: Shape, sprite: Option<LensSprite>) -> Lens {
-    let paint = |class, color: &str| EffectUse {
-        class,
-        parameters: BTreeMap::from([
-            ("color".to_owned(), Parameter::Text(color.to_owned())),
-            ("opacity".to_owned(), Parameter::Number(1.0)),
-        ]),
-        ..studio::used("overlay")
-    };
-    let effects = vec![
-        paint(Class::Inside, "#ffffff"),
-        paint(Class::Front, "#ff0000"),
-        paint(Class::Behind, "#00ff00"),
-        paint(Class::Rest, "#0000ff"),
-    ];
-    Lens { effects, sprite, ..studio::lens("lens", vec![shape], "sepia") }
-}
+/// Whether a half-line passes through a body that is larger by so much on all sides.
+type Passes = Box<dyn Fn(P3, P3, i64) -> bool>;
 
 /// Before a wall, a body whose outline passes through the middle of pixels.
-fn body(kind: usize, numbers: &mut Numbers) -> (P3, Shape, Box<dyn Fn(P3, P3, i64) -> bool>) {
+fn body(kind: usize, numbers: &mut Numbers) -> (P3, Shape, Passes) {
     let (x, y) = (20 + numbers.below(120), 15 + numbers.below(90));
     let [dx, dy, dz] = direction(x, y);
     let far = 2 + numbers.below(3);
@@ -189,7 +172,7 @@ fn every_pixel_beside_an_outline_has_its_class() {
     for round in 0..90 {
         let (center, shape, passes) = body(round % 3, &mut numbers);
         let volume = shape.volume().expect("a volume");
-        let scene = studio::scene(camera, vec![painted(shape.clone(), None)]);
+        let scene = studio::scene(camera, vec![painted(vec![shape.clone()])]);
         let drawn = studio::picture(&mut studio, &scene, SIZE);
         assert!(drawn.object_id.as_ref().expect("ids").iter().all(|&id| id == 1), "the facade fills the picture");
         // The wall is the farthest.
@@ -200,10 +183,10 @@ fn every_pixel_beside_an_outline_has_its_class() {
         for (i, &color) in drawn.rgba.iter().enumerate() {
             let (x, y) = (i as i64 % i64::from(SIZE[0]), i as i64 / i64::from(SIZE[0]));
             let d = direction(x, y);
-            let is_behind = match color {
-                [0, 255, 0, 255] => true,
-                [0, 0, 255, 255] => false,
-                other => panic!("{shape:?}: pixel {x},{y} is {other:?}: neither behind nor beside"),
+            let is_behind = match painted_class(color) {
+                Some(Class::Behind) => true,
+                Some(Class::Rest) => false,
+                other => panic!("{shape:?}: pixel {x},{y} is {color:?}: {other:?}"),
             };
             match (passes(from, d, -by), passes(from, d, by)) {
                 (true, true) => assert!(is_behind, "{shape:?}: the ray of pixel {x},{y} goes through it"),

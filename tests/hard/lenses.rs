@@ -1,9 +1,11 @@
 //! Lenses of every analytic shape, and what they hold by the definitions of the shapes alone, in f64.
 
+use std::collections::BTreeMap;
+
 use glam::{DMat3, DQuat, DVec3};
 use veduta::{
     geom::Shape,
-    lens::Lens,
+    lens::{Class, EffectUse, Lens, Parameter},
     render::picture::{Picture, Studio},
     view::{Camera, View},
 };
@@ -130,6 +132,32 @@ pub fn check_mask(picture: &Picture, view: &View, lens: &Lens, bit: usize) -> Re
         }
     }
     Ok(count)
+}
+
+/// What [`painted`] paints the classes in.
+const COLORS: [(Class, &str, [u8; 4]); 4] = [
+    (Class::Inside, "#ffffff", [255, 255, 255, 255]),
+    (Class::Front, "#ff0000", [255, 0, 0, 255]),
+    (Class::Behind, "#00ff00", [0, 255, 0, 255]),
+    (Class::Rest, "#0000ff", [0, 0, 255, 255]),
+];
+
+/// A lens that paints each class in its own colour.
+pub fn painted(shapes: Vec<Shape>) -> Lens {
+    let paint = |(class, color, _): (Class, &str, _)| EffectUse {
+        class,
+        parameters: BTreeMap::from([
+            ("color".to_owned(), Parameter::Text(color.to_owned())),
+            ("opacity".to_owned(), Parameter::Number(1.0)),
+        ]),
+        ..studio::used("overlay")
+    };
+    Lens { effects: COLORS.map(paint).to_vec(), ..studio::lens("lens", shapes, "sepia") }
+}
+
+/// The class that a pixel was painted as.
+pub fn painted_class(color: [u8; 4]) -> Option<Class> {
+    COLORS.iter().find(|(_, _, painted)| *painted == color).map(|(class, ..)| *class)
 }
 
 /// Looks over the city from above, along its streets, and in parallel.
