@@ -15,7 +15,7 @@ use crate::{
 };
 
 const SIZE: [u32; 2] = [160, 120];
-const FRAMES: u32 = 24;
+const FRAMES: u32 = 12;
 
 /// The camera, turned (or, in parallel views, moved) so that the picture shifts by `px` pixels.
 fn shifted(camera: Camera, px: DVec2) -> Camera {
@@ -34,7 +34,7 @@ fn around(
     [x, y]: [u32; 2],
     reach: f64,
 ) -> Vec<(u32, f64)> {
-    let steps = 8;
+    let steps = 7;
     let mut seen = Vec::new();
     for j in -steps..=steps {
         for i in -steps..=steps {
@@ -114,5 +114,5 @@ fn sub_pixel_jitter_changes_only_silhouettes_and_borders() {
             }
         }
     }
-    assert!(changed > 1_000 && bits_changed > 500, "{changed} pixels, {bits_changed} bits");
+    assert!(changed > 1_000 && bits_changed > 250, "{changed} pixels, {bits_changed} bits");
 }
