@@ -19,7 +19,7 @@ fn inside_shape(s: Shape, kind: u32, sight: Sight) -> u32 {
 }
 
 fn is_in_shape(s: Shape, kind: u32, sight: Sight) -> bool {
-    return sight.distance < FAR_AWAY && holds(s, kind, sight.position);
+    return sight.distance < FAR_AWAY && holds(s, kind, sight.position, sight.distance);
 }
 
 // Whether the ray of a pixel's centre meets the volume.

@@ -1,4 +1,4 @@
-//! Where things are: tiles by region, triangles along rays.
+//! Where things are: tiles by region, triangles along rays and in lens volumes.
 //!
 //! A hierarchy over the tiles that are shown, and one more inside each tile of many triangles. Tiles keep their numbers,
 //! so the renderer culls by them.
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::{
     city::CityModel,
     geom::{
-        Aabb,
+        Aabb, Region,
         bvh::{Bvh, HalfSpace},
         ray::{Ray, TriangleTest},
     },
@@ -68,6 +68,67 @@ impl SpatialIndex {
         self.top.in_box(region, |item| visit(self.tiles[item as usize]));
     }
 
+    /// Visits every triangle (by index) that shares a point with `region`, once (C1), with its tile. `visit` says whether
+    /// more triangles of that tile are wanted; of which tiles any are is for `wanted` to say.
+    pub fn triangles_meeting(
+        &self,
+        model: &CityModel,
+        region: &Region,
+        mut wanted: impl FnMut(u32) -> bool,
+        mut visit: impl FnMut(u32, u32) -> bool,
+    ) {
+        self.top.in_region(
+            |bounds| region.coverage(bounds),
+            |item, is_inside| {
+                let number = self.tiles[item as usize];
+                if !wanted(number) {
+                    return;
+                }
+                let tile = &model.tiles[number as usize];
+                let triangles = tile.indices.start / 3..tile.indices.end / 3;
+                let mut goes_on = true;
+                let mut run = |run: std::ops::Range<u32>, is_inside: bool| {
+                    for triangle in run {
+                        if !goes_on {
+                            return;
+                        }
+                        if is_inside || region.meets_triangle(&corners(model, number, triangle)) {
+                            goes_on = visit(number, triangle);
+                        }
+                    }
+                };
+                match &self.runs[item as usize] {
+                    Some(runs) if !is_inside => runs.in_region(
+                        |bounds| region.coverage(bounds),
+                        |number, is_inside| {
+                            let first = triangles.start + number * RUN as u32;
+                            run(first..(first + RUN as u32).min(triangles.end), is_inside);
+                        },
+                    ),
+                    // Few triangles: first whether their tile is near at all, as its neighbours in a leaf may be.
+                    _ if is_inside => run(triangles, true),
+                    _ => {
+                        if let Some(is_inside) = region.coverage(&tile.bounds) {
+                            run(triangles, is_inside);
+                        }
+                    }
+                }
+            },
+        );
+    }
+
+    /// Follows vertices of the model that moved; tiles, triangles and what is shown are the same. The bounds of the
+    /// model's tiles must have followed.
+    pub fn refit(&mut self, model: &CityModel) {
+        let bounds: Vec<Aabb> = self.tiles.iter().map(|&tile| model.tiles[tile as usize].bounds).collect();
+        self.top.refit(&bounds);
+        self.tiles.par_iter().zip(&mut self.runs).for_each(|(&tile, runs)| {
+            if let Some(runs) = runs {
+                runs.refit(&boxes_of_runs(model, tile));
+            }
+        });
+    }
+
     /// The first triangle a ray meets, from either side; of triangles equally far away the one read first.
     pub fn hit(&self, model: &CityModel, ray: &Ray) -> Option<Hit> {
         self.hit_where(model, ray, f64::INFINITY, |_| true)
@@ -120,15 +181,14 @@ fn corners(model: &CityModel, tile: u32, triangle: u32) -> [DVec3; 3] {
 
 fn runs_of(model: &CityModel, number: u32) -> Option<Bvh> {
     let tile = &model.tiles[number as usize];
+    (tile.indices.len() / 3 > PLAIN_TILE).then(|| Bvh::build(&boxes_of_runs(model, number)))
+}
+
+fn boxes_of_runs(model: &CityModel, number: u32) -> Vec<Aabb> {
+    let tile = &model.tiles[number as usize];
     let triangles: Vec<u32> = (tile.indices.start / 3..tile.indices.end / 3).collect();
-    if triangles.len() <= PLAIN_TILE {
-        return None;
-    }
-    let boxes: Vec<Aabb> = triangles
-        .chunks(RUN)
-        .map(|run| Aabb::from_points(run.iter().flat_map(|&triangle| corners(model, number, triangle))))
-        .collect();
-    Some(Bvh::build(&boxes))
+    let around = |run: &[u32]| Aabb::from_points(run.iter().flat_map(|&triangle| corners(model, number, triangle)));
+    triangles.chunks(RUN).map(around).collect()
 }
 
 #[cfg(test)]

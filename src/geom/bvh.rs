@@ -105,6 +105,58 @@ impl Bvh {
         self.walk(test, &mut visit);
     }
 
+    /// Visits all items whose boxes may meet a region; `true`: the box lies wholly in it. `coverage` says of a box in world
+    /// metres `None` where it is outside and whether all of it is inside where it is not; below a box that is, it is not
+    /// asked again. The box that it is asked for may be smaller than the items' own by what f64 loses in a change of origin.
+    pub fn in_region(&self, coverage: impl Fn(&Aabb) -> Option<bool>, mut visit: impl FnMut(u32, bool)) {
+        let mut stack: Vec<(&Bvh2Node, bool)> = self.tree.nodes.first().map(|root| (root, false)).into_iter().collect();
+        while let Some((node, is_inside)) = stack.pop() {
+            let bounds = bounds(node);
+            let in_world = Aabb { min: bounds.min + self.origin, max: bounds.max + self.origin };
+            let covered = if is_inside { Some(true) } else { coverage(&in_world) };
+            let Some(is_inside) = covered else { continue };
+            if node.is_leaf() {
+                self.items(node).iter().for_each(|&item| visit(item, is_inside));
+            } else {
+                stack.extend(self.children(node).map(|child| (child, is_inside)));
+            }
+        }
+    }
+
+    /// Follows items that moved: the tree stays, its boxes are made anew from `boxes`, numbered as they were built. Queries
+    /// stay right however far they move, and are fast as long as neighbours stay neighbours. Built again where a box that
+    /// was empty no longer is, or the other way round.
+    pub fn refit(&mut self, boxes: &[Aabb]) {
+        let is_kept = |item: &u32| boxes.get(*item as usize).is_some_and(|b| !b.is_empty());
+        let same_items = self.tree.primitive_indices.iter().all(is_kept)
+            && self.tree.primitive_indices.len() == boxes.iter().filter(|b| !b.is_empty()).count();
+        if !same_items {
+            *self = Self::build(boxes);
+            return;
+        }
+        // Parents before their children, so from the back every node finds its children done.
+        let mut order: Vec<usize> = if self.tree.nodes.is_empty() { Vec::new() } else { vec![0] };
+        let mut next = 0;
+        while next < order.len() {
+            let node = &self.tree.nodes[order[next]];
+            if !node.is_leaf() {
+                order.extend([node.first_index as usize, node.first_index as usize + 1]);
+            }
+            next += 1;
+        }
+        for &i in order.iter().rev() {
+            let node = self.tree.nodes[i];
+            let around = if node.is_leaf() {
+                let all = self.items(&node).iter().fold(Aabb::EMPTY, |all, &item| all.union(boxes[item as usize]));
+                round_outwards(all, self.origin)
+            } else {
+                let [left, right] = self.children(&node);
+                left.aabb().union(right.aabb())
+            };
+            self.tree.nodes[i].set_aabb(around);
+        }
+    }
+
     /// Visits the items whose boxes a ray meets before `t_max`, roughly from near to far. `visit` gets the item and the
     /// current end of the ray and returns the new one (the same, or a nearer hit).
     pub fn along_ray(&self, ray: &Ray, t_max: f64, mut visit: impl FnMut(u32, f64) -> f64) {
@@ -280,6 +332,42 @@ mod tests {
             assert!(*found != Some(true) || inside, "a box called inside is inside");
         }
         assert!(found.contains(&Some(true)) && found.iter().any(Option::is_none));
+    }
+
+    #[test]
+    fn boxes_that_moved_are_found_where_they_are() {
+        let before = boxes(1000);
+        let mut bvh = Bvh::build(&before);
+        // Each goes its own way, the last one far away.
+        let moved: Vec<Aabb> = before
+            .iter()
+            .enumerate()
+            .map(|(i, b)| {
+                let way =
+                    if i == 999 { DVec3::splat(1e6) } else { DVec3::new((i % 37) as f64, -((i % 11) as f64), 5.0) };
+                Aabb { min: b.min + way, max: b.max + way }
+            })
+            .collect();
+        bvh.refit(&moved);
+        for center in moved.iter().step_by(9).map(Aabb::center) {
+            let region = Aabb { min: center - 15.0, max: center + 15.0 };
+            let mut found = Vec::new();
+            bvh.in_box(&region, |item| found.push(item));
+            found.sort_unstable();
+            let expected: Vec<u32> = (0..1000_u32).filter(|&b| moved[b as usize].meets(&region)).collect();
+            assert!(expected.iter().all(|b| found.binary_search(b).is_ok()), "{center}");
+            assert!(found.len() < expected.len() + 100);
+        }
+        // Empty ones come and go.
+        let mut other = moved;
+        other[3] = Aabb::EMPTY;
+        bvh.refit(&other);
+        other[3] = before[3];
+        bvh.refit(&other);
+        let mut found = Vec::new();
+        bvh.in_box(&before[3], |item| found.push(item));
+        assert!(found.contains(&3));
+        Bvh::build(&[]).refit(&[]);
     }
 
     #[test]

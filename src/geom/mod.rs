@@ -7,9 +7,11 @@ pub mod exact;
 mod meets;
 pub mod plane;
 pub mod ray;
+pub mod region;
 pub mod shape;
 pub mod triangulate;
 
 pub use aabb::Aabb;
 pub use ray::Ray;
+pub use region::Region;
 pub use shape::{Shape, Solid, Volume};

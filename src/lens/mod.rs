@@ -5,6 +5,7 @@ pub mod classify;
 pub mod color;
 pub mod effect;
 pub mod focus;
+pub mod intersection;
 pub mod nearest;
 pub mod ramp;
 pub mod solids;

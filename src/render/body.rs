@@ -118,6 +118,11 @@ impl Body {
         }
     }
 
+    /// Whether it is a convex volume.
+    pub fn is_convex(&self) -> bool {
+        matches!(self, Self::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) if volume.is_convex())
+    }
+
     /// Whether anything is in front of it or behind it: not of choices of objects alone.
     pub fn has_sides(&self) -> bool {
         self.leaves().any(|leaf| matches!(leaf.leaf, Leaf::Volume(_)))

@@ -1,7 +1,7 @@
 //! A picture, its AOVs and its statistics, from a scene and a city: the shown surface written down.
 
 use std::{
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
     time::Instant,
 };
 
@@ -12,11 +12,12 @@ use crate::{
         decode_normal,
         ground::{Ground, plain_ground},
         shown::shown_geometries,
+        spatial::SpatialIndex,
     },
-    geom::Aabb,
+    geom::{Aabb, Volume},
     gpu::{Gpu, GpuError, Timer},
     lens::{
-        Class,
+        Class, intersection,
         solids::{ShownCity, Solids},
     },
     render::{
@@ -131,6 +132,8 @@ pub struct Studio {
     /// Solids of lenses made so far, and as the card reads them.
     solids: Mutex<Solids>,
     solid_table: Mutex<Arc<SolidTable>>,
+    /// Where the shown triangles are, made for the first picture whose lenses are counted.
+    index: OnceLock<SpatialIndex>,
 }
 
 /// Everything of a scene that does not depend on the eye.
@@ -170,6 +173,7 @@ impl Studio {
             backend: Backend::default(),
             solids: Mutex::default(),
             solid_table: Mutex::default(),
+            index: OnceLock::new(),
         })
     }
 
@@ -211,7 +215,7 @@ impl Studio {
     ) -> Result<Picture, RenderError> {
         let started = Instant::now();
         let prepared = self.prepare(scene)?;
-        let view = self.view(scene, &prepared, request.size)?;
+        let view = self.view(scene, request.size)?;
         let mut picture = Picture::empty(request, scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
@@ -256,7 +260,7 @@ impl Studio {
 
     fn draw_with(&mut self, scene: &Scene, request: &Request, furniture: &Furniture) -> Result<(), RenderError> {
         let prepared = self.prepare(scene)?;
-        let view = self.view(scene, &prepared, request.size)?;
+        let view = self.view(scene, request.size)?;
         let whole = PictureTile::whole(request.size);
         self.find_edges(&prepared)?;
         let mut input = FrameInput { furniture, ..input(scene, request, &prepared, view, whole) };
@@ -285,17 +289,16 @@ impl Studio {
         part: ShaderPart,
     ) -> Result<String, RenderError> {
         let prepared = self.prepare(scene)?;
-        let view = self.view(scene, &prepared, size)?;
+        let view = self.view(scene, size)?;
         let request =
             Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false, backend };
         let input = input(scene, &request, &prepared, view, whole(size));
         Ok(self.renderer.shader(&input, &scene.lenses, part))
     }
 
-    fn view(&self, scene: &Scene, prepared: &Prepared, size: [u32; 2]) -> Result<View, CameraError> {
+    fn view(&self, scene: &Scene, size: [u32; 2]) -> Result<View, CameraError> {
         let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
-        View::new(self.camera(scene, size), size, &reach)
+        View::new(self.camera(scene, size), size, &drawn)
     }
 
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
@@ -583,21 +586,25 @@ fn lens_figures(
 /// City objects of which a shown triangle meets one of the volumes; exact in f64.
 fn objects_meeting(studio: &Studio, volumes: &[&LensVolume]) -> u64 {
     let model = &studio.model;
-    let mut met = rustc_hash::FxHashSet::default();
-    for &g in &studio.geometries {
-        let geometry = &model.geometries[g as usize];
+    let index = || studio.index.get_or_init(|| SpatialIndex::build(model, &studio.geometries));
+    let convex = volumes.iter().filter_map(|v| match &v.body {
+        Body::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) if volume.is_convex() => Some(volume.clone()),
+        _ => None,
+    });
+    let convex: Vec<Volume> = convex.collect();
+    let mut met: rustc_hash::FxHashSet<u32> = match convex.is_empty() {
+        true => Default::default(),
+        false => {
+            intersection::objects_meeting(model, index(), &intersection::regions(&[&convex])).into_iter().collect()
+        }
+    };
+    let others: Vec<&&LensVolume> = volumes.iter().filter(|v| !v.body.is_convex()).collect();
+    let geometries = if others.is_empty() { &[][..] } else { &studio.geometries };
+    for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
         if met.contains(&geometry.object) {
             continue;
         }
-        let is_member = |v: &&LensVolume| match &v.body {
-            Body::One(PlacedLeaf { leaf: Leaf::Members(m), .. }) => m.objects[geometry.object as usize],
-            _ => false,
-        };
-        if volumes.iter().any(is_member) {
-            met.insert(geometry.object);
-            continue;
-        }
-        let near: Vec<_> = volumes.iter().filter(|v| v.bounds.meets(&geometry.bounds)).collect();
+        let near: Vec<_> = others.iter().filter(|v| v.bounds.meets(&geometry.bounds)).collect();
         let hit = |tile: &crate::city::Tile| {
             (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
                 let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + model.indices[i + k]));

@@ -21,8 +21,8 @@ pub struct View {
 }
 
 impl View {
-    /// A camera on a picture of `size` pixels. `extent` is everything that may be drawn, lens bodies included: an
-    /// orthographic depth is linear and needs a far plane, which is put beyond it.
+    /// A camera on a picture of `size` pixels. `extent` is everything that may be drawn: an orthographic depth is linear and
+    /// needs a far plane, which is put beyond it. Lenses are not drawn, and their sprites clamp depth.
     pub fn new(camera: Camera, size: [u32; 2], extent: &Aabb) -> Result<Self, CameraError> {
         if size.iter().any(|side| !(1..=MAX_SIZE).contains(side)) {
             return Err(CameraError::Size(size[0], size[1]));

@@ -5,12 +5,18 @@ mod case_01_national_coordinates;
 mod case_03_coplanar_faces;
 mod case_03_jitter;
 mod case_04_near_plane;
+mod case_05_around_everything;
+mod case_06_many_lenses;
+mod case_08_grazing_rays;
+mod case_09_coplanar_lens_faces;
 mod case_10_axis_parallel_rays;
 mod case_11_rays_through_edges;
 mod case_12_slivers;
 mod case_13_dirty_rings;
 mod case_14_non_planar_faces;
 mod case_21_extreme_views;
+mod case_23_jitter;
+mod lenses;
 mod oracle;
 #[path = "../studio/mod.rs"]
 mod studio;

@@ -280,6 +280,11 @@ impl Volume {
         }
     }
 
+    /// Whether it is convex: all but solids.
+    pub fn is_convex(&self) -> bool {
+        !matches!(self, Self::Solid(_))
+    }
+
     /// Whether the closed body holds `p`.
     pub fn contains(&self, p: DVec3) -> bool {
         match self {
