@@ -2,15 +2,17 @@
 // eye in f64 before it rounds to f32; `crate::geom::Shape` is the f64 twin of the functions here.
 
 struct Shape {
-    center: vec3f,              // metres
+    center: vec3f,              // metres; flat: see span_of_flat, as its axes
     kind: u32,                  // SPHERE, BOX, ...
     axis_x: vec3f,              // box: its x edge, unit; ellipsoid: its x axis over the radius there
     size_x: f32,                // sphere, cylinder: radius; box: half edge along axis_x; convex: number of its first plane;
-                                // frustum: radius at its middle
+                                // frustum: radius at its middle; flat: a disc's radius, half a rectangle's edge, number of a
+                                // polygon's first side
     axis_y: vec3f,              // box, ellipsoid: as axis_x
-    size_y: f32,                // box: half edge; convex: how many planes; frustum: what the radius grows by along its axis
+    size_y: f32,                // box: half edge; convex: how many planes; frustum: what the radius grows by along its axis;
+                                // flat: half a rectangle's edge, how many sides a polygon has
     axis_z: vec3f,              // box, ellipsoid: as axis_x; cylinder, frustum: its axis, unit
-    size_z: f32,                // box: half edge; cylinder, frustum: half height
+    size_z: f32,                // box: half edge; cylinder, frustum: half height; flat: DISC, RECTANGLE or POLYGON
 }
 
 const SPHERE: u32 = 0u;
@@ -21,6 +23,7 @@ const ELLIPSOID: u32 = 4u;
 const FRUSTUM: u32 = 5u;
 // Not a shape: the volume is tested by its depth sprite.
 const SPRITE: u32 = 6u;
+const FLAT: u32 = 7u;
 
 // Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
 struct Span {
@@ -165,7 +168,7 @@ fn span_of_frustum(ray: Ray, s: Shape) -> Span {
     return Span(span.enter + nearest, span.exit + nearest);
 }
 
-@group(1) @binding(1) var<storage, read> planes: array<vec4f>; // n, d: inside where n.p <= d
+@group(1) @binding(1) var<storage, read> planes: array<vec4f>; // n, d: inside where n.p <= d; of a flat lens' polygon: its sides
 
 fn convex_holds(s: Shape, p: vec3f) -> bool {
     var is_below = true;
@@ -196,6 +199,52 @@ fn span_of_convex(ray: Ray, s: Shape) -> Span {
     return span;
 }
 
+// Figures of flat lenses, in size_z.
+const DISC: f32 = 0.0;
+const RECTANGLE: f32 = 1.0;
+const POLYGON: f32 = 2.0;
+
+// Where a flat lens is never left.
+const NO_END: f32 = FAR_AWAY;
+
+// What is seen through a figure in a plane (L3), from the plane to infinity. Where a sight line crosses the plane is a projective
+// map of where it crosses the picture, a = (x, y, -1): D = center.a / axis_z.a, and in the figure's own coordinates
+// (axis_x.a, axis_y.a) / axis_z.a. The host makes it in f64, so that axis_z.a > 0 where the plane is seen; 0: edge on.
+fn span_of_flat(ray: Ray, s: Shape) -> Span {
+    // (x, y, -1) for parallel rays, too.
+    let a = ray.origin + ray.direction;
+    let w = dot(s.axis_z, a);
+    let at = clamp(vec2f(dot(s.axis_x, a), dot(s.axis_y, a)) / w, vec2f(-1e15), vec2f(1e15));
+    let enter = clamp(dot(s.center, a) / w, -FAR_AWAY, FAR_AWAY);
+    let is_met = w > 1e-20 && is_in_figure(s, at);
+    return Span(select(EMPTY_SPAN.enter, enter, is_met), select(EMPTY_SPAN.exit, NO_END, is_met));
+}
+
+fn is_in_figure(s: Shape, at: vec2f) -> bool {
+    if s.size_z == POLYGON {
+        return is_in_polygon(u32(s.size_x), u32(s.size_y), at);
+    }
+    if s.size_z == RECTANGLE {
+        return abs(at.x) <= s.size_x && abs(at.y) <= s.size_y;
+    }
+    return dot(at, at) <= s.size_x * s.size_x;
+}
+
+// Whether a polygon goes around a point; the sides stand in `planes`. Twin: `winding` in `geom::shape::flat`.
+fn is_in_polygon(first: u32, count: u32, p: vec2f) -> bool {
+    var around = 0;
+    for (var i = first; i < first + count; i++) {
+        let a = planes[i].xy;
+        let along = planes[i].zw - a;
+        let from_a = p - a;
+        let side = along.x * from_a.y - along.y * from_a.x;
+        let is_up = a.y <= p.y && planes[i].w > p.y;
+        let is_down = a.y > p.y && planes[i].w <= p.y;
+        around += select(0, 1, is_up && side > 0.0) - select(0, 1, is_down && side < 0.0);
+    }
+    return around != 0;
+}
+
 // `kind`: the shape's own, or a constant where all shapes of a pipeline are of one: a software adapter runs all cases of a
 // switch that it cannot decide before.
 fn span_of_shape(ray: Ray, s: Shape, kind: u32) -> Span {
@@ -205,11 +254,12 @@ fn span_of_shape(ray: Ray, s: Shape, kind: u32) -> Span {
         case CYLINDER: { return span_of_cylinder(ray, s); }
         case ELLIPSOID: { return span_of_ellipsoid(ray, s); }
         case FRUSTUM: { return span_of_frustum(ray, s); }
+        case FLAT: { return span_of_flat(ray, s); }
         default: { return span_of_convex(ray, s); }
     }
 }
 
-// `kind`: as above.
+// `kind`: as above; not FLAT, which asks by the ray.
 fn holds(s: Shape, kind: u32, p: vec3f) -> bool {
     switch kind {
         case SPHERE: { return sphere_holds(s, p); }

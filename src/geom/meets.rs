@@ -52,6 +52,7 @@ impl Volume {
                 let local = corners.map(|p| p - center);
                 !clipped(&local, planes.iter().copied()).is_empty()
             }
+            Self::Flat(flat) => flat.meets_triangle(corners),
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::{
         ground::{Ground, plain_ground},
         shown::shown_geometries,
     },
-    geom::Aabb,
+    geom::{Aabb, shape::Motion},
     gpu::{Gpu, GpuError, Timer},
     lens::{Class, LensBody},
     render::{
@@ -20,6 +20,7 @@ use crate::{
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
         operations::{MOST_FILTERS, Operations},
+        placement::Eye,
         stats::{self, Statistics},
         volume::{LensVolume, shape_test},
     },
@@ -195,7 +196,7 @@ impl Studio {
         furniture: &Furniture,
     ) -> Result<Picture, RenderError> {
         let started = Instant::now();
-        let prepared = self.prepare(scene)?;
+        let prepared = self.prepare(scene, request.size)?;
         let view = self.view(scene, &prepared, request.size)?;
         let mut picture = Picture::empty(request, scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
@@ -240,7 +241,7 @@ impl Studio {
     }
 
     fn draw_with(&mut self, scene: &Scene, request: &Request, furniture: &Furniture) -> Result<(), RenderError> {
-        let prepared = self.prepare(scene)?;
+        let prepared = self.prepare(scene, request.size)?;
         let view = self.view(scene, &prepared, request.size)?;
         let whole = PictureTile::whole(request.size);
         self.find_edges(&prepared)?;
@@ -269,7 +270,7 @@ impl Studio {
         backend: Backend,
         part: ShaderPart,
     ) -> Result<String, RenderError> {
-        let prepared = self.prepare(scene)?;
+        let prepared = self.prepare(scene, size)?;
         let view = self.view(scene, &prepared, size)?;
         let request =
             Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false, backend };
@@ -279,13 +280,14 @@ impl Studio {
 
     fn view(&self, scene: &Scene, prepared: &Prepared, size: [u32; 2]) -> Result<View, CameraError> {
         let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let reach = prepared.volumes.iter().fold(drawn, |all, v| all.union(v.bounds));
+        let ended = prepared.volumes.iter().filter(|v| v.volume.is_bounded());
+        let reach = ended.fold(drawn, |all, v| all.union(v.bounds));
         View::new(self.camera(scene, size), size, &reach)
     }
 
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
     pub fn lenses_in_view(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<bool>, RenderError> {
-        let (volumes, _) = volumes_of(scene)?;
+        let volumes = self.lens_volumes(scene, size)?;
         let view = View::new(self.camera(scene, size), size, &Aabb::EMPTY)?;
         let mut seen = vec![false; scene.lenses.len()];
         for volume in volumes.iter().filter(|v| v.seen_part(&view, whole(size)).is_some()) {
@@ -294,8 +296,17 @@ impl Studio {
         Ok(seen)
     }
 
-    fn prepare(&self, scene: &Scene) -> Result<Prepared, RenderError> {
-        let (volumes, tests) = volumes_of(scene)?;
+    /// The volumes of the scene's enabled lenses where they stand in a picture of this size.
+    pub fn lens_volumes(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<LensVolume>, RenderError> {
+        Ok(self.volumes_of(scene, size)?.0)
+    }
+
+    fn volumes_of(&self, scene: &Scene, size: [u32; 2]) -> Result<VolumesAndTests, RenderError> {
+        volumes_of(scene, &self.model, &Eye::new(&self.camera(scene, size))?)
+    }
+
+    fn prepare(&self, scene: &Scene, size: [u32; 2]) -> Result<Prepared, RenderError> {
+        let (volumes, tests) = self.volumes_of(scene, size)?;
         let mut present = vec![false; scene.lenses.len()];
         for volume in &volumes {
             present[volume.lens as usize] = true;
@@ -477,13 +488,18 @@ impl Studio {
     }
 }
 
-/// The volumes of a scene's enabled lenses; and how the volumes of all its lenses are tested, in the picture and from the
+/// What [`volumes_of`] finds.
+type VolumesAndTests = (Vec<LensVolume>, [Vec<VolumeTest>; 2]);
+
+/// The volumes of a scene's enabled lenses where they stand for an eye; and how the volumes of all its lenses are tested, in the picture and from the
 /// sun.
-fn volumes_of(scene: &Scene) -> Result<(Vec<LensVolume>, [Vec<VolumeTest>; 2]), RenderError> {
+fn volumes_of(scene: &Scene, model: &CityModel, eye: &Eye) -> Result<VolumesAndTests, RenderError> {
     let (mut volumes, mut tests) = (Vec::new(), [Vec::new(), Vec::new()]);
     for (i, lens) in scene.lenses.iter().enumerate() {
+        // Attached to what is not there, it acts nowhere.
+        let motion = eye.motion(lens, scene, model);
         for shape in &lens.shapes {
-            let bodies = match shape.volumes() {
+            let bodies = match shape.placed(&motion.unwrap_or(Motion::NONE), &eye.sight()) {
                 Ok(bodies) => bodies,
                 Err(_) if !lens.enabled => continue,
                 Err(error) => return Err(RenderError::Scene(format!("lens \"{}\": shape: {error}", lens.name))),
@@ -497,7 +513,7 @@ fn volumes_of(scene: &Scene) -> Result<(Vec<LensVolume>, [Vec<VolumeTest>; 2]), 
                 tests[0].push(volume.test());
                 tests[1].push(shape_test(&volume.volume));
                 // A lens without volume shows nothing and costs nothing.
-                if lens.enabled && !volume.volume.is_empty() {
+                if lens.enabled && motion.is_some() && !volume.volume.is_empty() {
                     volumes.push(volume);
                 }
             }

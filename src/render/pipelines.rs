@@ -516,6 +516,7 @@ fn shape_name(shape: VolumeTest) -> &'static str {
         VolumeTest::Ellipsoid => "ellipsoid",
         VolumeTest::Frustum => "cone",
         VolumeTest::Convex | VolumeTest::Sprite => "convex body",
+        VolumeTest::Flat => "flat figure",
     }
 }
 

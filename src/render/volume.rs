@@ -5,7 +5,7 @@ use glam::{DMat3, DVec2, DVec3};
 use crate::{
     geom::{Aabb, Volume},
     lens::LensSprite,
-    render::{eye::PictureTile, layout, octagon::Octagon},
+    render::{eye::PictureTile, flat, layout, octagon::Octagon},
     shader::VolumeTest,
     view::View,
 };
@@ -41,6 +41,7 @@ pub fn shape_test(volume: &Volume) -> VolumeTest {
         Volume::Convex(_) => VolumeTest::Convex,
         Volume::Ellipsoid { .. } => VolumeTest::Ellipsoid,
         Volume::Frustum { .. } => VolumeTest::Frustum,
+        Volume::Flat(_) => VolumeTest::Flat,
     }
 }
 
@@ -91,6 +92,7 @@ impl LensVolume {
                 out.size_y = ((top - bottom) / (2.0 * half)) as f32;
                 out.size_z = *half as f32;
             }
+            Volume::Flat(flat) => flat::figures(flat, view, &mut out, planes),
             Volume::Convex(hull) => {
                 let (center, faces) = hull.planes();
                 out.size_x = planes.len() as f32;
@@ -111,12 +113,22 @@ impl LensVolume {
             return Some(whole);
         }
         let margin = if self.has_outline || self.sprite.is_some() { WIDE_MARGIN_PX } else { MARGIN_PX };
+        if let Volume::Flat(flat) = &self.volume {
+            let around = |(low, high)| Octagon::around(low, high).grown([margin; 2]).within(tile);
+            return flat::projected(flat, view).map_or_else(|all| all.then_some(whole), around);
+        }
         if self.bounds.is_empty() || !view.frustum(margin.into()).meets(&self.bounds) {
             return None;
         }
         // What lies beside or behind the eye bounds nothing.
         let Some((low, high)) = self.projected(view) else { return Some(whole) };
         Octagon::around(low, high).grown([margin; 2]).within(tile)
+    }
+
+    /// The box around its projection, pixels; `None` where it may be anywhere.
+    pub fn box_seen(&self, view: &View) -> Option<(DVec2, DVec2)> {
+        let ([x0, y0, ..], [x1, y1, ..]) = self.projected(view)?;
+        Some((DVec2::new(x0, y0), DVec2::new(x1, y1)))
     }
 
     /// The least and the most of x, y, x + y and x - y in its projection, pixels; `None` where it reaches behind the near
@@ -141,6 +153,7 @@ impl LensVolume {
                 corners_of_box(*center, DMat3::from_cols(x, y, *axis), DVec3::new(radius, radius, *half))
             }
             Volume::Convex(hull) => hull.faces().0,
+            Volume::Flat(flat) => return flat::projected(flat, view).ok(),
         };
         projected_corners(view, corners)
     }
@@ -153,7 +166,7 @@ pub fn projected_box(view: &View, bounds: &Aabb) -> Option<(DVec2, DVec2)> {
 }
 
 /// Of a point: x, y, x + y, x - y.
-fn along(p: DVec2) -> [f64; 4] {
+pub(super) fn along(p: DVec2) -> [f64; 4] {
     [p.x, p.y, p.x + p.y, p.x - p.y]
 }
 

@@ -80,6 +80,9 @@ fn members(test: VolumeTest) -> &'static [(&'static str, usize)] {
         VolumeTest::Convex => &[("size_x", 1), ("size_y", 1)],
         VolumeTest::Ellipsoid => &[("center", 3), ("axis_x", 3), ("axis_y", 3), ("axis_z", 3)],
         VolumeTest::Frustum => &[("center", 3), ("size_x", 1), ("axis_z", 3), ("size_z", 1), ("size_y", 1)],
+        VolumeTest::Flat => {
+            &[("center", 3), ("size_x", 1), ("axis_x", 3), ("size_y", 1), ("axis_y", 3), ("size_z", 1), ("axis_z", 3)]
+        }
         VolumeTest::Sprite => &[],
     }
 }

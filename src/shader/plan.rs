@@ -51,12 +51,22 @@ pub enum VolumeTest {
     Frustum,
     /// By its volumetric depth sprite.
     Sprite,
+    /// Of a figure in a plane, which is looked through.
+    Flat,
 }
 
 impl VolumeTest {
     /// All of them, in the order of their numbers in `lib/shape.wgsl`.
-    pub const ALL: [Self; 7] =
-        [Self::Sphere, Self::Box, Self::Cylinder, Self::Convex, Self::Ellipsoid, Self::Frustum, Self::Sprite];
+    pub const ALL: [Self; 8] = [
+        Self::Sphere,
+        Self::Box,
+        Self::Cylinder,
+        Self::Convex,
+        Self::Ellipsoid,
+        Self::Frustum,
+        Self::Sprite,
+        Self::Flat,
+    ];
 
     /// Its number, as `lib/shape.wgsl` knows it.
     pub fn number(self) -> u32 {
@@ -73,6 +83,7 @@ impl VolumeTest {
             Self::Ellipsoid => "ELLIPSOID",
             Self::Frustum => "FRUSTUM",
             Self::Sprite => "SPRITE",
+            Self::Flat => "FLAT",
         }
     }
 }

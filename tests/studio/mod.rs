@@ -70,6 +70,7 @@ pub fn lens(name: &str, shapes: Vec<Shape>, effect: &str) -> Lens {
         kind: LensKind::Color,
         enabled: true,
         color: [0.8, 0.1, 0.1],
+        placement: Default::default(),
         shapes,
         effects: vec![used(effect)],
         body: LensBody::None,

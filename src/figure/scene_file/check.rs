@@ -199,6 +199,8 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         Kind::Angles => each(-360.0..=360.0),
         Kind::Points(_) => return wrong_rows::<3>(kind, node, "point", "[x, y, z], three", FAR_M),
         Kind::Planes(_) => return wrong_rows::<4>(kind, node, "plane", "[x, y, z, d], four", f64::MAX),
+        Kind::PlaneLengths => node.numbers::<2>().is_some_and(|v| v.iter().all(|c| (0.0..=FAR_M).contains(c))),
+        Kind::PlanePoints(_) => return wrong_rows::<2>(kind, node, "point", "[x, y], two", FAR_M),
         Kind::Color => color(node).is_some(),
         Kind::Background => node.text() == Some("sky") || color(node).is_some(),
         Kind::Lod => lod(node).is_some(),

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::{
     figure::scene_file::keys::{self, CLASSES, Key, Kind, LATER_SHAPES, LATER_TABLES, SHAPES, TABLES, Table},
+    geom::shape::flat::MAX_CORNERS,
     lens::effect::LATER,
     shader::{
         Blend,
@@ -141,12 +142,21 @@ fn object(table: &Table) -> Map<String, Value> {
     if table.keys.iter().any(|k| k.name == "shapes") {
         map.insert("oneOf".into(), json!([{ "required": ["shape"] }, { "required": ["shapes"] }]));
     }
+    let one_of: &[&str] = match table.name {
+        "flat" => &["radius", "size", "points"],
+        "attached_to" => &["object", "poi"],
+        _ => &[],
+    };
+    if !one_of.is_empty() {
+        map.insert("oneOf".into(), one_of.iter().map(|key| json!({ "required": [key] })).collect());
+    }
     map.insert("additionalProperties".into(), false.into());
     map
 }
 
 fn of_kind(kind: &Kind) -> Value {
     let three = |min: f64, max: f64| json!({ "type": "array", "items": { "type": "number", "minimum": min, "maximum": max }, "minItems": 3, "maxItems": 3 });
+    let two = |min: f64| json!({ "type": "array", "items": { "type": "number", "minimum": min, "maximum": keys::FAR_M }, "minItems": 2, "maxItems": 2 });
     match kind {
         Kind::Integer { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
         Kind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
@@ -163,6 +173,10 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Planes(least) => {
             let four = json!({ "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4 });
             json!({ "type": "array", "items": four, "minItems": least, "maxItems": 64 })
+        }
+        Kind::PlaneLengths => two(0.0),
+        Kind::PlanePoints(least) => {
+            json!({ "type": "array", "items": two(-keys::FAR_M), "minItems": least, "maxItems": MAX_CORNERS })
         }
         Kind::Color => color(),
         Kind::Background => json!({ "anyOf": [{ "const": "sky" }, color()] }),

@@ -44,6 +44,10 @@ pub enum Kind {
     Points(usize),
     /// At least so many planes `[x, y, z, d]`.
     Planes(usize),
+    /// `[width, height]`, each 0 to [`FAR_M`].
+    PlaneLengths,
+    /// At least so many points `[x, y]` of a plane.
+    PlanePoints(usize),
     /// `"#rrggbb"` or `[r, g, b]`.
     Color,
     /// `"sky"` or a colour.
@@ -310,6 +314,22 @@ pub const LENS: Table = Table {
             "\"#0072b2\"",
         ),
         key(
+            "placement",
+            Kind::Word { now: &["scene", "camera"], later: &[] },
+            "\"scene\"",
+            "",
+            "What its shapes are fixed to: the `scene`, or the `camera`, with which they move; see Placement.",
+            "\"camera\"",
+        ),
+        key(
+            "attached_to",
+            Kind::Table(&ATTACHED_TO),
+            "nothing: model coordinates",
+            "",
+            "A city object or a point of interest, whose middle the coordinates of its shapes are counted from.",
+            "{ poi = \"hall\" }",
+        ),
+        key(
             "shape",
             Kind::Shape,
             "",
@@ -356,6 +376,31 @@ pub const LENS: Table = Table {
             "",
             "Has the lens tested by a volumetric depth sprite of it.",
             "{ resolution = 512 }",
+        ),
+    ],
+};
+
+/// `attached_to` of a lens.
+pub const ATTACHED_TO: Table = Table {
+    name: "attached_to",
+    doc: "What a lens is attached to: exactly one of `object` and `poi`. The coordinates of its shapes are counted from there, \
+          along the model's axes: `center = [0, 0, 0]` is the middle of it.",
+    keys: &[
+        key(
+            "object",
+            Kind::Text,
+            "none",
+            "",
+            "Id of a city object: the middle of the box (edges along x, y, z) around all of its geometry, of every level of detail, and that of its parts.",
+            "\"NL.IMBAG.Pand.0503100000031316\"",
+        ),
+        key(
+            "poi",
+            Kind::Text,
+            "none",
+            "",
+            "Name of a point of interest: its point, or the middle of its object, as above.",
+            "\"hall\"",
         ),
     ],
 };
@@ -531,11 +576,47 @@ pub const SHAPES: &[Table] = &[
             ),
         ],
     },
+    Table {
+        name: "flat",
+        doc: "What is seen through a figure: a disc, a rectangle or a polygon; exactly one of `radius`, `size` and `points`. It \
+              begins in the figure's plane and reaches from there to infinity, away from the eye: the sky behind it is in it, \
+              what stands before it is not. Both sides of the figure are alike. An eye in its plane sees it edge on: it holds \
+              nothing then. It acts only in the view that the scene is looked at in.",
+        keys: &[
+            shape_kind("\"flat\""),
+            key("center", Kind::Point, "", "m", "Where the (0, 0) of the figure is.", "[78600.0, 457950.0, 10.0]"),
+            key(
+                "rotation_deg",
+                Kind::Angles,
+                "[0, 0, 0]",
+                "degrees",
+                "`[yaw, pitch, roll]`, as of a box: without, the figure lies level; `[yaw, 0, 90]` stands upright, its x along the yaw.",
+                "[30.0, 0.0, 90.0]",
+            ),
+            key("radius", Kind::Number { min: 0.0, max: FAR_M }, "none", "m", "Of a disc; 0 holds nothing.", "20.0"),
+            key(
+                "size",
+                Kind::PlaneLengths,
+                "none",
+                "m",
+                "Of a rectangle: full edges along its x and y.",
+                "[40.0, 25.0]",
+            ),
+            key(
+                "points",
+                Kind::PlanePoints(3),
+                "none",
+                "m",
+                "Of a polygon, convex or not, in the figure's x and y; at most 1024. Where it crosses itself, all that it goes around is in it.",
+                "[[-20, -10], [20, -10], [0, 15]]",
+            ),
+        ],
+    },
 ];
 
 /// Shapes of later versions.
 pub const LATER_SHAPES: &[&str] =
-    &["mesh", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference", "flat"];
+    &["mesh", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference"];
 
 /// Classes of an effect's use.
 pub const CLASSES: &[&str] = &["inside", "front", "behind", "rest"];
@@ -558,6 +639,8 @@ impl Kind {
             Self::Angles => "[yaw, pitch, roll], three numbers -360 to 360".into(),
             Self::Points(least) => format!("a list of at least {least} points [x, y, z]"),
             Self::Planes(least) => format!("a list of at least {least} planes [x, y, z, d]"),
+            Self::PlaneLengths => "[width, height], two numbers ≥ 0".into(),
+            Self::PlanePoints(least) => format!("a list of at least {least} points [x, y]"),
             Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Background => "\"sky\" or a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Lod => "a level of detail like \"2\" or \"1.3\"".into(),
@@ -580,6 +663,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("[style]", &STYLE),
     ("[[poi]]", &POI),
     ("[[lens]]", &LENS),
+    ("attached_to of a lens", &ATTACHED_TO),
     ("sprite of a lens", &SPRITE),
     ("[figure]", &FIGURE),
 ];

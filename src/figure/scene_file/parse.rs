@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
 use crate::{
     figure::scene_file::{
@@ -11,9 +11,9 @@ use crate::{
         node::{Data, Node},
         paths::{Options, PathProblem},
     },
-    geom::Shape,
+    geom::{Shape, shape::FlatFigure},
     lens::{
-        Class, EffectUse, Lens, LensBody, LensKind, LensSprite, Parameter, effect,
+        Class, EffectUse, Lens, LensBody, LensKind, LensSprite, Parameter, Placement, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -188,6 +188,7 @@ impl<'o> SceneReader<'o> {
     }
 
     fn lens(&mut self, fields: &Fields, index: usize) -> Lens {
+        let placement = self.placement(fields);
         let shapes = self.shapes(fields);
         let effects = self.effects(fields, true);
         let sprite = fields
@@ -198,11 +199,38 @@ impl<'o> SceneReader<'o> {
             kind: LensKind::Color,
             enabled: fields.boolean("enabled").unwrap_or(true),
             color: fields.color("color").unwrap_or_else(|| lens_color(index)),
+            placement,
             shapes,
             effects,
             body: if fields.text("body") == Some("none") { LensBody::None } else { LensBody::Outline },
             sprite: sprite.map(|s| LensSprite { resolution: s.integer("resolution") }),
         }
+    }
+
+    fn placement(&mut self, fields: &Fields) -> Placement {
+        let of_camera = fields.text("placement") == Some("camera");
+        let Some(node) = fields.node("attached_to") else {
+            return if of_camera { Placement::Camera } else { Placement::World };
+        };
+        if of_camera {
+            let message = "is given together with placement = \"camera\": a lens is fixed to one of them";
+            self.checker.note(&fields.place, "attached_to", node.line, message);
+        }
+        let place = fields.place.within("attached_to", node.line);
+        let own = self.checker.fields(node, &keys::ATTACHED_TO, &[], place);
+        match (own.text("object"), own.text("poi")) {
+            (Some(id), None) if !own.given("poi") => return Placement::Object(id.to_owned()),
+            (None, Some(name)) if !own.given("object") => return Placement::Poi(name.to_owned()),
+            (None, None) if own.given("object") || own.given("poi") => {}
+            (None, None) => {
+                self.checker.note(&own.place, "", node.line, "is empty: give object = \"ID\" or poi = \"NAME\"");
+            }
+            _ => {
+                let message = "is given together with object: a lens is attached to one of them";
+                self.checker.note(&own.place, "poi", own.line("poi"), message);
+            }
+        }
+        Placement::World
     }
 
     fn shapes(&mut self, fields: &Fields) -> Vec<Shape> {
@@ -259,8 +287,19 @@ impl<'o> SceneReader<'o> {
             return None;
         };
         let fields = self.checker.fields(node, table, &[], place.clone());
+        if table.name == "flat" {
+            let given: Vec<&str> = ["radius", "size", "points"].into_iter().filter(|key| fields.given(key)).collect();
+            let message = match given[..] {
+                [_] => None,
+                [] => Some("is missing: a flat lens has a radius, a size = [width, height] or points".to_owned()),
+                [first, ..] => Some(format!("is given together with {first}: a flat lens has one figure")),
+            };
+            if let Some(message) = message {
+                self.checker.note(place, given.last().unwrap_or(&"radius"), node.line, message);
+            }
+        }
         let shape = built_shape(table.name, &fields)?;
-        if let Err(error) = shape.volumes() {
+        if let Err(error) = shape.check() {
             let key = ["points", "planes"].into_iter().find(|key| fields.given(key)).unwrap_or("");
             self.checker.note(place, key, node.line, error.to_string());
         }
@@ -408,6 +447,17 @@ fn built_shape(kind: &str, fields: &Fields) -> Option<Shape> {
         "polytope" => {
             let list = fields.node("planes").and_then(Node::list)?;
             Shape::Polytope { planes: list.iter().filter_map(Node::numbers::<4>).collect() }
+        }
+        "flat" => {
+            let figure = if let Some(radius) = fields.number("radius") {
+                FlatFigure::Disc { radius }
+            } else if let Some(size) = fields.node("size").and_then(Node::numbers::<2>) {
+                FlatFigure::Rectangle { size: size.into() }
+            } else {
+                let list = fields.node("points").and_then(Node::list)?;
+                FlatFigure::Polygon { points: list.iter().filter_map(|p| p.numbers::<2>().map(DVec2::from)).collect() }
+            };
+            Shape::Flat { center: center?, rotation: turned(), figure }
         }
         _ => Shape::Convex { points: points()? },
     })

@@ -52,7 +52,7 @@ const GROWTH: f64 = 1.0 + 1e-5;
 impl Volume {
     /// A closed convex mesh that holds the whole shape: what a renderer draws to reach all pixels of an analytic
     /// volume. Boxes and polytopes: their faces exactly. Round ones: circumscribed, at most 4 % wider.
-    /// Empty where the volume is.
+    /// Empty where the volume is, and for a flat lens, which no closed mesh holds.
     pub fn bounding_mesh(&self) -> Mesh {
         match self {
             _ if self.is_empty() => Mesh::default(),
@@ -82,11 +82,13 @@ impl Volume {
                 prism(*center, radii.map(|r| r * wider), *half * GROWTH, *axis, BOUNDING_SIDES)
             }
             Self::Box { .. } | Self::Convex(_) => self.surface_mesh(BOUNDING_SIDES),
+            // It has no end.
+            Self::Flat(_) => Mesh::default(),
         }
     }
 
     /// A closed mesh with its corners on the shape's surface; `segments` (3..=1024) around a cylinder, and about as
-    /// many around a sphere.
+    /// many around a sphere; of a flat lens none.
     pub fn surface_mesh(&self, segments: u32) -> Mesh {
         let segments = segments.clamp(3, 1024);
         match self {
@@ -107,6 +109,7 @@ impl Volume {
                 let (points, triangles) = hull.faces();
                 Mesh { points, triangles: triangles.to_vec() }
             }
+            Self::Flat(_) => Mesh::default(),
         }
     }
 }

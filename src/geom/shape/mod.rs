@@ -5,14 +5,18 @@
 //! runs within a face is inside it. A body without volume (radius 0, an edge 0) holds nothing.
 
 mod corridor;
+pub mod flat;
 mod hull;
 mod mesh;
+mod placed;
 mod polytope;
 
 use glam::{DQuat, DVec2, DVec3};
 
+pub use flat::{Flat, FlatFigure, Sightlines};
 pub use hull::Hull;
 pub use mesh::Mesh;
+pub use placed::Motion;
 
 use crate::geom::{Aabb, Ray};
 
@@ -87,6 +91,15 @@ pub enum Shape {
         /// Full height, metres, ≥ 0.
         height: f64,
     },
+    /// What is seen through a figure in a plane, from there to infinity; only in the view that it is defined in.
+    Flat {
+        /// The figure's origin, metres.
+        center: DVec3,
+        /// Turns its axes into the world's; its z is the plane's normal.
+        rotation: DQuat,
+        /// In its own x, y plane.
+        figure: FlatFigure,
+    },
 }
 
 /// Why a shape is no volume.
@@ -107,6 +120,17 @@ pub enum ShapeError {
     /// Too few points for a line.
     #[error("a line needs at least 2 points, has {0}")]
     ShortLine(usize),
+    /// Too few points for an area.
+    #[error("a polygon needs at least 3 points, has {0}")]
+    FewCorners(usize),
+    /// More corners than a pixel can be tested against.
+    #[error("a polygon may have at most {max} points, has {0}", max = flat::MAX_CORNERS)]
+    ManyCorners(usize),
+    /// What a flat lens holds depends on the eye, [`Shape::volumes_seen`].
+    #[error(
+        "a flat lens holds what an eye sees through it: it cannot be asked without one, nor be part of another shape"
+    )]
+    NeedsEye,
     /// The shape is the union of several volumes, [`Shape::volumes`].
     #[error("a corridor is several volumes")]
     Several,
@@ -184,9 +208,26 @@ pub enum Volume {
     },
     /// A convex polytope.
     Convex(Hull),
+    /// What an eye sees through a figure.
+    Flat(Flat),
 }
 
 impl Shape {
+    /// Whether it is a shape at all.
+    pub fn check(&self) -> Result<(), ShapeError> {
+        self.volumes_seen(&Sightlines::Along(DVec3::NEG_Z)).map(|_| ())
+    }
+
+    /// As [`Shape::volumes`], for an eye with these sight lines: a flat lens depends on them.
+    pub fn volumes_seen(&self, sight: &Sightlines) -> Result<Vec<Volume>, ShapeError> {
+        let Self::Flat { center, rotation, figure } = self else { return self.volumes() };
+        if !(center.is_finite() && rotation.is_finite() && rotation.length() > 0.0) {
+            return Err(ShapeError::NotFinite);
+        }
+        figure.check()?;
+        Ok(vec![Volume::Flat(Flat::new(*center, rotation.normalize(), figure.clone(), *sight))])
+    }
+
     /// Checks the shape and prepares it: the volumes whose union it is, none where it is known to hold nothing.
     pub fn volumes(&self) -> Result<Vec<Volume>, ShapeError> {
         match self {
@@ -244,6 +285,7 @@ impl Shape {
             Self::Convex { points } => Hull::new(points).map(Volume::Convex),
             Self::Polytope { planes } => polytope::between(planes).map(Volume::Convex),
             Self::Corridor { .. } => Err(ShapeError::Several),
+            Self::Flat { .. } => Err(ShapeError::NeedsEye),
         }
     }
 }
@@ -258,16 +300,26 @@ impl Volume {
             Self::Ellipsoid { radii, .. } => radii.min_element() <= 0.0,
             Self::Frustum { radii, half, .. } => radii[0].max(radii[1]).min(*half) <= 0.0,
             Self::Convex(_) => false,
+            Self::Flat(flat) => flat.is_empty(),
         }
+    }
+
+    /// Whether it has an end on all sides.
+    pub fn is_bounded(&self) -> bool {
+        !matches!(self, Self::Flat(_))
     }
 
     /// Whether the closed body holds `p`.
     pub fn contains(&self, p: DVec3) -> bool {
+        if let Self::Flat(flat) = self {
+            return flat.contains(p);
+        }
         self.signed_distance(p) <= 0.0 && !self.is_empty()
     }
 
     /// Where the line of `ray` enters and leaves: inside for `entry ≤ t < exit`. Both may be negative (behind the
-    /// origin). `None`: it misses. A ray without direction is everywhere inside or misses.
+    /// origin). `None`: it misses. A ray without direction is everywhere inside or misses. A flat lens knows only the sight
+    /// lines of its own eye, and their exit is infinite.
     pub fn entry_exit(&self, ray: &Ray) -> Option<(f64, f64)> {
         if self.is_empty() {
             return None;
@@ -300,6 +352,7 @@ impl Volume {
                 both(ends, cone(o, d, middle, slope, ends)?)
             }
             Self::Convex(hull) => hull.entry_exit(ray)?,
+            Self::Flat(flat) => flat.entry_exit(ray)?,
         };
         (entry < exit).then_some((entry, exit))
     }
@@ -327,10 +380,11 @@ impl Volume {
                 distance_of_frustum(DVec2::new((v - along * *axis).length(), along), *radii, *half)
             }
             Self::Convex(hull) => hull.signed_distance(p),
+            Self::Flat(flat) => flat.signed_distance(p),
         }
     }
 
-    /// The smallest axis-aligned box around it.
+    /// The smallest axis-aligned box around it; one around everything for a flat lens, which has no end.
     pub fn bounds(&self) -> Aabb {
         let around = |center: DVec3, half: DVec3| Aabb { min: center - half, max: center + half };
         match self {
@@ -354,6 +408,7 @@ impl Volume {
                 around(*center - *half * *axis, radii[0] * disc).union(around(*center + *half * *axis, radii[1] * disc))
             }
             Self::Convex(hull) => hull.bounds(),
+            Self::Flat(_) => around(DVec3::ZERO, DVec3::splat(flat::ENDLESS_M)),
         }
     }
 }
