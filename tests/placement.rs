@@ -5,14 +5,15 @@ mod studio;
 use glam::{DQuat, DVec2, DVec3};
 use studio::*;
 use veduta::{
-    geom::{Shape, Volume, shape::FlatFigure},
+    city::load::{LoadOptions, Quiet, load},
+    geom::{Aabb, Shape, Volume, shape::FlatFigure},
     lens::{Class, EffectUse, Lens, LensBody, LensSprite, Parameter, Placement},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
         stats::Statistics,
     },
-    scene::{Poi, PoiPlace, Scene, Sun, check_against},
+    scene::{Poi, PoiPlace, Scene, Sun, anchor::anchor, check_against},
     view::{Camera, View},
 };
 
@@ -45,7 +46,7 @@ fn flat(center: DVec3, rotation: DQuat, figure: FlatFigure) -> Shape {
 
 /// The view without its far plane, which only depth depends on.
 fn view(camera: Camera) -> View {
-    View::new(camera, SIZE, &veduta::geom::Aabb::EMPTY).expect("a view")
+    View::new(camera, SIZE, &Aabb::EMPTY).expect("a view")
 }
 
 /// What the f64 twin says of a pixel, and whether that is the same around its centre.
@@ -340,6 +341,36 @@ fn a_lens_of_the_camera_moves_with_it() {
         }
         assert!(held > 500, "{held} pixels");
     }
+}
+
+#[test]
+fn the_middle_of_an_object_is_that_of_its_whole_family() {
+    let mut families = 0;
+    for file in ["lod-grandchild", "lod-part", "group", "cyclic", "v10-part", "lod-all"] {
+        let model = load(&[citydata(&format!("{file}.city.json"))], &LoadOptions::default(), &Quiet).expect("a city");
+        // By the definition: who has it among the parents' parents, in as many steps as there are objects.
+        let belongs = |object: usize, to: usize| {
+            let mut found = vec![object];
+            for _ in 0..model.objects.len() {
+                let parents = found.iter().flat_map(|&o| &model.objects[o].parents).map(|p| *p as usize);
+                found = found.iter().copied().chain(parents).collect();
+                found.sort_unstable();
+                found.dedup();
+            }
+            found.contains(&to)
+        };
+        for (i, object) in model.objects.iter().enumerate() {
+            let own = model.geometries.iter().filter(|g| belongs(g.object as usize, i));
+            let bounds = own.clone().fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
+            let placement = Placement::Object(object.id.to_string());
+            match anchor(&placement, &[], &model) {
+                Ok(at) => assert_eq!(at, Some(bounds.center()), "{file}: {}", object.id),
+                Err(problem) => assert!(bounds.is_empty(), "{file}: {problem}"),
+            }
+            families += usize::from(own.count() > 1);
+        }
+    }
+    assert!(families >= 3, "{families} objects of several geometries");
 }
 
 #[test]

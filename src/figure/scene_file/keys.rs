@@ -318,7 +318,7 @@ pub const LENS: Table = Table {
             Kind::Word { now: &["scene", "camera"], later: &[] },
             "\"scene\"",
             "",
-            "What its shapes are fixed to: the `scene`, or the `camera`, with which they move; see Placement.",
+            "What its shapes are fixed to: the `scene`, or the `camera`, with which they move and in whose view alone they act; see Placement.",
             "\"camera\"",
         ),
         key(
