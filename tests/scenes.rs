@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use veduta::{
     city::load::{LoadOptions, Quiet, load},
     figure::scene_file::{self, Options},
+    geom::{Volume, shape::Sightlines},
+    lens::Placement,
     scene::{Scene, check_against},
     view::View,
 };
@@ -33,9 +35,21 @@ fn all_of_them_are_read_described_and_read_again() {
         let again = scene_file::parse(&scene_file::to_toml(&scene), "again", &Options::for_command_line()).unwrap();
         assert_eq!(again, scene, "{}", path.display());
         let view = View::new(scene.camera.expect("a camera"), scene.figure.size, &veduta::geom::Aabb::EMPTY).unwrap();
+        let (eye, world_from_view) = (view.camera.eye, view.basis.view_from_world().transpose());
+        let sight = Sightlines::From(eye);
         for lens in &scene.lenses {
-            for volume in lens.shapes.iter().flat_map(|shape| shape.volumes().unwrap()) {
-                let at = view.pixel(volume.bounds().center()).expect("in front of the eye");
+            for volume in lens.shapes.iter().flat_map(|shape| shape.volumes_seen(&sight).unwrap()) {
+                let middle = match &volume {
+                    Volume::Flat(flat) => flat.center(),
+                    _ => volume.bounds().center(),
+                };
+                let middle = match lens.placement {
+                    Placement::World => middle,
+                    Placement::Camera => eye + world_from_view * middle,
+                    // What it is attached to need not be there to read the scene.
+                    _ => continue,
+                };
+                let at = view.pixel(middle).expect("in front of the eye");
                 assert!(
                     (0.0..f64::from(scene.figure.size[0])).contains(&at.x),
                     "{}: {} is seen",
@@ -61,9 +75,10 @@ fn those_of_the_built_in_town_name_what_it_has() {
     assert!(scenes.len() >= 2);
     for (path, scene) in scenes {
         assert_eq!(check_against(&scene, &model), [], "{}", path.display());
-        for lens in &scene.lenses {
-            let meets =
-                lens.shapes.iter().flat_map(|s| s.volumes().unwrap()).any(|v| v.bounds().meets(&model.extent()));
+        for lens in scene.lenses.iter().filter(|l| l.placement == Placement::World) {
+            let sight = Sightlines::From(scene.camera.unwrap().eye);
+            let volumes = lens.shapes.iter().flat_map(|s| s.volumes_seen(&sight).unwrap());
+            let meets = volumes.into_iter().any(|v| v.bounds().meets(&model.extent()));
             assert!(meets, "{}: {} acts on nothing", path.display(), lens.name);
         }
     }

@@ -41,9 +41,10 @@ fn inside_combined(s: Shape, sight: Sight) -> u32 {
     var bits = 0u;
     for (var i = 0u; i < u32(s.size_y); i++) {
         let leaf = leaf_at(s, i);
-        bits = pushed(bits, leaf_holds(leaf, sight.position, sight.object), leaf.operations);
+        let is_in = leaf_holds(leaf, sight) && (sight.distance < FAR_AWAY || leaf.shape.kind == FLAT);
+        bits = pushed(bits, is_in, leaf.operations);
     }
-    return select(MISSED, INSIDE, bits == 1u && sight.distance < FAR_AWAY);
+    return select(MISSED, INSIDE, bits == 1u);
 }
 
 // Where one ray is inside of each leaf; of solids nothing.
@@ -66,7 +67,7 @@ fn is_within(s: Shape, ray: Ray, t: f32, is_after: bool, own: u32, is_in_own: bo
         let span = spans[i];
         var is_in = select(span.enter < t && t <= span.exit, span.enter <= t && t < span.exit, is_after);
         if leaf.shape.kind == SOLID {
-            is_in = leaf_holds(leaf, ray.origin + t * ray.direction, 0u);
+            is_in = solid_holds(leaf.shape, ray.origin + t * ray.direction, t);
         }
         bits = pushed(bits, select(is_in, is_in_own, i == own), leaf.operations);
     }

@@ -11,7 +11,8 @@ struct SpritePlace {
 @group(2) @binding(0) var sprites: texture_2d_array<f32>;    // stored depth of the entry, and of the exit
 
 // Twin: `veduta::lens::classify`. On stored depths, which fall with distance: every comparison of S5 is turned
-// round, and none needs a division. An entry of 0 says that the eye is inside; a depth of 0, that nothing is there.
+// round, and none needs a division. An entry of 0 says that the eye is inside; a depth of 0, that nothing is there; an exit
+// below 0, that there is none.
 fn classify(depth: f32, entry: f32, exit: f32) -> u32 {
     return select(select(BEHIND, INSIDE, depth > exit), FRONT, entry > 0.0 && depth > entry);
 }

@@ -2,7 +2,7 @@
 //
 // Inside is asked of the place and needs no ray. Only what is not inside asks on which side of the volume it lies, and
 // whether its ray meets the volume at all. The volumes are convex: what is outside and nearer than the middle of the ray's
-// way through is in front.
+// way through is in front. Of a flat lens rays never leave; it is asked by the ray alone, and holds also where nothing is.
 
 fn class_in_shape(s: Shape, kind: u32, sight: Sight) -> u32 {
     let span = span_of_shape(sight.ray, s, kind);
@@ -19,6 +19,9 @@ fn inside_shape(s: Shape, kind: u32, sight: Sight) -> u32 {
 }
 
 fn is_in_shape(s: Shape, kind: u32, sight: Sight) -> bool {
+    if kind == FLAT {
+        return flat_holds(s, sight.ray, sight.distance, sight.is_parallel);
+    }
     return sight.distance < FAR_AWAY && holds(s, kind, sight.position, sight.distance);
 }
 

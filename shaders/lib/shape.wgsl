@@ -2,15 +2,18 @@
 // eye in f64 before it rounds to f32; `crate::geom::Shape` is the f64 twin of the functions here.
 
 struct Shape {
-    center: vec3f,              // metres
+    center: vec3f,              // metres; flat: see span_of_flat, as its axes
     kind: u32,                  // SPHERE, BOX, ...
     axis_x: vec3f,              // box: its x edge, unit; ellipsoid: its x axis over the radius there; solid: its x axis
     size_x: f32,                // sphere, cylinder: radius; box: half edge along axis_x; convex: number of its first plane;
-                                // frustum: radius at its middle; solid: number of its first entry
+                                // frustum: radius at its middle; solid: number of its first entry; flat: a disc's radius, half a
+                                // rectangle's edge, number of a polygon's first side
     axis_y: vec3f,              // box, ellipsoid, solid: as axis_x
-    size_y: f32,                // box: half edge; convex: how many planes; frustum: what the radius grows by along its axis
+    size_y: f32,                // box: half edge; convex: how many planes; frustum: what the radius grows by along its axis;
+                                // flat: half a rectangle's edge, how many sides a polygon has
     axis_z: vec3f,              // box, ellipsoid, solid: as axis_x; cylinder, frustum: its axis, unit
-    size_z: f32,                // box: half edge; cylinder, frustum: half height; solid: 1 where the eye is inside
+    size_z: f32,                // box: half edge; cylinder, frustum: half height; solid: 1 where the eye is inside; flat: DISC,
+                                // RECTANGLE or POLYGON
 }
 
 const SPHERE: u32 = 0u;
@@ -28,6 +31,7 @@ const MEMBERS: u32 = 9u;
 // A combination of volumes; one whose sides a depth sprite tells.
 const COMBINED: u32 = 10u;
 const COMBINED_SPRITE: u32 = 11u;
+const FLAT: u32 = 12u;
 
 // Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
 struct Span {
@@ -183,7 +187,7 @@ fn span_of_frustum(ray: Ray, s: Shape) -> Span {
     return Span(span.enter + nearest, span.exit + nearest);
 }
 
-@group(1) @binding(1) var<storage, read> planes: array<vec4f>; // n, d: inside where n.p <= d
+@group(1) @binding(1) var<storage, read> planes: array<vec4f>; // n, d: inside where n.p <= d; of a flat lens' polygon: its sides
 
 fn convex_holds(s: Shape, p: vec3f, distance: f32) -> bool {
     var is_below = true;
@@ -214,6 +218,52 @@ fn span_of_convex(ray: Ray, s: Shape) -> Span {
     return span;
 }
 
+// Figures of flat lenses, in size_z.
+const DISC: f32 = 0.0;
+const RECTANGLE: f32 = 1.0;
+const POLYGON: f32 = 2.0;
+
+// Where a flat lens is never left.
+const NO_END: f32 = FAR_AWAY;
+
+// What is seen through a figure in a plane (L3), from the plane to infinity. Where a sight line crosses the plane is a projective
+// map of where it crosses the picture, a = (x, y, -1): D = center.a / axis_z.a, and in the figure's own coordinates
+// (axis_x.a, axis_y.a) / axis_z.a. The host makes it in f64, so that axis_z.a > 0 where the plane is seen; 0: edge on.
+fn span_of_flat(ray: Ray, s: Shape) -> Span {
+    // (x, y, -1) for parallel rays, too.
+    let a = ray.origin + ray.direction;
+    let w = dot(s.axis_z, a);
+    let at = clamp(vec2f(dot(s.axis_x, a), dot(s.axis_y, a)) / w, vec2f(-1e15), vec2f(1e15));
+    let enter = clamp(dot(s.center, a) / w, -FAR_AWAY, FAR_AWAY);
+    let is_met = w > 1e-20 && is_in_figure(s, at);
+    return Span(select(EMPTY_SPAN.enter, enter, is_met), select(EMPTY_SPAN.exit, NO_END, is_met));
+}
+
+fn is_in_figure(s: Shape, at: vec2f) -> bool {
+    if s.size_z == POLYGON {
+        return is_in_polygon(u32(s.size_x), u32(s.size_y), at);
+    }
+    if s.size_z == RECTANGLE {
+        return abs(at.x) <= s.size_x && abs(at.y) <= s.size_y;
+    }
+    return dot(at, at) <= s.size_x * s.size_x;
+}
+
+// Whether a polygon goes around a point; the sides stand in `planes`. Twin: `winding` in `geom::shape::flat`.
+fn is_in_polygon(first: u32, count: u32, p: vec2f) -> bool {
+    var around = 0;
+    for (var i = first; i < first + count; i++) {
+        let a = planes[i].xy;
+        let along = planes[i].zw - a;
+        let from_a = p - a;
+        let side = along.x * from_a.y - along.y * from_a.x;
+        let is_up = a.y <= p.y && planes[i].w > p.y;
+        let is_down = a.y > p.y && planes[i].w <= p.y;
+        around += select(0, 1, is_up && side > 0.0) - select(0, 1, is_down && side < 0.0);
+    }
+    return around != 0;
+}
+
 // `kind`: the shape's own, or a constant where all shapes of a pipeline are of one: a software adapter runs all cases of a
 // switch that it cannot decide before.
 fn span_of_shape(ray: Ray, s: Shape, kind: u32) -> Span {
@@ -223,11 +273,19 @@ fn span_of_shape(ray: Ray, s: Shape, kind: u32) -> Span {
         case CYLINDER: { return span_of_cylinder(ray, s); }
         case ELLIPSOID: { return span_of_ellipsoid(ray, s); }
         case FRUSTUM: { return span_of_frustum(ray, s); }
+        case FLAT: { return span_of_flat(ray, s); }
         default: { return span_of_convex(ray, s); }
     }
 }
 
-// `kind`: as above; `distance`: D of the place.
+// Whether a place at D of the main view's ray is behind a figure, or in its plane.
+fn flat_holds(s: Shape, ray: Ray, distance: f32, is_parallel: bool) -> bool {
+    let span = span_of_flat(ray, s);
+    let is_before_eye = is_parallel || (span.enter > 0.0 && distance > 0.0);
+    return is_before_eye && span.enter <= span.exit && distance >= span.enter;
+}
+
+// `kind`: as above, not FLAT, which asks by the ray; `distance`: D of the place.
 fn holds(s: Shape, kind: u32, p: vec3f, distance: f32) -> bool {
     switch kind {
         case SPHERE: { return sphere_holds(s, p); }

@@ -33,7 +33,9 @@ fn is_under_edge(left: vec3f, right: vec3f, at: vec2f) -> bool {
     return left.x <= at.x && at.x < right.x && along.x * to.y < along.y * to.x;
 }
 
-fn solid_holds(s: Shape, p: vec3f) -> bool {
+// `distance`: D of the place. Faces that look up or down hold what lies on them, as flat faces of other shapes do.
+fn solid_holds(s: Shape, p: vec3f, distance: f32) -> bool {
+    let on_face = ON_FACE * max(abs(distance), length(s.center));
     let o = in_solid(s, p - s.center);
     let first = u32(s.size_x);
     let grid = bitcast<vec4f>(solids[first]);
@@ -51,13 +53,13 @@ fn solid_holds(s: Shape, p: vec3f) -> bool {
         let turns = face.turn * (i32(is_under_edge(face.a, face.c, o.xy)) - i32(is_under_edge(face.a, face.b, o.xy))
             - i32(is_under_edge(face.b, face.c, o.xy)));
         let height = dot(face.normal, o - face.a) - face.rise;
-        winding += select(0, turns, height < 0.0 || (height == 0.0 && turns > 0));
+        winding += select(0, turns, height <= select(-on_face, on_face, turns > 0));
     }
     return winding != 0;
 }
 
 fn inside_solid(s: Shape, sight: Sight) -> u32 {
-    return select(MISSED, INSIDE, sight.distance < FAR_AWAY && solid_holds(s, sight.position));
+    return select(MISSED, INSIDE, sight.distance < FAR_AWAY && solid_holds(s, sight.position, sight.distance));
 }
 
 // Where a ray crosses a face of a solid, if it does (Moller and Trumbore).

@@ -37,7 +37,8 @@ const NO_EXIT = 1.0;
 fn ends_of(span: Span) -> vec2f {
     // A true entry is never NO_ENTRY; a true exit never NO_EXIT: a lens nearer than the near plane ends just behind it.
     let enter = max(depth_of_distance(span.enter), 1e-30);
-    let exit = min(depth_of_distance(span.exit), 0.99999994);
+    // What has no end holds also where nothing is, at depth 0.
+    let exit = select(min(depth_of_distance(span.exit), 0.99999994), -1.0, span.exit >= NO_END);
     // Perspective rays start at the eye: what lies behind it is not seen, and no entry.
     let starts_at_eye = view.orthographic == 0u;
     let is_missed = span.enter > span.exit || (starts_at_eye && span.exit <= 0.0);

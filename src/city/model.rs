@@ -440,6 +440,21 @@ impl CityModel {
         }
     }
 
+    /// Box around the geometries, of all levels of detail, of an object and of all below it, metres; empty without any.
+    pub fn family_bounds(&self, object: u32) -> Aabb {
+        let mut bounds = Aabb::EMPTY;
+        // Of several parents, and round in a circle, each is counted once.
+        let mut known = rustc_hash::FxHashSet::from_iter([object]);
+        let mut left = vec![object];
+        while let Some(member) = left.pop() {
+            let member = &self.objects[member as usize];
+            let own = &self.geometries[member.geometries.start as usize..member.geometries.end as usize];
+            bounds = own.iter().fold(bounds, |all, geometry| all.union(geometry.bounds));
+            left.extend(member.children.iter().copied().filter(|child| known.insert(*child)));
+        }
+        bounds
+    }
+
     /// The object of this id.
     pub fn find_object(&self, id: &str) -> Option<u32> {
         self.objects.iter().position(|o| &*o.id == id).map(|i| i as u32)

@@ -47,6 +47,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "trapp-3-5-3-c"
     "vienna-roofs"
     "vienna-shapes"
+    "window"
 };
 
 /// Arguments of `veduta gallery`.

@@ -113,6 +113,7 @@ mod tests {
             kind: LensKind::Color,
             enabled: true,
             color: [1.0, 0.0, 0.0],
+            placement: Default::default(),
             shapes: vec![],
             effects,
             body: Default::default(),

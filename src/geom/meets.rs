@@ -53,6 +53,7 @@ impl Volume {
                 !clipped(&local, planes.iter().copied()).is_empty()
             }
             Self::Solid(placed) => placed.solid.meets_triangle(&corners.map(|p| placed.local(p))),
+            Self::Flat(flat) => flat.meets_triangle(corners),
         }
     }
 }

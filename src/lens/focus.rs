@@ -6,10 +6,14 @@ use glam::{DQuat, DVec2, DVec3};
 
 use crate::{
     city::CityModel,
-    geom::{Shape, Volume, combination::Operation},
+    geom::{
+        Shape, Volume,
+        combination::Operation,
+        shape::{Motion, Sightlines},
+    },
     lens::{
         chosen::Choice,
-        solids::{ShownCity, Solids},
+        solids::{Place, ShownCity, Solids},
     },
 };
 
@@ -94,10 +98,20 @@ impl Focus {
         lengths.into_iter().find(|(_, v)| *v < 0.0).map(|(key, v)| (key, format!("must be ≥ 0, is {v}")))
     }
 
-    /// The volumes whose union it is, without a city ([`Solids::volumes`]): of city objects and combinations none.
-    pub fn volumes(&self) -> Result<Vec<Volume>, String> {
+    /// The volumes whose union it is, without a city ([`Solids::volumes`]): of city objects and combinations none; a flat one as
+    /// seen along these sight lines.
+    pub fn volumes_seen(&self, sight: &Sightlines) -> Result<Vec<Volume>, String> {
         let city = ShownCity { model: &CityModel::default(), geometries: &[] };
-        Solids::default().volumes(self, city).map_err(|(_, message)| message)
+        let place = Place { motion: Motion::NONE, sight: *sight };
+        Solids::default().volumes(self, city, &place).map_err(|(_, message)| message)
+    }
+
+    /// [`Self::volumes_seen`] of what needs no eye.
+    pub fn volumes(&self) -> Result<Vec<Volume>, String> {
+        match self {
+            Self::Shape(shape) => shape.volumes().map_err(|error| error.to_string()),
+            _ => self.volumes_seen(&Sightlines::From(DVec3::ZERO)),
+        }
     }
 
     /// Whether its figures say that it holds nothing: a length of 0.

@@ -30,6 +30,8 @@ pub struct Lens {
     pub enabled: bool,
     /// Its own colour, sRGB 0..1: outline, legend, halo.
     pub color: [f32; 3],
+    /// What its shapes are fixed to (L2).
+    pub placement: Placement,
     /// Its focus areas: inside where any of them is (L1).
     pub shapes: Vec<Focus>,
     /// What it does, in order (K1: at most one scene style).
@@ -38,6 +40,21 @@ pub struct Lens {
     pub body: LensBody,
     /// The volumetric depth sprite that it is tested by; `None`: from its shapes (S7).
     pub sprite: Option<LensSprite>,
+}
+
+/// What the shapes of a lens are fixed to, whose origin and axes their coordinates are of (L2); metres.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub enum Placement {
+    /// The world: model coordinates.
+    #[default]
+    World,
+    /// A city object, by its id: the middle of the axis-aligned box around the geometries of all its levels of detail and those
+    /// of all its parts; the world's axes.
+    Object(String),
+    /// A point of interest, by its name: its point, or its object as above; the world's axes.
+    Poi(String),
+    /// The camera: the eye; x to the right of the picture, y to its top, z out of it to whoever looks.
+    Camera,
 }
 
 /// Kinds of lenses this version has.

@@ -15,7 +15,7 @@ use crate::{
     geom::{
         Aabb, Volume,
         shape::{
-            Mesh, PlacedSolid, Solid,
+            Mesh, Motion, PlacedSolid, Sightlines, Solid,
             solid::{self, Bitmap},
         },
     },
@@ -56,18 +56,29 @@ pub struct ShownCity<'a> {
     pub geometries: &'a [u32],
 }
 
+/// Where focus areas stand, and what flat ones are looked through along.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// From a lens' own coordinates to the model's.
+    pub motion: Motion,
+    /// The sight lines of the eye.
+    pub sight: Sightlines,
+}
+
 /// The key of a focus area that is wrong (empty: the whole), and what would be right.
 pub type FocusError = (&'static str, String);
 
 impl Solids {
     /// The volumes whose union a focus area is, none where it holds nothing; a *thematic* one and a combination
     /// have none.
-    pub fn volumes(&mut self, focus: &Focus, city: ShownCity) -> Result<Vec<Volume>, FocusError> {
+    pub fn volumes(&mut self, focus: &Focus, city: ShownCity, place: &Place) -> Result<Vec<Volume>, FocusError> {
         if let Some(wrong) = focus.check() {
             return Err(wrong);
         }
         let (at, rotation) = match focus {
-            Focus::Shape(shape) => return shape.volumes().map_err(|error| ("", error.to_string())),
+            Focus::Shape(shape) => {
+                return shape.placed(&place.motion, &place.sight).map_err(|error| ("", error.to_string()));
+            }
             Focus::Thematic(_) | Focus::Combined { .. } => return Ok(Vec::new()),
             _ if focus.is_empty() => return Ok(Vec::new()),
             Focus::Mesh { at, rotation, .. } => (*at, *rotation),
@@ -87,8 +98,9 @@ impl Solids {
         };
         let made = &mut self.made[index];
         made.is_wanted = true;
-        let place = |solid| Volume::Solid(PlacedSolid { solid, rotation, at: at + rotation * made.origin });
-        Ok(made.solid.clone().map(place).into_iter().collect())
+        let at = at + rotation * made.origin;
+        let placed = |solid| Volume::Solid(PlacedSolid { solid, rotation, at }).placed(&place.motion);
+        Ok(made.solid.clone().map(placed).into_iter().collect())
     }
 
     /// Drops what was not asked for since the last time.

@@ -77,6 +77,7 @@ pub fn lens(name: &str, shape: Shape, effects: &[&str]) -> Lens {
         kind: LensKind::Color,
         enabled: true,
         color: [0.8, 0.2, 0.1],
+        placement: Default::default(),
         shapes: vec![shape.into()],
         effects: effects.iter().map(use_of).collect(),
         body: LensBody::None,

@@ -8,8 +8,9 @@ use crate::{
     geom::{
         Aabb, Volume,
         combination::{self, Operation},
+        shape::flat::ENDLESS_M,
     },
-    render::{layout, solids::SolidPlace},
+    render::{flat, layout, solids::SolidPlace},
     shader::VolumeTest,
     view::View,
 };
@@ -78,6 +79,14 @@ impl Body {
         one.into_iter().chain(many.iter_mut().map(|(leaf, _)| leaf))
     }
 
+    /// The volume that it is, if it is one.
+    pub fn volume(&self) -> Option<&Volume> {
+        match self {
+            Self::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) => Some(volume),
+            _ => None,
+        }
+    }
+
     /// How it is tested from its own figures.
     pub fn test(&self) -> VolumeTest {
         match self {
@@ -118,9 +127,14 @@ impl Body {
         }
     }
 
+    /// Whether it has an end on all sides.
+    pub fn is_bounded(&self) -> bool {
+        self.bounds().size().max_element() < ENDLESS_M
+    }
+
     /// Whether it is a convex volume.
     pub fn is_convex(&self) -> bool {
-        matches!(self, Self::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) if volume.is_convex())
+        self.volume().is_some_and(Volume::is_convex)
     }
 
     /// Whether anything is in front of it or behind it: not of choices of objects alone.
@@ -243,6 +257,7 @@ impl Leaf {
             Volume::Ellipsoid { .. } => VolumeTest::Ellipsoid,
             Volume::Frustum { .. } => VolumeTest::Frustum,
             Volume::Solid(_) => VolumeTest::Solid,
+            Volume::Flat(_) => VolumeTest::Flat,
         }
     }
 
@@ -322,6 +337,7 @@ impl PlacedLeaf {
                 out.size_x = first as f32;
                 out.size_z = f32::from(u8::from(volume.contains(eye) && !view.is_orthographic()));
             }
+            Volume::Flat(flat) => flat::figures(flat, view, &mut out, planes),
             Volume::Convex(hull) => {
                 let (center, faces) = hull.planes();
                 out.size_x = planes.len() as f32;

@@ -45,6 +45,9 @@ pub fn reaches_of(lens: Option<u32>, class: Class, volumes: &[LensVolume], view:
     let Some(lens) = lens else { return vec![Reach::Everywhere] };
     let of_volume = |volume: &LensVolume| match class {
         Class::Rest => Reach::Everywhere,
+        _ if !volume.body.is_bounded() => {
+            volume.box_seen(view).map_or(Reach::Everywhere, |(low, high)| Reach::Along(low, high))
+        }
         Class::Inside => Reach::Within(volume.bounds),
         Class::Front | Class::Behind => {
             projected_box(view, &volume.bounds).map_or(Reach::Everywhere, |(low, high)| Reach::Along(low, high))

@@ -6,14 +6,16 @@ use crate::{
     geom::{
         Aabb, Solid, Volume,
         combination::{self, Operation, Tree},
+        shape::Motion,
     },
     lens::{
         Class, Focus, Lens, LensBody,
         chosen::chosen,
-        solids::{FocusError, ShownCity, Solids, key_of},
+        solids::{FocusError, Place, ShownCity, Solids, key_of},
     },
     render::{
         body::{Body, Leaf, Members, PlacedLeaf},
+        placement::Eye,
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
     },
@@ -38,11 +40,19 @@ pub struct LensVolumes {
 }
 
 /// Resolves the focus areas of a scene. An error names the key of the scene file.
-pub fn volumes_of(scene: &Scene, city: ShownCity, solids: &mut Solids) -> Result<LensVolumes, String> {
+pub(super) fn volumes_of(
+    scene: &Scene,
+    city: ShownCity,
+    eye: &Eye,
+    solids: &mut Solids,
+) -> Result<LensVolumes, String> {
     let mut all = LensVolumes::default();
     for (i, lens) in scene.lenses.iter().enumerate() {
+        // Attached to what is not there, it acts nowhere.
+        let motion = eye.motion(lens, scene, city.model);
+        let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
         for (j, focus) in lens.shapes.iter().enumerate() {
-            let bodies = match bodies_of(focus, city, solids) {
+            let bodies = match bodies_of(focus, city, &place, solids) {
                 Ok(bodies) => bodies,
                 Err(_) if !lens.enabled => continue,
                 Err((key, message)) => {
@@ -58,7 +68,7 @@ pub fn volumes_of(scene: &Scene, city: ShownCity, solids: &mut Solids) -> Result
                 all.tests[1].extend(sun);
                 all.tests[2].extend(volume.body.kinds());
                 // A lens without volume shows nothing and costs nothing.
-                if lens.enabled && !volume.body.is_empty() {
+                if lens.enabled && motion.is_some() && !volume.body.is_empty() {
                     all.volumes.push(volume);
                 }
             }
@@ -81,11 +91,11 @@ fn volume_of(number: u32, lens: &Lens, body: Body) -> LensVolume {
 }
 
 /// The bodies whose union a focus area is.
-fn bodies_of(focus: &Focus, city: ShownCity, solids: &mut Solids) -> Result<Vec<Body>, FocusError> {
+fn bodies_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Vec<Body>, FocusError> {
     if !matches!(focus, Focus::Combined { .. }) {
-        return Ok(leaves_of(focus, city, solids)?.into_iter().map(|leaf| Body::One(leaf.into())).collect());
+        return Ok(leaves_of(focus, city, place, solids)?.into_iter().map(|leaf| Body::One(leaf.into())).collect());
     }
-    let program = tree_of(focus, city, solids)?.program();
+    let program = tree_of(focus, city, place, solids)?.program();
     let operations = program.iter().map(|(_, then)| then.len()).max().unwrap_or(0);
     let limits = [
         ("parts", program.len(), MOST_LEAVES),
@@ -102,14 +112,14 @@ fn bodies_of(focus: &Focus, city: ShownCity, solids: &mut Solids) -> Result<Vec<
     })
 }
 
-fn tree_of(focus: &Focus, city: ShownCity, solids: &mut Solids) -> Result<Tree<PlacedLeaf>, FocusError> {
+fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Tree<PlacedLeaf>, FocusError> {
     match focus {
         Focus::Combined { how, parts } => {
-            let trees: Result<Vec<_>, _> = parts.iter().map(|part| tree_of(part, city, solids)).collect();
+            let trees: Result<Vec<_>, _> = parts.iter().map(|part| tree_of(part, city, place, solids)).collect();
             Ok(Tree::joined(*how, trees?))
         }
         _ => {
-            let leaves = leaves_of(focus, city, solids)?;
+            let leaves = leaves_of(focus, city, place, solids)?;
             let trees = leaves.into_iter().map(|leaf| match leaf.is_empty() {
                 true => Tree::Nothing,
                 false => Tree::Leaf(leaf.into()),
@@ -120,9 +130,9 @@ fn tree_of(focus: &Focus, city: ShownCity, solids: &mut Solids) -> Result<Tree<P
 }
 
 /// The leaves whose union a focus area is that is no combination.
-fn leaves_of(focus: &Focus, city: ShownCity, solids: &mut Solids) -> Result<Vec<Leaf>, FocusError> {
+fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Vec<Leaf>, FocusError> {
     let Focus::Thematic(choice) = focus else {
-        return Ok(solids.volumes(focus, city)?.into_iter().map(Leaf::Volume).collect());
+        return Ok(solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect());
     };
     let objects = chosen(city.model, choice).map_err(|e| (key_of(choice), e.to_string()))?.objects;
     let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);

@@ -4,7 +4,7 @@
 //! [`frame`] lists the passes of one sample; [`renderer`] holds what stays on the graphics card.
 //! This room knows no files and no commands.
 
-mod body;
+pub mod body;
 pub mod city;
 mod city_passes;
 mod curtain;
@@ -12,6 +12,7 @@ mod cut;
 pub mod edges;
 pub mod eye;
 mod filters;
+mod flat;
 pub mod frame;
 pub mod furniture;
 mod furniture_passes;
@@ -25,6 +26,7 @@ pub mod operations;
 pub mod palette;
 pub mod picture;
 pub mod pipelines;
+mod placement;
 pub mod renderer;
 mod seen;
 pub mod solids;

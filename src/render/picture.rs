@@ -22,13 +22,14 @@ use crate::{
     },
     render::{
         Renderer,
-        body::{Body, Leaf, PlacedLeaf},
+        body::Leaf,
         city::Shown,
         eye::PictureTile,
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
         lens_volumes::{LensVolumes, volumes_of},
         operations::{MOST_FILTERS, Operations},
+        placement::Eye,
         solids::SolidTable,
         stats::{self, Statistics},
         volume::LensVolume,
@@ -214,7 +215,7 @@ impl Studio {
         furniture: &Furniture,
     ) -> Result<Picture, RenderError> {
         let started = Instant::now();
-        let prepared = self.prepare(scene)?;
+        let prepared = self.prepare(scene, request.size)?;
         let view = self.view(scene, request.size)?;
         let mut picture = Picture::empty(request, scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
@@ -259,7 +260,7 @@ impl Studio {
     }
 
     fn draw_with(&mut self, scene: &Scene, request: &Request, furniture: &Furniture) -> Result<(), RenderError> {
-        let prepared = self.prepare(scene)?;
+        let prepared = self.prepare(scene, request.size)?;
         let view = self.view(scene, request.size)?;
         let whole = PictureTile::whole(request.size);
         self.find_edges(&prepared)?;
@@ -288,7 +289,7 @@ impl Studio {
         backend: Backend,
         part: ShaderPart,
     ) -> Result<String, RenderError> {
-        let prepared = self.prepare(scene)?;
+        let prepared = self.prepare(scene, size)?;
         let view = self.view(scene, size)?;
         let request =
             Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false, backend };
@@ -303,7 +304,7 @@ impl Studio {
 
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
     pub fn lenses_in_view(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<bool>, RenderError> {
-        let volumes = self.volumes(scene)?.volumes;
+        let volumes = self.lens_volumes(scene, size)?;
         let view = View::new(self.camera(scene, size), size, &Aabb::EMPTY)?;
         let mut seen = vec![false; scene.lenses.len()];
         for volume in volumes.iter().filter(|v| v.seen_part(&view, whole(size)).is_some()) {
@@ -312,14 +313,19 @@ impl Studio {
         Ok(seen)
     }
 
-    fn volumes(&self, scene: &Scene) -> Result<LensVolumes, RenderError> {
-        let city = ShownCity { model: &self.model, geometries: &self.geometries };
-        let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
-        volumes_of(scene, city, &mut solids).map_err(RenderError::Scene)
+    /// The volumes of the scene's enabled lenses where they stand in a picture of this size.
+    pub fn lens_volumes(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<LensVolume>, RenderError> {
+        Ok(self.volumes_of(scene, size)?.volumes)
     }
 
-    fn prepare(&self, scene: &Scene) -> Result<Prepared, RenderError> {
-        let mut found = self.volumes(scene)?;
+    fn volumes_of(&self, scene: &Scene, size: [u32; 2]) -> Result<LensVolumes, RenderError> {
+        let city = ShownCity { model: &self.model, geometries: &self.geometries };
+        let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
+        volumes_of(scene, city, &Eye::new(&self.camera(scene, size))?, &mut solids).map_err(RenderError::Scene)
+    }
+
+    fn prepare(&self, scene: &Scene, size: [u32; 2]) -> Result<Prepared, RenderError> {
+        let mut found = self.volumes_of(scene, size)?;
         let solids = {
             let mut kept = self.solid_table.lock().unwrap_or_else(PoisonError::into_inner);
             *kept = found.place_solids(&kept).map_err(RenderError::Scene)?;
@@ -587,10 +593,7 @@ fn lens_figures(
 fn objects_meeting(studio: &Studio, volumes: &[&LensVolume]) -> u64 {
     let model = &studio.model;
     let index = || studio.index.get_or_init(|| SpatialIndex::build(model, &studio.geometries));
-    let convex = volumes.iter().filter_map(|v| match &v.body {
-        Body::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) if volume.is_convex() => Some(volume.clone()),
-        _ => None,
-    });
+    let convex = volumes.iter().filter_map(|v| v.body.volume()).filter(|v| v.is_convex()).cloned();
     let convex: Vec<Volume> = convex.collect();
     let mut met: rustc_hash::FxHashSet<u32> = match convex.is_empty() {
         true => Default::default(),

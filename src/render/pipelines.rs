@@ -555,6 +555,7 @@ fn shape_name(shape: VolumeTest) -> &'static str {
         VolumeTest::Solid | VolumeTest::SolidSprite => "solid",
         VolumeTest::Combined | VolumeTest::CombinedSprite => "combination",
         VolumeTest::Convex | VolumeTest::Sprite | VolumeTest::Members => "convex body",
+        VolumeTest::Flat => "flat figure",
     }
 }
 

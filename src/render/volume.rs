@@ -8,7 +8,7 @@ use crate::{
     render::{
         body::{Body, Leaf, PlacedLeaf},
         eye::PictureTile,
-        layout,
+        flat, layout,
         octagon::Octagon,
     },
     shader::VolumeTest,
@@ -77,12 +77,22 @@ impl LensVolume {
             return Some(whole);
         }
         let margin = if self.has_outline || self.sprite.is_some() { WIDE_MARGIN_PX } else { MARGIN_PX };
+        if let Body::One(PlacedLeaf { leaf: Leaf::Volume(Volume::Flat(flat)), .. }) = &self.body {
+            let around = |(low, high)| Octagon::around(low, high).grown([margin; 2]).within(tile);
+            return flat::projected(flat, view).map_or_else(|all| all.then_some(whole), around);
+        }
         if self.bounds.is_empty() || !view.frustum(margin.into()).meets(&self.bounds) {
             return None;
         }
         // What lies beside or behind the eye bounds nothing.
         let Some((low, high)) = self.projected(view) else { return Some(whole) };
         Octagon::around(low, high).grown([margin; 2]).within(tile)
+    }
+
+    /// The box around its projection, pixels; `None` where it may be anywhere.
+    pub fn box_seen(&self, view: &View) -> Option<(DVec2, DVec2)> {
+        let ([x0, y0, ..], [x1, y1, ..]) = self.projected(view)?;
+        Some((DVec2::new(x0, y0), DVec2::new(x1, y1)))
     }
 
     /// The least and the most of x, y, x + y and x - y in its projection, pixels; `None` where it reaches behind the near
@@ -111,6 +121,7 @@ impl LensVolume {
             }
             Volume::Convex(hull) => hull.faces().0,
             Volume::Solid(placed) => placed.solid.bounds().corners().map(|c| placed.world(c)).to_vec(),
+            Volume::Flat(flat) => return flat::projected(flat, view).ok(),
         };
         projected_corners(view, corners)
     }
@@ -123,7 +134,7 @@ pub fn projected_box(view: &View, bounds: &Aabb) -> Option<(DVec2, DVec2)> {
 }
 
 /// Of a point: x, y, x + y, x - y.
-fn along(p: DVec2) -> [f64; 4] {
+pub(super) fn along(p: DVec2) -> [f64; 4] {
     [p.x, p.y, p.x + p.y, p.x - p.y]
 }
 

@@ -2,8 +2,11 @@
 
 use crate::{
     city::CityModel,
-    lens::{nearest::did_you_mean, thematic::attribute_names},
-    scene::{PoiPlace, Scene},
+    lens::{Placement, nearest::did_you_mean, thematic::attribute_names},
+    scene::{
+        PoiPlace, Scene,
+        anchor::{AnchorProblem, anchor},
+    },
 };
 
 /// A name that the city does not have.
@@ -38,6 +41,20 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
             }
         }
     }
+    for (i, lens) in scene.lenses.iter().enumerate() {
+        let Err(problem) = anchor(&lens.placement, &scene.pois, model) else { continue };
+        let key = match (&lens.placement, &problem) {
+            (Placement::Object(_), _) => "attached_to.object",
+            // It is told of the point of interest.
+            (_, AnchorProblem::NoObject(..)) => continue,
+            _ => "attached_to.poi",
+        };
+        problems.push(SceneProblem {
+            table: format!("lens.{i}"),
+            key: key.into(),
+            message: format!("the lens acts nowhere: {problem}"),
+        });
+    }
     for (i, poi) in scene.pois.iter().enumerate() {
         let PoiPlace::Object(id) = &poi.place else { continue };
         if model.find_object(id).is_none() {
@@ -57,7 +74,7 @@ mod tests {
     use super::*;
     use crate::{
         city::{Attribute, CityObject, Value},
-        lens::{EffectUse, Parameter},
+        lens::{EffectUse, Lens, Parameter},
         scene::Poi,
     };
 
@@ -86,6 +103,25 @@ mod tests {
         scene.style.effects.push(used("yearOfConstruction"));
         scene.pois.push(Poi { name: "a".into(), place: PoiPlace::Object("town-hall".into()) });
         assert_eq!(check_against(&scene, &model), []);
+        let lens = |placement| Lens {
+            name: String::new(),
+            kind: Default::default(),
+            enabled: true,
+            color: [0.0; 3],
+            placement,
+            shapes: vec![],
+            effects: vec![],
+            body: Default::default(),
+            sprite: None,
+        };
+        let attached = [
+            Placement::Camera,
+            Placement::Object("town-hal".into()),
+            Placement::Poi("aa".into()),
+            Placement::Poi("a".into()),
+            Placement::Poi("b".into()),
+        ];
+        scene.lenses.extend(attached.map(lens));
         scene.style.effects.push(used("yearOfconstrution"));
         scene.pois.push(Poi { name: "b".into(), place: PoiPlace::Object("townhall".into()) });
         let messages: Vec<String> = check_against(&scene, &model).iter().map(ToString::to_string).collect();
@@ -93,6 +129,9 @@ mod tests {
             messages,
             [
                 "[style] effects.1.attribute: no object of the city has the attribute \"yearOfconstrution\"; did you mean \"yearOfConstruction\"?",
+                "[lens.1] attached_to.object: the lens acts nowhere: the city has no object \"town-hal\"; did you mean \"town-hall\"?",
+                "[lens.2] attached_to.poi: the lens acts nowhere: the scene has no point of interest \"aa\"; did you mean \"a\"?",
+                "[lens.3] attached_to.poi: the lens acts nowhere: the object \"town-hall\" has no geometry, nor have its parts: there is nothing to attach to",
                 "[poi.1] object: the city has no object \"townhall\"; did you mean \"town-hall\"?",
             ]
         );

@@ -177,6 +177,7 @@ mod tests {
             kind: Default::default(),
             enabled: true,
             color: [0.0; 3],
+            placement: Default::default(),
             shapes: vec![],
             effects: vec![],
             body: Default::default(),

@@ -127,9 +127,10 @@ pub(super) fn leaves(kinds: &[VolumeTest]) -> String {
         text + "}\n\n"
     };
     let holds = |kind: VolumeTest| match kind {
-        VolumeTest::Solid => "solid_holds(leaf.shape, p)".to_owned(),
-        VolumeTest::Members => "is_chosen(u32(leaf.first), object)".to_owned(),
-        _ => format!("holds(leaf.shape, {}, p)", kind.constant()),
+        VolumeTest::Solid => "solid_holds(leaf.shape, place.position, place.distance)".to_owned(),
+        VolumeTest::Members => "is_chosen(u32(leaf.first), place.object)".to_owned(),
+        VolumeTest::Flat => "flat_holds(leaf.shape, place.ray, place.distance, place.is_parallel)".to_owned(),
+        _ => format!("holds(leaf.shape, {}, place.position, place.distance)", kind.constant()),
     };
     // A solid's ends are not asked for here; a choice of objects is the box around them.
     let span = |kind: VolumeTest| match kind {
@@ -137,7 +138,7 @@ pub(super) fn leaves(kinds: &[VolumeTest]) -> String {
         VolumeTest::Members => "span_of_shape(ray, s, BOX)".to_owned(),
         _ => format!("span_of_shape(ray, s, {})", kind.constant()),
     };
-    let holds = of("leaf_holds(leaf: Leaf, p: vec3f, object: u32) -> bool", "false", &holds);
+    let holds = of("leaf_holds(leaf: Leaf, place: Sight) -> bool", "false", &holds);
     let spans = of("span_of_leaf(ray: Ray, s: Shape) -> Span", "EMPTY_SPAN", &span);
     holds.replace("switch kind", "switch leaf.shape.kind") + &spans.replace("switch kind", "switch s.kind")
 }

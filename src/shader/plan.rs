@@ -63,11 +63,13 @@ pub enum VolumeTest {
     Combined,
     /// Of the leaves, and of a volumetric depth sprite what is in front and behind.
     CombinedSprite,
+    /// Of a figure in a plane, which is looked through.
+    Flat,
 }
 
 impl VolumeTest {
     /// All of them, in the order of their numbers in `lib/shape.wgsl`.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Sphere,
         Self::Box,
         Self::Cylinder,
@@ -80,6 +82,7 @@ impl VolumeTest {
         Self::Members,
         Self::Combined,
         Self::CombinedSprite,
+        Self::Flat,
     ];
 
     /// Its number, as `lib/shape.wgsl` knows it.
@@ -117,6 +120,7 @@ impl VolumeTest {
             Self::Members => "MEMBERS",
             Self::Combined => "COMBINED",
             Self::CombinedSprite => "COMBINED_SPRITE",
+            Self::Flat => "FLAT",
         }
     }
 }

@@ -36,15 +36,17 @@ fn check(path: &Path) -> Result<(), Failed> {
     if let Some(problem) = check_against(&scene, &model).first() {
         return Err(problem.to_string().into());
     }
-    for lens in &scene.lenses {
-        let bounds: Vec<_> =
-            lens.shapes.iter().flat_map(|s| s.volumes().unwrap_or_default()).map(|v| v.bounds()).collect();
+    let model = Arc::new(model);
+    let mut studio = Studio::new(Gpu::open()?, model.clone(), &scene.city)?;
+    let volumes = studio.lens_volumes(&scene, scene.figure.size)?;
+    for (i, lens) in scene.lenses.iter().enumerate() {
+        let own = volumes.iter().filter(|v| v.lens as usize == i);
+        let bounds: Vec<_> = own.map(|v| v.bounds).collect();
         let meets = |g: &&Geometry| bounds.iter().any(|b| g.bounds.meets(b));
         if model.geometries.iter().filter(meets).count() < 5 {
             return Err(format!("{} acts on fewer than five geometries", lens.name).into());
         }
     }
-    let mut studio = Studio::new(Gpu::open()?, Arc::new(model), &scene.city)?;
     let mut draw = |backend: Backend| {
         let aovs = Aovs { depth: true, object_id: true, normal: false, lens_mask: true };
         let request = Request { size: [240, 135], samples: 2, transparent: false, aovs, statistics: false, backend };

@@ -92,6 +92,9 @@ pub fn holds(shape: &Shape, p: DVec3) -> bool {
             let at = DMat3::from_cols(a, b, c).inverse() * (p - points[0]);
             at.cmpge(DVec3::ZERO).all() && at.cmple(DVec3::ONE).all()
         }
+        Shape::Flat { .. } => {
+            unreachable!("a flat lens holds what an eye sees through it; case 4 has tests of its own")
+        }
         Shape::Polytope { planes } => planes.iter().all(|[x, y, z, d]| DVec3::new(*x, *y, *z).dot(p) <= *d),
         Shape::Corridor { points, width, height } => {
             let near = |on: DVec3| (p - on).truncate().length() <= 0.5 * width && (p.z - on.z).abs() <= 0.5 * height;

@@ -4,6 +4,7 @@
 mod case_01_national_coordinates;
 mod case_03_coplanar_faces;
 mod case_03_jitter;
+mod case_04_flat_lenses;
 mod case_04_near_plane;
 mod case_05_around_everything;
 mod case_06_many_lenses;

@@ -70,6 +70,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         kind: LensKind::Color,
         enabled: true,
         color: [0.8, 0.1, 0.1],
+        placement: Default::default(),
         shapes: shapes.into_iter().map(Into::into).collect(),
         effects: vec![used(effect)],
         body: LensBody::None,

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use crate::{
-    figure::scene_file::keys::{self, CLASSES, Key, Kind, LATER_SHAPES, LATER_TABLES, SHAPES, TABLES, Table},
+    figure::scene_file::keys::{self, CLASSES, Key, Kind, LATER_TABLES, SHAPES, TABLES, Table},
     lens::effect::LATER,
     shader::{
         Blend,
@@ -24,7 +24,6 @@ pub fn reference() -> String {
         let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
         rows(&mut out, table.keys);
     }
-    let _ = write!(out, "Not available yet: {}.\n\n", words(LATER_SHAPES));
     out += "## Effects\n\n`effects` is a list; each element is a name (`\"sepia\"`) or a table of `effect` (the name), `class` and parameters.\n\
             `class` says which part of the sight line it acts on: `\"inside\"` the lens (default), in `\"front\"` of it, `\"behind\"` it,\n\
             or the `\"rest\"`, where the sight line misses the lens. It has a meaning only in a lens.\n\n";
@@ -145,6 +144,14 @@ fn object(table: &Table) -> Map<String, Value> {
     }
     if table.keys.iter().any(|k| k.name == "shape") {
         map.insert("oneOf".into(), json!([{ "required": ["shape"] }, { "required": ["shapes"] }]));
+    }
+    let one_of: &[&str] = match table.name {
+        "flat" => &["radius", "size", "points"],
+        "attached_to" => &["object", "poi"],
+        _ => &[],
+    };
+    if !one_of.is_empty() {
+        map.insert("oneOf".into(), one_of.iter().map(|key| json!({ "required": [key] })).collect());
     }
     map.insert("additionalProperties".into(), false.into());
     map

@@ -318,6 +318,22 @@ pub const LENS: Table = Table {
             "\"#0072b2\"",
         ),
         key(
+            "placement",
+            Kind::Word { now: &["scene", "camera"], later: &[] },
+            "\"scene\"",
+            "",
+            "What its shapes are fixed to: the `scene`, or the `camera`, with which they move and in whose view alone they act; see Placement.",
+            "\"camera\"",
+        ),
+        key(
+            "attached_to",
+            Kind::Table(&ATTACHED_TO),
+            "nothing: model coordinates",
+            "",
+            "A city object or a point of interest, whose middle the coordinates of its shapes are counted from.",
+            "{ poi = \"hall\" }",
+        ),
+        key(
             "shape",
             Kind::Shape,
             "",
@@ -364,6 +380,31 @@ pub const LENS: Table = Table {
             "",
             "Has the lens tested by a volumetric depth sprite of it.",
             "{ resolution = 512 }",
+        ),
+    ],
+};
+
+/// `attached_to` of a lens.
+pub const ATTACHED_TO: Table = Table {
+    name: "attached_to",
+    doc: "What a lens is attached to: exactly one of `object` and `poi`. The coordinates of its shapes are counted from there, \
+          along the model's axes: `center = [0, 0, 0]` is the middle of it.",
+    keys: &[
+        key(
+            "object",
+            Kind::Text,
+            "none",
+            "",
+            "Id of a city object: the middle of the box (edges along x, y, z) around all of its geometry, of every level of detail, and that of its parts.",
+            "\"NL.IMBAG.Pand.0503100000031316\"",
+        ),
+        key(
+            "poi",
+            Kind::Text,
+            "none",
+            "",
+            "Name of a point of interest: its point, or the middle of its object, as above.",
+            "\"hall\"",
         ),
     ],
 };
@@ -587,6 +628,42 @@ pub const SHAPES: &[Table] = &[
         ],
     },
     Table {
+        name: "flat",
+        doc: "What is seen through a figure: a disc, a rectangle or a polygon; exactly one of `radius`, `size` and `points`. It \
+              begins in the figure's plane and reaches from there to infinity, away from the eye: the sky behind it is in it, \
+              what stands before it is not. Both sides of the figure are alike. An eye in its plane sees it edge on: it holds \
+              nothing then. It acts only in the view that the scene is looked at in.",
+        keys: &[
+            shape_kind("\"flat\""),
+            key("center", Kind::Point, "", "m", "Where the (0, 0) of the figure is.", "[78600.0, 457950.0, 10.0]"),
+            key(
+                "rotation_deg",
+                Kind::Angles,
+                "[0, 0, 0]",
+                "degrees",
+                "`[yaw, pitch, roll]`, as of a box: without, the figure lies level; `[yaw, 0, 90]` stands upright, its x along the yaw.",
+                "[30.0, 0.0, 90.0]",
+            ),
+            key("radius", Kind::Number { min: 0.0, max: FAR_M }, "none", "m", "Of a disc; 0 holds nothing.", "20.0"),
+            key(
+                "size",
+                Kind::PlanLengths,
+                "none",
+                "m",
+                "Of a rectangle: full edges along its x and y.",
+                "[40.0, 25.0]",
+            ),
+            key(
+                "points",
+                Kind::PlanPoints(3),
+                "none",
+                "m",
+                "Of a polygon, convex or not, in the figure's x and y; at most 1024. Where it crosses itself, all that it goes around is in it.",
+                "[[-20, -10], [20, -10], [0, 15]]",
+            ),
+        ],
+    },
+    Table {
         name: "mesh",
         doc: "What the faces of a file enclose; it may be concave, in several parts, or touch and cross itself. Faces turned the wrong way and small holes are mended.",
         keys: &[
@@ -686,9 +763,6 @@ pub const SHAPES: &[Table] = &[
     },
 ];
 
-/// Shapes of later versions.
-pub const LATER_SHAPES: &[&str] = &["flat"];
-
 /// Shapes that are made from files, images, polygons or the city ([`crate::lens::Focus`]).
 pub const FOCUSES: &[&str] = &["mesh", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference"];
 
@@ -739,6 +813,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("[style]", &STYLE),
     ("[[poi]]", &POI),
     ("[[lens]]", &LENS),
+    ("attached_to of a lens", &ATTACHED_TO),
     ("sprite of a lens", &SPRITE),
     ("[figure]", &FIGURE),
 ];

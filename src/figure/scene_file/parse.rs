@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
 use crate::{
     figure::scene_file::{
@@ -12,9 +12,9 @@ use crate::{
         node::{Data, Node},
         paths::{Options, PathProblem},
     },
-    geom::{Shape, combination::Operation},
+    geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, effect,
+        Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, Placement, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -189,6 +189,7 @@ impl<'o> SceneReader<'o> {
     }
 
     fn lens(&mut self, fields: &Fields, index: usize) -> Lens {
+        let placement = self.placement(fields);
         let shapes = self.shapes(fields);
         let effects = self.effects(fields, true);
         let sprite = fields
@@ -199,11 +200,38 @@ impl<'o> SceneReader<'o> {
             kind: LensKind::Color,
             enabled: fields.boolean("enabled").unwrap_or(true),
             color: fields.color("color").unwrap_or_else(|| lens_color(index)),
+            placement,
             shapes,
             effects,
             body: if fields.text("body") == Some("none") { LensBody::None } else { LensBody::Outline },
             sprite: sprite.map(|s| LensSprite { resolution: s.integer("resolution") }),
         }
+    }
+
+    fn placement(&mut self, fields: &Fields) -> Placement {
+        let of_camera = fields.text("placement") == Some("camera");
+        let Some(node) = fields.node("attached_to") else {
+            return if of_camera { Placement::Camera } else { Placement::World };
+        };
+        if of_camera {
+            let message = "is given together with placement = \"camera\": a lens is fixed to one of them";
+            self.checker.note(&fields.place, "attached_to", node.line, message);
+        }
+        let place = fields.place.within("attached_to", node.line);
+        let own = self.checker.fields(node, &keys::ATTACHED_TO, &[], place);
+        match (own.text("object"), own.text("poi")) {
+            (Some(id), None) if !own.given("poi") => return Placement::Object(id.to_owned()),
+            (None, Some(name)) if !own.given("object") => return Placement::Poi(name.to_owned()),
+            (None, None) if own.given("object") || own.given("poi") => {}
+            (None, None) => {
+                self.checker.note(&own.place, "", node.line, "is empty: give object = \"ID\" or poi = \"NAME\"");
+            }
+            _ => {
+                let message = "is given together with object: a lens is attached to one of them";
+                self.checker.note(&own.place, "poi", own.line("poi"), message);
+            }
+        }
+        Placement::World
     }
 
     fn shapes(&mut self, fields: &Fields) -> Vec<Focus> {
@@ -243,18 +271,10 @@ impl<'o> SceneReader<'o> {
         let Some(table) = kind.and_then(Node::text).and_then(|k| keys::SHAPES.iter().find(|s| s.name == k)) else {
             let (line, message) = match kind {
                 None => (node.line, format!("is missing: one of {all}")),
-                Some(n) => match n.text() {
-                    Some(k) if keys::LATER_SHAPES.contains(&k) => {
-                        (n.line, format!("kind = \"{k}\" is not available yet; available: {all}"))
-                    }
-                    _ => {
-                        let hint = did_you_mean(
-                            n.text().unwrap_or_default(),
-                            names().chain(keys::LATER_SHAPES.iter().copied()),
-                        );
-                        (n.line, format!("must be one of {all}, is {}{hint}", n.quoted()))
-                    }
-                },
+                Some(n) => {
+                    let hint = did_you_mean(n.text().unwrap_or_default(), names());
+                    (n.line, format!("must be one of {all}, is {}{hint}", n.quoted()))
+                }
             };
             self.checker.note(place, "kind", line, message);
             return None;
@@ -273,8 +293,19 @@ impl<'o> SceneReader<'o> {
         if keys::FOCUSES.contains(&table.name) {
             return reader.focus(table.name, &fields, turn);
         }
+        if table.name == "flat" {
+            let given: Vec<&str> = ["radius", "size", "points"].into_iter().filter(|key| fields.given(key)).collect();
+            let message = match given[..] {
+                [_] => None,
+                [] => Some("is missing: a flat lens has a radius, a size = [width, height] or points".to_owned()),
+                [first, ..] => Some(format!("is given together with {first}: a flat lens has one figure")),
+            };
+            if let Some(message) = message {
+                self.checker.note(place, given.last().unwrap_or(&"radius"), node.line, message);
+            }
+        }
         let shape = built_shape(table.name, &fields)?;
-        if let Err(error) = shape.volumes() {
+        if let Err(error) = shape.check() {
             let key = ["points", "planes"].into_iter().find(|key| fields.given(key)).unwrap_or("");
             self.checker.note(place, key, node.line, error.to_string());
         }
@@ -422,6 +453,17 @@ fn built_shape(kind: &str, fields: &Fields) -> Option<Shape> {
         "polytope" => {
             let list = fields.node("planes").and_then(Node::list)?;
             Shape::Polytope { planes: list.iter().filter_map(Node::numbers::<4>).collect() }
+        }
+        "flat" => {
+            let figure = if let Some(radius) = fields.number("radius") {
+                FlatFigure::Disc { radius }
+            } else if let Some(size) = fields.node("size").and_then(Node::numbers::<2>) {
+                FlatFigure::Rectangle { size: size.into() }
+            } else {
+                let list = fields.node("points").and_then(Node::list)?;
+                FlatFigure::Polygon { points: list.iter().filter_map(|p| p.numbers::<2>().map(DVec2::from)).collect() }
+            };
+            Shape::Flat { center: center?, rotation: turned(), figure }
         }
         _ => Shape::Convex { points: points()? },
     })

@@ -3,8 +3,8 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    geom::{Shape, combination::Operation},
-    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, chosen::Choice},
+    geom::{Shape, combination::Operation, shape::FlatFigure},
+    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, Placement, chosen::Choice},
     scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun},
     shader::Blend,
     view::{Camera, Projection},
@@ -145,11 +145,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"shpere\" }",
-            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, mesh, mask, mask3d, objects, thematic, union, intersection, difference, is \"shpere\"; did you mean \"sphere\"?",
-        ),
-        (
-            "shape = { kind = \"flat\" }",
-            "shape.kind: kind = \"flat\" is not available yet; available: sphere, ellipsoid, box,",
+            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, flat, mesh, mask, mask3d, objects, thematic, union, intersection, difference, is \"shpere\"; did you mean \"sphere\"?",
         ),
         ("shape = { kind = \"union\" }", "shape.shapes: is missing: The shapes, of any kind"),
         (
@@ -237,6 +233,26 @@ fn every_mistake_in_a_lens_is_named() {
             "shape.size: must be [x, y, z], three numbers ≥ 0, is [1, -1, 1]",
         ),
         (
+            "shape = { kind = \"flat\", center = [0,0,0] }",
+            "shape.radius: is missing: a flat lens has a radius, a size = [width, height] or points",
+        ),
+        (
+            "shape = { kind = \"flat\", center = [0,0,0], radius = 3, size = [1, 2] }",
+            "shape.size: is given together with radius: a flat lens has one figure",
+        ),
+        (
+            "shape = { kind = \"flat\", center = [0,0,0], size = [1, -2] }",
+            "shape.size: must be [width, height], two numbers ≥ 0, is [1, -2]",
+        ),
+        (
+            "shape = { kind = \"flat\", center = [0,0,0], points = [[0, 0], [1, 0, 0], [0, 1]] }",
+            "shape.points: point 1 must be [x, y], two finite numbers, is [1, 0, 0]",
+        ),
+        (
+            "shape = { kind = \"flat\", center = [0,0,0], points = [[0, 0], [1, 0]] }",
+            "shape.points: a polygon needs at least 3 points, has 2",
+        ),
+        (
             "shape = { kind = \"sphere\", center = [0, 0, 0], radius = 3 }\nshapes = []",
             "shapes: is given together with shape",
         ),
@@ -247,6 +263,21 @@ fn every_mistake_in_a_lens_is_named() {
     for (lines, expected) in [
         ("kind = \"occlusion\"", "s.toml:4: [lens.0] kind: \"occlusion\" is not available yet; available: color"),
         ("kind = \"colour\"", "[lens.0] kind: must be \"color\", is \"colour\"; did you mean \"color\"?"),
+        (
+            "placement = \"camara\"",
+            "placement: must be \"scene\" or \"camera\", is \"camara\"; did you mean \"camera\"?",
+        ),
+        (
+            "placement = \"camera\"\nattached_to = { object = \"a\" }",
+            "s.toml:5: [lens.0] attached_to: is given together with placement = \"camera\": a lens is fixed to one of them",
+        ),
+        (
+            "attached_to = { object = \"a\", poi = \"b\" }",
+            "attached_to.poi: is given together with object: a lens is attached to one of them",
+        ),
+        ("attached_to = {}", "[lens.0] attached_to: is empty: give object = \"ID\" or poi = \"NAME\""),
+        ("attached_to = { objekt = \"a\" }", "attached_to.objekt: unknown key; did you mean \"object\"?"),
+        ("attached_to = \"a\"", "attached_to: must be a table, is \"a\""),
         ("space = \"rest\"", "space: \"rest\" is not available yet"),
         ("color = \"red\"", "color: must be a colour: \"#rrggbb\" or [r, g, b] of 0 to 1, is \"red\""),
         (
@@ -358,6 +389,29 @@ fn shapes() -> impl Strategy<Value = Shape> {
         }),
         (prop::collection::vec(point(), 2..9), 0.0..1e3f64, 0.0..1e3f64)
             .prop_map(|(points, width, height)| Shape::Corridor { points, width, height }),
+        (point(), angles(), figures_of_flats()).prop_map(|(center, a, figure)| Shape::Flat {
+            center,
+            rotation: rotation(a),
+            figure
+        }),
+    ]
+}
+
+fn figures_of_flats() -> impl Strategy<Value = FlatFigure> {
+    let pair = || prop::array::uniform2(-1e3..1e3f64).prop_map(DVec2::from);
+    prop_oneof![
+        (0.0..1e3f64).prop_map(|radius| FlatFigure::Disc { radius }),
+        pair().prop_map(|size| FlatFigure::Rectangle { size: size.abs() }),
+        prop::collection::vec(pair(), 3..9).prop_map(|points| FlatFigure::Polygon { points }),
+    ]
+}
+
+fn placements() -> impl Strategy<Value = Placement> {
+    prop_oneof![
+        Just(Placement::World),
+        Just(Placement::Camera),
+        ".{1,6}".prop_map(Placement::Object),
+        ".{1,6}".prop_map(Placement::Poi),
     ]
 }
 
@@ -454,10 +508,10 @@ fn effects() -> impl Strategy<Value = EffectUse> {
 prop_compose! {
     fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), outline in any::<bool>(),
-        sprite in prop::option::of(prop::option::of(16..16_384u32))) -> Lens {
+        sprite in prop::option::of(prop::option::of(16..16_384u32)), placement in placements()) -> Lens {
         let sprite = sprite.map(|resolution| LensSprite { resolution });
         let body = if outline { LensBody::Outline } else { LensBody::None };
-        Lens { name: String::new(), kind: LensKind::Color, enabled, color, shapes, effects: used, body, sprite }
+        Lens { name: String::new(), kind: LensKind::Color, enabled, color, placement, shapes, effects: used, body, sprite }
     }
 }
 
@@ -516,6 +570,7 @@ fn turn_alike(a: &Focus, b: &mut Focus) {
         }
         (Focus::Shape(Shape::Box { rotation: ra, .. }), Focus::Shape(Shape::Box { rotation: rb, .. }))
         | (Focus::Shape(Shape::Ellipsoid { rotation: ra, .. }), Focus::Shape(Shape::Ellipsoid { rotation: rb, .. }))
+        | (Focus::Shape(Shape::Flat { rotation: ra, .. }), Focus::Shape(Shape::Flat { rotation: rb, .. }))
         | (Focus::Mesh { rotation: ra, .. }, Focus::Mesh { rotation: rb, .. }) => Some((ra, rb)),
         _ => None,
     };

@@ -2,16 +2,16 @@
 
 use std::fmt::Write;
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use crate::{
     figure::scene_file::{
         parse::{lens_color, rotation},
         paths::Options,
     },
-    geom::Shape,
+    geom::{Shape, shape::FlatFigure},
     lens::{
-        Class, EffectUse, Focus, Lens, LensBody, Parameter,
+        Class, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
         color::{parse_hex, to_hex},
     },
     scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun},
@@ -124,6 +124,12 @@ impl Toml {
         self.key("kind", "\"color\"");
         self.key_if(!lens.enabled, "enabled", "false");
         self.key_if(lens.color != lens_color(index), "color", &color(lens.color));
+        match &lens.placement {
+            Placement::World => {}
+            Placement::Object(id) => self.key("attached_to", &format!("{{ object = {} }}", quoted(id))),
+            Placement::Poi(name) => self.key("attached_to", &format!("{{ poi = {} }}", quoted(name))),
+            Placement::Camera => self.key("placement", "\"camera\""),
+        }
         match &lens.shapes[..] {
             [one] => self.key("shape", &focus(one, options)),
             many => self.key("shapes", &list(many.iter().map(|one| focus(one, options)))),
@@ -241,6 +247,15 @@ fn shape(shape: &Shape) -> String {
             number(*width),
             number(*height)
         ),
+        Shape::Flat { center, rotation: turn, figure } => {
+            let pair = |p: &DVec2| list(p.to_array().map(number));
+            let figure = match figure {
+                FlatFigure::Disc { radius } => format!("radius = {}", number(*radius)),
+                FlatFigure::Rectangle { size } => format!("size = {}", pair(size)),
+                FlatFigure::Polygon { points } => format!("points = {}", list(points.iter().map(pair))),
+            };
+            format!("{{ kind = \"flat\", center = {}{}, {figure} }}", point(*center), turned(*turn))
+        }
     }
 }
 

@@ -39,7 +39,7 @@ pub struct Region {
 }
 
 impl Region {
-    /// What convex `volumes` have in common, solids standing for the boxes around them; `None` if that is nothing (or no volumes are given).
+    /// What convex `volumes` have in common, solids and flat lenses standing for the boxes around them; `None` if that is nothing (or no volumes are given).
     pub fn common(volumes: &[Volume]) -> Option<Self> {
         let bounds =
             volumes.iter().map(Volume::bounds).reduce(|a, b| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) })?;
@@ -162,7 +162,7 @@ impl Volume {
             [axis, -axis].map(|normal| (normal, half + normal.dot(center - origin)))
         };
         match self {
-            Self::Sphere { .. } | Self::Ellipsoid { .. } => Vec::new(),
+            Self::Sphere { .. } | Self::Ellipsoid { .. } | Self::Flat(_) => Vec::new(),
             Self::Box { center, half, rotation } => {
                 let axes = DMat3::from_quat(*rotation);
                 (0..3).flat_map(|i| both_ways(*center, axes.col(i), half[i])).collect()
@@ -186,7 +186,7 @@ impl Volume {
     /// part lies behind, and `p` before.
     fn parting_plane(&self, p: DVec3, origin: DVec3) -> Option<(DVec3, f64)> {
         match self {
-            Self::Box { .. } | Self::Convex(_) | Self::Solid(_) => None,
+            Self::Box { .. } | Self::Convex(_) | Self::Solid(_) | Self::Flat(_) => None,
             Self::Sphere { center, radius } => {
                 let c = *center - origin;
                 let normal = (p - c).try_normalize()?;

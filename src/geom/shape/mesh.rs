@@ -52,7 +52,7 @@ const GROWTH: f64 = 1.0 + 1e-5;
 impl Volume {
     /// A closed mesh that holds the whole shape, convex where that is: what a renderer draws to reach all pixels of an analytic
     /// volume. Boxes, polytopes and solids: their faces exactly. Round ones: circumscribed, at most 4 % wider.
-    /// Empty where the volume is.
+    /// Empty where the volume is, and for a flat lens, which no closed mesh holds.
     pub fn bounding_mesh(&self) -> Mesh {
         match self {
             _ if self.is_empty() => Mesh::default(),
@@ -82,11 +82,13 @@ impl Volume {
                 prism(*center, radii.map(|r| r * wider), *half * GROWTH, *axis, BOUNDING_SIDES)
             }
             Self::Box { .. } | Self::Convex(_) | Self::Solid(_) => self.surface_mesh(BOUNDING_SIDES),
+            // It has no end.
+            Self::Flat(_) => Mesh::default(),
         }
     }
 
     /// A closed mesh with its corners on the shape's surface; `segments` (3..=1024) around a cylinder, and about as
-    /// many around a sphere.
+    /// many around a sphere; of a flat lens none.
     pub fn surface_mesh(&self, segments: u32) -> Mesh {
         let segments = segments.clamp(3, 1024);
         match self {
@@ -114,6 +116,7 @@ impl Volume {
                     triangles: (0..faces.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
                 }
             }
+            Self::Flat(_) => Mesh::default(),
         }
     }
 }

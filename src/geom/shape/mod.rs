@@ -5,15 +5,19 @@
 //! runs within a face is inside it. A body without volume (radius 0, an edge 0) holds nothing.
 
 mod corridor;
+pub mod flat;
 mod hull;
 mod mesh;
+mod placed;
 mod polytope;
 pub mod solid;
 
 use glam::{DQuat, DVec2, DVec3};
 
+pub use flat::{Flat, FlatFigure, Sightlines};
 pub use hull::Hull;
 pub use mesh::Mesh;
+pub use placed::Motion;
 pub use solid::{PlacedSolid, Solid};
 
 use crate::geom::{Aabb, Ray};
@@ -89,6 +93,15 @@ pub enum Shape {
         /// Full height, metres, ≥ 0.
         height: f64,
     },
+    /// What is seen through a figure in a plane, from there to infinity; only in the view that it is defined in.
+    Flat {
+        /// The figure's origin, metres.
+        center: DVec3,
+        /// Turns its axes into the world's; its z is the plane's normal.
+        rotation: DQuat,
+        /// In its own x, y plane.
+        figure: FlatFigure,
+    },
 }
 
 /// Why a shape is no volume.
@@ -109,6 +122,17 @@ pub enum ShapeError {
     /// Too few points for a line.
     #[error("a line needs at least 2 points, has {0}")]
     ShortLine(usize),
+    /// Too few points for an area.
+    #[error("a polygon needs at least 3 points, has {0}")]
+    FewCorners(usize),
+    /// More corners than a pixel can be tested against.
+    #[error("a polygon may have at most {max} points, has {0}", max = flat::MAX_CORNERS)]
+    ManyCorners(usize),
+    /// What a flat lens holds depends on the eye, [`Shape::volumes_seen`].
+    #[error(
+        "a flat lens holds what an eye sees through it: it cannot be asked without one, nor be part of another shape"
+    )]
+    NeedsEye,
     /// The shape is the union of several volumes, [`Shape::volumes`].
     #[error("a corridor is several volumes")]
     Several,
@@ -203,9 +227,26 @@ pub enum Volume {
     Convex(Hull),
     /// A solid of any form.
     Solid(PlacedSolid),
+    /// What an eye sees through a figure.
+    Flat(Flat),
 }
 
 impl Shape {
+    /// Whether it is a shape at all.
+    pub fn check(&self) -> Result<(), ShapeError> {
+        self.volumes_seen(&Sightlines::Along(DVec3::NEG_Z)).map(|_| ())
+    }
+
+    /// As [`Shape::volumes`], for an eye with these sight lines: a flat lens depends on them.
+    pub fn volumes_seen(&self, sight: &Sightlines) -> Result<Vec<Volume>, ShapeError> {
+        let Self::Flat { center, rotation, figure } = self else { return self.volumes() };
+        if !(center.is_finite() && rotation.is_finite() && rotation.length() > 0.0) {
+            return Err(ShapeError::NotFinite);
+        }
+        figure.check()?;
+        Ok(vec![Volume::Flat(Flat::new(*center, rotation.normalize(), figure.clone(), *sight))])
+    }
+
     /// Checks the shape and prepares it: the volumes whose union it is, none where it is known to hold nothing.
     pub fn volumes(&self) -> Result<Vec<Volume>, ShapeError> {
         match self {
@@ -263,6 +304,7 @@ impl Shape {
             Self::Convex { points } => Hull::new(points).map(Volume::Convex),
             Self::Polytope { planes } => polytope::between(planes).map(Volume::Convex),
             Self::Corridor { .. } => Err(ShapeError::Several),
+            Self::Flat { .. } => Err(ShapeError::NeedsEye),
         }
     }
 }
@@ -277,25 +319,33 @@ impl Volume {
             Self::Ellipsoid { radii, .. } => radii.min_element() <= 0.0,
             Self::Frustum { radii, half, .. } => radii[0].max(radii[1]).min(*half) <= 0.0,
             Self::Convex(_) | Self::Solid(_) => false,
+            Self::Flat(flat) => flat.is_empty(),
         }
     }
 
-    /// Whether it is convex: all but solids.
+    /// Whether it is convex: all but solids and flat lenses.
     pub fn is_convex(&self) -> bool {
-        !matches!(self, Self::Solid(_))
+        !matches!(self, Self::Solid(_) | Self::Flat(_))
+    }
+
+    /// Whether it has an end on all sides.
+    pub fn is_bounded(&self) -> bool {
+        !matches!(self, Self::Flat(_))
     }
 
     /// Whether the closed body holds `p`.
     pub fn contains(&self, p: DVec3) -> bool {
         match self {
             Self::Solid(placed) => placed.solid.winding(placed.local(p)) != 0,
+            Self::Flat(flat) => flat.contains(p),
             _ => self.signed_distance(p) <= 0.0 && !self.is_empty(),
         }
     }
 
     /// Where the line of `ray` enters and leaves: inside for `entry ≤ t < exit`; of a solid, which it may leave and enter again
     /// in between, the first and the last crossing ([`Solid::crossings`] has all of them). Both may be negative (behind the
-    /// origin). `None`: it misses. A ray without direction is everywhere inside or misses.
+    /// origin). `None`: it misses. A ray without direction is everywhere inside or misses. A flat lens knows only the sight
+    /// lines of its own eye, and their exit is infinite.
     pub fn entry_exit(&self, ray: &Ray) -> Option<(f64, f64)> {
         if self.is_empty() {
             return None;
@@ -333,6 +383,7 @@ impl Volume {
                 let ends = (f64::INFINITY, f64::NEG_INFINITY);
                 crossings.iter().fold(ends, |(low, high), c| (low.min(c.t), high.max(c.t)))
             }
+            Self::Flat(flat) => flat.entry_exit(ray)?,
         };
         (entry < exit).then_some((entry, exit))
     }
@@ -365,10 +416,11 @@ impl Volume {
                 let distance = placed.solid.distance(local);
                 if placed.solid.winding(local) != 0 { -distance } else { distance }
             }
+            Self::Flat(flat) => flat.signed_distance(p),
         }
     }
 
-    /// The smallest axis-aligned box around it.
+    /// The smallest axis-aligned box around it; one around everything for a flat lens, which has no end.
     pub fn bounds(&self) -> Aabb {
         let around = |center: DVec3, half: DVec3| Aabb { min: center - half, max: center + half };
         match self {
@@ -393,6 +445,7 @@ impl Volume {
             }
             Self::Convex(hull) => hull.bounds(),
             Self::Solid(placed) => Aabb::from_points(placed.solid.bounds().corners().map(|c| placed.world(c))),
+            Self::Flat(_) => around(DVec3::ZERO, DVec3::splat(flat::ENDLESS_M)),
         }
     }
 }

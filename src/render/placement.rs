@@ -1,0 +1,45 @@
+//! Where the shapes of lenses stand in a frame (L2): in the world, at what they are attached to, or before the camera.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::{
+    city::CityModel,
+    geom::shape::{Motion, Sightlines},
+    lens::Lens,
+    scene::{Scene, anchor::anchor},
+    view::{Basis, Camera, CameraError, Projection},
+};
+
+/// The eye of the view that lenses are placed for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Eye {
+    at: DVec3,
+    basis: Basis,
+    is_orthographic: bool,
+}
+
+impl Eye {
+    pub(super) fn new(camera: &Camera) -> Result<Self, CameraError> {
+        let is_orthographic = matches!(camera.projection, Projection::Orthographic { .. });
+        Ok(Self { at: camera.eye, basis: camera.basis()?, is_orthographic })
+    }
+
+    /// What flat lenses are looked through along.
+    pub(super) fn sight(&self) -> Sightlines {
+        if self.is_orthographic { Sightlines::Along(self.basis.forward) } else { Sightlines::From(self.at) }
+    }
+
+    /// From a lens' own coordinates to the model's; `None` where what it is attached to is not there:
+    /// [`crate::scene::check_against`] says so.
+    pub(super) fn motion(&self, lens: &Lens, scene: &Scene, model: &CityModel) -> Option<Motion> {
+        Some(match anchor(&lens.placement, &scene.pois, model).ok()? {
+            Some(DVec3::ZERO) => Motion::NONE,
+            Some(translation) => Motion { rotation: DQuat::IDENTITY, translation },
+            None => {
+                let Basis { right, up, forward } = self.basis;
+                let world_from_camera = DMat3::from_cols(right, up, -forward);
+                Motion { rotation: DQuat::from_mat3(&world_from_camera).normalize(), translation: self.at }
+            }
+        })
+    }
+}

@@ -1,0 +1,49 @@
+//! Where what the lenses are attached to is (L2).
+
+use glam::DVec3;
+
+use crate::{
+    city::CityModel,
+    lens::{Placement, nearest::did_you_mean},
+    scene::{Poi, PoiPlace},
+};
+
+/// Why a lens is attached to nothing.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AnchorProblem {
+    /// The city has no such object.
+    #[error("the city has no object \"{0}\"{1}")]
+    NoObject(String, String),
+    /// Nothing of the object has a place.
+    #[error("the object \"{0}\" has no geometry, nor have its parts: there is nothing to attach to")]
+    NoGeometry(String),
+    /// The scene has no such point of interest.
+    #[error("the scene has no point of interest \"{0}\"{1}")]
+    NoPoi(String, String),
+}
+
+/// The origin of the coordinates of shapes that are placed so, metres; a camera's is its eye, which is not known here: `None`.
+pub fn anchor(placement: &Placement, pois: &[Poi], model: &CityModel) -> Result<Option<DVec3>, AnchorProblem> {
+    match placement {
+        Placement::Camera => Ok(None),
+        Placement::World => Ok(Some(DVec3::ZERO)),
+        Placement::Object(id) => middle_of(id, model).map(Some),
+        Placement::Poi(name) => match pois.iter().find(|poi| poi.name == *name).map(|poi| &poi.place) {
+            Some(PoiPlace::At(at)) => Ok(Some(*at)),
+            Some(PoiPlace::Object(id)) => middle_of(id, model).map(Some),
+            None => {
+                let hint = did_you_mean(name, pois.iter().map(|poi| poi.name.as_str()));
+                Err(AnchorProblem::NoPoi(name.clone(), hint))
+            }
+        },
+    }
+}
+
+fn middle_of(id: &str, model: &CityModel) -> Result<DVec3, AnchorProblem> {
+    let Some(object) = model.find_object(id) else {
+        let hint = did_you_mean(id, model.objects.iter().map(|o| &*o.id));
+        return Err(AnchorProblem::NoObject(id.to_owned(), hint));
+    };
+    let bounds = model.family_bounds(object);
+    if bounds.is_empty() { Err(AnchorProblem::NoGeometry(id.to_owned())) } else { Ok(bounds.center()) }
+}
