@@ -29,9 +29,10 @@ use crate::{
         eye::{PictureTile, view_uniform},
         filters,
         furniture::Furniture,
+        invokers::Invokers,
         layout, light, lines,
-        octagon::Mesh,
-        operations::{Filter, Operations, invoker_table},
+        octagon::{Mesh, Octagon},
+        operations::{Filter, Operations},
         pipelines::{Behind, Key, ShadeTarget, Shown},
         renderer::{Renderer, STAGE_STRIDE},
         seen::{SeenVolume, part_of, seen_volumes},
@@ -48,6 +49,10 @@ use crate::{
 
 /// Name of the pass that empties the lens masks; where it ran, they hold this frame's classes.
 pub const CLEAR_MASKS: &str = "clear lens masks";
+
+/// Lens volumes of a picture that are written out in its shaders; the uber back end goes through more, tile by tile. Compilers
+/// take more than in proportion to the text: on llvmpipe 12 spheres are compiled in 2 s, 48 in minutes.
+const MOST_WRITTEN_OUT: u32 = 24;
 
 /// Everything a sample is drawn from.
 #[derive(Clone, Debug)]
@@ -358,7 +363,9 @@ impl Renderer {
         if is_uber {
             sprite_places.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             shapes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
-            stale |= b.invokers.sync(gpu, &plans.table().unwrap_or_default())?;
+            let invokers = plans.invokers();
+            stale |= b.invokers.sync(gpu, &invokers.words(input.tile.size))?;
+            stale |= b.tile_lists.sync(gpu, &invokers.tile_lists(&plans.parts, input.tile.size))?;
         }
         stale |= b.view.sync(gpu, &[view])?;
         stale |= b.light.sync(gpu, &[light])?;
@@ -371,8 +378,8 @@ impl Renderer {
             stale |= b.shapes.sync(gpu, &shapes.shapes)?;
             stale |= b.shape_planes.sync(gpu, &shapes.planes)?;
             if let (true, Some(cut)) = (is_uber, &cuts.sun) {
-                let table = invoker_table([&Plan::default(), &Plan::default()], [Some(&cut.plan), None], handlers())
-                    .unwrap_or_default();
+                let none = Plan::default();
+                let table = Invokers::new([&none, &none], [Some(&cut.plan), None], handlers()).words([0, 0]);
                 stale |= b.shape_invokers.sync(gpu, &table)?;
             }
         }
@@ -468,10 +475,11 @@ impl Renderer {
             parts(uber.clone(), uber, city, cuts.uber(hiding), input.operations.uber_lining().map(Program::Uber))
         };
         let shade_keys = match input.backend {
+            // What is written out for so many compiles for minutes.
+            Backend::Specialised if plans.is_long() => uber(),
             Backend::Specialised => specialised(),
-            // More invokers than the table holds: written out, there is no limit.
-            _ if plans.table().is_err() => specialised(),
             Backend::Uber => uber(),
+            Backend::Adaptive if plans.is_long() => uber(),
             Backend::Adaptive => {
                 let wanted = specialised();
                 // All are asked for, also when the first is not there.
@@ -615,8 +623,9 @@ struct Plans {
     hiding: Option<Plan>,
     /// What lines go through.
     lining: Option<Plan>,
-    /// Lenses in view, in the order of the plans.
+    /// Lenses in view, in the order of the plans, and where.
     seen: Vec<u32>,
+    parts: Vec<Octagon>,
 }
 
 impl Plans {
@@ -634,7 +643,9 @@ impl Plans {
         let (hiding, lining) = (whole.hiding(handlers()), whole.lining(handlers()));
         let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         numbers.dedup();
+        let of_lens = seen.chunk_by(|a, b| a.lens == b.lens);
         Self {
+            parts: of_lens.filter_map(|volumes| part_of(volumes.iter())).collect(),
             filters,
             hiding,
             lining,
@@ -644,9 +655,14 @@ impl Plans {
         }
     }
 
-    /// The invoker table of the picture; `Err` where it would be too long.
-    fn table(&self) -> Result<Vec<u32>, usize> {
-        invoker_table([&self.context, &self.lenses], [self.hiding.as_ref(), self.lining.as_ref()], handlers())
+    /// The invokers of the picture.
+    fn invokers(&self) -> Invokers {
+        Invokers::new([&self.context, &self.lenses], [self.hiding.as_ref(), self.lining.as_ref()], handlers())
+    }
+
+    /// Whether it would be too long, written out.
+    fn is_long(&self) -> bool {
+        self.lenses.volumes() > MOST_WRITTEN_OUT
     }
 
     /// The uses of filters, each with the number of the image that it gets.

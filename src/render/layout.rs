@@ -181,21 +181,6 @@ pub struct Invoker {
     pub number: u32,
 }
 
-/// `shader::uber`: which entries of the invoker table belong to which prototype.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct Part {
-    pub material: [u32; 2],
-    pub light: [u32; 2],
-    pub styles: [u32; 2],
-    pub outlines: [u32; 2],
-    pub masks: [u32; 2],
-    pub hides: [u32; 2],
-    pub lines: [u32; 2],
-    /// An element of an array in a uniform buffer takes a multiple of 16 bytes.
-    pub pad_0: [u32; 2],
-}
-
 /// `pass/furniture.wgsl`, per instance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -298,7 +283,6 @@ mod tests {
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin, clip_scale, clip_shift, leaves })),
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, length, layers, layer, pad_0 })),
             (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
-            (&uber, host!(Part { material, light, styles, outlines, masks, hides, lines, pad_0 })),
             (&shade, host!(SpritePlace { origin, size, texels_per_pixel, sprite, page, pad_0 })),
             (
                 &Module::Furniture,

@@ -17,6 +17,7 @@ pub mod frame;
 pub mod furniture;
 mod furniture_passes;
 pub mod hiding;
+pub mod invokers;
 pub mod layout;
 mod lens_volumes;
 pub mod light;

@@ -8,12 +8,8 @@ use crate::{
         effect::{default_of, in_floats},
         thematic::ThematicScale,
     },
-    render::layout,
     render::palette,
-    shader::{
-        self, Blend, ClassTest, EffectDefinition, EffectKind, MOST_INVOKERS, PerObject, Plan, PlanLens, Scope, Step,
-        Uber, VolumeTest, scope_number,
-    },
+    shader::{self, Blend, ClassTest, EffectKind, PerObject, Plan, PlanLens, Scope, Step, Uber, VolumeTest},
 };
 
 /// Width of a lens outline, pixels.
@@ -297,97 +293,9 @@ fn blend_of(effect: &EffectUse) -> Option<Blend> {
     effect.blend.filter(|b| *b != Blend::Replace || effect.weight.is_some()).or(effect.weight.map(|_| Blend::Replace))
 }
 
-/// The invoker table of the uber back end (H2), as `shader::uber` declares it, full: the context's plan and the lenses', and
-/// what is hidden, and what lines go through.
-/// `Err` says how many invokers there are where they are too many.
-pub fn invoker_table(
-    plans: [&Plan; 2],
-    [hiding, lining]: [Option<&Plan>; 2],
-    handlers: &[EffectDefinition],
-) -> Result<Vec<u32>, usize> {
-    let mut invokers: Vec<layout::Invoker> = Vec::new();
-    let first = invokers.len() as u32;
-    if let Some(plan) = hiding {
-        invokers.extend(plan.steps.iter().map(|step| invoker(plan, step, &handlers[step.effect as usize])));
-    }
-    let hides = [first, invokers.len() as u32];
-    let first = invokers.len() as u32;
-    if let Some(plan) = lining {
-        invokers.extend(plan.steps.iter().map(|step| {
-            let handler = &handlers[step.effect as usize];
-            layout::Invoker { number: to_lines(handler), ..invoker(plan, step, handler) }
-        }));
-    }
-    let lines = [first, invokers.len() as u32];
-    let parts = plans.map(|plan| {
-        let mut of = |kinds: &[EffectKind]| {
-            let first = invokers.len() as u32;
-            let steps = plan.steps.iter().map(|s| (s, &handlers[s.effect as usize]));
-            let chosen = steps.filter(|(_, h)| kinds.contains(&h.kind));
-            invokers.extend(chosen.map(|(step, handler)| invoker(plan, step, handler)));
-            [first, invokers.len() as u32]
-        };
-        let (material, light) = (of(&[EffectKind::Material]), of(&[EffectKind::Light]));
-        let styles = of(&[EffectKind::Scene, EffectKind::Post, EffectKind::Filter]);
-        let mut of_lenses = |is_one: &dyn Fn(&PlanLens) -> bool| {
-            let first = invokers.len() as u32;
-            let ones = (0..).zip(&plan.lenses).filter(|(_, lens)| is_one(lens));
-            invokers.extend(ones.map(|(i, lens)| {
-                let (first_volume, volumes) = plan.volumes_of(i);
-                layout::Invoker {
-                    first_volume,
-                    volumes: volumes.len() as u32,
-                    parameters: lens.outline.unwrap_or(0),
-                    number: lens.number,
-                    ..layout::Invoker::default()
-                }
-            }));
-            [first, invokers.len() as u32]
-        };
-        let outlines = of_lenses(&|lens| lens.outline.is_some());
-        let masks = of_lenses(&|_| plan.masks);
-        layout::Part { material, light, styles, outlines, masks, hides, lines, pad_0: [0; 2] }
-    });
-    if invokers.len() > MOST_INVOKERS as usize {
-        return Err(invokers.len());
-    }
-    invokers.resize(MOST_INVOKERS as usize, layout::Invoker::default());
-    let mut words: Vec<u32> = bytemuck::cast_slice(&parts).to_vec();
-    words.extend_from_slice(bytemuck::cast_slice(&invokers));
-    Ok(words)
-}
-
 /// Whether some step draws lines.
 fn draws_lines(steps: &[Step]) -> bool {
     steps.iter().any(|step| shader::handlers()[step.effect as usize].lines)
-}
-
-/// What a handler is to lines, as `shader::lining` numbers it.
-fn to_lines(handler: &EffectDefinition) -> u32 {
-    match (handler.kind, handler.lines) {
-        (EffectKind::Scene, false) => 1,
-        (EffectKind::Scene, true) => 2,
-        (EffectKind::Hide, false) => 3,
-        (EffectKind::Hide, true) => 4,
-        _ => 0,
-    }
-}
-
-fn invoker(plan: &Plan, step: &Step, handler: &EffectDefinition) -> layout::Invoker {
-    let (first_volume, volumes) = match step.scope {
-        Scope::Everywhere => (0, &[][..]),
-        Scope::Lens(lens, _) => plan.volumes_of(lens),
-    };
-    layout::Invoker {
-        handler: step.effect,
-        scope: scope_number(step.scope),
-        first_volume,
-        volumes: volumes.len() as u32,
-        parameters: if handler.kind == EffectKind::Filter { step.image(handler) } else { step.parameters },
-        blend: step.blend.map_or(0, Blend::number),
-        weight: step.weight(handler).unwrap_or(0),
-        number: u32::from(handler.kind == EffectKind::Scene),
-    }
 }
 
 impl From<ClassTest> for Class {

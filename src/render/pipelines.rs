@@ -371,9 +371,10 @@ impl Layouts {
                     (2, all, uniform()),
                     (3, S::FRAGMENT, uniform()),
                     (4, S::FRAGMENT, masks),
-                    (5, S::FRAGMENT, uniform()),
+                    (5, S::FRAGMENT, storage()),
                     (6, S::FRAGMENT, packed),
                     (7, all, uniform()),
+                    (8, S::FRAGMENT, storage()),
                 ],
             ),
             cut_city: layout(
@@ -387,7 +388,7 @@ impl Layouts {
                 &[
                     (1, S::FRAGMENT, storage()),
                     (2, S::FRAGMENT, uniform()),
-                    (5, S::FRAGMENT, uniform()),
+                    (5, S::FRAGMENT, storage()),
                     (7, S::VERTEX, uniform()),
                     (8, S::FRAGMENT, storage()),
                 ],

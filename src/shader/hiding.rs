@@ -135,7 +135,7 @@ const RUNS_WITHOUT_LENSES: &str = "fn runs(by: Invoker, fragment: Fragment) -> b
 ";
 
 const VISIBLE: &str = "fn visible(fragment: Fragment) -> bool {
-    let invokers = table.parts[1].hides;
+    let invokers = table.ranges.xy;
     for (var i = invokers.x; i < invokers.y; i++) {
         let by = table.invokers[i];
         if runs(by, fragment) && hides(fragment, by) {

@@ -18,7 +18,7 @@ pub use carried::LEAST_CARRIED;
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
 pub use plan::{Blend, ClassTest, Plan, PlanLens, Program, Scope, Step, Uber, VolumeTest};
 pub use specialised::scope_number;
-pub use uber::{MOST_INVOKERS, MOST_SLOTS, MOST_VOLUMES};
+pub use uber::{MOST_SLOTS, MOST_VOLUMES, TILE_PX};
 
 macro_rules! files {
     ($($name:ident = $path:literal;)*) => {

@@ -10,8 +10,8 @@ use crate::shader::{
     specialised::{LINED, MASKS, ONLY_SHOWN},
 };
 
-/// Entries of the invoker table.
-pub const MOST_INVOKERS: u32 = 1024;
+/// Side of the tiles that have lists of invokers, pixels.
+pub const TILE_PX: u32 = 32;
 /// Volumes of a picture: a uniform of 64 KiB holds more than so many.
 pub const MOST_VOLUMES: u32 = 1024;
 /// `vec4f` of parameters of a picture: such a uniform full.
@@ -31,6 +31,7 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     }
     text.push_str(&TABLE_SOURCE);
     text.push_str(&classes(uber));
+    text.push_str(TILES);
     text.push_str(&invoke(uber, "material", &[EffectKind::Material], handlers));
     text.push_str(&invoke(uber, "light", &[EffectKind::Light], handlers));
     text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post, EffectKind::Filter], handlers));
@@ -120,9 +121,6 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
 fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let has = |kind| has(uber, kind, handlers);
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
-    if has(EffectKind::Material) || has(EffectKind::Light) {
-        text.push_str("    let part = table.parts[classes.part];\n");
-    }
     if has(EffectKind::Material) {
         text.push_str(MATERIALS);
     }
@@ -163,7 +161,7 @@ fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
 
 /// The table, declared.
 pub(super) static TABLE_SOURCE: LazyLock<String> =
-    LazyLock::new(|| TABLE.replace("MOST_INVOKERS", &format!("{MOST_INVOKERS}")));
+    LazyLock::new(|| format!("{TABLE}const TILE_PX: u32 = {TILE_PX}u;\n\n"));
 
 /// As `render::layout` lays it out.
 const TABLE: &str = "// ==== the invoker table
@@ -179,23 +177,30 @@ struct Invoker {
     number: u32,                // of a style: 1 = for surfaces alone; of a lens: its bit in the masks
 }
 
-// From (x) up to (y, not included) the invokers of each prototype.
-struct Part {
-    @align(16) material: vec2u,
-    light: vec2u,
-    styles: vec2u,
-    outlines: vec2u,
-    masks: vec2u,
-    hides: vec2u,
-    lines: vec2u,
-}
-
 struct InvokerTable {
-    parts: array<Part, 2>,      // the context's, and the lenses'
-    invokers: array<Invoker, MOST_INVOKERS>,
+    ranges: vec4u,              // from up to (not included): what hides; what lines go through
+    tiles: vec4u,               // x: tiles of the picture in a row
+    invokers: array<Invoker>,
 }
 
-@group(2) @binding(5) var<uniform> table: InvokerTable;
+@group(2) @binding(5) var<storage, read> table: InvokerTable;
+
+";
+
+/// Which invokers may run at a pixel, for shading (L8): those of the lenses that its tile may show. Sections in their order.
+const TILES: &str = "// Per tile six places: where its invokers of each section begin, and where the last end; first those outside of all lenses.
+@group(2) @binding(8) var<storage, read> tile_lists: array<u32>;
+
+const MATERIALS: u32 = 0u;
+const LIGHTS: u32 = 1u;
+const STYLES: u32 = 2u;
+const OUTLINES: u32 = 3u;
+const MASKS: u32 = 4u;
+
+fn invokers_of(classes: Classes, section: u32) -> vec2u {
+    let record = 6u * tile_of(classes) + section;
+    return vec2u(tile_lists[record], tile_lists[record + 1u]);
+}
 
 ";
 
@@ -205,6 +210,10 @@ const NO_CLASSES: &str = "struct Classes {
 
 fn classes_at(sight: Sight, part: u32) -> Classes {
     return Classes(part);
+}
+
+fn tile_of(classes: Classes) -> u32 {
+    return 0u;
 }
 
 fn runs(by: Invoker, classes: Classes) -> bool {
@@ -220,6 +229,11 @@ const CLASSES: &str = "struct Classes {
 
 fn classes_at(sight: Sight, part: u32) -> Classes {
     return Classes(part, sight);
+}
+
+fn tile_of(classes: Classes) -> u32 {
+    let at = vec2u(classes.sight.pixel) / TILE_PX;
+    return select(1u + at.y * table.tiles.x + at.x, 0u, classes.part == 0u);
 }
 
 fn classes_of(by: Invoker, classes: Classes) -> u32 {
@@ -246,8 +260,9 @@ fn runs(by: Invoker, classes: Classes) -> bool {
 ";
 
 const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);
-    for (var i = part.material.x; i < part.material.y; i++) {
-        let by = table.invokers[i];
+    let run = invokers_of(classes, MATERIALS);
+    for (var k = run.x; k < run.y; k++) {
+        let by = table.invokers[tile_lists[k]];
         if runs(by, classes) {
             material = invoke_material(material, *point, by);
         }
@@ -255,8 +270,9 @@ const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), 
     (*point).base = material.base;
 ";
 
-const LIGHTS: &str = "    for (var i = part.light.x; i < part.light.y; i++) {
-        let by = table.invokers[i];
+const LIGHTS: &str = "    let run = invokers_of(classes, LIGHTS);
+    for (var k = run.x; k < run.y; k++) {
+        let by = table.invokers[tile_lists[k]];
         if runs(by, classes) {
             (*point).arriving = invoke_light((*point).arriving, *point, by);
         }
@@ -266,9 +282,9 @@ const LIGHTS: &str = "    for (var i = part.light.x; i < part.light.y; i++) {
 
 const STYLED: &str = "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {
     var color = start;
-    let part = table.parts[classes.part];
-    for (var i = part.styles.x; i < part.styles.y; i++) {
-        let by = table.invokers[i];
+    let run = invokers_of(classes, STYLES);
+    for (var k = run.x; k < run.y; k++) {
+        let by = table.invokers[tile_lists[k]];
         let is_scene_style = by.number == 1u;
         if runs(by, classes) && (!is_scene_style || point.surface != NO_SURFACE) {
             color = invoke_style(color, point, by);
@@ -301,24 +317,24 @@ const OUTLINES: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
 
 fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
     var paint = start;
-    let part = table.parts[classes.part];
-    for (var i = part.outlines.x; i < part.outlines.y; i++) {
-        let by = table.invokers[i];
-        paint = outlined(paint, i, pixel, parameters[by.parameters], parameters[by.parameters + 1u]);
+    let run = invokers_of(classes, OUTLINES);
+    for (var k = run.x; k < run.y; k++) {
+        let by = table.invokers[tile_lists[k]];
+        paint = outlined(paint, tile_lists[k], pixel, parameters[by.parameters], parameters[by.parameters + 1u]);
     }
     return paint;
 }
 
 ";
 
-const WRITE_CLASSES: &str = "    let part = table.parts[classes.part];
-    var bits = vec3u(0u);
-    for (var i = part.masks.x; i < part.masks.y; i++) {
-        let by = table.invokers[i];
+const WRITE_CLASSES: &str = "    var bits = vec3u(0u);
+    let run = invokers_of(classes, MASKS);
+    for (var k = run.x; k < run.y; k++) {
+        let by = table.invokers[tile_lists[k]];
         let all = classes_of(by, classes);
         bits |= select(vec3u(0u), vec3u(1u << (by.number % 32u)), (vec3u(all) & vec3u(INSIDE, FRONT, BEHIND)) != vec3u(0u));
         let layer = i32(by.number / 32u) * 3;
-        if i + 1u == part.masks.y || table.invokers[i + 1u].number / 32u != by.number / 32u {
+        if k + 1u == run.y || table.invokers[tile_lists[k + 1u]].number / 32u != by.number / 32u {
             textureStore(class_masks, pixel, layer, vec4u(bits.x, 0u, 0u, 0u));
             textureStore(class_masks, pixel, layer + 1, vec4u(bits.y, 0u, 0u, 0u));
             textureStore(class_masks, pixel, layer + 2, vec4u(bits.z, 0u, 0u, 0u));

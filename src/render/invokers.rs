@@ -1,0 +1,182 @@
+//! The invoker table of the uber back end (H2), and which of its invokers may run in which tile of the picture (L8).
+
+use crate::{
+    render::{eye::PictureTile, layout, octagon::Octagon},
+    shader::{Blend, EffectDefinition, EffectKind, Plan, PlanLens, Scope, Step, TILE_PX, scope_number},
+};
+
+/// Sections of the lists of a tile, as `shader::uber` numbers them: materials, lights, styles, outlines, masks.
+const SECTIONS: usize = 5;
+
+/// An invoker of a section, and the lens of the plan that it belongs to; none: the context.
+type Entry = (u32, Option<u32>);
+
+/// The invokers of a picture.
+#[derive(Debug, Default)]
+pub struct Invokers {
+    all: Vec<layout::Invoker>,
+    hides: [u32; 2],
+    lines: [u32; 2],
+    /// Outside of all lenses, and where they may be seen.
+    sections: [[Vec<Entry>; SECTIONS]; 2],
+}
+
+impl Invokers {
+    /// Of the context's plan and the lenses', of what is hidden, and of what lines go through.
+    pub fn new(plans: [&Plan; 2], [hiding, lining]: [Option<&Plan>; 2], handlers: &[EffectDefinition]) -> Self {
+        let mut out = Self::default();
+        let first = out.all.len() as u32;
+        if let Some(plan) = hiding {
+            let volumes = volumes_before(plan);
+            out.all.extend(plan.steps.iter().map(|s| invoker(plan, &volumes, s, &handlers[s.effect as usize])));
+        }
+        out.hides = [first, out.all.len() as u32];
+        let first = out.all.len() as u32;
+        if let Some(plan) = lining {
+            let volumes = volumes_before(plan);
+            out.all.extend(plan.steps.iter().map(|step| {
+                let handler = &handlers[step.effect as usize];
+                layout::Invoker { number: to_lines(handler), ..invoker(plan, &volumes, step, handler) }
+            }));
+        }
+        out.lines = [first, out.all.len() as u32];
+        out.sections = plans.map(|plan| out.sections_of(plan, handlers));
+        out
+    }
+
+    fn sections_of(&mut self, plan: &Plan, handlers: &[EffectDefinition]) -> [Vec<Entry>; SECTIONS] {
+        let volumes = volumes_before(plan);
+        let mut add = |invoker, lens| {
+            self.all.push(invoker);
+            (self.all.len() as u32 - 1, lens)
+        };
+        let mut of_kinds = |kinds: &[EffectKind]| -> Vec<Entry> {
+            let steps = plan.steps.iter().map(|s| (s, &handlers[s.effect as usize]));
+            let lens = |step: &Step| if let Scope::Lens(lens, _) = step.scope { Some(lens) } else { None };
+            let chosen = steps.filter(|(_, h)| kinds.contains(&h.kind));
+            chosen.map(|(step, handler)| add(invoker(plan, &volumes, step, handler), lens(step))).collect()
+        };
+        let materials = of_kinds(&[EffectKind::Material]);
+        let lights = of_kinds(&[EffectKind::Light]);
+        let styles = of_kinds(&[EffectKind::Scene, EffectKind::Post, EffectKind::Filter]);
+        let mut of_lenses = |is_one: &dyn Fn(&PlanLens) -> bool| -> Vec<Entry> {
+            let ones = (0..).zip(&plan.lenses).filter(|(_, lens)| is_one(lens));
+            ones.map(|(i, lens)| {
+                let invoker = layout::Invoker {
+                    first_volume: volumes[i as usize],
+                    volumes: lens.volumes.len() as u32,
+                    parameters: lens.outline.unwrap_or(0),
+                    number: lens.number,
+                    ..layout::Invoker::default()
+                };
+                add(invoker, Some(i))
+            })
+            .collect()
+        };
+        let outlines = of_lenses(&|lens| lens.outline.is_some());
+        let masks = of_lenses(&|_| plan.masks);
+        [materials, lights, styles, outlines, masks]
+    }
+
+    /// As `shader::uber` declares the table, for a picture of this size.
+    pub fn words(&self, size: [u32; 2]) -> Vec<u32> {
+        let mut words = [self.hides, self.lines, [size[0].div_ceil(TILE_PX), 0], [0, 0]].concat();
+        words.extend_from_slice(bytemuck::cast_slice(&self.all));
+        words
+    }
+
+    /// The lists of all tiles of a picture, where the lenses of the plan may be seen in these parts of it: for each tile where
+    /// its sections begin and the last one ends, and then the invokers. First those outside of all lenses.
+    pub fn tile_lists(&self, parts: &[Octagon], size: [u32; 2]) -> Vec<u32> {
+        let [across, down] = size.map(|side| side.div_ceil(TILE_PX));
+        // Which lenses a tile may show; ascending, as they are gone through in order.
+        let mut seen: Vec<Vec<u32>> = vec![Vec::new(); (across * down) as usize];
+        for (lens, part) in (0..).zip(parts) {
+            let around = part.rectangle();
+            let [x, y] = around.origin.map(|o| o / TILE_PX);
+            let end = |i: usize, most: u32| (around.origin[i] + around.size[i]).div_ceil(TILE_PX).min(most);
+            for row in y..end(1, down) {
+                for column in x..end(0, across) {
+                    let tile = PictureTile { origin: [column * TILE_PX, row * TILE_PX], size: [TILE_PX; 2] };
+                    if part.within(tile).is_some() {
+                        seen[(row * across + column) as usize].push(lens);
+                    }
+                }
+            }
+        }
+        let [context, lenses] = &self.sections;
+        // The entries of each lens stand together, in the order of lenses, but those of the context come first.
+        let begin = |section: &[Entry]| -> Vec<u32> {
+            let mut first = vec![0; parts.len() + 1];
+            for (_, lens) in section {
+                first[lens.map_or(0, |l| l as usize + 1).min(parts.len())] += 1;
+            }
+            for i in 1..first.len() {
+                first[i] += first[i - 1];
+            }
+            first
+        };
+        let begins: Vec<Vec<u32>> = lenses.iter().map(|section| begin(section)).collect();
+        let records = 6 * (1 + seen.len());
+        let mut words = vec![0; records];
+        let put = |words: &mut Vec<u32>, record: usize, lists: [Vec<u32>; SECTIONS]| {
+            for (i, list) in lists.into_iter().enumerate() {
+                words[6 * record + i] = words.len() as u32;
+                words.extend(list);
+            }
+            words[6 * record + SECTIONS] = words.len() as u32;
+        };
+        put(&mut words, 0, std::array::from_fn(|i| context[i].iter().map(|(invoker, _)| *invoker).collect()));
+        for (tile, shown) in seen.iter().enumerate() {
+            let list = |i: usize| -> Vec<u32> {
+                let of = |from: usize, to: u32| lenses[i][from..to as usize].iter().map(|(invoker, _)| *invoker);
+                let own = |lens: &u32| {
+                    let lens = *lens as usize;
+                    of(begins[i][lens] as usize, begins[i][lens + 1])
+                };
+                of(0, begins[i][0]).chain(shown.iter().flat_map(own)).collect()
+            };
+            put(&mut words, 1 + tile, std::array::from_fn(list));
+        }
+        words
+    }
+}
+
+/// How many volumes come before those of each lens of a plan.
+fn volumes_before(plan: &Plan) -> Vec<u32> {
+    let mut before = 0;
+    let mut of = |lens: &PlanLens| {
+        let own = lens.volumes.len() as u32;
+        before += own;
+        before - own
+    };
+    plan.lenses.iter().map(&mut of).collect()
+}
+
+/// What a handler is to lines, as `shader::lining` numbers it.
+fn to_lines(handler: &EffectDefinition) -> u32 {
+    match (handler.kind, handler.lines) {
+        (EffectKind::Scene, false) => 1,
+        (EffectKind::Scene, true) => 2,
+        (EffectKind::Hide, false) => 3,
+        (EffectKind::Hide, true) => 4,
+        _ => 0,
+    }
+}
+
+fn invoker(plan: &Plan, volumes: &[u32], step: &Step, handler: &EffectDefinition) -> layout::Invoker {
+    let (first_volume, count) = match step.scope {
+        Scope::Everywhere => (0, 0),
+        Scope::Lens(lens, _) => (volumes[lens as usize], plan.lenses[lens as usize].volumes.len() as u32),
+    };
+    layout::Invoker {
+        handler: step.effect,
+        scope: scope_number(step.scope),
+        first_volume,
+        volumes: count,
+        parameters: if handler.kind == EffectKind::Filter { step.image(handler) } else { step.parameters },
+        blend: step.blend.map_or(0, Blend::number),
+        weight: step.weight(handler).unwrap_or(0),
+        number: u32::from(handler.kind == EffectKind::Scene),
+    }
+}
