@@ -10,7 +10,7 @@
 
 mod bench_city;
 
-use std::{sync::Arc, time::Instant};
+use std::{cell::Cell, sync::Arc, time::Instant};
 
 use glam::DVec3;
 use veduta::{
@@ -37,6 +37,8 @@ enum Frame {
     Full(Scene),
     /// The same with what near buildings hide, as the bare draw draws it.
     Unculled(Scene),
+    /// Scenes in turn, redrawn in full.
+    Turns(Vec<Scene>, Cell<usize>),
 }
 
 fn main() {
@@ -61,6 +63,11 @@ fn main() {
         let scene = plain_scene(camera);
         let lensed = with_lens(v, &scene, &mut studio);
         let many = with_ten(v, &lensed, &mut studio);
+        let [few, thousand] = [10, 1000].map(|count| spread(&scene, &studio.extent(), count));
+        let moving = (0..8).map(|step| moved(&thousand, f64::from(step)));
+        frames.push((format!("{v} moving"), Frame::Turns(moving.collect(), Cell::new(0))));
+        frames.push((format!("{v} few"), Frame::Full(few)));
+        frames.push((format!("{v} thousand"), Frame::Full(thousand)));
         frames.push((format!("{v} bare"), Frame::Bare(view(&scene))));
         frames.push((format!("{v} all"), Frame::Unculled(scene.clone())));
         frames.push((format!("{v} plain"), Frame::Full(scene)));
@@ -72,7 +79,7 @@ fn main() {
         let found = frames.iter().find(|(n, _)| n == name);
         &found
             .unwrap_or_else(|| {
-                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten or ten all")
+                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten, ten all, few, thousand or moving")
             })
             .1
     };
@@ -93,6 +100,10 @@ fn main() {
     compare(&mut studio, pairs, named, ["V1 ten", "V1 plain"], 1.30);
     compare(&mut studio, pairs, named, ["V2 ten all", "V2 all"], 1.30);
     compare(&mut studio, pairs, named, ["V2 ten", "V2 plain"], 1.30);
+    compare(&mut studio, pairs, named, ["V1 thousand", "V1 few"], 1.50);
+    compare(&mut studio, pairs, named, ["V2 thousand", "V2 few"], 1.50);
+    compare(&mut studio, pairs, named, ["V1 moving", "V1 thousand"], 1.05);
+    compare(&mut studio, pairs, named, ["V2 moving", "V2 thousand"], 1.05);
 }
 
 /// V1: the whole city in the frustum.
@@ -137,6 +148,29 @@ fn view(scene: &Scene) -> View {
     View::new(scene.camera.expect("a camera"), SIZE, &Aabb::EMPTY).expect("a view")
 }
 
+/// Greyscale lenses all over the city, of which on average one lies over a place on the ground.
+fn spread(scene: &Scene, extent: &Aabb, count: u32) -> Scene {
+    let size = extent.size();
+    let radius = (size.x * size.y / (f64::from(count) * std::f64::consts::PI)).sqrt();
+    let one = |i: u32| {
+        // A sequence that spreads evenly (Roberts, the plastic number).
+        let share = |step: f64| (0.5 + step * f64::from(i)).fract();
+        let center = extent.min + DVec3::new(share(0.754_877_666), share(0.569_840_291), 0.0) * size;
+        lens(&format!("{i}"), Shape::Sphere { center, radius }, &["greyscale"])
+    };
+    Scene { lenses: (0..count).map(one).collect(), ..scene.clone() }
+}
+
+/// The scene with one of its lenses some metres away.
+fn moved(scene: &Scene, metres: f64) -> Scene {
+    let mut scene = scene.clone();
+    let middle = scene.lenses.len() / 2;
+    if let Some(Focus::Shape(Shape::Sphere { center, .. })) = scene.lenses[middle].shapes.first_mut() {
+        center.x += metres;
+    }
+    scene
+}
+
 /// A greyscale lens whose mask covers a tenth of the picture.
 fn with_lens(v: &str, scene: &Scene, studio: &mut Studio) -> Scene {
     let shape = sphere_covering(studio, scene, SIZE, 0.1).unwrap_or_else(|error| panic!("{error}"));
@@ -179,6 +213,10 @@ fn timed(studio: &mut Studio, frame: &Frame) -> f64 {
     let start = Instant::now();
     match frame {
         Frame::Bare(view) => studio.renderer.draw_bare(view),
+        Frame::Turns(scenes, turn) => {
+            turn.set((turn.get() + 1) % scenes.len());
+            studio.redraw(&scenes[turn.get()], SIZE).unwrap_or_else(|error| panic!("{error}"));
+        }
         Frame::Full(scene) | Frame::Unculled(scene) => {
             studio.redraw(scene, SIZE).unwrap_or_else(|error| panic!("{error}"))
         }

@@ -50,8 +50,8 @@ use crate::{
 /// Name of the pass that empties the lens masks; where it ran, they hold this frame's classes.
 pub const CLEAR_MASKS: &str = "clear lens masks";
 
-/// Lens volumes of a picture that are written out in its shaders; the uber back end goes through more, tile by tile. Compilers
-/// take more than in proportion to the text: on llvmpipe 12 spheres are compiled in 2 s, 48 in minutes.
+/// Lens volumes of a picture that are written out in its shaders. What is written out runs at every pixel that any lens may
+/// touch, and takes the longer to compile; the uber back end goes through more of them, tile by tile (L8).
 const MOST_WRITTEN_OUT: u32 = 24;
 
 /// Everything a sample is drawn from.
@@ -262,14 +262,15 @@ impl Renderer {
         let (seen, _) = seen_volumes(input);
         let plans = Plans::new(input, &seen);
         let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
+        let is_written_out = input.backend == Backend::Specialised && !plans.is_long();
         let (plan, operations) = (if seen.is_empty() { plans.context } else { plans.lenses }, input.operations);
-        let shade = match input.backend {
-            Backend::Specialised => Program::Specialised(plan),
-            Backend::Uber | Backend::Adaptive => Program::Uber(operations.uber(plan.haze, plan.masks)),
+        let shade = match is_written_out {
+            true => Program::Specialised(plan),
+            false => Program::Uber(operations.uber(plan.haze, plan.masks)),
         };
-        let of = |plan: Option<Plan>, uber: Option<Uber>| match input.backend {
-            Backend::Specialised => plan.map(Program::Specialised),
-            Backend::Uber | Backend::Adaptive => uber.map(Program::Uber),
+        let of = |plan: Option<Plan>, uber: Option<Uber>| match is_written_out {
+            true => plan.map(Program::Specialised),
+            false => uber.map(Program::Uber),
         };
         let [picture, sun] = operations.uber_hiding();
         let by_shapes = |mut plan: Plan| {

@@ -54,6 +54,7 @@ files! {
     FRAGMENT = "lib/fragment.wgsl";
     CUT = "lib/cut.wgsl";
     OUTLINE = "lib/outline.wgsl";
+    SILHOUETTE = "lib/silhouette.wgsl";
     FILTERED = "lib/filter.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
     SHADOW = "pass/shadow.wgsl";

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
+    SILHOUETTE,
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
     plan::{ClassTest, Plan, Program, Scope, Step},
@@ -190,13 +191,12 @@ impl Writer<'_> {
     /// The lenses' silhouettes, and for `lib/outline.wgsl` which lens covers a pixel.
     fn outlines(&self) -> String {
         let mut text = String::new();
-        if self.plan.has_outlines() {
-            text.push_str("fn lens_covers(lens: u32, pixel: vec2i) -> bool {\n    switch lens {\n");
-            for i in 0..self.plan.lenses.len() {
-                let covers = lens_test::covers(self.plan, i as u32, "pixel");
-                let _ = writeln!(text, "        case {i}u: {{ return {covers}; }}");
-            }
-            text.push_str("        default: { return false; }\n    }\n}\n\n");
+        for i in (0..self.plan.lenses.len()).filter(|&i| self.plan.lenses[i].outline.is_some()) {
+            let covers = lens_test::covers(self.plan, i as u32, "pixel");
+            let _ = writeln!(text, "fn lens_{i}_covers(pixel: vec2i) -> bool {{\n    return {covers};\n}}\n");
+            // Each its own: a compiler takes its time over one that asks for the lens.
+            let own = SILHOUETTE.1.replace("lens_covers(lens, ", &format!("lens_{i}_covers("));
+            let _ = writeln!(text, "{}", own.replace("silhouette(lens: u32, ", &format!("silhouette_{i}(")));
         }
         text.push_str("fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n");
         let lines: Vec<(usize, u32)> =
@@ -209,7 +209,7 @@ impl Writer<'_> {
         for (i, line) in lines {
             let _ = writeln!(
                 text,
-                "    paint = outlined(paint, {i}u, pixel, parameters[{line}], parameters[{}]);",
+                "    paint = outlined(paint, silhouette_{i}(pixel, parameters[{}].x), parameters[{line}]);",
                 line + 1
             );
         }

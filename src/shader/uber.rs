@@ -4,6 +4,7 @@
 use std::{fmt::Write as _, sync::LazyLock};
 
 use crate::shader::{
+    SILHOUETTE,
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
     plan::{Program, Uber},
@@ -39,6 +40,7 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     text.push_str(&styled(uber, handlers));
     if uber.outlines {
         text.push_str(&lens_test::volume_covers(&uber.tests));
+        let _ = writeln!(text, "{}", SILHOUETTE.1);
     }
     let outlines = if uber.outlines { OUTLINES } else { NO_OUTLINES };
     let plain = "    var paint = start;\n";
@@ -260,8 +262,8 @@ fn runs(by: Invoker, classes: Classes) -> bool {
 ";
 
 const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);
-    let run = invokers_of(classes, MATERIALS);
-    for (var k = run.x; k < run.y; k++) {
+    let of_materials = invokers_of(classes, MATERIALS);
+    for (var k = of_materials.x; k < of_materials.y; k++) {
         let by = table.invokers[tile_lists[k]];
         if runs(by, classes) {
             material = invoke_material(material, *point, by);
@@ -270,8 +272,8 @@ const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), 
     (*point).base = material.base;
 ";
 
-const LIGHTS: &str = "    let run = invokers_of(classes, LIGHTS);
-    for (var k = run.x; k < run.y; k++) {
+const LIGHTS: &str = "    let of_lights = invokers_of(classes, LIGHTS);
+    for (var k = of_lights.x; k < of_lights.y; k++) {
         let by = table.invokers[tile_lists[k]];
         if runs(by, classes) {
             (*point).arriving = invoke_light((*point).arriving, *point, by);
@@ -320,7 +322,8 @@ fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
     let run = invokers_of(classes, OUTLINES);
     for (var k = run.x; k < run.y; k++) {
         let by = table.invokers[tile_lists[k]];
-        paint = outlined(paint, tile_lists[k], pixel, parameters[by.parameters], parameters[by.parameters + 1u]);
+        let share = silhouette(tile_lists[k], pixel, parameters[by.parameters + 1u].x);
+        paint = outlined(paint, share, parameters[by.parameters]);
     }
     return paint;
 }
