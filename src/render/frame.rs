@@ -365,7 +365,8 @@ impl Renderer {
             sprite_places.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             shapes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             let invokers = plans.invokers();
-            stale |= b.invokers.sync(gpu, &invokers.words(input.tile.size))?;
+            stale |= b.invoker_table.sync(gpu, &invokers.table(input.tile.size))?;
+            stale |= b.invokers.sync(gpu, invokers.all())?;
             stale |= b.tile_lists.sync(gpu, &invokers.tile_lists(&plans.parts, input.tile.size))?;
         }
         stale |= b.view.sync(gpu, &[view])?;
@@ -380,8 +381,9 @@ impl Renderer {
             stale |= b.shape_planes.sync(gpu, &shapes.planes)?;
             if let (true, Some(cut)) = (is_uber, &cuts.sun) {
                 let none = Plan::default();
-                let table = Invokers::new([&none, &none], [Some(&cut.plan), None], handlers()).words([0, 0]);
-                stale |= b.shape_invokers.sync(gpu, &table)?;
+                let invokers = Invokers::new([&none, &none], [Some(&cut.plan), None], handlers());
+                stale |= b.shape_invoker_table.sync(gpu, &invokers.table([0, 0]))?;
+                stale |= b.shape_invokers.sync(gpu, invokers.all())?;
             }
         }
         if self.solids_of.as_ref().is_none_or(|before| !Arc::ptr_eq(before, input.solids)) {

@@ -78,11 +78,14 @@ impl Invokers {
         [materials, lights, styles, outlines, masks]
     }
 
-    /// As `shader::uber` declares the table, for a picture of this size.
-    pub fn words(&self, size: [u32; 2]) -> Vec<u32> {
-        let mut words = [self.hides, self.lines, [size[0].div_ceil(TILE_PX), 0], [0, 0]].concat();
-        words.extend_from_slice(bytemuck::cast_slice(&self.all));
-        words
+    /// The table as `shader::uber` declares it, for a picture of this size.
+    pub fn table(&self, size: [u32; 2]) -> Vec<u32> {
+        [self.hides, self.lines, [size[0].div_ceil(TILE_PX), 0], [0, 0]].concat()
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[layout::Invoker] {
+        &self.all
     }
 
     /// The lists of all tiles of a picture, where the lenses of the plan may be seen in these parts of it: for each tile where

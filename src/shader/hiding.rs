@@ -135,9 +135,9 @@ const RUNS_WITHOUT_LENSES: &str = "fn runs(by: Invoker, fragment: Fragment) -> b
 ";
 
 const VISIBLE: &str = "fn visible(fragment: Fragment) -> bool {
-    let invokers = table.ranges.xy;
-    for (var i = invokers.x; i < invokers.y; i++) {
-        let by = table.invokers[i];
+    let range = table.ranges.xy;
+    for (var i = range.x; i < range.y; i++) {
+        let by = invokers[i];
         if runs(by, fragment) && hides(fragment, by) {
             return false;
         }

@@ -133,10 +133,10 @@ const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, o
     var color = vec3f(0.0);
     var opacity = 0.0;
     var is_hidden = false;
-    let invokers = table.ranges.zw;
-    let drawing = table.invokers[invokers.x + step];
-    for (var i = invokers.x; i < invokers.y; i++) {
-        let by = table.invokers[i];
+    let range = table.ranges.zw;
+    let drawing = invokers[range.x + step];
+    for (var i = range.x; i < range.y; i++) {
+        let by = invokers[i];
         if !runs(by, classes) {
             continue;
         }
@@ -150,7 +150,7 @@ const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, o
             is_hidden = true;
         }
         let draws = by.number == SCENE_WITH_LINES || (by.number == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
-        if draws && i == invokers.x + step {
+        if draws && i == range.x + step {
             color = line_color(by);
             opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u);
         }

@@ -182,10 +182,11 @@ struct Invoker {
 struct InvokerTable {
     ranges: vec4u,              // from up to (not included): what hides; what lines go through
     tiles: vec4u,               // x: tiles of the picture in a row
-    invokers: array<Invoker>,
 }
 
-@group(2) @binding(5) var<storage, read> table: InvokerTable;
+// A uniform, as it always was: with none at this place Mesa 22.3 takes others for each other, and crashes.
+@group(2) @binding(5) var<uniform> table: InvokerTable;
+@group(2) @binding(9) var<storage, read> invokers: array<Invoker>;
 
 ";
 
@@ -264,7 +265,7 @@ fn runs(by: Invoker, classes: Classes) -> bool {
 const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);
     let of_materials = invokers_of(classes, MATERIALS);
     for (var k = of_materials.x; k < of_materials.y; k++) {
-        let by = table.invokers[tile_lists[k]];
+        let by = invokers[tile_lists[k]];
         if runs(by, classes) {
             material = invoke_material(material, *point, by);
         }
@@ -274,7 +275,7 @@ const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), 
 
 const LIGHTS: &str = "    let of_lights = invokers_of(classes, LIGHTS);
     for (var k = of_lights.x; k < of_lights.y; k++) {
-        let by = table.invokers[tile_lists[k]];
+        let by = invokers[tile_lists[k]];
         if runs(by, classes) {
             (*point).arriving = invoke_light((*point).arriving, *point, by);
         }
@@ -286,7 +287,7 @@ const STYLED: &str = "fn styled(start: vec3f, point: Point, classes: Classes) ->
     var color = start;
     let run = invokers_of(classes, STYLES);
     for (var k = run.x; k < run.y; k++) {
-        let by = table.invokers[tile_lists[k]];
+        let by = invokers[tile_lists[k]];
         let is_scene_style = by.number == 1u;
         if runs(by, classes) && (!is_scene_style || point.surface != NO_SURFACE) {
             color = invoke_style(color, point, by);
@@ -308,7 +309,7 @@ const NO_OUTLINES: &str = "fn outlines(start: vec4f, pixel: vec2i, classes: Clas
 ";
 
 const OUTLINES: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
-    let by = table.invokers[lens];
+    let by = invokers[lens];
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         if volume_covers(v, pixel) {
             return true;
@@ -321,7 +322,7 @@ fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
     var paint = start;
     let run = invokers_of(classes, OUTLINES);
     for (var k = run.x; k < run.y; k++) {
-        let by = table.invokers[tile_lists[k]];
+        let by = invokers[tile_lists[k]];
         let share = silhouette(tile_lists[k], pixel, parameters[by.parameters + 1u].x);
         paint = outlined(paint, share, parameters[by.parameters]);
     }
@@ -333,11 +334,11 @@ fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
 const WRITE_CLASSES: &str = "    var bits = vec3u(0u);
     let run = invokers_of(classes, MASKS);
     for (var k = run.x; k < run.y; k++) {
-        let by = table.invokers[tile_lists[k]];
+        let by = invokers[tile_lists[k]];
         let all = classes_of(by, classes);
         bits |= select(vec3u(0u), vec3u(1u << (by.number % 32u)), (vec3u(all) & vec3u(INSIDE, FRONT, BEHIND)) != vec3u(0u));
         let layer = i32(by.number / 32u) * 3;
-        if k + 1u == run.y || table.invokers[tile_lists[k + 1u]].number / 32u != by.number / 32u {
+        if k + 1u == run.y || invokers[tile_lists[k + 1u]].number / 32u != by.number / 32u {
             textureStore(class_masks, pixel, layer, vec4u(bits.x, 0u, 0u, 0u));
             textureStore(class_masks, pixel, layer + 1, vec4u(bits.y, 0u, 0u, 0u));
             textureStore(class_masks, pixel, layer + 2, vec4u(bits.z, 0u, 0u, 0u));
