@@ -156,7 +156,7 @@ mod tests {
         scene.lenses[3].shapes = vec![union(vec![
             Focus::Objects(by_year("yearOfConstruction", 1931.0)),
             union(vec![
-                Focus::Thematic(by_year("yearOfBuilding", 0.0)),
+                Focus::Thematic(by_year("yearofConstruction", 0.0)),
                 Focus::Objects(by_year("yearOfConstruction", 1932.0)),
             ]),
         ])];
@@ -171,7 +171,7 @@ mod tests {
                 "[lens.2] attached_to.poi: the lens acts nowhere: the scene has no point of interest \"aa\"; did you mean \"a\"?",
                 "[lens.3] attached_to.poi: the lens acts nowhere: the object \"town-hall\" has no geometry, nor have its parts: there is nothing to attach to",
                 "[lens.0] shapes.1.ids.1: chooses nothing: the city has no object \"town-hal\"; did you mean \"town-hall\"?",
-                "[lens.3] shape.shapes.1.shapes.0.attribute: chooses nothing: no object of the city has the attribute \"yearOfBuilding\"; did you mean \"yearOfConstruction\"?",
+                "[lens.3] shape.shapes.1.shapes.0.attribute: chooses nothing: no object of the city has the attribute \"yearofConstruction\"; did you mean \"yearOfConstruction\"?",
                 "[lens.3] shape.shapes.1.shapes.1.min: chooses nothing: no object has such a \"yearOfConstruction\"; it is 1931 to 1931",
                 "[poi.1] object: the city has no object \"townhall\"; did you mean \"town-hall\"?",
             ]
