@@ -147,7 +147,7 @@ fn masks_of_flat_lenses_are_right_to_the_pixel() {
             let drawn = picture(&mut studio, &scene, SIZE);
             let volumes = studio.lens_volumes(&scene, SIZE).expect("volumes");
             for i in 0..scene.lenses.len() {
-                let volume = volumes.iter().find(|v| v.lens as usize == i).map(|v| only_volume(v));
+                let volume = volumes.iter().find(|v| v.lens as usize == i).map(only_volume);
                 let found = hold_to_twin(&drawn, &view, volume, i);
                 (inside, sky) = (inside + found.0, sky + found.1);
             }
@@ -206,7 +206,7 @@ fn what_a_flat_lens_hides_is_gone_beyond_its_plane() {
             let (before, after) = (plain.depth.as_ref().expect("depth"), drawn.depth.as_ref().expect("depth"));
             let (mut gone, mut kept) = (0, 0);
             for (i, [x, y]) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y])).enumerate() {
-                match class_of(&volume, &view, [x, y], before[i].into()) {
+                match class_of(volume, &view, [x, y], before[i].into()) {
                     // Nothing of it is left: a fragment beyond the plane is hidden at any depth.
                     Some(Class::Inside) => {
                         assert!(after[i].is_infinite(), "pixel {x},{y} still shows something");

@@ -33,7 +33,18 @@ fn is_under_edge(left: vec3f, right: vec3f, at: vec2f) -> bool {
     return left.x <= at.x && at.x < right.x && along.x * to.y < along.y * to.x;
 }
 
-// `distance`: D of the place. Faces that look up or down hold what lies on them, as flat faces of other shapes do.
+// The same of four places: 1 or 0 each.
+fn are_under_edge(left: vec3f, right: vec3f, x: vec4f, y: vec4f) -> vec4i {
+    let along = right.xy - left.xy;
+    let is_between = (vec4f(left.x) <= x) & (x < vec4f(right.x));
+    return select(vec4i(0), vec4i(1), is_between & (along.x * (y - left.y) < along.y * (x - left.x)));
+}
+
+// Places beside one are no further away than this part of the extent: the faces over them are in its column too.
+const BESIDE: f32 = 1.0 / 32768.0;
+
+// `distance`: D of the place. A solid holds what lies on its faces, as other shapes do on flat ones: those that look up or down
+// by their height, upright ones by asking for the places beside it as well.
 fn solid_holds(s: Shape, p: vec3f, distance: f32) -> bool {
     let on_face = ON_FACE * max(abs(distance), length(s.center));
     let o = in_solid(s, p - s.center);
@@ -47,15 +58,25 @@ fn solid_holds(s: Shape, p: vec3f, distance: f32) -> bool {
     let number = u32(column.y) * sizes.x + u32(column.x);
     let begin = solids[first + 2u + number / 4u][number % 4u];
     let end = solids[first + 2u + (number + 1u) / 4u][(number + 1u) % 4u];
+    let extent = vec2f(sizes.xy) / grid.zw;
+    let aside = min(on_face, BESIDE * max(extent.x, extent.y));
+    let x = o.x + vec4f(aside, -aside, 0.0, 0.0);
+    let y = o.y + vec4f(0.0, 0.0, aside, -aside);
     var winding = 0;
+    var beside = vec4i(0);
     for (var i = begin; i < end; i++) {
         let face = solid_face(first + 2u + sizes.z + 4u * i);
         let turns = face.turn * (i32(is_under_edge(face.a, face.c, o.xy)) - i32(is_under_edge(face.a, face.b, o.xy))
             - i32(is_under_edge(face.b, face.c, o.xy)));
         let height = dot(face.normal, o - face.a) - face.rise;
         winding += select(0, turns, height <= select(-on_face, on_face, turns > 0));
+        let turns_beside = face.turn * (are_under_edge(face.a, face.c, x, y) - are_under_edge(face.a, face.b, x, y)
+            - are_under_edge(face.b, face.c, x, y));
+        let heights = height + face.normal.x * (x - o.x) + face.normal.y * (y - o.y);
+        let most = select(vec4f(-on_face), vec4f(on_face), turns_beside > vec4i(0));
+        beside += select(vec4i(0), turns_beside, heights <= most);
     }
-    return winding != 0;
+    return winding != 0 || any(beside != vec4i(0));
 }
 
 fn inside_solid(s: Shape, sight: Sight) -> u32 {

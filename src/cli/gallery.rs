@@ -30,6 +30,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "delft-age"
     "delft-route"
     "delft-streets"
+    "den-haag-district"
     "den-haag-sphere"
     "first-lens"
     "market-square"

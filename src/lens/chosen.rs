@@ -1,5 +1,7 @@
 //! Objects chosen by their ids or by an attribute: which of them an effect or a lens means.
 
+use std::collections::BTreeSet;
+
 use crate::{
     city::{CityModel, Value},
     lens::{
@@ -8,6 +10,9 @@ use crate::{
         thematic::{ThematicError, attribute_names, category_of, number_of},
     },
 };
+
+/// Values that a message names at most.
+const SHOWN_VALUES: usize = 8;
 
 /// A choice among the objects of a city.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -68,29 +73,37 @@ pub enum ChoiceError {
 /// and `max` those whose number lies between, both included; with neither those that have a value. `except` turns it round,
 /// among objects and never for what belongs to none.
 pub fn chosen(model: &CityModel, choice: &Choice) -> Result<Chosen, ChoiceError> {
+    let hint = |id: &str| did_you_mean(id, model.objects.iter().map(|o| &*o.id));
+    if let Some(id) = choice.ids.iter().find(|id| model.find_object(id).is_none()) {
+        return Err(ChoiceError::Id(id.clone(), hint(id)));
+    }
+    if let Some(name) = choice.attribute.as_ref().filter(|name| model.strings.find(name).is_none()) {
+        let hint = did_you_mean(name, attribute_names(model));
+        return Err(ThematicError::UnknownAttribute(name.to_owned(), hint).into());
+    }
+    let without_object = choice.ids.is_empty() && choice.attribute.is_none();
+    Ok(Chosen { without_object, objects: members(model, choice) })
+}
+
+/// As [`chosen`], one per object of the city; names that the city does not have mean nobody
+/// ([`crate::scene::check_against`] says so).
+pub fn members(model: &CityModel, choice: &Choice) -> Vec<bool> {
     let count = model.objects.len();
     if !choice.ids.is_empty() {
         let mut objects = vec![choice.except; count];
-        for id in &choice.ids {
-            let hint = || did_you_mean(id, model.objects.iter().map(|o| &*o.id));
-            let mut next = vec![model.find_object(id).ok_or_else(|| ChoiceError::Id(id.clone(), hint()))?];
-            while let Some(object) = next.pop() {
-                // Each once: parts may be named by several objects.
-                if objects[object as usize] == choice.except {
-                    objects[object as usize] = !choice.except;
-                    next.extend(&model.objects[object as usize].children);
-                }
+        let mut next: Vec<u32> = choice.ids.iter().filter_map(|id| model.find_object(id)).collect();
+        while let Some(object) = next.pop() {
+            // Each once: parts may be named by several objects.
+            if objects[object as usize] == choice.except {
+                objects[object as usize] = !choice.except;
+                next.extend(&model.objects[object as usize].children);
             }
         }
-        return Ok(Chosen { without_object: false, objects });
+        return objects;
     }
-    let Some(name) = &choice.attribute else {
-        return Ok(Chosen { without_object: true, objects: vec![true; count] });
-    };
-    let Some(id) = model.strings.find(name) else {
-        let hint = did_you_mean(name, attribute_names(model));
-        return Err(ThematicError::UnknownAttribute(name.to_owned(), hint).into());
-    };
+    let Some(name) = &choice.attribute else { return vec![true; count] };
+    let id = model.strings.find(name);
+    let value = |object| id.and_then(|id| model.attribute(object, id));
     let is_meant = |value: Value| {
         let of = |list: &Vec<String>| category_of(value, &model.strings).is_some_and(|c| list.contains(&c));
         let by_value = choice.values.as_ref().is_none_or(of);
@@ -99,9 +112,53 @@ pub fn chosen(model: &CityModel, choice: &Choice) -> Result<Chosen, ChoiceError>
                 .is_some_and(|n| choice.min.is_none_or(|min| n >= min) && choice.max.is_none_or(|max| n <= max));
         by_value && by_number
     };
-    let of =
-        |object: u32| model.attribute(object, id).filter(|v| *v != Value::Null).is_some_and(is_meant) != choice.except;
-    Ok(Chosen { without_object: false, objects: (0..count as u32).map(of).collect() })
+    let of = |object: u32| value(object).filter(|v| *v != Value::Null).is_some_and(is_meant) != choice.except;
+    (0..count as u32).map(of).collect()
+}
+
+/// What a choice names and the city does not have, and why it means nobody: keys (`ids.1`, `attribute`, ...) and messages.
+pub fn absent(model: &CityModel, choice: &Choice) -> Vec<(String, String)> {
+    let mut found: Vec<(String, String)> = Vec::new();
+    for (i, id) in choice.ids.iter().enumerate().filter(|(_, id)| model.find_object(id).is_none()) {
+        let hint = did_you_mean(id, model.objects.iter().map(|o| &*o.id));
+        found.push((format!("ids.{i}"), ChoiceError::Id(id.clone(), hint).to_string()));
+    }
+    let names = attribute_names(model);
+    if let Some(name) = choice.attribute.as_deref().filter(|name| !names.contains(name)) {
+        let hint = did_you_mean(name, names);
+        found.push(("attribute".into(), format!("no object of the city has the attribute \"{name}\"{hint}")));
+    }
+    if found.is_empty() && !members(model, choice).contains(&true) {
+        found.push(nobody(model, choice));
+    }
+    found
+}
+
+/// Why a choice of known names means nobody, and what would mean somebody.
+fn nobody(model: &CityModel, choice: &Choice) -> (String, String) {
+    let Some(name) = &choice.attribute else {
+        return ("except".into(), "no object is left: all of the city are named".into());
+    };
+    let id = model.strings.find(name);
+    let all = (0..model.objects.len() as u32).filter_map(|object| id.and_then(|id| model.attribute(object, id)));
+    let limit = choice.min.map(|_| "min").or(choice.max.map(|_| "max"));
+    match (&choice.values, limit) {
+        _ if choice.except => ("except".into(), format!("no object is left: all have such a \"{name}\"")),
+        (Some(values), _) => {
+            let known: BTreeSet<String> = all.filter_map(|value| category_of(value, &model.strings)).collect();
+            let hint = values.first().map_or_else(String::new, |v| did_you_mean(v, known.iter().map(String::as_str)));
+            let some: Vec<String> = known.iter().take(SHOWN_VALUES).map(|v| format!("\"{v}\"")).collect();
+            let more = if known.len() > some.len() { ", …" } else { "" };
+            ("values".into(), format!("no object has such a \"{name}\"; there are {}{more}{hint}", some.join(", ")))
+        }
+        (None, Some(limit)) => {
+            let numbers = all.filter_map(|value| number_of(value, &model.strings));
+            let [low, high] = numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], n| [l.min(n), h.max(n)]);
+            let range = if low <= high { format!("; it is {low} to {high}") } else { "; it is no number".into() };
+            (limit.into(), format!("no object has such a \"{name}\"{range}"))
+        }
+        (None, None) => ("attribute".into(), format!("no object of the city has a \"{name}\" that is not empty")),
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,12 @@
 //! Focus areas that are made from polygons, images, files and the city itself: worked out once and kept.
 
-use std::{path::Path, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use glam::{DQuat, DVec3};
+use rustc_hash::FxHashMap;
 
 use crate::{
     city::{
@@ -15,18 +19,18 @@ use crate::{
     geom::{
         Aabb, Volume,
         shape::{
-            Mesh, Motion, PlacedSolid, Sightlines, Solid,
+            Mesh, Motion, PlacedSolid, ShapeError, Sightlines, Solid,
             solid::{self, Bitmap},
         },
     },
     lens::{
-        chosen::{Choice, chosen},
+        chosen::{Choice, members},
         focus::Focus,
     },
 };
 
-/// Corners of city objects are put together where they are the same to this, metres: those of one object may lie in several
-/// tiles, each rounded from its own origin.
+/// Corners of a body are put together where they are the same to this, metres, at the place of one of them: those of one object
+/// may lie in several tiles, each rounded from its own origin.
 const SAME_M: f64 = 1.0 / 2048.0;
 
 /// Solids made so far, with what they were made from.
@@ -65,19 +69,19 @@ pub struct Place {
     pub sight: Sightlines,
 }
 
-/// The key of a focus area that is wrong (empty: the whole), and what would be right.
-pub type FocusError = (&'static str, String);
+/// The way to the key of a focus area that is wrong (empty: the whole), and what would be right.
+pub type FocusError = (String, String);
 
 impl Solids {
     /// The volumes whose union a focus area is, none where it holds nothing; a *thematic* one and a combination
     /// have none.
     pub fn volumes(&mut self, focus: &Focus, city: ShownCity, place: &Place) -> Result<Vec<Volume>, FocusError> {
         if let Some(wrong) = focus.check() {
-            return Err(wrong);
+            return Err((wrong.0.to_owned(), wrong.1));
         }
         let (at, rotation) = match focus {
             Focus::Shape(shape) => {
-                return shape.placed(&place.motion, &place.sight).map_err(|error| ("", error.to_string()));
+                return shape.placed(&place.motion, &place.sight).map_err(|error| (String::new(), error.to_string()));
             }
             Focus::Thematic(_) | Focus::Combined { .. } => return Ok(Vec::new()),
             _ if focus.is_empty() => return Ok(Vec::new()),
@@ -119,50 +123,90 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
                 .iter()
                 .fold((glam::DVec2::INFINITY, glam::DVec2::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
             let origin = if low.is_finite() { low.midpoint(high).round().extend(*base) } else { DVec3::ZERO };
-            let solid = solid::prism(&rings, *base, *height, origin).map_err(|e| ("points", e.to_string()))?;
+            let solid = solid::prism(&rings, *base, *height, origin).map_err(|e| ("points".into(), e.to_string()))?;
             Ok((Some(solid), origin))
         }
         Focus::Mask { image, corner, size, base, height } => {
-            let mask = bitmap(image).map_err(|e| ("image", e))?;
+            let mask = bitmap(image).map_err(|e| ("image".into(), e))?;
             let origin = (*corner + 0.5 * *size).extend(*base);
             let corner = [corner.extend(*base), size.extend(*height)];
-            let solid = solid::stacked(&[mask], corner, origin).map_err(|e| ("image", e.to_string()))?;
+            let solid = solid::stacked(&[mask], corner, origin).map_err(|e| wrong_mask("image", image, &e))?;
             Ok((Some(solid), origin))
         }
         Focus::Mask3d { images, corner, size } => {
-            let layers: Result<Vec<_>, _> = images.iter().map(|image| bitmap(image)).collect();
-            let layers = layers.map_err(|e| ("images", e))?;
+            let mut layers: Vec<Bitmap> = Vec::new();
+            for (i, image) in images.iter().enumerate() {
+                let wrong = |message| (format!("images.{i}"), message);
+                let layer = bitmap(image).map_err(wrong)?;
+                if let Some(first) = layers.first().filter(|first| first.size != layer.size) {
+                    let [[w, h], [x, y]] = [layer.size, first.size];
+                    let image = image.display();
+                    return Err(wrong(format!(
+                        "{image} has {w}x{h} pixels, the first has {x}x{y}; all need the same size"
+                    )));
+                }
+                layers.push(layer);
+            }
             let origin = *corner + 0.5 * *size;
-            let solid = solid::stacked(&layers, [*corner, *size], origin).map_err(|e| ("images", e.to_string()))?;
+            let first = images.first().map(PathBuf::as_path).unwrap_or(Path::new(""));
+            let solid =
+                solid::stacked(&layers, [*corner, *size], origin).map_err(|e| wrong_mask("images", first, &e))?;
             Ok((Some(solid), origin))
         }
         Focus::Mesh { file, scale, .. } => {
+            let wrong = |message: String| ("file".to_owned(), message);
+            if file.is_dir() {
+                return Err(wrong(format!("{} is a folder; a file would be right", file.display())));
+            }
             let folder = file.parent().map(Path::to_owned).into_iter().collect();
             let options = LoadOptions { allow_outside: false, roots: folder };
             let loaded = load::load(std::slice::from_ref(file), &options, &load::Quiet);
-            let model = loaded.map_err(|e| ("file", e.to_string()))?;
+            let model = loaded.map_err(|e| wrong(e.to_string()))?;
             let geometries = shown_geometries(&model, None);
             let bodies = bodies(ShownCity { model: &model, geometries: &geometries }, |_| true, *scale);
+            if bodies.is_empty() {
+                return Err(wrong(format!(
+                    "{} has no faces; a file with a closed body would be right",
+                    file.display()
+                )));
+            }
             let origin = middle(&bodies);
-            let solid = Solid::new(&bodies, origin).map_err(|e| ("file", format!("{}: {e}", file.display())))?;
+            let solid = Solid::new(&bodies, origin).map_err(|e| wrong(format!("{}: {e}", file.display())))?;
+            if solid.mended > 0 {
+                let (file, count) = (file.display(), solid.mended);
+                log::warn!("{file} is not closed: as a lens its holes are closed by {count} triangles");
+            }
             Ok((Some(solid), origin))
         }
         Focus::Objects(choice) => {
-            let chosen = chosen(city.model, choice).map_err(|e| (key_of(choice), e.to_string()))?;
-            let bodies = bodies(city, |object| chosen.objects[object as usize], 1.0);
+            let chosen = members(city.model, choice);
+            let bodies = bodies(city, |object| chosen[object as usize], 1.0);
             if bodies.is_empty() {
                 return Ok((None, DVec3::ZERO));
             }
             let origin = middle(&bodies);
-            let solid = Solid::new(&bodies, origin).map_err(|e| (key_of(choice), e.to_string()))?;
-            Ok((Some(solid), origin))
+            // Of faces that enclose nothing, as streets are: nothing is in them.
+            let solid = match Solid::new(&bodies, origin) {
+                Err(ShapeError::NoBody) => None,
+                made => Some(made.map_err(|e| (key_of(choice).to_owned(), e.to_string()))?),
+            };
+            Ok((solid, origin))
         }
         Focus::Shape(_) | Focus::Thematic(_) | Focus::Combined { .. } => Ok((None, DVec3::ZERO)),
     }
 }
 
+/// What is wrong with a mask of images.
+fn wrong_mask(key: &str, image: &Path, error: &ShapeError) -> FocusError {
+    match error {
+        ShapeError::NoBody => ("size".into(), "is too small: nothing of the mask is left".into()),
+        ShapeError::ManyFaces(_) => (key.into(), format!("{}: {error}; fewer pixels would be right", image.display())),
+        _ => (key.into(), format!("{}: {error}", image.display())),
+    }
+}
+
 /// The key by which a choice chooses.
-pub fn key_of(choice: &Choice) -> &'static str {
+fn key_of(choice: &Choice) -> &'static str {
     if choice.ids.is_empty() { "attribute" } else { "ids" }
 }
 
@@ -172,10 +216,12 @@ fn bodies(city: ShownCity, is_wanted: impl Fn(u32) -> bool, scale: f64) -> Vec<M
     let geometries = city.geometries.iter().map(|&g| &model.geometries[g as usize]);
     let body = |geometry: &Geometry| {
         let mut mesh = Mesh::default();
+        let mut known: FxHashMap<[i64; 3], DVec3> = FxHashMap::default();
         for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
             let first = mesh.points.len() as u32;
             let corners = tile.vertices.clone().map(|vertex| model.position(tile, vertex) * scale);
-            mesh.points.extend(corners.map(|p| (p / SAME_M).round() * SAME_M));
+            mesh.points
+                .extend(corners.map(|p| *known.entry((p / SAME_M).round().as_i64vec3().to_array()).or_insert(p)));
             let indices = &model.indices[tile.indices.start as usize..tile.indices.end as usize];
             mesh.triangles.extend(indices.as_chunks().0.iter().map(|t: &[u32; 3]| t.map(|i| first + i)));
         }

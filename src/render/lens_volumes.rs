@@ -10,8 +10,8 @@ use crate::{
     },
     lens::{
         Class, Focus, Lens, LensBody,
-        chosen::chosen,
-        solids::{FocusError, Place, ShownCity, Solids, key_of},
+        chosen::members,
+        solids::{FocusError, Place, ShownCity, Solids},
     },
     render::{
         body::{Body, Leaf, Members, PlacedLeaf},
@@ -29,6 +29,8 @@ pub const MOST_LEAVES: usize = 64;
 const MOST_DEPTH: usize = 32;
 /// Operations after one leaf, at most: two bits each of what an f32 holds exactly.
 const MOST_OPERATIONS: usize = 12;
+/// What counts as deep.
+const NESTED: &str = "combinations within combinations of which none is the first in its list";
 
 /// The volumes of a scene's enabled lenses, and how the volumes of all its lenses may be tested.
 #[derive(Debug, Default)]
@@ -98,12 +100,12 @@ fn bodies_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids)
     let program = tree_of(focus, city, place, solids)?.program();
     let operations = program.iter().map(|(_, then)| then.len()).max().unwrap_or(0);
     let limits = [
-        ("parts", program.len(), MOST_LEAVES),
-        ("parts within parts", combination::depth(&program), MOST_DEPTH),
-        ("parts within parts", operations, MOST_OPERATIONS),
+        ("shapes (a corridor counts as one for each of its points and ways between them)", program.len(), MOST_LEAVES),
+        (NESTED, combination::depth(&program), MOST_DEPTH),
+        (NESTED, operations, MOST_OPERATIONS),
     ];
     if let Some((what, count, most)) = limits.into_iter().find(|(_, count, most)| count > most) {
-        return Err(("shapes", format!("a combination may have at most {most} {what}, has {count}")));
+        return Err(("shapes".into(), format!("a combination may have at most {most} {what}, has {count}")));
     }
     Ok(match program.len() {
         0 => Vec::new(),
@@ -115,7 +117,13 @@ fn bodies_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids)
 fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Tree<PlacedLeaf>, FocusError> {
     match focus {
         Focus::Combined { how, parts } => {
-            let trees: Result<Vec<_>, _> = parts.iter().map(|part| tree_of(part, city, place, solids)).collect();
+            let tree = |(i, part): (usize, &Focus)| {
+                tree_of(part, city, place, solids).map_err(|(key, message)| {
+                    let dot = if key.is_empty() { "" } else { "." };
+                    (format!("shapes.{i}{dot}{key}"), message)
+                })
+            };
+            let trees: Result<Vec<_>, _> = parts.iter().enumerate().map(tree).collect();
             Ok(Tree::joined(*how, trees?))
         }
         _ => {
@@ -134,7 +142,7 @@ fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids)
     let Focus::Thematic(choice) = focus else {
         return Ok(solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect());
     };
-    let objects = chosen(city.model, choice).map_err(|e| (key_of(choice), e.to_string()))?.objects;
+    let objects = members(city.model, choice);
     let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);
     let bounds = shown.filter(|g| objects[g.object as usize]).fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
     Ok(vec![Leaf::Members(Members { objects: objects.into(), bounds })])

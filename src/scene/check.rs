@@ -2,7 +2,7 @@
 
 use crate::{
     city::CityModel,
-    lens::{Placement, nearest::did_you_mean, thematic::attribute_names},
+    lens::{Focus, Placement, chosen::absent, nearest::did_you_mean, thematic::attribute_names},
     scene::{
         PoiPlace, Scene,
         anchor::{AnchorProblem, anchor},
@@ -21,7 +21,7 @@ pub struct SceneProblem {
     pub message: String,
 }
 
-/// Attributes and objects that the scene names and the loaded city does not have.
+/// Attributes and objects that the scene names and the loaded city does not have, and choices of objects that mean none.
 pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
     let mut problems = Vec::new();
     let mut names: Option<Vec<&str>> = None;
@@ -55,6 +55,12 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
             message: format!("the lens acts nowhere: {problem}"),
         });
     }
+    for (i, lens) in scene.lenses.iter().enumerate() {
+        for (j, focus) in lens.shapes.iter().enumerate() {
+            let key = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
+            check_focus(focus, &format!("lens.{i}"), &key, model, &mut problems);
+        }
+    }
     for (i, poi) in scene.pois.iter().enumerate() {
         let PoiPlace::Object(id) = &poi.place else { continue };
         if model.find_object(id).is_none() {
@@ -69,12 +75,32 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
     problems
 }
 
+/// The choices of objects of a focus area and its parts.
+fn check_focus(focus: &Focus, table: &str, at: &str, model: &CityModel, problems: &mut Vec<SceneProblem>) {
+    match focus {
+        Focus::Objects(choice) | Focus::Thematic(choice) => {
+            problems.extend(absent(model, choice).into_iter().map(|(key, message)| SceneProblem {
+                table: table.to_owned(),
+                key: format!("{at}.{key}"),
+                message: format!("chooses nothing: {message}"),
+            }));
+        }
+        Focus::Combined { parts, .. } => {
+            for (i, part) in parts.iter().enumerate() {
+                check_focus(part, table, &format!("{at}.shapes.{i}"), model, problems);
+            }
+        }
+        _ => {}
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{
         city::{Attribute, CityObject, Value},
-        lens::{EffectUse, Lens, Parameter},
+        geom::combination::Operation,
+        lens::{EffectUse, Lens, Parameter, chosen::Choice},
         scene::Poi,
     };
 
@@ -122,6 +148,18 @@ mod tests {
             Placement::Poi("b".into()),
         ];
         scene.lenses.extend(attached.map(lens));
+        let by_id = |id: &str| Choice { ids: vec!["town-hall".into(), id.into()], ..Choice::default() };
+        let by_year =
+            |name: &str, min: f64| Choice { attribute: Some(name.into()), min: Some(min), ..Choice::default() };
+        let union = |parts| Focus::Combined { how: Operation::Union, parts };
+        scene.lenses[0].shapes = vec![Focus::Objects(by_id("town-hall")), Focus::Thematic(by_id("town-hal"))];
+        scene.lenses[3].shapes = vec![union(vec![
+            Focus::Objects(by_year("yearOfConstruction", 1931.0)),
+            union(vec![
+                Focus::Thematic(by_year("yearofConstruction", 0.0)),
+                Focus::Objects(by_year("yearOfConstruction", 1932.0)),
+            ]),
+        ])];
         scene.style.effects.push(used("yearOfconstrution"));
         scene.pois.push(Poi { name: "b".into(), place: PoiPlace::Object("townhall".into()) });
         let messages: Vec<String> = check_against(&scene, &model).iter().map(ToString::to_string).collect();
@@ -132,6 +170,9 @@ mod tests {
                 "[lens.1] attached_to.object: the lens acts nowhere: the city has no object \"town-hal\"; did you mean \"town-hall\"?",
                 "[lens.2] attached_to.poi: the lens acts nowhere: the scene has no point of interest \"aa\"; did you mean \"a\"?",
                 "[lens.3] attached_to.poi: the lens acts nowhere: the object \"town-hall\" has no geometry, nor have its parts: there is nothing to attach to",
+                "[lens.0] shapes.1.ids.1: chooses nothing: the city has no object \"town-hal\"; did you mean \"town-hall\"?",
+                "[lens.3] shape.shapes.1.shapes.0.attribute: chooses nothing: no object of the city has the attribute \"yearofConstruction\"; did you mean \"yearOfConstruction\"?",
+                "[lens.3] shape.shapes.1.shapes.1.min: chooses nothing: no object has such a \"yearOfConstruction\"; it is 1931 to 1931",
                 "[poi.1] object: the city has no object \"townhall\"; did you mean \"town-hall\"?",
             ]
         );

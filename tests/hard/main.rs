@@ -8,6 +8,7 @@ mod case_04_flat_lenses;
 mod case_04_near_plane;
 mod case_05_around_everything;
 mod case_06_many_lenses;
+mod case_07_concave_solids;
 mod case_08_grazing_rays;
 mod case_09_coplanar_lens_faces;
 mod case_10_axis_parallel_rays;

@@ -19,7 +19,7 @@ use crate::{
     },
     gpu::Gpu,
     render::{
-        picture::{Aovs, Picture, Request, Studio},
+        picture::{Aovs, Picture, RenderError, Request, Studio},
         stats,
     },
     scene::{History, Scene, check_against},
@@ -56,7 +56,11 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         backend: arguments.shaders.into(),
     };
     let progress = terminal::Progress::spinning("drawing", global);
-    let mut picture = figure::draw(&mut studio, &scene, &request).map_err(Failure::failed)?;
+    let mut picture =
+        figure::draw(&mut studio, &scene, &request).map_err(|error| match (&error, arguments.scene()) {
+            (RenderError::Scene(message), Some(file)) => Failure::failed(format!("{}: {message}", file.display())),
+            _ => Failure::failed(error),
+        })?;
     drop(progress);
     let notes = notes(&scene, &options);
     for aov in &arguments.aovs {

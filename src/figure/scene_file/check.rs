@@ -218,7 +218,12 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         Kind::Shapes => node.list().is_some_and(|l| !l.is_empty()),
         Kind::Tables(_) | Kind::Effects => node.list().is_some(),
     };
-    (!ok).then(|| format!("must be {}, is {}", kind.describe(), node.quoted()))
+    let is_far = |n: f64| n.is_finite() && n.abs() > FAR_M;
+    let most = match (kind, node.number()) {
+        (Kind::Number { max, .. }, Some(n)) if is_far(n) && *max == FAR_M => format!(" and at most {max:e}"),
+        _ => String::new(),
+    };
+    (!ok).then(|| format!("must be {}{most}, is {}", kind.describe(), node.quoted()))
 }
 
 fn wrong_word(kind: &Kind, now: &[&str], later: &[&str], node: &Node) -> Option<String> {

@@ -162,6 +162,7 @@ fn of_kind(kind: &Kind) -> Value {
     let two = |min: f64| json!({ "type": "array", "items": { "type": "number", "minimum": min, "maximum": keys::FAR_M }, "minItems": 2, "maxItems": 2 });
     match kind {
         Kind::Integer { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        Kind::Number { min, max } if *min == f64::MIN && *max == f64::MAX => json!({ "type": "number" }),
         Kind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
         Kind::Boolean => json!({ "type": "boolean" }),
         Kind::Text => json!({ "type": "string", "minLength": 1 }),

@@ -136,7 +136,17 @@ impl Reader<'_> {
                     self.checker.note(&fields.place, "ids", fields.line("ids"), "must name at least one object");
                 }
             }
-            (false, true) => {}
+            (false, true) => {
+                if fields.node("values").and_then(Node::list).is_some_and(<[Node]>::is_empty) {
+                    self.checker.note(&fields.place, "values", fields.line("values"), "must name at least one value");
+                }
+            }
+        }
+        if let (Some(min), Some(max)) = (fields.number("min"), fields.number("max"))
+            && min > max
+        {
+            let message = format!("must be at least min, {min}, is {max}");
+            self.checker.note(&fields.place, "max", fields.line("max"), message);
         }
         Some(Choice {
             ids: texts("ids").unwrap_or_default(),

@@ -775,6 +775,8 @@ impl Kind {
         match self {
             Self::Integer { min, max } if min == max => format!("{min}"),
             Self::Integer { min, max } => format!("a whole number {min} to {max}"),
+            Self::Number { min, max } if *min == f64::MIN && *max == f64::MAX => "a finite number".into(),
+            Self::Number { min, max } if *min <= -FAR_M && *max >= FAR_M => format!("a number from {min:e} to {max:e}"),
             Self::Number { min, max } if *max >= FAR_M => format!("a number ≥ {min}"),
             Self::Number { min, max } => format!("a number {min} to {max}"),
             Self::Boolean => "true or false".into(),

@@ -39,9 +39,18 @@ pub type SyntaxError = (u32, String);
 /// Reads TOML.
 pub fn parse(text: &str) -> Result<Node, SyntaxError> {
     let lines = Lines(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i).collect());
-    let table =
-        DeTable::parse(text).map_err(|e| (lines.at(e.span().map_or(0, |s| s.start)), e.message().to_owned()))?;
+    let table = DeTable::parse(text).map_err(|e| (lines.at(e.span().map_or(0, |s| s.start)), message_of(&e)))?;
     lines.table(table.get_ref(), 1)
+}
+
+fn message_of(error: &toml::de::Error) -> String {
+    match error.message() {
+        // The parser's limit is 80 tables and lists; a shape in a shape takes two.
+        message if message.contains("recursion") => {
+            "shapes, lists and tables are nested too deep; shapes within shapes may go 30 deep".into()
+        }
+        message => message.to_owned(),
+    }
 }
 
 /// Ends of lines, byte offsets.

@@ -421,7 +421,7 @@ fn plan() -> impl Strategy<Value = DVec2> {
 
 fn choices() -> impl Strategy<Value = Choice> {
     let ids = prop::collection::vec("[a-z\"]{1,5}", 1..3).prop_map(|ids| (ids, None));
-    let attribute = (".{1,5}", prop::option::of(prop::collection::vec(".{1,4}", 0..3)))
+    let attribute = (".{1,5}", prop::option::of(prop::collection::vec(".{1,4}", 1..3)))
         .prop_map(|(name, values)| (Vec::new(), Some((name, values))));
     (prop_oneof![ids, attribute], prop::option::of(-1e3..1e3f64), any::<bool>()).prop_map(|((ids, of), min, except)| {
         let (attribute, values) = of.map_or((None, None), |(name, values)| (Some(name), values));

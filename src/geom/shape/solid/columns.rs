@@ -6,8 +6,9 @@ use crate::geom::{Aabb, shape::solid::upward};
 
 /// Columns per side, at most.
 const MOST: f64 = 512.0;
-/// Faces reach this part of the extent further than they are: the column of a place is computed in f32.
-const ROUNDING: f64 = 1e-6;
+/// Faces reach this part of the extent further than they are: the column of a place is computed in f32, and who asks for a
+/// place asks for those beside it too, half as far away (`BESIDE` of `lib/solid.wgsl`).
+const MARGIN: f64 = 1.0 / 16_384.0;
 
 /// A grid in plan; each of its columns lists the faces that stand over or under it.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,13 +28,13 @@ impl Columns {
         let low = bounds.min.truncate();
         let side = (size.x * size.y / faces.len().max(1) as f64).sqrt().max(size.max_element() / MOST);
         let count = [size.x, size.y].map(|s| (s / side).ceil().clamp(1.0, MOST) as u32);
-        let grown = size * (1.0 + 2.0 * ROUNDING);
-        let low = low - size * ROUNDING;
+        let margin = MARGIN * size.max_element();
+        let grown = size + 2.0 * margin;
+        let low = low - margin;
         // As an f32 holds them, so that both sides find the same column.
         let low = low.as_vec2().as_dvec2();
         let per_metre = (DVec2::new(count[0].into(), count[1].into()) / grown).as_vec2().as_dvec2();
         let mut columns = Self { low, per_metre, count, starts: Vec::new(), faces: Vec::new() };
-        let margin = ROUNDING * size.max_element();
         let places: Vec<[[u32; 2]; 2]> = faces
             .iter()
             .map(|face| {

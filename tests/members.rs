@@ -1,0 +1,162 @@
+//! Lenses of city objects: a thematic lens is what belongs to its objects and nothing else, whatever is beside it; the volumes
+//! of objects hold the objects' own walls and roofs. Oracle: the object ids of the picture.
+
+use veduta::{
+    lens::{
+        Focus, Lens, LensBody,
+        chosen::{Choice, members},
+    },
+    render::{
+        frame::Backend,
+        picture::{Picture, Request, Studio},
+    },
+    scene::Scene,
+    view::{Camera, View},
+};
+
+mod studio;
+
+const SIZE: [u32; 2] = [240, 160];
+
+fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
+    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: studio::ALL, statistics: false, backend };
+    studio.render(scene, &request).expect("a picture")
+}
+
+/// Whether each pixel shows one of these objects.
+fn shows(picture: &Picture, chosen: &[bool]) -> Vec<bool> {
+    let ids = picture.object_id.as_ref().expect("object ids");
+    ids.iter().map(|id| id.checked_sub(1).is_some_and(|object| chosen[object as usize])).collect()
+}
+
+/// From the street, from above, along the roofs.
+fn cameras(studio: &Studio) -> [Camera; 3] {
+    let extent = studio.extent();
+    let (middle, size) = (extent.center(), extent.size());
+    [
+        Camera::looking(middle + size * glam::DVec3::new(-0.1, -0.45, 0.3), middle, 1.2),
+        Camera::looking(middle + size.length() * glam::DVec3::new(0.2, -0.5, 0.6), middle, 0.9),
+        studio::orthographic(middle + size * glam::DVec3::new(0.8, 0.7, 1.5), middle, 0.5 * size.truncate().length()),
+    ]
+}
+
+/// Choices over the synthetic city: by attribute, turned round, by id with parts, and two of them that nobody is.
+fn choices(studio: &Studio) -> Vec<Choice> {
+    let by = |min: Option<f64>, max: Option<f64>, except: bool| Choice {
+        attribute: Some("yearOfConstruction".into()),
+        min,
+        max,
+        except,
+        ..Choice::default()
+    };
+    let ids = studio.model.objects.iter().step_by(7).map(|o| o.id.to_string()).collect();
+    vec![
+        by(Some(1940.0), None, false),
+        by(None, Some(1940.0), true),
+        Choice { ids, ..Choice::default() },
+        by(Some(9e9), None, false),
+        Choice { ids: vec!["nobody".into()], ..Choice::default() },
+    ]
+}
+
+#[test]
+fn thematic_lenses_are_what_belongs_to_their_objects() {
+    let mut studio = studio::synthetic(60);
+    let choices = choices(&studio);
+    let lens = |choice: &Choice| studio::lens("thematic", [Focus::Thematic(choice.clone())], "sepia");
+    let lenses: Vec<Lens> = choices.iter().map(lens).collect();
+    let mut found = vec![0; lenses.len()];
+    for camera in cameras(&studio) {
+        let scene = studio::scene(camera, lenses.clone());
+        let one = drawn(&mut studio, &scene, Backend::Specialised);
+        let other = drawn(&mut studio, &scene, Backend::Uber);
+        assert!(one.rgba == other.rgba && one.lens_mask == other.lens_mask, "the back ends differ");
+        for (i, choice) in choices.iter().enumerate() {
+            let expected = shows(&one, &members(&studio.model, choice));
+            assert!(studio::bits(&one, i) == expected, "{choice:?}");
+            found[i] += expected.iter().filter(|b| **b).count();
+        }
+    }
+    assert!(found[..3].iter().all(|n| *n > 1_000) && found[3..] == [0, 0], "{found:?}");
+}
+
+#[test]
+fn outlines_of_thematic_lenses_follow_what_is_seen_of_their_objects() {
+    let mut studio = studio::synthetic(60);
+    let choice = choices(&studio).remove(2);
+    let camera = cameras(&studio)[1];
+    let mut lens = studio::lens("thematic", [Focus::Thematic(choice)], "sepia");
+    lens.effects.clear();
+    let plain = drawn(&mut studio, &studio::scene(camera, vec![lens.clone()]), Backend::Specialised);
+    lens.body = LensBody::Outline;
+    let lined = drawn(&mut studio, &studio::scene(camera, vec![lens]), Backend::Specialised);
+    let inside = studio::bits(&plain, 0);
+    let [w, h] = SIZE.map(|s| s as i32);
+    let differs = |x: i32, y: i32, reach: i32| {
+        let beside = |j: i32| (-reach..=reach).map(move |i| (x + i, y + j));
+        let near = (-reach..=reach).flat_map(beside).filter(|(i, j)| (0..w).contains(i) && (0..h).contains(j));
+        near.into_iter().any(|(i, j)| inside[(j * w + i) as usize] != inside[(y * w + x) as usize])
+    };
+    let mut count = 0;
+    for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
+        let i = (y * w + x) as usize;
+        let is_lined = plain.rgba[i] != lined.rgba[i];
+        assert!(!is_lined || differs(x, y, 3), "a line at {x},{y}, where no border is near");
+        let has_border = [(1, 0), (-1, 0), (0, 1), (0, -1)].iter().any(|(dx, dy)| {
+            let (i, j) = (x + dx, y + dy);
+            (0..w).contains(&i) && (0..h).contains(&j) && inside[(j * w + i) as usize] != inside[(y * w + x) as usize]
+        });
+        assert!(is_lined || !has_border, "no line at {x},{y}, on the border");
+        count += u32::from(has_border);
+    }
+    assert!(count > 500, "{count}");
+}
+
+#[test]
+fn the_volumes_of_objects_hold_their_own_walls_and_roofs() {
+    let studios = [
+        studio::synthetic(60),
+        studio::studio(&[studio::citydata("square.city.json")]),
+        studio::studio(&[studio::citydata("courtyard.city.json")]),
+    ];
+    for mut studio in studios {
+        let ids: Vec<String> = studio.model.objects.iter().step_by(3).map(|o| o.id.to_string()).collect();
+        let choice = Choice { ids, ..Choice::default() };
+        let chosen = members(&studio.model, &choice);
+        let mut lens = studio::lens("objects", [Focus::Objects(choice)], "sepia");
+        let (mut found, mut past_edges) = (0, 0);
+        for camera in cameras(&studio) {
+            for backend in [Backend::Specialised, Backend::Uber] {
+                lens.sprite = (backend == Backend::Uber).then(Default::default);
+                let picture = drawn(&mut studio, &studio::scene(camera, vec![lens.clone()]), backend);
+                let inside = studio::bits(&picture, 0);
+                let volumes = studio.lens_volumes(&studio::scene(camera, vec![lens.clone()]), SIZE).expect("volumes");
+                assert_eq!(volumes.len(), 1);
+                let volume = volumes[0].body.volume().expect("one volume");
+                let view = View::new(camera, SIZE, &studio.extent()).expect("a view");
+                let own = shows(&picture, &chosen);
+                // Flat objects, as streets are, have no volume.
+                let flat = |object: u32| {
+                    let all = studio.geometries.iter().map(|&g| &studio.model.geometries[g as usize]);
+                    all.filter(|g| g.object == object).all(|g| g.bounds.size().min_element() < 0.5)
+                };
+                let ids = picture.object_id.as_ref().expect("object ids");
+                for i in (0..own.len()).filter(|i| own[*i] && !flat(ids[*i] - 1)) {
+                    found += 1;
+                    let d = f64::from(picture.depth.as_ref().expect("depth")[i]);
+                    let p = view.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]).at(d);
+                    let beyond = volume.signed_distance(p);
+                    if beyond > 4.0 * f64::from(f32::EPSILON) * d {
+                        // Corners are drawn on a grid of 1/256 pixel: past an edge.
+                        assert!(beyond <= view.pixel_m(d) / 128.0, "{beyond} m from its volume");
+                        past_edges += 1;
+                        continue;
+                    }
+                    let object = &studio.model.objects[ids[i] as usize - 1];
+                    assert!(inside[i], "{backend:?}, pixel {i} of {object:?} is not in its own volume");
+                }
+            }
+        }
+        assert!(found > 3_000 && 500 * past_edges < found, "{found}, {past_edges} past edges");
+    }
+}
