@@ -32,7 +32,7 @@ fn balls(studio: &Studio, count: usize, overlap: f64) -> Vec<Lens> {
     let one = |i: usize| {
         let shape = Shape::Sphere { center: at(i), radius: radius * (0.7 + 0.6 * (i % 7) as f64 / 6.0) };
         let class = [Class::Inside, Class::Inside, Class::Behind][i % 3];
-        let body = if i % 5 == 0 { LensBody::Outline } else { LensBody::None };
+        let body = if i.is_multiple_of(5) { LensBody::Outline } else { LensBody::None };
         let effect = EffectUse { class, ..used(effects[i % effects.len()]) };
         Lens { effects: vec![effect], body, ..lens(&format!("ball {i}"), vec![shape], "sepia") }
     };
@@ -83,7 +83,7 @@ fn tiles_change_no_byte() {
         let [written, listed] = [Backend::Specialised, Backend::Uber].map(|backend| draw(&mut studio, &scene, backend));
         assert!(written.rgba == listed.rgba, "{count} lenses");
         assert!(written.lens_mask == listed.lens_mask, "{count} lenses");
-        let counts = |p: &Picture| p.statistics.lenses.iter().map(|l| l.classified.clone()).collect::<Vec<_>>();
+        let counts = |p: &Picture| p.statistics.lenses.iter().map(|l| l.classified).collect::<Vec<_>>();
         assert_eq!(counts(&written), counts(&listed));
     }
 }

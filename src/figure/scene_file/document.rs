@@ -5,7 +5,10 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use crate::{
-    figure::scene_file::keys::{self, CLASSES, Key, Kind, LATER_TABLES, SHAPES, TABLES, Table},
+    figure::scene_file::{
+        keys::{self, CLASSES, Key, Kind, LATER_TABLES, TABLES, Table},
+        shape_keys::SHAPES,
+    },
     lens::effect::LATER,
     shader::{
         Blend,

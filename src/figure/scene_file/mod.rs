@@ -11,6 +11,7 @@ mod node;
 mod parse;
 mod paths;
 mod set;
+pub mod shape_keys;
 mod write;
 
 use std::{fmt, io::Read, path::Path};

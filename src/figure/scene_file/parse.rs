@@ -11,6 +11,7 @@ use crate::{
         keys::{self, CLASSES, Kind},
         node::{Data, Node},
         paths::{Options, PathProblem},
+        shape_keys,
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
@@ -266,9 +267,10 @@ impl<'o> SceneReader<'o> {
             return None;
         };
         let kind = entries.iter().find(|(k, ..)| k == "kind").map(|(.., n)| n);
-        let names = || keys::SHAPES.iter().map(|s| s.name);
+        let names = || shape_keys::SHAPES.iter().map(|s| s.name);
         let all = names().collect::<Vec<_>>().join(", ");
-        let Some(table) = kind.and_then(Node::text).and_then(|k| keys::SHAPES.iter().find(|s| s.name == k)) else {
+        let Some(table) = kind.and_then(Node::text).and_then(|k| shape_keys::SHAPES.iter().find(|s| s.name == k))
+        else {
             let (line, message) = match kind {
                 None => (node.line, format!("is missing: one of {all}")),
                 Some(n) => {
@@ -290,7 +292,7 @@ impl<'o> SceneReader<'o> {
         let turn = rotation(fields.node("rotation_deg").and_then(Node::numbers::<3>).unwrap_or([0.0; 3]));
         let (checker, options, lacks_data) = (&mut self.checker, self.options, &mut self.lacks_data);
         let mut reader = Reader { checker, options, lacks_data };
-        if keys::FOCUSES.contains(&table.name) {
+        if shape_keys::FOCUSES.contains(&table.name) {
             return reader.focus(table.name, &fields, turn);
         }
         if table.name == "flat" {
