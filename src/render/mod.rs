@@ -31,7 +31,7 @@ mod placement;
 pub mod renderer;
 mod seen;
 pub mod solids;
-mod sprite_passes;
+pub mod sprite_passes;
 mod sprites;
 pub mod stats;
 mod surfaces;

@@ -13,7 +13,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
     gpu::Gpu,
-    render::{edges::Edge, layout},
+    render::{edges::Edge, layout, sprite_passes::SolidStage},
     shader::{Module, Program, VolumeTest},
 };
 
@@ -125,32 +125,6 @@ pub enum ShadeTarget {
     Sums,
     /// What a filter reads: colours weighted by coverage, and where the picture is transparent their opacity.
     Unfiltered,
-}
-
-/// The draws that make the depth sprites of solids and combinations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SolidStage {
-    /// Nothing is there yet.
-    Missed,
-    /// Where rays enter first.
-    Nearest,
-    /// Where they leave last.
-    Farthest,
-    /// Of a combination, where rays enter first by the ends of its closed forms.
-    NearestForm,
-    /// Where they leave last.
-    FarthestForm,
-    /// Of a combination, where rays enter first through faces of its solids.
-    NearestFace,
-    /// Where they leave last.
-    FarthestFace,
-}
-
-impl SolidStage {
-    /// Whether it writes where rays enter.
-    pub fn is_nearest(self) -> bool {
-        matches!(self, Self::Nearest | Self::NearestForm | Self::NearestFace)
-    }
 }
 
 /// What is behind the city, as `lib/light.wgsl` numbers it.

@@ -6,13 +6,39 @@ use crate::{
         eye::PictureTile,
         frame::{FrameInput, Recorder, color_attachment, depth_attachment, scissor},
         layout,
-        pipelines::{Key, SolidStage},
+        pipelines::Key,
         renderer::{Renderer, STAGE_STRIDE},
         seen::{SeenSprite, SeenVolume},
     },
     shader::VolumeTest,
     view::View,
 };
+
+/// The draws that make the depth sprites of solids and combinations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SolidStage {
+    /// Nothing is there yet.
+    Missed,
+    /// Where rays enter first.
+    Nearest,
+    /// Where they leave last.
+    Farthest,
+    /// Of a combination, where rays enter first by the ends of its closed forms.
+    NearestForm,
+    /// Where they leave last.
+    FarthestForm,
+    /// Of a combination, where rays enter first through faces of its solids.
+    NearestFace,
+    /// Where they leave last.
+    FarthestFace,
+}
+
+impl SolidStage {
+    /// Whether it writes where rays enter.
+    pub fn is_nearest(self) -> bool {
+        matches!(self, Self::Nearest | Self::NearestForm | Self::NearestFace)
+    }
+}
 
 /// The pipelines that make the sprite of a body.
 pub(super) fn keys(body: &Body) -> Vec<Key> {

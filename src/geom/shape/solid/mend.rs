@@ -115,7 +115,8 @@ fn orient(corners: &[DVec3], faces: &mut [[u32; 3]]) {
     for (i, part) in parts.iter().enumerate() {
         let looks_in = is_inward[i] != is_inside_out;
         let holds = |outer: &Aabb| outer.min.cmplt(bounds[i].min).all() && outer.max.cmpgt(bounds[i].max).all();
-        let is_cavity = looks_in && bounds.iter().any(holds);
+        // Fewer than four faces enclose nothing.
+        let is_cavity = looks_in && part.len() >= 4 && bounds.iter().any(holds);
         if is_inside_out != (looks_in && !is_cavity) {
             part.iter().for_each(|&f| faces[f as usize].swap(1, 2));
         }
@@ -137,23 +138,31 @@ fn open_rings(faces: &[[u32; 3]]) -> Vec<Vec<u32>> {
         let list = onwards.entry(from).or_default();
         list.extend(std::iter::repeat_n(to, count.unsigned_abs() as usize));
     }
-    // As many edges arrive at a corner as leave it: whoever walks on comes back.
+    onwards.retain(|_, list| !list.is_empty());
+    let starts: Vec<u32> = onwards.keys().copied().collect();
     let mut rings = Vec::new();
-    while let Some((&start, _)) = onwards.iter().find(|(_, list)| !list.is_empty()) {
+    for start in starts {
         let mut way = vec![start];
+        let mut places: FxHashMap<u32, usize> = HashMap::from_iter([(start, 0)]);
         let mut at = start;
+        // As many edges arrive at a corner as leave it: whoever walks on comes back.
         while let Some(next) = onwards.get_mut(&at).and_then(Vec::pop) {
-            // A corner met again ends a ring of its own.
-            match way.iter().position(|&seen| seen == next) {
-                Some(first) => {
-                    rings.push(way.split_off(first));
-                    way.push(next);
+            match places.get(&next) {
+                // A corner met again ends a ring of its own.
+                Some(&first) => {
+                    let ring = way.split_off(first);
+                    ring[1..].iter().for_each(|corner| {
+                        places.remove(corner);
+                    });
+                    rings.push(ring);
                 }
-                None => way.push(next),
+                None => {
+                    places.insert(next, way.len());
+                }
             }
+            way.push(next);
             at = next;
         }
-        onwards.retain(|_, list| !list.is_empty());
     }
     rings
 }

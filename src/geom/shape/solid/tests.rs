@@ -211,6 +211,17 @@ fn small_faults_are_mended() {
 }
 
 #[test]
+fn loose_faces_enclose_nothing_however_many() {
+    // Not one has a neighbour: each is a hole of its own. Whoever looks for the next hole among all takes hours.
+    let face = |i: i64| {
+        let [x, y] = [10 * (i % 500), 10 * (i / 500)];
+        [[x, y, i % 7], [x + 5, y, i % 5], [x, y + 5, i % 3]]
+    };
+    let loose: Vec<_> = (0..200_000).map(face).collect();
+    assert_eq!(Solid::new(&[mesh(&loose)], DVec3::ZERO), Err(ShapeError::NoBody));
+}
+
+#[test]
 fn a_cavity_stays_one() {
     let cube = |side: i64| {
         let s = side;
