@@ -82,6 +82,7 @@ pub fn lens(name: &str, shape: Shape, effects: &[&str]) -> Lens {
         effects: effects.iter().map(use_of).collect(),
         body: LensBody::None,
         sprite: None,
+        border: None,
     }
 }
 

@@ -34,6 +34,17 @@ pub struct PlanLens {
     pub leaves: Vec<VolumeTest>,
     /// Place of its outline's parameters, where it shows one.
     pub outline: Option<u32>,
+    /// Its soft border, if it has one.
+    pub border: Option<PlanBorder>,
+}
+
+/// A soft border (L9).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PlanBorder {
+    /// Place of its parameters.
+    pub parameters: u32,
+    /// Whether what cannot be had by halves is dithered.
+    pub dithers: bool,
 }
 
 /// How it is decided where a place is with regard to a lens volume (S7).
@@ -173,6 +184,16 @@ impl ClassTest {
             Self::Rest => "is_rest",
         }
     }
+
+    /// The function that says how much of it a place with a degree of interest has (`lib/border.wgsl`).
+    pub fn share(self) -> &'static str {
+        match self {
+            Self::Inside => "share_inside",
+            Self::Front => "share_front",
+            Self::Behind => "share_behind",
+            Self::Rest => "share_rest",
+        }
+    }
 }
 
 /// How a channel is laid over what is below (C5).
@@ -243,6 +264,10 @@ pub struct Uber {
     pub leaves: Vec<VolumeTest>,
     /// Whether some of them show their silhouettes.
     pub outlines: bool,
+    /// Whether some of them have soft borders.
+    pub borders: bool,
+    /// Whether what cannot be had by halves is dithered along some of these.
+    pub dithers: bool,
     /// Whether some effects are blended.
     pub blends: bool,
     /// Whether the air shows.
@@ -261,6 +286,7 @@ impl Uber {
             effects,
             tests: self.tests.clone(),
             leaves: self.leaves.clone(),
+            borders: self.dithers,
             ..Self::default()
         })
     }
@@ -269,7 +295,10 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        self.lines.then_some(Self { effects, tests, leaves, blends: self.blends, lines: true, ..Self::default() })
+        let (borders, dithers) = (self.borders, self.dithers);
+        let all =
+            Self { effects, tests, leaves, borders, dithers, blends: self.blends, lines: true, ..Self::default() };
+        self.lines.then_some(all)
     }
 
     /// What of it says how things look.
@@ -289,9 +318,9 @@ impl Program {
             Self::Specialised(plan) => (plan.tests().collect(), !plan.lenses.is_empty()),
             Self::Uber(uber) => (uber.tests.clone(), !uber.tests.is_empty()),
         };
-        let (outlines, blends, lines) = match self {
-            Self::Specialised(plan) => (plan.has_outlines(), plan.has_blends(), plan.lines),
-            Self::Uber(uber) => (uber.outlines, uber.blends, uber.lines),
+        let (outlines, blends, lines, borders) = match self {
+            Self::Specialised(plan) => (plan.has_outlines(), plan.has_blends(), plan.lines, plan.has_borders()),
+            Self::Uber(uber) => (uber.outlines, uber.blends, uber.lines, uber.borders && has_lenses),
         };
         Parts {
             lenses: has_lenses,
@@ -303,8 +332,9 @@ impl Program {
             combinations: tests.iter().any(|t| t.has_leaves()),
             combined_sprites: tests.contains(&VolumeTest::CombinedSprite),
             outlines,
-            blends,
+            blends: blends || borders,
             lines,
+            borders,
         }
     }
 
@@ -355,6 +385,8 @@ pub struct Parts {
     pub blends: bool,
     /// Lines over what was shaded.
     pub lines: bool,
+    /// Soft borders of lenses.
+    pub borders: bool,
 }
 
 impl Plan {
@@ -369,6 +401,23 @@ impl Plan {
     /// Whether some lens shows its silhouette.
     pub fn has_outlines(&self) -> bool {
         self.lenses.iter().any(|l| l.outline.is_some())
+    }
+
+    /// Whether some lens fades.
+    pub fn has_borders(&self) -> bool {
+        (0..self.lenses.len() as u32).any(|lens| self.border_of(lens).is_some())
+    }
+
+    /// The soft border of one of its lenses that does something here.
+    pub fn border_of(&self, lens: u32) -> Option<PlanBorder> {
+        let acts = |s: &Step| matches!(s.scope, Scope::Lens(l, _) if l == lens);
+        self.lenses[lens as usize].border.filter(|_| self.steps.iter().any(acts))
+    }
+
+    /// With lenses that end at once: from where a border is not told.
+    pub fn without_borders(mut self) -> Self {
+        self.lenses.iter_mut().for_each(|lens| lens.border = None);
+        self
     }
 
     /// Whether some effect is a filter.
@@ -418,7 +467,8 @@ impl Plan {
         if steps.is_empty() {
             return None;
         }
-        let lenses = self.plain_lenses();
+        let mut lenses = self.plain_lenses();
+        lenses.iter_mut().for_each(|lens| lens.border = lens.border.filter(|b| b.dithers));
         Some(Self { lenses, steps, ..Self::default() })
     }
 
@@ -444,7 +494,8 @@ impl Plan {
     pub fn slots(&self, handlers: &[EffectDefinition]) -> u32 {
         let of_steps = self.steps.iter().map(|s| s.end(&handlers[s.effect as usize]));
         let of_lines = self.lenses.iter().filter_map(|l| l.outline.map(|first| first + OUTLINE_SLOTS));
-        of_steps.chain(of_lines).max().unwrap_or(0)
+        let of_borders = self.lenses.iter().filter_map(|l| l.border.map(|b| b.parameters + 1));
+        of_steps.chain(of_lines).chain(of_borders).max().unwrap_or(0)
     }
 }
 
