@@ -238,8 +238,7 @@ mod tests {
 
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
-        let lens =
-            PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], outline: None, border: None };
+        let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], body: None, border: None };
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));

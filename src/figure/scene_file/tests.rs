@@ -525,10 +525,10 @@ fn ends() -> impl Strategy<Value = (Option<LensSprite>, Option<Border>)> {
 
 prop_compose! {
     fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
-        enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), outline in any::<bool>(),
+        enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements()) -> Lens {
         let (sprite, border) = ends;
-        let body = if outline { LensBody::Outline } else { LensBody::None };
+        let body = LensBody::WORDS[body].1;
         Lens { name: String::new(), kind: LensKind::Color, enabled, color, placement, shapes, effects: used, body, sprite, border }
     }
 }

@@ -135,7 +135,7 @@ impl Toml {
             many => self.key("shapes", &list(many.iter().map(|one| focus(one, options)))),
         }
         self.key_if(!lens.effects.is_empty(), "effects", &list(lens.effects.iter().map(effect)));
-        self.key_if(lens.body == LensBody::None, "body", "\"none\"");
+        self.key_if(lens.body != LensBody::default(), "body", &format!("\"{}\"", lens.body.word()));
         if let Some(sprite) = lens.sprite {
             let resolution = sprite.resolution.map(|resolution| format!(" resolution = {resolution} "));
             self.key("sprite", &format!("{{{}}}", resolution.unwrap_or_default()));
