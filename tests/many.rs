@@ -6,7 +6,7 @@ use glam::DVec3;
 use studio::*;
 use veduta::{
     geom::{Aabb, Shape},
-    lens::{Class, EffectUse, Lens, LensBody},
+    lens::{Border, BorderUnit, Class, Discrete, EffectUse, Lens, LensBody},
     render::{
         frame::Backend,
         picture::{Aovs, Picture, Request, Studio},
@@ -106,5 +106,43 @@ fn more_lenses_than_are_written_out_are_gone_through_tile_by_tile() {
         let drawn = studio.render(&scene, &request(Backend::Specialised)).expect("a picture");
         let names = &drawn.statistics.pipelines.names;
         assert_eq!(names.iter().any(|name| name.contains("shade uber")), is_listed, "{count}: {names:?}");
+    }
+}
+
+#[test]
+fn what_a_tile_does_not_show_changes_no_byte() {
+    let mut studio = synthetic(200);
+    let middle = studio.extent().center();
+    let street = Camera::looking(middle + DVec3::new(4.0, -30.0, 6.0), middle + DVec3::new(60.0, 60.0, 3.0), 0.9);
+    let above = Camera::looking(middle + DVec3::new(160.0, -260.0, 190.0), middle, 0.8);
+    for camera in [street, above, orthographic(above.eye, middle, 200.0)] {
+        let mut scene = scene(camera, balls(&studio, 120, 3.0));
+        // On every class, with borders, of other shapes, and of combinations.
+        for (i, lens) in scene.lenses.iter_mut().enumerate() {
+            lens.effects[0].class = [Class::Inside, Class::Inside, Class::Inside, Class::Behind, Class::Rest][i % 5];
+            if i.is_multiple_of(7) {
+                let unit = [BorderUnit::Metres, BorderUnit::Pixels][i % 2];
+                lens.border = Some(Border { width: 9.0, unit, discrete: Discrete::Threshold });
+            }
+        }
+        for (i, focus) in shapes(middle, 20.0).into_iter().take(3).enumerate() {
+            scene.lenses.push(lens(&format!("shape {i}"), [focus], "invert"));
+        }
+        let mut draw = |narrows: bool| {
+            studio.renderer.narrows_lists = narrows;
+            let request = Request {
+                size: SIZE,
+                samples: 2,
+                transparent: false,
+                aovs: Aovs::default(),
+                statistics: true,
+                backend: Backend::Specialised,
+            };
+            studio.render(&scene, &request).expect("a picture")
+        };
+        let [all, narrowed] = [false, true].map(&mut draw);
+        assert!(narrowed.statistics.passes.iter().any(|p| p.name == "narrow lists"));
+        assert!(all.statistics.passes.iter().all(|p| p.name != "narrow lists"));
+        assert!(all.rgba == narrowed.rgba);
     }
 }

@@ -5,6 +5,7 @@
 //! depth sprites                 of the lens volumes in view that are tested by them
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
+//! narrow lists                  of many lenses, those that each tile shows something of
 //! lines                         edges, where effects draw them
 //! unfiltered, filter down,      for each neighbourhood filter in view: its lens' own image over the lens' bounds
 //! filter across                 and what the filter reaches beyond them, and the filter
@@ -43,7 +44,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun},
-    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, Uber, handlers},
+    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, TILE_PX, Uber, handlers},
     view::View,
 };
 
@@ -187,6 +188,14 @@ impl Renderer {
             Cuts::new(input, |lens| seen.iter().any(|v| v.lens == lens), sun_view.as_ref(), plans.hiding.clone());
         let (keys, is_uber) = self.prepare(input, &seen, &plans, &cuts, sun_view.is_some());
         self.upload(input, sun_view.as_ref(), &seen, &plans, &cuts, is_uber)?;
+        let narrows = self.narrows_lists && is_uber && plans.is_long();
+        if narrows {
+            self.prepare_narrowing(&plans.invokers().reaches(&plans.depths))?;
+        }
+        if self.binds_narrowed != narrows {
+            self.binds_narrowed = narrows;
+            self.groups = None;
+        }
         if self.buffers.line_stages.sync(&self.gpu, &lines::stages(&lines))? {
             self.groups = None;
         }
@@ -209,6 +218,9 @@ impl Renderer {
             self.sprite_passes(&mut encoder, &mut recorder, input, &seen, pages.count);
         }
         encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?;
+        if narrows {
+            self.narrow_pass(&mut encoder, &mut recorder, input.tile.size.map(|side| side.div_ceil(TILE_PX)));
+        }
         if !seen.is_empty() && wants_masks(input) {
             self.clear_masks(&mut encoder, &mut recorder, input);
         }
@@ -629,6 +641,8 @@ struct Plans {
     /// Lenses in view, in the order of the plans, and where.
     seen: Vec<u32>,
     parts: Vec<Octagon>,
+    /// The distances between which each acts as *inside*, metres.
+    depths: Vec<[f32; 2]>,
 }
 
 impl Plans {
@@ -646,9 +660,16 @@ impl Plans {
         let (hiding, lining) = (whole.hiding(handlers()), whole.lining(handlers()));
         let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         numbers.dedup();
-        let of_lens = seen.chunk_by(|a, b| a.lens == b.lens);
+        let of_lens = || seen.chunk_by(|a, b| a.lens == b.lens);
+        let depths = |volumes: &[SeenVolume]| {
+            let each = volumes.iter().map(|v| input.volumes[v.index].depths(&input.view));
+            let all =
+                each.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            all.map(|d| d.clamp(-f64::from(f32::MAX), f64::from(f32::MAX)) as f32)
+        };
         Self {
-            parts: of_lens.filter_map(|volumes| part_of(volumes.iter())).collect(),
+            parts: of_lens().filter_map(|volumes| part_of(volumes.iter())).collect(),
+            depths: of_lens().map(depths).collect(),
             filters,
             hiding,
             lining,

@@ -2,7 +2,7 @@
 
 use crate::{
     render::{eye::PictureTile, layout, octagon::Octagon},
-    shader::{Blend, EffectDefinition, EffectKind, Plan, PlanLens, Scope, Step, TILE_PX, scope_number},
+    shader::{Blend, ClassTest, EffectDefinition, EffectKind, Plan, PlanLens, Scope, Step, TILE_PX, scope_number},
 };
 
 /// Sections of the lists of a tile, as `shader::uber` numbers them: materials, lights, styles, bodies, masks.
@@ -15,6 +15,8 @@ type Entry = (u32, Option<u32>);
 #[derive(Debug, Default)]
 pub struct Invokers {
     all: Vec<layout::Invoker>,
+    /// Of each, the lens of the plan that it acts inside of, and nowhere else.
+    inside_of: Vec<Option<u32>>,
     hides: [u32; 2],
     lines: [u32; 2],
     /// Outside of all lenses, and where they may be seen.
@@ -40,21 +42,29 @@ impl Invokers {
             }));
         }
         out.lines = [first, out.all.len() as u32];
+        out.inside_of.resize(out.all.len(), None);
         out.sections = plans.map(|plan| out.sections_of(plan, handlers));
         out
     }
 
     fn sections_of(&mut self, plan: &Plan, handlers: &[EffectDefinition]) -> [Vec<Entry>; SECTIONS] {
         let volumes = volumes_before(plan);
-        let mut add = |invoker, lens| {
+        let mut add = |invoker, lens: Option<u32>, is_inside: bool| {
             self.all.push(invoker);
+            self.inside_of.push(lens.filter(|_| is_inside));
             (self.all.len() as u32 - 1, lens)
         };
         let mut of_kinds = |kinds: &[EffectKind]| -> Vec<Entry> {
             let steps = plan.steps.iter().map(|s| (s, &handlers[s.effect as usize]));
-            let lens = |step: &Step| if let Scope::Lens(lens, _) = step.scope { Some(lens) } else { None };
             let chosen = steps.filter(|(_, h)| kinds.contains(&h.kind));
-            chosen.map(|(step, handler)| add(invoker(plan, &volumes, step, handler), lens(step))).collect()
+            let one = |(step, handler): (&Step, &EffectDefinition)| {
+                let invoker = invoker(plan, &volumes, step, handler);
+                match step.scope {
+                    Scope::Lens(lens, class) => add(invoker, Some(lens), class == ClassTest::Inside),
+                    Scope::Everywhere => add(invoker, None, false),
+                }
+            };
+            chosen.map(one).collect()
         };
         let materials = of_kinds(&[EffectKind::Material]);
         let lights = of_kinds(&[EffectKind::Light]);
@@ -70,7 +80,7 @@ impl Invokers {
                     number: lens.number,
                     ..layout::Invoker::default()
                 };
-                add(invoker, Some(i))
+                add(invoker, Some(i), false)
             })
             .collect()
         };
@@ -82,6 +92,13 @@ impl Invokers {
     /// The table as `shader::uber` declares it, for a picture of this size.
     pub fn table(&self, size: [u32; 2]) -> Vec<u32> {
         [self.hides, self.lines, [size[0].div_ceil(TILE_PX), 0], [0, 0]].concat()
+    }
+
+    /// The distances D between which each may act, metres, where those of the plan's lenses are these; without end for those that
+    /// act on more than what is inside.
+    pub fn reaches(&self, lenses: &[[f32; 2]]) -> Vec<[f32; 2]> {
+        let always = [-f32::MAX, f32::MAX];
+        self.inside_of.iter().map(|lens| lens.and_then(|l| lenses.get(l as usize).copied()).unwrap_or(always)).collect()
     }
 
     /// All of them.

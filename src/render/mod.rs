@@ -22,6 +22,7 @@ pub mod layout;
 mod lens_volumes;
 pub mod light;
 mod lines;
+mod narrow;
 pub mod octagon;
 pub mod operations;
 pub mod palette;

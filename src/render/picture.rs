@@ -480,6 +480,10 @@ impl Studio {
         let lens_seen = |i: usize| {
             prepared.volumes.iter().any(|v| v.lens as usize == i && v.seen_part(view, whole(request.size)).is_some())
         };
+        let narrowing = pipelines.narrowing;
+        let compiled = pipelines.compiled + u32::from(narrowing == Some(true));
+        let names: Vec<String> = pipelines.used.iter().map(crate::render::pipelines::Key::name).collect();
+        let names: Vec<String> = names.into_iter().chain(narrowing.map(|_| "narrow lists".to_owned())).collect();
         Statistics {
             adapter: stats::Adapter {
                 name: gpu.info.name.clone(),
@@ -499,11 +503,7 @@ impl Studio {
                 peak_gpu_bytes: gpu.allocated_bytes(),
                 ..Default::default()
             },
-            pipelines: stats::Pipelines {
-                compiled: pipelines.compiled,
-                reused: pipelines.used.len() as u32 - pipelines.compiled,
-                names: pipelines.used.iter().map(crate::render::pipelines::Key::name).collect(),
-            },
+            pipelines: stats::Pipelines { compiled, reused: names.len() as u32 - compiled, names },
             handlers: self.renderer.handlers(),
             lenses: (0..scene.lenses.len())
                 .map(|i| lens_figures(self, scene, prepared, picture, i, lens_seen(i)))

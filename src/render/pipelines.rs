@@ -207,6 +207,8 @@ pub struct Pipelines {
     made: FxHashMap<Key, wgpu::RenderPipeline>,
     /// Pipelines that a frame waited for, since the last [`Pipelines::begin_picture`].
     pub compiled: u32,
+    /// Whether lists were narrowed since then, and whether the pipeline for it was made.
+    pub narrowing: Option<bool>,
     /// Pipelines that were made off the frame and arrived since then.
     pub arrived: u32,
     /// Keys of the pipelines used since then, in order of first use.
@@ -459,6 +461,7 @@ impl Pipelines {
             modules: Modules::default(),
             made: FxHashMap::default(),
             compiled: 0,
+            narrowing: None,
             arrived: 0,
             used: Vec::new(),
             asked: FxHashSet::default(),
@@ -469,6 +472,7 @@ impl Pipelines {
     /// Starts counting anew.
     pub fn begin_picture(&mut self) {
         (self.compiled, self.arrived) = (0, 0);
+        self.narrowing = None;
         self.used.clear();
     }
 

@@ -13,6 +13,7 @@ use crate::{
         edges::EdgeBuffers,
         furniture::FurnitureOnGpu,
         layout,
+        narrow::Narrowing,
         pipelines::{Layouts, Pipelines},
         solids::SolidTable,
         synced::Synced,
@@ -39,6 +40,11 @@ pub struct Renderer {
     pub(super) shadow_of: Option<Shadow>,
     /// Whether chunks that nearer ones hide are left out where that pays: on software adapters.
     pub culls_hidden: bool,
+    /// Whether lists of many lenses are narrowed to what each tile shows.
+    pub narrows_lists: bool,
+    pub(super) narrowing: Option<Narrowing>,
+    /// Whether the groups bind the narrowed lists.
+    pub(super) binds_narrowed: bool,
     /// The effects that the frames since the last [`Renderer::begin_picture`] ran, ascending.
     pub(super) ran: Vec<u32>,
     /// The solids that the card holds.
@@ -170,6 +176,9 @@ impl Renderer {
             shadow_sampler,
             shadow_of: None,
             culls_hidden: gpu.is_software(),
+            narrows_lists: true,
+            narrowing: None,
+            binds_narrowed: false,
             curtain: None,
             furniture: None,
             ran: Vec::new(),
@@ -251,6 +260,10 @@ impl Renderer {
         }
         let (Some(targets), Some(city)) = (&self.targets, &self.city) else { return };
         let (gpu, p, b): (_, &Layouts, _) = (&self.gpu, &self.pipelines.layouts, &self.buffers);
+        let lists = match &self.narrowing {
+            Some(narrowing) if self.binds_narrowed => &narrowing.lists,
+            _ => b.tile_lists.buffer(),
+        };
         let stage_group = |label, buffer: &Synced, size: usize| {
             let binding =
                 wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size: wgpu::BufferSize::new(size as u64) };
@@ -299,7 +312,7 @@ impl Renderer {
                     (5, whole(b.invoker_table.buffer())),
                     (6, all_of(&targets.filtered)),
                     (7, whole(b.lens_shapes.buffer())),
-                    (8, whole(b.tile_lists.buffer())),
+                    (8, whole(lists)),
                     (9, whole(b.invokers.buffer())),
                 ],
             ),
@@ -351,7 +364,7 @@ fn all_of(target: &Target) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(&target.view)
 }
 
-fn whole(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
+pub(super) fn whole(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
     buffer.as_entire_binding()
 }
 

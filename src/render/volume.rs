@@ -86,6 +86,22 @@ impl LensVolume {
         Aabb { min: self.bounds.min - reach, max: self.bounds.max + reach }
     }
 
+    /// The distances D along the view axis between which its lens may act as *inside*, metres.
+    pub fn depths(&self, view: &View) -> [f64; 2] {
+        if !self.body.is_bounded() {
+            return [f64::NEG_INFINITY, f64::INFINITY];
+        }
+        let reach = self.reach_m(view);
+        if let Some(Volume::Sphere { center, radius }) = self.body.volume() {
+            let middle = view.depth(*center);
+            return [middle - radius - reach, middle + radius + reach];
+        }
+        let depths = self.bounds.corners().map(|c| view.depth(c));
+        let ends = [f64::INFINITY, f64::NEG_INFINITY];
+        let [near, far] = depths.into_iter().fold(ends, |[low, high], d| [low.min(d), high.max(d)]);
+        [near - reach, far + reach]
+    }
+
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
     pub fn seen_part(&self, view: &View, tile: PictureTile) -> Option<Octagon> {
         let whole = Octagon::whole(tile.size);

@@ -74,6 +74,7 @@ files! {
     LINES = "pass/lines.wgsl";
     FILTER = "pass/filter.wgsl";
     RESOLVE = "pass/resolve.wgsl";
+    NARROW = "pass/narrow.wgsl";
     FURNITURE = "pass/furniture.wgsl";
     FURNITURE_OVER = "pass/furniture-over.wgsl";
     BARE = "pass/bare.wgsl";
@@ -98,6 +99,8 @@ pub enum Module {
     Filter(u32),
     /// The mean of samples.
     Resolve,
+    /// Lists of invokers narrowed to what tiles show.
+    Narrow,
     /// Titles, captions and legends.
     Furniture,
     /// Furniture over a transparent picture.
@@ -127,6 +130,7 @@ impl Module {
             }
             Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
             Self::Resolve => "resolve".to_owned(),
+            Self::Narrow => "narrow".to_owned(),
             Self::Furniture => "furniture".to_owned(),
             Self::FurnitureOver => "furniture over".to_owned(),
             Self::Bare => "bare".to_owned(),
@@ -165,6 +169,7 @@ impl Module {
             Self::Lines(program) => &Self::files_of_lines(program),
             Self::Filter(_) => &[PACKED, FILTER],
             Self::Resolve => &[RESOLVE],
+            Self::Narrow => &[VIEW, VIEW_UNIFORM, NARROW],
             Self::Furniture => &[FURNITURE],
             Self::FurnitureOver => &[FURNITURE_OVER],
             Self::Bare => &[VIEW, VIEW_UNIFORM, SURFACE, BARE],
@@ -383,8 +388,14 @@ mod tests {
 
     fn all_modules() -> Vec<Module> {
         let plain = [Program::Specialised(Plan::default()), Program::Uber(Uber::default())];
-        let mut modules =
-            vec![Module::Geometry(None), Module::Shadow(None), Module::Sprite, Module::Resolve, Module::Bare];
+        let mut modules = vec![
+            Module::Geometry(None),
+            Module::Shadow(None),
+            Module::Sprite,
+            Module::Resolve,
+            Module::Narrow,
+            Module::Bare,
+        ];
         modules.extend(plain.map(Module::Shade));
         modules.push(Module::CombinedSprite(LEAVES.to_vec()));
         modules.extend(LEAVES.map(|kind| Module::CombinedSprite(vec![kind])));
