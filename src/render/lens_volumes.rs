@@ -85,10 +85,10 @@ fn volume_of(number: u32, lens: &Lens, body: Body) -> LensVolume {
         lens: number,
         bounds: body.bounds(),
         body,
-        everywhere: lens.effects.iter().any(|e| e.class == Class::Rest),
+        everywhere: lens.classes().any(|class| class == Class::Rest),
         has_outline: lens.body == LensBody::Outline,
         sprite: lens.sprite,
-        asks_sides: lens.effects.iter().any(|e| e.class != Class::Inside),
+        asks_sides: lens.classes().any(|class| class != Class::Inside),
     }
 }
 

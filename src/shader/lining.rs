@@ -7,6 +7,7 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
+    contents::{self, IS_SHOWN},
     effect::{EffectDefinition, EffectKind},
     lens_test,
     plan::{Program, Scope, Step, Uber},
@@ -23,6 +24,10 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
             format!("@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;\n{tests}\n")
         }
     };
+    if program.has().contents {
+        text.push_str(&contents::binding(3, 1, "city"));
+        text.push('\n');
+    }
     for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
     }
@@ -31,11 +36,23 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
             text.push_str("// ==== this scene\n\n");
             let writer = Writer { plan, handlers, names };
             text.push_str(&writer.classes());
+            if !plan.contents.is_empty() {
+                let classes = |lens| format!("classes.lens_{lens}");
+                text.push_str(&contents::specialised(plan, PLACE, classes));
+            }
             specialised(&mut text, &writer);
         }
         Program::Uber(uber) => uber_source(&mut text, uber, handlers),
     }
     text
+}
+
+/// What `shown_cities` is asked of.
+const PLACE: &str = "fragment: Fragment, classes: Classes";
+
+/// A line of a city that does not show at its place.
+fn gone() -> String {
+    format!("    if !({}) {{\n        opacity = 0.0;\n    }}\n", IS_SHOWN.replace("PLACE", "fragment, classes"))
 }
 
 fn parameters(handler: &EffectDefinition, first: &str) -> String {
@@ -96,6 +113,9 @@ fn specialised(text: &mut String, writer: &Writer) {
         }
     }
     text.push_str(&hidden);
+    if !writer.plan.contents.is_empty() {
+        text.push_str(&gone());
+    }
     text.push_str("    return vec4f(color, opacity);\n}\n");
 }
 
@@ -125,7 +145,11 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     }));
     let has_posts = uber.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Post);
     let styled = if has_posts { "color = invoke_style(color, point, by);" } else { "" };
-    text.push_str(&LINE_AT.replace("STYLED", styled));
+    let gone = if uber.contents { gone() } else { String::new() };
+    text.push_str(&LINE_AT.replace("STYLED", styled).replace("    GONE\n", &gone));
+    if uber.contents {
+        text.push_str(&contents::uber(PLACE, "classes"));
+    }
 }
 
 /// `by.number` says what an invoker is to lines: as `render::operations` writes it.
@@ -155,6 +179,7 @@ const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, o
             opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u);
         }
     }
+    GONE
     return vec4f(color, select(opacity, 0.0, is_hidden));
 }
 

@@ -21,6 +21,57 @@ pub struct Plan {
     pub masks: bool,
     /// Whether some effect draws lines.
     pub lines: bool,
+    /// What its lenses show in themselves, bottom lens first (C6).
+    pub contents: Vec<PlanContent>,
+}
+
+/// What a lens of a plan shows in place of what is below it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PlanContent {
+    /// Index into [`Plan::lenses`].
+    pub lens: u32,
+    /// On which of its classes.
+    pub class: ClassTest,
+    /// Number of the city that it shows, from 1; less than [`MOST_CITIES`].
+    pub city: u32,
+    /// What becomes of what is below.
+    pub clip: Clip,
+    /// Whether terrain stays as it is below.
+    pub keeps_terrain: bool,
+}
+
+/// Cities of a picture, the scene's own included: bits of a word.
+pub const MOST_CITIES: u32 = 32;
+
+/// What becomes of what is shown below a lens that has own content (C6), the context included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Clip {
+    /// It is clipped: the topmost content shows.
+    #[default]
+    Order,
+    /// It stays, and the content is added.
+    Merge,
+    /// Nothing shows where a lens below has another content, neither; else as `Order`.
+    Discard,
+}
+
+impl Clip {
+    /// All, in the order of the uber back end's numbers.
+    pub const ALL: [Self; 3] = [Self::Order, Self::Merge, Self::Discard];
+
+    /// Its word in scene files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Order => "order",
+            Self::Merge => "merge",
+            Self::Discard => "discard",
+        }
+    }
+
+    /// The number that the uber back end knows it by.
+    pub fn number(self) -> u32 {
+        Self::ALL.iter().position(|c| *c == self).unwrap_or(0) as u32
+    }
 }
 
 /// A lens of a plan.
@@ -251,16 +302,19 @@ pub struct Uber {
     pub masks: bool,
     /// Whether some effects draw lines.
     pub lines: bool,
+    /// Whether some lenses have own content.
+    pub contents: bool,
 }
 
 impl Uber {
     /// What of it says what is there; `None` where nothing may be hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| kind == EffectKind::Hide);
-        (!effects.is_empty()).then(|| Self {
+        (!effects.is_empty() || self.contents).then(|| Self {
             effects,
             tests: self.tests.clone(),
             leaves: self.leaves.clone(),
+            contents: self.contents,
             ..Self::default()
         })
     }
@@ -269,12 +323,20 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        self.lines.then_some(Self { effects, tests, leaves, blends: self.blends, lines: true, ..Self::default() })
+        self.lines.then_some(Self {
+            effects,
+            tests,
+            leaves,
+            blends: self.blends,
+            lines: true,
+            contents: self.contents,
+            ..Self::default()
+        })
     }
 
     /// What of it says how things look.
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
-        Self { effects: self.of(handlers, |kind| kind != EffectKind::Hide), ..self }
+        Self { effects: self.of(handlers, |kind| kind != EffectKind::Hide), contents: false, ..self }
     }
 
     fn of(&self, handlers: &[EffectDefinition], is_wanted: impl Fn(EffectKind) -> bool) -> Vec<u32> {
@@ -289,9 +351,9 @@ impl Program {
             Self::Specialised(plan) => (plan.tests().collect(), !plan.lenses.is_empty()),
             Self::Uber(uber) => (uber.tests.clone(), !uber.tests.is_empty()),
         };
-        let (outlines, blends, lines) = match self {
-            Self::Specialised(plan) => (plan.has_outlines(), plan.has_blends(), plan.lines),
-            Self::Uber(uber) => (uber.outlines, uber.blends, uber.lines),
+        let (outlines, blends, lines, contents) = match self {
+            Self::Specialised(plan) => (plan.has_outlines(), plan.has_blends(), plan.lines, !plan.contents.is_empty()),
+            Self::Uber(uber) => (uber.outlines, uber.blends, uber.lines, uber.contents),
         };
         Parts {
             lenses: has_lenses,
@@ -305,6 +367,7 @@ impl Program {
             outlines,
             blends,
             lines,
+            contents,
         }
     }
 
@@ -355,6 +418,8 @@ pub struct Parts {
     pub blends: bool,
     /// Lines over what was shaded.
     pub lines: bool,
+    /// Contents of lenses.
+    pub contents: bool,
 }
 
 impl Plan {
@@ -394,7 +459,8 @@ impl Plan {
     /// Whether nobody asks for other classes of a lens than *inside*.
     pub fn asks_inside_alone(&self, lens: u32) -> bool {
         let is_other = |s: &Step| matches!(s.scope, Scope::Lens(l, class) if l == lens && class != ClassTest::Inside);
-        !self.masks && !self.steps.iter().any(is_other)
+        let is_content = |c: &PlanContent| c.lens == lens && c.class != ClassTest::Inside;
+        !self.masks && !self.steps.iter().any(is_other) && !self.contents.iter().any(is_content)
     }
 
     /// The volumes of one of its lenses: how many come before them, and how they are tested.
@@ -415,17 +481,23 @@ impl Plan {
     /// What of it says what is there; `None` where nothing is hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let steps: Vec<Step> = self.steps_of(EffectKind::Hide, handlers).map(|(step, _)| step.clone()).collect();
-        if steps.is_empty() {
+        if steps.is_empty() && self.contents.is_empty() {
             return None;
         }
-        let lenses = self.plain_lenses();
-        Some(Self { lenses, steps, ..Self::default() })
+        let (lenses, contents) = (self.plain_lenses(), self.contents.clone());
+        Some(Self { lenses, steps, contents, ..Self::default() })
     }
 
     /// What of it lines go through; `None` where nobody draws any.
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let steps = self.steps.iter().filter(|s| handlers[s.effect as usize].kind.touches_lines()).cloned().collect();
-        self.lines.then(|| Self { lenses: self.plain_lenses(), steps, lines: true, ..Self::default() })
+        self.lines.then(|| Self {
+            lenses: self.plain_lenses(),
+            steps,
+            lines: true,
+            contents: self.contents.clone(),
+            ..Self::default()
+        })
     }
 
     /// Its lenses for passes that ask for nothing but their volumes, which keep their places.
@@ -437,6 +509,7 @@ impl Plan {
     /// What of it says how things look.
     pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
         self.steps.retain(|step| handlers[step.effect as usize].kind != EffectKind::Hide);
+        self.contents.clear();
         self
     }
 
