@@ -136,7 +136,8 @@ fn class_by_faces(s: Shape, sight: Sight) -> u32 {
     let is_missed = span.enter > span.exit || (!sight.is_parallel && sight.distance <= 0.0);
     let is_before = sight.distance < span.enter;
     let side = side_of_solid(is_missed, is_before, sight.distance >= span.exit);
-    return select(side, INSIDE, inside_solid(s, sight) == INSIDE);
+    let nearer = select(BEHIND, FRONT, sight.distance - span.enter < span.exit - sight.distance);
+    return select(side, INSIDE | nearer, inside_solid(s, sight) == INSIDE);
 }
 
 // Whether the ray of a pixel's centre meets it.

@@ -119,6 +119,7 @@ mod tests {
             content: None,
             body: Default::default(),
             sprite: None,
+            border: None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! What to show where: a lens = shapes + effects + order (V §3).
 
+pub mod border;
 pub mod chosen;
 pub mod classify;
 pub mod color;
@@ -15,6 +16,7 @@ pub mod thematic;
 
 use std::collections::BTreeMap;
 
+pub use border::{Border, BorderUnit, Discrete};
 pub use classify::classify;
 pub use content::{Content, Copied};
 pub use focus::Focus;
@@ -44,6 +46,15 @@ pub struct Lens {
     pub body: LensBody,
     /// The volumetric depth sprite that it is tested by; `None`: from its shapes (S7).
     pub sprite: Option<LensSprite>,
+    /// How it ends (L9); `None`: at once.
+    pub border: Option<Border>,
+}
+
+impl Lens {
+    /// Its border, if it has a width.
+    pub fn soft_border(&self) -> Option<Border> {
+        self.border.filter(|b| b.width > 0.0)
+    }
 }
 
 /// What the shapes of a lens are fixed to, whose origin and axes their coordinates are of (L2); metres.

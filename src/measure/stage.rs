@@ -83,6 +83,7 @@ pub fn lens(name: &str, shape: Shape, effects: &[&str]) -> Lens {
         content: None,
         body: LensBody::None,
         sprite: None,
+        border: None,
     }
 }
 

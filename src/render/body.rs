@@ -342,6 +342,7 @@ impl PlacedLeaf {
                 out.axis_y = turn(axes.y_axis);
                 out.axis_z = turn(axes.z_axis);
                 out.size_x = first as f32;
+                out.size_y = self.place.near as f32;
                 out.size_z = f32::from(u8::from(volume.contains(eye) && !view.is_orthographic()));
             }
             Volume::Flat(flat) => flat::figures(flat, view, &mut out, planes),

@@ -174,7 +174,9 @@ impl SceneContents {
     /// Box around what the lenses may show of it, metres; `own`: around the scene's city.
     pub fn bounds(&self, own: &Aabb, volumes: &[LensVolume]) -> Aabb {
         let of = |shown: &ContentUse| {
-            let reaches = volumes.iter().filter(|v| v.lens == shown.lens && v.body.is_bounded());
+            // A border may be as wide as it likes.
+            let ends = |v: &&LensVolume| v.lens == shown.lens && v.body.is_bounded() && v.border.is_none();
+            let reaches = volumes.iter().filter(ends);
             let room = reaches.fold(Aabb::EMPTY, |all, v| all.union(v.bounds));
             let is_inside = shown.class == Class::Inside && !room.is_empty();
             let all = self.wanted.iter().find(|w| w.number == shown.city).map_or(Aabb::EMPTY, |w| w.bounds(own));

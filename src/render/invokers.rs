@@ -51,6 +51,7 @@ impl Invokers {
                 volumes: plan.lenses[content.lens as usize].volumes.len() as u32,
                 weight: u32::from(content.keeps_terrain),
                 number: content.clip.number(),
+                border: plan.lenses[content.lens as usize].border.map_or(0, |b| b.parameters + 1),
                 ..layout::Invoker::default()
             }));
         }
@@ -184,9 +185,12 @@ fn to_lines(handler: &EffectDefinition) -> u32 {
 }
 
 fn invoker(plan: &Plan, volumes: &[u32], step: &Step, handler: &EffectDefinition) -> layout::Invoker {
-    let (first_volume, count) = match step.scope {
-        Scope::Everywhere => (0, 0),
-        Scope::Lens(lens, _) => (volumes[lens as usize], plan.lenses[lens as usize].volumes.len() as u32),
+    let (first_volume, count, border) = match step.scope {
+        Scope::Everywhere => (0, 0, None),
+        Scope::Lens(lens, _) => {
+            let of = &plan.lenses[lens as usize];
+            (volumes[lens as usize], of.volumes.len() as u32, of.border)
+        }
     };
     layout::Invoker {
         handler: step.effect,
@@ -197,5 +201,6 @@ fn invoker(plan: &Plan, volumes: &[u32], step: &Step, handler: &EffectDefinition
         blend: step.blend.map_or(0, Blend::number),
         weight: step.weight(handler).unwrap_or(0),
         number: u32::from(handler.kind == EffectKind::Scene),
+        border: border.map_or(0, |b| b.parameters + 1),
     }
 }

@@ -192,6 +192,7 @@ pub struct Invoker {
     pub blend: u32,
     pub weight: u32,
     pub number: u32,
+    pub border: u32,
 }
 
 /// `pass/furniture.wgsl`, per instance.
@@ -250,7 +251,8 @@ mod tests {
 
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
-        let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], outline: None };
+        let lens =
+            PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], outline: None, border: None };
         let content = crate::shader::PlanContent {
             lens: 0,
             class: crate::shader::ClassTest::Inside,
@@ -304,7 +306,10 @@ mod tests {
             ),
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin, clip_scale, clip_shift, leaves })),
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, length, layers, layer, pad_0 })),
-            (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
+            (
+                &uber,
+                host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number, border }),
+            ),
             (&cut, host!(City { linear, from_whole, number, from_fraction, first_surface, to, scale })),
             (&shade, host!(SpritePlace { origin, size, texels_per_pixel, sprite, page, pad_0 })),
             (

@@ -6,10 +6,10 @@ use crate::{
     geom::{
         Aabb, Solid, Volume,
         combination::{self, Operation, Tree},
-        shape::Motion,
+        shape::{Motion, solid},
     },
     lens::{
-        Class, Focus, Lens, LensBody,
+        Border, BorderUnit, Class, Focus, Lens, LensBody,
         chosen::members,
         solids::{FocusError, Place, ShownCity, Solids},
     },
@@ -55,7 +55,13 @@ pub(super) fn volumes_of(
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
         for (j, focus) in lens.shapes.iter().enumerate() {
             let bodies = match bodies_of(focus, city, &place, solids) {
-                Ok(bodies) => bodies,
+                Ok(mut bodies) => {
+                    if lens.soft_border().is_some() {
+                        let leaves = bodies.iter_mut().flat_map(Body::leaves_mut);
+                        leaves.for_each(|leaf| tell_distance(&mut leaf.leaf, solids));
+                    }
+                    bodies
+                }
                 Err(_) if !lens.enabled => continue,
                 Err((key, message)) => {
                     let place = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
@@ -80,6 +86,16 @@ pub(super) fn volumes_of(
     Ok(all)
 }
 
+/// Makes a polytope a solid, which knows how far away it is.
+fn tell_distance(leaf: &mut Leaf, solids: &mut Solids) {
+    let Leaf::Volume(volume) = leaf else { return };
+    if let Volume::Convex(hull) = volume
+        && let Some(placed) = solids.of_hull(hull)
+    {
+        *volume = Volume::Solid(placed);
+    }
+}
+
 fn volume_of(number: u32, lens: &Lens, body: Body) -> LensVolume {
     LensVolume {
         lens: number,
@@ -89,6 +105,7 @@ fn volume_of(number: u32, lens: &Lens, body: Body) -> LensVolume {
         has_outline: lens.body == LensBody::Outline,
         sprite: lens.sprite,
         asks_sides: lens.classes().any(|class| class != Class::Inside),
+        border: lens.soft_border(),
     }
 }
 
@@ -151,7 +168,10 @@ fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids)
 impl LensVolumes {
     /// Gives every solid its place in the table of all of them, which is made anew where `before` does not hold just these.
     pub fn place_solids(&mut self, before: &Arc<SolidTable>) -> Result<Arc<SolidTable>, String> {
-        let solids = || self.volumes.iter().flat_map(|v| v.body.leaves()).filter_map(|leaf| solid_of(&leaf.leaf));
+        let solids = || {
+            let leaves = self.volumes.iter().flat_map(|v| v.body.leaves().map(|leaf| (v.border, &leaf.leaf)));
+            leaves.filter_map(|(border, leaf)| solid_of(leaf).map(|solid| (solid, asked_for(border, solid))))
+        };
         let table = match before.holds(solids()) {
             true => before.clone(),
             false => Arc::new(SolidTable::new(solids()).map_err(|entries| {
@@ -164,6 +184,16 @@ impl LensVolumes {
             }
         }
         Ok(table)
+    }
+}
+
+/// How far from a solid a border asks for its distance, metres.
+fn asked_for(border: Option<Border>, solid: &Solid) -> f64 {
+    let widest = solid::widest_reach(&solid.bounds());
+    match border {
+        None => 0.0,
+        Some(Border { unit: BorderUnit::Metres, width, .. }) => solid::rounded_reach(0.5 * width),
+        Some(_) => solid::rounded_reach(widest),
     }
 }
 

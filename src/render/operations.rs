@@ -3,14 +3,15 @@
 use crate::{
     city::CityModel,
     lens::{
-        Class, EffectUse, Lens, LensBody,
+        BorderUnit, Class, Discrete, EffectUse, Lens, LensBody,
         chosen::{Choice, ChoiceError, chosen, members},
         effect::{default_of, in_floats},
         thematic::ThematicScale,
     },
     render::palette,
     shader::{
-        self, Blend, ClassTest, Clip, EffectKind, PerObject, Plan, PlanContent, PlanLens, Scope, Step, Uber, VolumeTest,
+        self, Blend, ClassTest, Clip, EffectKind, PerObject, Plan, PlanBorder, PlanContent, PlanLens, Scope, Step,
+        Uber, VolumeTest,
     },
 };
 
@@ -80,6 +81,8 @@ pub struct Operations {
     pub outlines: Vec<(u32, u32)>,
     /// What lenses show in themselves, bottom lens first.
     pub contents: Vec<ContentUse>,
+    /// Lenses with soft borders, and these.
+    pub borders: Vec<(u32, PlanBorder)>,
     /// Parameters of all of them, in slots of four.
     pub parameters: Vec<[f32; 4]>,
     /// What effects read of each object, one run per use: colours, sRGB bytes; or whether it is chosen, that of no object
@@ -122,6 +125,14 @@ impl Operations {
             out.outlines.push((i as u32, out.parameters.len() as u32));
             out.parameters.extend([[r, g, b, 0.92], [OUTLINE_PX, 0.0, 0.0, 0.0]]);
         }
+        for (i, lens) in active() {
+            let Some(border) = lens.soft_border() else { continue };
+            let parameters = out.parameters.len() as u32;
+            let dithers = border.discrete == Discrete::Dither;
+            let [in_pixels, dithered] = [border.unit == BorderUnit::Pixels, dithers].map(|is| f32::from(u8::from(is)));
+            out.borders.push((i as u32, PlanBorder { parameters, dithers }));
+            out.parameters.push([border.width as f32, in_pixels, dithered, 0.0]);
+        }
         Ok(out)
     }
 
@@ -134,6 +145,8 @@ impl Operations {
         Uber {
             effects,
             outlines: lenses.iter().any(|l| l.body == LensBody::Outline),
+            borders: lenses.iter().any(|l| l.soft_border().is_some()),
+            dithers: lenses.iter().any(|l| l.soft_border().is_some_and(|b| b.discrete == Discrete::Dither)),
             blends: uses().any(|e| blend_of(e).is_some()),
             lines: uses().any(|e| shader::effect::find(&e.effect).is_some_and(|h| h.lines)),
             contents: lenses.iter().any(|l| l.content.is_some()),
@@ -159,7 +172,7 @@ impl Operations {
     /// The uber back end's part of the modules of geometry and shadow, where something may be hidden.
     pub fn uber_hiding(&self) -> [Option<Uber>; 2] {
         let picture = self.uber.hiding(shader::handlers());
-        let sun = picture.clone().map(|uber| Uber { tests: self.shape_tests.clone(), ..uber });
+        let sun = picture.clone().map(|uber| Uber { tests: self.shape_tests.clone(), borders: false, ..uber });
         [picture, sun]
     }
 
@@ -185,7 +198,8 @@ impl Operations {
             let line = self.outlines.iter().find(|(o, _)| *o == lens).map(|(_, first)| *first);
             // Without masks nobody asks for a lens' number: equal plans are equal then.
             let number = if masks { lens } else { numbers.len() as u32 };
-            lenses.push(PlanLens { number, volumes: vec![test], leaves: leaves.clone(), outline: line });
+            let border = self.borders.iter().find(|(o, _)| *o == lens).map(|(_, border)| *border);
+            lenses.push(PlanLens { number, volumes: vec![test], leaves: leaves.clone(), outline: line, border });
             numbers.push(lens);
         }
         let place = |lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32);

@@ -140,6 +140,7 @@ mod tests {
             content: None,
             body: Default::default(),
             sprite: None,
+            border: None,
         };
         let attached = [
             Placement::Camera,

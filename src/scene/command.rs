@@ -183,6 +183,7 @@ mod tests {
             content: None,
             body: Default::default(),
             sprite: None,
+            border: None,
         };
         let mut history = History::default();
         for name in ["a", "b", "c"] {

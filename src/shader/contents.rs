@@ -13,8 +13,13 @@ pub(super) fn binding(group: u32, binding: u32, name: &str) -> String {
     format!("@group({group}) @binding({binding}) var<uniform> {name}: City;\n")
 }
 
-/// `shown_cities` of a plan: `place` are its parameters, `classes` those of a lens of the plan there.
-pub(super) fn specialised(plan: &Plan, place: &str, classes: impl Fn(u32) -> String) -> String {
+/// `shown_cities` of a plan: `place` are its parameters, `classes` and `interest` those of a lens of the plan there.
+pub(super) fn specialised(
+    plan: &Plan,
+    place: &str,
+    classes: impl Fn(u32) -> String,
+    interest: impl Fn(u32) -> String,
+) -> String {
     let mut text = format!("fn shown_cities({place}) -> u32 {{\n    var shown = 1u;\n");
     // What lenses below showed: asked where they are not to meet.
     let is_asked = |i: usize| plan.contents[i + 1..].iter().any(|c| c.clip == Clip::Discard);
@@ -25,7 +30,11 @@ pub(super) fn specialised(plan: &Plan, place: &str, classes: impl Fn(u32) -> Str
         let PlanContent { lens, class, city, clip, keeps_terrain } = *content;
         let own = format!("{:#x}u", 1_u32 << city);
         let terrain = if keeps_terrain { " && fragment.part != PART_TERRAIN" } else { "" };
-        let _ = writeln!(text, "    if {}({}){terrain} {{", class.function(), classes(lens));
+        let is_there = match plan.border_of(lens).filter(|b| b.dithers) {
+            Some(_) => format!("is_dithered({}({}, {}), fragment.pixel)", class.share(), classes(lens), interest(lens)),
+            None => format!("{}({})", class.function(), classes(lens)),
+        };
+        let _ = writeln!(text, "    if {is_there}{terrain} {{");
         let _ = match clip {
             Clip::Order => writeln!(text, "        shown = {own};"),
             Clip::Merge => writeln!(text, "        shown |= {own};"),
@@ -39,9 +48,9 @@ pub(super) fn specialised(plan: &Plan, place: &str, classes: impl Fn(u32) -> Str
     text + "    return shown;\n}\n\n"
 }
 
-/// The same from the invoker table; `runs` has its own parameter after the invoker's.
-pub(super) fn uber(place: &str, at: &str) -> String {
-    SHOWN.replace("PLACE", place).replace("runs(by)", &format!("runs(by, {at})"))
+/// The same from the invoker table; `runs` says whether an invoker runs there.
+pub(super) fn uber(place: &str, runs: &str) -> String {
+    SHOWN.replace("PLACE", place).replace("runs(by)", runs)
 }
 
 /// `handler` of an invoker is the city's number, `number` that of the clip, `weight` 1 where terrain stays.

@@ -26,6 +26,9 @@ pub(super) fn bindings(program: &Program, carried: bool) -> String {
     if parts.combinations {
         text.push('\n');
         text.push_str(&leaves(&program.leaves()));
+        if parts.borders {
+            text.push_str(&leaf_distances(&program.leaves()));
+        }
     }
     text
 }
@@ -90,6 +93,28 @@ pub(super) fn covers(plan: &Plan, lens: u32, pixel: &str) -> String {
     joined(plan, lens, Question::Covers, pixel, " || ")
 }
 
+/// The degree of interest of a place in one lens of a plan, whose border's parameters are `border`.
+pub(super) fn interest(plan: &Plan, lens: u32, border: &str) -> String {
+    let (first, tests) = plan.volumes_of(lens);
+    let distances = (first..).zip(tests).map(|(volume, test)| distance(*test, &volume.to_string(), border));
+    let nearest = distances.reduce(|all, one| format!("min({all}, {one})")).unwrap_or_else(|| "FAR_AWAY".to_owned());
+    format!("degree_of_interest({nearest}, {border}, sight)")
+}
+
+/// How far a place is from a volume by its number, negative inside. What has no distance ends at once.
+fn distance(test: VolumeTest, volume: &str, border: &str) -> String {
+    let shape = format!("shapes[{volume}]");
+    match test {
+        VolumeTest::Members | VolumeTest::Sprite => {
+            let inside = call(Question::Inside, test, volume, "sight");
+            format!("select(FAR_AWAY, -FAR_AWAY, is_inside({inside}))")
+        }
+        VolumeTest::Solid | VolumeTest::SolidSprite => format!("distance_to_solid({shape}, sight)"),
+        VolumeTest::Combined | VolumeTest::CombinedSprite => format!("distance_to_combined({shape}, sight, {border})"),
+        _ => format!("distance_to_shape({shape}, {}, sight, {border})", test.constant()),
+    }
+}
+
 /// For the uber back end: a question to a volume by its number.
 fn by_number(tests: &[VolumeTest], question: Question, place: &str) -> String {
     match tests {
@@ -141,6 +166,31 @@ pub(super) fn leaves(kinds: &[VolumeTest]) -> String {
     let holds = of("leaf_holds(leaf: Leaf, place: Sight) -> bool", "false", &holds);
     let spans = of("span_of_leaf(ray: Ray, s: Shape) -> Span", "EMPTY_SPAN", &span);
     holds.replace("switch kind", "switch leaf.shape.kind") + &spans.replace("switch kind", "switch s.kind")
+}
+
+/// `distance_to_leaf`, for leaves of combinations of these kinds.
+fn leaf_distances(kinds: &[VolumeTest]) -> String {
+    let head = "fn distance_to_leaf(leaf: Leaf, sight: Sight, border: vec4f) -> f32 {\n    switch leaf.shape.kind {\n";
+    let mut text = head.to_owned();
+    for kind in kinds {
+        let answer = match kind {
+            VolumeTest::Solid => "distance_to_solid(leaf.shape, sight)".to_owned(),
+            VolumeTest::Members => "select(FAR_AWAY, -FAR_AWAY, is_chosen(u32(leaf.first), sight.object))".to_owned(),
+            _ => format!("distance_to_shape(leaf.shape, {}, sight, border)", kind.constant()),
+        };
+        let _ = writeln!(text, "        case {}: {{ return {answer}; }}", kind.constant());
+    }
+    text + "        default: { return FAR_AWAY; }\n    }\n}\n\n"
+}
+
+/// `distance_to`, for the uber back end.
+pub(super) fn distance_to(tests: &[VolumeTest]) -> String {
+    let head = "fn distance_to(v: u32, sight: Sight, border: vec4f) -> f32 {\n    switch shapes[v].kind {\n";
+    let mut text = head.to_owned();
+    for test in tests {
+        let _ = writeln!(text, "        case {}: {{ return {}; }}", test.constant(), distance(*test, "v", "border"));
+    }
+    text + "        default: { return FAR_AWAY; }\n    }\n}\n\n"
 }
 
 /// `class_of`, for the uber back end.

@@ -18,7 +18,8 @@ pub mod wgsl;
 pub use carried::LEAST_CARRIED;
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
 pub use plan::{
-    Blend, ClassTest, Clip, MOST_CITIES, Plan, PlanContent, PlanLens, Program, Scope, Step, Uber, VolumeTest,
+    Blend, ClassTest, Clip, MOST_CITIES, Plan, PlanBorder, PlanContent, PlanLens, Program, Scope, Step, Uber,
+    VolumeTest,
 };
 pub use specialised::scope_number;
 pub use uber::{MOST_SLOTS, MOST_VOLUMES, TILE_PX};
@@ -40,6 +41,9 @@ files! {
     BLEND = "lib/blend.wgsl";
     MATERIAL = "lib/material.wgsl";
     CLASS = "lib/class.wgsl";
+    BORDER = "lib/border.wgsl";
+    SOLID_DISTANCE = "lib/solid-distance.wgsl";
+    COMBINED_DISTANCE = "lib/combined-distance.wgsl";
     SIGHT = "lib/sight.wgsl";
     LENS = "lib/lens.wgsl";
     LENS_SPRITE = "lib/lens-sprite.wgsl";
@@ -254,6 +258,9 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.side_sprites, SOLID_SPRITE),
         (parts.combinations, COMBINED),
         (parts.combined_sprites, COMBINED_SPRITE),
+        (parts.borders, BORDER),
+        (parts.borders && parts.solids, SOLID_DISTANCE),
+        (parts.borders && parts.combinations, COMBINED_DISTANCE),
     ];
     files.into_iter().filter(|(is_used, _)| *is_used).map(|(_, file)| file).collect()
 }
@@ -308,8 +315,12 @@ mod tests {
             _ => {}
         };
         match &mut program {
-            Program::Specialised(plan) => plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).for_each(by_shape),
+            Program::Specialised(plan) => {
+                plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).for_each(by_shape);
+                *plan = plan.clone().without_borders();
+            }
             Program::Uber(uber) => {
+                uber.borders = false;
                 uber.tests.iter_mut().for_each(by_shape);
                 uber.tests.sort_unstable();
                 uber.tests.dedup();
@@ -352,6 +363,7 @@ mod tests {
             volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % VolumeTest::ALL.len()]).collect(),
             leaves: LEAVES[seed % 8..].to_vec(),
             outline,
+            border: seed.is_multiple_of(5).then_some(PlanBorder { parameters: 5, dithers: seed.is_multiple_of(2) }),
         };
         let outline = seed.is_multiple_of(2).then_some(3);
         let plan = Plan {
@@ -371,6 +383,8 @@ mod tests {
             },
             leaves: LEAVES[seed % 8..].to_vec(),
             outlines: plan.has_outlines(),
+            borders: plan.has_borders(),
+            dithers: plan.has_borders(),
             blends: plan.has_blends(),
             haze: plan.haze,
             masks: plan.masks,
@@ -404,7 +418,13 @@ mod tests {
 
     #[test]
     fn contents_alone_make_modules_that_are_valid() {
-        let lens = |number| PlanLens { number, volumes: vec![VolumeTest::Sphere], leaves: vec![], outline: None };
+        let lens = |number| PlanLens {
+            number,
+            volumes: vec![VolumeTest::Sphere],
+            leaves: vec![],
+            outline: None,
+            border: None,
+        };
         for contents in [contents_of(1), contents_of(3), contents_of(5)] {
             let plan = Plan { lenses: vec![lens(0), lens(1)], contents, ..Plan::default() };
             let uber = Uber { tests: vec![VolumeTest::Sphere], contents: true, ..Uber::default() };
@@ -447,8 +467,13 @@ mod tests {
 
     #[test]
     fn what_finds_no_room_is_read_where_it_stands() {
-        let lens =
-            |number| PlanLens { number, volumes: VolumeTest::ALL.to_vec(), leaves: LEAVES.to_vec(), outline: None };
+        let lens = |number| PlanLens {
+            number,
+            volumes: VolumeTest::ALL.to_vec(),
+            leaves: LEAVES.to_vec(),
+            outline: None,
+            border: None,
+        };
         let plan = Plan { lenses: (0..9).map(lens).collect(), ..Plan::default() };
         let module = Module::Shade(Program::Specialised(plan));
         for room in [14, LEAST_CARRIED, 31, 1000] {

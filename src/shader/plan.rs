@@ -85,6 +85,17 @@ pub struct PlanLens {
     pub leaves: Vec<VolumeTest>,
     /// Place of its outline's parameters, where it shows one.
     pub outline: Option<u32>,
+    /// Its soft border, if it has one.
+    pub border: Option<PlanBorder>,
+}
+
+/// A soft border (L9).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PlanBorder {
+    /// Place of its parameters.
+    pub parameters: u32,
+    /// Whether what cannot be had by halves is dithered.
+    pub dithers: bool,
 }
 
 /// How it is decided where a place is with regard to a lens volume (S7).
@@ -224,6 +235,16 @@ impl ClassTest {
             Self::Rest => "is_rest",
         }
     }
+
+    /// The function that says how much of it a place with a degree of interest has (`lib/border.wgsl`).
+    pub fn share(self) -> &'static str {
+        match self {
+            Self::Inside => "share_inside",
+            Self::Front => "share_front",
+            Self::Behind => "share_behind",
+            Self::Rest => "share_rest",
+        }
+    }
 }
 
 /// How a channel is laid over what is below (C5).
@@ -294,6 +315,10 @@ pub struct Uber {
     pub leaves: Vec<VolumeTest>,
     /// Whether some of them show their silhouettes.
     pub outlines: bool,
+    /// Whether some of them have soft borders.
+    pub borders: bool,
+    /// Whether what cannot be had by halves is dithered along some of these.
+    pub dithers: bool,
     /// Whether some effects are blended.
     pub blends: bool,
     /// Whether the air shows.
@@ -315,6 +340,7 @@ impl Uber {
             tests: self.tests.clone(),
             leaves: self.leaves.clone(),
             contents: self.contents,
+            borders: self.dithers,
             ..Self::default()
         })
     }
@@ -323,15 +349,9 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        self.lines.then_some(Self {
-            effects,
-            tests,
-            leaves,
-            blends: self.blends,
-            lines: true,
-            contents: self.contents,
-            ..Self::default()
-        })
+        let (borders, dithers, contents) = (self.borders, self.dithers, self.contents);
+        let all = Self { effects, tests, leaves, borders, dithers, contents, ..Self::default() };
+        self.lines.then_some(Self { blends: self.blends, lines: true, ..all })
     }
 
     /// What of it says how things look.
@@ -351,9 +371,13 @@ impl Program {
             Self::Specialised(plan) => (plan.tests().collect(), !plan.lenses.is_empty()),
             Self::Uber(uber) => (uber.tests.clone(), !uber.tests.is_empty()),
         };
-        let (outlines, blends, lines, contents) = match self {
-            Self::Specialised(plan) => (plan.has_outlines(), plan.has_blends(), plan.lines, !plan.contents.is_empty()),
-            Self::Uber(uber) => (uber.outlines, uber.blends, uber.lines, uber.contents),
+        let (outlines, blends, lines, borders) = match self {
+            Self::Specialised(plan) => (plan.has_outlines(), plan.has_blends(), plan.lines, plan.has_borders()),
+            Self::Uber(uber) => (uber.outlines, uber.blends, uber.lines, uber.borders && has_lenses),
+        };
+        let contents = match self {
+            Self::Specialised(plan) => !plan.contents.is_empty(),
+            Self::Uber(uber) => uber.contents,
         };
         Parts {
             lenses: has_lenses,
@@ -365,9 +389,10 @@ impl Program {
             combinations: tests.iter().any(|t| t.has_leaves()),
             combined_sprites: tests.contains(&VolumeTest::CombinedSprite),
             outlines,
-            blends,
+            blends: blends || borders,
             lines,
             contents,
+            borders,
         }
     }
 
@@ -420,6 +445,8 @@ pub struct Parts {
     pub lines: bool,
     /// Contents of lenses.
     pub contents: bool,
+    /// Soft borders of lenses.
+    pub borders: bool,
 }
 
 impl Plan {
@@ -434,6 +461,25 @@ impl Plan {
     /// Whether some lens shows its silhouette.
     pub fn has_outlines(&self) -> bool {
         self.lenses.iter().any(|l| l.outline.is_some())
+    }
+
+    /// Whether some lens fades.
+    pub fn has_borders(&self) -> bool {
+        (0..self.lenses.len() as u32).any(|lens| self.border_of(lens).is_some())
+    }
+
+    /// The soft border of one of its lenses that does something here.
+    pub fn border_of(&self, lens: u32) -> Option<PlanBorder> {
+        let acts = |s: &Step| matches!(s.scope, Scope::Lens(l, _) if l == lens);
+        // What a lens shows fades by dithering alone.
+        let shows = |b: &PlanBorder| b.dithers && self.contents.iter().any(|c| c.lens == lens);
+        self.lenses[lens as usize].border.filter(|b| shows(b) || self.steps.iter().any(acts))
+    }
+
+    /// With lenses that end at once: from where a border is not told.
+    pub fn without_borders(mut self) -> Self {
+        self.lenses.iter_mut().for_each(|lens| lens.border = None);
+        self
     }
 
     /// Whether some effect is a filter.
@@ -484,7 +530,8 @@ impl Plan {
         if steps.is_empty() && self.contents.is_empty() {
             return None;
         }
-        let (lenses, contents) = (self.plain_lenses(), self.contents.clone());
+        let (mut lenses, contents) = (self.plain_lenses(), self.contents.clone());
+        lenses.iter_mut().for_each(|lens| lens.border = lens.border.filter(|b| b.dithers));
         Some(Self { lenses, steps, contents, ..Self::default() })
     }
 
@@ -517,7 +564,8 @@ impl Plan {
     pub fn slots(&self, handlers: &[EffectDefinition]) -> u32 {
         let of_steps = self.steps.iter().map(|s| s.end(&handlers[s.effect as usize]));
         let of_lines = self.lenses.iter().filter_map(|l| l.outline.map(|first| first + OUTLINE_SLOTS));
-        of_steps.chain(of_lines).max().unwrap_or(0)
+        let of_borders = self.lenses.iter().filter_map(|l| l.border.map(|b| b.parameters + 1));
+        of_steps.chain(of_lines).chain(of_borders).max().unwrap_or(0)
     }
 }
 

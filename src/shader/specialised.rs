@@ -79,10 +79,17 @@ impl Writer<'_> {
         }
         for i in 0..lenses.len() {
             let _ = writeln!(text, "    lens_{i}: u32,{}", self.comment(i));
+            if self.plan.border_of(i as u32).is_some() {
+                let _ = writeln!(text, "    interest_{i}: f32,");
+            }
         }
         text.push_str("}\n\nfn classes_at(sight: Sight, part: u32) -> Classes {\n    var classes: Classes;\n");
         for i in 0..lenses.len() {
             let _ = writeln!(text, "    classes.lens_{i} = {};", lens_test::classes(self.plan, i as u32, "sight"));
+            if let Some(border) = self.plan.border_of(i as u32) {
+                let interest = lens_test::interest(self.plan, i as u32, &format!("parameters[{}]", border.parameters));
+                let _ = writeln!(text, "    classes.interest_{i} = {interest};");
+            }
         }
         text.push_str("    return classes;\n}\n\n");
         text
@@ -120,21 +127,42 @@ impl Writer<'_> {
             _ => "color",
         };
         let point = if handler.kind.is_before_color() { "*point" } else { "point" };
-        let mut line = format!("{subject} = {}", Self::call(step, handler, subject, point));
+        let value = Self::call(step, handler, subject, point);
         let mut conditions = Vec::new();
-        if let Scope::Lens(lens, class) = step.scope {
-            conditions.push(format!("{}(classes.lens_{lens})", class.function()));
-        }
+        let mut plus = "";
         if handler.kind == EffectKind::Scene {
             conditions.push("point.surface != NO_SURFACE".to_owned());
             if self.has(EffectKind::Material) {
-                line.push_str(" + point.highlight");
+                plus = " + point.highlight";
             }
         }
+        if let Some(share) = self.share(step) {
+            let laid = match handler.kind {
+                EffectKind::Material => format!("blended_material(1u, {subject}, {value}, share)"),
+                _ => format!("weighed({subject}, {value}, share)"),
+            };
+            let plus = if plus.is_empty() { "" } else { " + point.highlight * share" };
+            conditions.insert(0, "share > 0.0".to_owned());
+            let conditions = conditions.join(" && ");
+            return format!(
+                "    {{\n        let share = {share};\n        if {conditions} {{\n            {subject} = {laid}{plus};\n        }}\n    }}\n"
+            );
+        }
+        if let Scope::Lens(lens, class) = step.scope {
+            conditions.insert(0, format!("{}(classes.lens_{lens})", class.function()));
+        }
+        let line = format!("{subject} = {value}{plus}");
         match conditions.is_empty() {
             true => format!("    {line};\n"),
             false => format!("    if {} {{\n        {line};\n    }}\n", conditions.join(" && ")),
         }
+    }
+
+    /// How much of a step a place has, of a lens that fades.
+    pub(super) fn share(&self, step: &Step) -> Option<String> {
+        let Scope::Lens(lens, class) = step.scope else { return None };
+        self.plan.border_of(lens)?;
+        Some(format!("{}(classes.lens_{lens}, classes.interest_{lens})", class.share()))
     }
 
     fn has(&self, kind: EffectKind) -> bool {

@@ -58,6 +58,10 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
 pub(super) fn classes(uber: &Uber) -> String {
     match uber.tests.is_empty() {
         true => NO_CLASSES.to_owned(),
+        false if uber.borders => {
+            let distances = lens_test::distance_to(&uber.tests);
+            lens_test::class_of(&uber.tests) + &distances + CLASSES + SHARE_OF + SHARE_AT
+        }
         false => lens_test::class_of(&uber.tests) + CLASSES,
     }
 }
@@ -85,8 +89,9 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
         return String::new();
     }
     let (_, type_name) = kinds[0].subject();
+    let share = if fades(uber) { ", share: f32" } else { "" };
     let mut text = format!(
-        "fn invoke_{word}(below: {type_name}, point: Point, by: Invoker) -> {type_name} {{\n    var above = below;\n    switch \
+        "fn invoke_{word}(below: {type_name}, point: Point, by: Invoker{share}) -> {type_name} {{\n    var above = below;\n    switch \
          by.handler {{\n"
     );
     let is_one = |h: &EffectDefinition| kinds.contains(&h.kind) && h.mode == Mode::Local;
@@ -115,8 +120,29 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
         };
         let _ = writeln!(text, "    if by.blend != 0u {{\n        above = {blended};\n    }}");
     }
+    if fades(uber) {
+        let laid = match kinds[0] {
+            EffectKind::Material => "blended_material(1u, below, above, share)",
+            _ => "weighed(below, above, share)",
+        };
+        let _ = writeln!(text, "    if by.border != 0u {{\n        above = {laid};\n    }}");
+    }
     text.push_str("    return above;\n}\n\n");
     text
+}
+
+/// Whether some of the scene's lenses may fade.
+fn fades(uber: &Uber) -> bool {
+    uber.borders && !uber.tests.is_empty()
+}
+
+/// A loop over invokers, where lenses fade.
+pub(super) fn faded(uber: &Uber, text: &str) -> String {
+    if !fades(uber) {
+        return text.to_owned();
+    }
+    text.replace("if runs(by, classes)", "let share = share_at(by, classes);\n        if share > 0.0")
+        .replace("point, by);", "point, by, share);")
 }
 
 /// From the surface to its colour: material, light, the standard style and air, then the styles.
@@ -124,10 +150,10 @@ fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let has = |kind| has(uber, kind, handlers);
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
     if has(EffectKind::Material) {
-        text.push_str(MATERIALS);
+        text.push_str(&faded(uber, MATERIALS));
     }
     if has(EffectKind::Light) {
-        text.push_str(LIGHTS);
+        text.push_str(&faded(uber, LIGHTS));
     }
     let plus = if has(EffectKind::Material) {
         text.push_str("    (*point).highlight = highlights(material, *point);\n");
@@ -155,10 +181,11 @@ fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
             .to_owned();
     }
     let highlight = match has(EffectKind::Material) {
+        true if fades(uber) => "                color += point.highlight * share;\n",
         true => "                color += point.highlight;\n",
         false => "",
     };
-    STYLED.replace("                HIGHLIGHT\n", highlight)
+    faded(uber, STYLED).replace("                HIGHLIGHT\n", highlight)
 }
 
 /// The table, declared.
@@ -177,6 +204,7 @@ struct Invoker {
     blend: u32,                 // 0 replaces
     weight: u32,                // slot of its weight, if blended
     number: u32,                // of a style: 1 = for surfaces alone; of a lens: its bit in the masks
+    border: u32,                // of a lens that fades: the slot after that of its border; 0 else
 }
 
 struct InvokerTable {
@@ -258,6 +286,36 @@ fn runs(by: Invoker, classes: Classes) -> bool {
         case 3u: { return is_behind(all); }
         default: { return is_rest(all); }
     }
+}
+
+";
+
+/// How much of an invoker a place has that has these classes.
+pub(super) const SHARE_OF: &str = "fn share_of(by: Invoker, all: u32, sight: Sight) -> f32 {
+    if by.border == 0u {
+        return 1.0;
+    }
+    let border = parameters[by.border - 1u];
+    var distance = FAR_AWAY;
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        distance = min(distance, distance_to(v, sight, border));
+    }
+    let interest = degree_of_interest(distance, border, sight);
+    switch by.scope {
+        case 1u: { return share_inside(all, interest); }
+        case 2u: { return share_front(all, interest); }
+        case 3u: { return share_behind(all, interest); }
+        default: { return share_rest(all, interest); }
+    }
+}
+
+";
+
+const SHARE_AT: &str = "fn share_at(by: Invoker, classes: Classes) -> f32 {
+    if by.scope == 0u || by.border == 0u {
+        return select(0.0, 1.0, runs(by, classes));
+    }
+    return share_of(by, classes_of(by, classes), classes.sight);
 }
 
 ";

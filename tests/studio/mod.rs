@@ -76,6 +76,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         content: None,
         body: LensBody::None,
         sprite: None,
+        border: None,
     }
 }
 

@@ -396,6 +396,14 @@ pub const LENS: Table = Table {
             "Has the lens tested by a volumetric depth sprite of it.",
             "{ resolution = 512 }",
         ),
+        key(
+            "border",
+            Kind::Table(&BORDER),
+            "none: it ends at once",
+            "",
+            "Has what the lens does end gradually.",
+            "{ width = 20.0 }",
+        ),
     ],
 };
 
@@ -504,6 +512,42 @@ pub const SPRITE: Table = Table {
     )],
 };
 
+/// `border` of a lens.
+pub const BORDER: Table = Table {
+    name: "border",
+    doc: "Has what a lens does fade over its border, half of the width inside of the volume and half outside. Of what is `inside`, \
+          the degree of interest w(d) = t²(3−2t), t = ½ − d/width clamped to 0..1, d the distance from the lens' surface, negative inside; \
+          of what is in front, behind and the rest, 1 − w. Distances are exact to rounding but for combinations (where parts meet they are \
+          the larger or smaller of theirs) and solids whose bodies cross. Flat lenses fade across their outline, not at their plane; thematic ones \
+          have no border. Masks and statistics go by the volume itself.",
+    keys: &[
+        key(
+            "width",
+            Kind::Number { min: 0.0, max: 100_000.0 },
+            "",
+            "metres or pixels",
+            "From where all of it is seen to where nothing is; 0 ends at once.",
+            "20.0",
+        ),
+        key(
+            "unit",
+            Kind::Word { now: &["m", "px"], later: &[] },
+            "\"m\"",
+            "",
+            "Of the width: metres, or pixels at the distance of what is shown.",
+            "\"px\"",
+        ),
+        key(
+            "discrete",
+            Kind::Word { now: &["threshold", "dither"], later: &[] },
+            "\"threshold\"",
+            "",
+            "How what cannot be had by halves ends, like the eraser: at the surface of the volume, or pixel by pixel; with 16 samples and more that is smooth.",
+            "\"dither\"",
+        ),
+    ],
+};
+
 /// `[figure]`.
 pub const FIGURE: Table = Table {
     name: "figure",
@@ -598,6 +642,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("attached_to of a lens", &ATTACHED_TO),
     ("content of a lens", &CONTENT),
     ("sprite of a lens", &SPRITE),
+    ("border of a lens", &BORDER),
     ("[figure]", &FIGURE),
 ];
 

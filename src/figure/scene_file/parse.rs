@@ -16,7 +16,8 @@ use crate::{
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Class, Content, Copied, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, Placement, effect,
+        Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
+        Parameter, Placement, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -202,6 +203,14 @@ impl<'o> SceneReader<'o> {
         let sprite = fields
             .node("sprite")
             .map(|node| self.checker.fields(node, &keys::SPRITE, &[], fields.place.within("sprite", node.line)));
+        let border = fields
+            .node("border")
+            .map(|node| self.checker.fields(node, &keys::BORDER, &[], fields.place.within("border", node.line)));
+        if sprite.is_some() && border.is_some() {
+            let message =
+                "is given together with sprite: what is tested by a depth sprite ends at once; leave out one of them";
+            self.checker.note(&fields.place, "border", fields.line("border"), message);
+        }
         Lens {
             name: fields.text("name").map_or_else(|| format!("lens-{index}"), str::to_owned),
             kind: if fields.text("kind") == Some("content") { LensKind::Content } else { LensKind::Color },
@@ -213,6 +222,11 @@ impl<'o> SceneReader<'o> {
             content,
             body: if fields.text("body") == Some("none") { LensBody::None } else { LensBody::Outline },
             sprite: sprite.map(|s| LensSprite { resolution: s.integer("resolution") }),
+            border: border.map(|b| Border {
+                width: b.number("width").unwrap_or(0.0),
+                unit: if b.text("unit") == Some("px") { BorderUnit::Pixels } else { BorderUnit::Metres },
+                discrete: if b.text("discrete") == Some("dither") { Discrete::Dither } else { Discrete::Threshold },
+            }),
         }
     }
 

@@ -5,8 +5,8 @@ use super::*;
 use crate::{
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Class, Content, Copied, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, Placement,
-        chosen::Choice,
+        Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
+        Parameter, Placement, chosen::Choice,
     },
     scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun},
     shader::{Blend, Clip},
@@ -333,6 +333,10 @@ fn every_mistake_in_a_lens_is_named() {
             "effects.1: \"thematic\" is a second scene style beside \"thematic\"",
         ),
         ("sprite = { resolution = 4 }", "sprite.resolution: must be a whole number 16 to 16384, is 4"),
+        ("border = {}", "border.width: is missing: From where"),
+        ("border = { width = -1 }", "border.width: must be a number 0 to 100000, is -1"),
+        ("border = { width = 1, unit = \"cm\" }", "border.unit: must be \"m\" or \"px\", is \"cm\""),
+        ("sprite = {}\nborder = { width = 1 }", "border: is given together with sprite"),
         (
             "[[lens]]\nname = \"lens-0\"\nshape = { kind = \"sphere\", center = [1, 2, 3], radius = 60.0 }",
             "[lens.1] name: \"lens-0\" is the name of lens.0 already",
@@ -537,6 +541,17 @@ fn effects() -> impl Strategy<Value = EffectUse> {
     (used, laid).prop_map(lay)
 }
 
+/// A sprite or a border, or neither.
+fn ends() -> impl Strategy<Value = (Option<LensSprite>, Option<Border>)> {
+    let sprite = prop::option::of(16..16_384u32).prop_map(|resolution| (Some(LensSprite { resolution }), None));
+    let border = (0.0..1e5, any::<bool>(), any::<bool>()).prop_map(|(width, in_pixels, dithers)| {
+        let unit = if in_pixels { BorderUnit::Pixels } else { BorderUnit::Metres };
+        let discrete = if dithers { Discrete::Dither } else { Discrete::Threshold };
+        (None, Some(Border { width, unit, discrete }))
+    });
+    prop_oneof![Just((None, None)), sprite, border]
+}
+
 prop_compose! {
     fn contents()(files in prop::collection::vec("[ -~äß]{1,9}", 0..3), tenths in prop::option::of(0..99u8),
         class in prop::sample::select(vec![Class::Inside, Class::Front, Class::Behind, Class::Rest]),
@@ -554,12 +569,11 @@ prop_compose! {
 prop_compose! {
     fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), outline in any::<bool>(),
-        sprite in prop::option::of(prop::option::of(16..16_384u32)), placement in placements(),
-        content in prop::option::of(contents())) -> Lens {
-        let sprite = sprite.map(|resolution| LensSprite { resolution });
+        ends in ends(), placement in placements(), content in prop::option::of(contents())) -> Lens {
+        let (sprite, border) = ends;
         let body = if outline { LensBody::Outline } else { LensBody::None };
         let kind = if content.is_some() && outline { LensKind::Content } else { LensKind::Color };
-        Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, content, body, sprite }
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, content, body, sprite, border }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::{
     },
     geom::{Shape, shape::FlatFigure},
     lens::{
-        Class, Content, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
+        BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
         color::{parse_hex, to_hex},
     },
     scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun},
@@ -144,6 +144,11 @@ impl Toml {
         if let Some(sprite) = lens.sprite {
             let resolution = sprite.resolution.map(|resolution| format!(" resolution = {resolution} "));
             self.key("sprite", &format!("{{{}}}", resolution.unwrap_or_default()));
+        }
+        if let Some(border) = lens.border {
+            let unit = if border.unit == BorderUnit::Pixels { ", unit = \"px\"" } else { "" };
+            let discrete = if border.discrete == Discrete::Dither { ", discrete = \"dither\"" } else { "" };
+            self.key("border", &format!("{{ width = {}{unit}{discrete} }}", number(border.width)));
         }
     }
 }
