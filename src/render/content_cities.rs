@@ -180,7 +180,8 @@ impl SceneContents {
             let room = reaches.fold(Aabb::EMPTY, |all, v| all.union(v.bounds));
             let is_inside = shown.class == Class::Inside && !room.is_empty();
             let all = self.wanted.iter().find(|w| w.number == shown.city).map_or(Aabb::EMPTY, |w| w.bounds(own));
-            if is_inside { room } else { all }
+            let part = Aabb { min: all.min.max(room.min), max: all.max.min(room.max) };
+            if is_inside { part } else { all }
         };
         self.uses.iter().fold(Aabb::EMPTY, |all, shown| all.union(of(shown)))
     }
