@@ -1,7 +1,8 @@
-// How far a place is from a solid (L9). Twin: `veduta::geom::shape::solid::Near`, which says how.
+// How far a place is from a solid (L9); where that is more than its table is made for, not less than that. Twin:
+// `veduta::geom::shape::solid::Near`, which says how.
 //
 // From `size_y` on: low x, y, z of the grid, cells per metre (f32); cells in x, y and z, fours of words that the next list
-// takes; fours that the numbers of faces take; where the faces of each cell begin; their numbers; the corners of all faces.
+// takes; fours that the numbers of faces take, how far the table goes (f32, metres); where the faces of each cell begin; their numbers; the corners of all faces.
 
 fn distance_to_face(p: vec3f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
     let ab = b - a;
@@ -31,7 +32,10 @@ fn distance_to_solid(s: Shape, sight: Sight) -> f32 {
     let grid = bitcast<vec4f>(solids[first]);
     let sizes = solids[first + 1u];
     let cell = floor((o - grid.xyz) * grid.w);
-    var distance = FAR_AWAY;
+    let reach = bitcast<f32>(solids[first + 2u].y);
+    let half = 0.5 * vec3f(sizes.xyz) / grid.w;
+    let beside = max(abs(o - grid.xyz - half) - half, vec3f(0.0));
+    var distance = reach + length(beside);
     if all(cell >= vec3f(0.0)) && all(cell < vec3f(sizes.xyz)) {
         let at = vec3u(cell);
         let number = (at.z * sizes.y + at.y) * sizes.x + at.x;

@@ -21,7 +21,7 @@ pub use classify::classify;
 pub use content::{Content, Copied};
 pub use focus::Focus;
 
-use crate::shader::Blend;
+use crate::{geom::Shape, shader::Blend};
 
 /// A lens (L1).
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +54,19 @@ impl Lens {
     /// Its border, if it has a width.
     pub fn soft_border(&self) -> Option<Border> {
         self.border.filter(|b| b.width > 0.0)
+    }
+
+    /// How its body is drawn: thematic lenses have no surface, and a flat one has no silhouette that a ray comes close to; they
+    /// show a line instead.
+    pub fn drawn_body(&self) -> LensBody {
+        let is_in = |is_one: &dyn Fn(&Focus) -> bool| self.shapes.iter().any(|s| s.any(is_one));
+        let is_thematic = || is_in(&|f| matches!(f, Focus::Thematic(_)));
+        let is_flat = || is_in(&|f| matches!(f, Focus::Shape(Shape::Flat { .. })));
+        match self.body {
+            LensBody::Shell if is_thematic() => LensBody::Outline,
+            LensBody::Halo if self.sprite.is_some() || is_thematic() || is_flat() => LensBody::Outline,
+            body => body,
+        }
     }
 }
 
@@ -114,6 +127,21 @@ pub enum LensBody {
     /// A line around its silhouette, in the lens colour.
     #[default]
     Outline,
+    /// Tinted glass, with a line around it.
+    Shell,
+    /// A glow around its silhouette.
+    Halo,
+}
+
+impl LensBody {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 4] =
+        [("outline", Self::Outline), ("shell", Self::Shell), ("halo", Self::Halo), ("none", Self::None)];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, body)| *body == self).map_or("none", |(word, _)| word)
+    }
 }
 
 /// One use of an effect.

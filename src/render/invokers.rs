@@ -5,7 +5,7 @@ use crate::{
     shader::{Blend, EffectDefinition, EffectKind, Plan, PlanLens, Scope, Step, TILE_PX, scope_number},
 };
 
-/// Sections of the lists of a tile, as `shader::uber` numbers them: materials, lights, styles, outlines, masks.
+/// Sections of the lists of a tile, as `shader::uber` numbers them: materials, lights, styles, bodies, masks.
 const SECTIONS: usize = 5;
 
 /// An invoker of a section, and the lens of the plan that it belongs to; none: the context.
@@ -81,7 +81,8 @@ impl Invokers {
                 let invoker = layout::Invoker {
                     first_volume: volumes[i as usize],
                     volumes: lens.volumes.len() as u32,
-                    parameters: lens.outline.unwrap_or(0),
+                    handler: lens.body.map_or(0, |body| body.kind.number()),
+                    parameters: lens.body.map_or(0, |body| body.parameters),
                     number: lens.number,
                     ..layout::Invoker::default()
                 };
@@ -89,9 +90,9 @@ impl Invokers {
             })
             .collect()
         };
-        let outlines = of_lenses(&|lens| lens.outline.is_some());
+        let bodies = of_lenses(&|lens| lens.body.is_some());
         let masks = of_lenses(&|_| plan.masks);
-        [materials, lights, styles, outlines, masks]
+        [materials, lights, styles, bodies, masks]
     }
 
     /// The table as `shader::uber` declares it, for a picture of this size.

@@ -251,8 +251,7 @@ mod tests {
 
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
-        let lens =
-            PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], outline: None, border: None };
+        let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], body: None, border: None };
         let content = crate::shader::PlanContent {
             lens: 0,
             class: crate::shader::ClassTest::Inside,

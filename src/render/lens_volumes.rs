@@ -56,7 +56,7 @@ pub(super) fn volumes_of(
         for (j, focus) in lens.shapes.iter().enumerate() {
             let bodies = match bodies_of(focus, city, &place, solids) {
                 Ok(mut bodies) => {
-                    if lens.soft_border().is_some() {
+                    if lens.soft_border().is_some() || has_surface(lens.drawn_body()) {
                         let leaves = bodies.iter_mut().flat_map(Body::leaves_mut);
                         leaves.for_each(|leaf| tell_distance(&mut leaf.leaf, solids));
                     }
@@ -105,7 +105,7 @@ fn volume_of(number: u32, lens: &Lens, body: Body) -> LensVolume {
         bounds: body.bounds(),
         body,
         everywhere: lens.classes().any(|class| class == Class::Rest),
-        has_outline: lens.body == LensBody::Outline,
+        drawn: lens.drawn_body(),
         sprite: lens.sprite,
         asks_sides: lens.classes().any(|class| class != Class::Inside),
         border: lens.soft_border(),
@@ -180,8 +180,8 @@ impl LensVolumes {
     /// Gives every solid its place in the table of all of them, which is made anew where `before` does not hold just these.
     pub fn place_solids(&mut self, before: &Arc<SolidTable>) -> Result<Arc<SolidTable>, String> {
         let solids = || {
-            let leaves = self.volumes.iter().flat_map(|v| v.body.leaves().map(|leaf| (v.border, &leaf.leaf)));
-            leaves.filter_map(|(border, leaf)| solid_of(leaf).map(|solid| (solid, asked_for(border, solid))))
+            let leaves = self.volumes.iter().flat_map(|v| v.body.leaves().map(move |leaf| (v, &leaf.leaf)));
+            leaves.filter_map(|(volume, leaf)| solid_of(leaf).map(|solid| (solid, asked_for(volume, solid))))
         };
         let table = match before.holds(solids()) {
             true => before.clone(),
@@ -198,14 +198,25 @@ impl LensVolumes {
     }
 }
 
-/// How far from a solid a border asks for its distance, metres.
-fn asked_for(border: Option<Border>, solid: &Solid) -> f64 {
+/// How far from a solid its distance is asked for, metres: by a border, or where its surface looks to.
+fn asked_for(volume: &LensVolume, solid: &Solid) -> f64 {
     let widest = solid::widest_reach(&solid.bounds());
-    match border {
+    let border = match volume.border {
         None => 0.0,
-        Some(Border { unit: BorderUnit::Metres, width, .. }) => solid::rounded_reach(0.5 * width),
-        Some(_) => solid::rounded_reach(widest),
-    }
+        Some(Border { unit: BorderUnit::Metres, width, .. }) => 0.5 * width,
+        Some(_) => widest,
+    };
+    let body = match volume.drawn {
+        LensBody::None | LensBody::Outline => 0.0,
+        LensBody::Shell => 0.05 * widest,
+        LensBody::Halo => widest,
+    };
+    solid::rounded_reach(border.max(body))
+}
+
+/// Whether a body asks how far away it is.
+fn has_surface(body: LensBody) -> bool {
+    matches!(body, LensBody::Shell | LensBody::Halo)
 }
 
 fn solid_of(leaf: &Leaf) -> Option<&Arc<Solid>> {

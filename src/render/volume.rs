@@ -4,12 +4,13 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::{
     geom::{Aabb, Volume},
-    lens::{Border, LensSprite},
+    lens::{Border, LensBody, LensSprite},
     render::{
         body::{Body, Leaf, PlacedLeaf},
         eye::PictureTile,
         flat, layout,
         octagon::Octagon,
+        operations::HALO_PX,
     },
     shader::VolumeTest,
     view::View,
@@ -31,8 +32,8 @@ pub struct LensVolume {
     pub bounds: Aabb,
     /// Whether its lens acts where rays miss it (class *rest*): then all of the picture is its business.
     pub everywhere: bool,
-    /// Whether a line is drawn around its silhouette.
-    pub has_outline: bool,
+    /// How its lens' body is drawn.
+    pub drawn: LensBody,
     /// The sprite that it is tested by in the picture, if it is.
     pub sprite: Option<LensSprite>,
     /// Whether its lens acts on other classes than *inside*.
@@ -44,7 +45,7 @@ pub struct LensVolume {
 impl LensVolume {
     /// How it is tested in the picture; `masks`: all classes are asked for.
     pub fn test(&self, masks: bool) -> VolumeTest {
-        let with_sides = masks || self.asks_sides || self.has_outline || self.sprite.is_some();
+        let with_sides = masks || self.asks_sides || self.drawn != LensBody::None || self.sprite.is_some();
         match self.body.test() {
             VolumeTest::Members => VolumeTest::Members,
             VolumeTest::Solid if with_sides => VolumeTest::SolidSprite,
@@ -91,7 +92,11 @@ impl LensVolume {
         if self.everywhere {
             return Some(whole);
         }
-        let margin = if self.has_outline || self.sprite.is_some() { WIDE_MARGIN_PX } else { MARGIN_PX };
+        let margin = match self.drawn {
+            LensBody::Halo => HALO_PX.ceil() as i32 + MARGIN_PX,
+            LensBody::None if self.sprite.is_none() => MARGIN_PX,
+            _ => WIDE_MARGIN_PX,
+        };
         if let Body::One(PlacedLeaf { leaf: Leaf::Volume(Volume::Flat(flat)), .. }) = &self.body {
             if self.border.is_some() {
                 // It fades in its plane, however that is seen.
@@ -227,7 +232,7 @@ mod tests {
                 bounds,
                 body: Body::One(Leaf::Volume(volume.clone()).into()),
                 everywhere: false,
-                has_outline: false,
+                drawn: LensBody::None,
                 sprite: None,
                 asks_sides: false,
                 border: None,

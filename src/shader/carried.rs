@@ -105,8 +105,8 @@ fn slots_read(plan: &Plan, handlers: &[EffectDefinition]) -> Vec<(u32, usize)> {
         }
         slots.extend(step.weight(handler).map(|slot| (slot, 1)));
     }
-    let lines = plan.lenses.iter().filter_map(|l| l.outline);
-    slots.extend(lines.flat_map(|first| [(first, 4), (first + 1, 1)]));
+    let bodies = plan.lenses.iter().filter_map(|l| l.body);
+    slots.extend(bodies.flat_map(|body| [(body.parameters, 4), (body.parameters + 1, 1)]));
     let borders = (0..plan.lenses.len() as u32).filter_map(|lens| plan.border_of(lens));
     slots.extend(borders.map(|border| (border.parameters, 4)));
     slots

@@ -26,7 +26,7 @@ pub(super) fn bindings(program: &Program, carried: bool) -> String {
     if parts.combinations {
         text.push('\n');
         text.push_str(&leaves(&program.leaves()));
-        if parts.borders {
+        if parts.distances {
             text.push_str(&leaf_distances(&program.leaves()));
         }
     }
@@ -95,10 +95,42 @@ pub(super) fn covers(plan: &Plan, lens: u32, pixel: &str) -> String {
 
 /// The degree of interest of a place in one lens of a plan, whose border's parameters are `border`.
 pub(super) fn interest(plan: &Plan, lens: u32, border: &str) -> String {
+    format!("degree_of_interest({}, {border}, sight)", distance_of(plan, lens, border))
+}
+
+/// How far a place is from one lens of a plan.
+pub(super) fn distance_of(plan: &Plan, lens: u32, border: &str) -> String {
     let (first, tests) = plan.volumes_of(lens);
     let distances = (first..).zip(tests).map(|(volume, test)| distance(*test, &volume.to_string(), border));
-    let nearest = distances.reduce(|all, one| format!("min({all}, {one})")).unwrap_or_else(|| "FAR_AWAY".to_owned());
-    format!("degree_of_interest({nearest}, {border}, sight)")
+    distances.reduce(|all, one| format!("min({all}, {one})")).unwrap_or_else(|| "FAR_AWAY".to_owned())
+}
+
+/// Where a ray meets one lens of a plan first and last.
+pub(super) fn ends_of(plan: &Plan, lens: u32) -> String {
+    let (first, tests) = plan.volumes_of(lens);
+    let spans = (first..).zip(tests).map(|(volume, test)| span(*test, &volume.to_string()));
+    spans.reduce(|all, one| format!("with_span({all}, {one})")).unwrap_or_else(|| "EMPTY_SPAN".to_owned())
+}
+
+/// Where a ray meets a volume by its number first and last.
+fn span(test: VolumeTest, volume: &str) -> String {
+    match test {
+        VolumeTest::Members | VolumeTest::Solid | VolumeTest::Combined => "EMPTY_SPAN".to_owned(),
+        VolumeTest::Sprite | VolumeTest::SolidSprite | VolumeTest::CombinedSprite => {
+            format!("span_in_sprite(sprite_places[{volume}], pixel)")
+        }
+        _ => format!("span_of_shape(ray, shapes[{volume}], {})", test.constant()),
+    }
+}
+
+/// `ends_of_volume`, for the uber back end.
+pub(super) fn ends_of_volume(tests: &[VolumeTest]) -> String {
+    let head = "fn ends_of_volume(v: u32, pixel: vec2i, ray: Ray) -> Span {\n    switch shapes[v].kind {\n";
+    let mut text = head.to_owned();
+    for test in tests {
+        let _ = writeln!(text, "        case {}: {{ return {}; }}", test.constant(), span(*test, "v"));
+    }
+    text + "        default: { return EMPTY_SPAN; }\n    }\n}\n\n"
 }
 
 /// How far a place is from a volume by its number, negative inside. What has no distance ends at once.

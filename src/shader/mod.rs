@@ -18,8 +18,8 @@ pub mod wgsl;
 pub use carried::LEAST_CARRIED;
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
 pub use plan::{
-    Blend, ClassTest, Clip, MOST_CITIES, Plan, PlanBorder, PlanContent, PlanLens, Program, Scope, Step, Uber,
-    VolumeTest,
+    Blend, BodyKind, ClassTest, Clip, MOST_CITIES, Plan, PlanBody, PlanBorder, PlanContent, PlanLens, Program, Scope,
+    Step, Uber, VolumeTest,
 };
 pub use specialised::scope_number;
 pub use uber::{MOST_SLOTS, MOST_VOLUMES, TILE_PX};
@@ -42,6 +42,7 @@ files! {
     MATERIAL = "lib/material.wgsl";
     CLASS = "lib/class.wgsl";
     BORDER = "lib/border.wgsl";
+    DISTANCE = "lib/distance.wgsl";
     SOLID_DISTANCE = "lib/solid-distance.wgsl";
     COMBINED_DISTANCE = "lib/combined-distance.wgsl";
     SIGHT = "lib/sight.wgsl";
@@ -64,6 +65,10 @@ files! {
     CUT = "lib/cut.wgsl";
     OUTLINE = "lib/outline.wgsl";
     SILHOUETTE = "lib/silhouette.wgsl";
+    GLASS = "lib/glass.wgsl";
+    SHELL = "lib/shell.wgsl";
+    SHELL_SPRITE = "lib/shell-sprite.wgsl";
+    HALO = "lib/halo.wgsl";
     FILTERED = "lib/filter.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
     SHADOW = "pass/shadow.wgsl";
@@ -229,8 +234,10 @@ impl Module {
         let optional = [
             (parts.blends || materials, BLEND),
             (materials, MATERIAL),
-            (parts.outlines, OUTLINE),
-            (parts.outlines && parts.members, MEMBER_OUTLINE),
+            (parts.bodies, OUTLINE),
+            (parts.bodies && parts.members, MEMBER_OUTLINE),
+            (parts.shells, GLASS),
+            (parts.shells && parts.sprites, SHELL_SPRITE),
             (filters, FILTERED),
             (parts.lines, LINE),
         ];
@@ -259,8 +266,9 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.combinations, COMBINED),
         (parts.combined_sprites, COMBINED_SPRITE),
         (parts.borders, BORDER),
-        (parts.borders && parts.solids, SOLID_DISTANCE),
-        (parts.borders && parts.combinations, COMBINED_DISTANCE),
+        (parts.distances, DISTANCE),
+        (parts.distances && parts.solids, SOLID_DISTANCE),
+        (parts.distances && parts.combinations, COMBINED_DISTANCE),
     ];
     files.into_iter().filter(|(is_used, _)| *is_used).map(|(_, file)| file).collect()
 }
@@ -348,7 +356,7 @@ mod tests {
     }
 
     /// A scene of the context and two lenses whose steps are these effects, in order; `seed` chooses classes, blends,
-    /// outlines and masks. The modules that both back ends need for it.
+    /// bodies and masks. The modules that both back ends need for it.
     fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         let scopes: Vec<Scope> = std::iter::once(Scope::Everywhere)
             .chain(ClassTest::ALL.into_iter().flat_map(|c| [Scope::Lens(0, c), Scope::Lens(1, c)]))
@@ -358,16 +366,17 @@ mod tests {
             let blend = (i + seed).is_multiple_of(3).then(|| Blend::ALL[(i + seed) % 6]);
             steps.push(step(effect, scopes[(seed + 4 * i) % scopes.len()], blend));
         }
-        let lens = |number, volumes: &[usize], outline| PlanLens {
+        let lens = |number, volumes: &[usize], body| PlanLens {
             number,
             volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % VolumeTest::ALL.len()]).collect(),
             leaves: LEAVES[seed % 8..].to_vec(),
-            outline,
+            body,
             border: seed.is_multiple_of(5).then_some(PlanBorder { parameters: 5, dithers: seed.is_multiple_of(2) }),
         };
-        let outline = seed.is_multiple_of(2).then_some(3);
+        let kind = [BodyKind::Outline, BodyKind::Shell, BodyKind::Halo][seed / 2 % 3];
+        let body = seed.is_multiple_of(2).then_some(PlanBody { kind, parameters: 3 });
         let plan = Plan {
-            lenses: vec![lens(0, &[0], None), lens(40, &[1, 2], outline)],
+            lenses: vec![lens(0, &[0], None), lens(40, &[1, 2], body)],
             lines: effects.iter().any(|&e| handlers()[e as usize].lines),
             steps,
             haze: seed.is_multiple_of(5),
@@ -382,7 +391,7 @@ mod tests {
                 tests
             },
             leaves: LEAVES[seed % 8..].to_vec(),
-            outlines: plan.has_outlines(),
+            bodies: plan.bodies(),
             borders: plan.has_borders(),
             dithers: plan.has_borders(),
             blends: plan.has_blends(),
@@ -418,13 +427,8 @@ mod tests {
 
     #[test]
     fn contents_alone_make_modules_that_are_valid() {
-        let lens = |number| PlanLens {
-            number,
-            volumes: vec![VolumeTest::Sphere],
-            leaves: vec![],
-            outline: None,
-            border: None,
-        };
+        let lens =
+            |number| PlanLens { number, volumes: vec![VolumeTest::Sphere], leaves: vec![], body: None, border: None };
         for contents in [contents_of(1), contents_of(3), contents_of(5)] {
             let plan = Plan { lenses: vec![lens(0), lens(1)], contents, ..Plan::default() };
             let uber = Uber { tests: vec![VolumeTest::Sphere], contents: true, ..Uber::default() };
@@ -471,7 +475,7 @@ mod tests {
             number,
             volumes: VolumeTest::ALL.to_vec(),
             leaves: LEAVES.to_vec(),
-            outline: None,
+            body: None,
             border: None,
         };
         let plan = Plan { lenses: (0..9).map(lens).collect(), ..Plan::default() };

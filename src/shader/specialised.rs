@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    SILHOUETTE,
+    HALO, SHELL, SILHOUETTE,
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
-    plan::{ClassTest, Plan, Program, Scope, Step},
+    plan::{BodyKind, ClassTest, Plan, PlanBody, Program, Scope, Step},
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`. `names` of the plan's lenses
@@ -216,30 +216,64 @@ impl Writer<'_> {
         }
     }
 
-    /// The lenses' silhouettes, and for `lib/outline.wgsl` which lens covers a pixel.
+    /// The lenses' bodies, and for these which lens covers a pixel, where a ray meets it, and how far a place is from it.
     fn outlines(&self) -> String {
         let mut text = String::new();
-        for i in (0..self.plan.lenses.len()).filter(|&i| self.plan.lenses[i].outline.is_some()) {
+        let bodies: Vec<(usize, PlanBody)> =
+            self.plan.lenses.iter().enumerate().filter_map(|(i, l)| l.body.map(|body| (i, body))).collect();
+        // Each its own: a compiler takes its time over one that asks for the lens.
+        let mut add = |i: usize, source: &str, name: &str| {
+            let mut own = source.to_owned();
+            for question in ["covers", "distance", "ends", "normal"] {
+                own = own.replace(&format!("lens_{question}(lens, "), &format!("lens_{i}_{question}("));
+                own = own.replace(&format!("lens_{question}(lens: u32, "), &format!("lens_{i}_{question}("));
+            }
+            let _ = writeln!(text, "{}", own.replace(&format!("fn {name}(lens: u32, "), &format!("fn {name}_{i}(")));
+        };
+        for (i, body) in &bodies {
+            let (i, kind) = (*i, body.kind);
             let covers = lens_test::covers(self.plan, i as u32, "pixel");
-            let _ = writeln!(text, "fn lens_{i}_covers(pixel: vec2i) -> bool {{\n    return {covers};\n}}\n");
-            // Each its own: a compiler takes its time over one that asks for the lens.
-            let own = SILHOUETTE.1.replace("lens_covers(lens, ", &format!("lens_{i}_covers("));
-            let _ = writeln!(text, "{}", own.replace("silhouette(lens: u32, ", &format!("silhouette_{i}(")));
+            add(i, &format!("fn lens_covers(lens: u32, pixel: vec2i) -> bool {{\n    return {covers};\n}}\n"), "");
+            if kind.has_outline() {
+                add(i, SILHOUETTE.1, "silhouette");
+            }
+            if kind != BodyKind::Outline {
+                let distance = lens_test::distance_of(self.plan, i as u32, "vec4f(0.0)");
+                add(
+                    i,
+                    &format!("fn lens_distance(lens: u32, sight: Sight) -> f32 {{\n    return {distance};\n}}\n"),
+                    "",
+                );
+            }
+            if kind == BodyKind::Shell {
+                let ends = lens_test::ends_of(self.plan, i as u32);
+                let head = "fn lens_ends(lens: u32, pixel: vec2i, ray: Ray) -> Span {";
+                add(i, &format!("{head}\n    return {ends};\n}}\n"), "");
+                add(i, SHELL.1, "shell");
+            }
+            if kind == BodyKind::Halo {
+                add(i, HALO.1, "halo");
+            }
         }
         text.push_str("fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n");
-        let lines: Vec<(usize, u32)> =
-            self.plan.lenses.iter().enumerate().filter_map(|(i, l)| l.outline.map(|line| (i, line))).collect();
-        if lines.is_empty() && !self.plan.lines {
+        if bodies.is_empty() && !self.plan.lines {
             text.push_str("    return start;\n}\n\n");
             return text;
         }
         text.push_str(if self.plan.lines { LINED } else { "    var paint = start;\n" });
-        for (i, line) in lines {
-            let _ = writeln!(
-                text,
-                "    paint = outlined(paint, silhouette_{i}(pixel, parameters[{}].x), parameters[{line}]);",
-                line + 1
-            );
+        for (i, PlanBody { kind, parameters }) in bodies {
+            let (color, width) = (format!("parameters[{parameters}]"), format!("parameters[{}].x", parameters + 1));
+            match kind {
+                BodyKind::Halo => {
+                    let _ = writeln!(text, "    paint = halo_{i}(paint, pixel, {color}, {width});");
+                    continue;
+                }
+                BodyKind::Shell => {
+                    let _ = writeln!(text, "    paint = shell_{i}(paint, pixel, {color});");
+                }
+                BodyKind::Outline => {}
+            }
+            let _ = writeln!(text, "    paint = outlined(paint, silhouette_{i}(pixel, {width}), {color});");
         }
         text.push_str("    return paint;\n}\n\n");
         text

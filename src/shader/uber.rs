@@ -4,10 +4,10 @@
 use std::{fmt::Write as _, sync::LazyLock};
 
 use crate::shader::{
-    SILHOUETTE,
+    HALO, SHELL, SILHOUETTE,
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
-    plan::{Program, Uber},
+    plan::{BodyKind, Program, Uber},
     specialised::{LINED, MASKS, ONLY_SHOWN},
 };
 
@@ -38,13 +38,26 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post, EffectKind::Filter], handlers));
     text.push_str(&shade(uber, handlers));
     text.push_str(&styled(uber, handlers));
-    if uber.outlines {
-        text.push_str(&lens_test::volume_covers(&uber.tests));
+    let parts = Program::Uber(uber.clone()).has();
+    if parts.bodies {
+        text.push_str(&(lens_test::volume_covers(&uber.tests) + LENS_COVERS));
+    }
+    if parts.outlines {
         let _ = writeln!(text, "{}", SILHOUETTE.1);
     }
-    let outlines = if uber.outlines { OUTLINES } else { NO_OUTLINES };
+    if parts.shells || parts.halos {
+        text.push_str(LENS_DISTANCE);
+    }
+    if parts.shells {
+        text.push_str(&lens_test::ends_of_volume(&uber.tests));
+        let _ = writeln!(text, "{LENS_ENDS}{}", SHELL.1);
+    }
+    if parts.halos {
+        let _ = writeln!(text, "{}", HALO.1);
+    }
+    let outlines = if parts.bodies { outlines_of(&uber.bodies) } else { NO_OUTLINES.to_owned() };
     let plain = "    var paint = start;\n";
-    text.push_str(&if uber.lines { outlines.replace(plain, LINED) } else { outlines.to_owned() });
+    text.push_str(&if uber.lines { outlines.replace(plain, LINED) } else { outlines });
     text.push_str("fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n");
     if uber.masks && !uber.tests.is_empty() {
         text.push_str(ONLY_SHOWN);
@@ -58,11 +71,13 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
 pub(super) fn classes(uber: &Uber) -> String {
     match uber.tests.is_empty() {
         true => NO_CLASSES.to_owned(),
-        false if uber.borders => {
-            let distances = lens_test::distance_to(&uber.tests);
-            lens_test::class_of(&uber.tests) + &distances + CLASSES + SHARE_OF + SHARE_AT
+        false => {
+            let tests = &uber.tests;
+            let has_distances = Program::Uber(uber.clone()).has().distances;
+            let distances = if has_distances { lens_test::distance_to(tests) } else { String::new() };
+            let shares = if uber.borders { [SHARE_OF, SHARE_AT].concat() } else { String::new() };
+            lens_test::class_of(tests) + &distances + CLASSES + &shares
         }
-        false => lens_test::class_of(&uber.tests) + CLASSES,
     }
 }
 
@@ -366,7 +381,7 @@ const NO_OUTLINES: &str = "fn outlines(start: vec4f, pixel: vec2i, classes: Clas
 
 ";
 
-const OUTLINES: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
+const LENS_COVERS: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
     let by = invokers[lens];
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         if volume_covers(v, pixel) {
@@ -376,18 +391,54 @@ const OUTLINES: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
     return false;
 }
 
-fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
-    var paint = start;
-    let run = invokers_of(classes, OUTLINES);
-    for (var k = run.x; k < run.y; k++) {
-        let by = invokers[tile_lists[k]];
-        let share = silhouette(tile_lists[k], pixel, parameters[by.parameters + 1u].x);
-        paint = outlined(paint, share, parameters[by.parameters]);
+";
+
+const LENS_DISTANCE: &str = "fn lens_distance(lens: u32, sight: Sight) -> f32 {
+    let by = invokers[lens];
+    var distance = FAR_AWAY;
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        distance = min(distance, distance_to(v, sight, vec4f(0.0)));
     }
-    return paint;
+    return distance;
 }
 
 ";
+
+const LENS_ENDS: &str = "fn lens_ends(lens: u32, pixel: vec2i, ray: Ray) -> Span {
+    let by = invokers[lens];
+    var ends = EMPTY_SPAN;
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        ends = with_span(ends, ends_of_volume(v, pixel, ray));
+    }
+    return ends;
+}
+
+";
+
+/// The bodies of lenses, of these kinds; `by.handler` says which.
+fn outlines_of(kinds: &[BodyKind]) -> String {
+    let mut text = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
+    var paint = start;
+    let run = invokers_of(classes, OUTLINES);
+    for (var k = run.x; k < run.y; k++) {
+        let lens = tile_lists[k];
+        let by = invokers[lens];
+        let color = parameters[by.parameters];
+        let width = parameters[by.parameters + 1u].x;
+"
+    .to_owned();
+    for kind in kinds {
+        let drawn = match kind {
+            BodyKind::Outline => "",
+            BodyKind::Shell => "            paint = shell(lens, paint, pixel, color);\n",
+            BodyKind::Halo => "            paint = halo(lens, paint, pixel, color, width);\n",
+        };
+        let line = "            paint = outlined(paint, silhouette(lens, pixel, width), color);\n";
+        let line = if kind.has_outline() { line } else { "" };
+        let _ = write!(text, "        if by.handler == {}u {{\n{drawn}{line}        }}\n", kind.number());
+    }
+    text + "    }\n    return paint;\n}\n\n"
+}
 
 const WRITE_CLASSES: &str = "    var bits = vec3u(0u);
     let run = invokers_of(classes, MASKS);

@@ -382,10 +382,10 @@ pub const LENS: Table = Table {
         ),
         key(
             "body",
-            Kind::Word { now: &["outline", "none"], later: &["shell", "halo"] },
+            Kind::Word { now: &["outline", "shell", "halo", "none"], later: &[] },
             "\"outline\"",
             "",
-            "How the lens body itself is drawn.",
+            "How the lens body itself is drawn, in its colour: a line around it, tinted glass, a glow around it. Thematic lenses show a line for all, and so do flat ones and those tested by a sprite for `halo`.",
             "\"none\"",
         ),
         key(

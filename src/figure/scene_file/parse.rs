@@ -220,7 +220,10 @@ impl<'o> SceneReader<'o> {
             shapes,
             effects,
             content,
-            body: if fields.text("body") == Some("none") { LensBody::None } else { LensBody::Outline },
+            body: LensBody::WORDS
+                .iter()
+                .find(|(word, _)| fields.text("body") == Some(*word))
+                .map_or_else(LensBody::default, |(_, body)| *body),
             sprite: sprite.map(|s| LensSprite { resolution: s.integer("resolution") }),
             border: border.map(|b| Border {
                 width: b.number("width").unwrap_or(0.0),

@@ -568,11 +568,11 @@ prop_compose! {
 
 prop_compose! {
     fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
-        enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), outline in any::<bool>(),
-        ends in ends(), placement in placements(), content in prop::option::of(contents())) -> Lens {
+        enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
+        ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>()) -> Lens {
         let (sprite, border) = ends;
-        let body = if outline { LensBody::Outline } else { LensBody::None };
-        let kind = if content.is_some() && outline { LensKind::Content } else { LensKind::Color };
+        let body = LensBody::WORDS[body].1;
+        let kind = if content.is_some() && is_content { LensKind::Content } else { LensKind::Color };
         Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, content, body, sprite, border }
     }
 }

@@ -140,7 +140,7 @@ impl Toml {
             self.key("content", &content(own, options));
             self.key_if(own.clip != Clip::default(), "clip", &quoted(own.clip.word()));
         }
-        self.key_if(lens.body == LensBody::None, "body", "\"none\"");
+        self.key_if(lens.body != LensBody::default(), "body", &format!("\"{}\"", lens.body.word()));
         if let Some(sprite) = lens.sprite {
             let resolution = sprite.resolution.map(|resolution| format!(" resolution = {resolution} "));
             self.key("sprite", &format!("{{{}}}", resolution.unwrap_or_default()));

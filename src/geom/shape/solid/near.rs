@@ -15,6 +15,7 @@ const MARGIN: f64 = 1.0 / 64.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Near {
     low: DVec3,
+    reach: f64,
     per_metre: f64,
     count: [u32; 3],
     /// Where the list of each cell begins; one more for the end of the last.
@@ -41,7 +42,7 @@ impl Near {
         let side = (size.element_product() / wanted).cbrt().max(size.max_element() / 256.0);
         let per_metre = f64::from((1.0 / side) as f32);
         let count = size.to_array().map(|s| ((s * per_metre).ceil() as u32).max(1));
-        let mut near = Self { low, per_metre, count, starts: Vec::new(), faces: Vec::new() };
+        let mut near = Self { low, reach, per_metre, count, starts: Vec::new(), faces: Vec::new() };
         let mut lists = vec![Vec::new(); count.iter().product::<u32>() as usize];
         let all: Vec<u32> = (0..).zip(solid.faces()).filter(|(_, f)| is_border(solid, f)).map(|(i, _)| i).collect();
         near.fill(solid, reach, &all, Block { first: [0; 3], count }, &mut lists);
@@ -108,7 +109,7 @@ impl Near {
         let mut words = vec![
             [bits(self.low.x), bits(self.low.y), bits(self.low.z), bits(self.per_metre)],
             [self.count[0], self.count[1], self.count[2], starts.len() as u32],
-            [numbers.len() as u32, 0, 0, 0],
+            [numbers.len() as u32, bits(self.reach), 0, 0],
         ];
         words.extend(starts);
         words.extend(numbers);
