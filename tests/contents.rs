@@ -11,7 +11,9 @@ use veduta::{
         shown::shown_geometries,
     },
     geom::{Aabb, Ray, Shape, ray::TriangleTest},
-    lens::{Class, Content, Copied, Focus, Lens, LensKind, Parameter, classify::classify},
+    lens::{
+        Border, BorderUnit, Class, Content, Copied, Discrete, Focus, Lens, LensKind, Parameter, classify::classify,
+    },
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -252,6 +254,28 @@ fn lenses_below_and_above_decide_by_their_order() {
         let found = compare(&draw(&mut studio, &scene, Backend::Uber), &view_of(&scene), &cities, &lenses);
         assert!(found.iter().all(|count| *count > 100), "{found:?}");
     }
+}
+
+#[test]
+fn contents_fade_by_dithering_where_their_lens_does() {
+    let (mut studio, mut scene) = two_levels();
+    let hard = showing("blocks", ball(DVec3::new(40.0, 40.0, 4.0), 24.0), lod("1"));
+    let mut border = Border { width: 16.0, unit: BorderUnit::Metres, discrete: Discrete::Threshold };
+    scene.lenses = vec![hard.clone()];
+    let plain = draw(&mut studio, &scene, Backend::Specialised);
+    let mut shown = |border: Border, effects: Vec<veduta::lens::EffectUse>| {
+        scene.lenses = vec![Lens { border: Some(border), effects, ..hard.clone() }];
+        let [a, b] = [Backend::Specialised, Backend::Uber].map(|backend| draw(&mut studio, &scene, backend));
+        assert!(a.rgba == b.rgba && a.depth == b.depth, "the back ends differ");
+        a.depth.expect("depths")
+    };
+    let before = plain.depth.expect("depths");
+    let changed = |depth: &[f32]| depth.iter().zip(&before).filter(|(a, b)| a != b).count();
+    assert_eq!(changed(&shown(border, vec![])), 0, "it ends where the degree of interest is one half");
+    border.discrete = Discrete::Dither;
+    let dithered = shown(border, vec![]);
+    assert!(changed(&dithered) > 40, "{}", changed(&dithered));
+    assert!(shown(border, vec![used("sepia"), used("wireframe")]) != dithered);
 }
 
 /// A file of [`levels`] in the folder of temporary files; gone when dropped.
