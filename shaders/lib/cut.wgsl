@@ -8,7 +8,7 @@ fn cut(at: vec2f, depth: f32, code: u32) {
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + dot(up, position);
     let surface = surface_at(code - 1u);
     let fragment = Fragment(vec2i(at), depth, position, height, code - 1u, surface.object, part_of(surface),
-                            decode_normal(surface.normal), ray, view.orthographic == 1u);
+                            decode_normal(surface.normal), ray, view.orthographic == 1u, city_number());
     if !visible(fragment) {
         discard;
     }

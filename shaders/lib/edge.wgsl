@@ -114,8 +114,8 @@ fn edge_weight(depth: f32) -> f32 {
 }
 
 fn edge_vertex(edge: Edge, i: u32, width_px: f32) -> EdgeVertex {
-    let p = view.view_from_world * relative_to_eye(edge.origin, edge.start);
-    let q = view.view_from_world * relative_to_eye(edge.origin, edge.end);
+    let p = view.view_from_world * city_relative(edge.origin, edge.start);
+    let q = view.view_from_world * city_relative(edge.origin, edge.end);
     let reach = 0.5 * width_px + 0.5;
     let part = edge_part(p, q, 1.0 + 2.0 * (reach + EDGE_MARGIN_PX) / view.size);
     if part.x >= part.y {
@@ -134,13 +134,13 @@ fn edge_vertex(edge: Edge, i: u32, width_px: f32) -> EdgeVertex {
     let line = vec3f(select(0.0, extent, is_end) + onward, across, extent);
     let ends = vec4f(start.z, end.z, part.x * edge_weight(start.z), part.y * edge_weight(end.z));
 
-    let a = view.view_from_world * decode_normal(edge.normal_a);
-    let b = view.view_from_world * decode_normal(edge.normal_b);
+    let a = view.view_from_world * city_direction(decode_normal(edge.normal_a));
+    let b = view.view_from_world * city_direction(decode_normal(edge.normal_b));
     let middle = mix(p, q, 0.5 * (part.x + part.y));
-    let face_a = edge_face(a, p, q, middle, left, 1.0, edge.inward.x);
-    let face_b = edge_face(b, p, q, middle, left, -1.0, edge.inward.y);
+    let face_a = edge_face(a, p, q, middle, left, 1.0, city_length(edge.inward.x));
+    let face_b = edge_face(b, p, q, middle, left, -1.0, city_length(edge.inward.y));
     let has_b = edge_class(edge) != EDGE_BORDER;
-    let beyond = vec4f(unpack2x16float(edge.along.x), unpack2x16float(edge.along.y)) / max(distance(p, q), 1e-6);
+    let beyond = vec4f(unpack2x16float(edge.along.x), unpack2x16float(edge.along.y)) / max(distance(p, q), 1e-6) * city_length(1.0);
     return EdgeVertex(vec4f(at, select(start.z, end.z, is_end), 1.0), line, ends, face_a,
                       select(vec4f(0.0, 0.0, 0.0, -1.0), face_b, has_b), vec4f(0.0, 1.0, 0.0, 1.0) + beyond * vec4f(-1.0, 1.0, -1.0, 1.0));
 }

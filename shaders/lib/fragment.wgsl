@@ -11,6 +11,7 @@ struct Fragment {
     normal: vec3f,              // unit, of its face
     ray: Ray,                   // of the main view, through it
     is_parallel: bool,          // whether the main view's rays are: it is orthographic
+    city: u32,                  // which of the cities that are drawn: 0 the scene's own, else a content of lenses
 }
 
 fn sight_of(fragment: Fragment) -> Sight {

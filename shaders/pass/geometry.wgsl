@@ -10,6 +10,7 @@
 // depth, before visibility): a discard anywhere costs early depth tests everywhere (decision 3).
 
 override SMOOTH: bool = false;  // whether some faces have a normal per vertex
+override FLAT_CITY: bool = false;   // whether those of this city have none, beside a city whose have
 
 struct Vertex {
     @location(0) origin: vec3i,     // whole metres
@@ -26,7 +27,7 @@ struct Varying {
 }
 
 fn placed(in: Vertex) -> Varying {
-    return Varying(clip_from_relative(relative_to_eye(in.origin, in.position)), in.surface + 1u);
+    return Varying(clip_from_relative(city_relative(in.origin, in.position)), city_surface(in.surface) + 1u);
 }
 
 struct Full {
@@ -67,19 +68,27 @@ struct SmoothVarying {
 @vertex
 fn vertex_smooth(in: Vertex) -> SmoothVarying {
     let face = placed(in);
-    return SmoothVarying(face.clip, face.code, decode_normal(in.normal));
+    return SmoothVarying(face.clip, face.code, city_direction(decode_normal(in.normal)));
+}
+
+// Vertices of a city of flat faces are shared by faces of other directions.
+fn normal_code(normal: vec3f, code: u32) -> u32 {
+    if FLAT_CITY {
+        return surface_at(code - 1u).normal;
+    }
+    return encode_normal(normal);
 }
 
 @fragment
 fn smooth_plain(in: SmoothVarying) -> @location(0) vec2u {
     cut(in.clip.xy, in.clip.z, in.code);
-    return vec2u(in.code, encode_normal(in.normal));
+    return vec2u(in.code, normal_code(in.normal, in.code));
 }
 
 @fragment
 fn smooth_full(in: SmoothVarying) -> Full {
     cut(in.clip.xy, in.clip.z, in.code);
-    let code = vec2u(in.code, encode_normal(in.normal));
+    let code = vec2u(in.code, normal_code(in.normal, in.code));
     return Full(code, vec4f(surface_at(in.code - 1u).color, 1.0), in.clip.z);
 }
 
@@ -99,7 +108,7 @@ struct TexturedVarying {
 @vertex
 fn vertex_textured(in: Vertex, @location(4) texcoord: vec2f) -> TexturedVarying {
     let face = placed(in);
-    return TexturedVarying(face.clip, face.code, decode_normal(in.normal), texcoord);
+    return TexturedVarying(face.clip, face.code, city_direction(decode_normal(in.normal)), texcoord);
 }
 
 @fragment
@@ -152,11 +161,12 @@ fn plane_in_picture(normal: vec3f, room: f32) -> vec3f {
 @vertex
 fn vertex_coplanar(in: Vertex, plane: Plane) -> CoplanarVarying {
     let face = placed(in);
-    let room = dot(plane.normal, relative_to_eye(plane.origin, vec3f(0.0))) + plane.offset;
-    let seen = plane_in_picture(view.view_from_world * plane.normal, room);
+    let facing = city_direction(plane.normal);
+    let room = dot(facing, city_relative(plane.origin, vec3f(0.0))) + city_length(plane.offset);
+    let seen = plane_in_picture(view.view_from_world * facing, room);
     var normal = vec3f(0.0);
     if SMOOTH {
-        normal = decode_normal(in.normal);
+        normal = city_direction(decode_normal(in.normal));
     }
     return CoplanarVarying(face.clip, face.code, normal, seen);
 }
@@ -168,7 +178,10 @@ fn depth_on_plane(in: CoplanarVarying) -> f32 {
 }
 
 fn coplanar_code(in: CoplanarVarying) -> vec2u {
-    return vec2u(in.code, select(0u, encode_normal(in.normal), SMOOTH));
+    if !SMOOTH {
+        return vec2u(in.code, 0u);
+    }
+    return vec2u(in.code, normal_code(in.normal, in.code));
 }
 
 struct CoplanarPlain {

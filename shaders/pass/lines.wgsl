@@ -28,7 +28,7 @@ fn vertex(edge: Edge, @builtin(vertex_index) i: u32) -> Line {
     let made = edge_vertex(edge, i, stage.width);
     let is_drawn = edge_class(edge) != EDGE_FLAT || stage.flat_edges == 1u;
     let clip = select(vec4f(2.0, 2.0, 0.5, 1.0), made.clip, is_drawn);
-    return Line(clip, made.line, made.ends, made.face_a, made.face_b, made.along, vec2u(edge_surface(edge), edge.other));
+    return Line(clip, made.line, made.ends, made.face_a, made.face_b, made.along, vec2u(city_surface(edge_surface(edge)), city_surface(edge.other)));
 }
 
 //@handlers
@@ -56,7 +56,7 @@ fn fragment(in: Line) -> Pixel {
     point.base = surface.color;
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + point.relative.z;
     let fragment = Fragment(pixel, depth, position, height, in.surfaces.x, surface.object, part_of(surface), point.normal, ray,
-                            view.orthographic == 1u);
+                            view.orthographic == 1u, city_number());
     // The same place, on the other face: a line stays as long as one of its faces does.
     let beyond = surface_at(in.surfaces.y);
     var other = fragment;

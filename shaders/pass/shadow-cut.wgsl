@@ -8,14 +8,15 @@ struct Varying {
     @location(1) position: vec3f,       // in the main view's space, metres
     @location(2) height: f32,
     // Handed over, not read there: a fragment shader that reads two uniforms and the shapes by number crashes Mesa 22.3.
-    @location(3) @interpolate(flat, either) is_parallel: u32,
+    @location(3) @interpolate(flat, either) flags: u32,     // bit 0: the main view's rays are parallel; above: the city's number
 }
 
 @vertex
 fn vertex(@location(0) origin: vec3i, @location(1) surface: u32, @location(2) position: vec3f) -> Varying {
-    let relative = (vec3f(origin - eye.eye_whole) - eye.eye_fraction) + position;
-    let clip = clip_from_relative(relative_to_eye(origin, position));
-    return Varying(clip, surface, eye.view_from_world * relative, f32(origin.z) + position.z, eye.orthographic);
+    let relative = relative_to_main_eye(origin, position);
+    let clip = clip_from_relative(city_relative(origin, position));
+    let height = f32(eye.eye_whole.z) + eye.eye_fraction.z + relative.z;
+    return Varying(clip, city_surface(surface), eye.view_from_world * relative, height, eye.orthographic | (city_number() << 1u));
 }
 
 //@handlers
@@ -23,7 +24,7 @@ fn vertex(@location(0) origin: vec3i, @location(1) surface: u32, @location(2) po
 @fragment
 fn fragment(in: Varying) {
     let surface = surface_at(in.surface);
-    let is_parallel = in.is_parallel == 1u;
+    let is_parallel = (in.flags & 1u) == 1u;
     // Behind the eye there is none; nobody asks for it there.
     let distance = max(-in.position.z, 1e-30);
     let along = vec3f(0.0, 0.0, -1.0);
@@ -32,7 +33,7 @@ fn fragment(in: Varying) {
         ray = Ray(vec3f(0.0), vec3f(in.position.xy / distance, -1.0));
     }
     let fragment = Fragment(vec2i(in.clip.xy), in.clip.z, in.position, in.height, in.surface, surface.object,
-                            part_of(surface), decode_normal(surface.normal), ray, is_parallel);
+                            part_of(surface), decode_normal(surface.normal), ray, is_parallel, in.flags >> 1u);
     if !visible(fragment) {
         discard;
     }

@@ -28,12 +28,14 @@ macro_rules! scenes {
 /// The scenes that ship with the program, by name; a test holds the list against the folder.
 pub const SCENES: &[(&str, &str)] = scenes! {
     "delft-age"
+    "delft-detail"
     "delft-route"
     "delft-streets"
     "den-haag-district"
     "den-haag-sphere"
     "first-lens"
     "market-square"
+    "planned-quarter"
     "ropinski-1"
     "ropinski-3"
     "ropinski-5"

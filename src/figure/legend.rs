@@ -116,6 +116,7 @@ mod tests {
             placement: Default::default(),
             shapes: vec![],
             effects,
+            content: None,
             body: Default::default(),
             sprite: None,
             border: None,

@@ -16,7 +16,10 @@ use crate::{
 };
 
 /// Effects whose names are fixed but which this version does not have.
-pub const LATER: &[&str] = &["x-ray", "lod"];
+pub const LATER: &[&str] = &["x-ray"];
+
+/// Stands among the effects of a lens for a content in another level of detail ([`crate::lens::Content`]).
+pub const LOD: &str = "lod";
 
 /// Something wrong with a use of an effect.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,6 +4,7 @@ pub mod border;
 pub mod chosen;
 pub mod classify;
 pub mod color;
+pub mod content;
 pub mod effect;
 pub mod focus;
 pub mod intersection;
@@ -17,6 +18,7 @@ use std::collections::BTreeMap;
 
 pub use border::{Border, BorderUnit, Discrete};
 pub use classify::classify;
+pub use content::{Content, Copied};
 pub use focus::Focus;
 
 use crate::{geom::Shape, shader::Blend};
@@ -38,6 +40,8 @@ pub struct Lens {
     pub shapes: Vec<Focus>,
     /// What it does, in order (K1: at most one scene style).
     pub effects: Vec<EffectUse>,
+    /// What it shows in place of what is below it (C6); `None`: it acts on that.
+    pub content: Option<Content>,
     /// How the lens body itself is drawn (L5).
     pub body: LensBody,
     /// The volumetric depth sprite that it is tested by; `None`: from its shapes (S7).
@@ -87,6 +91,25 @@ pub enum LensKind {
     /// Restyles what is in it (K1).
     #[default]
     Color,
+    /// Shows something else in it (C3).
+    Content,
+}
+
+impl LensKind {
+    /// Its word in scene files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Color => "color",
+            Self::Content => "content",
+        }
+    }
+}
+
+impl Lens {
+    /// The classes it acts on, of what it does and shows.
+    pub fn classes(&self) -> impl Iterator<Item = Class> {
+        self.effects.iter().map(|e| e.class).chain(self.content.iter().map(|c| c.class))
+    }
 }
 
 /// The volumetric depth sprite of a lens (S1).

@@ -80,6 +80,7 @@ pub fn lens(name: &str, shape: Shape, effects: &[&str]) -> Lens {
         placement: Default::default(),
         shapes: vec![shape.into()],
         effects: effects.iter().map(use_of).collect(),
+        content: None,
         body: LensBody::None,
         sprite: None,
         border: None,

@@ -51,6 +51,13 @@ pub struct PlacedLeaf {
     pub place: SolidPlace,
 }
 
+impl Members {
+    /// Whether an object is one of them; those of other data sets are not.
+    pub fn has(&self, object: u32) -> bool {
+        self.objects.get(object as usize).is_some_and(|is_member| *is_member)
+    }
+}
+
 impl From<Leaf> for PlacedLeaf {
     fn from(leaf: Leaf) -> Self {
         Self { leaf, place: SolidPlace::default() }
@@ -162,7 +169,7 @@ impl Body {
     pub fn meets(&self, corners: &[DVec3; 3], object: u32) -> bool {
         match self {
             Self::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) => volume.meets_triangle(corners),
-            Self::One(PlacedLeaf { leaf: Leaf::Members(members), .. }) => members.objects[object as usize],
+            Self::One(PlacedLeaf { leaf: Leaf::Members(members), .. }) => members.has(object),
             Self::Combined(program) => self.meets_part(program, corners, object),
         }
     }
@@ -175,7 +182,7 @@ impl Body {
             let middle = (a + b + c) / 3.0;
             let distance = |leaf: &PlacedLeaf| match &leaf.leaf {
                 Leaf::Volume(volume) => volume.signed_distance(middle),
-                Leaf::Members(members) if members.objects[object as usize] => f64::NEG_INFINITY,
+                Leaf::Members(members) if members.has(object) => f64::NEG_INFINITY,
                 Leaf::Members(_) => f64::INFINITY,
             };
             let join = |operation, a: f64, b: f64| match operation {

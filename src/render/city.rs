@@ -16,7 +16,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         layout::{self, CityVertex},
-        surfaces::SurfaceTable,
+        surfaces::{self, SurfaceTable},
         textures::Textures,
         weld::{Corner, Weld},
     },
@@ -235,18 +235,22 @@ impl CityBuffers {
         for layer in &layers {
             push(upload(gpu, SectionKind::Coplanar, &layer.gathered, ("planes", &layer.planes))?);
         }
-        let surfaces = table.upload(gpu)?;
+        let surfaces = surfaces::upload(gpu, &table.entries)?;
         let surface_table = table.entries;
         let bytes = gpu.allocated_bytes() - bytes_before + textures.bytes();
         Ok(Self { sections, surfaces, surface_table, textures, smooth, triangles, vertices, bytes, bounds })
     }
 
-    /// The chunks of one section that a frustum may see, in drawing order.
+    /// Those of the chunks of one section that a frustum may see, in drawing order.
     ///
     /// Near ones come first, so that they hide the rest before it is shaded; where many chunks are seen, runs of
     /// neighbours are sorted as one, because draw calls cost something too.
-    pub fn visible<'a>(section: &'a Section, frustum: &Frustum, eye: DVec3) -> Vec<SeenChunk<'a>> {
-        let seen: Vec<&Chunk> = section.chunks.iter().filter(|c| frustum.meets(&c.bounds)).collect();
+    pub fn visible<'a>(
+        chunks: impl IntoIterator<Item = &'a Chunk>,
+        frustum: &Frustum,
+        eye: DVec3,
+    ) -> Vec<SeenChunk<'a>> {
+        let seen: Vec<&Chunk> = chunks.into_iter().filter(|c| frustum.meets(&c.bounds)).collect();
         let run_length = seen.len().div_ceil(SORTED_GROUPS).max(1);
         let mut runs: Vec<(f64, &[&Chunk])> = seen
             .chunks(run_length)

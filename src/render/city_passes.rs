@@ -5,7 +5,8 @@ use glam::DVec2;
 use crate::{
     gpu::GpuError,
     render::{
-        city::{Chunk, CityBuffers, Draw, Section, SectionKind, SeenChunk, draws_of},
+        city::{Chunk, CityBuffers, Draw, SectionKind, SeenChunk, draws_of},
+        contents::DrawnSection,
         curtain::{self, Curtain},
         cut::{Cut, CutPrograms, Cuts},
         eye::{PictureTile, view_uniform},
@@ -16,6 +17,9 @@ use crate::{
     shader::Program,
     view::View,
 };
+
+/// What a pass draws of a section.
+type Part<'a> = (DrawnSection<'a>, Vec<&'a Chunk>);
 
 impl Renderer {
     /// Depth from the sun, where the map does not hold this view yet.
@@ -31,12 +35,13 @@ impl Renderer {
         let wanted = Shadow {
             view: view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0),
             cut: cut.map(|(cut, program)| (program.clone(), cut.all_numbers(input))),
+            cities: self.city_uniforms(sun.camera.eye),
         };
         if self.shadow_of.as_ref() == Some(&wanted) {
             return;
         }
         self.shadow_of = Some(wanted);
-        let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
+        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
         let lenses = cut.map_or(&[][..], |(cut, _)| &cut.hiding.lenses);
         let slot = recorder.begin("shadow map", "sun", lenses, false);
         let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
@@ -49,24 +54,26 @@ impl Renderer {
         pass.set_bind_group(0, &groups.sun_view, &[]);
         // Casters may stand before the picture's edge, never behind the sun.
         let frustum = sun.frustum(1.0);
-        for section in &city.buffers.sections {
-            let seen = CityBuffers::visible(section, &frustum, sun.camera.eye);
+        let own_cut = cut.map(|(cut, _)| cut);
+        for drawn in self.drawn_sections(own_cut) {
+            let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, own_cut, &input.view));
+            let seen = CityBuffers::visible(shown, &frustum, sun.camera.eye);
             let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
-            pass.set_vertex_buffer(0, section.vertices.slice(..));
-            for (part, is_cut) in Cut::parts(cut.map(|(cut, _)| cut), &input.view, &chunks) {
+            pass.set_vertex_buffer(0, drawn.section.vertices.slice(..));
+            for (part, is_cut) in Cut::parts(own_cut, &input.view, &chunks, drawn.content.is_some()) {
                 let (draws, triangles) = draws_of(part.into_iter());
                 match cut.filter(|_| is_cut) {
                     Some((_, program)) => {
                         pass.set_pipeline(self.pipelines.get(&Key::Shadow(Some(program.clone()))));
-                        pass.set_bind_group(1, &groups.shapes_city, &[]);
+                        pass.set_bind_group(1, &groups.shapes_city, &[drawn.offset; 2]);
                         pass.set_bind_group(2, &groups.shapes, &[]);
                     }
                     None => {
                         pass.set_pipeline(self.pipelines.get(&Key::Shadow(None)));
-                        pass.set_bind_group(1, &city.group, &[]);
+                        pass.set_bind_group(1, &drawn.city.group, &[]);
                     }
                 }
-                draw_ranges(&mut pass, &section.indices, &draws);
+                draw_ranges(&mut pass, &drawn.section.indices, &draws);
                 recorder.count(draws.len() as u32, triangles);
             }
         }
@@ -81,36 +88,42 @@ impl Renderer {
         cuts: (&Cuts, &CutPrograms),
     ) -> Result<wgpu::CommandEncoder, GpuError> {
         let cut = cuts.0.picture.as_ref().zip(cuts.1.picture.as_ref());
-        let (Some(targets), Some(city)) = (&self.targets, &self.city) else { return Ok(encoder) };
+        let Some(targets) = &self.targets else { return Ok(encoder) };
         let frustum = input.view.frustum(1.0);
-        let sections = &city.buffers.sections;
-        let seen: Vec<Vec<SeenChunk>> =
-            sections.iter().map(|s| CityBuffers::visible(s, &frustum, input.view.camera.eye)).collect();
-        let part = |keep: &dyn Fn(&Section, &SeenChunk) -> bool| -> Vec<Vec<&Chunk>> {
-            let mut kept: Vec<Vec<&Chunk>> = Vec::new();
-            for (section, seen) in sections.iter().zip(&seen) {
-                kept.push(seen.iter().filter(|s| keep(section, s)).map(|s| s.chunk).collect());
+        let own_cut = cut.map(|(cut, _)| cut);
+        let kept = self.curtain.take();
+        let sections = self.drawn_sections(own_cut);
+        let mut seen: Vec<Vec<SeenChunk>> = Vec::new();
+        for drawn in &sections {
+            let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, own_cut, &input.view));
+            seen.push(CityBuffers::visible(shown, &frustum, input.view.camera.eye));
+        }
+        let part = |keep: &dyn Fn(&DrawnSection, &SeenChunk) -> bool| -> Vec<Part> {
+            let mut kept: Vec<Part> = Vec::new();
+            for (drawn, seen) in sections.iter().zip(&seen) {
+                kept.push((*drawn, seen.iter().filter(|s| keep(drawn, s)).map(|s| s.chunk).collect()));
             }
             kept
         };
         // Layers of coplanar faces stay together and last: the later one wins where depths are equal.
-        let hangs = |section: &Section| section.kind != SectionKind::Coplanar;
-        let hanging = || sections.iter().zip(&seen).filter(|(section, _)| hangs(section)).flat_map(|(_, seen)| seen);
+        let hangs = |drawn: &DrawnSection| drawn.section.kind != SectionKind::Coplanar;
+        let hanging = || sections.iter().zip(&seen).filter(|(drawn, _)| hangs(drawn)).flat_map(|(_, seen)| seen);
         let reach = if self.culls_hidden { curtain::reach(&input.view, hanging()) } else { None };
         let Some(reach) = reach else {
             self.geometry_pass(&mut encoder, recorder, input, (&part(&|_, _| true), cut), ("geometry", true));
+            self.curtain = kept;
             return Ok(encoder);
         };
-        let is_near = |section: &Section, s: &SeenChunk| hangs(section) && s.distance <= reach;
+        let is_near = |drawn: &DrawnSection, s: &SeenChunk| hangs(drawn) && s.distance <= reach;
         self.geometry_pass(&mut encoder, recorder, input, (&part(&is_near), cut), ("geometry", true));
-        let mut curtain = match self.curtain.take() {
+        let mut curtain = match kept {
             Some(curtain) if curtain.fits(&targets.depth.texture) => curtain,
             _ => Curtain::new(&self.gpu, input.tile.size)?,
         };
         curtain.copy(&mut encoder, &targets.depth.texture);
         self.gpu.queue.submit([encoder.finish()]);
         curtain.read(&self.gpu)?;
-        let rest = part(&|section, s| !is_near(section, s) && !curtain.hides(&input.view, input.tile, &s.chunk.bounds));
+        let rest = part(&|drawn, s| !is_near(drawn, s) && !curtain.hides(&input.view, input.tile, &s.chunk.bounds));
         encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         self.geometry_pass(&mut encoder, recorder, input, (&rest, cut), ("geometry beyond", false));
         self.curtain = Some(curtain);
@@ -122,10 +135,10 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
         input: &FrameInput,
-        (chunks, cut): (&[Vec<&Chunk>], Option<(&Cut, &Program)>),
+        (parts, cut): (&[Part], Option<(&Cut, &Program)>),
         (name, is_first): (&'static str, bool),
     ) {
-        let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
+        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
         let colored = self.colored();
         let lenses = cut.map_or(&[][..], |(cut, _)| &cut.hiding.lenses);
         let slot = recorder.begin(name, "main", lenses, true);
@@ -156,7 +169,7 @@ impl Renderer {
         }
         pass.set_bind_group(0, &groups.view, &[]);
         let mut counted = (0, 0);
-        for ((section, image), chunks) in city.buffers.sections.iter().zip(&city.images).zip(chunks) {
+        for (DrawnSection { city, section, image, content, offset, .. }, chunks) in parts {
             if chunks.is_empty() {
                 continue;
             }
@@ -164,17 +177,21 @@ impl Renderer {
             if let Some(extra) = &section.extra {
                 pass.set_vertex_buffer(1, extra.slice(..));
             }
-            if let Some(image) = image {
+            if let Some(image) = *image {
                 pass.set_bind_group(3, image, &[]);
             }
-            for (part, is_cut) in Cut::parts(cut.map(|(cut, _)| cut), &input.view, chunks) {
+            for (part, is_cut) in Cut::parts(cut.map(|(cut, _)| cut), &input.view, chunks, content.is_some()) {
                 let (draws, triangles) = draws_of(part.into_iter());
                 let program = cut.filter(|_| is_cut).map(|(_, program)| program.clone());
                 if program.is_some() {
                     pass.set_bind_group(2, &groups.lenses, &[]);
                 }
-                pass.set_bind_group(1, if program.is_some() { &groups.cut_city } else { &city.group }, &[]);
-                let key = geometry_key(section.kind, colored, city.buffers.smooth, input.measured, program);
+                match program.is_some() {
+                    true => pass.set_bind_group(1, &groups.cut_city, &[*offset; 2]),
+                    false => pass.set_bind_group(1, &city.group, &[]),
+                }
+                let normals = [self.smooth(), city.buffers.smooth];
+                let key = geometry_key(section.kind, colored, normals, input.measured, program);
                 pass.set_pipeline(self.pipelines.get(&key));
                 draw_ranges(&mut pass, &section.indices, &draws);
                 counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
@@ -187,11 +204,12 @@ impl Renderer {
     }
 }
 
-/// The pipeline that draws a section; `cut`: where something may be hidden.
+/// The pipeline that draws a section; `cut`: where something may be hidden. `smooth`: whether the picture has smooth faces, and
+/// whether the section's city has.
 pub(super) fn geometry_key(
     kind: SectionKind,
     colored: bool,
-    smooth: bool,
+    [smooth, own]: [bool; 2],
     measured: bool,
     cut: Option<Program>,
 ) -> Key {
@@ -200,7 +218,7 @@ pub(super) fn geometry_key(
         SectionKind::Textured { alpha_cutoff, .. } => GeometryKind::Textured(alpha_cutoff.to_bits()),
         SectionKind::Coplanar => GeometryKind::Coplanar,
     };
-    Key::Geometry { section, colored, smooth, measured, cut }
+    Key::Geometry { section, colored, smooth, flat: smooth && !own, measured, cut }
 }
 
 pub(super) fn draw_ranges(pass: &mut wgpu::RenderPass, indices: &wgpu::Buffer, draws: &[Draw]) {

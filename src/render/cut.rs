@@ -63,9 +63,15 @@ impl Cuts {
 }
 
 impl Cut {
-    /// Chunks it leaves alone, and those it may reach (`true`); empty parts are left out.
-    pub fn parts<'a>(cut: Option<&Self>, view: &View, chunks: &[&'a Chunk]) -> Vec<(Vec<&'a Chunk>, bool)> {
-        let is_reached = |chunk: &&&Chunk| cut.is_some_and(|cut| cut.hiding.touches(&chunk.bounds, view));
+    /// Chunks it leaves alone, and those it may reach (`true`): all of a content. Empty parts are left out.
+    pub fn parts<'a>(
+        cut: Option<&Self>,
+        view: &View,
+        chunks: &[&'a Chunk],
+        is_content: bool,
+    ) -> Vec<(Vec<&'a Chunk>, bool)> {
+        let touches = |chunk: &Chunk| cut.is_some_and(|cut| cut.hiding.touches(&chunk.bounds, view));
+        let is_reached = |chunk: &&&Chunk| is_content || touches(chunk);
         let (reached, whole): (Vec<&Chunk>, Vec<&Chunk>) = chunks.iter().partition(is_reached);
         [(whole, false), (reached, true)].into_iter().filter(|(part, _)| !part.is_empty()).collect()
     }

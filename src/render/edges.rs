@@ -111,11 +111,16 @@ impl EdgeBuffers {
         Ok(Self { instances, chunks: chunks(&edges), count, bytes: gpu.allocated_bytes() - before })
     }
 
-    /// Instances to draw: those of chunks that the frustum may see and whose box `is_wanted`, neighbours as one.
+    /// Instances to draw: those of chunks that the frustum may see and whose box `is_wanted`.
     pub fn visible(&self, frustum: &Frustum, is_wanted: impl Fn(&Aabb) -> bool) -> Vec<Draw> {
+        self.draws(|bounds| frustum.meets(bounds) && is_wanted(bounds))
+    }
+
+    /// Instances to draw: those of chunks whose box `is_wanted`, neighbours as one.
+    pub fn draws(&self, is_wanted: impl Fn(&Aabb) -> bool) -> Vec<Draw> {
         let mut draws: Vec<Draw> = Vec::new();
         for Chunk { range, bounds } in &self.chunks {
-            if !frustum.meets(bounds) || !is_wanted(bounds) {
+            if !is_wanted(bounds) {
                 continue;
             }
             match draws.last_mut() {

@@ -21,6 +21,7 @@ use std::{ops::Range, sync::Arc};
 use glam::DVec2;
 
 use crate::{
+    geom::Aabb,
     gpu::{GpuError, Slot, Timer},
     lens::Lens,
     render::{
@@ -35,7 +36,7 @@ use crate::{
         octagon::{Mesh, Octagon},
         operations::{Filter, Operations},
         pipelines::{Behind, Key, ShadeTarget, Shown},
-        renderer::{Renderer, STAGE_STRIDE},
+        renderer::{CityOnGpu, Renderer, STAGE_STRIDE},
         seen::{SeenVolume, part_of, seen_volumes},
         solids::SolidTable,
         sprite_passes,
@@ -45,7 +46,7 @@ use crate::{
     },
     scene::{Background, BaseStyle, Sun},
     shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, TILE_PX, Uber, handlers},
-    view::View,
+    view::{Frustum, View},
 };
 
 /// Name of the pass that empties the lens masks; where it ran, they hold this frame's classes.
@@ -173,7 +174,7 @@ impl Renderer {
         }
         let mut recorder = Recorder { timer, passes: Vec::new() };
         let (seen, pages) = seen_volumes(input);
-        let sun_view = self.sun_view(input);
+        let sun_view = self.sun_view(&input.view, &input.sun, |frustum| self.content_bounds(input, frustum));
         let plans = Plans::new(input, &seen);
         let filters = plans.filters.len() as u32;
         let lines = if self.has_edges() { lines::draws(input, plans.lining.as_ref(), &plans.seen) } else { Vec::new() };
@@ -225,7 +226,7 @@ impl Renderer {
             self.clear_masks(&mut encoder, &mut recorder, input);
         }
         if let (false, Some(key)) = (lines.is_empty(), &keys.lines) {
-            self.lines_pass(&mut encoder, &mut recorder, input, &lines, key);
+            self.lines_pass(&mut encoder, &mut recorder, input, (&lines, cuts.picture.as_ref()), key);
         }
         self.filter_passes(&mut encoder, &mut recorder, input, (&plans.filters, &filter_parts), &keys.filters);
         self.shade_pass(&mut encoder, &mut recorder, input, shade_parts, &keys);
@@ -260,7 +261,7 @@ impl Renderer {
         pass.set_bind_group(1, &city.group, &[]);
         let frustum = view.frustum(1.0);
         for section in &city.buffers.sections {
-            let seen = CityBuffers::visible(section, &frustum, view.camera.eye);
+            let seen = CityBuffers::visible(&section.chunks, &frustum, view.camera.eye);
             let (draws, _) = draws_of(seen.iter().map(|s| s.chunk));
             pass.set_vertex_buffer(0, section.vertices.slice(..));
             draw_ranges(&mut pass, &section.indices, &draws);
@@ -302,30 +303,31 @@ impl Renderer {
         module.source_for_people(handlers(), &names, self.gpu.device.limits().max_inter_stage_shader_variables)
     }
 
-    fn smooth(&self) -> bool {
-        self.city.as_ref().is_some_and(|c| c.buffers.smooth)
+    /// Whether some faces of the picture have a normal per vertex.
+    pub(super) fn smooth(&self) -> bool {
+        self.cities().any(|c| c.buffers.smooth)
     }
 
     pub(super) fn colored(&self) -> bool {
-        self.city
-            .as_ref()
-            .is_some_and(|c| c.buffers.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { .. })))
+        let is_textured = |s: &Section| matches!(s.kind, SectionKind::Textured { .. });
+        self.cities().any(|c| c.buffers.sections.iter().any(is_textured))
     }
 
-    /// The sun's view where shadows are wanted.
-    fn sun_view(&self, input: &FrameInput) -> Option<View> {
+    /// The sun's view where shadows are wanted. `contents`: what contents show in a frustum, and in all.
+    pub(super) fn sun_view(&self, view: &View, sun: &Sun, contents: impl Fn(&Frustum) -> [Aabb; 2]) -> Option<View> {
         let city = &self.city.as_ref()?.buffers;
-        if !light::casts_shadows(&input.sun) {
+        if !light::casts_shadows(sun) {
             return None;
         }
-        let frustum = input.view.frustum(1.0);
+        let frustum = view.frustum(1.0);
         let receivers = city
             .sections
             .iter()
             .flat_map(|s| &s.chunks)
             .filter(|c| frustum.meets(&c.bounds))
-            .fold(crate::geom::Aabb::EMPTY, |all, c| all.union(c.bounds));
-        light::sun_view(&input.sun, &receivers, &city.bounds)
+            .fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
+        let [seen, all] = contents(&frustum);
+        light::sun_view(sun, &receivers.union(seen), &city.bounds.union(all))
     }
 
     /// Brings the small buffers up to date; on the uber back end with the invoker table of the plans.
@@ -359,6 +361,8 @@ impl Renderer {
             stages.extend(own.iter().flat_map(strided));
             sprite_places.push(place);
         }
+        let eyes = [Some(input.view.camera.eye), sun.map(|sun| sun.camera.eye)];
+        let city_uniforms = eyes.map(|eye| eye.map_or_else(Vec::new, |eye| self.city_uniforms(eye)));
         let sun_shapes = cuts.sun.as_ref().map(|cut| cut.shapes(input));
         let mut parameters = std::borrow::Cow::Borrowed(&input.operations.parameters);
         let (gpu, b) = (&self.gpu, &mut self.buffers);
@@ -404,6 +408,8 @@ impl Renderer {
             self.solids_of = Some(input.solids.clone());
             self.shadow_of = None;
         }
+        stale |= b.cities.sync(gpu, &city_uniforms[0])?;
+        stale |= b.sun_cities.sync(gpu, &city_uniforms[1])?;
         stale |= b.planes.sync(gpu, &planes)?;
         stale |= b.sprite_stages.sync(gpu, &stages)?;
         stale |= b.sprite_places.sync(gpu, &sprite_places)?;
@@ -427,27 +433,29 @@ impl Renderer {
         shadows: bool,
     ) -> (ShadeKeys, bool) {
         let Some(city) = &self.city else { return (ShadeKeys::default(), false) };
-        let colored = self.colored();
+        let (colored, smooth) = (self.colored(), self.smooth());
         let mut keys: Vec<Key> = Vec::new();
         if shadows {
             keys.push(Key::Shadow(None));
         }
-        let whole_key =
-            |section: &Section| geometry_key(section.kind, colored, city.buffers.smooth, input.measured, None);
+        let whole_key = |section: &Section| {
+            geometry_key(section.kind, colored, [smooth, city.buffers.smooth], input.measured, None)
+        };
         keys.extend(city.buffers.sections.iter().map(whole_key));
-        // For all sections: a lens that moves compiles nothing.
+        // For all sections, contents' too: a lens that moves compiles nothing.
+        let of_city = |city: &CityOnGpu| -> Vec<_> {
+            city.buffers.sections.iter().map(|s| (s.kind, city.buffers.smooth)).collect()
+        };
+        let sections: Vec<(SectionKind, bool)> = self.cities().flat_map(of_city).collect();
         let cut_keys = |picture: Option<&Program>, sun: Option<&Program>| -> Vec<Key> {
-            let of_section = |section: &Section, program: &Program| {
-                geometry_key(section.kind, colored, city.buffers.smooth, input.measured, Some(program.clone()))
-            };
-            let sections = city.buffers.sections.iter();
-            let sections = sections.flat_map(|section| picture.map(|program| of_section(section, program)));
+            let sections = sections.iter().flat_map(|&(kind, own)| {
+                picture.map(|program| geometry_key(kind, colored, [smooth, own], input.measured, Some(program.clone())))
+            });
             sections.chain(sun.map(|program| Key::Shadow(Some(program.clone())))).collect()
         };
         let with_sprites = seen.iter().filter(|v| v.sprite.is_some());
         keys.extend(with_sprites.flat_map(|v| sprite_passes::keys(&input.volumes[v.index].body)));
         let clay = input.base == BaseStyle::Clay;
-        let smooth = city.buffers.smooth;
         let shade_to = |target, shown, program: Program| Key::Shade {
             program,
             shown,

@@ -28,6 +28,14 @@ pub enum Reach {
 }
 
 impl Reach {
+    /// Box around it, metres.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Self::Within(around) => *around,
+            Self::Everywhere | Self::Along(..) => Aabb { min: glam::DVec3::NEG_INFINITY, max: glam::DVec3::INFINITY },
+        }
+    }
+
     /// Whether it may have to do with something in a box.
     pub fn touches(&self, bounds: &Aabb, view: &View) -> bool {
         match self {
@@ -59,12 +67,15 @@ pub fn reaches_of(lens: Option<u32>, class: Class, volumes: &[LensVolume], view:
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hiding {
     reaches: Vec<Reach>,
-    /// The lenses that hide something, ascending.
+    /// Where contents of lenses may be, by their numbers.
+    contents: Vec<(u32, Reach)>,
+    /// The lenses that hide something or show something else, ascending.
     pub lenses: Vec<u32>,
 }
 
 impl Hiding {
-    /// Of all hiding effects of the context and of the lenses that `is_active`, seen from the main view.
+    /// Of all hiding effects of the context and of the lenses that `is_active`, and of the contents of these, seen from the
+    /// main view.
     pub fn new(operations: &Operations, volumes: &[LensVolume], view: &View, is_active: impl Fn(u32) -> bool) -> Self {
         let mut hiding = Self::default();
         let hides = |effect: u32| handlers()[effect as usize].kind == EffectKind::Hide;
@@ -73,8 +84,20 @@ impl Hiding {
             hiding.lenses.extend(operation.lens);
             hiding.reaches.extend(reaches_of(operation.lens, operation.class, volumes, view));
         }
+        for content in operations.contents.iter().filter(|c| is_active(Some(c.lens))) {
+            hiding.lenses.push(content.lens);
+            let own = reaches_of(Some(content.lens), content.class, volumes, view);
+            hiding.contents.extend(own.iter().map(|reach| (content.city, reach.clone())));
+            hiding.reaches.extend(own);
+        }
+        hiding.lenses.sort_unstable();
         hiding.lenses.dedup();
         hiding
+    }
+
+    /// Whether a content of lenses, by its number, may show something in a box.
+    pub fn shows(&self, city: u32, bounds: &Aabb, view: &View) -> bool {
+        self.contents.iter().any(|(number, reach)| *number == city && reach.touches(bounds, view))
     }
 
     /// Whether something in a box may be hidden.

@@ -19,6 +19,7 @@ pub struct Invokers {
     inside_of: Vec<Option<u32>>,
     hides: [u32; 2],
     lines: [u32; 2],
+    contents: [u32; 2],
     /// Outside of all lenses, and where they may be seen.
     sections: [[Vec<Entry>; SECTIONS]; 2],
 }
@@ -42,6 +43,21 @@ impl Invokers {
             }));
         }
         out.lines = [first, out.all.len() as u32];
+        let first = out.all.len() as u32;
+        if let Some(plan) = hiding.or(lining) {
+            let volumes = volumes_before(plan);
+            out.all.extend(plan.contents.iter().map(|content| layout::Invoker {
+                handler: content.city,
+                scope: scope_number(Scope::Lens(content.lens, content.class)),
+                first_volume: volumes[content.lens as usize],
+                volumes: plan.lenses[content.lens as usize].volumes.len() as u32,
+                weight: u32::from(content.keeps_terrain),
+                number: content.clip.number(),
+                border: plan.lenses[content.lens as usize].border.map_or(0, |b| b.parameters + 1),
+                ..layout::Invoker::default()
+            }));
+        }
+        out.contents = [first, out.all.len() as u32];
         out.inside_of.resize(out.all.len(), None);
         out.sections = plans.map(|plan| out.sections_of(plan, handlers));
         out
@@ -91,7 +107,8 @@ impl Invokers {
 
     /// The table as `shader::uber` declares it, for a picture of this size.
     pub fn table(&self, size: [u32; 2]) -> Vec<u32> {
-        [self.hides, self.lines, [size[0].div_ceil(TILE_PX), 0], [0, 0]].concat()
+        let [from, to] = self.contents;
+        [self.hides, self.lines, [size[0].div_ceil(TILE_PX), from], [to, 0]].concat()
     }
 
     /// The distances D between which each may act, metres, where those of the plan's lenses are these; without end for those that

@@ -144,6 +144,19 @@ pub struct SpritePlace {
     pub pad_0: [u32; 3],
 }
 
+/// `lib/cities.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct City {
+    pub linear: [[f32; 4]; 3],
+    pub from_whole: [i32; 3],
+    pub number: u32,
+    pub from_fraction: [f32; 3],
+    pub first_surface: u32,
+    pub to: [f32; 3],
+    pub scale: f32,
+}
+
 /// `pass/lines.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -239,6 +252,15 @@ mod tests {
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
         let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], body: None, border: None };
+        let content = crate::shader::PlanContent {
+            lens: 0,
+            class: crate::shader::ClassTest::Inside,
+            city: 1,
+            clip: Default::default(),
+            keeps_terrain: false,
+        };
+        let cut = Plan { lenses: vec![lens.clone()], contents: vec![content], ..Plan::default() };
+        let cut = Module::Geometry(Some(Program::Specialised(cut)));
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
@@ -287,6 +309,7 @@ mod tests {
                 &uber,
                 host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number, border }),
             ),
+            (&cut, host!(City { linear, from_whole, number, from_fraction, first_surface, to, scale })),
             (&shade, host!(SpritePlace { origin, size, texels_per_pixel, sprite, page, pad_0 })),
             (
                 &Module::Furniture,

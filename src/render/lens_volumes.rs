@@ -69,7 +69,10 @@ pub(super) fn volumes_of(
                     return Err(format!("[lens.{i}] {place}{dot}{key}: {message}"));
                 }
             };
-            for body in bodies {
+            for mut body in bodies {
+                if lens.content.is_some() {
+                    body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city));
+                }
                 let volume = volume_of(i as u32, lens, body);
                 let [picture, sun] = volume.tests();
                 all.tests[0].extend(picture);
@@ -101,11 +104,19 @@ fn volume_of(number: u32, lens: &Lens, body: Body) -> LensVolume {
         lens: number,
         bounds: body.bounds(),
         body,
-        everywhere: lens.effects.iter().any(|e| e.class == Class::Rest),
+        everywhere: lens.classes().any(|class| class == Class::Rest),
         drawn: lens.drawn_body(),
         sprite: lens.sprite,
-        asks_sides: lens.effects.iter().any(|e| e.class != Class::Inside),
+        asks_sides: lens.classes().any(|class| class != Class::Inside),
         border: lens.soft_border(),
+    }
+}
+
+/// Makes the box around chosen objects hold all of their levels of detail: a content may show another than the city does.
+fn in_all_levels(leaf: &mut Leaf, city: ShownCity) {
+    if let Leaf::Members(members) = leaf {
+        let all = city.model.geometries.iter().filter(|g| members.objects[g.object as usize]);
+        members.bounds = all.fold(members.bounds, |bounds, g| bounds.union(g.bounds));
     }
 }
 

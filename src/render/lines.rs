@@ -2,16 +2,18 @@
 
 use crate::{
     geom::Aabb,
-    gpu::GpuError,
+    gpu::{Gpu, GpuError},
     lens::Class,
     render::{
         city::Shown,
+        contents::Placement,
+        cut::Cut,
         edges::{EdgeBuffers, VERTICES},
         frame::{FrameInput, Recorder, color_attachment, strided},
         hiding::{Reach, reaches_of},
         layout::LineStage,
         pipelines::Key,
-        renderer::{Renderer, STAGE_STRIDE},
+        renderer::{CityOnGpu, Renderer, STAGE_STRIDE},
     },
     shader::{EffectDefinition, Plan, Scope, Step, handlers},
 };
@@ -68,6 +70,16 @@ pub(super) fn stages(draws: &[LineDraw]) -> Vec<u8> {
     draws.iter().flat_map(|draw| strided(&draw.stage)).collect()
 }
 
+impl CityOnGpu {
+    /// Puts the edges of what it shows on the card, if they are not there.
+    pub fn find_edges(&mut self, gpu: &Gpu, shown: &Shown) -> Result<(), GpuError> {
+        if self.edges.is_none() {
+            self.edges = Some(EdgeBuffers::new(gpu, shown, &self.buffers, &Default::default())?);
+        }
+        Ok(())
+    }
+}
+
 impl Renderer {
     /// Whether the city's edges are on the card.
     pub fn has_edges(&self) -> bool {
@@ -76,10 +88,10 @@ impl Renderer {
 
     /// Puts the edges of the city that [`Renderer::set_city`] was given on the card; once per city.
     pub fn set_edges(&mut self, shown: &Shown) -> Result<(), GpuError> {
-        if let Some(city) = &mut self.city {
-            city.edges = Some(EdgeBuffers::new(&self.gpu, shown, &city.buffers, &Default::default())?);
+        match &mut self.city {
+            Some(city) => city.find_edges(&self.gpu, shown),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     pub(super) fn lines_pass(
@@ -87,7 +99,7 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
         input: &FrameInput,
-        draws: &[LineDraw],
+        (draws, cut): (&[LineDraw], Option<&Cut>),
         key: &Key,
     ) {
         let (Some(targets), Some(groups), Some(city)) = (&self.targets, &self.groups, &self.city) else { return };
@@ -113,16 +125,30 @@ impl Renderer {
         pass.set_bind_group(0, &groups.view, &[]);
         pass.set_bind_group(1, &groups.shade, &[]);
         pass.set_bind_group(2, &groups.lenses, &[]);
-        pass.set_vertex_buffer(0, edges.instances.slice(..));
+        let own = (edges, &Placement::NONE, None, 0);
+        let contents = self.content_edges().filter_map(|(city, number, placement, offset)| {
+            let is_asked = cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
+            Some((city.edges.as_ref().filter(|_| is_asked)?, placement, Some(number), offset))
+        });
+        let drawn: Vec<_> = std::iter::once(own).chain(contents).collect();
         let frustum = input.view.frustum(1.0);
         let (mut count, mut triangles) = (0, 0);
         for (i, draw) in draws.iter().enumerate() {
-            pass.set_bind_group(3, stage, &[(i as u64 * STAGE_STRIDE) as u32]);
             let is_wanted = |bounds: &Aabb| draw.reaches.iter().any(|reach| reach.touches(bounds, &input.view));
-            for range in edges.visible(&frustum, is_wanted) {
-                triangles += 2 * u64::from(range.end - range.start);
-                pass.draw(0..VERTICES, range);
-                count += 1;
+            for (edges, placement, content, offset) in &drawn {
+                pass.set_bind_group(3, stage, &[(i as u64 * STAGE_STRIDE) as u32, *offset]);
+                pass.set_vertex_buffer(0, edges.instances.slice(..));
+                let is_shown = |bounds: &Aabb| {
+                    content.is_none_or(|number| cut.is_some_and(|c| c.hiding.shows(number, bounds, &input.view)))
+                };
+                for range in edges.draws(|bounds| {
+                    let placed = placement.boxed(bounds);
+                    frustum.meets(&placed) && is_wanted(&placed) && is_shown(&placed)
+                }) {
+                    triangles += 2 * u64::from(range.end - range.start);
+                    pass.draw(0..VERTICES, range);
+                    count += 1;
+                }
             }
         }
         if let Some(timer) = &recorder.timer {

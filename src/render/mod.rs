@@ -7,6 +7,8 @@
 pub mod body;
 pub mod city;
 mod city_passes;
+pub mod content_cities;
+pub mod contents;
 mod curtain;
 mod cut;
 pub mod edges;

@@ -4,14 +4,14 @@ use crate::{
     city::CityModel,
     lens::{
         BorderUnit, Class, Discrete, EffectUse, Lens, LensBody,
-        chosen::{Choice, ChoiceError, chosen},
+        chosen::{Choice, ChoiceError, chosen, members},
         effect::{default_of, in_floats},
         thematic::ThematicScale,
     },
     render::palette,
     shader::{
-        self, Blend, BodyKind, ClassTest, EffectKind, PerObject, Plan, PlanBody, PlanBorder, PlanLens, Scope, Step,
-        Uber, VolumeTest,
+        self, Blend, BodyKind, ClassTest, Clip, EffectKind, PerObject, Plan, PlanBody, PlanBorder, PlanContent,
+        PlanLens, Scope, Step, Uber, VolumeTest,
     },
 };
 
@@ -44,6 +44,21 @@ impl Operation {
     }
 }
 
+/// What a lens shows in place of what is below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContentUse {
+    /// Which lens.
+    pub lens: u32,
+    /// On which of its classes.
+    pub class: Class,
+    /// Number of the city that it shows, from 1.
+    pub city: u32,
+    /// What becomes of what is below.
+    pub clip: Clip,
+    /// Whether terrain stays as it is below.
+    pub keeps_terrain: bool,
+}
+
 /// A neighbourhood filter of a frame: one for all uses that would make the same image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filter {
@@ -64,6 +79,8 @@ pub struct Filter {
 pub struct Operations {
     /// Effects in order.
     pub list: Vec<Operation>,
+    /// What lenses show in themselves, bottom lens first.
+    pub contents: Vec<ContentUse>,
     /// Lenses whose bodies are drawn, and how.
     pub bodies: Vec<(u32, PlanBody)>,
     /// Lenses with soft borders, and these.
@@ -71,7 +88,7 @@ pub struct Operations {
     /// Parameters of all of them, in slots of four.
     pub parameters: Vec<[f32; 4]>,
     /// What effects read of each object, one run per use: colours, sRGB bytes; or whether it is chosen, that of no object
-    /// first.
+    /// first. Objects of contents follow the city's.
     pub object_values: Vec<u32>,
     /// What any frame of the scene may ask for, disabled lenses included.
     uber: Uber,
@@ -82,13 +99,13 @@ pub struct Operations {
 impl Operations {
     /// The operations of the context's effects and of the enabled lenses that have a volume; `visible[i]` says
     /// whether lens i has one. `tests`: of the volumes of all lenses, in the picture and from the sun, and what leaves their combinations have. Thematic colours are
-    /// those of `model`'s objects.
+    /// those of the objects of `models`, the scene's own city first, by the first one's scale.
     pub fn new(
         context: &[EffectUse],
         lenses: &[Lens],
         visible: &[bool],
         [tests, shape_tests, leaves]: [Vec<VolumeTest>; 3],
-        model: &CityModel,
+        models: &[&CityModel],
     ) -> Result<Self, ChoiceError> {
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(shape_tests), ..Self::default() };
@@ -99,12 +116,12 @@ impl Operations {
             out.uber.bodies.clear();
         }
         for effect in context {
-            out.add(effect, None, model)?;
+            out.add(effect, None, models)?;
         }
         let active = || lenses.iter().enumerate().filter(|(i, _)| visible.get(*i) == Some(&true));
         for (i, lens) in active() {
             for effect in &lens.effects {
-                out.add(effect, Some(i as u32), model)?;
+                out.add(effect, Some(i as u32), models)?;
             }
         }
         for (i, lens) in active() {
@@ -143,6 +160,7 @@ impl Operations {
             dithers: lenses.iter().any(|l| l.soft_border().is_some_and(|b| b.discrete == Discrete::Dither)),
             blends: uses().any(|e| blend_of(e).is_some()),
             lines: uses().any(|e| shader::effect::find(&e.effect).is_some_and(|h| h.lines)),
+            contents: lenses.iter().any(|l| l.content.is_some()),
             ..Uber::default()
         }
     }
@@ -195,8 +213,14 @@ impl Operations {
             lenses.push(PlanLens { number, volumes: vec![test], leaves: leaves.clone(), body, border });
             numbers.push(lens);
         }
-        let steps = self.steps(|lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32));
-        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks }
+        let place = |lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32);
+        let steps = self.steps(place);
+        let content = |c: &ContentUse| {
+            let (lens, class) = (place(c.lens)?, class_test(c.class));
+            Some(PlanContent { lens, class, city: c.city, clip: c.clip, keeps_terrain: c.keeps_terrain })
+        };
+        let contents = self.contents.iter().filter_map(content).collect();
+        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks, contents }
     }
 
     /// The list as steps; `place` finds a lens in the plan.
@@ -252,16 +276,17 @@ impl Operations {
         filters
     }
 
-    /// Marks objects for a lens test by object; where the marks begin.
-    pub fn add_members(&mut self, objects: &[bool]) -> u32 {
-        let first = self.object_values.len() as u32;
+    /// Marks objects for a lens test by object, of `count` in all; where the marks begin.
+    pub fn add_members(&mut self, objects: &[bool], count: usize) -> u32 {
+        let first = self.object_values.len();
         // That of no object first.
         self.object_values.push(0);
         self.object_values.extend(objects.iter().map(|&is_chosen| u32::from(is_chosen)));
-        first
+        self.object_values.resize(first + 1 + count, 0);
+        first as u32
     }
 
-    fn add(&mut self, effect: &EffectUse, lens: Option<u32>, model: &CityModel) -> Result<(), ChoiceError> {
+    fn add(&mut self, effect: &EffectUse, lens: Option<u32>, models: &[&CityModel]) -> Result<(), ChoiceError> {
         let Some(number) = shader::effect::number_of(&effect.effect) else { return Ok(()) };
         let definition = &shader::handlers()[number as usize];
         let first = self.parameters.len() as u32;
@@ -274,17 +299,20 @@ impl Operations {
         match definition.objects {
             None => {}
             Some(PerObject::Colors) => {
-                let colors = ThematicScale::new(model, effect)?.object_colors(model);
-                self.object_values.extend(colors.iter().map(|c| {
+                let scale = in_any(models, |model| ThematicScale::new(model, effect))?;
+                let colors = models.iter().flat_map(|model| scale.object_colors(model));
+                self.object_values.extend(colors.map(|c| {
                     let [r, g, b] = c.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8);
                     u32::from_le_bytes([r, g, b, 255])
                 }));
                 floats.push(first_value);
             }
             Some(PerObject::Chosen) => {
-                let chosen = chosen(model, &Choice::of_effect(effect))?;
-                self.object_values.push(u32::from(chosen.without_object));
-                self.object_values.extend(chosen.objects.iter().map(|&is_chosen| u32::from(is_chosen)));
+                let choice = Choice::of_effect(effect);
+                let without_object = in_any(models, |model| chosen(model, &choice))?.without_object;
+                self.object_values.push(u32::from(without_object));
+                let objects = models.iter().flat_map(|model| members(model, &choice));
+                self.object_values.extend(objects.map(u32::from));
                 floats.push(first_value);
             }
         }
@@ -301,6 +329,12 @@ impl Operations {
         self.list.push(Operation { effect: number, parameters: first, lens, class: effect.class, blend });
         Ok(())
     }
+}
+
+/// Of the first city that has what is asked for; else what is wrong with the scene's own.
+fn in_any<T, E>(models: &[&CityModel], ask: impl Fn(&CityModel) -> Result<T, E>) -> Result<T, E> {
+    let [own, others @ ..] = models else { return ask(&CityModel::default()) };
+    ask(own).or_else(|error| others.iter().find_map(|model| ask(model).ok()).ok_or(error))
 }
 
 /// Ascending, each once.

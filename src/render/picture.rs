@@ -11,6 +11,7 @@ use crate::{
         coplanar::coplanar_triangles,
         decode_normal,
         ground::{Ground, plain_ground},
+        load::LoadOptions,
         shown::shown_geometries,
         spatial::SpatialIndex,
     },
@@ -24,6 +25,7 @@ use crate::{
         Renderer,
         body::Leaf,
         city::Shown,
+        content_cities::{self, ContentCities, SceneContents},
         eye::PictureTile,
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
@@ -133,6 +135,10 @@ pub struct Studio {
     /// Solids of lenses made so far, and as the card reads them.
     solids: Mutex<Solids>,
     solid_table: Mutex<Arc<SolidTable>>,
+    /// How contents of lenses are loaded.
+    pub reading: LoadOptions,
+    /// Those loaded so far.
+    content_cities: Mutex<ContentCities>,
     /// Where the shown triangles are, made for the first picture whose lenses are counted.
     index: OnceLock<SpatialIndex>,
 }
@@ -142,6 +148,7 @@ struct Prepared {
     volumes: Vec<LensVolume>,
     solids: Arc<SolidTable>,
     operations: Operations,
+    contents: SceneContents,
 }
 
 impl Studio {
@@ -174,8 +181,15 @@ impl Studio {
             backend: Backend::default(),
             solids: Mutex::default(),
             solid_table: Mutex::default(),
+            reading: LoadOptions::default(),
+            content_cities: Mutex::default(),
             index: OnceLock::new(),
         })
+    }
+
+    /// The city, and what is shown of it.
+    fn shown(&self) -> ShownCity<'_> {
+        ShownCity { model: &self.model, geometries: &self.geometries }
     }
 
     /// Box around the shown city, without the plain ground; empty for an empty city.
@@ -216,11 +230,11 @@ impl Studio {
     ) -> Result<Picture, RenderError> {
         let started = Instant::now();
         let prepared = self.prepare(scene, request.size)?;
-        let view = self.view(scene, request.size)?;
+        let view = self.view(scene, request.size, &prepared)?;
         let mut picture = Picture::empty(request, scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
-        self.find_edges(&prepared)?;
+        self.find_cities(&prepared)?;
         for part in parts(request.size) {
             self.render_part(scene, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
         }
@@ -261,9 +275,9 @@ impl Studio {
 
     fn draw_with(&mut self, scene: &Scene, request: &Request, furniture: &Furniture) -> Result<(), RenderError> {
         let prepared = self.prepare(scene, request.size)?;
-        let view = self.view(scene, request.size)?;
+        let view = self.view(scene, request.size, &prepared)?;
         let whole = PictureTile::whole(request.size);
-        self.find_edges(&prepared)?;
+        self.find_cities(&prepared)?;
         let mut input = FrameInput { furniture, ..input(scene, request, &prepared, view, whole) };
         for sample in 0..input.samples {
             input.sample = sample;
@@ -272,9 +286,11 @@ impl Studio {
         Ok(())
     }
 
-    /// Puts the city's edges on the card the first time that something draws lines.
-    fn find_edges(&mut self, prepared: &Prepared) -> Result<(), RenderError> {
-        if self.renderer.has_edges() || !prepared.operations.draws_lines() {
+    /// Puts contents of lenses on the card, and edges the first time that something draws lines.
+    fn find_cities(&mut self, prepared: &Prepared) -> Result<(), RenderError> {
+        let edges = prepared.operations.draws_lines();
+        self.renderer.set_contents(&prepared.contents.wanted, self.ground.as_ref(), edges)?;
+        if self.renderer.has_edges() || !edges {
             return Ok(());
         }
         let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_ref());
@@ -290,15 +306,16 @@ impl Studio {
         part: ShaderPart,
     ) -> Result<String, RenderError> {
         let prepared = self.prepare(scene, size)?;
-        let view = self.view(scene, size)?;
+        let view = self.view(scene, size, &prepared)?;
         let request =
             Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false, backend };
         let input = input(scene, &request, &prepared, view, whole(size));
         Ok(self.renderer.shader(&input, &scene.lenses, part))
     }
 
-    fn view(&self, scene: &Scene, size: [u32; 2]) -> Result<View, CameraError> {
-        let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
+    fn view(&self, scene: &Scene, size: [u32; 2], prepared: &Prepared) -> Result<View, CameraError> {
+        let own = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
+        let drawn = own.union(prepared.contents.bounds(&own, &prepared.volumes));
         View::new(self.camera(scene, size), size, &drawn)
     }
 
@@ -319,7 +336,7 @@ impl Studio {
     }
 
     fn volumes_of(&self, scene: &Scene, size: [u32; 2]) -> Result<LensVolumes, RenderError> {
-        let city = ShownCity { model: &self.model, geometries: &self.geometries };
+        let city = self.shown();
         let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
         volumes_of(scene, city, &Eye::new(&self.camera(scene, size))?, &mut solids).map_err(RenderError::Scene)
     }
@@ -332,16 +349,20 @@ impl Studio {
             kept.clone()
         };
         let LensVolumes { mut volumes, tests } = found;
+        let contents = self.contents(scene, size, &volumes)?;
+        let models: Vec<&CityModel> = std::iter::once(&self.model).chain(&contents.models).map(|m| &**m).collect();
+        let objects = models.iter().map(|model| model.objects.len()).sum();
         let mut present = vec![false; scene.lenses.len()];
         for volume in &volumes {
             present[volume.lens as usize] = true;
         }
-        let mut operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &self.model)
+        let mut operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &models)
             .map_err(|error| RenderError::Scene(error.to_string()))?;
+        operations.contents.clone_from(&contents.uses);
         for volume in &mut volumes {
             for leaf in volume.body.leaves_mut() {
                 if let Leaf::Members(members) = &leaf.leaf {
-                    leaf.place.first = operations.add_members(&members.objects);
+                    leaf.place.first = operations.add_members(&members.objects, objects);
                 }
             }
         }
@@ -357,7 +378,33 @@ impl Studio {
                 return Err(RenderError::Scene(message));
             }
         }
-        Ok(Prepared { volumes, solids, operations })
+        Ok(Prepared { volumes, solids, operations, contents })
+    }
+
+    /// What lenses show in themselves, in a picture of this size.
+    fn contents(&self, scene: &Scene, size: [u32; 2], volumes: &[LensVolume]) -> Result<SceneContents, RenderError> {
+        if scene.lenses.iter().all(|lens| lens.content.is_none()) {
+            self.content_cities.lock().unwrap_or_else(PoisonError::into_inner).clear();
+            return Ok(SceneContents::default());
+        }
+        let camera = self.camera(scene, size);
+        let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
+        let (view, eye) = (View::new(camera, size, &drawn)?, Eye::new(&camera)?);
+        let sun = self.renderer.sun_view(&view, &scene.sun, |_| [Aabb::EMPTY; 2]).map(|sun| sun.frustum(1.0));
+        let stage = content_cities::Stage {
+            scene,
+            model: &self.model,
+            geometries: &self.geometries,
+            volumes,
+            motion: &|lens| eye.motion(lens, scene, &self.model),
+            is_seen: &|volume| {
+                let is_in_sun = sun.as_ref().is_some_and(|frustum| frustum.meets(&volume.bounds));
+                is_in_sun || volume.seen_part(&view, whole(size)).is_some()
+            },
+            reading: &self.reading,
+        };
+        let mut cities = self.content_cities.lock().unwrap_or_else(PoisonError::into_inner);
+        cities.of_scene(&stage).map_err(RenderError::Scene)
     }
 
     #[allow(clippy::too_many_arguments, reason = "one part of a picture; the arguments are the picture's own")]
@@ -401,7 +448,8 @@ impl Studio {
     /// Reads what the unjittered sample left in the targets.
     fn read_aovs(&self, request: &Request, view: &View, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
         let gpu = &self.renderer.gpu;
-        let (Some(targets), Some(city)) = (self.renderer.targets(), self.renderer.city()) else { return Ok(()) };
+        let Some(targets) = self.renderer.targets() else { return Ok(()) };
+        let surface = |number: u32| self.renderer.surface(number);
         if let Some(out) = &mut picture.depth {
             let stored = gpu.read_texture(&targets.own_depth.texture, 0, wgpu::TextureAspect::All)?;
             let near = view.camera.near_m as f32;
@@ -424,14 +472,14 @@ impl Studio {
             true => bytemuck::cast_slice(&codes).to_vec(),
             false => {
                 // Flat faces: the normal stands with the surface.
-                let normal = |code: u32| code.checked_sub(1).map_or(0, |s| city.surface_table[s as usize].normal);
+                let normal = |code: u32| code.checked_sub(1).and_then(surface).map_or(0, |s| s.normal);
                 bytemuck::cast_slice(&codes).iter().map(|&code: &u32| [code, normal(code)]).collect()
             }
         };
         if let Some(out) = &mut picture.object_id {
             // The plain ground is no object: its NO_OBJECT wraps to 0.
-            let object = |surface: u32| city.surface_table[surface as usize].object.wrapping_add(1);
-            let ids: Vec<u32> = codes.iter().map(|&[code, _]| code.checked_sub(1).map_or(0, object)).collect();
+            let object = |code: u32| code.checked_sub(1).and_then(surface).map_or(0, |s| s.object.wrapping_add(1));
+            let ids: Vec<u32> = codes.iter().map(|&[code, _]| object(code)).collect();
             put(out, request.size, part, &ids);
         }
         if let Some(out) = &mut picture.normal {
@@ -508,6 +556,7 @@ impl Studio {
             lenses: (0..scene.lenses.len())
                 .map(|i| lens_figures(self, scene, prepared, picture, i, lens_seen(i)))
                 .collect(),
+            contents: prepared.contents.figures(self.shown(), &self.renderer),
             overlays: Vec::new(),
             warnings: self.warnings(),
             passes,
@@ -569,13 +618,16 @@ fn lens_figures(
             _ => rest += 1,
         }
     }
-    let acts_inside = lens.effects.iter().any(|e| e.class == Class::Inside);
+    let acts_inside = lens.classes().any(|class| class == Class::Inside);
     stats::LensFigures {
         id: index as u32,
         name: lens.name.clone(),
-        kind: "color".to_owned(),
+        kind: lens.kind.word().to_owned(),
         visible,
-        objects: objects_meeting(studio, &volumes),
+        objects: match prepared.contents.of_lens(index as u32) {
+            Some(content) => content.objects_meeting(studio.shown(), &volumes),
+            None => objects_meeting(studio, &volumes),
+        },
         covered: inside,
         pixels: if acts_inside { inside } else { 0 },
         classified: if volumes.is_empty() {

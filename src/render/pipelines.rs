@@ -51,6 +51,8 @@ pub enum Key {
         colored: bool,
         /// Whether normals are interpolated.
         smooth: bool,
+        /// Whether they are in other cities of the picture, and this one has flat faces alone.
+        flat: bool,
         /// Whether interpolated depth is written, for the AOV.
         measured: bool,
         /// What is hidden.
@@ -175,13 +177,14 @@ pub struct Layouts {
     /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks,
     /// invokers, filtered images, shapes.
     pub lenses: wgpu::BindGroupLayout,
-    /// Geometry and shadow where something is hidden, group 1: surfaces, planes of convex volumes, faces of solids.
+    /// Geometry and shadow where something is hidden, group 1: surfaces, planes of convex volumes, faces of solids; the city, for
+    /// the view and for the main eye, at dynamic offsets.
     pub cut_city: wgpu::BindGroupLayout,
     /// Shadow where something is hidden, group 2: object values, parameters, invokers, the main view, shapes.
     pub shapes: wgpu::BindGroupLayout,
     /// Shade where there are lines, group 3: their layer.
     pub lines: wgpu::BindGroupLayout,
-    /// Lines, group 3: the stage, at a dynamic offset.
+    /// Lines, group 3: the stage and the city, at dynamic offsets.
     pub line_stage: wgpu::BindGroupLayout,
     /// Filter, group 0: the stage at a dynamic offset, the image, parameters.
     pub filter: wgpu::BindGroupLayout,
@@ -357,7 +360,13 @@ impl Layouts {
             cut_city: layout(
                 gpu,
                 "surfaces and planes",
-                &[(0, S::FRAGMENT, surfaces), (1, S::FRAGMENT, storage()), (2, S::FRAGMENT, storage())],
+                &[
+                    (0, S::FRAGMENT, surfaces),
+                    (1, S::FRAGMENT, storage()),
+                    (2, S::FRAGMENT, storage()),
+                    (3, all, dynamic),
+                    (4, S::VERTEX, dynamic),
+                ],
             ),
             shapes: layout(
                 gpu,
@@ -372,7 +381,7 @@ impl Layouts {
                 ],
             ),
             lines: layout(gpu, "lines", &[(0, S::FRAGMENT, float)]),
-            line_stage: layout(gpu, "line stage", &[(0, all, dynamic)]),
+            line_stage: layout(gpu, "line stage", &[(0, all, dynamic), (1, all, dynamic)]),
             filter: layout(gpu, "filter", &[(0, all, dynamic), (1, S::FRAGMENT, packed), (2, all, uniform())]),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
             furniture: layout(gpu, "furniture", &[(0, all, uniform()), (1, S::FRAGMENT, storage())]),
@@ -576,7 +585,7 @@ impl Key {
             list.iter().filter(|(on, _)| *on).map(|(_, name)| format!(" {name}")).collect()
         };
         match self {
-            Self::Geometry { section, colored, smooth, measured, .. } => {
+            Self::Geometry { section, colored, smooth, flat, measured, .. } => {
                 let kind = match section {
                     GeometryKind::Plain => "",
                     GeometryKind::Textured(0) => " textured",
@@ -586,7 +595,7 @@ impl Key {
                 format!(
                     "{}{kind}{}",
                     self.module().name(),
-                    flags(&[(*colored, "colored"), (*smooth, "smooth"), (*measured, "measured")])
+                    flags(&[(*colored, "colored"), (*smooth, "smooth"), (*flat, "flat"), (*measured, "measured")])
                 )
             }
             Self::Shadow(_) => self.module().name(),
@@ -624,8 +633,8 @@ impl Key {
     fn constants(&self) -> Vec<(&'static str, f64)> {
         let flag = |on: bool| f64::from(u8::from(on));
         match self {
-            Self::Geometry { section, smooth, .. } => {
-                let mut list = vec![("SMOOTH", flag(*smooth))];
+            Self::Geometry { section, smooth, flat, .. } => {
+                let mut list = vec![("SMOOTH", flag(*smooth)), ("FLAT_CITY", flag(*flat))];
                 if let GeometryKind::Textured(cutoff) = section {
                     list.push(("ALPHA_CUTOFF", f64::from(f32::from_bits(*cutoff))));
                 }

@@ -9,6 +9,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         city::{CityBuffers, SectionKind, Shown},
+        contents::Contents,
         curtain::Curtain,
         edges::EdgeBuffers,
         furniture::FurnitureOnGpu,
@@ -32,6 +33,7 @@ pub struct Renderer {
     pub gpu: Gpu,
     pub(super) pipelines: Pipelines,
     pub(super) city: Option<CityOnGpu>,
+    pub(super) contents: Contents,
     pub(super) targets: Option<Targets>,
     pub(super) buffers: Buffers,
     pub(super) groups: Option<Groups>,
@@ -94,6 +96,9 @@ pub(super) struct Buffers {
     pub shape_invoker_table: Synced,
     pub shape_invokers: Synced,
     pub line_stages: Synced,
+    /// The scene's own city and contents, for the main view and for the sun.
+    pub cities: Synced,
+    pub sun_cities: Synced,
     pub resolve: Synced,
     /// Triangles over parts of the picture.
     pub mesh: Synced,
@@ -106,6 +111,8 @@ pub(super) struct Shadow {
     pub view: layout::View,
     /// What is hidden from it, and all numbers that this depends on.
     pub cut: Option<(Program, Vec<u8>)>,
+    /// Where contents stand.
+    pub cities: Vec<u8>,
 }
 
 /// Bind groups over buffers and targets; made anew when one of them was replaced.
@@ -155,6 +162,8 @@ impl Renderer {
             shapes: storage("lens shapes for the sun")?,
             shape_planes: storage("lens planes for the sun")?,
             line_stages: uniform("line stages")?,
+            cities: uniform("cities")?,
+            sun_cities: uniform("cities for the sun")?,
             shape_invoker_table: uniform("invoker table for the sun")?,
             shape_invokers: storage("invokers for the sun")?,
             resolve: uniform("resolve")?,
@@ -170,6 +179,7 @@ impl Renderer {
         Ok(Self {
             pipelines: Pipelines::new(&gpu),
             city: None,
+            contents: Contents::default(),
             targets: None,
             buffers,
             groups: None,
@@ -191,6 +201,16 @@ impl Renderer {
     /// Puts a city on the card in place of the last one.
     pub fn set_city(&mut self, shown: &Shown) -> Result<(), GpuError> {
         self.city = None;
+        self.contents = Contents::default();
+        self.city = Some(self.city_on_gpu(shown)?);
+        self.groups = None;
+        self.shadow_of = None;
+        self.generation += 1;
+        Ok(())
+    }
+
+    /// The buffers of a city, and what binds them.
+    pub(super) fn city_on_gpu(&self, shown: &Shown) -> Result<CityOnGpu, GpuError> {
         let gpu = &self.gpu;
         let buffers = CityBuffers::new(gpu, shown)?;
         let surfaces = wgpu::BindingResource::TextureView(&buffers.surfaces);
@@ -204,11 +224,7 @@ impl Renderer {
             _ => None,
         });
         let images = images.collect();
-        self.city = Some(CityOnGpu { group, images, buffers, edges: None });
-        self.groups = None;
-        self.shadow_of = None;
-        self.generation += 1;
-        Ok(())
+        Ok(CityOnGpu { group, images, buffers, edges: None })
     }
 
     /// The city's buffers.
@@ -269,14 +285,19 @@ impl Renderer {
                 wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size: wgpu::BufferSize::new(size as u64) };
             group(gpu, label, &p.stage, &[(0, wgpu::BindingResource::Buffer(binding))])
         };
-        let cut_city = |planes: &Synced| {
-            let surfaces = wgpu::BindingResource::TextureView(&city.buffers.surfaces);
-            group(
-                gpu,
-                "surfaces and planes",
-                &p.cut_city,
-                &[(0, surfaces), (1, whole(planes.buffer())), (2, whole(b.solids.buffer()))],
-            )
+        let surfaces = || {
+            let all = self.contents.surfaces.as_ref().unwrap_or(&city.buffers.surfaces);
+            wgpu::BindingResource::TextureView(all)
+        };
+        let cut_city = |planes: &Synced, cities: &Synced| {
+            let entries = [
+                (0, surfaces()),
+                (1, whole(planes.buffer())),
+                (2, whole(b.solids.buffer())),
+                (3, one_of::<layout::City>(cities)),
+                (4, one_of::<layout::City>(&b.cities)),
+            ];
+            group(gpu, "surfaces and planes", &p.cut_city, &entries)
         };
         self.groups = Some(Groups {
             view: group(gpu, "view", &p.view, &[(0, whole(b.view.buffer()))]),
@@ -288,7 +309,7 @@ impl Renderer {
                 "shade",
                 &p.shade,
                 &[
-                    (0, wgpu::BindingResource::TextureView(&city.buffers.surfaces)),
+                    (0, surfaces()),
                     (1, whole(b.planes.buffer())),
                     (2, whole(b.solids.buffer())),
                     (3, whole(b.light.buffer())),
@@ -318,15 +339,12 @@ impl Renderer {
             ),
             lines: group(gpu, "lines", &p.lines, &[(0, all_of(&targets.lines))]),
             line_stage: targets.needs.lines.then(|| {
-                let stage = wgpu::BufferBinding {
-                    buffer: b.line_stages.buffer(),
-                    offset: 0,
-                    size: wgpu::BufferSize::new(size_of::<layout::LineStage>() as u64),
-                };
-                group(gpu, "line stage", &p.line_stage, &[(0, wgpu::BindingResource::Buffer(stage))])
+                let entries =
+                    [(0, one_of::<layout::LineStage>(&b.line_stages)), (1, one_of::<layout::City>(&b.cities))];
+                group(gpu, "line stage", &p.line_stage, &entries)
             }),
-            cut_city: cut_city(&b.planes),
-            shapes_city: cut_city(&b.shape_planes),
+            cut_city: cut_city(&b.planes, &b.cities),
+            shapes_city: cut_city(&b.shape_planes, &b.sun_cities),
             shapes: group(
                 gpu,
                 "shapes",
@@ -362,6 +380,12 @@ impl Renderer {
 
 fn all_of(target: &Target) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(&target.view)
+}
+
+/// One of several in a uniform buffer, at a dynamic offset.
+fn one_of<T>(buffer: &Synced) -> wgpu::BindingResource<'_> {
+    let size = wgpu::BufferSize::new(size_of::<T>() as u64);
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size })
 }
 
 pub(super) fn whole(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {

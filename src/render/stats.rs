@@ -21,6 +21,8 @@ pub struct Statistics {
     pub handlers: Vec<String>,
     /// Every lens of the scene, disabled ones included.
     pub lenses: Vec<LensFigures>,
+    /// What lenses show in themselves, as far as it was loaded.
+    pub contents: Vec<Content>,
     /// Overlays.
     pub overlays: Vec<serde_json::Value>,
     /// What was wrong and lived with.
@@ -57,6 +59,21 @@ pub struct City {
     /// Their vertices.
     pub vertices: u64,
     /// Buffers and textures.
+    pub gpu_bytes: u64,
+}
+
+/// What lenses show in themselves.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Content {
+    /// The lenses that show it.
+    pub lenses: Vec<u32>,
+    /// City objects with something to show.
+    pub objects: u64,
+    /// What the indices of a data set's objects are counted from in object ids; `null` for the scene's own files.
+    pub first_object: Option<u32>,
+    /// Triangles that can be drawn, a plain ground included.
+    pub triangles: u64,
+    /// Bytes on the card; 0 where it is the city as it is shown, or counted above.
     pub gpu_bytes: u64,
 }
 

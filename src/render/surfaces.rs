@@ -48,18 +48,18 @@ impl<'a> SurfaceTable<'a> {
         let material = self.model.materials.get(self.model.surfaces.get(surface as usize)?.material as usize)?;
         self.textures.has(material.texture).then(|| (material.texture, material.alpha_cutoff.to_bits()))
     }
+}
 
-    /// Puts the table on the card.
-    pub fn upload(&self, gpu: &Gpu) -> Result<wgpu::TextureView, GpuError> {
-        let rows = (self.entries.len() as u32).div_ceil(ROW).max(1);
-        gpu.check_rows("the table of surfaces", rows, u64::from(ROW) * size_of::<layout::Surface>() as u64)?;
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let texture = gpu.texture("surfaces", [ROW, rows, 1], 1, wgpu::TextureFormat::Rgba32Uint, usage);
-        let mut texels = bytemuck::cast_slice::<_, u8>(&self.entries).to_vec();
-        texels.resize((ROW * rows) as usize * size_of::<layout::Surface>(), 0);
-        gpu.write_texture_level(&texture, 0, &texels);
-        Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
-    }
+/// Puts a table on the card.
+pub fn upload(gpu: &Gpu, entries: &[layout::Surface]) -> Result<wgpu::TextureView, GpuError> {
+    let rows = (entries.len() as u32).div_ceil(ROW).max(1);
+    gpu.check_rows("the table of surfaces", rows, u64::from(ROW) * size_of::<layout::Surface>() as u64)?;
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let texture = gpu.texture("surfaces", [ROW, rows, 1], 1, wgpu::TextureFormat::Rgba32Uint, usage);
+    let mut texels = bytemuck::cast_slice::<_, u8>(entries).to_vec();
+    texels.resize((ROW * rows) as usize * size_of::<layout::Surface>(), 0);
+    gpu.write_texture_level(&texture, 0, &texels);
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
 
 /// What the table says of a model surface (`NONE`: the plain ground) that faces a packed normal.

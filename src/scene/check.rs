@@ -137,6 +137,7 @@ mod tests {
             placement,
             shapes: vec![],
             effects: vec![],
+            content: None,
             body: Default::default(),
             sprite: None,
             border: None,

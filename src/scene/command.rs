@@ -180,6 +180,7 @@ mod tests {
             placement: Default::default(),
             shapes: vec![],
             effects: vec![],
+            content: None,
             body: Default::default(),
             sprite: None,
             border: None,

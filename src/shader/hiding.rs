@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
+    contents::{self, IS_SHOWN},
     effect::{EffectDefinition, EffectKind},
     lens_test,
     plan::{Plan, Program, Scope, Uber},
@@ -43,6 +44,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
             }
         }
     }
+    text.push_str(&cities(program, eye));
     text.push('\n');
     for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
@@ -57,6 +59,36 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
     text
 }
 
+/// Where vertices stand.
+fn cities(program: &Program, eye: Eye) -> String {
+    match (eye, program.has().contents) {
+        (Eye::Picture, false) => String::new(),
+        (Eye::Picture, true) => contents::binding(1, 3, "city"),
+        (Eye::Sun, false) => RELATIVE.replace("PLACED", "(vec3f(whole - eye.eye_whole) - eye.eye_fraction) + offset"),
+        (Eye::Sun, true) => {
+            let both = contents::binding(1, 3, "city") + &contents::binding(1, 4, "main_city");
+            both + &RELATIVE.replace("PLACED", "placed_by(main_city, whole, offset)")
+        }
+    }
+}
+
+const RELATIVE: &str = "
+fn relative_to_main_eye(whole: vec3i, offset: vec3f) -> vec3f {
+    return PLACED;
+}
+";
+
+/// `visible` begins with this.
+fn head(has_contents: bool) -> String {
+    let head = "fn visible(fragment: Fragment) -> bool {\n";
+    match has_contents {
+        false => head.to_owned(),
+        true => {
+            format!("{head}    if !({}) {{\n        return false;\n    }}\n", IS_SHOWN.replace("PLACE", "fragment"))
+        }
+    }
+}
+
 fn call(handler: &EffectDefinition, first: &str) -> String {
     let own = if handler.slots() == 0 { String::new() } else { format!(", {}({first})", handler.own("parameters")) };
     format!("{}(fragment{own})", handler.wgsl_name())
@@ -66,6 +98,7 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
     let steps = || plan.steps_of(EffectKind::Hide, handlers);
     let mut lenses: Vec<u32> =
         steps().filter_map(|(step, _)| if let Scope::Lens(lens, _) = step.scope { Some(lens) } else { None }).collect();
+    lenses.extend(plan.contents.iter().map(|c| c.lens));
     lenses.sort_unstable();
     lenses.dedup();
     for lens in lenses {
@@ -82,7 +115,12 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
             let _ = writeln!(text, "fn interest_in_lens_{lens}(sight: Sight) -> f32 {{\n    return {interest};\n}}\n");
         }
     }
-    text.push_str("fn visible(fragment: Fragment) -> bool {\n");
+    if !plan.contents.is_empty() {
+        let of = |what: &str, lens: u32| format!("{what}_lens_{lens}(sight_of(fragment))");
+        let (classes, interest) = (|lens| of("classes_of", lens), |lens| of("interest_in", lens));
+        text.push_str(&contents::specialised(plan, "fragment: Fragment", classes, interest));
+    }
+    text.push_str(&head(!plan.contents.is_empty()));
     for (step, handler) in steps() {
         let is_hidden = call(handler, &format!("{}u", step.parameters));
         let condition = match step.scope {
@@ -121,6 +159,10 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
         );
     }
     text.push_str("        default: { return false; }\n    }\n}\n\n");
+    if uber.contents {
+        text.push_str(&contents::uber("fragment: Fragment", "runs(by, fragment)"));
+    }
+    text.push_str(&head(uber.contents));
     text.push_str(VISIBLE);
 }
 
@@ -172,8 +214,7 @@ const RUNS_WITHOUT_LENSES: &str = "fn runs(by: Invoker, fragment: Fragment) -> b
 
 ";
 
-const VISIBLE: &str = "fn visible(fragment: Fragment) -> bool {
-    let range = table.ranges.xy;
+const VISIBLE: &str = "    let range = table.ranges.xy;
     for (var i = range.x; i < range.y; i++) {
         let by = invokers[i];
         if runs(by, fragment) && hides(fragment, by) {

@@ -7,6 +7,7 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
+    contents::{self, IS_SHOWN},
     effect::{EffectDefinition, EffectKind},
     lens_test,
     plan::{Program, Scope, Step, Uber},
@@ -23,6 +24,10 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
             format!("@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;\n{tests}\n")
         }
     };
+    if program.has().contents {
+        text.push_str(&contents::binding(3, 1, "city"));
+        text.push('\n');
+    }
     for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
     }
@@ -31,11 +36,24 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
             text.push_str("// ==== this scene\n\n");
             let writer = Writer { plan, handlers, names };
             text.push_str(&writer.classes());
+            if !plan.contents.is_empty() {
+                let (classes, interest) =
+                    (|lens| format!("classes.lens_{lens}"), |lens| format!("classes.interest_{lens}"));
+                text.push_str(&contents::specialised(plan, PLACE, classes, interest));
+            }
             specialised(&mut text, &writer);
         }
         Program::Uber(uber) => uber_source(&mut text, uber, handlers),
     }
     text
+}
+
+/// What `shown_cities` is asked of.
+const PLACE: &str = "fragment: Fragment, classes: Classes";
+
+/// A line of a city that does not show at its place.
+fn gone() -> String {
+    format!("    if !({}) {{\n        opacity = 0.0;\n    }}\n", IS_SHOWN.replace("PLACE", "fragment, classes"))
 }
 
 fn parameters(handler: &EffectDefinition, first: &str) -> String {
@@ -111,6 +129,9 @@ fn specialised(text: &mut String, writer: &Writer) {
         }
     }
     text.push_str(&hidden);
+    if !writer.plan.contents.is_empty() {
+        text.push_str(&gone());
+    }
     text.push_str("    return vec4f(color, opacity);\n}\n");
 }
 
@@ -141,8 +162,17 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     let has_posts = uber.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Post);
     let styled = if has_posts { "color = invoke_style(color, point, by);" } else { "" };
     let fades = uber.borders && !uber.tests.is_empty();
-    let loops = if fades { LINE_AT_FADED.to_owned() } else { LINE_AT.to_owned() };
-    text.push_str(&uber::faded(uber, &loops.replace("STYLED", styled)));
+    let loops = if fades { LINE_AT_FADED } else { LINE_AT };
+    let gone = if uber.contents { gone() } else { String::new() };
+    let loops = loops.replace("STYLED", styled).replace("    GONE\n", &gone);
+    text.push_str(&uber::faded(uber, &loops));
+    if uber.contents {
+        text.push_str(&contents::uber(
+            PLACE,
+            if fades { "is_there(by, fragment, classes)" } else { "runs(by, classes)" },
+        ));
+        text.push_str(if fades { IS_THERE } else { "" });
+    }
     text.push_str(LINE_KINDS);
 }
 
@@ -173,6 +203,7 @@ const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, o
             opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u);
         }
     }
+    GONE
     return vec4f(color, select(opacity, 0.0, is_hidden));
 }
 
@@ -211,7 +242,18 @@ const LINE_AT_FADED: &str = "fn line_at(step: u32, point: Point, fragment: Fragm
             opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u) * share;
         }
     }
+    GONE
     return vec4f(color, select(opacity, 0.0, is_hidden));
+}
+
+";
+
+/// Whether a content is there, where lenses fade.
+const IS_THERE: &str = "fn is_there(by: Invoker, fragment: Fragment, classes: Classes) -> bool {
+    if by.border != 0u && parameters[by.border - 1u].z > 0.5 {
+        return is_dithered(share_at(by, classes), fragment.pixel);
+    }
+    return runs(by, classes);
 }
 
 ";

@@ -4,6 +4,7 @@
 //! and free of side effects.
 
 mod carried;
+mod contents;
 pub mod effect;
 pub mod effect_file;
 mod hiding;
@@ -17,7 +18,8 @@ pub mod wgsl;
 pub use carried::LEAST_CARRIED;
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
 pub use plan::{
-    Blend, BodyKind, ClassTest, Plan, PlanBody, PlanBorder, PlanLens, Program, Scope, Step, Uber, VolumeTest,
+    Blend, BodyKind, ClassTest, Clip, MOST_CITIES, Plan, PlanBody, PlanBorder, PlanContent, PlanLens, Program, Scope,
+    Step, Uber, VolumeTest,
 };
 pub use specialised::scope_number;
 pub use uber::{MOST_SLOTS, MOST_VOLUMES, TILE_PX};
@@ -57,6 +59,8 @@ files! {
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
     EDGE = "lib/edge.wgsl";
+    ONE_CITY = "lib/one-city.wgsl";
+    CITIES = "lib/cities.wgsl";
     FRAGMENT = "lib/fragment.wgsl";
     CUT = "lib/cut.wgsl";
     OUTLINE = "lib/outline.wgsl";
@@ -151,16 +155,20 @@ impl Module {
     /// from vertices to fragments: [`LEAST_CARRIED`] or more.
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], room: u32) -> String {
         let files: &[(&str, &str)] = match self {
-            Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, GEOMETRY],
-            Self::Geometry(Some(program)) => {
-                &[&[VIEW, VIEW_UNIFORM, SURFACE, SIGHT], &lens_files(program)[..], &[OBJECTS, FRAGMENT, CUT, GEOMETRY]]
-                    .concat()
-            }
+            Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, GEOMETRY],
+            Self::Geometry(Some(program)) => &[
+                &[VIEW, VIEW_UNIFORM, SURFACE, SIGHT],
+                &lens_files(program)[..],
+                &[OBJECTS, FRAGMENT, city_file(program), CUT, GEOMETRY],
+            ]
+            .concat(),
             Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SHADOW],
-            Self::Shadow(Some(program)) => {
-                &[&[VIEW, VIEW_UNIFORM, SURFACE, SIGHT], &lens_files(program)[..], &[OBJECTS, FRAGMENT, SHADOW_CUT]]
-                    .concat()
-            }
+            Self::Shadow(Some(program)) => &[
+                &[VIEW, VIEW_UNIFORM, SURFACE, SIGHT],
+                &lens_files(program)[..],
+                &[OBJECTS, FRAGMENT, city_file(program), SHADOW_CUT],
+            ]
+            .concat(),
             Self::Sprite => &[VIEW, VIEW_UNIFORM, SHAPE, SPRITE],
             Self::CombinedSprite(_) => {
                 &[VIEW, VIEW_UNIFORM, SIGHT, CLASS, SHAPE, SOLID, COMBINED, SPRITE, COMBINED_PASS]
@@ -211,7 +219,8 @@ impl Module {
 
     /// The libraries that lines call.
     fn files_of_lines(program: &Program) -> Vec<(&'static str, &'static str)> {
-        let mut files = vec![VIEW, VIEW_UNIFORM, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT, FRAGMENT, EDGE];
+        let cities = city_file(program);
+        let mut files = vec![VIEW, VIEW_UNIFORM, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT, FRAGMENT, cities, EDGE];
         if program.has().blends {
             files.push(BLEND);
         }
@@ -241,6 +250,11 @@ impl Module {
         files.push(SHADE);
         files
     }
+}
+
+/// Where vertices stand: of the scene's own city, or also of contents.
+fn city_file(program: &Program) -> (&'static str, &'static str) {
+    if program.has().contents { CITIES } else { ONE_CITY }
 }
 
 /// The libraries of the lens tests that a program makes.
@@ -277,7 +291,10 @@ fn hidden_name(hidden: &Option<Program>) -> String {
         None => String::new(),
         Some(program) => {
             let uber = if matches!(program, Program::Uber(_)) { " uber" } else { "" };
-            format!(" cut{uber} ({})", names_of(program))
+            let contents = program.has().contents.then_some("contents".to_owned());
+            let effects = Some(names_of(program)).filter(|names| !names.is_empty());
+            let what: Vec<String> = contents.into_iter().chain(effects).collect();
+            format!(" cut{uber} ({})", what.join(", "))
         }
     }
 }
@@ -331,6 +348,18 @@ mod tests {
         handlers().iter().enumerate().filter(is_effect).map(|(i, _)| i as u32).collect()
     }
 
+    /// What the two lenses show: nothing, or all ways to clip.
+    fn contents_of(seed: usize) -> Vec<PlanContent> {
+        let content = |i: usize| PlanContent {
+            lens: i as u32,
+            class: ClassTest::ALL[(seed + i) % 4],
+            city: (i + seed % 30) as u32 + 1,
+            clip: Clip::ALL[(seed / 2 + i) % 3],
+            keeps_terrain: (seed + i).is_multiple_of(4),
+        };
+        (0..if seed.is_multiple_of(2) { 0 } else { 2 }).map(content).collect()
+    }
+
     /// A scene of the context and two lenses whose steps are these effects, in order; `seed` chooses classes, blends,
     /// bodies and masks. The modules that both back ends need for it.
     fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
@@ -357,6 +386,7 @@ mod tests {
             steps,
             haze: seed.is_multiple_of(5),
             masks: seed.is_multiple_of(7),
+            contents: contents_of(seed),
         };
         let uber = Uber {
             effects: plan.effects(),
@@ -373,6 +403,7 @@ mod tests {
             haze: plan.haze,
             masks: plan.masks,
             lines: plan.lines,
+            contents: !plan.contents.is_empty(),
         };
         let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();
         let hiding = hiding.chain(uber.hiding(handlers()).map(Program::Uber));
@@ -403,6 +434,25 @@ mod tests {
         modules.extend(numbers().into_iter().filter(is_filter).map(Module::Filter));
         modules.extend([Module::Furniture, Module::FurnitureOver]);
         modules
+    }
+
+    #[test]
+    fn contents_alone_make_modules_that_are_valid() {
+        let lens =
+            |number| PlanLens { number, volumes: vec![VolumeTest::Sphere], leaves: vec![], body: None, border: None };
+        for contents in [contents_of(1), contents_of(3), contents_of(5)] {
+            let plan = Plan { lenses: vec![lens(0), lens(1)], contents, ..Plan::default() };
+            let uber = Uber { tests: vec![VolumeTest::Sphere], contents: true, ..Uber::default() };
+            let hiding = [
+                Program::Specialised(plan.hiding(handlers()).expect("something is clipped")),
+                Program::Uber(uber.hiding(handlers()).expect("something may be clipped")),
+            ];
+            for program in hiding {
+                validate(&Module::Geometry(Some(program.clone())));
+                validate(&Module::Shadow(Some(program)));
+            }
+            assert!(plan.shading(handlers()).contents.is_empty(), "shading asks what is there, not why");
+        }
     }
 
     fn validate(module: &Module) {

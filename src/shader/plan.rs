@@ -21,6 +21,57 @@ pub struct Plan {
     pub masks: bool,
     /// Whether some effect draws lines.
     pub lines: bool,
+    /// What its lenses show in themselves, bottom lens first (C6).
+    pub contents: Vec<PlanContent>,
+}
+
+/// What a lens of a plan shows in place of what is below it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PlanContent {
+    /// Index into [`Plan::lenses`].
+    pub lens: u32,
+    /// On which of its classes.
+    pub class: ClassTest,
+    /// Number of the city that it shows, from 1; less than [`MOST_CITIES`].
+    pub city: u32,
+    /// What becomes of what is below.
+    pub clip: Clip,
+    /// Whether terrain stays as it is below.
+    pub keeps_terrain: bool,
+}
+
+/// Cities of a picture, the scene's own included: bits of a word.
+pub const MOST_CITIES: u32 = 32;
+
+/// What becomes of what is shown below a lens that has own content (C6), the context included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Clip {
+    /// It is clipped: the topmost content shows.
+    #[default]
+    Order,
+    /// It stays, and the content is added.
+    Merge,
+    /// Nothing shows where a lens below has another content, neither; else as `Order`.
+    Discard,
+}
+
+impl Clip {
+    /// All, in the order of the uber back end's numbers.
+    pub const ALL: [Self; 3] = [Self::Order, Self::Merge, Self::Discard];
+
+    /// Its word in scene files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Order => "order",
+            Self::Merge => "merge",
+            Self::Discard => "discard",
+        }
+    }
+
+    /// The number that the uber back end knows it by.
+    pub fn number(self) -> u32 {
+        Self::ALL.iter().position(|c| *c == self).unwrap_or(0) as u32
+    }
 }
 
 /// A lens of a plan.
@@ -308,16 +359,19 @@ pub struct Uber {
     pub masks: bool,
     /// Whether some effects draw lines.
     pub lines: bool,
+    /// Whether some lenses have own content.
+    pub contents: bool,
 }
 
 impl Uber {
     /// What of it says what is there; `None` where nothing may be hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| kind == EffectKind::Hide);
-        (!effects.is_empty()).then(|| Self {
+        (!effects.is_empty() || self.contents).then(|| Self {
             effects,
             tests: self.tests.clone(),
             leaves: self.leaves.clone(),
+            contents: self.contents,
             borders: self.dithers,
             ..Self::default()
         })
@@ -327,15 +381,14 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        let (borders, dithers) = (self.borders, self.dithers);
-        let all =
-            Self { effects, tests, leaves, borders, dithers, blends: self.blends, lines: true, ..Self::default() };
-        self.lines.then_some(all)
+        let (borders, dithers, contents) = (self.borders, self.dithers, self.contents);
+        let all = Self { effects, tests, leaves, borders, dithers, contents, ..Self::default() };
+        self.lines.then_some(Self { blends: self.blends, lines: true, ..all })
     }
 
     /// What of it says how things look.
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
-        Self { effects: self.of(handlers, |kind| kind != EffectKind::Hide), ..self }
+        Self { effects: self.of(handlers, |kind| kind != EffectKind::Hide), contents: false, ..self }
     }
 
     fn of(&self, handlers: &[EffectDefinition], is_wanted: impl Fn(EffectKind) -> bool) -> Vec<u32> {
@@ -354,6 +407,10 @@ impl Program {
             Self::Specialised(plan) => (plan.bodies(), plan.has_blends(), plan.lines, plan.has_borders()),
             Self::Uber(uber) => (uber.bodies.clone(), uber.blends, uber.lines, uber.borders && has_lenses),
         };
+        let contents = match self {
+            Self::Specialised(plan) => !plan.contents.is_empty(),
+            Self::Uber(uber) => uber.contents,
+        };
         let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
@@ -371,6 +428,7 @@ impl Program {
             distances: borders || has_body(BodyKind::Shell) || has_body(BodyKind::Halo),
             blends: blends || borders,
             lines,
+            contents,
             borders,
         }
     }
@@ -430,6 +488,8 @@ pub struct Parts {
     pub blends: bool,
     /// Lines over what was shaded.
     pub lines: bool,
+    /// Contents of lenses.
+    pub contents: bool,
     /// Soft borders of lenses.
     pub borders: bool,
 }
@@ -459,7 +519,9 @@ impl Plan {
     /// The soft border of one of its lenses that does something here.
     pub fn border_of(&self, lens: u32) -> Option<PlanBorder> {
         let acts = |s: &Step| matches!(s.scope, Scope::Lens(l, _) if l == lens);
-        self.lenses[lens as usize].border.filter(|_| self.steps.iter().any(acts))
+        // What a lens shows fades by dithering alone.
+        let shows = |b: &PlanBorder| b.dithers && self.contents.iter().any(|c| c.lens == lens);
+        self.lenses[lens as usize].border.filter(|b| shows(b) || self.steps.iter().any(acts))
     }
 
     /// With lenses that end at once: from where a border is not told.
@@ -491,7 +553,8 @@ impl Plan {
     /// Whether nobody asks for other classes of a lens than *inside*.
     pub fn asks_inside_alone(&self, lens: u32) -> bool {
         let is_other = |s: &Step| matches!(s.scope, Scope::Lens(l, class) if l == lens && class != ClassTest::Inside);
-        !self.masks && !self.steps.iter().any(is_other)
+        let is_content = |c: &PlanContent| c.lens == lens && c.class != ClassTest::Inside;
+        !self.masks && !self.steps.iter().any(is_other) && !self.contents.iter().any(is_content)
     }
 
     /// The volumes of one of its lenses: how many come before them, and how they are tested.
@@ -512,18 +575,24 @@ impl Plan {
     /// What of it says what is there; `None` where nothing is hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let steps: Vec<Step> = self.steps_of(EffectKind::Hide, handlers).map(|(step, _)| step.clone()).collect();
-        if steps.is_empty() {
+        if steps.is_empty() && self.contents.is_empty() {
             return None;
         }
-        let mut lenses = self.plain_lenses();
+        let (mut lenses, contents) = (self.plain_lenses(), self.contents.clone());
         lenses.iter_mut().for_each(|lens| lens.border = lens.border.filter(|b| b.dithers));
-        Some(Self { lenses, steps, ..Self::default() })
+        Some(Self { lenses, steps, contents, ..Self::default() })
     }
 
     /// What of it lines go through; `None` where nobody draws any.
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let steps = self.steps.iter().filter(|s| handlers[s.effect as usize].kind.touches_lines()).cloned().collect();
-        self.lines.then(|| Self { lenses: self.plain_lenses(), steps, lines: true, ..Self::default() })
+        self.lines.then(|| Self {
+            lenses: self.plain_lenses(),
+            steps,
+            lines: true,
+            contents: self.contents.clone(),
+            ..Self::default()
+        })
     }
 
     /// Its lenses for passes that ask for nothing but their volumes, which keep their places.
@@ -535,6 +604,7 @@ impl Plan {
     /// What of it says how things look.
     pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
         self.steps.retain(|step| handlers[step.effect as usize].kind != EffectKind::Hide);
+        self.contents.clear();
         self
     }
 

@@ -224,7 +224,7 @@ struct Invoker {
 
 struct InvokerTable {
     ranges: vec4u,              // from up to (not included): what hides; what lines go through
-    tiles: vec4u,               // x: tiles of the picture in a row
+    tiles: vec4u,               // x: tiles of the picture in a row; y, z: contents of lenses, from up to
 }
 
 // A uniform, as it always was: with none at this place Mesa 22.3 takes others for each other, and crashes.

@@ -73,6 +73,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         placement: Default::default(),
         shapes: shapes.into_iter().map(Into::into).collect(),
         effects: vec![used(effect)],
+        content: None,
         body: LensBody::None,
         sprite: None,
         border: None,

@@ -10,7 +10,7 @@ use std::{
 use arguments::{AovFormat, AovKind, AovRequest, Arguments};
 
 use crate::{
-    city::{TextureImage, facts},
+    city::{TextureImage, facts, load::LoadOptions},
     cli::{Failure, GlobalArguments, Outcome, load, output, terminal},
     figure::{
         self,
@@ -129,7 +129,7 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
     }
     let mut roots: Vec<PathBuf> = options.roots.clone();
     roots.push(options.base.clone());
-    let (model, load) = load::load_below(&scene.city.files, roots, global)?;
+    let (model, load) = load::load_below(&scene.city.files, roots.clone(), global)?;
     let mut warnings: Vec<serde_json::Value> =
         facts::warning_facts(&model).iter().filter_map(|warning| serde_json::to_value(warning).ok()).collect();
     if !warnings.is_empty() {
@@ -150,6 +150,7 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
         SAID.call_once(|| terminal::say(&format!("note: there is no graphics hardware; {} draws, slowly", gpu.name())));
     }
     let mut studio = Studio::new(gpu, Arc::new(model), &scene.city).map_err(Failure::failed)?;
+    studio.reading = LoadOptions { allow_outside: global.allow_outside, roots };
     let ms = |stage: &str, time: std::time::Duration| (stage.to_owned(), time.as_secs_f64() * 1e3);
     studio.load = stats::Load {
         ms: [ms("read", load.read), ms("parse", load.parse), ms("build", load.build)].into_iter().collect(),

@@ -9,7 +9,7 @@ use crate::{
         keys::{self, CLASSES, Key, Kind, LATER_TABLES, TABLES, Table},
         shape_keys::SHAPES,
     },
-    lens::effect::LATER,
+    lens::effect::{LATER, LOD},
     shader::{
         Blend,
         effect::{EffectKind, ParameterKind, effects as all_effects},
@@ -38,6 +38,7 @@ pub fn reference() -> String {
     );
     let names: Vec<&str> = all_effects().map(|e| e.name.as_str()).collect();
     let _ = write!(out, "The effects are {}; [effects.md](effects.md) has their parameters.\n\n", words(&names));
+    out += "`lod` may stand among them too: `{ effect = \"lod\", lod = \"1.2\" }`, with a `class`, is `content = { lod = \"1.2\" }` of its\nlens, and written as that.\n\n";
     let _ = write!(out, "Not available yet: {}.\n\n", words(LATER));
     let _ = writeln!(out, "Tables of later versions: {}.", words(LATER_TABLES));
     out
@@ -226,6 +227,17 @@ fn effects() -> Vec<Value> {
     let alone: Vec<&str> =
         all_effects().filter(|e| !e.parameters.iter().any(|p| p.is_required())).map(|e| e.name.as_str()).collect();
     let mut all = vec![json!({ "enum": alone })];
+    all.push(json!({
+        "type": "object",
+        "description": "Content. The city in another level of detail, in place of what is below.",
+        "properties": {
+            "effect": { "const": LOD },
+            "class": { "enum": CLASSES },
+            "lod": of_kind(&Kind::Lod),
+        },
+        "required": ["effect", "lod"],
+        "additionalProperties": false,
+    }));
     for effect in all_effects() {
         let mut properties = Map::new();
         properties.insert("effect".into(), json!({ "const": effect.name }));

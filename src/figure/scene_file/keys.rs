@@ -278,9 +278,8 @@ pub const LENS: Table = Table {
         key(
             "kind",
             Kind::Word {
-                now: &["color"],
+                now: &["color", "content"],
                 later: &[
-                    "content",
                     "occlusion",
                     "deformation",
                     "best-view",
@@ -298,7 +297,7 @@ pub const LENS: Table = Table {
             },
             "\"color\"",
             "",
-            "What kind of lens it is; `color` restyles what is in it.",
+            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it.",
             "\"color\"",
         ),
         key(
@@ -358,6 +357,22 @@ pub const LENS: Table = Table {
             "[\"sepia\"]",
         ),
         key(
+            "content",
+            Kind::Table(&CONTENT),
+            "what is below",
+            "",
+            "What it shows in itself in place of what is below it; a lens of any kind may have some, a `content` lens must.",
+            "{ lod = \"1.2\" }",
+        ),
+        key(
+            "clip",
+            Kind::Word { now: &["order", "merge", "discard"], later: &[] },
+            "\"order\"",
+            "",
+            "Where its content shows, what becomes of what is below, the context and contents of lower lenses: by `order` it is clipped; with `merge` it stays and the content is added; with `discard` nothing shows, neither, where a lower lens shows another content.",
+            "\"merge\"",
+        ),
+        key(
             "space",
             Kind::Word { now: &["displayed"], later: &["rest"] },
             "\"displayed\"",
@@ -389,6 +404,71 @@ pub const LENS: Table = Table {
             "Has what the lens does end gradually.",
             "{ width = 20.0 }",
         ),
+    ],
+};
+
+/// `content` of a lens.
+pub const CONTENT: Table = Table {
+    name: "content",
+    doc: "What a lens shows in itself: the scene's city or another data set, in a level of detail, moved or not. See Contents.",
+    keys: &[
+        key(
+            "files",
+            Kind::Texts,
+            "the scene's city",
+            "",
+            "City files or folders of another data set, by the same rules as those of `[city]`.",
+            "[\"plan.city.json\"]",
+        ),
+        key(
+            "lod",
+            Kind::Lod,
+            "as the scene shows its city; of other files the finest",
+            "",
+            "Shows no level of detail finer than this, one that the data set has.",
+            "\"1.2\"",
+        ),
+        key(
+            "class",
+            Kind::Word { now: CLASSES, later: &[] },
+            "\"inside\"",
+            "",
+            "Which part of the sight line it shows in, as that of an effect.",
+            "\"behind\"",
+        ),
+        key(
+            "keep_terrain",
+            Kind::Boolean,
+            "false",
+            "",
+            "Terrain, roads, water, land use and the plain ground stay as they are below, and the content brings none.",
+            "true",
+        ),
+        key(
+            "from",
+            Kind::Point,
+            "`to`: it is turned and scaled in its place",
+            "m",
+            "The point of the data set that is put to `to`.",
+            "[120.0, 40.0, 0.0]",
+        ),
+        key(
+            "to",
+            Kind::Point,
+            "the middle of the box (edges along x, y, z) around the lens, if something else moves it",
+            "m",
+            "Where `from` is put, counted as the shapes' coordinates are.",
+            "[0.0, 0.0, 0.0]",
+        ),
+        key(
+            "rotation_deg",
+            Kind::Angles,
+            "[0, 0, 0]",
+            "degrees",
+            "Turns it about that point: yaw counter-clockwise from above, pitch lifts its east, roll about its east.",
+            "[90.0, 0.0, 0.0]",
+        ),
+        key("scale", Kind::Number { min: 1e-3, max: 1e3 }, "1.0", "", "Scales it about that point.", "2.0"),
     ],
 };
 
@@ -560,6 +640,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("[[poi]]", &POI),
     ("[[lens]]", &LENS),
     ("attached_to of a lens", &ATTACHED_TO),
+    ("content of a lens", &CONTENT),
     ("sprite of a lens", &SPRITE),
     ("border of a lens", &BORDER),
     ("[figure]", &FIGURE),

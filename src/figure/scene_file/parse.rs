@@ -1,10 +1,11 @@
 //! From a checked tree to a [`Scene`].
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::PathBuf};
 
 use glam::{DQuat, DVec2, DVec3};
 
 use crate::{
+    city::Lod,
     figure::scene_file::{
         check::{Checker, Fields, Place, lod},
         focus::Reader,
@@ -15,14 +16,14 @@ use crate::{
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Border, BorderUnit, Class, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter,
-        Placement, effect,
+        Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
+        Parameter, Placement, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
     scene::{Background, BaseStyle, CitySpec, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun},
     shader::{
-        Blend,
+        Blend, Clip,
         effect::{EffectKind, find as find_effect},
     },
     view::{Camera, CameraError, Projection, default_near_m},
@@ -115,6 +116,11 @@ impl<'o> SceneReader<'o> {
     }
 
     fn city(&mut self, fields: &Fields) -> CitySpec {
+        let lod = fields.node("lod").and_then(lod).map(|l| l.to_string());
+        CitySpec { files: self.files(fields), lod, ground: fields.boolean("ground").unwrap_or(true) }
+    }
+
+    fn files(&mut self, fields: &Fields) -> Vec<PathBuf> {
         let mut files = Vec::new();
         for (i, node) in fields.node("files").and_then(Node::list).unwrap_or_default().iter().enumerate() {
             match self.options.resolve(node.text().unwrap_or_default()) {
@@ -130,8 +136,7 @@ impl<'o> SceneReader<'o> {
                 }
             }
         }
-        let lod = fields.node("lod").and_then(lod).map(|l| l.to_string());
-        CitySpec { files, lod, ground: fields.boolean("ground").unwrap_or(true) }
+        files
     }
 
     fn camera(&mut self, fields: &Fields) -> Option<Camera> {
@@ -165,7 +170,7 @@ impl<'o> SceneReader<'o> {
     }
 
     fn style(&mut self, fields: &Fields) -> Style {
-        let effects = self.effects(fields, false);
+        let (effects, _) = self.effects(fields, false);
         let base = if fields.text("base") == Some("clay") { BaseStyle::Clay } else { BaseStyle::Natural };
         let background = fields.color("background").map_or(Background::Sky, Background::Color);
         Style { base, effects, background }
@@ -193,7 +198,8 @@ impl<'o> SceneReader<'o> {
     fn lens(&mut self, fields: &Fields, index: usize) -> Lens {
         let placement = self.placement(fields);
         let shapes = self.shapes(fields);
-        let effects = self.effects(fields, true);
+        let (effects, of_effects) = self.effects(fields, true);
+        let content = self.content(fields, of_effects);
         let sprite = fields
             .node("sprite")
             .map(|node| self.checker.fields(node, &keys::SPRITE, &[], fields.place.within("sprite", node.line)));
@@ -207,12 +213,13 @@ impl<'o> SceneReader<'o> {
         }
         Lens {
             name: fields.text("name").map_or_else(|| format!("lens-{index}"), str::to_owned),
-            kind: LensKind::Color,
+            kind: if fields.text("kind") == Some("content") { LensKind::Content } else { LensKind::Color },
             enabled: fields.boolean("enabled").unwrap_or(true),
             color: fields.color("color").unwrap_or_else(|| lens_color(index)),
             placement,
             shapes,
             effects,
+            content,
             body: LensBody::WORDS
                 .iter()
                 .find(|(word, _)| fields.text("body") == Some(*word))
@@ -224,6 +231,47 @@ impl<'o> SceneReader<'o> {
                 discrete: if b.text("discrete") == Some("dither") { Discrete::Dither } else { Discrete::Threshold },
             }),
         }
+    }
+
+    /// The content of a lens; `of_effects`: that of its effect `lod`, and the line of it.
+    fn content(&mut self, fields: &Fields, of_effects: Option<(Content, u32)>) -> Option<Content> {
+        let clip = fields.text("clip").and_then(|word| Clip::ALL.into_iter().find(|clip| clip.word() == word));
+        if let (true, Some((_, line))) = (fields.given("content"), &of_effects) {
+            let message = "is given together with the effect \"lod\", which is a content too: a lens has one";
+            self.checker.note(&fields.place, "content", *line, message);
+        }
+        let content = match fields.node("content") {
+            None => of_effects.map(|(content, _)| content),
+            Some(node) => {
+                let place = fields.place.within("content", node.line);
+                let own = self.checker.fields(node, &keys::CONTENT, &[], place);
+                let class = own.text("class").and_then(class_of).unwrap_or_default();
+                let moved = ["from", "to", "rotation_deg", "scale"].into_iter().any(|key| own.given(key));
+                let turn = own.node("rotation_deg").and_then(Node::numbers::<3>).map(rotation);
+                let copied = moved.then(|| Copied {
+                    from: own.point("from"),
+                    to: own.point("to"),
+                    rotation: turn.unwrap_or_default(),
+                    scale: own.number("scale").unwrap_or(1.0),
+                });
+                let keep_terrain = own.boolean("keep_terrain").unwrap_or(false);
+                let lod = own.node("lod").and_then(lod);
+                if own.node("files").and_then(Node::list).is_some_and(<[Node]>::is_empty) {
+                    let message = "is empty: name the files, or leave the key away for the scene's own city";
+                    self.checker.note(&own.place, "files", own.line("files"), message);
+                }
+                Some(Content { files: self.files(&own), lod, class, clip: Clip::Order, keep_terrain, copied })
+            }
+        };
+        if content.is_none() && fields.given("clip") {
+            let message = "has a meaning only for a lens with content";
+            self.checker.note(&fields.place, "clip", fields.line("clip"), message);
+        }
+        if content.is_none() && !fields.given("content") && fields.text("kind") == Some("content") {
+            let message = "is missing: a content lens shows something. For example content = { lod = \"1.2\" }";
+            self.checker.note(&fields.place, "content", fields.place.line, message);
+        }
+        content.map(|content| Content { clip: clip.unwrap_or_default(), ..content })
     }
 
     fn placement(&mut self, fields: &Fields) -> Placement {
@@ -331,12 +379,21 @@ impl<'o> SceneReader<'o> {
         Some(shape.into())
     }
 
-    fn effects(&mut self, fields: &Fields, in_lens: bool) -> Vec<EffectUse> {
+    /// The effects of a lens or of the context, and what its effect `lod` shows, with the line of that.
+    fn effects(&mut self, fields: &Fields, in_lens: bool) -> (Vec<EffectUse>, Option<(Content, u32)>) {
         let mut effects = Vec::new();
+        let mut content: Option<(Content, u32)> = None;
         let mut scene_style: Option<String> = None;
         for (i, node) in fields.node("effects").and_then(Node::list).unwrap_or_default().iter().enumerate() {
             let place = fields.place.within(&format!("effects.{i}"), node.line);
             let Some(used) = self.effect(node, &place, in_lens) else { continue };
+            if used.effect == effect::LOD {
+                if content.is_some() {
+                    self.checker.note(&place, "", node.line, "is a second \"lod\"; a lens shows one");
+                }
+                content = Some((self.lod_effect(&used, node, &place, in_lens), node.line));
+                continue;
+            }
             let is_scene_style = find_effect(&used.effect).is_some_and(|e| e.kind == EffectKind::Scene);
             match &scene_style {
                 Some(first) if is_scene_style => {
@@ -349,7 +406,31 @@ impl<'o> SceneReader<'o> {
             }
             effects.push(used);
         }
-        effects
+        (effects, content)
+    }
+
+    /// What the effect `lod` shows.
+    fn lod_effect(&mut self, used: &EffectUse, node: &Node, place: &Place, in_lens: bool) -> Content {
+        let mut note = |key: &str, message: String| self.checker.note(place, key, node.line, message);
+        if !in_lens {
+            note("", "has a meaning only in a lens; for the context [city] lod = \"1.2\" would be right".to_owned());
+        }
+        let lod = match used.parameters.get("lod") {
+            Some(Parameter::Text(text)) => Lod::parse(text),
+            Some(Parameter::Number(number)) => Lod::parse(&number.to_string()),
+            _ => None,
+        };
+        if lod.is_none() {
+            let given = if used.parameters.contains_key("lod") { "must be" } else { "is missing:" };
+            note("lod", format!("{given} {}", Kind::Lod.describe()));
+        }
+        for key in used.parameters.keys().filter(|key| *key != "lod") {
+            note(key, format!("\"lod\" has no such parameter{}", did_you_mean(key, ["lod", "class"].into_iter())));
+        }
+        for (key, _) in [("blend", used.blend.is_some()), ("weight", used.weight.is_some())].iter().filter(|k| k.1) {
+            note(key, "\"lod\" shows something else; there is nothing to blend".to_owned());
+        }
+        Content { lod, class: used.class, ..Content::default() }
     }
 
     fn effect(&mut self, node: &Node, place: &Place, in_lens: bool) -> Option<EffectUse> {
@@ -376,10 +457,9 @@ impl<'o> SceneReader<'o> {
                                 "has a meaning only in a lens: the context is everything",
                             );
                         }
-                        ("class", Some("inside")) => used.class = Class::Inside,
-                        ("class", Some("front")) => used.class = Class::Front,
-                        ("class", Some("behind")) => used.class = Class::Behind,
-                        ("class", Some("rest")) => used.class = Class::Rest,
+                        ("class", Some(word)) if class_of(word).is_some() => {
+                            used.class = class_of(word).unwrap_or_default();
+                        }
                         ("blend", Some(word)) if Blend::parse(word).is_some() => used.blend = Blend::parse(word),
                         ("weight", _) if matches!(parameter(value), Some(Parameter::Number(_))) => {
                             used.weight = match parameter(value) {
@@ -428,6 +508,9 @@ impl<'o> SceneReader<'o> {
                 return None;
             }
         }
+        if used.effect == effect::LOD {
+            return Some(used);
+        }
         for problem in effect::check(&used) {
             let line = lines.get(problem.key.as_str()).copied().unwrap_or(node.line);
             let key = if problem.key == "effect" && lines.is_empty() { "" } else { &problem.key };
@@ -435,6 +518,16 @@ impl<'o> SceneReader<'o> {
         }
         Some(used)
     }
+}
+
+fn class_of(word: &str) -> Option<Class> {
+    Some(match word {
+        "inside" => Class::Inside,
+        "front" => Class::Front,
+        "behind" => Class::Behind,
+        "rest" => Class::Rest,
+        _ => return None,
+    })
 }
 
 fn built_shape(kind: &str, fields: &Fields) -> Option<Shape> {

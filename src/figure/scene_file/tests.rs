@@ -5,11 +5,11 @@ use super::*;
 use crate::{
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Border, BorderUnit, Class, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter,
-        Placement, chosen::Choice,
+        Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
+        Parameter, Placement, chosen::Choice,
     },
     scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun},
-    shader::Blend,
+    shader::{Blend, Clip},
     view::{Camera, Projection},
 };
 
@@ -264,8 +264,14 @@ fn every_mistake_in_a_lens_is_named() {
         assert!(message.contains(expected), "{lines}\n  gave     {message}\n  expected {expected}");
     }
     for (lines, expected) in [
-        ("kind = \"occlusion\"", "s.toml:4: [lens.0] kind: \"occlusion\" is not available yet; available: color"),
-        ("kind = \"colour\"", "[lens.0] kind: must be \"color\", is \"colour\"; did you mean \"color\"?"),
+        (
+            "kind = \"occlusion\"",
+            "s.toml:4: [lens.0] kind: \"occlusion\" is not available yet; available: color, content",
+        ),
+        (
+            "kind = \"colour\"",
+            "[lens.0] kind: must be \"color\" or \"content\", is \"colour\"; did you mean \"color\"?",
+        ),
         (
             "placement = \"camara\"",
             "placement: must be \"scene\" or \"camera\", is \"camara\"; did you mean \"camera\"?",
@@ -286,6 +292,29 @@ fn every_mistake_in_a_lens_is_named() {
         (
             "effects = [\"sepai\"]",
             "s.toml:4: [lens.0] effects.0: there is no effect \"sepai\"; did you mean \"sepia\"?",
+        ),
+        ("kind = \"content\"", "[lens.0] content: is missing: a content lens shows something"),
+        ("clip = \"merge\"", "[lens.0] clip: has a meaning only for a lens with content"),
+        ("content = {}\nclip = \"mix\"", "clip: must be \"order\" or \"merge\" or \"discard\", is \"mix\""),
+        ("content = { lod = \"x\" }", "content.lod: must be a level of detail"),
+        ("content = { file = \"a\" }", "content.file: unknown key; did you mean \"files\"?"),
+        ("content = { files = [] }", "content.files: is empty: name the files"),
+        ("content = { files = [\"builtin:moon\"] }", "content.files.0: there is no \"builtin:moon\""),
+        ("content = { scale = 0 }", "content.scale: must be a number 0.001 to 1000, is 0"),
+        (
+            "content = {}\neffects = [{ effect = \"lod\", lod = 1.2 }]",
+            "content: is given together with the effect \"lod\"",
+        ),
+        (
+            "effects = [{ effect = \"lod\", lod = 1.2 }, { effect = \"lod\", lod = 2 }]",
+            "effects.1: is a second \"lod\"",
+        ),
+        ("effects = [\"lod\"]", "effects.0.lod: is missing: a level of detail like"),
+        ("effects = [{ effect = \"lod\", lod = \"fine\" }]", "effects.0.lod: must be a level of detail like"),
+        ("effects = [{ effect = \"lod\", lod = 2, weight = 0.5 }]", "effects.0.weight: \"lod\" shows something else"),
+        (
+            "effects = [{ effect = \"lod\", lod = 2, clas = \"rest\" }]",
+            "\"lod\" has no such parameter; did you mean \"class\"?",
         ),
         ("effects = [\"x-ray\"]", "effects.0: effect = \"x-ray\" is not available yet"),
         ("effects = [{ effect = \"thematic\" }]", "effects.0.attribute: is missing"),
@@ -524,12 +553,27 @@ fn ends() -> impl Strategy<Value = (Option<LensSprite>, Option<Border>)> {
 }
 
 prop_compose! {
+    fn contents()(files in prop::collection::vec("[ -~äß]{1,9}", 0..3), tenths in prop::option::of(0..99u8),
+        class in prop::sample::select(vec![Class::Inside, Class::Front, Class::Behind, Class::Rest]),
+        clip in prop::sample::select(Clip::ALL.to_vec()), keep_terrain in any::<bool>(),
+        copied in prop::option::of((prop::option::of(point()), prop::option::of(point()), 1e-3..1e3f64, any::<bool>(), prop::array::uniform3(-1800..1800i32)))) -> Content {
+        let copied = copied.map(|(from, to, scale, plain, angles)| match plain {
+            true => Copied { from, to, ..Copied::default() },
+            false => Copied { from, to, rotation: rotation(angles.map(|a| f64::from(a) / 10.0)), scale },
+        });
+        let files = files.into_iter().filter(|f| !f.contains("${") && !f.starts_with("builtin:")).map(Into::into).collect();
+        Content { files, lod: tenths.map(|tenths| crate::city::Lod { tenths }), class, clip, keep_terrain, copied }
+    }
+}
+
+prop_compose! {
     fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
-        ends in ends(), placement in placements()) -> Lens {
+        ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>()) -> Lens {
         let (sprite, border) = ends;
         let body = LensBody::WORDS[body].1;
-        Lens { name: String::new(), kind: LensKind::Color, enabled, color, placement, shapes, effects: used, body, sprite, border }
+        let kind = if content.is_some() && is_content { LensKind::Content } else { LensKind::Color };
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, content, body, sprite, border }
     }
 }
 
@@ -575,6 +619,12 @@ fn same(a: &Scene, b: &Scene) -> bool {
     let mut b = b.clone();
     for (la, lb) in a.lenses.iter().zip(&mut b.lenses) {
         la.shapes.iter().zip(&mut lb.shapes).for_each(|(sa, sb)| turn_alike(sa, sb));
+        let copied = |lens: &Lens| lens.content.as_ref().and_then(|c| c.copied);
+        if let (Some(a), Some(b)) = (copied(la), lb.content.as_mut().and_then(|c| c.copied.as_mut()))
+            && a.rotation.dot(b.rotation).abs() > 1.0 - 1e-12
+        {
+            b.rotation = a.rotation;
+        }
     }
     *a == b
 }

@@ -11,10 +11,11 @@ use crate::{
     },
     geom::{Shape, shape::FlatFigure},
     lens::{
-        BorderUnit, Class, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
+        BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
         color::{parse_hex, to_hex},
     },
     scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun},
+    shader::Clip,
     view::{Camera, Projection, default_near_m},
 };
 
@@ -121,7 +122,7 @@ impl Toml {
     fn lens(&mut self, index: usize, lens: &Lens, options: &Options) {
         self.head("[[lens]]");
         self.key("name", &quoted(&lens.name));
-        self.key("kind", "\"color\"");
+        self.key("kind", &quoted(lens.kind.word()));
         self.key_if(!lens.enabled, "enabled", "false");
         self.key_if(lens.color != lens_color(index), "color", &color(lens.color));
         match &lens.placement {
@@ -135,6 +136,10 @@ impl Toml {
             many => self.key("shapes", &list(many.iter().map(|one| focus(one, options)))),
         }
         self.key_if(!lens.effects.is_empty(), "effects", &list(lens.effects.iter().map(effect)));
+        if let Some(own) = &lens.content {
+            self.key("content", &content(own, options));
+            self.key_if(own.clip != Clip::default(), "clip", &quoted(own.clip.word()));
+        }
         self.key_if(lens.body != LensBody::default(), "body", &format!("\"{}\"", lens.body.word()));
         if let Some(sprite) = lens.sprite {
             let resolution = sprite.resolution.map(|resolution| format!(" resolution = {resolution} "));
@@ -297,13 +302,41 @@ fn angles(turn: DQuat) -> [f64; 3] {
     candidates().find(same).or_else(|| candidates().find(near)).unwrap_or(exact)
 }
 
-fn effect(used: &EffectUse) -> String {
-    let class = match used.class {
+fn class_word(class: Class) -> Option<&'static str> {
+    match class {
         Class::Inside => None,
         Class::Front => Some("front"),
         Class::Behind => Some("behind"),
         Class::Rest => Some("rest"),
-    };
+    }
+}
+
+fn content(content: &Content, options: &Options) -> String {
+    let mut keys = Vec::new();
+    if !content.files.is_empty() {
+        keys.push(format!("files = {}", list(content.files.iter().map(|f| quoted(&options.written(f))))));
+    }
+    keys.extend(content.lod.map(|lod| format!("lod = {}", quoted(&lod.to_string()))));
+    keys.extend(class_word(content.class).map(|word| format!("class = {}", quoted(word))));
+    if content.keep_terrain {
+        keys.push("keep_terrain = true".to_owned());
+    }
+    if let Some(copied) = &content.copied {
+        keys.extend(copied.from.map(|p| format!("from = {}", point(p))));
+        keys.extend(copied.to.map(|p| format!("to = {}", point(p))));
+        if copied.rotation != DQuat::IDENTITY {
+            keys.push(format!("rotation_deg = {}", list(angles(copied.rotation).map(number))));
+        }
+        // Something says that it is moved.
+        if copied.scale != 1.0 || (copied.rotation == DQuat::IDENTITY && copied.from.is_none() && copied.to.is_none()) {
+            keys.push(format!("scale = {}", number(copied.scale)));
+        }
+    }
+    if keys.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", keys.join(", ")) }
+}
+
+fn effect(used: &EffectUse) -> String {
+    let class = class_word(used.class);
     if class.is_none() && used.blend.is_none() && used.weight.is_none() && used.parameters.is_empty() {
         return quoted(&used.effect);
     }

@@ -62,6 +62,7 @@ pub fn source() -> String {
         include_str!("../../../shaders/lib/view.wgsl"),
         include_str!("../../../shaders/lib/view-uniform.wgsl"),
         include_str!("../../../shaders/lib/surface.wgsl"),
+        include_str!("../../../shaders/lib/one-city.wgsl"),
         include_str!("../../../shaders/lib/edge.wgsl"),
         ENTRIES,
     ]

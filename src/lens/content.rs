@@ -1,0 +1,58 @@
+//! What a lens shows in itself in place of what is below it (C3, C6): the city in another level of detail, another data set, or
+//! a part of it elsewhere, turned and scaled (Tiesel's object-level effects, section 3.4.3, and the source box of Borst et
+//! al. 2007).
+
+use std::path::PathBuf;
+
+use glam::{DQuat, DVec3};
+
+use crate::{city::Lod, lens::Class, shader::Clip};
+
+/// Own content of a lens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Content {
+    /// The files of another data set; none: the scene's own.
+    pub files: Vec<PathBuf>,
+    /// No level of detail finer than this, one that the data set has; `None`: the finest.
+    pub lod: Option<Lod>,
+    /// Where along the sight line it shows (L4).
+    pub class: Class,
+    /// What becomes of what is below.
+    pub clip: Clip,
+    /// Whether terrain, roads, water and land use stay as they are below, and the content brings none.
+    pub keep_terrain: bool,
+    /// Where it is taken from and put to; `None`: it stands where it is.
+    pub copied: Option<Copied>,
+}
+
+impl Default for Content {
+    fn default() -> Self {
+        Self {
+            files: Vec::new(),
+            lod: None,
+            class: Class::Inside,
+            clip: Clip::Order,
+            keep_terrain: false,
+            copied: None,
+        }
+    }
+}
+
+/// A mapping from the model into the lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Copied {
+    /// The point that is taken, metres, and what is turned and scaled about; `None`: the one that it is put to.
+    pub from: Option<DVec3>,
+    /// Where that point is put, in the coordinates of the lens' shapes, metres; `None`: to the middle of the lens.
+    pub to: Option<DVec3>,
+    /// Turns it, along the model's axes.
+    pub rotation: DQuat,
+    /// Scales it, > 0.
+    pub scale: f64,
+}
+
+impl Default for Copied {
+    fn default() -> Self {
+        Self { from: None, to: None, rotation: DQuat::IDENTITY, scale: 1.0 }
+    }
+}

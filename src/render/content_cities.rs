@@ -1,0 +1,282 @@
+//! The contents of a scene's lenses: loaded when their lenses are first seen, kept as long as these are enabled.
+
+use std::{path::PathBuf, sync::Arc};
+
+use rustc_hash::FxHashSet;
+
+use crate::{
+    city::{
+        CityModel, Lod,
+        ground::plain_ground,
+        load::{self, LoadOptions},
+        shown::shown_geometries,
+    },
+    geom::{Aabb, shape::Motion},
+    lens::{Class, Content, Lens, solids::ShownCity},
+    render::{
+        Renderer,
+        contents::{ContentCity, Placement, WantedContent},
+        operations::ContentUse,
+        stats,
+        volume::LensVolume,
+    },
+    scene::Scene,
+    shader::MOST_CITIES,
+};
+
+/// Cities that contents show, as loaded so far.
+#[derive(Debug, Default)]
+pub struct ContentCities {
+    models: Vec<(Vec<PathBuf>, Arc<CityModel>)>,
+    cities: Vec<(Vec<PathBuf>, Option<Lod>, Arc<ContentCity>)>,
+    /// Names given so far.
+    given: u64,
+}
+
+/// The contents of a scene in a frame.
+#[derive(Clone, Debug, Default)]
+pub struct SceneContents {
+    /// What the card is to hold.
+    pub wanted: Vec<WantedContent>,
+    /// What its lenses show, bottom lens first.
+    pub uses: Vec<ContentUse>,
+    /// The other data sets among them: their objects follow the city's, in this order.
+    pub models: Vec<Arc<CityModel>>,
+}
+
+/// What contents are worked out from.
+pub struct Stage<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its city, and what is shown of it.
+    pub model: &'a Arc<CityModel>,
+    /// Its geometries that are shown.
+    pub geometries: &'a [u32],
+    /// Volumes of enabled lenses.
+    pub volumes: &'a [LensVolume],
+    /// From the coordinates of a lens to the model's; `None`: it is attached to what is not there.
+    pub motion: &'a dyn Fn(&Lens) -> Option<Motion>,
+    /// Whether a volume may be seen, from the eye or from the sun.
+    pub is_seen: &'a dyn Fn(&LensVolume) -> bool,
+    /// What may be loaded.
+    pub reading: &'a LoadOptions,
+}
+
+impl ContentCities {
+    /// Drops all of them.
+    pub fn clear(&mut self) {
+        self.cities.clear();
+        self.models.clear();
+    }
+
+    /// The contents that a frame may show. An error names the key of the scene file.
+    pub fn of_scene(&mut self, stage: &Stage) -> Result<SceneContents, String> {
+        let mut found = SceneContents::default();
+        let lenses = stage.scene.lenses.iter().enumerate();
+        let with_content = || lenses.clone().filter_map(|(i, lens)| Some((i, lens, lens.content.as_ref()?)));
+        // Numbers are those of all lenses, so that one that comes and goes changes no other.
+        let mut numbers: Vec<&Content> = Vec::new();
+        let mut used: FxHashSet<(Vec<PathBuf>, Option<Lod>)> = FxHashSet::default();
+        for (i, lens, content) in with_content() {
+            let is_same = |c: &&Content| (&c.files, c.lod, c.copied) == (&content.files, content.lod, None);
+            let before = numbers.iter().position(is_same);
+            let number = before.unwrap_or(numbers.len()) as u32 + 1;
+            if before.is_none() {
+                numbers.push(content);
+            }
+            if number >= MOST_CITIES {
+                let most = MOST_CITIES - 1;
+                return Err(format!("[lens.{i}] content: the scene has more contents than one picture takes: {most}"));
+            }
+            if lens.enabled {
+                used.insert((content.files.clone(), content.lod));
+            }
+            let volumes: Vec<&LensVolume> = stage.volumes.iter().filter(|v| v.lens as usize == i).collect();
+            let is_loaded = content.files.is_empty() && content.lod.is_none()
+                || self.cities.iter().any(|(files, lod, _)| (files, *lod) == (&content.files, content.lod));
+            if volumes.is_empty() || !(is_loaded || volumes.iter().any(|v| (stage.is_seen)(v))) {
+                continue;
+            }
+            let wrong = |(key, message): (&str, String)| format!("[lens.{i}] content.{key}: {message}");
+            let city = self.city(content, stage).map_err(wrong)?;
+            let placement = placement(content, lens, &volumes, stage).map_err(wrong)?;
+            let class = content.class;
+            let (clip, keeps_terrain) = (content.clip, content.keep_terrain);
+            found.uses.push(ContentUse { lens: i as u32, class, city: number, clip, keeps_terrain });
+            if !found.wanted.iter().any(|w| w.number == number) {
+                let first_object = found.first_object(stage.model, city.as_deref());
+                found.wanted.push(WantedContent { number, city, first_object, placement });
+            }
+        }
+        let is_used = |files: &Vec<PathBuf>, lod: Option<Lod>| used.contains(&(files.clone(), lod));
+        self.cities.retain(|(files, lod, _)| is_used(files, *lod));
+        self.models.retain(|(files, _)| self.cities.iter().any(|(f, ..)| f == files));
+        Ok(found)
+    }
+
+    /// The city that a content shows; `None`: the scene's own, as it is shown.
+    fn city(&mut self, content: &Content, stage: &Stage) -> Result<Option<Arc<ContentCity>>, (&'static str, String)> {
+        let is_own = content.files.is_empty();
+        if is_own && content.lod.is_none() {
+            return Ok(None);
+        }
+        let of = |(files, lod, _): &&(Vec<PathBuf>, Option<Lod>, _)| (files, *lod) == (&content.files, content.lod);
+        if let Some((.., city)) = self.cities.iter().find(of) {
+            let is_shown = city.is_own && city.geometries == stage.geometries;
+            return Ok((!is_shown).then(|| city.clone()));
+        }
+        let model = if is_own { stage.model.clone() } else { self.model(&content.files, stage.reading)? };
+        let drawn = || model.geometries.iter().filter(|g| g.triangles > 0);
+        if let Some(lod) = content.lod.filter(|lod| !drawn().any(|g| g.lod == *lod)) {
+            let mut all: Vec<Lod> = drawn().map(|g| g.lod).collect();
+            all.sort_unstable();
+            all.dedup();
+            let all: Vec<String> = all.iter().map(Lod::to_string).collect();
+            return Err(("lod", format!("nothing has the level of detail {lod}; there are {}", all.join(", "))));
+        }
+        let geometries = shown_geometries(&model, content.lod);
+        if geometries.is_empty() {
+            return Err(("files", format!("{} hold nothing that can be shown", named(&content.files))));
+        }
+        let wants_ground = !is_own && stage.scene.city.ground;
+        let ground = wants_ground.then(|| plain_ground(&model, &geometries)).flatten();
+        self.given += 1;
+        let city = Arc::new(ContentCity { id: self.given, model, geometries, ground, is_own });
+        self.cities.push((content.files.clone(), content.lod, city.clone()));
+        let is_shown = city.is_own && city.geometries == stage.geometries;
+        Ok((!is_shown).then_some(city))
+    }
+
+    fn model(&mut self, files: &[PathBuf], reading: &LoadOptions) -> Result<Arc<CityModel>, (&'static str, String)> {
+        if let Some((_, model)) = self.models.iter().find(|(of, _)| of == files) {
+            return Ok(model.clone());
+        }
+        let model = load::load(files, reading, &load::Quiet).map_err(|error| ("files", error.to_string()))?;
+        let model = Arc::new(model);
+        self.models.push((files.to_vec(), model.clone()));
+        Ok(model)
+    }
+}
+
+impl SceneContents {
+    /// What the objects of a content's city are counted from.
+    fn first_object(&mut self, own: &CityModel, city: Option<&ContentCity>) -> u32 {
+        let Some(city) = city.filter(|city| !city.is_own) else { return 0 };
+        let before = self.models.iter().position(|model| Arc::ptr_eq(model, &city.model));
+        let count = before.unwrap_or(self.models.len());
+        let first = own.objects.len() + self.models[..count].iter().map(|model| model.objects.len()).sum::<usize>();
+        if before.is_none() {
+            self.models.push(city.model.clone());
+        }
+        first as u32
+    }
+
+    /// Box around what the lenses may show of it, metres; `own`: around the scene's city.
+    pub fn bounds(&self, own: &Aabb, volumes: &[LensVolume]) -> Aabb {
+        let of = |shown: &ContentUse| {
+            // A border may be as wide as it likes.
+            let ends = |v: &&LensVolume| v.lens == shown.lens && v.body.is_bounded() && v.border.is_none();
+            let reaches = volumes.iter().filter(ends);
+            let room = reaches.fold(Aabb::EMPTY, |all, v| all.union(v.bounds));
+            let is_inside = shown.class == Class::Inside && !room.is_empty();
+            let all = self.wanted.iter().find(|w| w.number == shown.city).map_or(Aabb::EMPTY, |w| w.bounds(own));
+            let part = Aabb { min: all.min.max(room.min), max: all.max.min(room.max) };
+            if is_inside { part } else { all }
+        };
+        self.uses.iter().fold(Aabb::EMPTY, |all, shown| all.union(of(shown)))
+    }
+
+    /// What statistics say of it.
+    pub fn figures(&self, own: ShownCity, renderer: &Renderer) -> Vec<stats::Content> {
+        let mut counted: Vec<u64> = Vec::new();
+        let figure = |w: &WantedContent| {
+            let shown = w.shown(own);
+            let objects = shown.geometries.iter().map(|&g| shown.model.geometries[g as usize].object);
+            let city = w.city.as_ref();
+            let on_gpu = renderer.content_city(city.map_or(0, |city| city.id));
+            let is_new = city.is_some_and(|city| !counted.contains(&city.id));
+            counted.extend(city.map(|city| city.id));
+            stats::Content {
+                lenses: self.uses.iter().filter(|u| u.city == w.number).map(|u| u.lens).collect(),
+                objects: objects.collect::<FxHashSet<_>>().len() as u64,
+                first_object: city.filter(|city| !city.is_own).map(|_| w.first_object),
+                triangles: on_gpu.map_or(0, |city| city.triangles),
+                gpu_bytes: on_gpu.filter(|_| is_new).map_or(0, |city| city.bytes),
+            }
+        };
+        self.wanted.iter().map(figure).collect()
+    }
+
+    /// The content that a lens shows.
+    pub fn of_lens(&self, lens: u32) -> Option<&WantedContent> {
+        let shown = self.uses.iter().find(|u| u.lens == lens)?;
+        self.wanted.iter().find(|w| w.number == shown.city)
+    }
+}
+
+fn named(files: &[PathBuf]) -> String {
+    files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>().join(", ")
+}
+
+/// Where a content of a lens stands.
+fn placement(
+    content: &Content,
+    lens: &Lens,
+    volumes: &[&LensVolume],
+    stage: &Stage,
+) -> Result<Placement, (&'static str, String)> {
+    let Some(copied) = content.copied else { return Ok(Placement::NONE) };
+    let to = match copied.to {
+        Some(to) => (stage.motion)(lens).unwrap_or(Motion::NONE).point(to),
+        None if volumes.iter().all(|v| v.body.is_bounded()) => {
+            volumes.iter().fold(Aabb::EMPTY, |all, v| all.union(v.bounds)).center()
+        }
+        None => return Err(("to", "is missing: a lens without end has no middle to put it to".to_owned())),
+    };
+    Ok(Placement { from: copied.from.unwrap_or(to), to, rotation: copied.rotation, scale: copied.scale })
+}
+
+impl WantedContent {
+    /// What it shows; `own`: the scene's city.
+    pub fn shown<'a>(&'a self, own: ShownCity<'a>) -> ShownCity<'a> {
+        self.city.as_ref().map_or(own, |city| ShownCity { model: &city.model, geometries: &city.geometries })
+    }
+
+    /// Box around where it stands, metres.
+    fn bounds(&self, own: &Aabb) -> Aabb {
+        let of = |city: &Arc<ContentCity>| {
+            let bounds = city.geometries.iter().map(|&g| city.model.geometries[g as usize].bounds);
+            let ground = city.ground.as_ref().map_or(Aabb::EMPTY, |ground| ground.bounds);
+            bounds.fold(ground, Aabb::union)
+        };
+        self.placement.boxed(&self.city.as_ref().map_or(*own, of))
+    }
+
+    /// City objects of which a triangle, where it stands, meets one of the volumes.
+    pub fn objects_meeting(&self, own: ShownCity, volumes: &[&LensVolume]) -> u64 {
+        met(self.shown(own), &self.placement, volumes).len() as u64
+    }
+}
+
+fn met(shown: ShownCity, placement: &Placement, volumes: &[&LensVolume]) -> FxHashSet<u32> {
+    let model = shown.model;
+    let mut met = FxHashSet::default();
+    for geometry in shown.geometries.iter().map(|&g| &model.geometries[g as usize]) {
+        let bounds = placement.boxed(&geometry.bounds);
+        let near: Vec<_> = volumes.iter().filter(|v| v.bounds.meets(&bounds)).collect();
+        if near.is_empty() || met.contains(&geometry.object) {
+            continue;
+        }
+        let hit = |tile: &crate::city::Tile| {
+            (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
+                let corner = |k: usize| model.position(tile, tile.vertices.start + model.indices[i + k]);
+                let corners = [0, 1, 2].map(|k| placement.point(corner(k)));
+                near.iter().any(|v| v.body.meets(&corners, geometry.object))
+            })
+        };
+        if model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {
+            met.insert(geometry.object);
+        }
+    }
+    met
+}

@@ -1,0 +1,361 @@
+//! Contents of lenses on the graphics card (C3): cities that are drawn beside the scene's own, and where they stand.
+//!
+//! A content is a city on the card, a placement and a number. Several contents may show one city: vertices are the same, only
+//! the uniform `City` differs. The surfaces of all stand in one table, the scene's own first, so that a pixel's code says
+//! all there is to know; directions in it are those after turning.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::{
+    city::{CityModel, coplanar::coplanar_triangles, decode_normal, encode_normal, ground::Ground},
+    geom::Aabb,
+    gpu::GpuError,
+    render::{
+        city::{Chunk, CityBuffers, Section, Shown},
+        cut::Cut,
+        eye::{padded, relative, split_eye},
+        frame::{FrameInput, strided},
+        hiding::reaches_of,
+        layout,
+        renderer::{CityOnGpu, Renderer, STAGE_STRIDE},
+        surfaces,
+    },
+    view::{Frustum, View},
+};
+
+/// A city as contents show it.
+#[derive(Debug)]
+pub struct ContentCity {
+    /// Names it for the card; no other ever has the same, none is 0.
+    pub id: u64,
+    /// The model.
+    pub model: Arc<CityModel>,
+    /// Its geometries that are shown.
+    pub geometries: Vec<u32>,
+    /// Its plain ground; `None` where there is none, or where it is the one of the scene's city.
+    pub ground: Option<Ground>,
+    /// Whether it is the scene's own model.
+    pub is_own: bool,
+}
+
+/// Where a content stands: `from` comes to `to`, and all else turned and scaled about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// What is turned and scaled about, metres.
+    pub from: DVec3,
+    /// Where that comes to stand, metres.
+    pub to: DVec3,
+    /// Turns.
+    pub rotation: DQuat,
+    /// Scales, > 0.
+    pub scale: f64,
+}
+
+impl Placement {
+    /// Where it is.
+    pub const NONE: Self = Self { from: DVec3::ZERO, to: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: 1.0 };
+
+    /// Whether nothing moves.
+    pub fn is_none(&self) -> bool {
+        self.from == self.to && self.rotation == DQuat::IDENTITY && self.scale == 1.0
+    }
+
+    /// Where a point comes to stand.
+    pub fn point(&self, p: DVec3) -> DVec3 {
+        if self.is_none() { p } else { self.rotation * ((p - self.from) * self.scale) + self.to }
+    }
+
+    /// A box around what a box holds.
+    pub fn boxed(&self, bounds: &Aabb) -> Aabb {
+        if self.is_none() || bounds.is_empty() {
+            return *bounds;
+        }
+        Aabb::from_points(bounds.corners().map(|c| self.point(c)))
+    }
+
+    /// As the shader reads it, for an eye.
+    fn uniform(&self, eye: DVec3, number: u32, first_surface: u32) -> layout::City {
+        let (from, to) = if self.is_none() { (eye, [0.0; 3]) } else { (self.from, relative(self.to, eye).to_array()) };
+        let (from_whole, from_fraction) = split_eye(from);
+        layout::City {
+            linear: padded(DMat3::from_quat(self.rotation) * self.scale),
+            from_whole,
+            number,
+            from_fraction,
+            first_surface,
+            to,
+            scale: self.scale as f32,
+        }
+    }
+}
+
+/// A content that frames may show.
+#[derive(Clone, Debug)]
+pub struct WantedContent {
+    /// Its number, from 1.
+    pub number: u32,
+    /// Its city; `None`: the scene's own, as it is shown.
+    pub city: Option<Arc<ContentCity>>,
+    /// What its objects' indices are counted from.
+    pub first_object: u32,
+    /// Where it stands.
+    pub placement: Placement,
+}
+
+impl WantedContent {
+    fn id(&self) -> u64 {
+        self.city.as_ref().map_or(0, |city| city.id)
+    }
+}
+
+/// A part of the table of surfaces: of one city, its objects counted from here, turned so.
+type Part = (u64, u32, DQuat);
+
+/// What the card holds of contents.
+#[derive(Debug, Default)]
+pub(super) struct Contents {
+    cities: Vec<(u64, CityOnGpu)>,
+    shown: Vec<ShownContent>,
+    parts: Vec<Part>,
+    /// Of the scene's own city and of all parts after it.
+    table: Vec<layout::Surface>,
+    /// The same on the card; `None` without contents.
+    pub surfaces: Option<wgpu::TextureView>,
+}
+
+#[derive(Debug)]
+struct ShownContent {
+    number: u32,
+    id: u64,
+    placement: Placement,
+    first_surface: u32,
+    /// Chunks of each section where they stand; empty: where they are.
+    chunks: Vec<Vec<Chunk>>,
+}
+
+/// A section of a city that a frame draws.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DrawnSection<'a> {
+    pub city: &'a CityOnGpu,
+    pub section: &'a Section,
+    pub image: Option<&'a wgpu::BindGroup>,
+    /// Where they stand.
+    pub chunks: &'a [Chunk],
+    /// The content's number; `None`: the scene's own.
+    pub content: Option<u32>,
+    /// Offset of its `City`.
+    pub offset: u32,
+}
+
+impl DrawnSection<'_> {
+    /// Whether a chunk of it may show something.
+    pub fn shows(&self, bounds: &Aabb, cut: Option<&Cut>, view: &View) -> bool {
+        self.content.is_none_or(|number| cut.is_some_and(|cut| cut.hiding.shows(number, bounds, view)))
+    }
+}
+
+impl Renderer {
+    /// Makes the card hold these contents beside the scene's city, whose plain ground is `ground`, and no others; with their
+    /// edges where something draws lines. Between frames with the same contents nothing is made.
+    pub fn set_contents(
+        &mut self,
+        wanted: &[WantedContent],
+        ground: Option<&Ground>,
+        edges: bool,
+    ) -> Result<(), GpuError> {
+        if self.city.is_none() || (wanted.is_empty() && self.contents.shown.is_empty()) {
+            return Ok(());
+        }
+        self.contents.cities.retain(|(id, _)| wanted.iter().any(|w| w.id() == *id));
+        for city in wanted.iter().filter_map(|w| w.city.as_ref()) {
+            let plain = Shown {
+                model: &city.model,
+                geometries: &city.geometries,
+                coplanar: &[],
+                ground: if city.is_own { ground } else { city.ground.as_ref() },
+            };
+            if !self.contents.cities.iter().any(|(id, _)| *id == city.id) {
+                let coplanar = coplanar_triangles(&city.model, &city.geometries);
+                let made = self.city_on_gpu(&Shown { coplanar: &coplanar, ..plain })?;
+                self.contents.cities.push((city.id, made));
+            }
+            let gpu = &self.gpu;
+            if let Some((_, on_gpu)) = self.contents.cities.iter_mut().find(|(id, _)| edges && *id == city.id) {
+                on_gpu.find_edges(gpu, &plain)?;
+            }
+        }
+        self.set_parts(wanted)?;
+        self.place(wanted);
+        Ok(())
+    }
+
+    /// The table of surfaces, where it is not the one that is there.
+    fn set_parts(&mut self, wanted: &[WantedContent]) -> Result<(), GpuError> {
+        let mut parts: Vec<Part> = Vec::new();
+        for w in wanted {
+            let part = (w.id(), w.first_object, w.placement.rotation);
+            if part != (0, 0, DQuat::IDENTITY) && !parts.contains(&part) {
+                parts.push(part);
+            }
+        }
+        if parts == self.contents.parts && self.contents.surfaces.is_some() != wanted.is_empty() {
+            return Ok(());
+        }
+        let Some(own) = &self.city else { return Ok(()) };
+        let mut table = if wanted.is_empty() { Vec::new() } else { own.buffers.surface_table.clone() };
+        for part in &parts {
+            let turned = |normal: u32| {
+                let is_turned = part.2 != DQuat::IDENTITY;
+                if is_turned { encode_normal(part.2 * decode_normal(normal)) } else { normal }
+            };
+            let entry = |s: &layout::Surface| layout::Surface {
+                object: if s.object == layout::NO_OBJECT { s.object } else { s.object + part.1 },
+                normal: turned(s.normal),
+                ..*s
+            };
+            let city = self.contents.city(own, part.0);
+            table.extend(city.into_iter().flat_map(|city| &city.buffers.surface_table).map(entry));
+        }
+        self.contents.surfaces = if wanted.is_empty() { None } else { Some(surfaces::upload(&self.gpu, &table)?) };
+        (self.contents.table, self.contents.parts) = (table, parts);
+        self.groups = None;
+        self.shadow_of = None;
+        Ok(())
+    }
+
+    /// Where the contents stand.
+    fn place(&mut self, wanted: &[WantedContent]) {
+        let Some(own) = &self.city else { return };
+        let mut before = std::mem::take(&mut self.contents.shown);
+        let shown = wanted.iter().map(|w| {
+            let (id, placement) = (w.id(), w.placement);
+            let first_surface = self.contents.first_surface(own, (id, w.first_object, placement.rotation));
+            let same = before.iter().position(|s| (s.id, s.placement) == (id, placement));
+            let chunks = same.map_or_else(
+                || {
+                    let city = self.contents.city(own, id).filter(|_| !placement.is_none());
+                    let placed = |c: &Chunk| Chunk { range: c.range.clone(), bounds: placement.boxed(&c.bounds) };
+                    let sections = city.into_iter().flat_map(|city| &city.buffers.sections);
+                    sections.map(|s| s.chunks.iter().map(placed).collect()).collect()
+                },
+                |i| before.swap_remove(i).chunks,
+            );
+            ShownContent { number: w.number, id, placement, first_surface, chunks }
+        });
+        self.contents.shown = shown.collect();
+    }
+
+    /// The entry of the table of surfaces, of the scene's own city and of contents.
+    pub fn surface(&self, number: u32) -> Option<&layout::Surface> {
+        let own = &self.city.as_ref()?.buffers.surface_table;
+        let table = if self.contents.surfaces.is_some() { &self.contents.table } else { own };
+        table.get(number as usize)
+    }
+
+    /// The buffers of a content's city, by its name; 0: of the scene's own.
+    pub fn content_city(&self, id: u64) -> Option<&CityBuffers> {
+        self.contents.city(self.city.as_ref()?, id).map(|city| &city.buffers)
+    }
+
+    /// All cities that the card holds.
+    pub(super) fn cities(&self) -> impl Iterator<Item = &CityOnGpu> {
+        self.city.iter().chain(self.contents.cities.iter().map(|(_, city)| city))
+    }
+
+    /// What is drawn where this is hidden and shown.
+    pub(super) fn drawn_sections(&self, cut: Option<&Cut>) -> Vec<DrawnSection<'_>> {
+        let Some(own) = &self.city else { return Vec::new() };
+        let mut drawn = Vec::new();
+        add_sections(&mut drawn, own, (None, 0), &[]);
+        for (i, content) in self.contents.shown.iter().enumerate() {
+            let is_asked = cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == content.number));
+            let offset = (i as u32 + 1) * STAGE_STRIDE as u32;
+            if let Some(city) = self.contents.city(own, content.id).filter(|_| is_asked) {
+                add_sections(&mut drawn, city, (Some(content.number), offset), &content.chunks);
+            }
+        }
+        drawn
+    }
+
+    /// The uniforms `City` of the scene's own city and of all contents, for an eye; nothing without contents.
+    pub(super) fn city_uniforms(&self, eye: DVec3) -> Vec<u8> {
+        if self.contents.shown.is_empty() {
+            return Vec::new();
+        }
+        let own = strided(&Placement::NONE.uniform(eye, 0, 0));
+        let contents =
+            self.contents.shown.iter().map(|c| strided(&c.placement.uniform(eye, c.number, c.first_surface)));
+        std::iter::once(own).chain(contents).flatten().collect()
+    }
+
+    /// The contents whose edges a frame draws: their edges, number, placement and offset.
+    pub(super) fn content_edges(&self) -> impl Iterator<Item = (&CityOnGpu, u32, &Placement, u32)> {
+        let own = self.city.as_ref();
+        let shown = self.contents.shown.iter().enumerate();
+        shown.filter_map(move |(i, content)| {
+            let city = self.contents.city(own?, content.id)?;
+            Some((city, content.number, &content.placement, (i as u32 + 1) * STAGE_STRIDE as u32))
+        })
+    }
+
+    /// Box around what contents show that a frustum meets, and around all that they show, metres.
+    pub(super) fn content_bounds(&self, input: &FrameInput, frustum: &Frustum) -> [Aabb; 2] {
+        let mut found = [Aabb::EMPTY; 2];
+        let Some(own) = &self.city else { return found };
+        for content in &self.contents.shown {
+            let uses = input.operations.contents.iter().filter(|c| c.city == content.number);
+            let reaches = uses.flat_map(|c| reaches_of(Some(c.lens), c.class, input.volumes, &input.view));
+            let room = reaches.fold(Aabb::EMPTY, |all, reach| all.union(reach.bounds()));
+            let Some(city) = self.contents.city(own, content.id) else { continue };
+            for (i, section) in city.buffers.sections.iter().enumerate() {
+                for chunk in content.chunks.get(i).unwrap_or(&section.chunks) {
+                    let bounds = chunk.bounds;
+                    let part = Aabb { min: bounds.min.max(room.min), max: bounds.max.min(room.max) };
+                    if part.is_empty() {
+                        continue;
+                    }
+                    found[1] = found[1].union(part);
+                    if frustum.meets(&part) {
+                        found[0] = found[0].union(part);
+                    }
+                }
+            }
+        }
+        found
+    }
+}
+
+fn add_sections<'a>(
+    drawn: &mut Vec<DrawnSection<'a>>,
+    city: &'a CityOnGpu,
+    (content, offset): (Option<u32>, u32),
+    chunks: &'a [Vec<Chunk>],
+) {
+    let sections = city.buffers.sections.iter().zip(&city.images).enumerate();
+    drawn.extend(sections.map(|(i, (section, image))| DrawnSection {
+        city,
+        section,
+        image: image.as_ref(),
+        chunks: chunks.get(i).unwrap_or(&section.chunks),
+        content,
+        offset,
+    }));
+}
+
+impl Contents {
+    /// The city that an id names.
+    fn city<'a>(&'a self, own: &'a CityOnGpu, id: u64) -> Option<&'a CityOnGpu> {
+        if id == 0 { Some(own) } else { self.cities.iter().find(|(i, _)| *i == id).map(|(_, city)| city) }
+    }
+
+    /// Where the surfaces of a part begin.
+    fn first_surface(&self, own: &CityOnGpu, part: Part) -> u32 {
+        let length = |id| self.city(own, id).map_or(0, |city| city.buffers.surface_table.len() as u32);
+        match self.parts.iter().position(|p| *p == part) {
+            Some(at) => length(0) + self.parts[..at].iter().map(|(id, ..)| length(*id)).sum::<u32>(),
+            None => 0,
+        }
+    }
+}
