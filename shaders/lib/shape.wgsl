@@ -9,10 +9,10 @@ struct Shape {
                                 // frustum: radius at its middle; solid: number of its first entry; flat: a disc's radius, half a
                                 // rectangle's edge, number of a polygon's first side
     axis_y: vec3f,              // box, ellipsoid, solid: as axis_x
-    size_y: f32,                // box: half edge; convex: how many planes; frustum: what the radius grows by along its axis;
+    size_y: f32,                // box: half edge; convex: how many planes; solid: 1 where the eye is all but on a face; frustum: what the radius grows by along its axis;
                                 // flat: half a rectangle's edge, how many sides a polygon has
     axis_z: vec3f,              // box, ellipsoid, solid: as axis_x; cylinder, frustum: its axis, unit
-    size_z: f32,                // box: half edge; cylinder, frustum: half height; solid: 1 where the eye is inside; flat: DISC,
+    size_z: f32,                // box: half edge; cylinder, frustum: half height; solid: how often it goes around the eye; flat: DISC,
                                 // RECTANGLE or POLYGON
 }
 
@@ -32,6 +32,8 @@ const MEMBERS: u32 = 9u;
 const COMBINED: u32 = 10u;
 const COMBINED_SPRITE: u32 = 11u;
 const FLAT: u32 = 12u;
+// A volume that is tested by a depth sprite in any format.
+const LAYERED_SPRITE: u32 = 13u;
 
 // Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
 struct Span {

@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 
 pub use classify::classify;
 pub use focus::Focus;
+pub use sprite::LensSprite;
 
 use crate::shader::Blend;
 
@@ -63,13 +64,6 @@ pub enum LensKind {
     /// Restyles what is in it (K1).
     #[default]
     Color,
-}
-
-/// The volumetric depth sprite of a lens (S1).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LensSprite {
-    /// Texels along the longer side of the picture; `None`: one per pixel.
-    pub resolution: Option<u32>,
 }
 
 /// How a lens body is drawn (L5).

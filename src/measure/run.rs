@@ -5,7 +5,7 @@ use std::{sync::Arc, time::Instant};
 use crate::{
     gpu::Gpu,
     measure::{
-        difference::Difference,
+        difference::{self, Difference},
         pareto,
         ratio::{Estimate, in_turn, ratios},
         stage::Stage,
@@ -181,7 +181,11 @@ fn compare(
             _ => studio.render(&wanted.scene, &wanted.request)?,
         };
         let picture = studio.render(&variant.shot.scene, &variant.shot.request)?;
-        differences.push(Difference::between(&right, &picture));
+        let mut difference = Difference::between(&right, &picture);
+        if let (Some(mask), Some(bits)) = (&variant.mask, &picture.lens_mask) {
+            difference.wrong_mask_pixels = Some(difference::wrong_bits(mask, &bits[0]));
+        }
+        differences.push(difference);
         reference = Some((wanted, right));
     }
     Ok(differences)

@@ -34,6 +34,7 @@ pub mod solids;
 pub mod sprite_passes;
 mod sprites;
 pub mod stats;
+pub mod stored;
 mod surfaces;
 mod synced;
 pub mod targets;
@@ -41,5 +42,6 @@ pub mod text;
 mod textures;
 pub mod volume;
 mod weld;
+mod worker;
 
 pub use renderer::Renderer;

@@ -16,7 +16,7 @@ pub(super) fn bindings(program: &Program, carried: bool) -> String {
     };
     let parts = program.has();
     let mut text = String::new();
-    if parts.sprites {
+    if parts.sprites || parts.side_sprites {
         let _ = writeln!(text, "@group(2) @binding(3) var<uniform> sprite_places: array<SpritePlace, {count}>;");
     }
     // The uber back end reads of each volume there how it is tested.
@@ -55,8 +55,11 @@ fn call(question: Question, test: VolumeTest, volume: &str, place: &str) -> Stri
     match (question, test) {
         (Q::Covers, T::Members) => format!("covers_members({shape}, {place})"),
         (_, T::Members) => format!("inside_members({shape}, {place})"),
-        (Q::Covers, T::Sprite | T::SolidSprite | T::CombinedSprite) => format!("covers_sprite({sprite}, {place})"),
+        (Q::Covers, T::Sprite) => format!("covers_sprite({sprite}, {place})"),
         (_, T::Sprite) => format!("class_in_sprite({sprite}, {place})"),
+        (Q::Covers, T::LayeredSprite) => format!("covers_layers({sprite}, {place})"),
+        (_, T::LayeredSprite) => format!("class_in_layers({sprite}, {place})"),
+        (Q::Covers, T::SolidSprite | T::CombinedSprite) => format!("covers_sides({sprite}, {place})"),
         (Q::Classes, T::SolidSprite) => format!("class_in_solid({shape}, {sprite}, {place})"),
         (Q::Inside, T::Combined | T::CombinedSprite) => format!("inside_combined({shape}, {place})"),
         (Q::Classes, T::CombinedSprite) => format!("class_in_combined({shape}, {sprite}, {place})"),

@@ -11,11 +11,11 @@ use crate::{
         keys::{self, CLASSES, Kind},
         node::{Data, Node},
         paths::{Options, PathProblem},
-        shape_keys,
+        shape_keys, sprite,
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, Placement, effect,
+        Class, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, Placement, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -193,9 +193,7 @@ impl<'o> SceneReader<'o> {
         let placement = self.placement(fields);
         let shapes = self.shapes(fields);
         let effects = self.effects(fields, true);
-        let sprite = fields
-            .node("sprite")
-            .map(|node| self.checker.fields(node, &keys::SPRITE, &[], fields.place.within("sprite", node.line)));
+        let sprite = sprite::read(&mut self.checker, fields);
         Lens {
             name: fields.text("name").map_or_else(|| format!("lens-{index}"), str::to_owned),
             kind: LensKind::Color,
@@ -205,7 +203,7 @@ impl<'o> SceneReader<'o> {
             shapes,
             effects,
             body: if fields.text("body") == Some("none") { LensBody::None } else { LensBody::Outline },
-            sprite: sprite.map(|s| LensSprite { resolution: s.integer("resolution") }),
+            sprite,
         }
     }
 

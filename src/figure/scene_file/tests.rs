@@ -4,7 +4,11 @@ use proptest::prelude::*;
 use super::*;
 use crate::{
     geom::{Shape, combination::Operation, shape::FlatFigure},
-    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, Placement, chosen::Choice},
+    lens::{
+        Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, Placement,
+        chosen::Choice,
+        sprite::{Format, Mapping},
+    },
     scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun},
     shader::Blend,
     view::{Camera, Projection},
@@ -301,6 +305,11 @@ fn every_mistake_in_a_lens_is_named() {
             "effects.1: \"thematic\" is a second scene style beside \"thematic\"",
         ),
         ("sprite = { resolution = 4 }", "sprite.resolution: must be a whole number 16 to 16384, is 4"),
+        ("sprite = { near = 9, far = 8.5 }", "sprite.far: must lie beyond near, 9 m, is 8.5"),
+        (
+            "sprite = { mapping = \"1/z\" }",
+            "sprite.mapping: must be \"z\" or \"complementary-z\" or \"w\" or \"1/w\", is \"1/z\"",
+        ),
         (
             "[[lens]]\nname = \"lens-0\"\nshape = { kind = \"sphere\", center = [1, 2, 3], radius = 60.0 }",
             "[lens.1] name: \"lens-0\" is the name of lens.0 already",
@@ -506,10 +515,18 @@ fn effects() -> impl Strategy<Value = EffectUse> {
 }
 
 prop_compose! {
+    fn sprites()(resolution in prop::option::of(16..16_384u32), format in 0..5usize, mapping in 0..4usize,
+        near_m in prop::option::of(1e-3..10.0f64), far_m in prop::option::of(11.0..1e4f64), layers in 1..17u32,
+        aggregate in any::<bool>()) -> LensSprite {
+        let (format, mapping) = (Format::WORDS[format].1, Mapping::WORDS[mapping].1);
+        LensSprite { resolution, format, mapping, near_m, far_m, layers, aggregate }
+    }
+}
+
+prop_compose! {
     fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), outline in any::<bool>(),
-        sprite in prop::option::of(prop::option::of(16..16_384u32)), placement in placements()) -> Lens {
-        let sprite = sprite.map(|resolution| LensSprite { resolution });
+        sprite in prop::option::of(sprites()), placement in placements()) -> Lens {
         let body = if outline { LensBody::Outline } else { LensBody::None };
         Lens { name: String::new(), kind: LensKind::Color, enabled, color, placement, shapes, effects: used, body, sprite }
     }

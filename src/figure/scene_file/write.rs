@@ -8,6 +8,7 @@ use crate::{
     figure::scene_file::{
         parse::{lens_color, rotation},
         paths::Options,
+        sprite,
     },
     geom::{Shape, shape::FlatFigure},
     lens::{
@@ -136,9 +137,8 @@ impl Toml {
         }
         self.key_if(!lens.effects.is_empty(), "effects", &list(lens.effects.iter().map(effect)));
         self.key_if(lens.body == LensBody::None, "body", "\"none\"");
-        if let Some(sprite) = lens.sprite {
-            let resolution = sprite.resolution.map(|resolution| format!(" resolution = {resolution} "));
-            self.key("sprite", &format!("{{{}}}", resolution.unwrap_or_default()));
+        if let Some(sprite) = &lens.sprite {
+            self.key("sprite", &sprite::written(sprite));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 mod handlers;
 mod samples;
-mod sprite_resolution;
+mod sprites;
 
 use crate::measure::topic::Topic;
 
@@ -10,7 +10,7 @@ use crate::measure::topic::Topic;
 pub const TOPICS: &[Topic] = &[
     handlers::TOPIC, //
     samples::TOPIC,
-    sprite_resolution::TOPIC,
+    sprites::TOPIC,
 ];
 
 #[cfg(test)]
