@@ -127,6 +127,39 @@ fn sprites() {
 }
 
 #[test]
+fn lens_tests() {
+    let model = load(&["builtin:square".into()], &LoadOptions::default(), &Quiet).unwrap();
+    let mut studio = Studio::new(Gpu::open().unwrap(), Arc::new(model), &CitySpec::default()).unwrap();
+    let topic = TOPICS.iter().find(|topic| topic.name == "lens-tests").unwrap();
+    let trial = (topic.make)(&mut Stage { studio: &mut studio, size: [160, 90] }).unwrap();
+    let knob = |v: &Variant, i: usize| v.knobs[i].to_string();
+    let kinds = ["sphere", "ellipsoid", "box", "cylinder", "cone", "convex", "solid", "combination"];
+    for kind in kinds {
+        for test in ["shape", "sprite"] {
+            let is_it = |v: &&Variant| knob(v, 0) == kind && knob(v, 1) == test;
+            assert_eq!(trial.variants.iter().filter(is_it).count(), 1, "{kind} by {test}");
+        }
+    }
+    for v in &trial.variants {
+        assert_eq!(knob(v, 2), v.shot.scene.lenses.len().to_string(), "{}", v.label);
+        assert_eq!(knob(v, 1) == "sprite", v.shot.scene.lenses.iter().all(|lens| lens.sprite.is_some()), "{}", v.label);
+        let moves = v.shot.before.as_ref().is_some_and(|before| *before != v.shot.scene);
+        assert_eq!(knob(v, 4) == "moving", moves, "{}", v.label);
+    }
+    let most = trial.variants.iter().map(|v| v.shot.scene.lenses.len()).max();
+    assert_eq!(most, Some(10));
+    // Both tests draw one picture, to a few pixels of the border.
+    let by_sprite = |v: &&Variant| knob(v, 1) == "sprite" && (kinds.contains(&&*knob(v, 0)) || knob(v, 2) == "10");
+    for v in trial.variants.iter().filter(by_sprite) {
+        let reference = v.reference.as_ref().unwrap();
+        let [right, found] = [reference, &v.shot].map(|shot| studio.render(&shot.scene, &shot.request).unwrap());
+        let inside = right.lens_mask.as_ref().unwrap()[0].iter().filter(|bits| **bits != 0).count();
+        let wrong = Difference::between(&right, &found).wrong_mask_pixels.unwrap();
+        assert!(inside > 200 && wrong <= 4, "{}: {wrong} of {inside}", v.label);
+    }
+}
+
+#[test]
 fn topics_are_listed() {
     let output = run(&["measure"]);
     assert_eq!(output.status.code(), Some(0));

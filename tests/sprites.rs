@@ -354,3 +354,36 @@ fn what_finds_no_room_on_the_lists_is_not_lost() {
     let wrong = (0..depth.len()).filter(|&i| depth[i] < 34.9 && right[i] != found[i]).count();
     assert!(wrong <= 3, "{wrong} of them are wrong");
 }
+
+/// The command line says it on stderr, and in the statistics.
+#[test]
+fn render_tells_of_too_few_layers() {
+    let folder = std::env::temp_dir().join(format!("veduta-layers-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a temporary folder");
+    let wall = |y: i32| format!("{{ kind = \"box\", center = [0, {y}, 5], size = [60, 2, 30] }}");
+    let scene = format!(
+        "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [0, -80, 20]\ntarget = [0, 0, 5]\n[[lens]]\n\
+         name = \"two walls\"\nshapes = [{}, {}]\nsprite = {{ layers = 1 }}\n",
+        wall(-8),
+        wall(8)
+    );
+    let file = |name: &str| folder.join(name);
+    std::fs::write(file("s.toml"), scene).expect("a scene file");
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_veduta"))
+        .arg("render")
+        .arg(file("s.toml"))
+        .args(["--size", "64x48", "--samples", "2", "-o"])
+        .arg(file("o.png"))
+        .arg("--stats")
+        .arg(file("stats.json"))
+        .output()
+        .expect("it runs");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{told}");
+    assert!(told.contains("rays enter lens \"two walls\" more often than its sprite has layers"), "{told}");
+    let stats = std::fs::read(file("stats.json")).expect("statistics");
+    let stats: serde_json::Value = serde_json::from_slice(&stats).expect("JSON");
+    let warnings = stats["warnings"].as_array().expect("a list");
+    assert!(warnings.iter().any(|w| w["code"] == "sprite-layers" && w["count"].as_u64() > Some(100)), "{warnings:?}");
+    std::fs::remove_dir_all(folder).expect("the temporary folder");
+}

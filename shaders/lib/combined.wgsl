@@ -118,7 +118,8 @@ fn class_by_leaves(s: Shape, sight: Sight) -> u32 {
     let is_missed = span.enter > span.exit || (starts_at_eye && sight.distance <= 0.0);
     let is_before = sight.distance < span.enter;
     let side = side_of_solid(is_missed, is_before, sight.distance >= span.exit);
-    return select(side, INSIDE, inside_combined(s, sight) == INSIDE);
+    let nearer = select(BEHIND, FRONT, sight.distance - span.enter < span.exit - sight.distance);
+    return select(side, INSIDE | nearer, inside_combined(s, sight) == INSIDE);
 }
 
 // Whether the ray of a pixel's centre meets it.

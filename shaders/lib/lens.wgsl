@@ -10,7 +10,8 @@ fn class_in_shape(s: Shape, kind: u32, sight: Sight) -> u32 {
     let starts_at_eye = !sight.is_parallel;
     let is_missed = span.enter > span.exit || (starts_at_eye && (span.exit <= 0.0 || sight.distance <= 0.0));
     let side = select(BEHIND, FRONT, sight.distance < 0.5 * (span.enter + span.exit));
-    return inside_shape(s, kind, sight) | select(side, MISSED, is_missed || is_in_shape(s, kind, sight));
+    // Inside, the side is the one that is nearer along the ray: soft borders ask for it.
+    return inside_shape(s, kind, sight) | select(side, MISSED, is_missed);
 }
 
 // INSIDE or nothing, for lenses that ask for no other class.

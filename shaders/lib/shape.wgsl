@@ -9,10 +9,11 @@ struct Shape {
                                 // frustum: radius at its middle; solid: number of its first entry; flat: a disc's radius, half a
                                 // rectangle's edge, number of a polygon's first side
     axis_y: vec3f,              // box, ellipsoid, solid: as axis_x
-    size_y: f32,                // box: half edge; convex: how many planes; solid: 1 where the eye is all but on a face; frustum: what the radius grows by along its axis;
+    size_y: f32,                // box: half edge; convex: how many planes; frustum: what the radius grows by along its axis;
                                 // flat: half a rectangle's edge, how many sides a polygon has
     axis_z: vec3f,              // box, ellipsoid, solid: as axis_x; cylinder, frustum: its axis, unit
-    size_z: f32,                // box: half edge; cylinder, frustum: half height; solid: how often it goes around the eye; flat: DISC,
+    size_z: f32,                // box: half edge; cylinder, frustum: half height; solid: how often it goes around the
+                                // eye, and a quarter more where that is in doubt; flat: DISC,
                                 // RECTANGLE or POLYGON
 }
 

@@ -118,7 +118,7 @@ fn span_of_solid(ray: Ray, s: Shape, starts_at_eye: bool) -> Span {
         let is_seen = hit.is_met && (!starts_at_eye || hit.t > 0.0);
         span = Span(select(span.enter, min(span.enter, hit.t), is_seen), select(span.exit, max(span.exit, hit.t), is_seen));
     }
-    if span.exit > -FAR_AWAY && starts_at_eye && s.size_z != 0.0 {
+    if span.exit > -FAR_AWAY && starts_at_eye && abs(s.size_z) > 0.5 {
         span.enter = 0.0;
     }
     return span;
@@ -136,7 +136,8 @@ fn class_by_faces(s: Shape, sight: Sight) -> u32 {
     let is_missed = span.enter > span.exit || (!sight.is_parallel && sight.distance <= 0.0);
     let is_before = sight.distance < span.enter;
     let side = side_of_solid(is_missed, is_before, sight.distance >= span.exit);
-    return select(side, INSIDE, inside_solid(s, sight) == INSIDE);
+    let nearer = select(BEHIND, FRONT, sight.distance - span.enter < span.exit - sight.distance);
+    return select(side, INSIDE | nearer, inside_solid(s, sight) == INSIDE);
 }
 
 // Whether the ray of a pixel's centre meets it.

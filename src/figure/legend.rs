@@ -118,6 +118,7 @@ mod tests {
             effects,
             body: Default::default(),
             sprite: None,
+            border: None,
         }
     }
 

@@ -98,6 +98,12 @@ impl Focus {
         lengths.into_iter().find(|(_, v)| *v < 0.0).map(|(key, v)| (key, format!("must be ≥ 0, is {v}")))
     }
 
+    /// Whether it, or a part of it, is such a one.
+    pub fn any(&self, is_one: &dyn Fn(&Self) -> bool) -> bool {
+        let in_parts = || matches!(self, Self::Combined { parts, .. } if parts.iter().any(|p| p.any(is_one)));
+        is_one(self) || in_parts()
+    }
+
     /// The volumes whose union it is, without a city ([`Solids::volumes`]): of city objects and combinations none; a flat one as
     /// seen along these sight lines.
     pub fn volumes_seen(&self, sight: &Sightlines) -> Result<Vec<Volume>, String> {

@@ -1,5 +1,6 @@
 //! What to show where: a lens = shapes + effects + order (V §3).
 
+pub mod border;
 pub mod chosen;
 pub mod classify;
 pub mod color;
@@ -14,11 +15,12 @@ pub mod thematic;
 
 use std::collections::BTreeMap;
 
+pub use border::{Border, BorderUnit, Discrete};
 pub use classify::classify;
 pub use focus::Focus;
 pub use sprite::LensSprite;
 
-use crate::shader::Blend;
+use crate::{geom::Shape, shader::Blend};
 
 /// A lens (L1).
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +43,28 @@ pub struct Lens {
     pub body: LensBody,
     /// The volumetric depth sprite that it is tested by; `None`: from its shapes (S7).
     pub sprite: Option<LensSprite>,
+    /// How it ends (L9); `None`: at once.
+    pub border: Option<Border>,
+}
+
+impl Lens {
+    /// Its border, if it has a width.
+    pub fn soft_border(&self) -> Option<Border> {
+        self.border.filter(|b| b.width > 0.0)
+    }
+
+    /// How its body is drawn: thematic lenses have no surface, and a flat one has no silhouette that a ray comes close to; they
+    /// show a line instead.
+    pub fn drawn_body(&self) -> LensBody {
+        let is_in = |is_one: &dyn Fn(&Focus) -> bool| self.shapes.iter().any(|s| s.any(is_one));
+        let is_thematic = || is_in(&|f| matches!(f, Focus::Thematic(_)));
+        let is_flat = || is_in(&|f| matches!(f, Focus::Shape(Shape::Flat { .. })));
+        match self.body {
+            LensBody::Shell if is_thematic() => LensBody::Outline,
+            LensBody::Halo if self.sprite.is_some() || is_thematic() || is_flat() => LensBody::Outline,
+            body => body,
+        }
+    }
 }
 
 /// What the shapes of a lens are fixed to, whose origin and axes their coordinates are of (L2); metres.
@@ -74,6 +98,21 @@ pub enum LensBody {
     /// A line around its silhouette, in the lens colour.
     #[default]
     Outline,
+    /// Tinted glass, with a line around it.
+    Shell,
+    /// A glow around its silhouette.
+    Halo,
+}
+
+impl LensBody {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 4] =
+        [("outline", Self::Outline), ("shell", Self::Shell), ("halo", Self::Halo), ("none", Self::None)];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, body)| *body == self).map_or("none", |(word, _)| word)
+    }
 }
 
 /// One use of an effect.

@@ -19,7 +19,7 @@ use crate::{
     geom::{
         Aabb, Volume,
         shape::{
-            Mesh, Motion, PlacedSolid, ShapeError, Sightlines, Solid,
+            Hull, Mesh, Motion, PlacedSolid, ShapeError, Sightlines, Solid,
             solid::{self, Bitmap},
         },
     },
@@ -37,6 +37,16 @@ const SAME_M: f64 = 1.0 / 2048.0;
 #[derive(Debug, Default)]
 pub struct Solids {
     made: Vec<Made>,
+    hulls: Vec<MadeOfHull>,
+}
+
+/// A solid of a convex polytope.
+#[derive(Debug)]
+struct MadeOfHull {
+    /// Its triangles.
+    triangles: Vec<[DVec3; 3]>,
+    solid: Arc<Solid>,
+    is_wanted: bool,
 }
 
 #[derive(Debug)]
@@ -107,8 +117,27 @@ impl Solids {
         Ok(made.solid.clone().map(placed).into_iter().collect())
     }
 
+    /// A convex polytope as a solid; `None` where rounding leaves nothing of it.
+    pub fn of_hull(&mut self, hull: &Hull) -> Option<PlacedSolid> {
+        let (at, triangles) = (hull.planes().0, hull.triangles());
+        let made = match self.hulls.iter_mut().position(|m| m.triangles == triangles) {
+            Some(index) => &mut self.hulls[index],
+            None => {
+                let points = triangles.iter().flatten().copied().collect();
+                let indices = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+                let solid = Solid::new(&[Mesh { points, triangles: indices }], DVec3::ZERO).ok()?;
+                self.hulls.push(MadeOfHull { triangles, solid: Arc::new(solid), is_wanted: true });
+                self.hulls.last_mut()?
+            }
+        };
+        made.is_wanted = true;
+        Some(PlacedSolid { solid: made.solid.clone(), rotation: DQuat::IDENTITY, at })
+    }
+
     /// Drops what was not asked for since the last time.
     pub fn forget_others(&mut self) {
+        self.hulls.retain(|m| m.is_wanted);
+        self.hulls.iter_mut().for_each(|m| m.is_wanted = false);
         self.made.retain(|m| m.is_wanted);
         self.made.iter_mut().for_each(|m| m.is_wanted = false);
     }

@@ -44,6 +44,7 @@ impl Stage<'_> {
                 backend: Backend::default(),
             },
             scene,
+            before: None,
         }
     }
 
@@ -125,6 +126,7 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
         effects: effects.iter().map(use_of).collect(),
         body: LensBody::None,
         sprite: None,
+        border: None,
     }
 }
 

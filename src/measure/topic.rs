@@ -74,6 +74,8 @@ pub struct Shot {
     pub scene: Scene,
     /// How.
     pub request: Request,
+    /// What the frame before the timed one shows, where something moves.
+    pub before: Option<Scene>,
 }
 
 /// One of the things that are compared.

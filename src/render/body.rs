@@ -403,13 +403,15 @@ impl PlacedLeaf {
                 out.axis_y = turn(axes.y_axis);
                 out.axis_z = turn(axes.z_axis);
                 out.size_x = first as f32;
+                out.size_y = self.place.near as f32;
                 if !view.is_orthographic() {
                     let own = placed.local(eye);
                     let near = DVec3::splat(view.camera.near_m);
                     let around = placed.solid.bounds();
                     let may_touch = own.cmpge(around.min - near).all() && own.cmple(around.max + near).all();
-                    out.size_z = placed.solid.winding(own) as f32;
-                    out.size_y = f32::from(u8::from(may_touch && placed.solid.distance(own) < view.camera.near_m));
+                    let is_in_doubt = may_touch && placed.solid.distance(own) < view.camera.near_m;
+                    // A quarter more says that the eye is all but on a face.
+                    out.size_z = placed.solid.winding(own) as f32 + if is_in_doubt { 0.25 } else { 0.0 };
                 }
             }
             Volume::Flat(flat) => flat::figures(flat, view, &mut out, planes),

@@ -107,6 +107,8 @@ impl Cuts {
             // What the picture's sprites hold says nothing of what only the sun sees.
             let own = own.map(|v| (v.lens, v.body.test(), v.body.kinds()));
             let plan = input.operations.lens_plan(&own.collect::<Vec<_>>(), false, false).hiding(handlers());
+            // Nor of how wide a border is that is measured in pixels: shadows end at the volume.
+            let plan = plan.map(Plan::without_borders);
             of(hiding, plan)
         });
         Self { picture: of(hiding(&is_seen), picture), sun }

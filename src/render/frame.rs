@@ -284,7 +284,7 @@ impl Renderer {
         let by_shapes = |mut plan: Plan| {
             let shapes = seen.iter().map(|v| input.volumes[v.index].body.test());
             plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).zip(shapes).for_each(|(test, shape)| *test = shape);
-            plan
+            plan.without_borders()
         };
         let module = match part {
             ShaderPart::Shade => Module::Shade(shade),

@@ -48,10 +48,9 @@ pub fn reaches_of(lens: Option<u32>, class: Class, volumes: &[LensVolume], view:
         _ if !volume.body.is_bounded() => {
             volume.box_seen(view).map_or(Reach::Everywhere, |(low, high)| Reach::Along(low, high))
         }
-        Class::Inside => Reach::Within(volume.bounds),
-        Class::Front | Class::Behind => {
-            projected_box(view, &volume.bounds).map_or(Reach::Everywhere, |(low, high)| Reach::Along(low, high))
-        }
+        Class::Inside => Reach::Within(volume.bounds_of_border(view)),
+        Class::Front | Class::Behind => projected_box(view, &volume.bounds_of_border(view))
+            .map_or(Reach::Everywhere, |(low, high)| Reach::Along(low, high)),
     };
     volumes.iter().filter(|v| v.lens == lens).map(of_volume).collect()
 }

@@ -5,7 +5,7 @@ use crate::{
     shader::{Blend, EffectDefinition, EffectKind, Plan, PlanLens, Scope, Step, TILE_PX, scope_number},
 };
 
-/// Sections of the lists of a tile, as `shader::uber` numbers them: materials, lights, styles, outlines, masks.
+/// Sections of the lists of a tile, as `shader::uber` numbers them: materials, lights, styles, bodies, masks.
 const SECTIONS: usize = 5;
 
 /// An invoker of a section, and the lens of the plan that it belongs to; none: the context.
@@ -65,7 +65,8 @@ impl Invokers {
                 let invoker = layout::Invoker {
                     first_volume: volumes[i as usize],
                     volumes: lens.volumes.len() as u32,
-                    parameters: lens.outline.unwrap_or(0),
+                    handler: lens.body.map_or(0, |body| body.kind.number()),
+                    parameters: lens.body.map_or(0, |body| body.parameters),
                     number: lens.number,
                     ..layout::Invoker::default()
                 };
@@ -73,9 +74,9 @@ impl Invokers {
             })
             .collect()
         };
-        let outlines = of_lenses(&|lens| lens.outline.is_some());
+        let bodies = of_lenses(&|lens| lens.body.is_some());
         let masks = of_lenses(&|_| plan.masks);
-        [materials, lights, styles, outlines, masks]
+        [materials, lights, styles, bodies, masks]
     }
 
     /// The table as `shader::uber` declares it, for a picture of this size.
@@ -168,9 +169,12 @@ fn to_lines(handler: &EffectDefinition) -> u32 {
 }
 
 fn invoker(plan: &Plan, volumes: &[u32], step: &Step, handler: &EffectDefinition) -> layout::Invoker {
-    let (first_volume, count) = match step.scope {
-        Scope::Everywhere => (0, 0),
-        Scope::Lens(lens, _) => (volumes[lens as usize], plan.lenses[lens as usize].volumes.len() as u32),
+    let (first_volume, count, border) = match step.scope {
+        Scope::Everywhere => (0, 0, None),
+        Scope::Lens(lens, _) => {
+            let of = &plan.lenses[lens as usize];
+            (volumes[lens as usize], of.volumes.len() as u32, of.border)
+        }
     };
     layout::Invoker {
         handler: step.effect,
@@ -181,5 +185,6 @@ fn invoker(plan: &Plan, volumes: &[u32], step: &Step, handler: &EffectDefinition
         blend: step.blend.map_or(0, Blend::number),
         weight: step.weight(handler).unwrap_or(0),
         number: u32::from(handler.kind == EffectKind::Scene),
+        border: border.map_or(0, |b| b.parameters + 1),
     }
 }

@@ -221,6 +221,7 @@ pub struct Invoker {
     pub blend: u32,
     pub weight: u32,
     pub number: u32,
+    pub border: u32,
 }
 
 /// `pass/furniture.wgsl`, per instance.
@@ -279,7 +280,7 @@ mod tests {
 
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
-        let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], outline: None };
+        let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], body: None, border: None };
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
@@ -324,7 +325,10 @@ mod tests {
             ),
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin, clip_scale, clip_shift, leaves })),
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, length, layers, layer, pad_0 })),
-            (&uber, host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number })),
+            (
+                &uber,
+                host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number, border }),
+            ),
             (
                 &shade,
                 host!(SpritePlace {

@@ -6,10 +6,10 @@ use crate::{
     geom::{
         Aabb, Solid, Volume,
         combination::{Operation, Tree},
-        shape::Motion,
+        shape::{Motion, solid},
     },
     lens::{
-        Class, Focus, Lens, LensBody,
+        Border, BorderUnit, Class, Focus, Lens, LensBody,
         chosen::members,
         solids::{FocusError, Place, ShownCity, Solids},
     },
@@ -47,7 +47,13 @@ pub(super) fn volumes_of(
         let mut of_lens: Vec<Body> = Vec::new();
         for (j, focus) in lens.shapes.iter().enumerate() {
             match bodies_of(focus, city, &place, solids) {
-                Ok(bodies) => of_lens.extend(bodies),
+                Ok(mut bodies) => {
+                    if lens.soft_border().is_some() || has_surface(lens.drawn_body()) {
+                        let leaves = bodies.iter_mut().flat_map(Body::leaves_mut);
+                        leaves.for_each(|leaf| tell_distance(&mut leaf.leaf, solids));
+                    }
+                    of_lens.extend(bodies);
+                }
                 Err(_) if !lens.enabled => {}
                 Err((key, message)) => {
                     let place = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
@@ -76,15 +82,26 @@ pub(super) fn volumes_of(
     Ok(all)
 }
 
+/// Makes a polytope a solid, which knows how far away it is.
+fn tell_distance(leaf: &mut Leaf, solids: &mut Solids) {
+    let Leaf::Volume(volume) = leaf else { return };
+    if let Volume::Convex(hull) = volume
+        && let Some(placed) = solids.of_hull(hull)
+    {
+        *volume = Volume::Solid(placed);
+    }
+}
+
 fn volume_of(number: u32, lens: &Lens, body: Body) -> LensVolume {
     LensVolume {
         lens: number,
         bounds: body.bounds(),
         body,
         everywhere: lens.effects.iter().any(|e| e.class == Class::Rest),
-        has_outline: lens.body == LensBody::Outline,
+        drawn: lens.drawn_body(),
         sprite: lens.sprite,
         asks_sides: lens.effects.iter().any(|e| e.class != Class::Inside),
+        border: lens.soft_border(),
     }
 }
 
@@ -141,7 +158,10 @@ fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids)
 impl LensVolumes {
     /// Gives every solid its place in the table of all of them, which is made anew where `before` does not hold just these.
     pub fn place_solids(&mut self, before: &Arc<SolidTable>) -> Result<Arc<SolidTable>, String> {
-        let solids = || self.volumes.iter().flat_map(|v| v.body.leaves()).filter_map(|leaf| solid_of(&leaf.leaf));
+        let solids = || {
+            let leaves = self.volumes.iter().flat_map(|v| v.body.leaves().map(move |leaf| (v, &leaf.leaf)));
+            leaves.filter_map(|(volume, leaf)| solid_of(leaf).map(|solid| (solid, asked_for(volume, solid))))
+        };
         let table = match before.holds(solids()) {
             true => before.clone(),
             false => Arc::new(SolidTable::new(solids()).map_err(|entries| {
@@ -155,6 +175,27 @@ impl LensVolumes {
         }
         Ok(table)
     }
+}
+
+/// How far from a solid its distance is asked for, metres: by a border, or where its surface looks to.
+fn asked_for(volume: &LensVolume, solid: &Solid) -> f64 {
+    let widest = solid::widest_reach(&solid.bounds());
+    let border = match volume.border {
+        None => 0.0,
+        Some(Border { unit: BorderUnit::Metres, width, .. }) => 0.5 * width,
+        Some(_) => widest,
+    };
+    let body = match volume.drawn {
+        LensBody::None | LensBody::Outline => 0.0,
+        LensBody::Shell => 0.05 * widest,
+        LensBody::Halo => widest,
+    };
+    solid::rounded_reach(border.max(body))
+}
+
+/// Whether a body asks how far away it is.
+fn has_surface(body: LensBody) -> bool {
+    matches!(body, LensBody::Shell | LensBody::Halo)
 }
 
 fn solid_of(leaf: &Leaf) -> Option<&Arc<Solid>> {

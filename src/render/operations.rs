@@ -3,17 +3,22 @@
 use crate::{
     city::CityModel,
     lens::{
-        Class, EffectUse, Lens, LensBody,
+        BorderUnit, Class, Discrete, EffectUse, Lens, LensBody,
         chosen::{Choice, ChoiceError, chosen},
         effect::{default_of, in_floats},
         thematic::ThematicScale,
     },
     render::palette,
-    shader::{self, Blend, ClassTest, EffectKind, PerObject, Plan, PlanLens, Scope, Step, Uber, VolumeTest},
+    shader::{
+        self, Blend, BodyKind, ClassTest, EffectKind, PerObject, Plan, PlanBody, PlanBorder, PlanLens, Scope, Step,
+        Uber, VolumeTest,
+    },
 };
 
 /// Width of a lens outline, pixels.
 const OUTLINE_PX: f32 = 1.6;
+/// How far the glow around a lens goes, pixels.
+pub const HALO_PX: f32 = 18.0;
 
 /// Different neighbourhood filters of a picture: each takes four of an image's 256 layers, of a transparent picture eight.
 pub const MOST_FILTERS: usize = 32;
@@ -59,8 +64,10 @@ pub struct Filter {
 pub struct Operations {
     /// Effects in order.
     pub list: Vec<Operation>,
-    /// Lenses that show their silhouette, and the first slot of its parameters.
-    pub outlines: Vec<(u32, u32)>,
+    /// Lenses whose bodies are drawn, and how.
+    pub bodies: Vec<(u32, PlanBody)>,
+    /// Lenses with soft borders, and these.
+    pub borders: Vec<(u32, PlanBorder)>,
     /// Parameters of all of them, in slots of four.
     pub parameters: Vec<[f32; 4]>,
     /// What effects read of each object, one run per use: colours, sRGB bytes; or whether it is chosen, that of no object
@@ -87,8 +94,10 @@ impl Operations {
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(shape_tests), ..Self::default() };
         out.uber.tests = each_once(tests);
         out.uber.leaves = each_once(leaves);
-        // Lenses of no volume at all have no silhouettes.
-        out.uber.outlines &= !out.uber.tests.is_empty();
+        // Lenses of no volume at all have no bodies.
+        if out.uber.tests.is_empty() {
+            out.uber.bodies.clear();
+        }
         for effect in context {
             out.add(effect, None, model)?;
         }
@@ -98,10 +107,20 @@ impl Operations {
                 out.add(effect, Some(i as u32), model)?;
             }
         }
-        for (i, lens) in active().filter(|(_, lens)| lens.body == LensBody::Outline) {
+        for (i, lens) in active() {
+            let Some(kind) = body_kind(lens.drawn_body()) else { continue };
             let [r, g, b] = palette::linear(lens.color);
-            out.outlines.push((i as u32, out.parameters.len() as u32));
-            out.parameters.extend([[r, g, b, 0.92], [OUTLINE_PX, 0.0, 0.0, 0.0]]);
+            out.bodies.push((i as u32, PlanBody { kind, parameters: out.parameters.len() as u32 }));
+            let width = if kind == BodyKind::Halo { HALO_PX } else { OUTLINE_PX };
+            out.parameters.extend([[r, g, b, 0.92], [width, 0.0, 0.0, 0.0]]);
+        }
+        for (i, lens) in active() {
+            let Some(border) = lens.soft_border() else { continue };
+            let parameters = out.parameters.len() as u32;
+            let dithers = border.discrete == Discrete::Dither;
+            let [in_pixels, dithered] = [border.unit == BorderUnit::Pixels, dithers].map(|is| f32::from(u8::from(is)));
+            out.borders.push((i as u32, PlanBorder { parameters, dithers }));
+            out.parameters.push([border.width as f32, in_pixels, dithered, 0.0]);
         }
         Ok(out)
     }
@@ -114,7 +133,14 @@ impl Operations {
         effects.dedup();
         Uber {
             effects,
-            outlines: lenses.iter().any(|l| l.body == LensBody::Outline),
+            bodies: {
+                let mut kinds: Vec<BodyKind> = lenses.iter().filter_map(|l| body_kind(l.drawn_body())).collect();
+                kinds.sort_unstable();
+                kinds.dedup();
+                kinds
+            },
+            borders: lenses.iter().any(|l| l.soft_border().is_some()),
+            dithers: lenses.iter().any(|l| l.soft_border().is_some_and(|b| b.discrete == Discrete::Dither)),
             blends: uses().any(|e| blend_of(e).is_some()),
             lines: uses().any(|e| shader::effect::find(&e.effect).is_some_and(|h| h.lines)),
             ..Uber::default()
@@ -139,7 +165,7 @@ impl Operations {
     /// The uber back end's part of the modules of geometry and shadow, where something may be hidden.
     pub fn uber_hiding(&self) -> [Option<Uber>; 2] {
         let picture = self.uber.hiding(shader::handlers());
-        let sun = picture.clone().map(|uber| Uber { tests: self.shape_tests.clone(), ..uber });
+        let sun = picture.clone().map(|uber| Uber { tests: self.shape_tests.clone(), borders: false, ..uber });
         [picture, sun]
     }
 
@@ -162,10 +188,11 @@ impl Operations {
                 of.leaves = each_once([&of.leaves[..], leaves].concat());
                 continue;
             }
-            let line = self.outlines.iter().find(|(o, _)| *o == lens).map(|(_, first)| *first);
+            let body = self.bodies.iter().find(|(o, _)| *o == lens).map(|(_, body)| *body);
             // Without masks nobody asks for a lens' number: equal plans are equal then.
             let number = if masks { lens } else { numbers.len() as u32 };
-            lenses.push(PlanLens { number, volumes: vec![test], leaves: leaves.clone(), outline: line });
+            let border = self.borders.iter().find(|(o, _)| *o == lens).map(|(_, border)| *border);
+            lenses.push(PlanLens { number, volumes: vec![test], leaves: leaves.clone(), body, border });
             numbers.push(lens);
         }
         let steps = self.steps(|lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32));
@@ -291,6 +318,15 @@ fn slots_of(operation: &Operation) -> u32 {
 /// How a use is laid over what is below; one with a weight at least as paint.
 fn blend_of(effect: &EffectUse) -> Option<Blend> {
     effect.blend.filter(|b| *b != Blend::Replace || effect.weight.is_some()).or(effect.weight.map(|_| Blend::Replace))
+}
+
+fn body_kind(body: LensBody) -> Option<BodyKind> {
+    match body {
+        LensBody::None => None,
+        LensBody::Outline => Some(BodyKind::Outline),
+        LensBody::Shell => Some(BodyKind::Shell),
+        LensBody::Halo => Some(BodyKind::Halo),
+    }
 }
 
 /// Whether some step draws lines.

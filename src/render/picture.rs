@@ -395,7 +395,8 @@ impl Studio {
                 if request.statistics && sample == 0 { Some(Timer::new(&self.renderer.gpu)?) } else { None };
             let before = (self.renderer.gpu.allocations(), self.renderer.gpu.uploads());
             let mut records = self.renderer.draw(&input, timer.as_mut())?;
-            if self.renderer.makes_room()? {
+            // Later samples are added to those before; they meet about as many crossings.
+            if sample == 0 && self.renderer.makes_room()? {
                 timer = timer.map(|_| Timer::new(&self.renderer.gpu)).transpose()?;
                 records = self.renderer.draw(&input, timer.as_mut())?;
             }
@@ -543,6 +544,9 @@ impl Studio {
     }
 }
 
+/// The code of the warning that rays have more intervals than a sprite has layers.
+pub const SPRITE_LAYERS: &str = "sprite-layers";
+
 fn excess_message(lens: &str, rays: u32) -> String {
     format!(
         "{rays} rays enter lens \"{lens}\" more often than its sprite has layers; more (sprite.layers) would be right"
@@ -555,7 +559,8 @@ fn excess_warnings(scene: &Scene, picture: &Picture) -> Option<serde_json::Value
     let messages: Vec<String> =
         lenses.iter().zip(picture.excess.values()).map(|(l, n)| excess_message(l, *n)).collect();
     let count: u32 = picture.excess.values().sum();
-    let warning = serde_json::json!({ "code": "sprite-layers", "count": count, "objects": lenses, "message": messages.join("; ") });
+    let warning =
+        serde_json::json!({ "code": SPRITE_LAYERS, "count": count, "objects": lenses, "message": messages.join("; ") });
     (count > 0).then_some(warning)
 }
 

@@ -261,7 +261,7 @@ impl Renderer {
         Ok(own.iter().map(texels).collect())
     }
 
-    /// Whether the last frame met more crossings than there was room for. If so there is room for them in the next.
+    /// Whether the last frame met more crossings than there was room for, and the next has room for them.
     pub fn makes_room(&mut self) -> Result<bool, GpuError> {
         if !self.lists_crossings {
             return Ok(false);
@@ -269,7 +269,10 @@ impl Renderer {
         let bytes = self.gpu.read_buffer(self.buffers.counts.buffer())?;
         let met = u64::from(bytemuck::cast_slice::<u8, u32>(&bytes)[0]);
         let before = self.crossing_room;
-        self.crossing_room = before.max(met.min(MOST_CROSSINGS));
+        if met > before {
+            // And some more: the next frame meets about as many.
+            self.crossing_room = (met + met / 8).min(MOST_CROSSINGS);
+        }
         Ok(self.crossing_room > before)
     }
 

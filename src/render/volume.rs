@@ -4,12 +4,13 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::{
     geom::{Aabb, Volume},
-    lens::LensSprite,
+    lens::{Border, LensBody, LensSprite},
     render::{
         body::{Body, Leaf, PlacedLeaf},
         eye::PictureTile,
         flat, layout,
         octagon::Octagon,
+        operations::HALO_PX,
     },
     shader::VolumeTest,
     view::View,
@@ -31,18 +32,20 @@ pub struct LensVolume {
     pub bounds: Aabb,
     /// Whether its lens acts where rays miss it (class *rest*): then all of the picture is its business.
     pub everywhere: bool,
-    /// Whether a line is drawn around its silhouette.
-    pub has_outline: bool,
+    /// How its lens' body is drawn.
+    pub drawn: LensBody,
     /// The sprite that it is tested by in the picture, if it is.
     pub sprite: Option<LensSprite>,
     /// Whether its lens acts on other classes than *inside*.
     pub asks_sides: bool,
+    /// How its lens ends, if not at once: it acts around the volume, too.
+    pub border: Option<Border>,
 }
 
 impl LensVolume {
     /// How it is tested in the picture; `masks`: all classes are asked for.
     pub fn test(&self, masks: bool) -> VolumeTest {
-        let with_sides = masks || self.asks_sides || self.has_outline;
+        let with_sides = masks || self.asks_sides || self.drawn != LensBody::None;
         match (self.body.test(), self.sprite.filter(|_| !self.body.has_members())) {
             (_, Some(sprite)) if self.body.is_form() && sprite.is_as_the_target() => VolumeTest::Sprite,
             (_, Some(_)) => VolumeTest::LayeredSprite,
@@ -65,18 +68,39 @@ impl LensVolume {
         self.body.figures(view, planes)
     }
 
+    /// How far around it its lens acts, metres; 0 where that ends at once.
+    fn reach_m(&self, view: &View) -> f64 {
+        let Some(border) = self.border else { return 0.0 };
+        let farthest = self.bounds.corners().into_iter().map(|c| view.depth(c)).fold(0.0, f64::max);
+        border.reach_m(view, farthest)
+    }
+
+    /// The box around all that its lens acts on as *inside*, metres.
+    pub fn bounds_of_border(&self, view: &View) -> Aabb {
+        let reach = self.reach_m(view);
+        Aabb { min: self.bounds.min - reach, max: self.bounds.max + reach }
+    }
+
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
     pub fn seen_part(&self, view: &View, tile: PictureTile) -> Option<Octagon> {
         let whole = Octagon::whole(tile.size);
         if self.everywhere {
             return Some(whole);
         }
-        let margin = if self.has_outline || self.sprite.is_some() { WIDE_MARGIN_PX } else { MARGIN_PX };
+        let margin = match self.drawn {
+            LensBody::Halo => HALO_PX.ceil() as i32 + MARGIN_PX,
+            LensBody::None if self.sprite.is_none() => MARGIN_PX,
+            _ => WIDE_MARGIN_PX,
+        };
         if let Body::One(PlacedLeaf { leaf: Leaf::Volume(Volume::Flat(flat)), .. }) = &self.body {
+            if self.border.is_some() {
+                // It fades in its plane, however that is seen.
+                return Some(whole);
+            }
             let around = |(low, high)| Octagon::around(low, high).grown([margin; 2]).within(tile);
             return flat::projected(flat, view).map_or_else(|all| all.then_some(whole), around);
         }
-        if self.bounds.is_empty() || !view.frustum(margin.into()).meets(&self.bounds) {
+        if self.bounds.is_empty() || !view.frustum(margin.into()).meets(&self.bounds_of_border(view)) {
             return None;
         }
         // What lies beside or behind the eye bounds nothing.
@@ -93,27 +117,29 @@ impl LensVolume {
     /// The least and the most of x, y, x + y and x - y in its projection, pixels; `None` where it reaches behind the near
     /// plane.
     fn projected(&self, view: &View) -> Option<([f64; 4], [f64; 4])> {
+        let reach = self.reach_m(view);
+        let around = || self.bounds_of_border(view).corners();
         let Body::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) = &self.body else {
-            return projected_corners(view, self.bounds.corners());
+            return projected_corners(view, around());
         };
+        let grown = |center: DVec3, axes: DMat3, half: DVec3| corners_of_box(center, axes, half + reach);
         let corners = match volume {
             Volume::Sphere { center, radius } if !view.is_orthographic() => {
-                return projected_sphere(view, *center, *radius);
+                return projected_sphere(view, *center, *radius + reach);
             }
-            Volume::Sphere { .. } => self.bounds.corners().to_vec(),
-            Volume::Box { center, half, rotation } => corners_of_box(*center, DMat3::from_quat(*rotation), *half),
+            Volume::Sphere { .. } => around().to_vec(),
+            Volume::Box { center, half, rotation } => grown(*center, DMat3::from_quat(*rotation), *half),
             Volume::Cylinder { center, radius, half, axis } => {
                 let (x, y) = axis.any_orthonormal_pair();
-                corners_of_box(*center, DMat3::from_cols(x, y, *axis), DVec3::new(*radius, *radius, *half))
+                grown(*center, DMat3::from_cols(x, y, *axis), DVec3::new(*radius, *radius, *half))
             }
-            Volume::Ellipsoid { center, radii, rotation } => {
-                corners_of_box(*center, DMat3::from_quat(*rotation), *radii)
-            }
+            Volume::Ellipsoid { center, radii, rotation } => grown(*center, DMat3::from_quat(*rotation), *radii),
             Volume::Frustum { center, radii: [bottom, top], half, axis } => {
                 let (x, y) = axis.any_orthonormal_pair();
                 let radius = bottom.max(*top);
-                corners_of_box(*center, DMat3::from_cols(x, y, *axis), DVec3::new(radius, radius, *half))
+                grown(*center, DMat3::from_cols(x, y, *axis), DVec3::new(radius, radius, *half))
             }
+            Volume::Convex(_) | Volume::Solid(_) if reach > 0.0 => around().to_vec(),
             Volume::Convex(hull) => hull.faces().0,
             Volume::Solid(placed) => placed.solid.bounds().corners().map(|c| placed.world(c)).to_vec(),
             Volume::Flat(flat) => return flat::projected(flat, view).ok(),
@@ -201,9 +227,10 @@ mod tests {
                 bounds,
                 body: Body::One(Leaf::Volume(volume.clone()).into()),
                 everywhere: false,
-                has_outline: false,
+                drawn: LensBody::None,
                 sprite: None,
                 asks_sides: false,
+                border: None,
             };
             let (low, high) = lens.projected(&view).expect("it is in front of the eye");
             let (mut least, mut most) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);

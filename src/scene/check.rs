@@ -139,6 +139,7 @@ mod tests {
             effects: vec![],
             body: Default::default(),
             sprite: None,
+            border: None,
         };
         let attached = [
             Placement::Camera,

@@ -182,6 +182,7 @@ mod tests {
             effects: vec![],
             body: Default::default(),
             sprite: None,
+            border: None,
         };
         let mut history = History::default();
         for name in ["a", "b", "c"] {

@@ -81,7 +81,7 @@ fn members(test: VolumeTest) -> &'static [(&'static str, usize)] {
         VolumeTest::Ellipsoid => &[("center", 3), ("axis_x", 3), ("axis_y", 3), ("axis_z", 3)],
         VolumeTest::Frustum => &[("center", 3), ("size_x", 1), ("axis_z", 3), ("size_z", 1), ("size_y", 1)],
         VolumeTest::Solid | VolumeTest::SolidSprite => {
-            &[("center", 3), ("size_x", 1), ("axis_x", 3), ("size_z", 1), ("axis_y", 3), ("axis_z", 3)]
+            &[("center", 3), ("size_x", 1), ("axis_x", 3), ("size_z", 1), ("axis_y", 3), ("size_y", 1), ("axis_z", 3)]
         }
         VolumeTest::Combined | VolumeTest::CombinedSprite => &[("size_x", 1), ("size_y", 1), ("size_z", 1)],
         VolumeTest::Members => &[("size_x", 1)],
@@ -105,8 +105,10 @@ fn slots_read(plan: &Plan, handlers: &[EffectDefinition]) -> Vec<(u32, usize)> {
         }
         slots.extend(step.weight(handler).map(|slot| (slot, 1)));
     }
-    let lines = plan.lenses.iter().filter_map(|l| l.outline);
-    slots.extend(lines.flat_map(|first| [(first, 4), (first + 1, 1)]));
+    let bodies = plan.lenses.iter().filter_map(|l| l.body);
+    slots.extend(bodies.flat_map(|body| [(body.parameters, 4), (body.parameters + 1, 1)]));
+    let borders = (0..plan.lenses.len() as u32).filter_map(|lens| plan.border_of(lens));
+    slots.extend(borders.map(|border| (border.parameters, 4)));
     slots
 }
 

@@ -8,7 +8,7 @@ use crate::shader::{
     lens_test,
     plan::{Plan, Program, Scope, Uber},
     specialised::one_line,
-    uber::{MOST_SLOTS, TABLE_SOURCE},
+    uber::{MOST_SLOTS, SHARE_OF, TABLE_SOURCE},
 };
 
 /// Whose eye the module draws for.
@@ -77,12 +77,21 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
             "fn classes_of_lens_{lens}(sight: Sight) -> u32 {{\n    return {};\n}}\n",
             lens_test::classes(plan, lens, "sight")
         );
+        if let Some(border) = plan.border_of(lens) {
+            let interest = lens_test::interest(plan, lens, &format!("parameters[{}]", border.parameters));
+            let _ = writeln!(text, "fn interest_in_lens_{lens}(sight: Sight) -> f32 {{\n    return {interest};\n}}\n");
+        }
     }
     text.push_str("fn visible(fragment: Fragment) -> bool {\n");
     for (step, handler) in steps() {
         let is_hidden = call(handler, &format!("{}u", step.parameters));
         let condition = match step.scope {
             Scope::Everywhere => is_hidden,
+            Scope::Lens(lens, class) if plan.border_of(lens).is_some() => {
+                let of = |what: &str| format!("{what}_lens_{lens}(sight_of(fragment))");
+                let share = format!("{}({}, {})", class.share(), of("classes_of"), of("interest_in"));
+                format!("is_dithered({share}, fragment.pixel) && {is_hidden}")
+            }
             Scope::Lens(lens, class) => {
                 format!("{}(classes_of_lens_{lens}(sight_of(fragment))) && {is_hidden}", class.function())
             }
@@ -96,6 +105,11 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     text.push_str(&TABLE_SOURCE);
     match uber.tests.is_empty() {
         true => text.push_str(RUNS_WITHOUT_LENSES),
+        false if uber.borders => {
+            let tests = &uber.tests;
+            let (classes, distances) = (lens_test::class_of(tests), lens_test::distance_to(tests));
+            text.push_str(&(classes + &distances + SHARE_OF + RUNS_DITHERED));
+        }
         false => text.push_str(&(lens_test::class_of(&uber.tests) + RUNS)),
     }
     text.push_str("fn hides(fragment: Fragment, by: Invoker) -> bool {\n    switch by.handler {\n");
@@ -117,6 +131,30 @@ const RUNS: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
     var all = MISSED;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         all |= class_of(v, sight_of(fragment));
+    }
+    switch by.scope {
+        case 1u: { return is_inside(all); }
+        case 2u: { return is_in_front(all); }
+        case 3u: { return is_behind(all); }
+        default: { return is_rest(all); }
+    }
+}
+
+";
+
+/// As RUNS; a lens whose border dithers takes fragments away one by one.
+const RUNS_DITHERED: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
+    if by.scope == 0u {
+        return true;
+    }
+    let sight = sight_of(fragment);
+    var all = MISSED;
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        all |= class_of(v, sight);
+    }
+    let share = share_of(by, all, sight);
+    if by.border != 0u && parameters[by.border - 1u].z > 0.5 {
+        return is_dithered(share, fragment.pixel);
     }
     switch by.scope {
         case 1u: { return is_inside(all); }

@@ -26,6 +26,9 @@ pub(super) fn bindings(program: &Program, carried: bool) -> String {
     if parts.combinations {
         text.push('\n');
         text.push_str(&leaves(&program.leaves()));
+        if parts.distances {
+            text.push_str(&leaf_distances(&program.leaves()));
+        }
     }
     text
 }
@@ -93,6 +96,63 @@ pub(super) fn covers(plan: &Plan, lens: u32, pixel: &str) -> String {
     joined(plan, lens, Question::Covers, pixel, " || ")
 }
 
+/// The degree of interest of a place in one lens of a plan, whose border's parameters are `border`.
+pub(super) fn interest(plan: &Plan, lens: u32, border: &str) -> String {
+    format!("degree_of_interest({}, {border}, sight)", distance_of(plan, lens, border))
+}
+
+/// How far a place is from one lens of a plan.
+pub(super) fn distance_of(plan: &Plan, lens: u32, border: &str) -> String {
+    let (first, tests) = plan.volumes_of(lens);
+    let distances = (first..).zip(tests).map(|(volume, test)| distance(*test, &volume.to_string(), border));
+    distances.reduce(|all, one| format!("min({all}, {one})")).unwrap_or_else(|| "FAR_AWAY".to_owned())
+}
+
+/// Where a ray meets one lens of a plan first and last.
+pub(super) fn ends_of(plan: &Plan, lens: u32) -> String {
+    let (first, tests) = plan.volumes_of(lens);
+    let spans = (first..).zip(tests).map(|(volume, test)| span(*test, &volume.to_string()));
+    spans.reduce(|all, one| format!("with_span({all}, {one})")).unwrap_or_else(|| "EMPTY_SPAN".to_owned())
+}
+
+/// Where a ray meets a volume by its number first and last.
+fn span(test: VolumeTest, volume: &str) -> String {
+    match test {
+        VolumeTest::Members | VolumeTest::Solid | VolumeTest::Combined => "EMPTY_SPAN".to_owned(),
+        VolumeTest::SolidSprite | VolumeTest::CombinedSprite => {
+            format!("span_in_sides(sprite_places[{volume}], pixel)")
+        }
+        VolumeTest::Sprite | VolumeTest::LayeredSprite => {
+            format!("span_in_layers(sprite_places[{volume}], pixel)")
+        }
+        _ => format!("span_of_shape(ray, shapes[{volume}], {})", test.constant()),
+    }
+}
+
+/// `ends_of_volume`, for the uber back end.
+pub(super) fn ends_of_volume(tests: &[VolumeTest]) -> String {
+    let head = "fn ends_of_volume(v: u32, pixel: vec2i, ray: Ray) -> Span {\n    switch shapes[v].kind {\n";
+    let mut text = head.to_owned();
+    for test in tests {
+        let _ = writeln!(text, "        case {}: {{ return {}; }}", test.constant(), span(*test, "v"));
+    }
+    text + "        default: { return EMPTY_SPAN; }\n    }\n}\n\n"
+}
+
+/// How far a place is from a volume by its number, negative inside. What has no distance ends at once.
+fn distance(test: VolumeTest, volume: &str, border: &str) -> String {
+    let shape = format!("shapes[{volume}]");
+    match test {
+        VolumeTest::Members | VolumeTest::Sprite | VolumeTest::LayeredSprite => {
+            let inside = call(Question::Inside, test, volume, "sight");
+            format!("select(FAR_AWAY, -FAR_AWAY, is_inside({inside}))")
+        }
+        VolumeTest::Solid | VolumeTest::SolidSprite => format!("distance_to_solid({shape}, sight)"),
+        VolumeTest::Combined | VolumeTest::CombinedSprite => format!("distance_to_combined({shape}, sight, {border})"),
+        _ => format!("distance_to_shape({shape}, {}, sight, {border})", test.constant()),
+    }
+}
+
 /// For the uber back end: a question to a volume by its number.
 fn by_number(tests: &[VolumeTest], question: Question, place: &str) -> String {
     match tests {
@@ -144,6 +204,31 @@ pub(super) fn leaves(kinds: &[VolumeTest]) -> String {
     let holds = of("leaf_holds(leaf: Leaf, place: Sight) -> bool", "false", &holds);
     let spans = of("span_of_leaf(ray: Ray, s: Shape) -> Span", "EMPTY_SPAN", &span);
     holds.replace("switch kind", "switch leaf.shape.kind") + &spans.replace("switch kind", "switch s.kind")
+}
+
+/// `distance_to_leaf`, for leaves of combinations of these kinds.
+fn leaf_distances(kinds: &[VolumeTest]) -> String {
+    let head = "fn distance_to_leaf(leaf: Leaf, sight: Sight, border: vec4f) -> f32 {\n    switch leaf.shape.kind {\n";
+    let mut text = head.to_owned();
+    for kind in kinds {
+        let answer = match kind {
+            VolumeTest::Solid => "distance_to_solid(leaf.shape, sight)".to_owned(),
+            VolumeTest::Members => "select(FAR_AWAY, -FAR_AWAY, is_chosen(u32(leaf.first), sight.object))".to_owned(),
+            _ => format!("distance_to_shape(leaf.shape, {}, sight, border)", kind.constant()),
+        };
+        let _ = writeln!(text, "        case {}: {{ return {answer}; }}", kind.constant());
+    }
+    text + "        default: { return FAR_AWAY; }\n    }\n}\n\n"
+}
+
+/// `distance_to`, for the uber back end.
+pub(super) fn distance_to(tests: &[VolumeTest]) -> String {
+    let head = "fn distance_to(v: u32, sight: Sight, border: vec4f) -> f32 {\n    switch shapes[v].kind {\n";
+    let mut text = head.to_owned();
+    for test in tests {
+        let _ = writeln!(text, "        case {}: {{ return {}; }}", test.constant(), distance(*test, "v", "border"));
+    }
+    text + "        default: { return FAR_AWAY; }\n    }\n}\n\n"
 }
 
 /// `class_of`, for the uber back end.

@@ -66,15 +66,26 @@ fn specialised(text: &mut String, writer: &Writer) {
     let mut drawn: Vec<usize> = Vec::new();
     let steps = || writer.plan.steps.iter().map(|s| (s, &writer.handlers[s.effect as usize])).enumerate();
     for (number, (step, handler)) in steps() {
-        let scope: Vec<String> = match step.scope {
-            Scope::Everywhere => Vec::new(),
-            Scope::Lens(lens, class) => vec![format!("{}(classes.lens_{lens})", class.function())],
+        let share = writer.share(step);
+        let is_dithered = match (step.scope, &share) {
+            (Scope::Lens(lens, _), Some(_)) => writer.plan.border_of(lens).is_some_and(|b| b.dithers),
+            _ => false,
         };
+        let scope: Vec<String> = match (step.scope, &share) {
+            (Scope::Everywhere, _) => Vec::new(),
+            (_, Some(share)) if handler.kind == EffectKind::Hide && is_dithered => {
+                vec![format!("is_dithered({share}, fragment.pixel)")]
+            }
+            (_, Some(share)) if handler.kind != EffectKind::Hide => vec![format!("{share} > 0.0")],
+            (Scope::Lens(lens, class), _) => vec![format!("{}(classes.lens_{lens})", class.function())],
+        };
+        // A line that begins to be hidden or replaced, or to be drawn, is faint.
+        let left = share.as_ref().map_or_else(|| "0.0".to_owned(), |share| format!("opacity * (1.0 - {share})"));
         let first = format!("{}u", step.parameters);
         if handler.kind == EffectKind::Scene && !drawn.is_empty() {
             let of: Vec<String> = drawn.iter().map(|d| format!("step == {d}u")).collect();
             let conditions = [&[format!("({})", of.join(" || "))][..], &scope].concat();
-            text.push_str(&branch(&conditions, "opacity = 0.0;"));
+            text.push_str(&branch(&conditions, &format!("opacity = {left};")));
         }
         match (handler.kind, handler.lines) {
             (EffectKind::Post, _) => text.push_str(&writer.statement(step, handler)),
@@ -89,7 +100,11 @@ fn specialised(text: &mut String, writer: &Writer) {
                     drawn.push(number);
                 }
                 let color = format!("color = {}({first}).line_color;", handler.own("parameters"));
-                let body = format!("{color}\n        opacity = {};", weight(step, handler));
+                let faint = match share.filter(|_| handler.kind != EffectKind::Hide) {
+                    Some(share) => format!(" * {share}"),
+                    None => String::new(),
+                };
+                let body = format!("{color}\n        opacity = {}{faint};", weight(step, handler));
                 text.push_str(&branch(&conditions, &body));
             }
             _ => {}
@@ -125,7 +140,10 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     }));
     let has_posts = uber.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Post);
     let styled = if has_posts { "color = invoke_style(color, point, by);" } else { "" };
-    text.push_str(&LINE_AT.replace("STYLED", styled));
+    let fades = uber.borders && !uber.tests.is_empty();
+    let loops = if fades { LINE_AT_FADED.to_owned() } else { LINE_AT.to_owned() };
+    text.push_str(&uber::faded(uber, &loops.replace("STYLED", styled)));
+    text.push_str(LINE_KINDS);
 }
 
 /// `by.number` says what an invoker is to lines: as `render::operations` writes it.
@@ -158,7 +176,47 @@ const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, o
     return vec4f(color, select(opacity, 0.0, is_hidden));
 }
 
-const POST: u32 = 0u;
+";
+
+/// The same where lenses fade.
+const LINE_AT_FADED: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, other: Fragment, classes: Classes) -> vec4f {
+    var color = vec3f(0.0);
+    var opacity = 0.0;
+    var is_hidden = false;
+    let range = table.ranges.zw;
+    let drawing = invokers[range.x + step];
+    for (var i = range.x; i < range.y; i++) {
+        let by = invokers[i];
+        var share = share_at(by, classes);
+        let is_hiding = by.number == HIDE || by.number == HIDE_WITH_LINES;
+        if is_hiding && by.border != 0u {
+            let is_dithering = parameters[by.border - 1u].z > 0.5;
+            share = select(select(0.0, 1.0, runs(by, classes)), select(0.0, 1.0, is_dithered(share, fragment.pixel)), is_dithering);
+        }
+        if share <= 0.0 {
+            continue;
+        }
+        if by.number == POST {
+            STYLED
+        }
+        if (by.number == SCENE || by.number == SCENE_WITH_LINES) && drawing.number == SCENE_WITH_LINES {
+            opacity = select(opacity * (1.0 - share), 0.0, by.border == 0u);
+        }
+        if by.number == HIDE && hides(fragment, by) && hides(other, by) {
+            is_hidden = true;
+        }
+        let draws = by.number == SCENE_WITH_LINES || (by.number == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
+        if draws && i == range.x + step {
+            color = line_color(by);
+            opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u) * share;
+        }
+    }
+    return vec4f(color, select(opacity, 0.0, is_hidden));
+}
+
+";
+
+const LINE_KINDS: &str = "const POST: u32 = 0u;
 const SCENE: u32 = 1u;
 const SCENE_WITH_LINES: u32 = 2u;
 const HIDE: u32 = 3u;

@@ -16,7 +16,9 @@ pub mod wgsl;
 
 pub use carried::LEAST_CARRIED;
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
-pub use plan::{Blend, ClassTest, Plan, PlanLens, Program, Scope, Step, Uber, VolumeTest};
+pub use plan::{
+    Blend, BodyKind, ClassTest, Plan, PlanBody, PlanBorder, PlanLens, Program, Scope, Step, Uber, VolumeTest,
+};
 pub use specialised::scope_number;
 pub use uber::{MOST_SLOTS, MOST_VOLUMES, TILE_PX};
 
@@ -37,14 +39,18 @@ files! {
     BLEND = "lib/blend.wgsl";
     MATERIAL = "lib/material.wgsl";
     CLASS = "lib/class.wgsl";
+    BORDER = "lib/border.wgsl";
+    DISTANCE = "lib/distance.wgsl";
+    SOLID_DISTANCE = "lib/solid-distance.wgsl";
+    COMBINED_DISTANCE = "lib/combined-distance.wgsl";
     SIGHT = "lib/sight.wgsl";
     LENS = "lib/lens.wgsl";
     LENS_SPRITE = "lib/lens-sprite.wgsl";
     DEPTH_CODE = "lib/depth-code.wgsl";
     STORED_SPRITE = "lib/stored-sprite.wgsl";
     STORED_PASS = "pass/stored-sprite.wgsl";
-    STORED_FORM = "pass/stored-form.wgsl";
-    STORED_LAYERS = "pass/stored-layers.wgsl";
+    STORED_FORM = "lib/stored-form.wgsl";
+    STORED_LAYERS = "lib/stored-layers.wgsl";
     SPRITE_LIST = "pass/sprite-list.wgsl";
     CROSSING = "lib/crossing.wgsl";
     SOLID = "lib/solid.wgsl";
@@ -62,6 +68,11 @@ files! {
     CUT = "lib/cut.wgsl";
     OUTLINE = "lib/outline.wgsl";
     SILHOUETTE = "lib/silhouette.wgsl";
+    GLASS = "lib/glass.wgsl";
+    SHELL = "lib/shell.wgsl";
+    SHELL_SIDES = "lib/shell-sides.wgsl";
+    SHELL_SPRITE = "lib/shell-sprite.wgsl";
+    HALO = "lib/halo.wgsl";
     FILTERED = "lib/filter.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
     SHADOW = "pass/shadow.wgsl";
@@ -236,8 +247,11 @@ impl Module {
         let optional = [
             (parts.blends || materials, BLEND),
             (materials, MATERIAL),
-            (parts.outlines, OUTLINE),
-            (parts.outlines && parts.members, MEMBER_OUTLINE),
+            (parts.bodies, OUTLINE),
+            (parts.bodies && parts.members, MEMBER_OUTLINE),
+            (parts.shells, GLASS),
+            (parts.shells && parts.side_sprites, SHELL_SIDES),
+            (parts.shells && parts.sprites, SHELL_SPRITE),
             (filters, FILTERED),
             (parts.lines, LINE),
         ];
@@ -262,6 +276,10 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.side_sprites, SOLID_SPRITE),
         (parts.combinations, COMBINED),
         (parts.combined_sprites, COMBINED_SPRITE),
+        (parts.borders, BORDER),
+        (parts.distances, DISTANCE),
+        (parts.distances && parts.solids, SOLID_DISTANCE),
+        (parts.distances && parts.combinations, COMBINED_DISTANCE),
     ];
     files.into_iter().filter(|(is_used, _)| *is_used).map(|(_, file)| file).collect()
 }
@@ -313,8 +331,12 @@ mod tests {
             _ => {}
         };
         match &mut program {
-            Program::Specialised(plan) => plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).for_each(by_shape),
+            Program::Specialised(plan) => {
+                plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).for_each(by_shape);
+                *plan = plan.clone().without_borders();
+            }
             Program::Uber(uber) => {
+                uber.borders = false;
                 uber.tests.iter_mut().for_each(by_shape);
                 uber.tests.sort_unstable();
                 uber.tests.dedup();
@@ -330,7 +352,7 @@ mod tests {
     }
 
     /// A scene of the context and two lenses whose steps are these effects, in order; `seed` chooses classes, blends,
-    /// outlines and masks. The modules that both back ends need for it.
+    /// bodies and masks. The modules that both back ends need for it.
     fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         let scopes: Vec<Scope> = std::iter::once(Scope::Everywhere)
             .chain(ClassTest::ALL.into_iter().flat_map(|c| [Scope::Lens(0, c), Scope::Lens(1, c)]))
@@ -340,15 +362,17 @@ mod tests {
             let blend = (i + seed).is_multiple_of(3).then(|| Blend::ALL[(i + seed) % 6]);
             steps.push(step(effect, scopes[(seed + 4 * i) % scopes.len()], blend));
         }
-        let lens = |number, volumes: &[usize], outline| PlanLens {
+        let lens = |number, volumes: &[usize], body| PlanLens {
             number,
             volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % VolumeTest::ALL.len()]).collect(),
             leaves: LEAVES[seed % 8..].to_vec(),
-            outline,
+            body,
+            border: seed.is_multiple_of(5).then_some(PlanBorder { parameters: 5, dithers: seed.is_multiple_of(2) }),
         };
-        let outline = seed.is_multiple_of(2).then_some(3);
+        let kind = [BodyKind::Outline, BodyKind::Shell, BodyKind::Halo][seed / 2 % 3];
+        let body = seed.is_multiple_of(2).then_some(PlanBody { kind, parameters: 3 });
         let plan = Plan {
-            lenses: vec![lens(0, &[0], None), lens(40, &[1, 2], outline)],
+            lenses: vec![lens(0, &[0], None), lens(40, &[1, 2], body)],
             lines: effects.iter().any(|&e| handlers()[e as usize].lines),
             steps,
             haze: seed.is_multiple_of(5),
@@ -362,7 +386,9 @@ mod tests {
                 tests
             },
             leaves: LEAVES[seed % 8..].to_vec(),
-            outlines: plan.has_outlines(),
+            bodies: plan.bodies(),
+            borders: plan.has_borders(),
+            dithers: plan.has_borders(),
             blends: plan.has_blends(),
             haze: plan.haze,
             masks: plan.masks,
@@ -429,8 +455,13 @@ mod tests {
 
     #[test]
     fn what_finds_no_room_is_read_where_it_stands() {
-        let lens =
-            |number| PlanLens { number, volumes: VolumeTest::ALL.to_vec(), leaves: LEAVES.to_vec(), outline: None };
+        let lens = |number| PlanLens {
+            number,
+            volumes: VolumeTest::ALL.to_vec(),
+            leaves: LEAVES.to_vec(),
+            body: None,
+            border: None,
+        };
         let plan = Plan { lenses: (0..9).map(lens).collect(), ..Plan::default() };
         let module = Module::Shade(Program::Specialised(plan));
         for room in [14, LEAST_CARRIED, 31, 1000] {

@@ -5,8 +5,8 @@
 
 use crate::shader::effect::{EffectDefinition, EffectKind};
 
-/// `vec4f` that an outline's parameters take: colour and opacity; width in pixels.
-pub const OUTLINE_SLOTS: u32 = 2;
+/// `vec4f` that a body's parameters take: colour and opacity; width of the line or the glow in pixels.
+pub const BODY_SLOTS: u32 = 2;
 
 /// Lenses and effects of one part of the picture, bottom lens first (L6).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -32,8 +32,51 @@ pub struct PlanLens {
     pub volumes: Vec<VolumeTest>,
     /// What the leaves of its combinations are, ascending, each once.
     pub leaves: Vec<VolumeTest>,
-    /// Place of its outline's parameters, where it shows one.
-    pub outline: Option<u32>,
+    /// How its body is drawn, if it is.
+    pub body: Option<PlanBody>,
+    /// Its soft border, if it has one.
+    pub border: Option<PlanBorder>,
+}
+
+/// How the body of a lens is drawn (L5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PlanBody {
+    /// As what.
+    pub kind: BodyKind,
+    /// Place of its parameters.
+    pub parameters: u32,
+}
+
+/// What the body of a lens is drawn as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum BodyKind {
+    /// A line around its silhouette.
+    Outline,
+    /// Tinted glass, with such a line.
+    Shell,
+    /// A glow around its silhouette.
+    Halo,
+}
+
+impl BodyKind {
+    /// Its number in the invoker table.
+    pub fn number(self) -> u32 {
+        self as u32
+    }
+
+    /// Whether it has a line around its silhouette.
+    pub fn has_outline(self) -> bool {
+        self != Self::Halo
+    }
+}
+
+/// A soft border (L9).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PlanBorder {
+    /// Place of its parameters.
+    pub parameters: u32,
+    /// Whether what cannot be had by halves is dithered.
+    pub dithers: bool,
 }
 
 /// How it is decided where a place is with regard to a lens volume (S7).
@@ -182,6 +225,16 @@ impl ClassTest {
             Self::Rest => "is_rest",
         }
     }
+
+    /// The function that says how much of it a place with a degree of interest has (`lib/border.wgsl`).
+    pub fn share(self) -> &'static str {
+        match self {
+            Self::Inside => "share_inside",
+            Self::Front => "share_front",
+            Self::Behind => "share_behind",
+            Self::Rest => "share_rest",
+        }
+    }
 }
 
 /// How a channel is laid over what is below (C5).
@@ -250,8 +303,12 @@ pub struct Uber {
     pub tests: Vec<VolumeTest>,
     /// What the leaves of their combinations are, ascending, each once.
     pub leaves: Vec<VolumeTest>,
-    /// Whether some of them show their silhouettes.
-    pub outlines: bool,
+    /// What their bodies are drawn as, ascending, each once.
+    pub bodies: Vec<BodyKind>,
+    /// Whether some of them have soft borders.
+    pub borders: bool,
+    /// Whether what cannot be had by halves is dithered along some of these.
+    pub dithers: bool,
     /// Whether some effects are blended.
     pub blends: bool,
     /// Whether the air shows.
@@ -270,6 +327,7 @@ impl Uber {
             effects,
             tests: self.tests.clone(),
             leaves: self.leaves.clone(),
+            borders: self.dithers,
             ..Self::default()
         })
     }
@@ -278,7 +336,10 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        self.lines.then_some(Self { effects, tests, leaves, blends: self.blends, lines: true, ..Self::default() })
+        let (borders, dithers) = (self.borders, self.dithers);
+        let all =
+            Self { effects, tests, leaves, borders, dithers, blends: self.blends, lines: true, ..Self::default() };
+        self.lines.then_some(all)
     }
 
     /// What of it says how things look.
@@ -298,10 +359,11 @@ impl Program {
             Self::Specialised(plan) => (plan.tests().collect(), !plan.lenses.is_empty()),
             Self::Uber(uber) => (uber.tests.clone(), !uber.tests.is_empty()),
         };
-        let (outlines, blends, lines) = match self {
-            Self::Specialised(plan) => (plan.has_outlines(), plan.has_blends(), plan.lines),
-            Self::Uber(uber) => (uber.outlines, uber.blends, uber.lines),
+        let (bodies, blends, lines, borders) = match self {
+            Self::Specialised(plan) => (plan.bodies(), plan.has_blends(), plan.lines, plan.has_borders()),
+            Self::Uber(uber) => (uber.bodies.clone(), uber.blends, uber.lines, uber.borders && has_lenses),
         };
+        let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
             // The uber back end reads there which of several tests it is.
@@ -312,9 +374,14 @@ impl Program {
             side_sprites: tests.iter().any(|t| t.has_sides()),
             combinations: tests.iter().any(|t| t.has_leaves()),
             combined_sprites: tests.contains(&VolumeTest::CombinedSprite),
-            outlines,
-            blends,
+            bodies: !bodies.is_empty(),
+            outlines: bodies.iter().any(|b| b.has_outline()),
+            shells: has_body(BodyKind::Shell),
+            halos: has_body(BodyKind::Halo),
+            distances: borders || has_body(BodyKind::Shell) || has_body(BodyKind::Halo),
+            blends: blends || borders,
             lines,
+            borders,
         }
     }
 
@@ -359,12 +426,22 @@ pub struct Parts {
     pub combinations: bool,
     /// Their sides by depth sprites.
     pub combined_sprites: bool,
-    /// Silhouettes.
+    /// Bodies.
+    pub bodies: bool,
+    /// Their silhouettes.
     pub outlines: bool,
+    /// As glass.
+    pub shells: bool,
+    /// As a glow.
+    pub halos: bool,
+    /// How far a place is from a lens.
+    pub distances: bool,
     /// Blend modes.
     pub blends: bool,
     /// Lines over what was shaded.
     pub lines: bool,
+    /// Soft borders of lenses.
+    pub borders: bool,
 }
 
 impl Plan {
@@ -376,9 +453,29 @@ impl Plan {
         all
     }
 
-    /// Whether some lens shows its silhouette.
-    pub fn has_outlines(&self) -> bool {
-        self.lenses.iter().any(|l| l.outline.is_some())
+    /// What the bodies of its lenses are drawn as, ascending, each once.
+    pub fn bodies(&self) -> Vec<BodyKind> {
+        let mut kinds: Vec<BodyKind> = self.lenses.iter().filter_map(|l| l.body).map(|b| b.kind).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        kinds
+    }
+
+    /// Whether some lens fades.
+    pub fn has_borders(&self) -> bool {
+        (0..self.lenses.len() as u32).any(|lens| self.border_of(lens).is_some())
+    }
+
+    /// The soft border of one of its lenses that does something here.
+    pub fn border_of(&self, lens: u32) -> Option<PlanBorder> {
+        let acts = |s: &Step| matches!(s.scope, Scope::Lens(l, _) if l == lens);
+        self.lenses[lens as usize].border.filter(|_| self.steps.iter().any(acts))
+    }
+
+    /// With lenses that end at once: from where a border is not told.
+    pub fn without_borders(mut self) -> Self {
+        self.lenses.iter_mut().for_each(|lens| lens.border = None);
+        self
     }
 
     /// Whether some effect is a filter.
@@ -428,7 +525,8 @@ impl Plan {
         if steps.is_empty() {
             return None;
         }
-        let lenses = self.plain_lenses();
+        let mut lenses = self.plain_lenses();
+        lenses.iter_mut().for_each(|lens| lens.border = lens.border.filter(|b| b.dithers));
         Some(Self { lenses, steps, ..Self::default() })
     }
 
@@ -440,7 +538,7 @@ impl Plan {
 
     /// Its lenses for passes that ask for nothing but their volumes, which keep their places.
     fn plain_lenses(&self) -> Vec<PlanLens> {
-        let lens = |(i, lens): (usize, &PlanLens)| PlanLens { number: i as u32, outline: None, ..lens.clone() };
+        let lens = |(i, lens): (usize, &PlanLens)| PlanLens { number: i as u32, body: None, ..lens.clone() };
         self.lenses.iter().enumerate().map(lens).collect()
     }
 
@@ -453,8 +551,9 @@ impl Plan {
     /// How many `vec4f` of the parameters it reads.
     pub fn slots(&self, handlers: &[EffectDefinition]) -> u32 {
         let of_steps = self.steps.iter().map(|s| s.end(&handlers[s.effect as usize]));
-        let of_lines = self.lenses.iter().filter_map(|l| l.outline.map(|first| first + OUTLINE_SLOTS));
-        of_steps.chain(of_lines).max().unwrap_or(0)
+        let of_lines = self.lenses.iter().filter_map(|l| l.body.map(|b| b.parameters + BODY_SLOTS));
+        let of_borders = self.lenses.iter().filter_map(|l| l.border.map(|b| b.parameters + 1));
+        of_steps.chain(of_lines).chain(of_borders).max().unwrap_or(0)
     }
 }
 

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    SILHOUETTE,
+    HALO, SHELL, SILHOUETTE,
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
-    plan::{ClassTest, Plan, Program, Scope, Step},
+    plan::{BodyKind, ClassTest, Plan, PlanBody, Program, Scope, Step},
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`. `names` of the plan's lenses
@@ -79,10 +79,17 @@ impl Writer<'_> {
         }
         for i in 0..lenses.len() {
             let _ = writeln!(text, "    lens_{i}: u32,{}", self.comment(i));
+            if self.plan.border_of(i as u32).is_some() {
+                let _ = writeln!(text, "    interest_{i}: f32,");
+            }
         }
         text.push_str("}\n\nfn classes_at(sight: Sight, part: u32) -> Classes {\n    var classes: Classes;\n");
         for i in 0..lenses.len() {
             let _ = writeln!(text, "    classes.lens_{i} = {};", lens_test::classes(self.plan, i as u32, "sight"));
+            if let Some(border) = self.plan.border_of(i as u32) {
+                let interest = lens_test::interest(self.plan, i as u32, &format!("parameters[{}]", border.parameters));
+                let _ = writeln!(text, "    classes.interest_{i} = {interest};");
+            }
         }
         text.push_str("    return classes;\n}\n\n");
         text
@@ -120,21 +127,42 @@ impl Writer<'_> {
             _ => "color",
         };
         let point = if handler.kind.is_before_color() { "*point" } else { "point" };
-        let mut line = format!("{subject} = {}", Self::call(step, handler, subject, point));
+        let value = Self::call(step, handler, subject, point);
         let mut conditions = Vec::new();
-        if let Scope::Lens(lens, class) = step.scope {
-            conditions.push(format!("{}(classes.lens_{lens})", class.function()));
-        }
+        let mut plus = "";
         if handler.kind == EffectKind::Scene {
             conditions.push("point.surface != NO_SURFACE".to_owned());
             if self.has(EffectKind::Material) {
-                line.push_str(" + point.highlight");
+                plus = " + point.highlight";
             }
         }
+        if let Some(share) = self.share(step) {
+            let laid = match handler.kind {
+                EffectKind::Material => format!("blended_material(1u, {subject}, {value}, share)"),
+                _ => format!("weighed({subject}, {value}, share)"),
+            };
+            let plus = if plus.is_empty() { "" } else { " + point.highlight * share" };
+            conditions.insert(0, "share > 0.0".to_owned());
+            let conditions = conditions.join(" && ");
+            return format!(
+                "    {{\n        let share = {share};\n        if {conditions} {{\n            {subject} = {laid}{plus};\n        }}\n    }}\n"
+            );
+        }
+        if let Scope::Lens(lens, class) = step.scope {
+            conditions.insert(0, format!("{}(classes.lens_{lens})", class.function()));
+        }
+        let line = format!("{subject} = {value}{plus}");
         match conditions.is_empty() {
             true => format!("    {line};\n"),
             false => format!("    if {} {{\n        {line};\n    }}\n", conditions.join(" && ")),
         }
+    }
+
+    /// How much of a step a place has, of a lens that fades.
+    pub(super) fn share(&self, step: &Step) -> Option<String> {
+        let Scope::Lens(lens, class) = step.scope else { return None };
+        self.plan.border_of(lens)?;
+        Some(format!("{}(classes.lens_{lens}, classes.interest_{lens})", class.share()))
     }
 
     fn has(&self, kind: EffectKind) -> bool {
@@ -188,30 +216,64 @@ impl Writer<'_> {
         }
     }
 
-    /// The lenses' silhouettes, and for `lib/outline.wgsl` which lens covers a pixel.
+    /// The lenses' bodies, and for these which lens covers a pixel, where a ray meets it, and how far a place is from it.
     fn outlines(&self) -> String {
         let mut text = String::new();
-        for i in (0..self.plan.lenses.len()).filter(|&i| self.plan.lenses[i].outline.is_some()) {
+        let bodies: Vec<(usize, PlanBody)> =
+            self.plan.lenses.iter().enumerate().filter_map(|(i, l)| l.body.map(|body| (i, body))).collect();
+        // Each its own: a compiler takes its time over one that asks for the lens.
+        let mut add = |i: usize, source: &str, name: &str| {
+            let mut own = source.to_owned();
+            for question in ["covers", "distance", "ends", "normal"] {
+                own = own.replace(&format!("lens_{question}(lens, "), &format!("lens_{i}_{question}("));
+                own = own.replace(&format!("lens_{question}(lens: u32, "), &format!("lens_{i}_{question}("));
+            }
+            let _ = writeln!(text, "{}", own.replace(&format!("fn {name}(lens: u32, "), &format!("fn {name}_{i}(")));
+        };
+        for (i, body) in &bodies {
+            let (i, kind) = (*i, body.kind);
             let covers = lens_test::covers(self.plan, i as u32, "pixel");
-            let _ = writeln!(text, "fn lens_{i}_covers(pixel: vec2i) -> bool {{\n    return {covers};\n}}\n");
-            // Each its own: a compiler takes its time over one that asks for the lens.
-            let own = SILHOUETTE.1.replace("lens_covers(lens, ", &format!("lens_{i}_covers("));
-            let _ = writeln!(text, "{}", own.replace("silhouette(lens: u32, ", &format!("silhouette_{i}(")));
+            add(i, &format!("fn lens_covers(lens: u32, pixel: vec2i) -> bool {{\n    return {covers};\n}}\n"), "");
+            if kind.has_outline() {
+                add(i, SILHOUETTE.1, "silhouette");
+            }
+            if kind != BodyKind::Outline {
+                let distance = lens_test::distance_of(self.plan, i as u32, "vec4f(0.0)");
+                add(
+                    i,
+                    &format!("fn lens_distance(lens: u32, sight: Sight) -> f32 {{\n    return {distance};\n}}\n"),
+                    "",
+                );
+            }
+            if kind == BodyKind::Shell {
+                let ends = lens_test::ends_of(self.plan, i as u32);
+                let head = "fn lens_ends(lens: u32, pixel: vec2i, ray: Ray) -> Span {";
+                add(i, &format!("{head}\n    return {ends};\n}}\n"), "");
+                add(i, SHELL.1, "shell");
+            }
+            if kind == BodyKind::Halo {
+                add(i, HALO.1, "halo");
+            }
         }
         text.push_str("fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n");
-        let lines: Vec<(usize, u32)> =
-            self.plan.lenses.iter().enumerate().filter_map(|(i, l)| l.outline.map(|line| (i, line))).collect();
-        if lines.is_empty() && !self.plan.lines {
+        if bodies.is_empty() && !self.plan.lines {
             text.push_str("    return start;\n}\n\n");
             return text;
         }
         text.push_str(if self.plan.lines { LINED } else { "    var paint = start;\n" });
-        for (i, line) in lines {
-            let _ = writeln!(
-                text,
-                "    paint = outlined(paint, silhouette_{i}(pixel, parameters[{}].x), parameters[{line}]);",
-                line + 1
-            );
+        for (i, PlanBody { kind, parameters }) in bodies {
+            let (color, width) = (format!("parameters[{parameters}]"), format!("parameters[{}].x", parameters + 1));
+            match kind {
+                BodyKind::Halo => {
+                    let _ = writeln!(text, "    paint = halo_{i}(paint, pixel, {color}, {width});");
+                    continue;
+                }
+                BodyKind::Shell => {
+                    let _ = writeln!(text, "    paint = shell_{i}(paint, pixel, {color});");
+                }
+                BodyKind::Outline => {}
+            }
+            let _ = writeln!(text, "    paint = outlined(paint, silhouette_{i}(pixel, {width}), {color});");
         }
         text.push_str("    return paint;\n}\n\n");
         text

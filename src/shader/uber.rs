@@ -4,10 +4,10 @@
 use std::{fmt::Write as _, sync::LazyLock};
 
 use crate::shader::{
-    SILHOUETTE,
+    HALO, SHELL, SILHOUETTE,
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
-    plan::{Program, Uber},
+    plan::{BodyKind, Program, Uber},
     specialised::{LINED, MASKS, ONLY_SHOWN},
 };
 
@@ -38,13 +38,26 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post, EffectKind::Filter], handlers));
     text.push_str(&shade(uber, handlers));
     text.push_str(&styled(uber, handlers));
-    if uber.outlines {
-        text.push_str(&lens_test::volume_covers(&uber.tests));
+    let parts = Program::Uber(uber.clone()).has();
+    if parts.bodies {
+        text.push_str(&(lens_test::volume_covers(&uber.tests) + LENS_COVERS));
+    }
+    if parts.outlines {
         let _ = writeln!(text, "{}", SILHOUETTE.1);
     }
-    let outlines = if uber.outlines { OUTLINES } else { NO_OUTLINES };
+    if parts.shells || parts.halos {
+        text.push_str(LENS_DISTANCE);
+    }
+    if parts.shells {
+        text.push_str(&lens_test::ends_of_volume(&uber.tests));
+        let _ = writeln!(text, "{LENS_ENDS}{}", SHELL.1);
+    }
+    if parts.halos {
+        let _ = writeln!(text, "{}", HALO.1);
+    }
+    let outlines = if parts.bodies { outlines_of(&uber.bodies) } else { NO_OUTLINES.to_owned() };
     let plain = "    var paint = start;\n";
-    text.push_str(&if uber.lines { outlines.replace(plain, LINED) } else { outlines.to_owned() });
+    text.push_str(&if uber.lines { outlines.replace(plain, LINED) } else { outlines });
     text.push_str("fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n");
     if uber.masks && !uber.tests.is_empty() {
         text.push_str(ONLY_SHOWN);
@@ -58,7 +71,13 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
 pub(super) fn classes(uber: &Uber) -> String {
     match uber.tests.is_empty() {
         true => NO_CLASSES.to_owned(),
-        false => lens_test::class_of(&uber.tests) + CLASSES,
+        false => {
+            let tests = &uber.tests;
+            let has_distances = Program::Uber(uber.clone()).has().distances;
+            let distances = if has_distances { lens_test::distance_to(tests) } else { String::new() };
+            let shares = if uber.borders { [SHARE_OF, SHARE_AT].concat() } else { String::new() };
+            lens_test::class_of(tests) + &distances + CLASSES + &shares
+        }
     }
 }
 
@@ -85,8 +104,9 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
         return String::new();
     }
     let (_, type_name) = kinds[0].subject();
+    let share = if fades(uber) { ", share: f32" } else { "" };
     let mut text = format!(
-        "fn invoke_{word}(below: {type_name}, point: Point, by: Invoker) -> {type_name} {{\n    var above = below;\n    switch \
+        "fn invoke_{word}(below: {type_name}, point: Point, by: Invoker{share}) -> {type_name} {{\n    var above = below;\n    switch \
          by.handler {{\n"
     );
     let is_one = |h: &EffectDefinition| kinds.contains(&h.kind) && h.mode == Mode::Local;
@@ -115,8 +135,29 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
         };
         let _ = writeln!(text, "    if by.blend != 0u {{\n        above = {blended};\n    }}");
     }
+    if fades(uber) {
+        let laid = match kinds[0] {
+            EffectKind::Material => "blended_material(1u, below, above, share)",
+            _ => "weighed(below, above, share)",
+        };
+        let _ = writeln!(text, "    if by.border != 0u {{\n        above = {laid};\n    }}");
+    }
     text.push_str("    return above;\n}\n\n");
     text
+}
+
+/// Whether some of the scene's lenses may fade.
+fn fades(uber: &Uber) -> bool {
+    uber.borders && !uber.tests.is_empty()
+}
+
+/// A loop over invokers, where lenses fade.
+pub(super) fn faded(uber: &Uber, text: &str) -> String {
+    if !fades(uber) {
+        return text.to_owned();
+    }
+    text.replace("if runs(by, classes)", "let share = share_at(by, classes);\n        if share > 0.0")
+        .replace("point, by);", "point, by, share);")
 }
 
 /// From the surface to its colour: material, light, the standard style and air, then the styles.
@@ -124,10 +165,10 @@ fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let has = |kind| has(uber, kind, handlers);
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
     if has(EffectKind::Material) {
-        text.push_str(MATERIALS);
+        text.push_str(&faded(uber, MATERIALS));
     }
     if has(EffectKind::Light) {
-        text.push_str(LIGHTS);
+        text.push_str(&faded(uber, LIGHTS));
     }
     let plus = if has(EffectKind::Material) {
         text.push_str("    (*point).highlight = highlights(material, *point);\n");
@@ -155,10 +196,11 @@ fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
             .to_owned();
     }
     let highlight = match has(EffectKind::Material) {
+        true if fades(uber) => "                color += point.highlight * share;\n",
         true => "                color += point.highlight;\n",
         false => "",
     };
-    STYLED.replace("                HIGHLIGHT\n", highlight)
+    faded(uber, STYLED).replace("                HIGHLIGHT\n", highlight)
 }
 
 /// The table, declared.
@@ -177,6 +219,7 @@ struct Invoker {
     blend: u32,                 // 0 replaces
     weight: u32,                // slot of its weight, if blended
     number: u32,                // of a style: 1 = for surfaces alone; of a lens: its bit in the masks
+    border: u32,                // of a lens that fades: the slot after that of its border; 0 else
 }
 
 struct InvokerTable {
@@ -262,6 +305,36 @@ fn runs(by: Invoker, classes: Classes) -> bool {
 
 ";
 
+/// How much of an invoker a place has that has these classes.
+pub(super) const SHARE_OF: &str = "fn share_of(by: Invoker, all: u32, sight: Sight) -> f32 {
+    if by.border == 0u {
+        return 1.0;
+    }
+    let border = parameters[by.border - 1u];
+    var distance = FAR_AWAY;
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        distance = min(distance, distance_to(v, sight, border));
+    }
+    let interest = degree_of_interest(distance, border, sight);
+    switch by.scope {
+        case 1u: { return share_inside(all, interest); }
+        case 2u: { return share_front(all, interest); }
+        case 3u: { return share_behind(all, interest); }
+        default: { return share_rest(all, interest); }
+    }
+}
+
+";
+
+const SHARE_AT: &str = "fn share_at(by: Invoker, classes: Classes) -> f32 {
+    if by.scope == 0u || by.border == 0u {
+        return select(0.0, 1.0, runs(by, classes));
+    }
+    return share_of(by, classes_of(by, classes), classes.sight);
+}
+
+";
+
 const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);
     let of_materials = invokers_of(classes, MATERIALS);
     for (var k = of_materials.x; k < of_materials.y; k++) {
@@ -308,7 +381,7 @@ const NO_OUTLINES: &str = "fn outlines(start: vec4f, pixel: vec2i, classes: Clas
 
 ";
 
-const OUTLINES: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
+const LENS_COVERS: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
     let by = invokers[lens];
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         if volume_covers(v, pixel) {
@@ -318,18 +391,54 @@ const OUTLINES: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
     return false;
 }
 
-fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
-    var paint = start;
-    let run = invokers_of(classes, OUTLINES);
-    for (var k = run.x; k < run.y; k++) {
-        let by = invokers[tile_lists[k]];
-        let share = silhouette(tile_lists[k], pixel, parameters[by.parameters + 1u].x);
-        paint = outlined(paint, share, parameters[by.parameters]);
+";
+
+const LENS_DISTANCE: &str = "fn lens_distance(lens: u32, sight: Sight) -> f32 {
+    let by = invokers[lens];
+    var distance = FAR_AWAY;
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        distance = min(distance, distance_to(v, sight, vec4f(0.0)));
     }
-    return paint;
+    return distance;
 }
 
 ";
+
+const LENS_ENDS: &str = "fn lens_ends(lens: u32, pixel: vec2i, ray: Ray) -> Span {
+    let by = invokers[lens];
+    var ends = EMPTY_SPAN;
+    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
+        ends = with_span(ends, ends_of_volume(v, pixel, ray));
+    }
+    return ends;
+}
+
+";
+
+/// The bodies of lenses, of these kinds; `by.handler` says which.
+fn outlines_of(kinds: &[BodyKind]) -> String {
+    let mut text = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
+    var paint = start;
+    let run = invokers_of(classes, OUTLINES);
+    for (var k = run.x; k < run.y; k++) {
+        let lens = tile_lists[k];
+        let by = invokers[lens];
+        let color = parameters[by.parameters];
+        let width = parameters[by.parameters + 1u].x;
+"
+    .to_owned();
+    for kind in kinds {
+        let drawn = match kind {
+            BodyKind::Outline => "",
+            BodyKind::Shell => "            paint = shell(lens, paint, pixel, color);\n",
+            BodyKind::Halo => "            paint = halo(lens, paint, pixel, color, width);\n",
+        };
+        let line = "            paint = outlined(paint, silhouette(lens, pixel, width), color);\n";
+        let line = if kind.has_outline() { line } else { "" };
+        let _ = write!(text, "        if by.handler == {}u {{\n{drawn}{line}        }}\n", kind.number());
+    }
+    text + "    }\n    return paint;\n}\n\n"
+}
 
 const WRITE_CLASSES: &str = "    var bits = vec3u(0u);
     let run = invokers_of(classes, MASKS);

@@ -16,6 +16,7 @@ mod case_11_rays_through_edges;
 mod case_12_slivers;
 mod case_13_dirty_rings;
 mod case_14_non_planar_faces;
+mod case_20_identity_lens;
 mod case_21_extreme_views;
 mod case_23_jitter;
 mod lenses;

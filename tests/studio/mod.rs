@@ -75,6 +75,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         effects: vec![used(effect)],
         body: LensBody::None,
         sprite: None,
+        border: None,
     }
 }
 

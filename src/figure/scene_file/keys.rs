@@ -367,10 +367,10 @@ pub const LENS: Table = Table {
         ),
         key(
             "body",
-            Kind::Word { now: &["outline", "none"], later: &["shell", "halo"] },
+            Kind::Word { now: &["outline", "shell", "halo", "none"], later: &[] },
             "\"outline\"",
             "",
-            "How the lens body itself is drawn.",
+            "How the lens body itself is drawn, in its colour: a line around it, tinted glass, a glow around it. Thematic lenses show a line for all, and so do flat ones and those tested by a sprite for `halo`.",
             "\"none\"",
         ),
         key(
@@ -380,6 +380,14 @@ pub const LENS: Table = Table {
             "",
             "Has the lens tested by a volumetric depth sprite of it.",
             "{ resolution = 512 }",
+        ),
+        key(
+            "border",
+            Kind::Table(&BORDER),
+            "none: it ends at once",
+            "",
+            "Has what the lens does end gradually.",
+            "{ width = 20.0 }",
         ),
     ],
 };
@@ -405,6 +413,42 @@ pub const ATTACHED_TO: Table = Table {
             "",
             "Name of a point of interest: its point, or the middle of its object, as above.",
             "\"hall\"",
+        ),
+    ],
+};
+
+/// `border` of a lens.
+pub const BORDER: Table = Table {
+    name: "border",
+    doc: "Has what a lens does fade over its border, half of the width inside of the volume and half outside. Of what is `inside`, \
+          the degree of interest w(d) = t²(3−2t), t = ½ − d/width clamped to 0..1, d the distance from the lens' surface, negative inside; \
+          of what is in front, behind and the rest, 1 − w. Distances are exact to rounding but for combinations (where parts meet they are \
+          the larger or smaller of theirs) and solids whose bodies cross. Flat lenses fade across their outline, not at their plane; thematic ones \
+          have no border. Masks and statistics go by the volume itself.",
+    keys: &[
+        key(
+            "width",
+            Kind::Number { min: 0.0, max: 100_000.0 },
+            "",
+            "metres or pixels",
+            "From where all of it is seen to where nothing is; 0 ends at once.",
+            "20.0",
+        ),
+        key(
+            "unit",
+            Kind::Word { now: &["m", "px"], later: &[] },
+            "\"m\"",
+            "",
+            "Of the width: metres, or pixels at the distance of what is shown.",
+            "\"px\"",
+        ),
+        key(
+            "discrete",
+            Kind::Word { now: &["threshold", "dither"], later: &[] },
+            "\"threshold\"",
+            "",
+            "How what cannot be had by halves ends, like the eraser: at the surface of the volume, or pixel by pixel; with 16 samples and more that is smooth.",
+            "\"dither\"",
         ),
     ],
 };
@@ -502,6 +546,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("[[lens]]", &LENS),
     ("attached_to of a lens", &ATTACHED_TO),
     ("sprite of a lens", &SPRITE),
+    ("border of a lens", &BORDER),
     ("[figure]", &FIGURE),
 ];
 

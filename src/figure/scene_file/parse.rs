@@ -15,7 +15,7 @@ use crate::{
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Class, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, Placement, effect,
+        Border, BorderUnit, Class, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, Placement, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -194,6 +194,14 @@ impl<'o> SceneReader<'o> {
         let shapes = self.shapes(fields);
         let effects = self.effects(fields, true);
         let sprite = sprite::read(&mut self.checker, fields);
+        let border = fields
+            .node("border")
+            .map(|node| self.checker.fields(node, &keys::BORDER, &[], fields.place.within("border", node.line)));
+        if sprite.is_some() && border.is_some() {
+            let message =
+                "is given together with sprite: what is tested by a depth sprite ends at once; leave out one of them";
+            self.checker.note(&fields.place, "border", fields.line("border"), message);
+        }
         Lens {
             name: fields.text("name").map_or_else(|| format!("lens-{index}"), str::to_owned),
             kind: LensKind::Color,
@@ -202,8 +210,16 @@ impl<'o> SceneReader<'o> {
             placement,
             shapes,
             effects,
-            body: if fields.text("body") == Some("none") { LensBody::None } else { LensBody::Outline },
+            body: LensBody::WORDS
+                .iter()
+                .find(|(word, _)| fields.text("body") == Some(*word))
+                .map_or_else(LensBody::default, |(_, body)| *body),
             sprite,
+            border: border.map(|b| Border {
+                width: b.number("width").unwrap_or(0.0),
+                unit: if b.text("unit") == Some("px") { BorderUnit::Pixels } else { BorderUnit::Metres },
+                discrete: if b.text("discrete") == Some("dither") { Discrete::Dither } else { Discrete::Threshold },
+            }),
         }
     }
 

@@ -5,7 +5,8 @@ use super::*;
 use crate::{
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Class, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter, Placement,
+        Border, BorderUnit, Class, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite, Parameter,
+        Placement,
         chosen::Choice,
         sprite::{Format, Mapping},
     },
@@ -310,6 +311,10 @@ fn every_mistake_in_a_lens_is_named() {
             "sprite = { mapping = \"1/z\" }",
             "sprite.mapping: must be \"z\" or \"complementary-z\" or \"w\" or \"1/w\", is \"1/z\"",
         ),
+        ("border = {}", "border.width: is missing: From where"),
+        ("border = { width = -1 }", "border.width: must be a number 0 to 100000, is -1"),
+        ("border = { width = 1, unit = \"cm\" }", "border.unit: must be \"m\" or \"px\", is \"cm\""),
+        ("sprite = {}\nborder = { width = 1 }", "border: is given together with sprite"),
         (
             "[[lens]]\nname = \"lens-0\"\nshape = { kind = \"sphere\", center = [1, 2, 3], radius = 60.0 }",
             "[lens.1] name: \"lens-0\" is the name of lens.0 already",
@@ -514,6 +519,17 @@ fn effects() -> impl Strategy<Value = EffectUse> {
     (used, laid).prop_map(lay)
 }
 
+/// A sprite or a border, or neither.
+fn ends() -> impl Strategy<Value = (Option<LensSprite>, Option<Border>)> {
+    let sprite = sprites().prop_map(|sprite| (Some(sprite), None));
+    let border = (0.0..1e5, any::<bool>(), any::<bool>()).prop_map(|(width, in_pixels, dithers)| {
+        let unit = if in_pixels { BorderUnit::Pixels } else { BorderUnit::Metres };
+        let discrete = if dithers { Discrete::Dither } else { Discrete::Threshold };
+        (None, Some(Border { width, unit, discrete }))
+    });
+    prop_oneof![Just((None, None)), sprite, border]
+}
+
 prop_compose! {
     fn sprites()(resolution in prop::option::of(16..16_384u32), format in 0..5usize, mapping in 0..4usize,
         near_m in prop::option::of(1e-3..10.0f64), far_m in prop::option::of(11.0..1e4f64), layers in 1..17u32,
@@ -525,10 +541,11 @@ prop_compose! {
 
 prop_compose! {
     fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
-        enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), outline in any::<bool>(),
-        sprite in prop::option::of(sprites()), placement in placements()) -> Lens {
-        let body = if outline { LensBody::Outline } else { LensBody::None };
-        Lens { name: String::new(), kind: LensKind::Color, enabled, color, placement, shapes, effects: used, body, sprite }
+        enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
+        ends in ends(), placement in placements()) -> Lens {
+        let (sprite, border) = ends;
+        let body = LensBody::WORDS[body].1;
+        Lens { name: String::new(), kind: LensKind::Color, enabled, color, placement, shapes, effects: used, body, sprite, border }
     }
 }
 

@@ -12,7 +12,7 @@ use crate::{
     },
     geom::{Shape, shape::FlatFigure},
     lens::{
-        Class, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
+        BorderUnit, Class, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
         color::{parse_hex, to_hex},
     },
     scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun},
@@ -136,9 +136,14 @@ impl Toml {
             many => self.key("shapes", &list(many.iter().map(|one| focus(one, options)))),
         }
         self.key_if(!lens.effects.is_empty(), "effects", &list(lens.effects.iter().map(effect)));
-        self.key_if(lens.body == LensBody::None, "body", "\"none\"");
+        self.key_if(lens.body != LensBody::default(), "body", &format!("\"{}\"", lens.body.word()));
         if let Some(sprite) = &lens.sprite {
             self.key("sprite", &sprite::written(sprite));
+        }
+        if let Some(border) = lens.border {
+            let unit = if border.unit == BorderUnit::Pixels { ", unit = \"px\"" } else { "" };
+            let discrete = if border.discrete == Discrete::Dither { ", discrete = \"dither\"" } else { "" };
+            self.key("border", &format!("{{ width = {}{unit}{discrete} }}", number(border.width)));
         }
     }
 }

@@ -88,6 +88,11 @@ impl Hull {
         (self.corners.iter().map(|p| *p + self.center).collect(), &self.triangles)
     }
 
+    /// Triangles counter-clockwise from outside, their corners relative to the centre of [`Self::planes`].
+    pub fn triangles(&self) -> Vec<[DVec3; 3]> {
+        self.triangles.iter().map(|t| t.map(|i| self.corners[i as usize])).collect()
+    }
+
     pub(super) fn bounds(&self) -> Aabb {
         Aabb::from_points(self.corners.iter().map(|p| *p + self.center))
     }

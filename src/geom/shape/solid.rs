@@ -10,6 +10,7 @@
 mod columns;
 mod form;
 mod mend;
+mod near;
 
 use std::sync::Arc;
 
@@ -24,6 +25,7 @@ use crate::geom::{
 
 pub(super) use form::words_for;
 pub use form::{Bitmap, prism, stacked};
+pub use near::{Near, rounded_reach, widest_reach};
 
 /// Faces that a solid may have.
 pub const MAX_FACES: usize = 1 << 20;

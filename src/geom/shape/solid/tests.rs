@@ -387,4 +387,31 @@ proptest! {
             prop_assert!(q.cmpge(bounds.min - 1e-6).all() && q.cmple(bounds.max + 1e-6).all());
         }
     }
+
+    #[test]
+    fn the_faces_of_a_cell_have_the_nearest_one(p in prop::array::uniform3(-1300.0..1300.0f64), reach in 1.0..400.0f64) {
+        let solid = Solid::new(&[mesh(&torus(20, 10, [700.0, 200.0]))], DVec3::ZERO).unwrap();
+        let near = Near::new(&solid, reach);
+        let p = DVec3::from(p).with_z(p[2] * 0.5);
+        let listed = near.at(p).iter().map(|f| solid.faces()[*f as usize]);
+        let nearest = listed.map(|[a, b, c]| nearest_to_origin(a - p, b - p, c - p).length()).fold(f64::INFINITY, f64::min);
+        let wanted = solid.distance(p);
+        // Further away none has to be listed.
+        prop_assert!(nearest == wanted || (wanted > reach && nearest > wanted), "{} for {}", nearest, wanted);
+    }
+}
+
+#[test]
+fn where_bodies_touch_there_is_no_border() {
+    let cube = |x: i64| {
+        let p = |i: i64| [x + 10 * (i & 1), 10 * (i >> 1 & 1), 10 * (i >> 2)];
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        mesh(&triangles(&quads.map(|q| q.map(p))))
+    };
+    let solid = Solid::new(&[cube(0), cube(10)], DVec3::ZERO).unwrap();
+    let near = Near::new(&solid, 6.0);
+    let p = DVec3::new(9.0, 5.0, 5.0);
+    let listed = near.at(p).iter().map(|f| solid.faces()[*f as usize]);
+    let nearest = listed.map(|[a, b, c]| nearest_to_origin(a - p, b - p, c - p).length()).fold(f64::INFINITY, f64::min);
+    assert_eq!(nearest, 5.0, "the wall between is 1 m away");
 }

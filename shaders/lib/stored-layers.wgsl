@@ -87,12 +87,20 @@ fn add_interval(span: Span, first: u32, code: DepthCode, format: u32) {
     found += 1u;
 }
 
+fn windings_around_eye(solid: Shape) -> i32 {
+    return i32(floor(solid.size_z + 0.5));
+}
+
+fn is_in_doubt(solid: Shape) -> bool {
+    return solid.size_z != floor(solid.size_z + 0.5);
+}
+
 // Whether the eye is so near a face of a solid that its winding number is in doubt.
 fn is_near_solid() -> bool {
     var is_near = false;
     for (var i = 0u; i < u32(stage.shape.size_y); i++) {
         let leaf = leaf_at(stage.shape, i).shape;
-        is_near = is_near || (leaf.kind == SOLID && leaf.size_y > 0.5);
+        is_near = is_near || (leaf.kind == SOLID && is_in_doubt(leaf));
     }
     return is_near;
 }
@@ -106,7 +114,7 @@ fn follow(ray: Ray, list: u32, first: u32, code: DepthCode, format: u32) -> bool
     let leaves = u32(stage.shape.size_y);
     for (var i = 0u; i < leaves; i++) {
         let leaf = leaf_at(stage.shape, i).shape;
-        windings[i] = select(0, i32(leaf.size_z), starts_at_eye && leaf.kind == SOLID);
+        windings[i] = select(0, windings_around_eye(leaf), starts_at_eye && leaf.kind == SOLID);
         if leaf.kind == SOLID {
             spans[i] = EMPTY_SPAN;
         }
@@ -122,8 +130,8 @@ fn follow(ray: Ray, list: u32, first: u32, code: DepthCode, format: u32) -> bool
         }
         for (var i = 0u; i < leaves; i++) {
             let leaf = leaf_at(stage.shape, i).shape;
-            let known = i32(leaf.size_z);
-            windings[i] = select(known, known - windings[i], leaf.size_y > 0.5);
+            let known = windings_around_eye(leaf);
+            windings[i] = select(known, known - windings[i], leaf.kind == SOLID && is_in_doubt(leaf));
         }
     }
     // What happens just at the start has happened.

@@ -1,0 +1,39 @@
+// Soft borders of lenses (L9): the degree of interest by how far a place is from a lens. Twin: `veduta::lens::border`.
+
+// Of a lens' parameters: x the width, y 1 where that is in pixels, z 1 where what cannot be had by halves is dithered.
+fn border_width(border: vec4f, sight: Sight) -> f32 {
+    let metres_per_pixel = abs(view.across_from_pixel.y) * select(max(sight.distance, 0.0), 1.0, sight.is_parallel);
+    return border.x * select(1.0, metres_per_pixel, border.y > 0.5);
+}
+
+fn degree_of_interest(distance: f32, border: vec4f, sight: Sight) -> f32 {
+    let width = max(border_width(border, sight), 1e-30);
+    let t = clamp(0.5 - distance / width, 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// What of a class of L4 a place has. Inside of a volume one of the sides is named, too: so that inside and outside share what
+// there is.
+fn share_inside(classes: u32, interest: f32) -> f32 {
+    return interest;
+}
+
+fn share_front(classes: u32, interest: f32) -> f32 {
+    return select(0.0, 1.0 - interest, (classes & (FRONT | BEHIND)) == FRONT);
+}
+
+fn share_behind(classes: u32, interest: f32) -> f32 {
+    return select(0.0, 1.0 - interest, (classes & (FRONT | BEHIND)) == BEHIND);
+}
+
+fn share_rest(classes: u32, interest: f32) -> f32 {
+    let sides = classes & (FRONT | BEHIND);
+    return select(0.0, 1.0 - interest, sides == 0u || sides == (FRONT | BEHIND));
+}
+
+// Whether something that is there or not is there, of a share: interleaved gradient noise (Jimenez 2014), moved on by the golden
+// ratio from sample to sample.
+fn is_dithered(share: f32, pixel: vec2i) -> bool {
+    let noise = fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
+    return share > fract(noise + 0.618034 * f32(view.sample_index));
+}

@@ -1,0 +1,27 @@
+// A glow around the silhouette of a lens (L5): how close its ray comes to it, in pixels, found by going along the ray by what is
+// free around each place (Hart 1996).
+
+fn halo(lens: u32, paint: vec4f, pixel: vec2i, color: vec4f, width: f32) -> vec4f {
+    if lens_covers(lens, pixel) {
+        return paint;
+    }
+    let ray = ray_of_pixel(vec2f(pixel) + 0.5);
+    let speed = length(ray.direction);
+    let is_parallel = view.orthographic == 1u;
+    let per_distance = abs(view.across_from_pixel.y);
+    var closest = 1e9;
+    var t = view.near;
+    for (var i = 0; i < 32; i++) {
+        let position = ray.origin + t * ray.direction;
+        let free = lens_distance(lens, Sight(pixel, 0.0, ray, t, position, is_parallel, NO_OBJECT));
+        closest = min(closest, free / (per_distance * select(t, 1.0, is_parallel)));
+        if free <= 0.0 || free > 1e9 {
+            break;
+        }
+        t += max(free, 1e-4 * t) / speed;
+    }
+    // On the silhouette itself it is as strong as a line.
+    let share = clamp(1.0 - closest / width, 0.0, 1.0);
+    let opacity = color.a * share * share;
+    return vec4f(mix(paint.rgb, color.rgb, opacity), paint.a + (1.0 - paint.a) * opacity);
+}
