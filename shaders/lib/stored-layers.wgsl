@@ -10,6 +10,8 @@
 @group(2) @binding(4) var<storage, read_write> counts: array<atomic<u32>>;
 
 const NONE: u32 = 0xffffffffu;
+// Operations are 24 bits.
+const IS_SOLID: u32 = 0x80000000u;
 
 // Shorter intervals and gaps, as part of the distance, are roundings.
 const SLIVER: f32 = 1e-6;
@@ -23,6 +25,7 @@ struct Event {
 }
 
 var<private> windings: array<i32, 64>;  // of each solid
+var<private> programs: array<u32, 64>;  // of each leaf: its operations, and whether it is a solid
 var<private> here: Event;
 var<private> next: Event;
 // The intervals found.
@@ -59,9 +62,8 @@ fn find_next(list: u32) {
 fn is_in_after(t: f32) -> bool {
     var bits = 0u;
     for (var i = 0u; i < u32(stage.shape.size_y); i++) {
-        let leaf = leaf_at(stage.shape, i);
         let is_in_form = spans[i].enter <= t && t < spans[i].exit;
-        bits = pushed(bits, select(is_in_form, windings[i] != 0, leaf.shape.kind == SOLID), leaf.operations);
+        bits = pushed(bits, select(is_in_form, windings[i] != 0, (programs[i] & IS_SOLID) != 0u), programs[i] & ~IS_SOLID);
     }
     return bits == 1u;
 }
@@ -113,7 +115,9 @@ fn follow(ray: Ray, list: u32, first: u32, code: DepthCode, format: u32) -> bool
     find_spans(stage.shape, ray);
     let leaves = u32(stage.shape.size_y);
     for (var i = 0u; i < leaves; i++) {
-        let leaf = leaf_at(stage.shape, i).shape;
+        let whole = leaf_at(stage.shape, i);
+        let leaf = whole.shape;
+        programs[i] = whole.operations | select(0u, IS_SOLID, leaf.kind == SOLID);
         windings[i] = select(0, windings_around_eye(leaf), starts_at_eye && leaf.kind == SOLID);
         if leaf.kind == SOLID {
             spans[i] = EMPTY_SPAN;

@@ -17,7 +17,8 @@ pub const SPRITE: Table = Table {
     name: "sprite",
     doc: "Has the lens tested by a volumetric depth sprite: a picture of where each ray enters and leaves it. Without, it is \
           tested from its shapes: exact to the pixel, and faster; `{}` is a sprite as fine as the picture, in 32-bit float, \
-          which agrees with the shapes to a texel. All shapes of a lens share one sprite; `thematic` ones, alone or in a \
+          which agrees with the shapes to a texel; what lies in the surface of a lens, as the walls of its own objects do, may \
+          be on either side. All shapes of a lens share one sprite; `thematic` ones, alone or in a \
           combination, have none and stay as they are. Other formats and mappings are there to see what they cost \
           (`veduta measure sprites`).",
     keys: &[
