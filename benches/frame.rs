@@ -66,6 +66,8 @@ fn main() {
         let [few, thousand] = [10, 1000].map(|count| spread(&scene, &studio.extent(), count));
         let moving = (0..8).map(|step| moved(&thousand, f64::from(step)));
         frames.push((format!("{v} moving"), Frame::Turns(moving.collect(), Cell::new(0))));
+        let one_moves = (0..8).map(|step| moved(&lensed, f64::from(step)));
+        frames.push((format!("{v} lens moving"), Frame::Turns(one_moves.collect(), Cell::new(0))));
         frames.push((format!("{v} few"), Frame::Full(few)));
         frames.push((format!("{v} thousand"), Frame::Full(thousand)));
         frames.push((format!("{v} bare"), Frame::Bare(view(&scene))));
@@ -79,7 +81,7 @@ fn main() {
         let found = frames.iter().find(|(n, _)| n == name);
         &found
             .unwrap_or_else(|| {
-                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten, ten all, few, thousand or moving")
+                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten, ten all, few, thousand, lens moving or moving")
             })
             .1
     };
@@ -104,6 +106,9 @@ fn main() {
     compare(&mut studio, pairs, named, ["V2 thousand", "V2 few"], 1.50);
     compare(&mut studio, pairs, named, ["V1 moving", "V1 thousand"], 1.05);
     compare(&mut studio, pairs, named, ["V2 moving", "V2 thousand"], 1.05);
+    for name in ["V1 lens moving", "V2 lens moving", "V1 moving", "V2 moving"] {
+        host_share(&mut studio, pairs, name, named(name), 0.02);
+    }
 }
 
 /// V1: the whole city in the frustum.
@@ -206,8 +211,27 @@ fn with_ten(v: &str, lensed: &Scene, studio: &mut Studio) -> Scene {
     Scene { lenses, ..plain }
 }
 
+/// Prints which part of a frame goes by until all of it is handed to the adapter: what the host itself does.
+fn host_share(studio: &mut Studio, pairs: usize, name: &str, frame: &Frame, target: f64) {
+    timed(studio, frame);
+    let both: Vec<[f64; 2]> = (0..pairs).map(|_| parts(studio, frame)).collect();
+    let of = |i: usize| both.iter().map(|b| b[i]).collect::<Vec<f64>>();
+    let estimate = |values: &[f64]| Estimate::of(values).expect("one or more, and finite times");
+    let [host, whole] = [of(0), of(1)];
+    let Estimate { median, low, high } = estimate(&ratios(&host, &whole));
+    let verdict = if high <= target { "met" } else { "MISSED" };
+    let [host, whole] = [host, whole].map(|times| estimate(&times).median);
+    let name = format!("{name}, host");
+    println!("{name:<22} {host:>9.2} {whole:>9.1} {median:>9.4} ({low:.4}..{high:.4}) {target:>6.2} {verdict}");
+}
+
 /// Draws one frame to its end; takes milliseconds.
 fn timed(studio: &mut Studio, frame: &Frame) -> f64 {
+    parts(studio, frame)[1]
+}
+
+/// Milliseconds until a frame is handed over, and until it is drawn.
+fn parts(studio: &mut Studio, frame: &Frame) -> [f64; 2] {
     let is_software = studio.renderer.gpu.is_software();
     studio.renderer.culls_hidden = is_software && !matches!(frame, Frame::Unculled(_));
     let start = Instant::now();
@@ -221,8 +245,9 @@ fn timed(studio: &mut Studio, frame: &Frame) -> f64 {
             studio.redraw(scene, SIZE).unwrap_or_else(|error| panic!("{error}"))
         }
     }
+    let handed_over = start.elapsed().as_secs_f64() * 1e3;
     studio.renderer.gpu.wait().unwrap_or_else(|error| panic!("{error}"));
-    start.elapsed().as_secs_f64() * 1e3
+    [handed_over, start.elapsed().as_secs_f64() * 1e3]
 }
 
 /// Draws A and B in turn and prints the median of A/B with its 95 % interval.

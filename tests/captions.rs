@@ -1,4 +1,4 @@
-//! The scenes after figures of Trapp (3.5.1 to 3.5.3) and Tiesel (3.22) show what those captions say, point by point.
+//! The scenes after figures of Trapp, Tiesel, and Ropinski and Hinrichs show what those captions say, point by point.
 //!
 //! What is inside a lens is found here from depth and f64 geometry, not from the lens' own mask; what a style must make of
 //! a pixel, from the picture of the same scene without lenses.
@@ -40,9 +40,14 @@ enum Place {
 
 impl Stage {
     fn new(name: &str) -> Self {
+        Self::changed(name, |_| ())
+    }
+
+    fn changed(name: &str, change: impl FnOnce(&mut Scene)) -> Self {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{name}.toml"));
         let mut scene = scene_file::read(&path, &Options::for_file(&path)).expect("a scene");
         scene.lenses.iter_mut().for_each(|lens| lens.body = LensBody::None);
+        change(&mut scene);
         let mut studio = of_scene(&scene);
         let plain = picture(&mut studio, &Scene { lenses: vec![], ..scene.clone() }, SIZE);
         let places = (0..scene.lenses.len()).map(|i| places(&scene, &plain, i)).collect();
@@ -71,6 +76,22 @@ impl Stage {
     fn assert_unchanged(&self, picture: &Picture, place: Place) {
         let changed = self.pixels(place).into_iter().filter(|&i| picture.rgba[i] != self.plain.rgba[i]).count();
         assert_eq!(changed, 0, "pixels {place:?} changed");
+    }
+
+    /// As [`Self::assert_unchanged`] of what is around the lens, but for what lines that begin in it reach over.
+    fn assert_unchanged_beside_lines(&self, picture: &Picture) {
+        const REACH: i64 = 3;
+        let [w, h] = SIZE.map(i64::from);
+        let is_far = |i: usize| {
+            let (x, y) = (i as i64 % w, i as i64 / w);
+            let beside = (-REACH..=REACH).flat_map(|dy| (-REACH..=REACH).map(move |dx| (x + dx, y + dy)));
+            let mut seen = beside.filter(|(x, y)| (0..w).contains(x) && (0..h).contains(y));
+            seen.all(|(x, y)| self.places[0][(y * w + x) as usize] == Place::Around)
+        };
+        let changed = self.pixels(Place::Around).into_iter().filter(|&i| picture.rgba[i] != self.plain.rgba[i]);
+        // Edges of what is thinner than a pixel are drawn where no pixel's middle met it.
+        let changed = changed.filter(|&i| is_far(i)).count();
+        assert!(changed < 20, "{changed} pixels around changed");
     }
 
     fn view(&self) -> View {
@@ -444,4 +465,195 @@ fn tiesel_3_22_the_highlights_of_marble_and_of_velvet_are_both_kept_where_they_o
     // "the red fabric": apart from highlights, the overlap has the colour of the upper lens.
     let matt = both.iter().filter(|&&i| marble[i] < 0.01 && velvet[i] < 0.03).map(|&i| linear(shown.rgba[i]));
     assert!(matt.clone().count() > 300 && matt.clone().all(|[r, g, b]| r > 3.0 * g && r > 2.0 * b), "not red");
+}
+
+// ---- Ropinski and Hinrichs, figures 1, 3, 5, 6, 7, 8; Trapp, figures 3.1.3 and 3.2.3; Tiesel, figure 3.7
+
+/// Pixels whose shown place lies further away than without lenses.
+fn revealed(stage: &Stage, picture: &Picture) -> Vec<usize> {
+    let depth = |p: &Picture| p.depth.clone().expect("depth was asked for");
+    let (with, without) = (depth(picture), depth(&stage.plain));
+    (0..with.len()).filter(|&i| with[i] > without[i] * 1.0001).collect()
+}
+
+/// "Reveals the inside structure" (1), "insights" (3), "arbitrary convex shapes", "quadric" (5): inside of the lens what is
+/// hidden shows between the lines, outside nothing changes.
+#[test]
+fn wireframe_lenses_reveal_what_is_inside_and_leave_the_rest() {
+    for name in ["ropinski-1", "ropinski-3", "ropinski-5"] {
+        let mut stage = Stage::new(name);
+        let shown = stage.draw();
+        // What was in the lens may show what is outside, behind it: what was around it stays.
+        stage.assert_unchanged_beside_lines(&shown);
+        let revealed = revealed(&stage, &shown);
+        let inside = stage.pixels(Place::Inside);
+        let share = revealed.len() as f64 / inside.len() as f64;
+        assert!(share > 0.5, "{name}: {} of {} pixels show what is behind", revealed.len(), inside.len());
+        assert!(revealed.iter().all(|&i| stage.places[0][i] != Place::Around), "{name}");
+    }
+}
+
+/// "Visualization of the lens by a semi-transparent lens volume" (3 d), which "does not occlude scene geometry".
+#[test]
+fn the_lens_body_is_tinted_and_lets_everything_through() {
+    let mut stage = Stage::new("ropinski-3");
+    let bare = stage.draw();
+    let glass = stage.draw_with(|s| s.lenses[0].body = LensBody::Shell);
+    let view = stage.view();
+    let volume = stage.scene.lenses[0].shapes[0].volumes().expect("a volume").remove(0);
+    let [mut tinted, mut met] = [0, 0];
+    for i in 0..glass.rgba.len() {
+        let ray = view.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]);
+        let depth = f64::from(bare.depth.as_ref().expect("depth")[i]);
+        if volume.entry_exit(&ray).is_some_and(|(enter, _)| enter < 0.999 * depth) {
+            met += 1;
+            tinted += usize::from(glass.rgba[i] != bare.rgba[i]);
+        }
+    }
+    assert!(met > 5000 && tinted as f64 > 0.99 * met as f64, "{tinted} of {met} pixels are tinted");
+    assert!(glass.depth == bare.depth && glass.object_id == bare.object_id);
+}
+
+/// "Its sphere of influence ranges from its 2D shape to the far clipping plane": what is seen through the pane and behind it.
+#[test]
+fn a_flat_lens_acts_behind_its_pane_alone() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/ropinski-6.toml");
+    let mut scene = scene_file::read(&path, &Options::for_file(&path)).expect("a scene");
+    scene.lenses[0].body = LensBody::None;
+    let mut studio = of_scene(&scene);
+    let plain = picture(&mut studio, &Scene { lenses: vec![], ..scene.clone() }, SIZE);
+    let shown = picture(&mut studio, &scene, SIZE);
+    let Focus::Shape(Shape::Flat { center, rotation, .. }) = scene.lenses[0].shapes[0].clone() else {
+        panic!("a flat lens")
+    };
+    let view = view_of(&scene);
+    let (depth, mask) = (plain.depth.as_ref().expect("depth"), bits(&shown, 0));
+    let (mut counts, mut changed) = ([0; 3], 0);
+    for i in 0..mask.len() {
+        let ray = view.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]);
+        let normal = rotation * DVec3::Z;
+        let t = normal.dot(center - ray.origin) / normal.dot(ray.direction);
+        let own = rotation.conjugate() * (ray.at(t) - center);
+        let [dx, dy] = [own.x.abs() - 23.0, own.y.abs() - 15.0];
+        if dx.abs() < 0.3 || dy.abs() < 0.3 || (f64::from(depth[i]) / t - 1.0).abs() < 1e-4 {
+            continue;
+        }
+        let is_through = dx < 0.0 && dy < 0.0;
+        let is_in = is_through && f64::from(depth[i]) > t;
+        counts[usize::from(is_through) + usize::from(is_in)] += 1;
+        assert_eq!(mask[i], is_in, "pixel {i}");
+        // Lines that begin beyond the pane are as wide as a pixel or two.
+        changed += usize::from(!is_in && shown.rgba[i] != plain.rgba[i]);
+    }
+    assert!(counts.iter().all(|c| *c > 500) && changed < 150, "{counts:?}, {changed} of the others changed");
+}
+
+/// "Lenses intersecting the near or the far clipping plane ... has not been solved yet": here they are exact.
+#[test]
+fn lenses_across_the_clipping_planes_are_exact() {
+    let mut stage = Stage::new("ropinski-7");
+    let shown = stage.draw();
+    let eye = stage.scene.camera.expect("a camera").eye;
+    let around = stage.scene.lenses[1].shapes[0].volumes().expect("a volume").remove(0);
+    assert!(around.contains(eye), "the eye is inside");
+    for lens in 0..2 {
+        let mask = bits(&shown, lens);
+        let wrong = (0..mask.len()).filter(|&i| match stage.places[lens][i] {
+            Place::Inside => !mask[i],
+            Place::Around => mask[i],
+            Place::Border => false,
+        });
+        assert_eq!(wrong.count(), 0, "lens {lens}");
+        assert!(mask.iter().filter(|b| **b).count() > 1000);
+    }
+}
+
+/// "Eraser lenses reveal occluded parts of the scene by removing partial or complete information."
+#[test]
+fn erasers_remove_all_or_a_part() {
+    let mut stage = Stage::new("ropinski-8");
+    let shown = stage.draw();
+    let view = stage.view();
+    let (depth, normal) = (shown.depth.as_ref().expect("depth"), shown.normal.as_ref().expect("normals"));
+    let volumes: Vec<_> =
+        stage.scene.lenses.iter().map(|l| l.shapes[0].volumes().expect("a volume").remove(0)).collect();
+    let mut roofs = 0;
+    for i in (0..depth.len()).filter(|&i| depth[i].is_finite()) {
+        let d = f64::from(depth[i]);
+        let at = view.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]).at(d);
+        assert!(volumes[0].signed_distance(at) > -1e-3, "pixel {i} shows what the lens holds");
+        let is_in = volumes[1].signed_distance(at) < -1e-3;
+        let slope = f64::from(normal[i][2].abs());
+        roofs += usize::from(is_in && slope > 0.3 && at.z > 4.0);
+    }
+    assert!(revealed(&stage, &shown).len() > 3000);
+    assert!(roofs > 500, "{roofs} pixels of roofs without walls");
+}
+
+/// "Application of the image-based focus and context separation ... using a volumetric depth sprite of a cube, a sphere and
+/// multiple spheres": in it the roofs are gone, around it nothing changes.
+#[test]
+fn a_depth_sprite_tells_focus_and_context_apart() {
+    for name in ["trapp-3-2-3-a", "trapp-3-2-3-b", "trapp-3-2-3-c"] {
+        // What is gone casts no shadow any more.
+        let mut stage = Stage::changed(name, |s| s.sun.shadows = false);
+        assert!(stage.scene.lenses[0].sprite.is_some(), "{name} has a sprite");
+        let shown = stage.draw();
+        stage.assert_unchanged_beside_lines(&shown);
+        assert!(revealed(&stage, &shown).len() > 1000, "{name}");
+        // Whatever is shown in it is drawn in lines on paper: pale or dark, but not coloured.
+        let inside = stage.pixels(Place::Inside);
+        let mask = bits(&shown, 0);
+        let colorful = mean(inside.iter().filter(|&&i| mask[i]).map(|&i| colorfulness(shown.rgba[i])));
+        assert!(colorful < 30.0, "{name}: {colorful}");
+    }
+}
+
+/// "Aggregation of two volumetric depth sprites": one lens, inside where either of them is.
+#[test]
+fn two_solids_are_one_lens() {
+    let mut stage = Stage::new("trapp-3-1-3");
+    let shown = stage.draw();
+    stage.assert_unchanged(&shown, Place::Around);
+    let mask = bits(&shown, 0);
+    let wrong = (0..mask.len()).filter(|&i| stage.places[0][i] == Place::Inside && !mask[i]).count();
+    assert_eq!(wrong, 0);
+    let view = stage.view();
+    let volumes: Vec<_> =
+        stage.scene.lenses[0].shapes.iter().map(|s| s.volumes().expect("a volume").remove(0)).collect();
+    let depth = shown.depth.as_ref().expect("depth");
+    let of = |k: usize| {
+        let is_in = |i: usize| {
+            let at = view.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]).at(f64::from(depth[i]));
+            mask[i] && depth[i].is_finite() && volumes[k].contains(at) && !volumes[1 - k].contains(at)
+        };
+        (0..mask.len()).filter(|&i| is_in(i)).count()
+    };
+    assert!(of(0) > 500 && of(1) > 500, "each of them holds something of its own");
+}
+
+/// "The red fabric effect has a spherical shape, a 2D texture is used for the marble effect lens to create an extruded
+/// fleur-de-lis volume."
+#[test]
+fn velvet_in_a_ball_and_marble_in_an_extruded_figure() {
+    let mut stage = Stage::new("tiesel-3-7");
+    let shown = stage.draw();
+    for lens in 0..2 {
+        let mask = bits(&shown, lens);
+        let wrong = (0..mask.len()).filter(|&i| match stage.places[lens][i] {
+            Place::Inside => !mask[i],
+            Place::Around => mask[i],
+            Place::Border => false,
+        });
+        assert_eq!(wrong.count(), 0, "lens {lens}");
+        let colors = mask.iter().zip(&shown.rgba).filter(|(is_in, _)| **is_in).map(|(_, p)| *p);
+        let [r, g, b] = [0, 1, 2].map(|c| mean(colors.clone().map(|p| f64::from(p[c]))));
+        match lens {
+            0 => assert!((r - b).abs() < 40.0 && g > 100.0, "marble is {r} {g} {b}"),
+            _ => assert!(r > 3.0 * g && r > 3.0 * b, "velvet is {r} {g} {b}"),
+        }
+    }
+    let changed = (0..shown.rgba.len())
+        .filter(|&i| stage.places.iter().all(|p| p[i] == Place::Around) && shown.rgba[i] != stage.plain.rgba[i]);
+    assert_eq!(changed.count(), 0);
 }

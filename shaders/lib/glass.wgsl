@@ -2,9 +2,11 @@
 
 // On the side towards the sun it is lighter; seen at a slant there is more of it.
 fn glazed(paint: vec4f, normal: vec3f, ray: Ray, color: vec3f, most: f32) -> vec4f {
-    let facing = abs(dot(normal, normalize(ray.direction)));
+    // Of what its sprite alone tells there is no normal.
+    let is_known = dot(normal, normal) > 0.5;
+    let facing = select(0.6, abs(dot(normal, normalize(ray.direction))), is_known);
     let slant = (1.0 - facing) * (1.0 - facing);
-    let lit = 0.7 + 0.3 * dot(normal, view.view_from_world * light.to_sun);
+    let lit = select(0.85, 0.7 + 0.3 * dot(normal, view.view_from_world * light.to_sun), is_known);
     let opacity = most * mix(0.35, 1.0, slant);
     return vec4f(mix(paint.rgb, color * lit, opacity), paint.a + (1.0 - paint.a) * opacity);
 }
