@@ -95,15 +95,68 @@ fn samples() {
 }
 
 #[test]
-fn sprite_resolution() {
-    let (folder, json) = tiny_run("sprite-resolution");
-    check_files(&folder, "sprite-resolution", &json);
-    let variants = json["variants"].as_array().unwrap();
-    let wrong = |i: usize| variants[i]["difference"]["wrong_mask_pixels"].as_u64().unwrap();
-    assert_eq!(wrong(0), 0, "one texel per pixel is the reference");
-    assert!(wrong(variants.len() - 1) > 0, "a sprite of 2 × 1 texels has no sphere in it");
-    let bytes = |i: usize| variants[i]["gpu_bytes"].as_u64().unwrap();
-    assert!(bytes(0) >= bytes(variants.len() - 1));
+fn sprites() {
+    let model = load(&["builtin:square".into()], &LoadOptions::default(), &Quiet).unwrap();
+    let mut studio = Studio::new(Gpu::open().unwrap(), Arc::new(model), &CitySpec::default()).unwrap();
+    let topic = TOPICS.iter().find(|topic| topic.name == "sprites").unwrap();
+    let trial = (topic.make)(&mut Stage { studio: &mut studio, size: [160, 90] }).unwrap();
+    let knobs = |v: &Variant| v.knobs.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
+    let all: Vec<String> = trial.variants.iter().map(knobs).collect();
+    for format in ["unorm8", "unorm16", "uint32", "float16", "float32"] {
+        for mapping in ["z", "complementary-z", "w", "1/w"] {
+            assert!(all.contains(&format!("sphere {format} {mapping} 512")), "{format} {mapping}");
+        }
+        for shape in ["box", "concave"] {
+            assert!(all.contains(&format!("{shape} {format} 1/w 512")), "{shape} {format}");
+        }
+    }
+    let mut wrong = |of: &str| {
+        let variant = &trial.variants[all.iter().position(|knobs| knobs == of).unwrap_or_else(|| panic!("no {of}"))];
+        let picture = studio.render(&variant.shot.scene, &variant.shot.request).unwrap();
+        let mask = variant.mask.as_ref().unwrap();
+        let share = mask.iter().filter(|is_in| **is_in).count() as f64 / mask.len() as f64;
+        assert!((0.05..0.3).contains(&share), "{of}: the lens holds {share} of the picture");
+        measure::difference::wrong_bits(mask, &picture.lens_mask.unwrap()[0])
+    };
+    for shape in ["sphere", "box", "concave"] {
+        let (fine, coarse) = (wrong(&format!("{shape} float32 1/w 2048")), wrong(&format!("{shape} float32 1/w 128")));
+        assert!(fine <= 2 && coarse >= fine, "{shape}: {fine} wrong with 2048 texels, {coarse} with 128");
+    }
+    let [eight, sixteen] = ["unorm8", "unorm16"].map(|format| wrong(&format!("sphere {format} w 512")));
+    assert!(eight > sixteen + 3, "{eight} wrong with 8 bits from the eye on, {sixteen} with 16");
+}
+
+#[test]
+fn lens_tests() {
+    let model = load(&["builtin:square".into()], &LoadOptions::default(), &Quiet).unwrap();
+    let mut studio = Studio::new(Gpu::open().unwrap(), Arc::new(model), &CitySpec::default()).unwrap();
+    let topic = TOPICS.iter().find(|topic| topic.name == "lens-tests").unwrap();
+    let trial = (topic.make)(&mut Stage { studio: &mut studio, size: [160, 90] }).unwrap();
+    let knob = |v: &Variant, i: usize| v.knobs[i].to_string();
+    let kinds = ["sphere", "ellipsoid", "box", "cylinder", "cone", "convex", "solid", "combination"];
+    for kind in kinds {
+        for test in ["shape", "sprite"] {
+            let is_it = |v: &&Variant| knob(v, 0) == kind && knob(v, 1) == test;
+            assert_eq!(trial.variants.iter().filter(is_it).count(), 1, "{kind} by {test}");
+        }
+    }
+    for v in &trial.variants {
+        assert_eq!(knob(v, 2), v.shot.scene.lenses.len().to_string(), "{}", v.label);
+        assert_eq!(knob(v, 1) == "sprite", v.shot.scene.lenses.iter().all(|lens| lens.sprite.is_some()), "{}", v.label);
+        let moves = v.shot.before.as_ref().is_some_and(|before| *before != v.shot.scene);
+        assert_eq!(knob(v, 4) == "moving", moves, "{}", v.label);
+    }
+    let most = trial.variants.iter().map(|v| v.shot.scene.lenses.len()).max();
+    assert_eq!(most, Some(10));
+    // Both tests draw one picture, to a few pixels of the border.
+    let by_sprite = |v: &&Variant| knob(v, 1) == "sprite" && (kinds.contains(&&*knob(v, 0)) || knob(v, 2) == "10");
+    for v in trial.variants.iter().filter(by_sprite) {
+        let reference = v.reference.as_ref().unwrap();
+        let [right, found] = [reference, &v.shot].map(|shot| studio.render(&shot.scene, &shot.request).unwrap());
+        let inside = right.lens_mask.as_ref().unwrap()[0].iter().filter(|bits| **bits != 0).count();
+        let wrong = Difference::between(&right, &found).wrong_mask_pixels.unwrap();
+        assert!(inside > 200 && wrong <= 4, "{}: {wrong} of {inside}", v.label);
+    }
 }
 
 #[test]
@@ -130,7 +183,7 @@ fn wrong_usage_is_told() {
     let nowhere = folder("nowhere");
     let place = nowhere.0.to_str().unwrap();
     told(&["sample", "-o", place], "did you mean \"samples\"?");
-    told(&["xyzzy", "-o", place], "sprite-resolution");
+    told(&["xyzzy", "-o", place], "sprites");
     told(&["samples"], "-o DIR");
     told(&["samples", "-o", place, "--pairs", "0"], "1..");
     told(&["samples", "-o", place, "--size", "9000x10"], "4096");

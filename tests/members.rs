@@ -123,11 +123,10 @@ fn the_volumes_of_objects_hold_their_own_walls_and_roofs() {
         let ids: Vec<String> = studio.model.objects.iter().step_by(3).map(|o| o.id.to_string()).collect();
         let choice = Choice { ids, ..Choice::default() };
         let chosen = members(&studio.model, &choice);
-        let mut lens = studio::lens("objects", [Focus::Objects(choice)], "sepia");
+        let lens = studio::lens("objects", [Focus::Objects(choice)], "sepia");
         let (mut found, mut past_edges) = (0, 0);
         for camera in cameras(&studio) {
             for backend in [Backend::Specialised, Backend::Uber] {
-                lens.sprite = (backend == Backend::Uber).then(Default::default);
                 let picture = drawn(&mut studio, &studio::scene(camera, vec![lens.clone()]), backend);
                 let inside = studio::bits(&picture, 0);
                 let volumes = studio.lens_volumes(&studio::scene(camera, vec![lens.clone()]), SIZE).expect("volumes");

@@ -81,7 +81,7 @@ fn masks_of_all_shapes_are_right_to_the_pixel() {
         Camera::looking(at + DVec3::new(90.0, -120.0, 70.0), at, 0.9),
         orthographic(at + DVec3::new(90.0, -120.0, 70.0), at, 160.0),
         // Street height, the eye among the houses and inside the larger lenses.
-        Camera::looking(at + DVec3::new(6.0, 3.0, -6.0), at + DVec3::new(60.0, 30.0, 0.0), 1.1),
+        Camera::looking(at + DVec3::new(6.5, 3.0, -6.0), at + DVec3::new(60.0, 30.0, 0.0), 1.1),
     ] {
         for r in [12.0, 45.0] {
             // From its figures, and by its sprite.

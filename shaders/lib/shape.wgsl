@@ -12,7 +12,8 @@ struct Shape {
     size_y: f32,                // box: half edge; convex: how many planes; frustum: what the radius grows by along its axis;
                                 // flat: half a rectangle's edge, how many sides a polygon has
     axis_z: vec3f,              // box, ellipsoid, solid: as axis_x; cylinder, frustum: its axis, unit
-    size_z: f32,                // box: half edge; cylinder, frustum: half height; solid: 1 where the eye is inside; flat: DISC,
+    size_z: f32,                // box: half edge; cylinder, frustum: half height; solid: how often it goes around the
+                                // eye, and a quarter more where that is in doubt; flat: DISC,
                                 // RECTANGLE or POLYGON
 }
 
@@ -32,6 +33,8 @@ const MEMBERS: u32 = 9u;
 const COMBINED: u32 = 10u;
 const COMBINED_SPRITE: u32 = 11u;
 const FLAT: u32 = 12u;
+// A volume that is tested by a depth sprite in any format.
+const LAYERED_SPRITE: u32 = 13u;
 
 // Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
 struct Span {

@@ -108,7 +108,7 @@ fn face_hit(ray: Ray, s: Shape, number: u32) -> FaceHit {
     return FaceHit(is_met, slope * f32(face.turn) > 0.0, dot(along_c, around) / slope);
 }
 
-// First and last crossing of a ray with the surface, each face asked; `size_z` is 1 where the eye is inside. What lies behind
+// First and last crossing of a ray with the surface, each face asked; `size_z` is how often it goes around the eye. What lies behind
 // the eye is not seen.
 fn span_of_solid(ray: Ray, s: Shape, starts_at_eye: bool) -> Span {
     let sizes = solids[u32(s.size_x) + 1u];
@@ -118,7 +118,7 @@ fn span_of_solid(ray: Ray, s: Shape, starts_at_eye: bool) -> Span {
         let is_seen = hit.is_met && (!starts_at_eye || hit.t > 0.0);
         span = Span(select(span.enter, min(span.enter, hit.t), is_seen), select(span.exit, max(span.exit, hit.t), is_seen));
     }
-    if span.exit > -FAR_AWAY && starts_at_eye && s.size_z > 0.5 {
+    if span.exit > -FAR_AWAY && starts_at_eye && abs(s.size_z) > 0.5 {
         span.enter = 0.0;
     }
     return span;

@@ -24,7 +24,7 @@ const EXAMPLES: &str = "\
 Examples:
   veduta measure                                what can be measured
   veduta measure samples -o out
-  veduta measure sprite-resolution -o out --city city.city.json --size 1280x720 --pairs 101
+  veduta measure sprites -o out --city city.city.json --size 1280x720 --pairs 101
   veduta measure samples -o out --json | jq '.variants[] | select(.is_pareto) | .label'
 
 DIR gets TOPIC.md (a table), TOPIC.json (all figures), TOPIC.svg and TOPIC.png (the plot). docs/measure.md says how to

@@ -20,6 +20,7 @@ pub use border::{Border, BorderUnit, Discrete};
 pub use classify::classify;
 pub use content::{Content, Copied};
 pub use focus::Focus;
+pub use sprite::LensSprite;
 
 use crate::{geom::Shape, shader::Blend};
 
@@ -110,13 +111,6 @@ impl Lens {
     pub fn classes(&self) -> impl Iterator<Item = Class> {
         self.effects.iter().map(|e| e.class).chain(self.content.iter().map(|c| c.class))
     }
-}
-
-/// The volumetric depth sprite of a lens (S1).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LensSprite {
-    /// Texels along the longer side of the picture; `None`: one per pixel.
-    pub resolution: Option<u32>,
 }
 
 /// How a lens body is drawn (L5).

@@ -54,6 +54,11 @@ fn wrong_mask_pixels(a: &[Vec<u32>], b: &[Vec<u32>]) -> u64 {
     (0..pixels).filter(differs).count() as u64
 }
 
+/// Pixels whose lowest bit is not what it should be.
+pub fn wrong_bits(right: &[bool], bits: &[u32]) -> u64 {
+    right.iter().zip(bits).filter(|(right, bits)| **right != (**bits & 1 == 1)).count() as u64
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -74,6 +79,7 @@ mod tests {
         assert_eq!((found.pixels, found.wrong_pixels, found.max_steps), (4, 2, 255));
         assert_eq!(found.mean_steps, (3 + 2 + 2 + 255) as f64 / 12.0);
         assert_eq!(found.wrong_mask_pixels, Some(2));
+        assert_eq!(wrong_bits(&[true, true, false, true], &[0b01, 0b10, 0b11, 1]), 2);
         assert!(found.flip > 0.0);
         let none = Difference::between(&a, &a);
         assert_eq!(none, Difference { pixels: 4, wrong_mask_pixels: Some(0), ..Difference::default() });

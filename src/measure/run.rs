@@ -5,7 +5,7 @@ use std::{sync::Arc, time::Instant};
 use crate::{
     gpu::Gpu,
     measure::{
-        difference::Difference,
+        difference::{self, Difference},
         pareto,
         ratio::{Estimate, in_turn, ratios},
         stage::Stage,
@@ -109,8 +109,7 @@ pub fn measure(
     let times = in_turn(shots.len(), setup.pairs, |i| {
         watch(Step::Timing, done, total);
         done += 1;
-        // Once unwatched: what a variant before it replaced (targets, sprites) is made anew then.
-        timed(setup.studio, shots[i])?;
+        warm_up(setup.studio, shots[i])?;
         timed(setup.studio, shots[i])
     })?;
     let mut rows = Vec::with_capacity(trial.variants.len());
@@ -166,6 +165,15 @@ fn timed(studio: &mut Studio, shot: &Shot) -> Result<f64, RenderError> {
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }
 
+/// Draws the frame before once unwatched: what a variant before it replaced (targets, sprites) is made anew then.
+fn warm_up(studio: &mut Studio, shot: &Shot) -> Result<(), RenderError> {
+    match &shot.before {
+        None => timed(studio, shot)?,
+        Some(scene) => timed(studio, &Shot { scene: scene.clone(), before: None, ..shot.clone() })?,
+    };
+    Ok(())
+}
+
 fn compare(
     studio: &mut Studio,
     trial: &Trial,
@@ -181,7 +189,11 @@ fn compare(
             _ => studio.render(&wanted.scene, &wanted.request)?,
         };
         let picture = studio.render(&variant.shot.scene, &variant.shot.request)?;
-        differences.push(Difference::between(&right, &picture));
+        let mut difference = Difference::between(&right, &picture);
+        if let (Some(mask), Some(bits)) = (&variant.mask, &picture.lens_mask) {
+            difference.wrong_mask_pixels = Some(difference::wrong_bits(mask, &bits[0]));
+        }
+        differences.push(difference);
         reference = Some((wanted, right));
     }
     Ok(differences)
@@ -211,6 +223,9 @@ fn start(
             let bytes = studio.renderer.gpu.allocated_bytes() - before;
             let mut later_ms = f64::INFINITY;
             for _ in 0..3 {
+                if variant.shot.before.is_some() {
+                    warm_up(&mut studio, &variant.shot)?;
+                }
                 later_ms = later_ms.min(timed(&mut studio, &variant.shot)?);
             }
             cold[i].push(Cold { first_ms, later_ms, bytes });

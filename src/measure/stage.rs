@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::{
-    geom::{Aabb, Shape},
-    lens::{Class, EffectUse, Lens, LensBody, LensKind},
+    geom::{Aabb, Shape, Volume, combination::Operation},
+    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind},
     measure::topic::Shot,
     render::{
         frame::Backend,
@@ -44,7 +44,23 @@ impl Stage<'_> {
                 backend: Backend::default(),
             },
             scene,
+            before: None,
         }
+    }
+
+    /// Whether the shown place of each pixel of a picture of `scene`, which has no lenses, is in a focus area: by its definition,
+    /// in f64, from the depth that the picture has. Nothing of the lens tests on the card has a part in it.
+    pub fn mask_in_f64(&mut self, scene: &Scene, focus: &Focus) -> Result<Vec<bool>, RenderError> {
+        let mut request = request(self.size);
+        request.aovs.depth = true;
+        let depth = self.studio.render(scene, &request)?.depth.unwrap_or_default();
+        let view = View::new(self.studio.camera(scene, self.size), self.size, &Aabb::EMPTY)?;
+        let body = Exact::of(focus).map_err(RenderError::Scene)?;
+        let holds = |(i, d): (usize, &f32)| {
+            let [x, y] = [i as u32 % self.size[0], i as u32 / self.size[0]];
+            d.is_finite() && body.holds(view.pixel_ray(x, y).at(f64::from(*d)))
+        };
+        Ok(depth.iter().enumerate().map(holds).collect())
     }
 
     /// A sphere around what stands near the middle of the picture, so large that the surface inside it makes up `share`
@@ -52,6 +68,34 @@ impl Stage<'_> {
     pub fn sphere_covering(&mut self, share: f64) -> Result<Shape, RenderError> {
         let scene = self.plain_scene();
         sphere_covering(self.studio, &scene, self.size, share)
+    }
+}
+
+/// A focus area in f64.
+enum Exact {
+    /// The union of volumes.
+    Volumes(Vec<Volume>),
+    /// A combination.
+    Combined(Operation, Vec<Exact>),
+}
+
+impl Exact {
+    fn of(focus: &Focus) -> Result<Self, String> {
+        Ok(match focus {
+            Focus::Combined { how, parts } => {
+                Self::Combined(*how, parts.iter().map(Self::of).collect::<Result<_, _>>()?)
+            }
+            other => Self::Volumes(other.volumes()?),
+        })
+    }
+
+    fn holds(&self, p: DVec3) -> bool {
+        match self {
+            Self::Volumes(all) => all.iter().any(|volume| volume.contains(p)),
+            Self::Combined(how, parts) => {
+                parts.iter().map(|part| part.holds(p)).reduce(|a, b| how.joins(a, b)).unwrap_or(false)
+            }
+        }
     }
 }
 
@@ -64,7 +108,7 @@ pub fn plain_scene(camera: Camera) -> Scene {
 }
 
 /// A lens without outline that applies these effects to what is inside.
-pub fn lens(name: &str, shape: Shape, effects: &[&str]) -> Lens {
+pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
     let use_of = |effect: &&str| EffectUse {
         effect: (*effect).to_owned(),
         class: Class::Inside,

@@ -1,6 +1,6 @@
 //! What a topic is: a name, and what it has drawn. One file each in [`crate::measure::topics`].
 
-use std::fmt;
+use std::{fmt, sync::Arc};
 
 use serde::Serialize;
 
@@ -74,6 +74,8 @@ pub struct Shot {
     pub scene: Scene,
     /// How.
     pub request: Request,
+    /// What the frame before the timed one shows, where something moves.
+    pub before: Option<Scene>,
 }
 
 /// One of the things that are compared.
@@ -87,6 +89,8 @@ pub struct Variant {
     pub shot: Shot,
     /// What it is compared with; `None`: the trial's reference.
     pub reference: Option<Shot>,
+    /// Of a picture with one lens: whether each pixel is in it, where something better than the reference says so.
+    pub mask: Option<Arc<Vec<bool>>>,
 }
 
 /// What a topic has drawn.

@@ -64,6 +64,26 @@ impl From<Leaf> for PlacedLeaf {
     }
 }
 
+/// Leaves of a combination, at most.
+pub const MOST_LEAVES: usize = 64;
+/// What a combination keeps in mind at once, at most: bits of a word.
+const MOST_DEPTH: usize = 32;
+/// Operations after one leaf, at most: two bits each of what an f32 holds exactly.
+const MOST_OPERATIONS: usize = 12;
+/// What counts as deep.
+const NESTED: &str = "combinations within combinations of which none is the first in its list";
+
+/// Of what a combination has too much, how much, and how much it may have.
+pub fn too_large(program: &[(PlacedLeaf, Vec<Operation>)]) -> Option<(&'static str, usize, usize)> {
+    let operations = program.iter().map(|(_, then)| then.len()).max().unwrap_or(0);
+    let limits = [
+        ("shapes (a corridor counts as one for each of its points and ways between them)", program.len(), MOST_LEAVES),
+        (NESTED, combination::depth(program), MOST_DEPTH),
+        (NESTED, operations, MOST_OPERATIONS),
+    ];
+    limits.into_iter().find(|(_, count, most)| count > most)
+}
+
 /// Triangles are told from combinations down to parts of this size, metres.
 const FINEST_M: f64 = 1e-3;
 
@@ -104,8 +124,12 @@ impl Body {
 
     /// What its leaves are, if it is a combination; ascending, each once.
     pub fn kinds(&self) -> Vec<VolumeTest> {
-        let Self::Combined(program) = self else { return Vec::new() };
-        let mut kinds: Vec<VolumeTest> = program.iter().map(|(leaf, _)| leaf.leaf.test()).collect();
+        if matches!(self, Self::One(_)) { Vec::new() } else { self.leaf_kinds() }
+    }
+
+    /// What its leaves are, ascending, each once.
+    pub fn leaf_kinds(&self) -> Vec<VolumeTest> {
+        let mut kinds: Vec<VolumeTest> = self.leaves().map(|leaf| leaf.leaf.test()).collect();
         kinds.sort_unstable();
         kinds.dedup();
         kinds
@@ -137,6 +161,38 @@ impl Body {
     /// Whether it has an end on all sides.
     pub fn is_bounded(&self) -> bool {
         self.bounds().size().max_element() < ENDLESS_M
+    }
+
+    /// Whether what is in it is asked of objects, be it in part: of places alone it cannot be told.
+    pub fn has_members(&self) -> bool {
+        self.leaves().any(|leaf| matches!(leaf.leaf, Leaf::Members(_)))
+    }
+
+    /// Whether its ends along a ray have a closed form.
+    pub fn is_form(&self) -> bool {
+        matches!(self, Self::One(leaf) if !matches!(leaf.leaf.test(), VolumeTest::Solid | VolumeTest::Members))
+    }
+
+    /// Intervals that a ray may be in it, at most, if its leaves say so: solids may be gone through any number of times.
+    pub fn most_intervals(&self) -> Option<usize> {
+        let is_solid = |leaf: &PlacedLeaf| leaf.leaf.test() == VolumeTest::Solid;
+        (!self.leaves().any(is_solid)).then(|| self.leaves().count())
+    }
+
+    /// The union of bodies as one combination; `None` where that is none or too large for one.
+    pub fn union(bodies: &[Self]) -> Option<Self> {
+        let mut all: Vec<(PlacedLeaf, Vec<Operation>)> = Vec::new();
+        for (i, body) in bodies.iter().filter(|body| !body.is_empty()).enumerate() {
+            match body {
+                Self::One(leaf) => all.push((leaf.clone(), Vec::new())),
+                Self::Combined(program) => all.extend(program.iter().cloned()),
+            }
+            if let (1.., Some((_, then))) = (i, all.last_mut()) {
+                then.push(Operation::Union);
+            }
+        }
+        let is_one = all.len() > 1 && !bodies.iter().any(Self::has_members) && too_large(&all).is_none();
+        is_one.then_some(Self::Combined(all))
     }
 
     /// Whether it is a convex volume.
@@ -210,8 +266,20 @@ impl Body {
 
     /// Its figures for an eye; planes and leaves are appended to `planes`.
     pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
+        match self {
+            Self::One(leaf) => leaf.figures(view, planes),
+            Self::Combined(_) => self.program_figures(view, planes),
+        }
+    }
+
+    /// Its figures as a combination, if only of one leaf; leaves are appended to `planes`.
+    pub fn program_figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
+        let alone;
         let program = match self {
-            Self::One(leaf) => return leaf.figures(view, planes),
+            Self::One(leaf) => {
+                alone = [(leaf.clone(), Vec::new())];
+                &alone[..]
+            }
             Self::Combined(program) => program,
         };
         let leaf = |(leaf, then): &(PlacedLeaf, Vec<Operation>)| match &leaf.leaf {
@@ -343,7 +411,15 @@ impl PlacedLeaf {
                 out.axis_z = turn(axes.z_axis);
                 out.size_x = first as f32;
                 out.size_y = self.place.near as f32;
-                out.size_z = f32::from(u8::from(volume.contains(eye) && !view.is_orthographic()));
+                if !view.is_orthographic() {
+                    let own = placed.local(eye);
+                    let near = DVec3::splat(view.camera.near_m);
+                    let around = placed.solid.bounds();
+                    let may_touch = own.cmpge(around.min - near).all() && own.cmple(around.max + near).all();
+                    let is_in_doubt = may_touch && placed.solid.distance(own) < view.camera.near_m;
+                    // A quarter more says that the eye is all but on a face.
+                    out.size_z = placed.solid.winding(own) as f32 + if is_in_doubt { 0.25 } else { 0.0 };
+                }
             }
             Volume::Flat(flat) => flat::figures(flat, view, &mut out, planes),
             Volume::Convex(hull) => {

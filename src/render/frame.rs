@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! shadow map                    if the sun casts shadows and the map does not hold this view yet
-//! depth sprites                 of the lens volumes in view that are tested by them
+//! stored depth sprites          of the lens volumes in view that are tested by them
+//! depth sprites                 of the solids in view whose sides are asked for
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
 //! narrow lists                  of many lenses, those that each tile shows something of
@@ -37,10 +38,11 @@ use crate::{
         operations::{Filter, Operations},
         pipelines::{Behind, Key, ShadeTarget, Shown},
         renderer::{CityOnGpu, Renderer, STAGE_STRIDE},
-        seen::{SeenVolume, part_of, seen_volumes},
+        seen::{Kept, Seen, SeenVolume, part_of, seen_volumes},
         solids::SolidTable,
         sprite_passes,
         sprites::Pages,
+        stored,
         targets::Needs,
         volume::LensVolume,
     },
@@ -173,7 +175,10 @@ impl Renderer {
             return Ok(Vec::new());
         }
         let mut recorder = Recorder { timer, passes: Vec::new() };
-        let (seen, pages) = seen_volumes(input);
+        let all_seen = seen_volumes(input, &self.drawn_box());
+        let list_target = stored::list_target(&all_seen.volumes, input);
+        self.fit_sprites(&all_seen, list_target)?;
+        let Seen { volumes: seen, pages, .. } = all_seen;
         let sun_view = self.sun_view(&input.view, &input.sun, |frustum| self.content_bounds(input, frustum));
         let plans = Plans::new(input, &seen);
         let filters = plans.filters.len() as u32;
@@ -187,6 +192,7 @@ impl Renderer {
         })?;
         let cuts =
             Cuts::new(input, |lens| seen.iter().any(|v| v.lens == lens), sun_view.as_ref(), plans.hiding.clone());
+        self.kept_sprites = stored::kept_sprites(&seen);
         let (keys, is_uber) = self.prepare(input, &seen, &plans, &cuts, sun_view.is_some());
         self.upload(input, sun_view.as_ref(), &seen, &plans, &cuts, is_uber)?;
         let narrows = self.narrows_lists && is_uber && plans.is_long();
@@ -215,6 +221,7 @@ impl Renderer {
             self.shadow_pass(&mut encoder, &mut recorder, input, sun_view, (&cuts, &keys.cuts));
         }
         // Before the city: what a lens hides is decided by them.
+        self.stored_pass(&mut encoder, &mut recorder, input, &seen);
         if pages.count > 0 {
             self.sprite_passes(&mut encoder, &mut recorder, input, &seen, pages.count);
         }
@@ -272,7 +279,7 @@ impl Renderer {
 
     /// The text of a module as it runs where the lenses are in the picture; without lenses in view everywhere.
     pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
-        let (seen, _) = seen_volumes(input);
+        let seen = seen_volumes(input, &self.drawn_box()).volumes;
         let plans = Plans::new(input, &seen);
         let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
         let is_written_out = input.backend == Backend::Specialised && !plans.is_long();
@@ -301,6 +308,11 @@ impl Renderer {
             },
         };
         module.source_for_people(handlers(), &names, self.gpu.device.limits().max_inter_stage_shader_variables)
+    }
+
+    /// The box around all cities on the card.
+    fn drawn_box(&self) -> Aabb {
+        self.cities().fold(Aabb::EMPTY, |all, c| all.union(c.buffers.bounds))
     }
 
     /// Whether some faces of the picture have a normal per vertex.
@@ -347,19 +359,37 @@ impl Renderer {
         let haze = haze(input) / radius;
         let view = view_uniform(&input.view, input.tile, jitter, input.sample, haze);
         let light = light::uniform(&input.sun, input.background, sun, input.view.camera.eye, radius);
-        let (mut stages, mut sprite_places, mut shapes, mut planes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut stages, mut list_stages, mut stored_stages) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut sprite_places, mut shapes, mut planes) = (Vec::new(), Vec::new(), Vec::new());
         for volume in seen {
-            let shape = input.volumes[volume.index].figures(&input.view, &mut planes);
+            let body = &input.volumes[volume.index].body;
+            let is_listed = volume.test.is_sprite() && !body.is_form();
+            let shape = match is_listed {
+                true => body.program_figures(&input.view, &mut planes),
+                false => body.figures(&input.view, &mut planes),
+            };
             shapes.push(layout::Shape { kind: volume.test.number(), ..shape });
             let Some(sprite) = &volume.sprite else {
                 sprite_places.push(bytemuck::Zeroable::zeroed());
                 continue;
             };
-            let body = &input.volumes[volume.index].body;
-            let (own, place) =
-                sprite_passes::layouts(shape, (volume, sprite), body, &input.view, input.tile, self.page_size());
-            stages.extend(own.iter().flat_map(strided));
-            sprite_places.push(place);
+            match &sprite.kept {
+                Kept::Page(place) => {
+                    let seen = (volume, sprite, *place);
+                    let (own, place) =
+                        sprite_passes::layouts(shape, seen, body, &input.view, input.tile, self.page_size());
+                    stages.extend(own.iter().flat_map(strided));
+                    sprite_places.push(place);
+                }
+                Kept::Stored(how) => {
+                    let (stage, place) = stored::layouts(shape, (volume, sprite, how), view, input.tile);
+                    let lists =
+                        stored::list_stages(body, (&input.view, &stage), sprite, self.list_size(), self.crossing_room);
+                    list_stages.extend(lists.iter().flat_map(stored::placed));
+                    stored_stages.extend(stored::placed(&stage));
+                    sprite_places.push(place);
+                }
+            }
         }
         let eyes = [Some(input.view.camera.eye), sun.map(|sun| sun.camera.eye)];
         let city_uniforms = eyes.map(|eye| eye.map_or_else(Vec::new, |eye| self.city_uniforms(eye)));
@@ -412,6 +442,7 @@ impl Renderer {
         stale |= b.sun_cities.sync(gpu, &city_uniforms[1])?;
         stale |= b.planes.sync(gpu, &planes)?;
         stale |= b.sprite_stages.sync(gpu, &stages)?;
+        stale |= b.stored_stages.sync(gpu, &[list_stages, stored_stages].concat())?;
         stale |= b.sprite_places.sync(gpu, &sprite_places)?;
         stale |= b.lens_shapes.sync(gpu, &shapes)?;
         stale |= b.parameters.sync(gpu, &parameters)?;
@@ -453,8 +484,14 @@ impl Renderer {
             });
             sections.chain(sun.map(|program| Key::Shadow(Some(program.clone())))).collect()
         };
-        let with_sprites = seen.iter().filter(|v| v.sprite.is_some());
-        keys.extend(with_sprites.flat_map(|v| sprite_passes::keys(&input.volumes[v.index].body)));
+        for volume in seen {
+            let body = &input.volumes[volume.index].body;
+            match volume.sprite.as_ref().map(|s| &s.kept) {
+                Some(Kept::Page(_)) => keys.extend(sprite_passes::keys(body)),
+                Some(Kept::Stored(_)) => keys.extend(stored::keys(body)),
+                None => {}
+            }
+        }
         let clay = input.base == BaseStyle::Clay;
         let shade_to = |target, shown, program: Program| Key::Shade {
             program,

@@ -140,7 +140,49 @@ pub struct SpritePlace {
     pub texels_per_pixel: [f32; 2],
     pub sprite: [f32; 2],
     pub page: u32,
-    /// An element of an array in a uniform buffer takes a multiple of 16 bytes.
+    pub first: u32,
+    pub width: u32,
+    pub layers: u32,
+    pub kind: u32,
+    pub near: f32,
+    pub far: f32,
+    pub own: u32,
+}
+
+/// `pass/stored-sprite.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct StoredStage {
+    pub view: View,
+    pub shape: Shape,
+    pub pixels_per_texel: [f32; 2],
+    pub origin: [f32; 2],
+    pub width: u32,
+    pub height: u32,
+    pub layers: u32,
+    pub first: u32,
+    pub kind: u32,
+    pub near: f32,
+    pub far: f32,
+    pub first_list: u32,
+    pub excess: u32,
+    /// A struct that holds a vector takes a multiple of 16 bytes.
+    pub pad_0: [u32; 3],
+}
+
+/// `pass/sprite-list.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct ListStage {
+    pub view: View,
+    pub shape: Shape,
+    pub clip_scale: [f32; 2],
+    pub clip_shift: [f32; 2],
+    pub width: u32,
+    pub height: u32,
+    pub first_list: u32,
+    pub leaf: u32,
+    pub room: u32,
     pub pad_0: [u32; 3],
 }
 
@@ -310,7 +352,46 @@ mod tests {
                 host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number, border }),
             ),
             (&cut, host!(City { linear, from_whole, number, from_fraction, first_surface, to, scale })),
-            (&shade, host!(SpritePlace { origin, size, texels_per_pixel, sprite, page, pad_0 })),
+            (
+                &shade,
+                host!(SpritePlace {
+                    origin,
+                    size,
+                    texels_per_pixel,
+                    sprite,
+                    page,
+                    first,
+                    width,
+                    layers,
+                    kind,
+                    near,
+                    far,
+                    own
+                }),
+            ),
+            (
+                &Module::StoredForm,
+                host!(StoredStage {
+                    view,
+                    shape,
+                    pixels_per_texel,
+                    origin,
+                    width,
+                    height,
+                    layers,
+                    first,
+                    kind,
+                    near,
+                    far,
+                    first_list,
+                    excess,
+                    pad_0
+                }),
+            ),
+            (
+                &Module::SpriteList,
+                host!(ListStage { view, shape, clip_scale, clip_shift, width, height, first_list, leaf, room, pad_0 }),
+            ),
             (
                 &Module::Furniture,
                 host!(FurnitureItem { low, high, color, halo, radius, softness, first_texel, row_texels }),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::{
     geom::{
         Aabb, Solid, Volume,
-        combination::{self, Operation, Tree},
+        combination::{Operation, Tree},
         shape::{Motion, solid},
     },
     lens::{
@@ -14,7 +14,7 @@ use crate::{
         solids::{FocusError, Place, ShownCity, Solids},
     },
     render::{
-        body::{Body, Leaf, Members, PlacedLeaf},
+        body::{Body, Leaf, Members, PlacedLeaf, too_large},
         placement::Eye,
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
@@ -22,15 +22,6 @@ use crate::{
     scene::Scene,
     shader::VolumeTest,
 };
-
-/// Leaves of a combination, at most.
-pub const MOST_LEAVES: usize = 64;
-/// What a combination keeps in mind at once, at most: bits of a word.
-const MOST_DEPTH: usize = 32;
-/// Operations after one leaf, at most: two bits each of what an f32 holds exactly.
-const MOST_OPERATIONS: usize = 12;
-/// What counts as deep.
-const NESTED: &str = "combinations within combinations of which none is the first in its list";
 
 /// The volumes of a scene's enabled lenses, and how the volumes of all its lenses may be tested.
 #[derive(Debug, Default)]
@@ -53,35 +44,40 @@ pub(super) fn volumes_of(
         // Attached to what is not there, it acts nowhere.
         let motion = eye.motion(lens, scene, city.model);
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
+        let mut of_lens: Vec<Body> = Vec::new();
         for (j, focus) in lens.shapes.iter().enumerate() {
-            let bodies = match bodies_of(focus, city, &place, solids) {
+            match bodies_of(focus, city, &place, solids) {
                 Ok(mut bodies) => {
                     if lens.soft_border().is_some() || has_surface(lens.drawn_body()) {
                         let leaves = bodies.iter_mut().flat_map(Body::leaves_mut);
                         leaves.for_each(|leaf| tell_distance(&mut leaf.leaf, solids));
                     }
-                    bodies
+                    of_lens.extend(bodies);
                 }
-                Err(_) if !lens.enabled => continue,
+                Err(_) if !lens.enabled => {}
                 Err((key, message)) => {
                     let place = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
                     let dot = if key.is_empty() { "" } else { "." };
                     return Err(format!("[lens.{i}] {place}{dot}{key}: {message}"));
                 }
-            };
-            for mut body in bodies {
-                if lens.content.is_some() {
-                    body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city));
-                }
-                let volume = volume_of(i as u32, lens, body);
-                let [picture, sun] = volume.tests();
-                all.tests[0].extend(picture);
-                all.tests[1].extend(sun);
-                all.tests[2].extend(volume.body.kinds());
-                // A lens without volume shows nothing and costs nothing.
-                if lens.enabled && motion.is_some() && !volume.body.is_empty() {
-                    all.volumes.push(volume);
-                }
+            }
+        }
+        // One sprite for all of a lens (S3).
+        if let Some(union) = lens.sprite.and_then(|_| Body::union(&of_lens)) {
+            of_lens = vec![union];
+        }
+        for mut body in of_lens {
+            if lens.content.is_some() {
+                body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city));
+            }
+            let volume = volume_of(i as u32, lens, body);
+            let [picture, sun] = volume.tests();
+            all.tests[0].extend(picture);
+            all.tests[1].extend(sun);
+            all.tests[2].extend(volume.body.kinds());
+            // A lens without volume shows nothing and costs nothing.
+            if lens.enabled && motion.is_some() && !volume.body.is_empty() {
+                all.volumes.push(volume);
             }
         }
     }
@@ -126,13 +122,7 @@ fn bodies_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids)
         return Ok(leaves_of(focus, city, place, solids)?.into_iter().map(|leaf| Body::One(leaf.into())).collect());
     }
     let program = tree_of(focus, city, place, solids)?.program();
-    let operations = program.iter().map(|(_, then)| then.len()).max().unwrap_or(0);
-    let limits = [
-        ("shapes (a corridor counts as one for each of its points and ways between them)", program.len(), MOST_LEAVES),
-        (NESTED, combination::depth(&program), MOST_DEPTH),
-        (NESTED, operations, MOST_OPERATIONS),
-    ];
-    if let Some((what, count, most)) = limits.into_iter().find(|(_, count, most)| count > most) {
+    if let Some((what, count, most)) = too_large(&program) {
         return Err(("shapes".into(), format!("a combination may have at most {most} {what}, has {count}")));
     }
     Ok(match program.len() {

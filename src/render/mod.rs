@@ -37,6 +37,7 @@ pub mod solids;
 pub mod sprite_passes;
 mod sprites;
 pub mod stats;
+pub mod stored;
 mod surfaces;
 mod synced;
 pub mod targets;
@@ -44,5 +45,6 @@ pub mod text;
 mod textures;
 pub mod volume;
 mod weld;
+mod worker;
 
 pub use renderer::Renderer;

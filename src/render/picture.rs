@@ -1,6 +1,7 @@
 //! A picture, its AOVs and its statistics, from a scene and a city: the shown surface written down.
 
 use std::{
+    collections::BTreeMap,
     sync::{Arc, Mutex, OnceLock, PoisonError},
     time::Instant,
 };
@@ -34,6 +35,7 @@ use crate::{
         placement::Eye,
         solids::SolidTable,
         stats::{self, Statistics},
+        stored::SpriteTexels,
         volume::LensVolume,
     },
     scene::{CitySpec, Scene},
@@ -109,6 +111,8 @@ pub struct Picture {
     pub lens_mask: Option<Vec<Vec<u32>>>,
     /// Class bits as the card holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
     classes: Vec<Vec<u32>>,
+    /// Rays that have more intervals than the sprite of their lens has layers, by lens.
+    excess: BTreeMap<u32, u32>,
     /// GPU allocations and uploads while drawing (reading back not counted).
     made: (u64, u64),
     /// What it cost.
@@ -238,6 +242,9 @@ impl Studio {
         for part in parts(request.size) {
             self.render_part(scene, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
         }
+        for (lens, rays) in &picture.excess {
+            log::warn!("{}", excess_message(&scene.lenses[*lens as usize].name, *rays));
+        }
         if request.statistics {
             picture.statistics = self.statistics(scene, request, &prepared, &view, &picture, passes);
             let frame = &mut picture.statistics.frame;
@@ -284,6 +291,15 @@ impl Studio {
             self.renderer.draw(&input, None)?;
         }
         Ok(())
+    }
+
+    /// The stored depth sprites of a lens in a picture of this size: none where it is not seen or not tested by one.
+    pub fn sprites(&mut self, scene: &Scene, size: [u32; 2], lens: usize) -> Result<Vec<SpriteTexels>, RenderError> {
+        self.redraw(scene, size)?;
+        if self.renderer.makes_room()? {
+            self.redraw(scene, size)?;
+        }
+        Ok(self.renderer.read_sprites(lens as u32)?)
     }
 
     /// Puts contents of lenses on the card, and edges the first time that something draws lines.
@@ -425,13 +441,21 @@ impl Studio {
             let mut timer =
                 if request.statistics && sample == 0 { Some(Timer::new(&self.renderer.gpu)?) } else { None };
             let before = (self.renderer.gpu.allocations(), self.renderer.gpu.uploads());
-            let records = self.renderer.draw(&input, timer.as_mut())?;
+            let mut records = self.renderer.draw(&input, timer.as_mut())?;
+            // Later samples are added to those before; they meet about as many crossings.
+            if sample == 0 && self.renderer.makes_room()? {
+                timer = timer.map(|_| Timer::new(&self.renderer.gpu)).transpose()?;
+                records = self.renderer.draw(&input, timer.as_mut())?;
+            }
             picture.made.0 += self.renderer.gpu.allocations() - before.0;
             picture.made.1 += self.renderer.gpu.uploads() - before.1;
             if sample == 0 {
                 self.read_aovs(request, view, part, picture)?;
                 if records.iter().any(|r| r.name == CLEAR_MASKS) {
                     self.read_masks(scene.lenses.len(), part, picture)?;
+                }
+                for (lens, rays) in self.renderer.read_excess()? {
+                    *picture.excess.entry(lens).or_default() += rays;
                 }
             }
             if request.statistics {
@@ -558,7 +582,7 @@ impl Studio {
                 .collect(),
             contents: prepared.contents.figures(self.shown(), &self.renderer),
             overlays: Vec::new(),
-            warnings: self.warnings(),
+            warnings: self.warnings().into_iter().chain(excess_warnings(scene, picture)).collect(),
             passes,
         }
     }
@@ -567,6 +591,26 @@ impl Studio {
         let warning = |(code, w): (crate::city::WarningCode, &crate::city::warning::Warning)| serde_json::json!({ "code": code.code(), "count": w.count, "objects": w.objects, "message": w.message });
         self.model.warnings.iter().map(warning).collect()
     }
+}
+
+/// The code of the warning that rays have more intervals than a sprite has layers.
+pub const SPRITE_LAYERS: &str = "sprite-layers";
+
+fn excess_message(lens: &str, rays: u32) -> String {
+    format!(
+        "{rays} rays enter lens \"{lens}\" more often than its sprite has layers; more (sprite.layers) would be right"
+    )
+}
+
+/// Of a picture whose sprites have too few layers, in the form of those of files.
+fn excess_warnings(scene: &Scene, picture: &Picture) -> Option<serde_json::Value> {
+    let lenses: Vec<&str> = picture.excess.keys().map(|lens| scene.lenses[*lens as usize].name.as_str()).collect();
+    let messages: Vec<String> =
+        lenses.iter().zip(picture.excess.values()).map(|(l, n)| excess_message(l, *n)).collect();
+    let count: u32 = picture.excess.values().sum();
+    let warning =
+        serde_json::json!({ "code": SPRITE_LAYERS, "count": count, "objects": lenses, "message": messages.join("; ") });
+    (count > 0).then_some(warning)
 }
 
 fn input<'a>(
@@ -687,6 +731,7 @@ impl Picture {
             normal: normal.then(|| vec![[0.0; 3]; pixels]),
             lens_mask: None,
             classes: vec![vec![0; pixels]; planes],
+            excess: BTreeMap::new(),
             made: (0, 0),
             statistics: Statistics::default(),
         }

@@ -1,19 +1,10 @@
 //! Pipelines by canonical key, made when first needed, or off the frame; how many were made and met again is counted.
 
-use std::{
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-        mpsc::{Receiver, Sender, channel},
-    },
-    thread::JoinHandle,
-};
-
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
     gpu::Gpu,
-    render::{edges::Edge, layout, sprite_passes::SolidStage},
+    render::{edges::Edge, layout, sprite_passes::SolidStage, stored::LIST_TARGET, worker::Worker},
     shader::{Module, Program, VolumeTest},
 };
 
@@ -31,7 +22,7 @@ pub const OWN_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// Four colours or opacities as `lib/packed.wgsl` packs them: what neighbourhood filters read and write.
 pub const FILTERED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// Stored depths of an entry and of an exit: volumetric depth sprites.
+/// Stored depths of an entry and of an exit: the sides of solids.
 pub const SPRITES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// The picture: sRGB bytes.
 pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -64,8 +55,12 @@ pub enum Key {
     SolidSprite(SolidStage),
     /// One of those of a combination, and what its leaves are.
     CombinedSprite(SolidStage, Vec<VolumeTest>),
-    /// Depth sprite of a volume, by the kind of shape (`layout::Shape::kind`).
-    Sprite(VolumeTest),
+    /// The stored depth sprite of a volume that has a closed form, by its kind.
+    StoredForm(VolumeTest),
+    /// That of a lens of several leaves, or of a solid, and what the leaves are.
+    StoredLayers(Vec<VolumeTest>),
+    /// Where rays go through the faces of its solids.
+    SpriteList,
     /// Shading.
     Shade {
         /// What the context and the lenses do.
@@ -172,6 +167,8 @@ pub struct Layouts {
     pub planes: wgpu::BindGroupLayout,
     /// Sprite, group 2: the stage, at a dynamic offset.
     pub stage: wgpu::BindGroupLayout,
+    /// Stored sprites, group 2: the stage, at a dynamic offset, and the sprites.
+    pub stored: wgpu::BindGroupLayout,
     /// Shade, group 1: surfaces, planes of convex volumes, faces of solids, light, targets.
     pub shade: wgpu::BindGroupLayout,
     /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks,
@@ -198,8 +195,15 @@ pub struct Layouts {
     pub sums: wgpu::TextureFormat,
 }
 
+/// A pipeline that draws, or computes.
+#[derive(Clone, Debug)]
+pub(super) enum Pipeline {
+    Render(wgpu::RenderPipeline),
+    Compute(wgpu::ComputePipeline),
+}
+
 /// Shader modules by what is in them.
-type Modules = FxHashMap<Module, wgpu::ShaderModule>;
+pub(super) type Modules = FxHashMap<Module, wgpu::ShaderModule>;
 
 /// All pipelines.
 #[derive(Debug)]
@@ -207,7 +211,7 @@ pub struct Pipelines {
     /// What they share.
     pub layouts: Layouts,
     modules: Modules,
-    made: FxHashMap<Key, wgpu::RenderPipeline>,
+    made: FxHashMap<Key, Pipeline>,
     /// Pipelines that a frame waited for, since the last [`Pipelines::begin_picture`].
     pub compiled: u32,
     /// Whether lists were narrowed since then, and whether the pipeline for it was made.
@@ -219,52 +223,6 @@ pub struct Pipelines {
     /// Made off the frame: what was asked for and is not there yet, and the worker that makes it.
     asked: FxHashSet<Key>,
     worker: Option<Worker>,
-}
-
-/// A thread that makes pipelines. Dropping it waits for the one in hand: a driver that is torn down while it compiles may
-/// crash.
-#[derive(Debug)]
-struct Worker {
-    /// `None` once no more are wanted.
-    wanted: Option<Sender<Key>>,
-    ready: Receiver<(Key, wgpu::RenderPipeline)>,
-    is_over: Arc<AtomicBool>,
-    thread: Option<JoinHandle<()>>,
-}
-
-impl Drop for Worker {
-    fn drop(&mut self) {
-        self.is_over.store(true, Ordering::Relaxed);
-        self.wanted = None;
-        if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so.
-            let _ = thread.join();
-        }
-    }
-}
-
-impl Worker {
-    /// `None` where the system gives no thread.
-    fn start(layouts: Layouts) -> Option<Self> {
-        let (wanted, orders) = channel::<Key>();
-        let (deliveries, ready) = channel();
-        let is_over = Arc::new(AtomicBool::new(false));
-        let is_enough = is_over.clone();
-        let work = move || {
-            let mut modules = Modules::default();
-            for key in orders {
-                if is_enough.load(Ordering::Relaxed) {
-                    return;
-                }
-                let pipeline = layouts.make(&mut modules, &key);
-                if deliveries.send((key, pipeline)).is_err() {
-                    return;
-                }
-            }
-        };
-        let thread = std::thread::Builder::new().name("pipelines".to_owned()).spawn(work).ok()?;
-        Some(Self { wanted: Some(wanted), ready, is_over, thread: Some(thread) })
-    }
 }
 
 use wgpu::{BindingType as B, ShaderStages as S};
@@ -312,6 +270,8 @@ impl Layouts {
             wgpu::TextureFormat::Rgba16Float
         };
         let all = S::VERTEX | S::FRAGMENT;
+        let computed = S::FRAGMENT | S::COMPUTE;
+        let written = buffer(wgpu::BufferBindingType::Storage { read_only: false }, false);
         let dynamic = buffer(wgpu::BufferBindingType::Uniform, true);
         let filtered = B::Sampler(wgpu::SamplerBindingType::Filtering);
         let compared = B::Sampler(wgpu::SamplerBindingType::Comparison);
@@ -324,8 +284,19 @@ impl Layouts {
                 "image",
                 &[(0, S::FRAGMENT, image(T::Float { filterable: true }, D::D2)), (1, S::FRAGMENT, filtered)],
             ),
-            planes: layout(gpu, "planes", &[(1, S::FRAGMENT, storage()), (2, S::FRAGMENT, storage())]),
+            planes: layout(gpu, "planes", &[(1, computed, storage()), (2, computed, storage())]),
             stage: layout(gpu, "stage", &[(0, all, dynamic)]),
+            stored: layout(
+                gpu,
+                "stored sprites",
+                &[
+                    (0, all | S::COMPUTE, dynamic),
+                    (1, S::COMPUTE, written),
+                    (2, computed, written),
+                    (3, computed, written),
+                    (4, computed, written),
+                ],
+            ),
             shade: layout(
                 gpu,
                 "shade",
@@ -355,6 +326,7 @@ impl Layouts {
                     (7, all, uniform()),
                     (8, S::FRAGMENT, storage()),
                     (9, S::FRAGMENT, storage()),
+                    (10, S::FRAGMENT, storage()),
                 ],
             ),
             cut_city: layout(
@@ -401,7 +373,7 @@ impl Layouts {
         modules.entry(module.clone()).or_insert_with(|| make(&module)).clone()
     }
 
-    fn make(&self, modules: &mut Modules, key: &Key) -> wgpu::RenderPipeline {
+    pub(super) fn make(&self, modules: &mut Modules, key: &Key) -> Pipeline {
         let module = self.module(modules, key.module());
         let groups: Vec<Option<&wgpu::BindGroupLayout>> = match key {
             Key::Geometry { section, cut, .. } => {
@@ -412,7 +384,7 @@ impl Layouts {
             }
             Key::Shadow(Some(_)) => vec![Some(&self.view), Some(&self.cut_city), Some(&self.shapes)],
             Key::Shadow(None) | Key::Bare => vec![Some(&self.view), Some(&self.city)],
-            Key::Sprite(_) | Key::SolidSprite(_) | Key::CombinedSprite(..) => {
+            Key::SolidSprite(_) | Key::CombinedSprite(..) => {
                 vec![Some(&self.view), Some(&self.planes), Some(&self.stage)]
             }
             Key::Shade { program, .. } => {
@@ -424,6 +396,8 @@ impl Layouts {
             }
             Key::Filter(_) => vec![Some(&self.filter)],
             Key::Resolve => vec![Some(&self.resolve)],
+            Key::StoredForm(_) | Key::StoredLayers(_) => vec![None, Some(&self.planes), Some(&self.stored)],
+            Key::SpriteList => vec![None, None, Some(&self.stored)],
             Key::Furniture { .. } => vec![Some(&self.furniture)],
             Key::FurnitureOver => vec![Some(&self.furniture_over)],
         };
@@ -435,10 +409,20 @@ impl Layouts {
         });
         let constants = key.constants();
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        if let Some(entry) = key.compute_entry() {
+            return Pipeline::Compute(self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(&name),
+                layout: Some(&layout),
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: options,
+                cache: None,
+            }));
+        }
         let (vertex_entry, fragment_entry) = key.entry_points();
         let targets = key.targets(self.sums);
         let buffers = key.vertex_buffers();
-        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        Pipeline::Render(self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(&name),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
@@ -458,7 +442,7 @@ impl Layouts {
             }),
             multiview_mask: None,
             cache: None,
-        })
+        }))
     }
 }
 
@@ -531,21 +515,18 @@ impl Pipelines {
 
     /// A prepared pipeline.
     pub fn get(&self, key: &Key) -> &wgpu::RenderPipeline {
-        self.made.get(key).unwrap_or_else(|| unreachable!("{key:?} was not prepared"))
+        match self.made.get(key) {
+            Some(Pipeline::Render(pipeline)) => pipeline,
+            _ => unreachable!("{key:?} was not prepared"),
+        }
     }
-}
 
-fn shape_name(shape: VolumeTest) -> &'static str {
-    match shape {
-        VolumeTest::Sphere => "sphere",
-        VolumeTest::Box => "box",
-        VolumeTest::Cylinder => "cylinder",
-        VolumeTest::Ellipsoid => "ellipsoid",
-        VolumeTest::Frustum => "cone",
-        VolumeTest::Solid | VolumeTest::SolidSprite => "solid",
-        VolumeTest::Combined | VolumeTest::CombinedSprite => "combination",
-        VolumeTest::Convex | VolumeTest::Sprite | VolumeTest::Members => "convex body",
-        VolumeTest::Flat => "flat figure",
+    /// A prepared pipeline that computes.
+    pub fn get_compute(&self, key: &Key) -> &wgpu::ComputePipeline {
+        match self.made.get(key) {
+            Some(Pipeline::Compute(pipeline)) => pipeline,
+            _ => unreachable!("{key:?} was not prepared"),
+        }
     }
 }
 
@@ -568,7 +549,10 @@ impl Key {
             Self::Geometry { cut, .. } => Module::Geometry(cut.clone()),
             Self::Shadow(cut) => Module::Shadow(cut.clone()),
             Self::CombinedSprite(_, kinds) => Module::CombinedSprite(kinds.clone()),
-            Self::Sprite(_) | Self::SolidSprite(_) => Module::Sprite,
+            Self::StoredForm(_) => Module::StoredForm,
+            Self::StoredLayers(kinds) => Module::StoredLayers(kinds.clone()),
+            Self::SpriteList => Module::SpriteList,
+            Self::SolidSprite(_) => Module::Sprite,
             Self::Shade { program, .. } => Module::Shade(program.clone()),
             Self::Lines { program, .. } => Module::Lines(program.clone()),
             Self::Filter(effect) => Module::Filter(*effect),
@@ -599,7 +583,9 @@ impl Key {
                 )
             }
             Self::Shadow(_) => self.module().name(),
-            Self::Sprite(kind) => format!("depth sprite of a {}", shape_name(*kind)),
+            Self::StoredForm(kind) => format!("depth sprite of a {}", kind.constant().to_lowercase()),
+            Self::StoredLayers(_) => "depth sprite in layers".to_owned(),
+            Self::SpriteList => "crossings of a sprite".to_owned(),
             Self::SolidSprite(stage) | Self::CombinedSprite(stage, _) => match stage {
                 SolidStage::Missed => "depth sprite of a solid",
                 SolidStage::Nearest => "depth sprite of a solid, nearest",
@@ -649,9 +635,13 @@ impl Key {
                 ("BACKGROUND", f64::from(*behind as u32)),
             ],
             Self::Lines { smooth, .. } => vec![("SMOOTH", flag(*smooth))],
-            Self::Sprite(kind) => vec![("KIND", f64::from(kind.number()))],
+            Self::StoredForm(kind) => vec![("KIND", f64::from(kind.number()))],
             _ => Vec::new(),
         }
+    }
+
+    fn compute_entry(&self) -> Option<&'static str> {
+        matches!(self, Self::StoredForm(_) | Self::StoredLayers(_)).then_some("store")
     }
 
     fn entry_points(&self) -> (&'static str, Option<&'static str>) {
@@ -678,6 +668,7 @@ impl Key {
                 };
                 ("vertex", Some(fragment))
             }
+            Self::SpriteList => ("vertex", Some("note")),
             Self::SolidSprite(SolidStage::Missed) => ("vertex", Some("missed")),
             Self::SolidSprite(SolidStage::Nearest) => ("vertex_of_solid", Some("nearest")),
             Self::SolidSprite(SolidStage::Farthest) => ("vertex_of_solid", Some("farthest")),
@@ -699,7 +690,8 @@ impl Key {
             Self::Geometry { .. } | Self::Shadow(_) | Self::Bare => vec![vertex],
             Self::Lines { .. } => vec![Some(Edge::LAYOUT)],
             Self::Shade { .. } | Self::Filter(_) => vec![per_vertex(8, CORNER)],
-            Self::SolidSprite(SolidStage::Nearest | SolidStage::Farthest)
+            Self::SpriteList
+            | Self::SolidSprite(SolidStage::Nearest | SolidStage::Farthest)
             | Self::CombinedSprite(SolidStage::NearestFace | SolidStage::FarthestFace, _) => {
                 vec![per_vertex(12, SOLID_CORNER)]
             }
@@ -741,7 +733,12 @@ impl Key {
                     write_mask: wgpu::ColorWrites::ALL,
                 })]
             }
-            Self::Sprite(_) | Self::SolidSprite(SolidStage::Missed) => vec![Some(SPRITES.into())],
+            Self::SpriteList => vec![Some(wgpu::ColorTargetState {
+                format: LIST_TARGET,
+                blend: None,
+                write_mask: wgpu::ColorWrites::empty(),
+            })],
+            Self::SolidSprite(SolidStage::Missed) => vec![Some(SPRITES.into())],
             Self::SolidSprite(stage) | Self::CombinedSprite(stage, _) => {
                 let write_mask = if stage.is_nearest() { wgpu::ColorWrites::RED } else { wgpu::ColorWrites::GREEN };
                 vec![Some(wgpu::ColorTargetState { format: SPRITES, blend: None, write_mask })]
@@ -782,7 +779,9 @@ impl Key {
             Self::Shade { shown: Shown::Surface, .. } => C::Less,
             Self::Shade { shown: Shown::Background, .. } => C::Equal,
             Self::Shade { shown: Shown::Any, .. }
-            | Self::Sprite(_)
+            | Self::StoredForm(_)
+            | Self::StoredLayers(_)
+            | Self::SpriteList
             | Self::Filter(_)
             | Self::Resolve
             | Self::Furniture { .. }

@@ -17,7 +17,8 @@ use crate::{
         narrow::Narrowing,
         pipelines::{Layouts, Pipelines},
         solids::SolidTable,
-        synced::Synced,
+        stored::KeptSprite,
+        synced::{Room, Synced},
         targets::{Needs, Target, Targets},
     },
     shader::{Program, handlers},
@@ -25,6 +26,8 @@ use crate::{
 
 /// Bytes between two dynamic offsets: what every adapter accepts.
 pub(super) const STAGE_STRIDE: u64 = 256;
+/// What to do where sprites are too large.
+const COARSER: &str = "a smaller resolution, fewer layers or fewer bits (sprite of a lens) would be right";
 
 /// A renderer on one device.
 #[derive(Debug)]
@@ -55,6 +58,13 @@ pub struct Renderer {
     pub(super) curtain: Option<Curtain>,
     /// Titles, captions and legends, once a picture had some.
     pub(super) furniture: Option<FurnitureOnGpu>,
+    /// The stored sprites of the last frame.
+    pub(super) kept_sprites: Vec<KeptSprite>,
+    /// What passes that list crossings are drawn on, once there was one.
+    pub(super) list_target: Option<wgpu::TextureView>,
+    /// Whether the last frame listed crossings, and how many of them there is room for.
+    pub(super) lists_crossings: bool,
+    pub(super) crossing_room: u64,
     /// Counts cities, so that the shadow of an old one is not taken for the new one's.
     generation: u32,
 }
@@ -81,6 +91,14 @@ pub(super) struct Buffers {
     pub solids: Synced,
     pub solid_corners: Synced,
     pub sprite_stages: Synced,
+    /// The sprites of lenses, and what makes them.
+    pub sprites: Room,
+    pub stored_stages: Synced,
+    /// Lists of crossings that layered sprites are made from, the crossings, and how many there are; then the rays of each
+    /// sprite that have more intervals than layers.
+    pub lists: Room,
+    pub crossings: Room,
+    pub counts: Room,
     pub sprite_places: Synced,
     pub lens_shapes: Synced,
     pub parameters: Synced,
@@ -122,6 +140,7 @@ pub(super) struct Groups {
     pub sun_view: wgpu::BindGroup,
     pub planes: wgpu::BindGroup,
     pub sprite_stage: wgpu::BindGroup,
+    pub stored: wgpu::BindGroup,
     pub shade: wgpu::BindGroup,
     pub lenses: wgpu::BindGroup,
     /// Where something is hidden: from the picture, and from the sun.
@@ -150,6 +169,11 @@ impl Renderer {
             solids: storage("solids of lenses")?,
             solid_corners: Synced::new(&gpu, "corners of solids", U::VERTEX)?,
             sprite_stages: uniform("sprite stages")?,
+            sprites: Room::new(&gpu, "depth sprites of lenses", U::STORAGE | U::COPY_SRC, COARSER)?,
+            stored_stages: uniform("stages of stored sprites")?,
+            lists: Room::new(&gpu, "lists of crossings", U::STORAGE | U::COPY_DST, COARSER)?,
+            crossings: Room::new(&gpu, "crossings", U::STORAGE, COARSER)?,
+            counts: Room::new(&gpu, "counts of sprites", U::STORAGE | U::COPY_DST | U::COPY_SRC, COARSER)?,
             sprite_places: uniform("places of depth sprites")?,
             lens_shapes: uniform("lens shapes")?,
             parameters: uniform("parameters")?,
@@ -193,6 +217,10 @@ impl Renderer {
             furniture: None,
             ran: Vec::new(),
             solids_of: None,
+            kept_sprites: Vec::new(),
+            list_target: None,
+            lists_crossings: false,
+            crossing_room: 0,
             generation: 0,
             gpu,
         })
@@ -280,11 +308,8 @@ impl Renderer {
             Some(narrowing) if self.binds_narrowed => &narrowing.lists,
             _ => b.tile_lists.buffer(),
         };
-        let stage_group = |label, buffer: &Synced, size: usize| {
-            let binding =
-                wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size: wgpu::BufferSize::new(size as u64) };
-            group(gpu, label, &p.stage, &[(0, wgpu::BindingResource::Buffer(binding))])
-        };
+        let stage_group =
+            |label, buffer: &Synced, size: usize| group(gpu, label, &p.stage, &[(0, stage_of(buffer, size))]);
         let surfaces = || {
             let all = self.contents.surfaces.as_ref().unwrap_or(&city.buffers.surfaces);
             wgpu::BindingResource::TextureView(all)
@@ -304,6 +329,18 @@ impl Renderer {
             sun_view: group(gpu, "sun's view", &p.view, &[(0, whole(b.sun_view.buffer()))]),
             planes: group(gpu, "planes", &p.planes, &[(1, whole(b.planes.buffer())), (2, whole(b.solids.buffer()))]),
             sprite_stage: stage_group("sprite stage", &b.sprite_stages, size_of::<layout::SpriteStage>()),
+            stored: group(
+                gpu,
+                "stored sprites",
+                &p.stored,
+                &[
+                    (0, stage_of(&b.stored_stages, size_of::<layout::StoredStage>())),
+                    (1, whole(b.sprites.buffer())),
+                    (2, whole(b.lists.buffer())),
+                    (3, whole(b.crossings.buffer())),
+                    (4, whole(b.counts.buffer())),
+                ],
+            ),
             shade: group(
                 gpu,
                 "shade",
@@ -335,6 +372,7 @@ impl Renderer {
                     (7, whole(b.lens_shapes.buffer())),
                     (8, whole(lists)),
                     (9, whole(b.invokers.buffer())),
+                    (10, whole(b.sprites.buffer())),
                 ],
             ),
             lines: group(gpu, "lines", &p.lines, &[(0, all_of(&targets.lines))]),
@@ -376,6 +414,12 @@ impl Renderer {
             resolve: group(gpu, "resolve", &p.resolve, &[(0, whole(b.resolve.buffer())), (1, all_of(&targets.sums))]),
         });
     }
+}
+
+/// A uniform of this size at a dynamic offset.
+fn stage_of(buffer: &Synced, size: usize) -> wgpu::BindingResource<'_> {
+    let size = wgpu::BufferSize::new(size as u64);
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size })
 }
 
 fn all_of(target: &Target) -> wgpu::BindingResource<'_> {

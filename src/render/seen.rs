@@ -1,12 +1,14 @@
 //! The lens volumes that a picture may show: where in it, how each is tested, and where its depth sprite stands if it has one.
 
 use crate::{
+    geom::Aabb,
     lens::LensSprite,
     render::{
         eye::PictureTile,
         frame::FrameInput,
         octagon::Octagon,
         sprites::{self, Pages, Place},
+        stored::{self, Stored},
     },
     shader::VolumeTest,
 };
@@ -32,7 +34,26 @@ pub(super) struct SeenSprite {
     /// The part of it that is kept, texels.
     pub bounds: PictureTile,
     /// Where it is kept.
-    pub place: Place,
+    pub kept: Kept,
+}
+
+/// Where a sprite is kept.
+pub(super) enum Kept {
+    /// On a page: what tells the sides of a solid.
+    Page(Place),
+    /// Among the words of all lenses' sprites.
+    Stored(Stored),
+}
+
+/// The volumes that a picture may show, and what their sprites take.
+pub(super) struct Seen {
+    pub volumes: Vec<SeenVolume>,
+    /// Of those that tell sides.
+    pub pages: Pages,
+    /// Of those that lenses are tested by.
+    pub words: u64,
+    /// Texels of those that are made from lists of crossings.
+    pub lists: u64,
 }
 
 /// Texels of a sprite.
@@ -44,36 +65,58 @@ fn sprite_size(input: &FrameInput, sprite: LensSprite) -> [u32; 2] {
     size.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, 16_384))
 }
 
-/// The volumes of a frame that its picture may show, and the pages of their sprites.
-pub(super) fn seen_volumes(input: &FrameInput) -> (Vec<SeenVolume>, Pages) {
-    let mut seen = Vec::new();
+/// The volumes of a frame that its picture may show; `city`: the box around what is drawn.
+pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb) -> Seen {
+    let mut seen: Vec<SeenVolume> = Vec::new();
+    let (mut words, mut lists, mut counts) = (0, 0, 0);
     for (index, volume) in input.volumes.iter().enumerate() {
         let Some(part) = volume.seen_part(&input.view, input.tile) else { continue };
         let bounds = part.rectangle();
         let (lens, test) = (volume.lens, volume.test(input.masks && input.sample == 0));
         let leaves = volume.body.kinds();
-        if !test.has_sprite() {
+        if !test.is_sprite() && !test.has_sides() {
             seen.push(SeenVolume { index, lens, test, leaves, part, bounds, sprite: None });
             continue;
         }
-        let sprite = sprite_size(input, volume.sprite.unwrap_or_default());
+        let wanted = volume.sprite.unwrap_or_default();
+        let sprite = sprite_size(input, wanted);
         let to_texel = |i: usize, pixel: u32| f64::from(pixel) * f64::from(sprite[i]) / f64::from(input.tile.size[i]);
         let low: [u32; 2] = std::array::from_fn(|i| to_texel(i, bounds.origin[i]).floor() as u32);
         let high: [u32; 2] =
             std::array::from_fn(|i| (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i]));
         let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
-        let sprite = Some(SeenSprite { size: sprite, bounds: sprite_bounds, place: Place::default() });
+        let mut kept = Kept::Page(Place::default());
+        if test.is_sprite() {
+            let code = stored::code_of(&wanted, volume, &input.view, city);
+            // Beyond what any card holds; such a buffer is refused.
+            let number = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
+            let mut stored = Stored { code, layers: 1, first: number(words), first_list: number(lists), excess: 0 };
+            if !volume.body.is_form() {
+                let most = volume.body.most_intervals().map_or(wanted.layers, |most| wanted.layers.min(most as u32));
+                stored.layers = if wanted.aggregate { 1 } else { most };
+                lists += u64::from(stored.width(sprite_bounds.size[0])) * u64::from(sprite_bounds.size[1]);
+                counts += 1;
+                stored.excess = if wanted.aggregate { 0 } else { counts };
+            }
+            words += stored.words(sprite_bounds.size);
+            kept = Kept::Stored(stored);
+        }
+        let sprite = Some(SeenSprite { size: sprite, bounds: sprite_bounds, kept });
         seen.push(SeenVolume { index, lens, test, leaves, part, bounds, sprite });
     }
-    let sizes: Vec<[u32; 2]> = seen.iter().filter_map(|v| v.sprite.as_ref()).map(|s| s.bounds.size).collect();
-    if sizes.is_empty() {
-        return (seen, Pages::default());
+    let mut on_pages: Vec<(&mut Place, [u32; 2])> = seen
+        .iter_mut()
+        .filter_map(|v| match v.sprite.as_mut()? {
+            SeenSprite { bounds, kept: Kept::Page(place), .. } => Some((place, bounds.size)),
+            _ => None,
+        })
+        .collect();
+    let sizes: Vec<[u32; 2]> = on_pages.iter().map(|(_, size)| *size).collect();
+    let pages = if sizes.is_empty() { Pages::default() } else { sprites::arrange(&sizes) };
+    for ((place, _), found) in on_pages.iter_mut().zip(&pages.places) {
+        **place = *found;
     }
-    let pages = sprites::arrange(&sizes);
-    for (sprite, place) in seen.iter_mut().filter_map(|v| v.sprite.as_mut()).zip(&pages.places) {
-        sprite.place = *place;
-    }
-    (seen, pages)
+    Seen { volumes: seen, pages, words, lists }
 }
 
 /// The part of a picture that holds all that may be seen of volumes; `None` without any.

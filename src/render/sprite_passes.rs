@@ -1,4 +1,4 @@
-//! The passes that make volumetric depth sprites (S1).
+//! The passes that tell the sides of solids and combinations, by sprites of where rays enter first and leave last (S1).
 
 use crate::{
     render::{
@@ -8,7 +8,8 @@ use crate::{
         layout,
         pipelines::Key,
         renderer::{Renderer, STAGE_STRIDE},
-        seen::{SeenSprite, SeenVolume},
+        seen::{Kept, SeenSprite, SeenVolume},
+        sprites::Place,
     },
     shader::VolumeTest,
     view::View,
@@ -44,8 +45,7 @@ impl SolidStage {
 pub(super) fn keys(body: &Body) -> Vec<Key> {
     let solid = [SolidStage::Missed, SolidStage::Nearest, SolidStage::Farthest];
     match body {
-        Body::One(leaf) if leaf.leaf.test() == VolumeTest::Solid => solid.map(Key::SolidSprite).to_vec(),
-        Body::One(leaf) => vec![Key::Sprite(leaf.leaf.test())],
+        Body::One(_) => solid.map(Key::SolidSprite).to_vec(),
         Body::Combined(_) => {
             let kinds = body.kinds();
             let forms = [SolidStage::NearestForm, SolidStage::FarthestForm].into_iter();
@@ -63,20 +63,27 @@ fn own_draws(body: &Body) -> impl Iterator<Item = (u32, &PlacedLeaf)> {
     (0..).zip(body.leaves()).filter(move |(_, leaf)| is_combined && leaf.leaf.test() == VolumeTest::Solid)
 }
 
+/// A volume whose sides a sprite tells, with the sprite and its place.
+pub(super) fn on_page(volume: &SeenVolume) -> Option<(&SeenVolume, &SeenSprite, Place)> {
+    match volume.sprite.as_ref()? {
+        sprite @ SeenSprite { kept: Kept::Page(place), .. } => Some((volume, sprite, *place)),
+        _ => None,
+    }
+}
+
 /// What makes a sprite, one stage for the body and one for each solid of a combination, and where it then stands; on pages of
 /// `page` texels.
 pub(super) fn layouts(
     shape: layout::Shape,
-    seen: (&SeenVolume, &SeenSprite),
+    (volume, sprite, on): (&SeenVolume, &SeenSprite, Place),
     body: &Body,
     view: &View,
     tile: PictureTile,
     page: [u32; 2],
 ) -> (Vec<layout::SpriteStage>, layout::SpritePlace) {
-    let (volume, sprite) = seen;
     let scale: [f32; 2] = std::array::from_fn(|i| sprite.size[i] as f32 / tile.size[i] as f32);
     // From the sprite's own texels to those of its page.
-    let shift: [f32; 2] = std::array::from_fn(|i| sprite.place.origin[i] as f32 - sprite.bounds.origin[i] as f32);
+    let shift: [f32; 2] = std::array::from_fn(|i| on.origin[i] as f32 - sprite.bounds.origin[i] as f32);
     // Texels count down the page, clip space up.
     let clip_scale: [f32; 2] = std::array::from_fn(|i| sprite.size[i] as f32 / page[i] as f32);
     let side = |i: usize| clip_scale[i] + 2.0 * shift[i] / page[i] as f32 - 1.0;
@@ -99,8 +106,8 @@ pub(super) fn layouts(
         size: volume.bounds.size.map(|s| s as i32),
         texels_per_pixel: scale,
         sprite: shift,
-        page: sprite.place.page,
-        pad_0: [0; 3],
+        page: on.page,
+        ..bytemuck::Zeroable::zeroed()
     };
     (stages, place)
 }
@@ -123,22 +130,21 @@ impl Renderer {
     ) {
         let mut first_stage = 0;
         let mut draws: Vec<(u32, Draw)> = Vec::new();
-        for (volume, sprite) in seen.iter().filter_map(|v| Some((v, v.sprite.as_ref()?))) {
+        for (volume, sprite, place) in seen.iter().filter_map(on_page) {
             let body = &input.volumes[volume.index].body;
             let stage = first_stage;
             let mut add = |key, stage, corners| {
-                draws.push((sprite.place.page, Draw { stage, key, lens: volume.lens, sprite, corners }));
+                draws.push((place.page, Draw { stage, key, lens: volume.lens, sprite, place, corners }));
             };
             // Inside of it, rays enter nowhere first.
             let enters = |of: SolidStage| !of.is_nearest() || !body.holds_eye(&input.view);
             match body {
-                Body::One(leaf) if leaf.leaf.test() == VolumeTest::Solid => {
+                Body::One(leaf) => {
                     add(Key::SolidSprite(SolidStage::Missed), stage, 0..3);
                     for of in [SolidStage::Nearest, SolidStage::Farthest].into_iter().filter(|of| enters(*of)) {
                         add(Key::SolidSprite(of), stage, leaf.place.corners.clone());
                     }
                 }
-                Body::One(leaf) => add(Key::Sprite(leaf.leaf.test()), stage, 0..3),
                 Body::Combined(_) => {
                     add(Key::SolidSprite(SolidStage::Missed), stage, 0..3);
                     let kinds = body.kinds();
@@ -163,7 +169,7 @@ impl Renderer {
             ];
             for (name, clear) in passes {
                 let is_here = |key: &Key| match key {
-                    Key::SolidSprite(SolidStage::Missed) | Key::Sprite(_) => clear.is_none(),
+                    Key::SolidSprite(SolidStage::Missed) => clear.is_none(),
                     Key::SolidSprite(of) | Key::CombinedSprite(of, _) => {
                         clear == Some(if of.is_nearest() { 0.0 } else { 1.0 })
                     }
@@ -212,7 +218,7 @@ impl Renderer {
         for draw in draws {
             pass.set_pipeline(self.pipelines.get(&draw.key));
             pass.set_bind_group(2, &groups.sprite_stage, &[draw.stage as u32 * STAGE_STRIDE as u32]);
-            scissor(&mut pass, PictureTile { origin: draw.sprite.place.origin, size: draw.sprite.bounds.size });
+            scissor(&mut pass, PictureTile { origin: draw.place.origin, size: draw.sprite.bounds.size });
             pass.draw(draw.corners.clone(), 0..1);
         }
         if let Some(timer) = &recorder.timer {
@@ -230,5 +236,6 @@ struct Draw<'a> {
     key: Key,
     lens: u32,
     sprite: &'a SeenSprite,
+    place: Place,
     corners: std::ops::Range<u32>,
 }

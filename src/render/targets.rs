@@ -97,7 +97,7 @@ pub struct Targets {
     pub sums: Target,
     /// One bit per lens; layers 3w inside, 3w+1 in front, 3w+2 behind (1×1 where not needed).
     pub masks: Target,
-    /// Pages of volumetric depth sprites: stored depths of entries and exits.
+    /// Pages of the sides of solids: stored depths of entries and exits.
     pub sprites: Target,
     /// Depth of a page of sprites while one is made (1×1 where not needed).
     pub sprite_depth: Target,
@@ -182,7 +182,7 @@ impl Targets {
             picture: make_any("picture", [w, h, 1], PICTURE, drawn, false),
             sums: make_any("sums", full(needs.sums), sums, drawn, false),
             masks: make_any("lens masks", mask_size, MASKS, drawn | U::STORAGE_BINDING, true),
-            sprites: make_any("depth sprites", needs.sprites, SPRITES, drawn, true),
+            sprites: make_any("sides of solids", needs.sprites, SPRITES, drawn, true),
             sprite_depth: make_any(
                 "depth of sprites",
                 if needs.sprite_depth { [needs.sprites[0], needs.sprites[1], 1] } else { [1; 3] },

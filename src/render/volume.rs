@@ -45,26 +45,21 @@ pub struct LensVolume {
 impl LensVolume {
     /// How it is tested in the picture; `masks`: all classes are asked for.
     pub fn test(&self, masks: bool) -> VolumeTest {
-        let with_sides = masks || self.asks_sides || self.drawn != LensBody::None || self.sprite.is_some();
-        match self.body.test() {
-            VolumeTest::Members => VolumeTest::Members,
-            VolumeTest::Solid if with_sides => VolumeTest::SolidSprite,
-            VolumeTest::Combined if with_sides => VolumeTest::CombinedSprite,
-            own @ (VolumeTest::Solid | VolumeTest::Combined) => own,
-            _ if self.sprite.is_some() => VolumeTest::Sprite,
-            own => own,
+        let with_sides = masks || self.asks_sides || self.drawn != LensBody::None;
+        match (self.body.test(), self.sprite.filter(|_| !self.body.has_members())) {
+            (_, Some(sprite)) if self.body.is_form() && sprite.is_as_the_target() => VolumeTest::Sprite,
+            (_, Some(_)) => VolumeTest::LayeredSprite,
+            (VolumeTest::Solid, None) if with_sides => VolumeTest::SolidSprite,
+            (VolumeTest::Combined, None) if with_sides => VolumeTest::CombinedSprite,
+            (own, None) => own,
         }
     }
 
     /// All ways in which frames may test it, in the picture and from the sun.
     pub fn tests(&self) -> [Vec<VolumeTest>; 2] {
         let own = self.body.test();
-        let picture = match own {
-            // As a frame asks for its sides or not.
-            VolumeTest::Solid => vec![own, VolumeTest::SolidSprite],
-            VolumeTest::Combined => vec![own, VolumeTest::CombinedSprite],
-            _ => vec![self.test(false)],
-        };
+        // As a frame asks for its sides or not.
+        let picture = vec![self.test(false), self.test(true)];
         [picture, vec![own]]
     }
 

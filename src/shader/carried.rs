@@ -88,7 +88,7 @@ fn members(test: VolumeTest) -> &'static [(&'static str, usize)] {
         VolumeTest::Flat => {
             &[("center", 3), ("size_x", 1), ("axis_x", 3), ("size_y", 1), ("axis_y", 3), ("size_z", 1), ("axis_z", 3)]
         }
-        VolumeTest::Sprite => &[],
+        VolumeTest::Sprite | VolumeTest::LayeredSprite => &[],
     }
 }
 

@@ -16,7 +16,7 @@ pub(super) fn bindings(program: &Program, carried: bool) -> String {
     };
     let parts = program.has();
     let mut text = String::new();
-    if parts.sprites {
+    if parts.sprites || parts.side_sprites {
         let _ = writeln!(text, "@group(2) @binding(3) var<uniform> sprite_places: array<SpritePlace, {count}>;");
     }
     // The uber back end reads of each volume there how it is tested.
@@ -58,8 +58,11 @@ fn call(question: Question, test: VolumeTest, volume: &str, place: &str) -> Stri
     match (question, test) {
         (Q::Covers, T::Members) => format!("covers_members({shape}, {place})"),
         (_, T::Members) => format!("inside_members({shape}, {place})"),
-        (Q::Covers, T::Sprite | T::SolidSprite | T::CombinedSprite) => format!("covers_sprite({sprite}, {place})"),
+        (Q::Covers, T::Sprite) => format!("covers_sprite({sprite}, {place})"),
         (_, T::Sprite) => format!("class_in_sprite({sprite}, {place})"),
+        (Q::Covers, T::LayeredSprite) => format!("covers_layers({sprite}, {place})"),
+        (_, T::LayeredSprite) => format!("class_in_layers({sprite}, {place})"),
+        (Q::Covers, T::SolidSprite | T::CombinedSprite) => format!("covers_sides({sprite}, {place})"),
         (Q::Classes, T::SolidSprite) => format!("class_in_solid({shape}, {sprite}, {place})"),
         (Q::Inside, T::Combined | T::CombinedSprite) => format!("inside_combined({shape}, {place})"),
         (Q::Classes, T::CombinedSprite) => format!("class_in_combined({shape}, {sprite}, {place})"),
@@ -116,8 +119,11 @@ pub(super) fn ends_of(plan: &Plan, lens: u32) -> String {
 fn span(test: VolumeTest, volume: &str) -> String {
     match test {
         VolumeTest::Members | VolumeTest::Solid | VolumeTest::Combined => "EMPTY_SPAN".to_owned(),
-        VolumeTest::Sprite | VolumeTest::SolidSprite | VolumeTest::CombinedSprite => {
-            format!("span_in_sprite(sprite_places[{volume}], pixel)")
+        VolumeTest::SolidSprite | VolumeTest::CombinedSprite => {
+            format!("span_in_sides(sprite_places[{volume}], pixel)")
+        }
+        VolumeTest::Sprite | VolumeTest::LayeredSprite => {
+            format!("span_in_layers(sprite_places[{volume}], pixel)")
         }
         _ => format!("span_of_shape(ray, shapes[{volume}], {})", test.constant()),
     }
@@ -137,7 +143,7 @@ pub(super) fn ends_of_volume(tests: &[VolumeTest]) -> String {
 fn distance(test: VolumeTest, volume: &str, border: &str) -> String {
     let shape = format!("shapes[{volume}]");
     match test {
-        VolumeTest::Members | VolumeTest::Sprite => {
+        VolumeTest::Members | VolumeTest::Sprite | VolumeTest::LayeredSprite => {
             let inside = call(Question::Inside, test, volume, "sight");
             format!("select(FAR_AWAY, -FAR_AWAY, is_inside({inside}))")
         }

@@ -48,6 +48,13 @@ files! {
     SIGHT = "lib/sight.wgsl";
     LENS = "lib/lens.wgsl";
     LENS_SPRITE = "lib/lens-sprite.wgsl";
+    DEPTH_CODE = "lib/depth-code.wgsl";
+    STORED_SPRITE = "lib/stored-sprite.wgsl";
+    STORED_PASS = "pass/stored-sprite.wgsl";
+    STORED_FORM = "lib/stored-form.wgsl";
+    STORED_LAYERS = "lib/stored-layers.wgsl";
+    SPRITE_LIST = "pass/sprite-list.wgsl";
+    CROSSING = "lib/crossing.wgsl";
     SOLID = "lib/solid.wgsl";
     MEMBERS = "lib/members.wgsl";
     MEMBER_OUTLINE = "lib/member-outline.wgsl";
@@ -67,6 +74,7 @@ files! {
     SILHOUETTE = "lib/silhouette.wgsl";
     GLASS = "lib/glass.wgsl";
     SHELL = "lib/shell.wgsl";
+    SHELL_SIDES = "lib/shell-sides.wgsl";
     SHELL_SPRITE = "lib/shell-sprite.wgsl";
     HALO = "lib/halo.wgsl";
     FILTERED = "lib/filter.wgsl";
@@ -91,9 +99,15 @@ pub enum Module {
     Geometry(Option<Program>),
     /// Depth from the sun, and what is hidden from it.
     Shadow(Option<Program>),
-    /// The two stages of a volumetric depth sprite.
+    /// The sides of a solid.
     Sprite,
-    /// Those of a combination, and what its leaves are.
+    /// The depth sprite of a volume that has a closed form.
+    StoredForm,
+    /// That of a lens of several leaves, or of a solid, and what the leaves are.
+    StoredLayers(Vec<VolumeTest>),
+    /// Where rays go through the faces of its solids.
+    SpriteList,
+    /// The sides of a combination, and what its leaves are.
     CombinedSprite(Vec<VolumeTest>),
     /// Deferred shading, and what the lenses make of it.
     Shade(Program),
@@ -120,6 +134,9 @@ impl Module {
             Self::Geometry(hidden) => format!("geometry{}", hidden_name(hidden)),
             Self::Shadow(hidden) => format!("shadow{}", hidden_name(hidden)),
             Self::Sprite => "sprite".to_owned(),
+            Self::StoredForm => "stored sprite".to_owned(),
+            Self::StoredLayers(_) => "stored sprite in layers".to_owned(),
+            Self::SpriteList => "crossings of a sprite".to_owned(),
             Self::CombinedSprite(_) => "sprite of a combination".to_owned(),
             Self::Shade(program) => {
                 let names = names_of(program);
@@ -170,6 +187,11 @@ impl Module {
             ]
             .concat(),
             Self::Sprite => &[VIEW, VIEW_UNIFORM, SHAPE, SPRITE],
+            Self::StoredForm => &[VIEW, SHAPE, DEPTH_CODE, STORED_PASS, STORED_FORM],
+            Self::StoredLayers(_) => {
+                &[VIEW, SIGHT, CLASS, SHAPE, SOLID, COMBINED, DEPTH_CODE, CROSSING, STORED_PASS, STORED_LAYERS]
+            }
+            Self::SpriteList => &[VIEW, SHAPE, CROSSING, SPRITE_LIST],
             Self::CombinedSprite(_) => {
                 &[VIEW, VIEW_UNIFORM, SIGHT, CLASS, SHAPE, SOLID, COMBINED, SPRITE, COMBINED_PASS]
             }
@@ -186,7 +208,7 @@ impl Module {
         for (path, source) in files {
             text.push_str(&format!("// ==== {path}\n\n{source}\n"));
         }
-        if let Self::CombinedSprite(kinds) = self {
+        if let Self::CombinedSprite(kinds) | Self::StoredLayers(kinds) = self {
             text.push_str(&lens_test::leaves(kinds));
         }
         match self {
@@ -242,6 +264,7 @@ impl Module {
             (parts.bodies, OUTLINE),
             (parts.bodies && parts.members, MEMBER_OUTLINE),
             (parts.shells, GLASS),
+            (parts.shells && parts.side_sprites, SHELL_SIDES),
             (parts.shells && parts.sprites, SHELL_SPRITE),
             (filters, FILTERED),
             (parts.lines, LINE),
@@ -264,7 +287,9 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.lenses, CLASS),
         (parts.lenses, SHAPE),
         (parts.shapes, LENS),
-        (parts.sprites, LENS_SPRITE),
+        (parts.sprites || parts.side_sprites, LENS_SPRITE),
+        (parts.sprites, DEPTH_CODE),
+        (parts.sprites, STORED_SPRITE),
         (parts.members, MEMBERS),
         (parts.solids, SOLID),
         (parts.side_sprites, SOLID_SPRITE),
@@ -322,7 +347,7 @@ mod tests {
     /// As the sun asks: no sprite tells it anything.
     fn by_shapes(mut program: Program) -> Program {
         let by_shape = |test: &mut VolumeTest| match test {
-            VolumeTest::Sprite => *test = VolumeTest::Sphere,
+            VolumeTest::Sprite | VolumeTest::LayeredSprite => *test = VolumeTest::Sphere,
             VolumeTest::SolidSprite => *test = VolumeTest::Solid,
             VolumeTest::CombinedSprite => *test = VolumeTest::Combined,
             _ => {}
@@ -423,11 +448,15 @@ mod tests {
             Module::Geometry(None),
             Module::Shadow(None),
             Module::Sprite,
+            Module::StoredForm,
             Module::Resolve,
             Module::Narrow,
             Module::Bare,
         ];
         modules.extend(plain.map(Module::Shade));
+        modules.push(Module::SpriteList);
+        modules.extend(LEAVES[..7].iter().map(|kind| Module::StoredLayers(vec![*kind])));
+        modules.push(Module::StoredLayers(LEAVES[..7].to_vec()));
         modules.push(Module::CombinedSprite(LEAVES.to_vec()));
         modules.extend(LEAVES.map(|kind| Module::CombinedSprite(vec![kind])));
         let is_filter = |e: &u32| handlers()[*e as usize].kind == EffectKind::Filter;

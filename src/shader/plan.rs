@@ -159,11 +159,13 @@ pub enum VolumeTest {
     CombinedSprite,
     /// Of a figure in a plane, which is looked through.
     Flat,
+    /// By its volumetric depth sprite, whatever that is stored in.
+    LayeredSprite,
 }
 
 impl VolumeTest {
     /// All of them, in the order of their numbers in `lib/shape.wgsl`.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Sphere,
         Self::Box,
         Self::Cylinder,
@@ -177,6 +179,7 @@ impl VolumeTest {
         Self::Combined,
         Self::CombinedSprite,
         Self::Flat,
+        Self::LayeredSprite,
     ];
 
     /// Its number, as `lib/shape.wgsl` knows it.
@@ -184,9 +187,14 @@ impl VolumeTest {
         Self::ALL.iter().position(|t| *t == self).unwrap_or(0) as u32
     }
 
-    /// Whether it reads a volumetric depth sprite.
-    pub fn has_sprite(self) -> bool {
-        matches!(self, Self::Sprite | Self::SolidSprite | Self::CombinedSprite)
+    /// Whether a volumetric depth sprite alone says where a place is.
+    pub fn is_sprite(self) -> bool {
+        matches!(self, Self::Sprite | Self::LayeredSprite)
+    }
+
+    /// Whether a volumetric depth sprite tells the sides of what is not inside.
+    pub fn has_sides(self) -> bool {
+        matches!(self, Self::SolidSprite | Self::CombinedSprite)
     }
 
     /// Whether it may read the faces of a solid.
@@ -215,6 +223,7 @@ impl VolumeTest {
             Self::Combined => "COMBINED",
             Self::CombinedSprite => "COMBINED_SPRITE",
             Self::Flat => "FLAT",
+            Self::LayeredSprite => "LAYERED_SPRITE",
         }
     }
 }
@@ -414,11 +423,12 @@ impl Program {
         let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
-            shapes: tests.iter().any(|t| *t != VolumeTest::Sprite),
+            // The uber back end reads there which of several tests it is.
+            shapes: tests.iter().any(|t| !t.is_sprite()) || (matches!(self, Self::Uber(_)) && tests.len() > 1),
             members: tests.contains(&VolumeTest::Members),
-            sprites: tests.iter().any(|t| t.has_sprite()),
+            sprites: tests.iter().any(|t| t.is_sprite()),
             solids: tests.iter().any(|t| t.has_faces()),
-            side_sprites: tests.iter().any(|t| t.has_faces() && t.has_sprite()),
+            side_sprites: tests.iter().any(|t| t.has_sides()),
             combinations: tests.iter().any(|t| t.has_leaves()),
             combined_sprites: tests.contains(&VolumeTest::CombinedSprite),
             bodies: !bodies.is_empty(),

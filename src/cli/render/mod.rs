@@ -19,7 +19,7 @@ use crate::{
     },
     gpu::Gpu,
     render::{
-        picture::{Aovs, Picture, RenderError, Request, Studio},
+        picture::{Aovs, Picture, RenderError, Request, SPRITE_LAYERS, Studio},
         stats,
     },
     scene::{History, Scene, check_against},
@@ -67,7 +67,10 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         write_aov(aov, &picture, scene.lenses.len(), &notes)?;
     }
     if let Some(file) = &arguments.stats {
-        picture.statistics.warnings = warnings;
+        // Those of the files are worded for the command line; the rest is about this picture.
+        let is_of_picture = |w: &serde_json::Value| w["code"] == SPRITE_LAYERS;
+        let of_picture: Vec<_> = picture.statistics.warnings.into_iter().filter(is_of_picture).collect();
+        picture.statistics.warnings = warnings.into_iter().chain(of_picture).collect();
         output::write(file, |out| {
             serde_json::to_writer_pretty(&mut *out, &picture.statistics)?;
             writeln!(out)

@@ -1,6 +1,6 @@
 //! The one table of scene-file keys: it drives the checks, the messages, `docs/scene.md` and the JSON schema.
 
-use crate::lens::ramp;
+use crate::{figure::scene_file::sprite::SPRITE, lens::ramp};
 
 /// What a key takes.
 #[derive(Clone, Copy, Debug)]
@@ -495,21 +495,6 @@ pub const ATTACHED_TO: Table = Table {
             "\"hall\"",
         ),
     ],
-};
-
-/// `sprite` of a lens.
-pub const SPRITE: Table = Table {
-    name: "sprite",
-    doc: "Has the lens tested by a volumetric depth sprite: a picture of where each ray enters and leaves it. Without, it is \
-          tested from its shapes: exact to the pixel, and faster; `{}` is a sprite as fine as the picture.",
-    keys: &[key(
-        "resolution",
-        Kind::Integer { min: 16, max: 16_384 },
-        "the picture's",
-        "texels",
-        "Texels along the longer side of the picture.",
-        "512",
-    )],
 };
 
 /// `border` of a lens.

@@ -12,6 +12,7 @@ mod parse;
 mod paths;
 mod set;
 pub mod shape_keys;
+pub mod sprite;
 mod write;
 
 use std::{fmt, io::Read, path::Path};

@@ -12,12 +12,12 @@ use crate::{
         keys::{self, CLASSES, Kind},
         node::{Data, Node},
         paths::{Options, PathProblem},
-        shape_keys,
+        shape_keys, sprite,
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
-        Parameter, Placement, effect,
+        Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, Parameter,
+        Placement, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -200,9 +200,7 @@ impl<'o> SceneReader<'o> {
         let shapes = self.shapes(fields);
         let (effects, of_effects) = self.effects(fields, true);
         let content = self.content(fields, of_effects);
-        let sprite = fields
-            .node("sprite")
-            .map(|node| self.checker.fields(node, &keys::SPRITE, &[], fields.place.within("sprite", node.line)));
+        let sprite = sprite::read(&mut self.checker, fields);
         let border = fields
             .node("border")
             .map(|node| self.checker.fields(node, &keys::BORDER, &[], fields.place.within("border", node.line)));
@@ -224,7 +222,7 @@ impl<'o> SceneReader<'o> {
                 .iter()
                 .find(|(word, _)| fields.text("body") == Some(*word))
                 .map_or_else(LensBody::default, |(_, body)| *body),
-            sprite: sprite.map(|s| LensSprite { resolution: s.integer("resolution") }),
+            sprite,
             border: border.map(|b| Border {
                 width: b.number("width").unwrap_or(0.0),
                 unit: if b.text("unit") == Some("px") { BorderUnit::Pixels } else { BorderUnit::Metres },

@@ -6,7 +6,9 @@ use crate::{
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
         Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
-        Parameter, Placement, chosen::Choice,
+        Parameter, Placement,
+        chosen::Choice,
+        sprite::{Format, Mapping},
     },
     scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun},
     shader::{Blend, Clip},
@@ -333,6 +335,11 @@ fn every_mistake_in_a_lens_is_named() {
             "effects.1: \"thematic\" is a second scene style beside \"thematic\"",
         ),
         ("sprite = { resolution = 4 }", "sprite.resolution: must be a whole number 16 to 16384, is 4"),
+        ("sprite = { near = 9, far = 8.5 }", "sprite.far: must lie beyond near, 9 m, is 8.5"),
+        (
+            "sprite = { mapping = \"1/z\" }",
+            "sprite.mapping: must be \"z\" or \"complementary-z\" or \"w\" or \"1/w\", is \"1/z\"",
+        ),
         ("border = {}", "border.width: is missing: From where"),
         ("border = { width = -1 }", "border.width: must be a number 0 to 100000, is -1"),
         ("border = { width = 1, unit = \"cm\" }", "border.unit: must be \"m\" or \"px\", is \"cm\""),
@@ -543,7 +550,7 @@ fn effects() -> impl Strategy<Value = EffectUse> {
 
 /// A sprite or a border, or neither.
 fn ends() -> impl Strategy<Value = (Option<LensSprite>, Option<Border>)> {
-    let sprite = prop::option::of(16..16_384u32).prop_map(|resolution| (Some(LensSprite { resolution }), None));
+    let sprite = sprites().prop_map(|sprite| (Some(sprite), None));
     let border = (0.0..1e5, any::<bool>(), any::<bool>()).prop_map(|(width, in_pixels, dithers)| {
         let unit = if in_pixels { BorderUnit::Pixels } else { BorderUnit::Metres };
         let discrete = if dithers { Discrete::Dither } else { Discrete::Threshold };
@@ -563,6 +570,15 @@ prop_compose! {
         });
         let files = files.into_iter().filter(|f| !f.contains("${") && !f.starts_with("builtin:")).map(Into::into).collect();
         Content { files, lod: tenths.map(|tenths| crate::city::Lod { tenths }), class, clip, keep_terrain, copied }
+    }
+}
+
+prop_compose! {
+    fn sprites()(resolution in prop::option::of(16..16_384u32), format in 0..5usize, mapping in 0..4usize,
+        near_m in prop::option::of(1e-3..10.0f64), far_m in prop::option::of(11.0..1e4f64), layers in 1..17u32,
+        aggregate in any::<bool>()) -> LensSprite {
+        let (format, mapping) = (Format::WORDS[format].1, Mapping::WORDS[mapping].1);
+        LensSprite { resolution, format, mapping, near_m, far_m, layers, aggregate }
     }
 }
 

@@ -8,6 +8,7 @@ use crate::{
     figure::scene_file::{
         parse::{lens_color, rotation},
         paths::Options,
+        sprite,
     },
     geom::{Shape, shape::FlatFigure},
     lens::{
@@ -141,9 +142,8 @@ impl Toml {
             self.key_if(own.clip != Clip::default(), "clip", &quoted(own.clip.word()));
         }
         self.key_if(lens.body != LensBody::default(), "body", &format!("\"{}\"", lens.body.word()));
-        if let Some(sprite) = lens.sprite {
-            let resolution = sprite.resolution.map(|resolution| format!(" resolution = {resolution} "));
-            self.key("sprite", &format!("{{{}}}", resolution.unwrap_or_default()));
+        if let Some(sprite) = &lens.sprite {
+            self.key("sprite", &sprite::written(sprite));
         }
         if let Some(border) = lens.border {
             let unit = if border.unit == BorderUnit::Pixels { ", unit = \"px\"" } else { "" };

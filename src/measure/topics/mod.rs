@@ -1,17 +1,14 @@
 //! The topics: one file and one row each.
 
 mod handlers;
+mod lens_tests;
 mod samples;
-mod sprite_resolution;
+mod sprites;
 
 use crate::measure::topic::Topic;
 
 /// All topics, as they are listed.
-pub const TOPICS: &[Topic] = &[
-    handlers::TOPIC, //
-    samples::TOPIC,
-    sprite_resolution::TOPIC,
-];
+pub const TOPICS: &[Topic] = &[handlers::TOPIC, lens_tests::TOPIC, samples::TOPIC, sprites::TOPIC];
 
 #[cfg(test)]
 mod tests {

@@ -29,6 +29,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
         knobs: vec![Value::Number(f64::from(samples))],
         shot: shot(samples),
         reference: None,
+        mask: None,
     };
     Ok(Trial { plain: shot(1), reference: shot(64), variants: [1, 2, 4, 8, 16, 32].map(variant).into() })
 }
