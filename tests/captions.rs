@@ -657,3 +657,30 @@ fn velvet_in_a_ball_and_marble_in_an_extruded_figure() {
         .filter(|&i| stage.places.iter().all(|p| p[i] == Place::Around) && shown.rgba[i] != stage.plain.rgba[i]);
     assert_eq!(changed.count(), 0);
 }
+
+/// "Lens order determines the clipping behaviour of individual lens content" (3.9); "the clipping of individual lenses changes as
+/// the user successively selects lenses" (3.12): in a lens nothing of what lies below it shows, whatever that is.
+#[test]
+fn the_content_of_a_higher_lens_clips_those_below() {
+    for name in ["tiesel-3-9", "tiesel-3-12-a", "tiesel-3-12-b"] {
+        let mut stage = Stage::changed(name, |s| s.sun.shadows = false);
+        let all = stage.draw();
+        let count = stage.scene.lenses.len();
+        for lens in 0..count {
+            // Without those below: as it was, where the lens is and none above it.
+            let alone = stage.draw_with(|s| s.lenses[..lens].iter_mut().for_each(|l| l.enabled = false));
+            let masks: Vec<Vec<bool>> = (0..count).map(|i| bits(&all, i)).collect();
+            let is_own = |i: &usize| masks[lens][*i] && (lens + 1..count).all(|above| !masks[above][*i]);
+            let own: Vec<usize> = (0..all.rgba.len()).filter(is_own).collect();
+            let overlaps = own.iter().filter(|&&i| masks[..lens].iter().any(|m| m[i])).count();
+            assert!(own.len() > 1000 && (lens == 0 || overlaps > 300), "{name}, lens {lens}: {overlaps} overlap");
+            let other = own.iter().filter(|&&i| all.rgba[i] != alone.rgba[i]).count();
+            assert_eq!(other, 0, "{name}, lens {lens}: what is below shows in it");
+            let hidden = stage.draw_with(|s| s.lenses[lens].content = None);
+            let changed = own.iter().filter(|&&i| all.rgba[i] != hidden.rgba[i]).count();
+            assert!(changed > own.len() / 20, "{name}, lens {lens} has content of its own: {changed} of {}", own.len());
+        }
+    }
+    let top = |name: &str| Stage::new(name).scene.lenses.pop().expect("a lens").name;
+    assert_ne!(top("tiesel-3-12-a"), top("tiesel-3-12-b"));
+}
