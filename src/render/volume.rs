@@ -58,8 +58,11 @@ impl LensVolume {
     /// All ways in which frames may test it, in the picture and from the sun.
     pub fn tests(&self) -> [Vec<VolumeTest>; 2] {
         let own = self.body.test();
-        // As a frame asks for its sides or not.
-        let picture = vec![self.test(false), self.test(true)];
+        let picture = match self.test(true) {
+            // As a frame asks for its sides or not; whatever its lens asks for, so that lenses may change places.
+            sides if sides.has_sides() => vec![own, sides],
+            other => vec![other],
+        };
         [picture, vec![own]]
     }
 

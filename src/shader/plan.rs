@@ -423,8 +423,8 @@ impl Program {
         let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
-            // The uber back end reads there which of several tests it is.
-            shapes: tests.iter().any(|t| !t.is_sprite()) || (matches!(self, Self::Uber(_)) && tests.len() > 1),
+            // The uber back end reads there which test it is.
+            shapes: tests.iter().any(|t| !t.is_sprite()) || (matches!(self, Self::Uber(_)) && has_lenses),
             members: tests.contains(&VolumeTest::Members),
             sprites: tests.iter().any(|t| t.is_sprite()),
             solids: tests.iter().any(|t| t.has_faces()),
