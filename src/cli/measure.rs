@@ -16,7 +16,7 @@ use crate::{
         plot::{self, raster},
         report::{self, Origin},
     },
-    render::picture::TILE,
+    render::parts::TILE,
     scene::Scene,
 };
 

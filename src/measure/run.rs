@@ -25,7 +25,7 @@ pub struct Setup<'a> {
     pub studio: &'a mut Studio,
     /// What of it is shown.
     pub city: &'a CitySpec,
-    /// Width and height of all pictures, pixels, at most [`crate::render::picture::TILE`].
+    /// Width and height of all pictures, pixels, at most [`crate::render::parts::TILE`].
     pub size: [u32; 2],
     /// How often all variants are timed, at least once.
     pub pairs: usize,

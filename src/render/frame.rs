@@ -34,9 +34,10 @@ use crate::{
         furniture::Furniture,
         invokers::Invokers,
         layout, light, lines,
-        octagon::{Mesh, Octagon},
-        operations::{Filter, Operations},
+        octagon::Mesh,
+        operations::Operations,
         pipelines::{Behind, Key, ShadeTarget, Shown},
+        plans::Plans,
         renderer::{CityOnGpu, Renderer, STAGE_STRIDE},
         seen::{Kept, Seen, SeenVolume, part_of, seen_volumes},
         solids::SolidTable,
@@ -53,10 +54,6 @@ use crate::{
 
 /// Name of the pass that empties the lens masks; where it ran, they hold this frame's classes.
 pub const CLEAR_MASKS: &str = "clear lens masks";
-
-/// Lens volumes of a picture that are written out in its shaders. What is written out runs at every pixel that any lens may
-/// touch, and takes the longer to compile; the uber back end goes through more of them, tile by tile (L8).
-const MOST_WRITTEN_OUT: u32 = 24;
 
 /// Everything a sample is drawn from.
 #[derive(Clone, Debug)]
@@ -674,74 +671,8 @@ impl ShadeKeys {
     }
 }
 
-/// What shading does outside the lenses' bounds, and inside.
-struct Plans {
-    context: Plan,
-    lenses: Plan,
-    filters: Vec<Filter>,
-    /// What is hidden in the picture.
-    hiding: Option<Plan>,
-    /// What lines go through.
-    lining: Option<Plan>,
-    /// Lenses in view, in the order of the plans, and where.
-    seen: Vec<u32>,
-    parts: Vec<Octagon>,
-    /// The distances between which each acts as *inside*, metres.
-    depths: Vec<[f32; 2]>,
-}
-
-impl Plans {
-    fn new(input: &FrameInput, seen: &[SeenVolume]) -> Self {
-        let haze = haze(input) > 0.0;
-        let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
-        let filters = input.operations.filters(&lenses, haze);
-        let volumes: Vec<_> = seen.iter().map(|v| (v.lens, v.test, v.leaves.clone())).collect();
-        let lenses = match seen.is_empty() {
-            true => Plan::default(),
-            false => input.operations.lens_plan(&volumes, haze, wants_masks(input)),
-        };
-        let context = input.operations.context_plan(haze);
-        let whole = if seen.is_empty() { &context } else { &lenses };
-        let (hiding, lining) = (whole.hiding(handlers()), whole.lining(handlers()));
-        let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
-        numbers.dedup();
-        let of_lens = || seen.chunk_by(|a, b| a.lens == b.lens);
-        let depths = |volumes: &[SeenVolume]| {
-            let each = volumes.iter().map(|v| input.volumes[v.index].depths(&input.view));
-            let all =
-                each.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-            all.map(|d| d.clamp(-f64::from(f32::MAX), f64::from(f32::MAX)) as f32)
-        };
-        Self {
-            parts: of_lens().filter_map(|volumes| part_of(volumes.iter())).collect(),
-            depths: of_lens().map(depths).collect(),
-            filters,
-            hiding,
-            lining,
-            seen: numbers,
-            context: context.shading(handlers()),
-            lenses: lenses.shading(handlers()),
-        }
-    }
-
-    /// The invokers of the picture.
-    fn invokers(&self) -> Invokers {
-        Invokers::new([&self.context, &self.lenses], [self.hiding.as_ref(), self.lining.as_ref()], handlers())
-    }
-
-    /// Whether it would be too long, written out.
-    fn is_long(&self) -> bool {
-        self.lenses.volumes() > MOST_WRITTEN_OUT
-    }
-
-    /// The uses of filters, each with the number of the image that it gets.
-    fn uses(&self) -> impl Iterator<Item = (usize, (Option<u32>, u32))> {
-        self.filters.iter().enumerate().flat_map(|(i, f)| f.uses.iter().map(move |u| (i, *u)))
-    }
-}
-
 /// Whether this sample writes the lens masks.
-fn wants_masks(input: &FrameInput) -> bool {
+pub(super) fn wants_masks(input: &FrameInput) -> bool {
     input.masks && input.sample == 0
 }
 
@@ -756,7 +687,7 @@ fn wants_furniture(input: &FrameInput) -> bool {
 }
 
 /// Haze per radius of the scene; none in orthographic views, which have no distance, nor on clay.
-fn haze(input: &FrameInput) -> f64 {
+pub(super) fn haze(input: &FrameInput) -> f64 {
     if input.view.is_orthographic() || input.base == BaseStyle::Clay { 0.0 } else { input.haze }
 }
 

@@ -1,0 +1,82 @@
+//! What the shaders of a frame have to do, from what the scene asks for and which lenses are in view.
+
+use crate::{
+    render::{
+        frame::{FrameInput, haze, wants_masks},
+        invokers::Invokers,
+        octagon::Octagon,
+        operations::Filter,
+        seen::{SeenVolume, part_of},
+    },
+    shader::{Plan, handlers},
+};
+
+/// Lens volumes of a picture that are written out in its shaders. What is written out runs at every pixel that any lens may
+/// touch, and takes the longer to compile; the uber back end goes through more of them, tile by tile (L8).
+const MOST_WRITTEN_OUT: u32 = 24;
+
+/// What shading does outside the lenses' bounds, and inside.
+pub(super) struct Plans {
+    pub context: Plan,
+    pub lenses: Plan,
+    pub filters: Vec<Filter>,
+    /// What is hidden in the picture.
+    pub hiding: Option<Plan>,
+    /// What lines go through.
+    pub lining: Option<Plan>,
+    /// Lenses in view, in the order of the plans, and where.
+    pub seen: Vec<u32>,
+    pub parts: Vec<Octagon>,
+    /// The distances between which each acts as *inside*, metres.
+    pub depths: Vec<[f32; 2]>,
+}
+
+impl Plans {
+    pub fn new(input: &FrameInput, seen: &[SeenVolume]) -> Self {
+        let haze = haze(input) > 0.0;
+        let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
+        let filters = input.operations.filters(&lenses, haze);
+        let volumes: Vec<_> = seen.iter().map(|v| (v.lens, v.test, v.leaves.clone())).collect();
+        let lenses = match seen.is_empty() {
+            true => Plan::default(),
+            false => input.operations.lens_plan(&volumes, haze, wants_masks(input)),
+        };
+        let context = input.operations.context_plan(haze);
+        let whole = if seen.is_empty() { &context } else { &lenses };
+        let (hiding, lining) = (whole.hiding(handlers()), whole.lining(handlers()));
+        let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
+        numbers.dedup();
+        let of_lens = || seen.chunk_by(|a, b| a.lens == b.lens);
+        let depths = |volumes: &[SeenVolume]| {
+            let each = volumes.iter().map(|v| input.volumes[v.index].depths(&input.view));
+            let all =
+                each.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            all.map(|d| d.clamp(-f64::from(f32::MAX), f64::from(f32::MAX)) as f32)
+        };
+        Self {
+            parts: of_lens().filter_map(|volumes| part_of(volumes.iter())).collect(),
+            depths: of_lens().map(depths).collect(),
+            filters,
+            hiding,
+            lining,
+            seen: numbers,
+            context: context.shading(handlers()),
+            lenses: lenses.shading(handlers()),
+        }
+    }
+
+    /// The invokers of the picture.
+    pub fn invokers(&self) -> Invokers {
+        Invokers::new([&self.context, &self.lenses], [self.hiding.as_ref(), self.lining.as_ref()], handlers())
+    }
+
+    /// Whether it would be too long, written out.
+    pub fn is_long(&self) -> bool {
+        self.lenses.volumes() > MOST_WRITTEN_OUT
+    }
+
+    /// The uses of filters, each with the number of the image that it gets.
+    pub fn uses(&self) -> impl Iterator<Item = (usize, (Option<u32>, u32))> {
+        self.filters.iter().enumerate().flat_map(|(i, f)| f.uses.iter().map(move |u| (i, *u)))
+    }
+}
