@@ -80,8 +80,11 @@ impl Svg {
         )
     }
 
-    /// A line through points.
+    /// A line through points; through one there is none.
     pub fn line(&mut self, points: &[[f64; 2]], stroke: Stroke) {
+        if points.len() < 2 {
+            return;
+        }
         let list: Vec<String> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
         let dashes = match stroke.dashes {
             "" => String::new(),

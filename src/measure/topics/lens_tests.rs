@@ -43,7 +43,7 @@ pub const TOPIC: Topic = Topic {
     y: &[Quantity::Ratio, Quantity::WrongMask, Quantity::Memory],
     front: [Quantity::WrongMask, Quantity::Ratio],
     alike: &[0, 2, 3, 4],
-    series: &[0, 1, 3, 4],
+    series: &[1, 3, 4],
     make,
 };
 

@@ -42,7 +42,7 @@ pub const TOPIC: Topic = Topic {
     y: &[Quantity::Memory, Quantity::Ratio],
     front: [Quantity::WrongMask, Quantity::Memory],
     alike: &[0],
-    series: &[0, 1, 2],
+    series: &[0],
     make,
 };
 
