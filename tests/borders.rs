@@ -39,20 +39,25 @@ fn linear(byte: u8) -> f64 {
     f64::from(linear_from_srgb([f32::from(byte) / 255.0; 3])[0])
 }
 
-/// The largest difference between `faded` and what lies between `below` and `above` by `share`, of pixels that show something;
-/// in linear light. And how many are between.
+/// The city as it is, and with an effect everywhere: what a faded lens of that effect lies between.
+fn both(studio: &mut Studio, camera: Camera) -> [Picture; 2] {
+    let mut everywhere = scene(camera, vec![]);
+    everywhere.style.effects = vec![used("invert")];
+    [scene(camera, vec![]), everywhere].map(|scene| draw(studio, &scene, 1, Backend::Specialised))
+}
+
+/// The largest difference, in linear light, between `faded` and what lies between the two others by `share` of a pixel and of the
+/// distance shown there, if any. And how many pixels are between.
 fn furthest_off(
-    below: &Picture,
-    above: &Picture,
+    [below, above]: &[Picture; 2],
     faded: &Picture,
-    share: impl Fn(u32, u32, f64) -> f64,
+    share: impl Fn(u32, u32, Option<f64>) -> f64,
 ) -> (f64, usize) {
     let (mut most, mut between) = (0.0_f64, 0);
     let depth = below.depth.as_ref().expect("depth was asked for");
     let [w, h] = below.size;
     for (i, (x, y)) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))).enumerate() {
-        let d = f64::from(depth[i]);
-        let share = if d.is_finite() { share(x, y, d) } else { 0.0 };
+        let share = share(x, y, Some(f64::from(depth[i])).filter(|d| d.is_finite()));
         between += usize::from(share > 0.02 && share < 0.98);
         for channel in 0..3 {
             let [a, b, c] = [below, above, faded].map(|p| linear(p.rgba[i][channel]));
@@ -73,18 +78,16 @@ fn lenses_of_every_shape_fade_as_f64_says() {
     let level = orthographic(middle + DVec3::new(60.0, -110.0, 80.0), middle, 150.0);
     for (camera, width, backends) in [(camera, 24.0, &BACKENDS[..]), (level, 12.0, &BACKENDS[..1])] {
         let view = view_of(camera);
-        let below = draw(&mut studio, &scene(camera, vec![]), 1, Backend::Specialised);
-        let mut everywhere = scene(camera, vec![]);
-        everywhere.style.effects = vec![used("invert")];
-        let above = draw(&mut studio, &everywhere, 1, Backend::Specialised);
+        let ends = both(&mut studio, camera);
         for (i, focus) in shapes(middle + DVec3::new(0.0, 0.0, -4.0), 42.0).into_iter().enumerate() {
             let reference = Reference::of(&focus);
             let lens = Lens { border: metres(width), ..lens("a", [focus], "invert") };
             let scene = scene(camera, vec![lens]);
             for &backend in backends {
                 let faded = draw(&mut studio, &scene, 1, backend);
-                let share = |x, y, d| degree_of_interest(reference.distance(view.pixel_ray(x, y).at(d)), width);
-                let (most, between) = furthest_off(&below, &above, &faded, share);
+                let interest = |x, y, d| degree_of_interest(reference.distance(view.pixel_ray(x, y).at(d)), width);
+                let share = |x, y, d: Option<f64>| d.map_or(0.0, |d| interest(x, y, d));
+                let (most, between) = furthest_off(&ends, &faded, share);
                 assert!(between > 200, "shape {i}: {between} pixels between");
                 assert!(most < ROUNDING, "shape {i}, {backend:?}: {most} off");
             }
@@ -122,10 +125,7 @@ fn what_is_outside_has_what_inside_has_not() {
     let mut studio = synthetic(60);
     let middle = studio.extent().center();
     let camera = Camera::looking(middle + DVec3::new(60.0, -110.0, 80.0), middle, 0.8);
-    let below = draw(&mut studio, &scene(camera, vec![]), 1, Backend::Specialised);
-    let mut everywhere = scene(camera, vec![]);
-    everywhere.style.effects = vec![used("invert")];
-    let above = draw(&mut studio, &everywhere, 1, Backend::Specialised);
+    let ends = both(&mut studio, camera);
     let view = view_of(camera);
     for (i, focus) in shapes(middle + DVec3::new(0.0, 0.0, -4.0), 42.0).into_iter().enumerate() {
         let reference = Reference::of(&focus);
@@ -134,20 +134,9 @@ fn what_is_outside_has_what_inside_has_not() {
         let scene = scene(camera, vec![lens]);
         let faded = draw(&mut studio, &scene, 1, Backend::Specialised);
         // The background is the rest.
-        let depth = below.depth.as_ref().expect("depth");
-        let is_surface = |x: u32, y: u32| depth[(y * SIZE[0] + x) as usize].is_finite();
-        let mut most = 0.0_f64;
-        for (j, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
-            let d = f64::from(depth[j]);
-            let share = match is_surface(x, y) {
-                true => 1.0 - degree_of_interest(reference.distance(view.pixel_ray(x, y).at(d)), 30.0),
-                false => 1.0,
-            };
-            for channel in 0..3 {
-                let [a, b, c] = [&below, &above, &faded].map(|p| linear(p.rgba[j][channel]));
-                most = most.max((c - (a + (b - a) * share)).abs());
-            }
-        }
+        let interest = |x, y, d| degree_of_interest(reference.distance(view.pixel_ray(x, y).at(d)), 30.0);
+        let share = |x, y, d: Option<f64>| d.map_or(1.0, |d| 1.0 - interest(x, y, d));
+        let (most, _) = furthest_off(&ends, &faded, share);
         assert!(most < ROUNDING, "shape {i}: {most} off");
     }
 }
@@ -158,10 +147,7 @@ fn flat_lenses_fade_across_their_outline() {
     let middle = studio.extent().center();
     let camera = Camera::looking(middle + DVec3::new(60.0, -110.0, 80.0), middle, 0.8);
     let view = view_of(camera);
-    let below = draw(&mut studio, &scene(camera, vec![]), 1, Backend::Specialised);
-    let mut everywhere = scene(camera, vec![]);
-    everywhere.style.effects = vec![used("invert")];
-    let above = draw(&mut studio, &everywhere, 1, Backend::Specialised);
+    let ends = both(&mut studio, camera);
     let figures = [
         FlatFigure::Disc { radius: 2.0 },
         FlatFigure::Rectangle { size: DVec2::new(5.0, 3.0) },
@@ -179,16 +165,8 @@ fn flat_lenses_fade_across_their_outline() {
                 let at = DVec2::new(d.dot(view.basis.right) - 0.4, d.dot(view.basis.up) - 0.2);
                 degree_of_interest(figure.signed_distance(at), 1.5)
             };
-            // Of what shows something; the sky fades, too.
-            let depth = below.depth.as_ref().expect("depth");
-            let mut most = 0.0_f64;
-            for (j, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
-                let share = share(x, y, f64::from(depth[j]));
-                for channel in 0..3 {
-                    let [a, b, c] = [&below, &above, &faded].map(|p| linear(p.rgba[j][channel]));
-                    most = most.max((c - (a + (b - a) * share)).abs());
-                }
-            }
+            // The sky fades, too.
+            let (most, _) = furthest_off(&ends, &faded, share);
             assert!(most < ROUNDING, "{figure:?}, {backend:?}: {most} off");
         }
     }
@@ -200,20 +178,18 @@ fn in_pixels_a_border_is_as_wide_near_and_far() {
     let middle = studio.extent().center();
     let camera = Camera::looking(middle + DVec3::new(60.0, -110.0, 80.0), middle, 0.8);
     let view = view_of(camera);
-    let below = draw(&mut studio, &scene(camera, vec![]), 1, Backend::Specialised);
-    let mut everywhere = scene(camera, vec![]);
-    everywhere.style.effects = vec![used("invert")];
-    let above = draw(&mut studio, &everywhere, 1, Backend::Specialised);
+    let ends = both(&mut studio, camera);
     let border = Border { width: 26.0, unit: BorderUnit::Pixels, discrete: Discrete::Threshold };
     for focus in shapes(middle + DVec3::new(0.0, 0.0, -4.0), 36.0).into_iter().step_by(3) {
         let reference = Reference::of(&focus);
         let lens = Lens { border: Some(border), ..lens("a", [focus], "invert") };
         let faded = draw(&mut studio, &scene(camera, vec![lens]), 1, Backend::Specialised);
-        let share = |x, y, d| {
+        let interest = |x, y, d| {
             let distance = reference.distance(view.pixel_ray(x, y).at(d));
             degree_of_interest(distance, border.width_m(&view, d))
         };
-        let (most, between) = furthest_off(&below, &above, &faded, share);
+        let share = |x, y, d: Option<f64>| d.map_or(0.0, |d| interest(x, y, d));
+        let (most, between) = furthest_off(&ends, &faded, share);
         assert!(between > 300 && most < ROUNDING, "{between} between, {most} off");
     }
 }

@@ -162,17 +162,16 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     let has_posts = uber.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Post);
     let styled = if has_posts { "color = invoke_style(color, point, by);" } else { "" };
     let fades = uber.borders && !uber.tests.is_empty();
-    let loops = if fades { LINE_AT_FADED } else { LINE_AT };
     let gone = if uber.contents { gone() } else { String::new() };
-    let loops = loops.replace("STYLED", styled).replace("    GONE\n", &gone);
+    let loops = LINE_AT.replace("STYLED", styled).replace("    GONE\n", &gone);
     text.push_str(&uber::faded(uber, &loops));
     if uber.contents {
         text.push_str(&contents::uber(
             PLACE,
             if fades { "is_there(by, fragment, classes)" } else { "runs(by, classes)" },
         ));
-        text.push_str(if fades { IS_THERE } else { "" });
     }
+    text.push_str(&if fades { [LINE_SHARE_FADED, IS_THERE].concat() } else { LINE_SHARE.to_owned() });
     text.push_str(LINE_KINDS);
 }
 
@@ -185,45 +184,7 @@ const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, o
     let drawing = invokers[range.x + step];
     for (var i = range.x; i < range.y; i++) {
         let by = invokers[i];
-        if !runs(by, classes) {
-            continue;
-        }
-        if by.number == POST {
-            STYLED
-        }
-        if (by.number == SCENE || by.number == SCENE_WITH_LINES) && drawing.number == SCENE_WITH_LINES {
-            opacity = 0.0;
-        }
-        if by.number == HIDE && hides(fragment, by) && hides(other, by) {
-            is_hidden = true;
-        }
-        let draws = by.number == SCENE_WITH_LINES || (by.number == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
-        if draws && i == range.x + step {
-            color = line_color(by);
-            opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u);
-        }
-    }
-    GONE
-    return vec4f(color, select(opacity, 0.0, is_hidden));
-}
-
-";
-
-/// The same where lenses fade.
-const LINE_AT_FADED: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, other: Fragment, classes: Classes) -> vec4f {
-    var color = vec3f(0.0);
-    var opacity = 0.0;
-    var is_hidden = false;
-    let range = table.ranges.zw;
-    let drawing = invokers[range.x + step];
-    for (var i = range.x; i < range.y; i++) {
-        let by = invokers[i];
-        var share = share_at(by, classes);
-        let is_hiding = by.number == HIDE || by.number == HIDE_WITH_LINES;
-        if is_hiding && by.border != 0u {
-            let is_dithering = parameters[by.border - 1u].z > 0.5;
-            share = select(select(0.0, 1.0, runs(by, classes)), select(0.0, 1.0, is_dithered(share, fragment.pixel)), is_dithering);
-        }
+        let share = line_share(by, fragment, classes);
         if share <= 0.0 {
             continue;
         }
@@ -248,7 +209,24 @@ const LINE_AT_FADED: &str = "fn line_at(step: u32, point: Point, fragment: Fragm
 
 ";
 
-/// Whether a content is there, where lenses fade.
+/// How much of an invoker a line has.
+const LINE_SHARE: &str = "fn line_share(by: Invoker, fragment: Fragment, classes: Classes) -> f32 {
+    return select(0.0, 1.0, runs(by, classes));
+}
+
+";
+
+/// The same where lenses fade: what hides is there or not.
+const LINE_SHARE_FADED: &str = "fn line_share(by: Invoker, fragment: Fragment, classes: Classes) -> f32 {
+    if by.number == HIDE || by.number == HIDE_WITH_LINES {
+        return select(0.0, 1.0, is_there(by, fragment, classes));
+    }
+    return share_at(by, classes);
+}
+
+";
+
+/// Whether something is there that cannot be had by halves, where lenses fade.
 const IS_THERE: &str = "fn is_there(by: Invoker, fragment: Fragment, classes: Classes) -> bool {
     if by.border != 0u && parameters[by.border - 1u].z > 0.5 {
         return is_dithered(share_at(by, classes), fragment.pixel);
