@@ -11,7 +11,7 @@ use crate::{
         cut::{Cut, CutPrograms, Cuts},
         eye::{PictureTile, view_uniform},
         frame::{FrameInput, Recorder, color_attachment, depth_attachment},
-        pipelines::{GeometryKind, Key},
+        key::{GeometryKind, Key},
         renderer::{Renderer, Shadow},
     },
     shader::Program,

@@ -8,10 +8,10 @@ use std::ops::Range;
 
 use crate::render::{
     frame::{FrameInput, Recorder, behind, color_attachment},
+    key::Key,
     layout,
     octagon::{Mesh, Octagon, merged},
     operations::Filter,
-    pipelines::Key,
     renderer::{Renderer, STAGE_STRIDE},
     seen::{SeenVolume, part_of},
 };

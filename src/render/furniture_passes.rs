@@ -5,7 +5,7 @@ use crate::{
     render::{
         frame::{FrameInput, Recorder, color_attachment},
         furniture::FurnitureOnGpu,
-        pipelines::Key,
+        key::Key,
         renderer::Renderer,
     },
 };

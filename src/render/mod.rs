@@ -20,6 +20,7 @@ pub mod furniture;
 mod furniture_passes;
 pub mod hiding;
 pub mod invokers;
+pub mod key;
 pub mod layout;
 mod lens_volumes;
 pub mod light;

@@ -551,7 +551,7 @@ impl Studio {
         };
         let narrowing = pipelines.narrowing;
         let compiled = pipelines.compiled + u32::from(narrowing == Some(true));
-        let names: Vec<String> = pipelines.used.iter().map(crate::render::pipelines::Key::name).collect();
+        let names: Vec<String> = pipelines.used.iter().map(crate::render::key::Key::name).collect();
         let names: Vec<String> = names.into_iter().chain(narrowing.map(|_| "narrow lists".to_owned())).collect();
         Statistics {
             adapter: stats::Adapter {

@@ -26,7 +26,7 @@ pub struct Needs {
     pub sprite_depth: bool,
     /// How many neighbourhood filters there are, 0 for none.
     pub filters: u32,
-    /// How many images each of them makes ([`crate::render::pipelines::Behind::images`]), 0 for none.
+    /// How many images each of them makes ([`crate::render::key::Behind::images`]), 0 for none.
     pub filter_images: u32,
     /// A layer of lines.
     pub lines: bool,

@@ -9,7 +9,10 @@ use std::{
     thread::JoinHandle,
 };
 
-use crate::render::pipelines::{Key, Layouts, Modules, Pipeline};
+use crate::render::{
+    key::Key,
+    pipelines::{Layouts, Modules, Pipeline},
+};
 
 /// A thread that makes pipelines. Dropping it waits for the one in hand: a driver that is torn down while it compiles may
 /// crash.
