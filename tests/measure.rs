@@ -148,6 +148,20 @@ fn lens_tests() {
     }
     let most = trial.variants.iter().map(|v| v.shot.scene.lenses.len()).max();
     assert_eq!(most, Some(10));
+    // The techniques of the literature draw it too, those that test by shapes to the byte.
+    let techniques = |arrangement: &str, count: &str| -> Vec<String> {
+        let is_it = |v: &&Variant| knob(v, 3) == arrangement && knob(v, 2) == count && knob(v, 4) == "still";
+        trial.variants.iter().filter(is_it).map(|v| knob(v, 1)).collect()
+    };
+    assert_eq!(techniques("apart", "4"), ["shape", "sprite", "branches", "regions", "three-pass"]);
+    assert_eq!(techniques("overlapping", "4"), ["shape", "sprite", "branches", "regions"]);
+    assert_eq!(techniques("apart", "10"), ["shape", "sprite", "regions", "three-pass"]);
+    let by_them = |v: &&Variant| ["branches", "regions"].contains(&&*knob(v, 1)) && ["2", "4"].contains(&&*knob(v, 2));
+    for v in trial.variants.iter().filter(by_them) {
+        let reference = v.reference.as_ref().unwrap();
+        let [right, found] = [reference, &v.shot].map(|shot| studio.render(&shot.scene, &shot.request).unwrap());
+        assert!(right.rgba == found.rgba, "{}", v.label);
+    }
     // Both tests draw one picture, to a few pixels of the border.
     let by_sprite = |v: &&Variant| knob(v, 1) == "sprite" && (kinds.contains(&&*knob(v, 0)) || knob(v, 2) == "10");
     for v in trial.variants.iter().filter(by_sprite) {

@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// What a pass draws of a section.
-type Part<'a> = (DrawnSection<'a>, Vec<&'a Chunk>);
+pub(super) type Part<'a> = (DrawnSection<'a>, Vec<&'a Chunk>);
 
 impl Renderer {
     /// Depth from the sun, where the map does not hold this view yet.
@@ -130,7 +130,7 @@ impl Renderer {
         Ok(encoder)
     }
 
-    fn geometry_pass(
+    pub(super) fn geometry_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,

@@ -38,6 +38,7 @@ use crate::{
         octagon::Mesh,
         operations::Operations,
         plans::Plans,
+        regions::{self, RegionKeys},
         renderer::{CityOnGpu, Renderer, STAGE_STRIDE},
         seen::{Kept, Seen, SeenVolume, part_of, seen_volumes},
         solids::SolidTable,
@@ -47,7 +48,7 @@ use crate::{
         targets::Needs,
         volume::LensVolume,
     },
-    scene::{Background, BaseStyle, Sun},
+    scene::{Background, BaseStyle, Sun, Technique},
     shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, TILE_PX, Uber, handlers},
     view::{Frustum, View},
 };
@@ -68,6 +69,8 @@ pub struct FrameInput<'a> {
     pub base: BaseStyle,
     /// What is behind the city.
     pub background: Background,
+    /// How lenses are evaluated.
+    pub technique: Technique,
     /// Nothing is behind the city.
     pub transparent: bool,
     /// How far the air begins to show, as a share of the scene's radius; 0 = never.
@@ -212,6 +215,9 @@ impl Renderer {
         let filter_parts = filters::parts(&plans.filters, size, &seen, &mut mesh);
         self.buffers.mesh.sync(&self.gpu, &mesh.corners)?;
         self.fit_groups();
+        if let Some(regions) = &plans.regions {
+            self.fit_regions(input.tile.size, regions)?;
+        }
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         if let Some(sun_view) = &sun_view {
@@ -222,7 +228,10 @@ impl Renderer {
         if pages.count > 0 {
             self.sprite_passes(&mut encoder, &mut recorder, input, &seen, pages.count);
         }
-        encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?;
+        match &plans.regions {
+            None => encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?,
+            Some(regions) => self.region_geometry(&mut encoder, &mut recorder, input, regions),
+        }
         if narrows {
             self.narrow_pass(&mut encoder, &mut recorder, input.tile.size.map(|side| side.div_ceil(TILE_PX)));
         }
@@ -233,7 +242,15 @@ impl Renderer {
             self.lines_pass(&mut encoder, &mut recorder, input, (&lines, cuts.picture.as_ref()), key);
         }
         self.filter_passes(&mut encoder, &mut recorder, input, (&plans.filters, &filter_parts), &keys.filters);
-        self.shade_pass(&mut encoder, &mut recorder, input, shade_parts, &keys);
+        match &plans.regions {
+            None => self.shade_pass(&mut encoder, &mut recorder, input, shade_parts, &keys),
+            Some(regions) => {
+                let [outside, inside] = shade_parts;
+                self.classes_pass(&mut encoder, &mut recorder, &inside, &keys.regions);
+                self.shade_pass(&mut encoder, &mut recorder, input, [outside, Vec::new()], &keys);
+                self.shade_regions(&mut encoder, &mut recorder, input, &inside, (regions, &keys.regions));
+            }
+        }
         if input.samples > 1 && input.sample + 1 == input.samples {
             self.resolve_pass(&mut encoder, &mut recorder);
         }
@@ -289,6 +306,19 @@ impl Renderer {
             true => plan.map(Program::Specialised),
             false => uber.map(Program::Uber),
         };
+        if let Some(regions) = &plans.regions {
+            // Of the last region, which most lenses have a part in.
+            let last = regions.passes.last().map_or_else(Plan::default, |pass| pass.shade.clone());
+            let module = match part {
+                ShaderPart::Shade => Some(Module::Shade(Program::Specialised(last))),
+                ShaderPart::Geometry => Some(Module::Geometry(Some(Program::Specialised(regions.plan.clone())))),
+                _ => None,
+            };
+            if let Some(module) = module {
+                let room = self.gpu.device.limits().max_inter_stage_shader_variables;
+                return module.source_for_people(handlers(), &names, room);
+            }
+        }
         let [picture, sun] = operations.uber_hiding();
         let by_shapes = |mut plan: Plan| {
             let shapes = seen.iter().map(|v| input.volumes[v.index].body.test());
@@ -511,7 +541,11 @@ impl Renderer {
                 city,
                 cuts,
                 context: both(context),
-                lenses: if seen.is_empty() { Vec::new() } else { both(lenses) },
+                lenses: if seen.is_empty() || plans.regions.is_some() { Vec::new() } else { both(lenses) },
+                regions: plans.regions.as_ref().map_or_else(RegionKeys::default, |regions| {
+                    let masks = wants_masks(input).then(|| Plan { steps: Vec::new(), ..plans.lenses.clone() });
+                    regions::keys(input, regions, masks, shade_to)
+                }),
                 // Written out on either back end: a few steps without a lens.
                 filters: plans
                     .filters
@@ -521,7 +555,8 @@ impl Renderer {
             };
         let specialised = || {
             let cuts = cuts.specialised();
-            let city = cut_keys(cuts.picture.as_ref(), cuts.sun.as_ref());
+            let by_region = plans.regions.as_ref().map(|regions| Program::Specialised(regions.plan.clone()));
+            let city = cut_keys(cuts.picture.as_ref().or(by_region.as_ref()), cuts.sun.as_ref());
             let [context, lenses] = [&plans.context, &plans.lenses].map(|plan| Program::Specialised(plan.clone()));
             parts(context, lenses, city, cuts, plans.lining.clone().map(Program::Specialised))
         };
@@ -532,6 +567,8 @@ impl Renderer {
             parts(uber.clone(), uber, city, cuts.uber(hiding), input.operations.uber_lining().map(Program::Uber))
         };
         let shade_keys = match input.backend {
+            // Those kept for reference are written out.
+            _ if input.technique != Technique::Accumulate => specialised(),
             // What is written out for so many compiles for minutes.
             Backend::Specialised if plans.is_long() => uber(),
             Backend::Specialised => specialised(),
@@ -663,11 +700,14 @@ struct ShadeKeys {
     city: Vec<Key>,
     /// What draws lines.
     lines: Option<Key>,
+    /// What marks and shades regions.
+    regions: RegionKeys,
 }
 
 impl ShadeKeys {
     fn all(&self) -> impl Iterator<Item = &Key> {
-        self.context.iter().chain(&self.lenses).chain(&self.filters).chain(&self.city).chain(&self.lines)
+        let parts = self.context.iter().chain(&self.lenses).chain(&self.filters).chain(&self.city).chain(&self.lines);
+        parts.chain(self.regions.all())
     }
 }
 

@@ -5,12 +5,12 @@ use crate::{
         edges::Edge,
         layout,
         pipelines::{
-            CODES, COLORS, DEPTH, FILTERED, FURNITURE_LAYER, LINES, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES,
+            CODES, COLORS, DEPTH, FILTERED, FURNITURE_LAYER, LINES, OWN_DEPTH, PICTURE, REGIONS, SMOOTH_CODES, SPRITES,
         },
         sprite_passes::SolidStage,
         stored::LIST_TARGET,
     },
-    shader::{Module, Program, VolumeTest},
+    shader::{Module, Plan, Program, VolumeTest},
 };
 
 /// What makes a pipeline the one it is.
@@ -28,7 +28,7 @@ pub enum Key {
         flat: bool,
         /// Whether interpolated depth is written, for the AOV.
         measured: bool,
-        /// What is hidden.
+        /// What is hidden; of a program that tells regions apart, what is not in the one that is drawn.
         cut: Option<Program>,
     },
     /// Depth from the sun, and what is hidden from it.
@@ -69,6 +69,8 @@ pub enum Key {
         /// Normals are in the target.
         smooth: bool,
     },
+    /// Regions as depths, and how they are told apart.
+    Regions(Plan),
     /// One direction of a neighbourhood filter, by its handler.
     Filter(u32),
     /// The mean of samples.
@@ -93,6 +95,10 @@ pub enum Shown {
     Background,
     /// All; four at once.
     Any,
+    /// Those that show a surface of the region whose depth the target of regions has.
+    RegionSurface,
+    /// Those of it that show what is behind the city.
+    RegionBackground,
 }
 
 /// Where shading goes.
@@ -149,6 +155,11 @@ fn per_vertex(array_stride: u64, attributes: &[wgpu::VertexAttribute]) -> Option
 }
 
 impl Key {
+    /// Whether it draws what of the city is in one region.
+    pub(super) fn is_of_region(&self) -> bool {
+        matches!(self, Self::Geometry { cut: Some(program), .. } if program.regions().is_some())
+    }
+
     pub(super) fn module(&self) -> Module {
         match self {
             Self::Geometry { cut, .. } => Module::Geometry(cut.clone()),
@@ -160,6 +171,7 @@ impl Key {
             Self::SolidSprite(_) => Module::Sprite,
             Self::Shade { program, .. } => Module::Shade(program.clone()),
             Self::Lines { program, .. } => Module::Lines(program.clone()),
+            Self::Regions(plan) => Module::Regions(plan.clone()),
             Self::Filter(effect) => Module::Filter(*effect),
             Self::Resolve => Module::Resolve,
             Self::Furniture { .. } => Module::Furniture,
@@ -203,7 +215,8 @@ impl Key {
             .to_owned(),
             Self::Shade { shown, textured, clay, target, shadows, .. } => {
                 let list = [
-                    (*shown == Shown::Background, "background"),
+                    (matches!(shown, Shown::Background | Shown::RegionBackground), "background"),
+                    (matches!(shown, Shown::RegionSurface | Shown::RegionBackground), "of a region"),
                     (*textured, "textured"),
                     (*clay, "clay"),
                     (*target == ShadeTarget::Sums, "summed"),
@@ -212,7 +225,7 @@ impl Key {
                 ];
                 format!("{}{}", self.module().name(), flags(&list))
             }
-            Self::Filter(_) | Self::Lines { .. } => self.module().name(),
+            Self::Filter(_) | Self::Lines { .. } | Self::Regions(_) => self.module().name(),
             Self::Resolve => "resolve".to_owned(),
             Self::Furniture { layered: false } => "furniture".to_owned(),
             Self::Furniture { layered: true } => "furniture in a layer".to_owned(),
@@ -252,7 +265,7 @@ impl Key {
     pub(super) fn entry_points(&self) -> (&'static str, Option<&'static str>) {
         match self {
             Self::Geometry { section, colored, measured, smooth, .. } => {
-                let full = *colored || *measured;
+                let full = *colored || *measured || self.is_of_region();
                 match (section, smooth) {
                     (GeometryKind::Plain, false) => ("vertex", Some(if full { "full" } else { "plain" })),
                     (GeometryKind::Plain, true) => {
@@ -267,8 +280,8 @@ impl Key {
             Self::Shadow(None) => ("vertex", None),
             Self::Shade { shown, .. } => {
                 let fragment = match shown {
-                    Shown::Surface => "surface",
-                    Shown::Background => "background",
+                    Shown::Surface | Shown::RegionSurface => "surface",
+                    Shown::Background | Shown::RegionBackground => "background",
                     Shown::Any => "unfiltered",
                 };
                 ("vertex", Some(fragment))
@@ -294,7 +307,7 @@ impl Key {
             }
             Self::Geometry { .. } | Self::Shadow(_) | Self::Bare => vec![vertex],
             Self::Lines { .. } => vec![Some(Edge::LAYOUT)],
-            Self::Shade { .. } | Self::Filter(_) => vec![per_vertex(8, CORNER)],
+            Self::Shade { .. } | Self::Regions(_) | Self::Filter(_) => vec![per_vertex(8, CORNER)],
             Self::SpriteList
             | Self::SolidSprite(SolidStage::Nearest | SolidStage::Farthest)
             | Self::CombinedSprite(SolidStage::NearestFace | SolidStage::FarthestFace, _) => {
@@ -324,6 +337,10 @@ impl Key {
                 targets.extend(measured.then(|| Some(OWN_DEPTH.into())));
                 // Without the colour target the list ends where it may.
                 targets.truncate(if *measured { 3 } else { 1 + usize::from(*colored) });
+                if self.is_of_region() {
+                    targets.resize(3, None);
+                    targets.push(Some(REGIONS.into()));
+                }
                 targets
             }
             Self::Shade { target: ShadeTarget::Sums, .. } => {
@@ -382,7 +399,8 @@ impl Key {
             }
             // The triangle lies at depth 0, where nothing is stored.
             Self::Shade { shown: Shown::Surface, .. } => C::Less,
-            Self::Shade { shown: Shown::Background, .. } => C::Equal,
+            Self::Shade { shown: Shown::Background | Shown::RegionSurface | Shown::RegionBackground, .. } => C::Equal,
+            Self::Regions(_) => C::Always,
             Self::Shade { shown: Shown::Any, .. }
             | Self::StoredForm(_)
             | Self::StoredLayers(_)

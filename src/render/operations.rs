@@ -220,7 +220,7 @@ impl Operations {
             Some(PlanContent { lens, class, city: c.city, clip: c.clip, keeps_terrain: c.keeps_terrain })
         };
         let contents = self.contents.iter().filter_map(content).collect();
-        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks, contents }
+        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks, contents, regions: None }
     }
 
     /// The list as steps; `place` finds a lens in the plan.

@@ -34,6 +34,7 @@ use crate::{
         operations::{MOST_FILTERS, Operations},
         parts::{Part, parts, put, whole},
         placement::Eye,
+        regions,
         solids::SolidTable,
         stats::{self, Statistics},
         stored::SpriteTexels,
@@ -356,6 +357,11 @@ impl Studio {
 
     fn prepare(&self, scene: &Scene, size: [u32; 2]) -> Result<Prepared, RenderError> {
         let mut found = self.volumes_of(scene, size)?;
+        let technique = scene.style.technique;
+        if let Some(problem) = technique.refuses(scene).or_else(|| regions::refused(scene, &found.volumes)) {
+            return Err(RenderError::Scene(problem.to_string()));
+        }
+        regions::set_tests(technique, &mut found.volumes);
         let solids = {
             let mut kept = self.solid_table.lock().unwrap_or_else(PoisonError::into_inner);
             *kept = found.place_solids(&kept).map_err(RenderError::Scene)?;
@@ -623,6 +629,7 @@ fn input<'a>(
         sun: scene.sun,
         base: scene.style.base,
         background: scene.style.background,
+        technique: scene.style.technique,
         transparent: request.transparent,
         haze: HAZE,
         volumes: &prepared.volumes,

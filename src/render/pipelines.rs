@@ -21,6 +21,8 @@ pub const SMOOTH_CODES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Interpolated depth, only where the depth AOV is asked for.
 pub const OWN_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// Numbers of regions, only where a technique tells them apart by passes.
+pub const REGIONS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// One bit per lens and class.
 pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// Four colours or opacities as `lib/packed.wgsl` packs them: what neighbourhood filters read and write.
@@ -64,6 +66,10 @@ pub struct Layouts {
     pub lines: wgpu::BindGroupLayout,
     /// Lines, group 3: the stage and the city, at dynamic offsets.
     pub line_stage: wgpu::BindGroupLayout,
+    /// Geometry of a region, group 0: the view, and the number of the region at a dynamic offset.
+    pub region: wgpu::BindGroupLayout,
+    /// Regions, group 3: their numbers.
+    pub regions: wgpu::BindGroupLayout,
     /// Filter, group 0: the stage at a dynamic offset, the image, parameters.
     pub filter: wgpu::BindGroupLayout,
     /// Resolve, group 0.
@@ -235,6 +241,8 @@ impl Layouts {
             ),
             lines: layout(gpu, "lines", &[(0, S::FRAGMENT, float)]),
             line_stage: layout(gpu, "line stage", &[(0, all, dynamic), (1, all, dynamic)]),
+            region: layout(gpu, "region", &[(0, all, uniform()), (1, S::FRAGMENT, dynamic)]),
+            regions: layout(gpu, "regions", &[(0, S::FRAGMENT, surfaces)]),
             filter: layout(gpu, "filter", &[(0, all, dynamic), (1, S::FRAGMENT, packed), (2, all, uniform())]),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
             furniture: layout(gpu, "furniture", &[(0, all, uniform()), (1, S::FRAGMENT, storage())]),
@@ -261,7 +269,8 @@ impl Layouts {
                 let lenses = cut.is_some().then_some(&self.lenses);
                 let image = matches!(section, GeometryKind::Textured(_)).then_some(&self.image);
                 let city = if cut.is_some() { &self.cut_city } else { &self.city };
-                vec![Some(&self.view), Some(city), lenses, image]
+                let view = if key.is_of_region() { &self.region } else { &self.view };
+                vec![Some(view), Some(city), lenses, image]
             }
             Key::Shadow(Some(_)) => vec![Some(&self.view), Some(&self.cut_city), Some(&self.shapes)],
             Key::Shadow(None) | Key::Bare => vec![Some(&self.view), Some(&self.city)],
@@ -274,6 +283,9 @@ impl Layouts {
             }
             Key::Lines { .. } => {
                 vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), Some(&self.line_stage)]
+            }
+            Key::Regions(_) => {
+                vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), Some(&self.regions)]
             }
             Key::Filter(_) => vec![Some(&self.filter)],
             Key::Resolve => vec![Some(&self.resolve)],

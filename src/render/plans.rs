@@ -6,14 +6,12 @@ use crate::{
         invokers::Invokers,
         octagon::Octagon,
         operations::Filter,
+        regions::RegionPasses,
         seen::{SeenVolume, part_of},
     },
-    shader::{Plan, handlers},
+    scene::{Technique, technique::MOST_WRITTEN_OUT},
+    shader::{Plan, Regions, handlers},
 };
-
-/// Lens volumes of a picture that are written out in its shaders. What is written out runs at every pixel that any lens may
-/// touch, and takes the longer to compile; the uber back end goes through more of them, tile by tile (L8).
-const MOST_WRITTEN_OUT: u32 = 24;
 
 /// What shading does outside the lenses' bounds, and inside.
 pub(super) struct Plans {
@@ -29,6 +27,8 @@ pub(super) struct Plans {
     pub parts: Vec<Octagon>,
     /// The distances between which each acts as *inside*, metres.
     pub depths: Vec<[f32; 2]>,
+    /// The regions that the city is drawn by, where the technique has passes for them.
+    pub regions: Option<RegionPasses>,
 }
 
 impl Plans {
@@ -53,6 +53,12 @@ impl Plans {
                 each.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             all.map(|d| d.clamp(-f64::from(f32::MAX), f64::from(f32::MAX)) as f32)
         };
+        let (context, mut lenses) = (context.shading(handlers()), lenses.shading(handlers()));
+        let has_passes = input.technique.has_passes() && !seen.is_empty();
+        let regions = has_passes.then(|| RegionPasses::new(input, seen, &lenses, &numbers));
+        if input.technique == Technique::Branches && !seen.is_empty() {
+            lenses.regions = Some(Regions::combinations(&lenses));
+        }
         Self {
             parts: of_lens().filter_map(|volumes| part_of(volumes.iter())).collect(),
             depths: of_lens().map(depths).collect(),
@@ -60,8 +66,9 @@ impl Plans {
             hiding,
             lining,
             seen: numbers,
-            context: context.shading(handlers()),
-            lenses: lenses.shading(handlers()),
+            context,
+            lenses,
+            regions,
         }
     }
 
@@ -72,7 +79,7 @@ impl Plans {
 
     /// Whether it would be too long, written out.
     pub fn is_long(&self) -> bool {
-        self.lenses.volumes() > MOST_WRITTEN_OUT
+        self.lenses.volumes() as usize > MOST_WRITTEN_OUT
     }
 
     /// The uses of filters, each with the number of the image that it gets.

@@ -16,6 +16,7 @@ use crate::{
         layout,
         narrow::Narrowing,
         pipelines::{Layouts, Pipelines},
+        regions::RegionsOnGpu,
         solids::SolidTable,
         stored::KeptSprite,
         synced::{Room, Synced},
@@ -56,6 +57,8 @@ pub struct Renderer {
     pub(super) solids_of: Option<Arc<SolidTable>>,
     /// The near depth of the last frame that culled by it.
     pub(super) curtain: Option<Curtain>,
+    /// Of techniques that draw the city by regions, once there was one.
+    pub(super) regions: Option<RegionsOnGpu>,
     /// Titles, captions and legends, once a picture had some.
     pub(super) furniture: Option<FurnitureOnGpu>,
     /// The stored sprites of the last frame.
@@ -214,6 +217,7 @@ impl Renderer {
             narrowing: None,
             binds_narrowed: false,
             curtain: None,
+            regions: None,
             furniture: None,
             ran: Vec::new(),
             solids_of: None,

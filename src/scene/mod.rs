@@ -5,6 +5,7 @@
 pub mod anchor;
 pub mod check;
 pub mod command;
+pub mod technique;
 
 use std::path::PathBuf;
 
@@ -17,6 +18,7 @@ use crate::{
 
 pub use check::{SceneProblem, check_against};
 pub use command::{Command, History};
+pub use technique::Technique;
 
 /// All of a scene.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -80,6 +82,8 @@ pub struct Style {
     pub effects: Vec<EffectUse>,
     /// What is behind the city.
     pub background: Background,
+    /// How lenses that meet are evaluated; the picture is the same.
+    pub technique: Technique,
 }
 
 /// The colours surfaces start from.

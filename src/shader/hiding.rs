@@ -8,6 +8,7 @@ use crate::shader::{
     effect::{EffectDefinition, EffectKind},
     lens_test,
     plan::{Plan, Program, Scope, Uber},
+    regions,
     specialised::one_line,
     uber::{MOST_SLOTS, SHARE_OF, TABLE_SOURCE},
 };
@@ -23,6 +24,9 @@ pub(super) enum Eye {
 
 /// `visible` and what it calls. `names` of a plan's lenses become comments.
 pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str], eye: Eye) -> String {
+    if let Program::Specialised(plan @ Plan { regions: Some(regions), .. }) = program {
+        return regions::visible(plan, regions, names);
+    }
     let slots = match program {
         Program::Specialised(plan) => plan.slots(handlers),
         Program::Uber(_) => MOST_SLOTS,

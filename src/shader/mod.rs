@@ -11,6 +11,7 @@ mod hiding;
 mod lens_test;
 mod lining;
 mod plan;
+mod regions;
 mod specialised;
 mod uber;
 pub mod wgsl;
@@ -21,6 +22,7 @@ pub use plan::{
     Blend, BodyKind, ClassTest, Clip, MOST_CITIES, Plan, PlanBody, PlanBorder, PlanContent, PlanLens, Program, Scope,
     Step, Uber, VolumeTest,
 };
+pub use regions::Regions;
 pub use specialised::scope_number;
 pub use uber::{MOST_SLOTS, MOST_VOLUMES, TILE_PX};
 
@@ -87,6 +89,7 @@ files! {
     FILTER = "pass/filter.wgsl";
     RESOLVE = "pass/resolve.wgsl";
     NARROW = "pass/narrow.wgsl";
+    REGIONS = "pass/regions.wgsl";
     FURNITURE = "pass/furniture.wgsl";
     FURNITURE_OVER = "pass/furniture-over.wgsl";
     BARE = "pass/bare.wgsl";
@@ -113,6 +116,8 @@ pub enum Module {
     Shade(Program),
     /// Edges as lines, and what lenses make of them.
     Lines(Program),
+    /// Regions as depths, and how they are told apart.
+    Regions(Plan),
     /// One direction of a neighbourhood filter: the number of its handler.
     Filter(u32),
     /// The mean of samples.
@@ -131,6 +136,7 @@ impl Module {
     /// A name for people and statistics.
     pub fn name(&self) -> String {
         match self {
+            Self::Geometry(Some(program)) if program.regions().is_some() => "geometry of a region".to_owned(),
             Self::Geometry(hidden) => format!("geometry{}", hidden_name(hidden)),
             Self::Shadow(hidden) => format!("shadow{}", hidden_name(hidden)),
             Self::Sprite => "sprite".to_owned(),
@@ -141,14 +147,16 @@ impl Module {
             Self::Shade(program) => {
                 let names = names_of(program);
                 let names = if names.is_empty() { names } else { format!(" ({names})") };
+                let branches = if program.regions().is_some() { " in branches" } else { "" };
                 let uber = if matches!(program, Program::Uber(_)) { " uber" } else { "" };
                 let lenses = if program.has().lenses { " lenses" } else { "" };
-                format!("shade{uber}{names}{lenses}")
+                format!("shade{uber}{branches}{names}{lenses}")
             }
             Self::Lines(program) => {
                 let uber = if matches!(program, Program::Uber(_)) { " uber" } else { "" };
                 format!("lines{uber} ({})", names_of(program))
             }
+            Self::Regions(_) => "regions".to_owned(),
             Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
             Self::Resolve => "resolve".to_owned(),
             Self::Narrow => "narrow".to_owned(),
@@ -197,6 +205,12 @@ impl Module {
             }
             Self::Shade(program) => &Self::files_of_shade(program, handlers),
             Self::Lines(program) => &Self::files_of_lines(program),
+            Self::Regions(plan) => &[
+                &[VIEW, VIEW_UNIFORM, SIGHT],
+                &lens_files(&Program::Specialised(plan.clone()))[..],
+                &[SURFACE, OBJECTS, REGIONS],
+            ]
+            .concat(),
             Self::Filter(_) => &[PACKED, FILTER],
             Self::Resolve => &[RESOLVE],
             Self::Narrow => &[VIEW, VIEW_UNIFORM, NARROW],
@@ -224,7 +238,12 @@ impl Module {
             Self::Lines(program) => text.replace("//@handlers\n", &lining::source(program, handlers, lenses)),
             Self::Geometry(None) => text.replace("//@handlers\n", NOTHING_CUT),
             Self::Geometry(Some(program)) => {
+                let text = if program.regions().is_some() { regions::geometry(&text) } else { text };
                 text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Eye::Picture))
+            }
+            Self::Regions(plan) => {
+                let own = plan.regions.as_ref().map(|regions| regions::marks(plan, regions, lenses));
+                text.replace("//@handlers\n", &own.unwrap_or_default())
             }
             Self::Shadow(Some(program)) => {
                 text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Eye::Sun))
@@ -412,6 +431,7 @@ mod tests {
             haze: seed.is_multiple_of(5),
             masks: seed.is_multiple_of(7),
             contents: contents_of(seed),
+            regions: None,
         };
         let uber = Uber {
             effects: plan.effects(),
@@ -507,6 +527,32 @@ mod tests {
         lists.par_iter().enumerate().for_each(|(seed, list)| {
             modules(list, seed).iter().for_each(validate);
         });
+    }
+
+    #[test]
+    fn regions_of_all_kinds_are_told_apart_by_valid_wgsl() {
+        let [sepia, gloss, cel] = ["sepia", "gloss", "cel"].map(|name| effect::number_of(name).expect("there is one"));
+        for (seed, test) in VolumeTest::ALL.into_iter().enumerate() {
+            let lens =
+                |number| PlanLens { number, volumes: vec![test], leaves: LEAVES.to_vec(), body: None, border: None };
+            let steps = vec![
+                step(sepia, Scope::Everywhere, None),
+                step(cel, Scope::Lens(0, ClassTest::Inside), None),
+                step(gloss, Scope::Lens(1, ClassTest::ALL[seed % 4]), None),
+                step(sepia, Scope::Lens(1, ClassTest::ALL[(seed + 1) % 4]), Some(Blend::Multiply)),
+            ];
+            let plan = Plan { lenses: vec![lens(0), lens(1)], steps, haze: seed % 2 == 0, ..Plan::default() };
+            for regions in [Regions::combinations(&plan), Regions::passes(&plan)] {
+                let plan = Plan { regions: Some(regions.clone()), ..plan.clone() };
+                validate(&Module::Geometry(Some(Program::Specialised(plan.clone()))));
+                validate(&Module::Regions(plan.clone()));
+                for region in 0..regions.count().expect("few") {
+                    validate(&Module::Shade(Program::Specialised(plan.of_region(region))));
+                }
+            }
+            let regions = Some(Regions::combinations(&plan));
+            validate(&Module::Shade(Program::Specialised(Plan { regions, masks: seed % 3 == 0, ..plan })));
+        }
     }
 
     #[test]

@@ -3,7 +3,10 @@
 //! A [`Plan`] names handlers, lenses and classes, never positions or parameters: those stand in uniforms, so a lens that
 //! moves or a slider that is dragged compiles nothing. Equal plans share a pipeline.
 
-use crate::shader::effect::{EffectDefinition, EffectKind};
+use crate::shader::{
+    effect::{EffectDefinition, EffectKind},
+    regions::Regions,
+};
 
 /// `vec4f` that a body's parameters take: colour and opacity; width of the line or the glow in pixels.
 pub const BODY_SLOTS: u32 = 2;
@@ -23,6 +26,8 @@ pub struct Plan {
     pub lines: bool,
     /// What its lenses show in themselves, bottom lens first (C6).
     pub contents: Vec<PlanContent>,
+    /// How places are told apart, for the techniques that are kept for reference (C2); `None`: by accumulation.
+    pub regions: Option<Regions>,
 }
 
 /// What a lens of a plan shows in place of what is below it.
@@ -564,7 +569,8 @@ impl Plan {
     pub fn asks_inside_alone(&self, lens: u32) -> bool {
         let is_other = |s: &Step| matches!(s.scope, Scope::Lens(l, class) if l == lens && class != ClassTest::Inside);
         let is_content = |c: &PlanContent| c.lens == lens && c.class != ClassTest::Inside;
-        !self.masks && !self.steps.iter().any(is_other) && !self.contents.iter().any(is_content)
+        let is_apart = self.regions.as_ref().is_some_and(|regions| regions.asks_sides(lens));
+        !is_apart && !self.masks && !self.steps.iter().any(is_other) && !self.contents.iter().any(is_content)
     }
 
     /// The volumes of one of its lenses: how many come before them, and how they are tested.

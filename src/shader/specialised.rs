@@ -7,6 +7,7 @@ use crate::shader::{
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
     plan::{BodyKind, ClassTest, Plan, PlanBody, Program, Scope, Step},
+    regions,
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`. `names` of the plan's lenses
@@ -20,8 +21,13 @@ pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str])
     }
     text.push_str("// ==== this scene\n\n");
     text.push_str(&writer.classes());
-    text.push_str(&writer.shade());
-    text.push_str(&writer.styled());
+    match &plan.regions {
+        None => {
+            text.push_str(&writer.shade());
+            text.push_str(&writer.styled());
+        }
+        Some(regions) => text.push_str(&regions::branches(plan, regions, handlers)),
+    }
     text.push_str(&writer.outlines());
     text.push_str(&writer.write_classes());
     text
@@ -174,7 +180,7 @@ impl Writer<'_> {
     }
 
     /// From the surface to its colour: material, light, the standard style and air, then the styles.
-    fn shade(&self) -> String {
+    pub(super) fn shade(&self) -> String {
         let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
         if self.has(EffectKind::Material) {
             text.push_str("    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);\n");
@@ -205,7 +211,7 @@ impl Writer<'_> {
     }
 
     /// Scene styles and post styles, in lens order: what replaces the colour leaves nothing of the styles below (C5).
-    fn styled(&self) -> String {
+    pub(super) fn styled(&self) -> String {
         let is_style = |(_, h): &(&Step, &EffectDefinition)| h.kind.is_style();
         let all = self.plan.steps.iter().map(|s| (s, &self.handlers[s.effect as usize])).filter(is_style);
         let lines: String = all.map(|(step, handler)| self.statement(step, handler)).collect();

@@ -255,6 +255,14 @@ pub const STYLE: Table = Table {
             "What is behind the city: a quiet sky, or one colour.",
             "\"#ffffff\"",
         ),
+        key(
+            "technique",
+            Kind::Word { now: &["accumulate", "branches", "regions", "three-pass"], later: &[] },
+            "\"accumulate\"",
+            "",
+            "How lenses are evaluated: effects one after the other where their lens is (`accumulate`), or as the literature has it, for comparison; the picture is the same, see Techniques.",
+            "\"regions\"",
+        ),
     ],
 };
 

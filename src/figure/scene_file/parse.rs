@@ -21,7 +21,7 @@ use crate::{
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
-    scene::{Background, BaseStyle, CitySpec, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun},
+    scene::{Background, BaseStyle, CitySpec, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun, Technique},
     shader::{
         Blend, Clip,
         effect::{EffectKind, find as find_effect},
@@ -173,7 +173,8 @@ impl<'o> SceneReader<'o> {
         let (effects, _) = self.effects(fields, false);
         let base = if fields.text("base") == Some("clay") { BaseStyle::Clay } else { BaseStyle::Natural };
         let background = fields.color("background").map_or(Background::Sky, Background::Color);
-        Style { base, effects, background }
+        let technique = fields.text("technique").and_then(Technique::of_word).unwrap_or_default();
+        Style { base, effects, background, technique }
     }
 
     fn poi(&mut self, fields: &Fields, index: usize) -> Option<Poi> {

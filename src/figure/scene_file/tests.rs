@@ -10,7 +10,7 @@ use crate::{
         chosen::Choice,
         sprite::{Format, Mapping},
     },
-    scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun},
+    scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique},
     shader::{Blend, Clip},
     view::{Camera, Projection},
 };
@@ -607,7 +607,7 @@ prop_compose! {
         near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
-        figure in figures(), lod in prop::option::of(0..99u8), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3)) -> Scene {
+        figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3)) -> Scene {
         let fov_y = (f64::from(tenths) / 10.0).to_radians();
         let projection = if ortho { Projection::Orthographic { height_m: f64::from(tenths) } } else { Projection::Perspective { fov_y } };
         let up = if clay { DVec3::Z } else { target };
@@ -617,7 +617,7 @@ prop_compose! {
         let mut scene = Scene {
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
             sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2 },
-            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color) },
+            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).collect(),
             lenses,
             figure: Figure { size, samples, ..figure },

@@ -15,7 +15,7 @@ use crate::{
         BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
         color::{parse_hex, to_hex},
     },
-    scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun},
+    scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun, Technique},
     shader::Clip,
     view::{Camera, Projection, default_near_m},
 };
@@ -109,6 +109,7 @@ impl Toml {
         if let Background::Color(c) = style.background {
             self.key("background", &color(c));
         }
+        self.key_if(style.technique != Technique::default(), "technique", &quoted(style.technique.word()));
     }
 
     fn poi(&mut self, poi: &Poi) {

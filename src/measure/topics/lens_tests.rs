@@ -1,6 +1,6 @@
 //! Lens tests (S7): from the shape or by a depth sprite, for every kind of shape, and for lenses that are many, overlap or move.
 //!
-//! A technique is one row of [`TECHNIQUES`]; those that are kept for reference (C2) need no more than theirs.
+//! A technique is one row of [`TECHNIQUES`]; those that are kept for reference (C2) have theirs.
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -12,7 +12,7 @@ use crate::{
         stage::{Stage, lens},
     },
     render::picture::RenderError,
-    scene::Scene,
+    scene::{Scene, Technique as Evaluation},
 };
 
 /// Share of the picture that a lens alone covers, and one of several.
@@ -29,7 +29,7 @@ const STEP: f64 = 0.1;
 pub const TOPIC: Topic = Topic {
     name: "lens-tests",
     title: "How lenses are tested",
-    about: "What a lens test from the shape and one by a depth sprite cost, for each kind of shape, and for 1 to 10 lenses.",
+    about: "What a lens test from the shape and one by a depth sprite cost, and what the techniques of the literature do, for each kind of shape, and for 1 to 10 lenses.",
     specs: &["U1", "S7", "C2"],
     reference: "the same lenses, standing still, tested from their shapes",
     knobs: &[
@@ -52,16 +52,30 @@ struct Technique {
     name: &'static str,
     /// Has a scene's lenses tested so.
     set: fn(&mut Scene),
-    /// For how many lenses it can be done.
-    most: usize,
+    /// For which lenses it can be done.
+    fits: fn(&Case) -> bool,
 }
 
 const TECHNIQUES: &[Technique] = &[
-    Technique { name: "shape", set: |_| {}, most: usize::MAX },
+    Technique { name: "shape", set: |_| {}, fits: |_| true },
     Technique {
         name: "sprite",
         set: |scene| scene.lenses.iter_mut().for_each(|lens| lens.sprite = Some(LensSprite::default())),
-        most: usize::MAX,
+        fits: |_| true,
+    },
+    Technique {
+        name: "branches",
+        set: |scene| scene.style.technique = Evaluation::Branches,
+        fits: |case| case.lenses.len() <= 6,
+    },
+    Technique { name: "regions", set: |scene| scene.style.technique = Evaluation::Regions, fits: |_| true },
+    Technique {
+        name: "three-pass",
+        set: |scene| scene.style.technique = Evaluation::ThreePass,
+        fits: |case| {
+            let has_one_front = !["solid", "combination"].contains(&case.shape);
+            has_one_front && (case.arrangement != "overlapping" || case.lenses.len() == 1)
+        },
     },
 ];
 
@@ -98,12 +112,13 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
     let mut variants = Vec::new();
     for case in cases {
         let count = case.lenses.len();
+        let techniques: Vec<&Technique> = TECHNIQUES.iter().filter(|technique| (technique.fits)(&case)).collect();
         let motion = if case.moved.is_some() { "moving" } else { "still" };
         let mut scene = plain.clone();
         let one = |(i, focus): (usize, Focus)| -> Lens { lens(&format!("lens {i}"), focus, &["sepia"]) };
         scene.lenses = case.lenses.into_iter().enumerate().map(one).collect();
         let reference = stage.shot(scene.clone(), 1);
-        for technique in TECHNIQUES.iter().filter(|technique| count <= technique.most) {
+        for technique in techniques {
             let mut scene = scene.clone();
             (technique.set)(&mut scene);
             let mut shot = stage.shot(scene.clone(), 1);

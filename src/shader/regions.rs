@@ -1,0 +1,274 @@
+//! Regions (C2): the classes of several lenses that a place is in at once, as one number. Sequential accumulation needs none; the
+//! techniques that are kept for reference do.
+
+use std::fmt::Write as _;
+
+use crate::shader::{
+    effect::EffectDefinition,
+    lens_test,
+    plan::{ClassTest, Plan, Program, Scope},
+    specialised::{Writer, one_line},
+};
+
+/// How places are told apart, and by which numbers. What no lens acts on is region 0.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Regions {
+    /// Every combination of the classes that lenses act on; of each lens of the plan, these classes, ascending. Of lenses that act
+    /// on one class each, the number is a bitmask, the bottom lens its lowest bit.
+    Combinations(Vec<Vec<ClassTest>>),
+    /// One class of one lens each, from 1: the first that holds. All else is 0; where *behind* is one of them, that is *rest*.
+    Passes(Vec<(u32, ClassTest)>),
+}
+
+impl Regions {
+    /// All combinations of what the lenses of a plan act on.
+    pub fn combinations(plan: &Plan) -> Self {
+        let asked = |lens: u32, class| plan.steps.iter().any(|s| s.scope == Scope::Lens(lens, class));
+        let of = |lens: u32| ClassTest::ALL.into_iter().filter(|&class| asked(lens, class)).collect();
+        Self::Combinations((0..plan.lenses.len() as u32).map(of).collect())
+    }
+
+    /// Ropinski and Hinrichs' passes (R §3): what is inside of a lens, what is in front of it, and all else, which is behind it or
+    /// beside it; that in two passes where the lens treats these differently. Of several lenses, two further passes each.
+    pub fn passes(plan: &Plan) -> Self {
+        let lenses = 0..plan.lenses.len() as u32;
+        let of = |class| lenses.clone().map(move |lens| (lens, class));
+        let is_far_side = |scope| matches!(scope, Scope::Lens(_, ClassTest::Behind | ClassTest::Rest));
+        let asks_far_side = plan.steps.iter().any(|s| is_far_side(s.scope));
+        let behind = of(ClassTest::Behind).filter(|_| asks_far_side);
+        Self::Passes(of(ClassTest::Inside).chain(of(ClassTest::Front)).chain(behind).collect())
+    }
+
+    /// How many there are; [`None`] beyond what a word counts.
+    pub fn count(&self) -> Option<u32> {
+        match self {
+            Self::Combinations(classes) => {
+                classes.iter().try_fold(1_u32, |all, of| all.checked_mul(of.len() as u32 + 1))
+            }
+            Self::Passes(passes) => Some(passes.len() as u32 + 1),
+        }
+    }
+
+    /// The classes that a region is in, by lens of the plan; lenses of which it is in no class that is told apart are left out.
+    pub fn classes_of(&self, region: u32) -> Vec<(u32, ClassTest)> {
+        match self {
+            Self::Combinations(classes) => {
+                let mut left = region;
+                let of = |(lens, asked): (usize, &Vec<ClassTest>)| {
+                    let states = asked.len() as u32 + 1;
+                    let state = left % states;
+                    left /= states;
+                    Some((lens as u32, asked[state.checked_sub(1)? as usize]))
+                };
+                classes.iter().enumerate().filter_map(of).collect()
+            }
+            Self::Passes(passes) => match region.checked_sub(1) {
+                Some(pass) => vec![passes[pass as usize]],
+                None => {
+                    let behind = passes.iter().filter(|(_, class)| *class == ClassTest::Behind);
+                    behind.map(|(lens, _)| (*lens, ClassTest::Rest)).collect()
+                }
+            },
+        }
+    }
+
+    /// Whether it asks for other classes of a lens than *inside*.
+    pub fn asks_sides(&self, lens: u32) -> bool {
+        match self {
+            Self::Combinations(classes) => classes[lens as usize].iter().any(|class| *class != ClassTest::Inside),
+            Self::Passes(passes) => passes.iter().any(|(of, class)| *of == lens && *class != ClassTest::Inside),
+        }
+    }
+
+    /// The lines of a function that returns the number; `classes`: those of a lens of the plan.
+    fn body(&self, classes: impl Fn(u32) -> String) -> String {
+        let mut text = String::new();
+        match self {
+            Self::Combinations(asked) => {
+                text.push_str("    var region = 0u;\n");
+                let mut place = 1;
+                for (lens, asked) in asked.iter().enumerate().filter(|(_, asked)| !asked.is_empty()) {
+                    let _ = writeln!(text, "    let classes_{lens} = {};", classes(lens as u32));
+                    for (i, class) in (1..).zip(asked) {
+                        let number: u32 = place * i;
+                        let test = class.function();
+                        let _ = writeln!(text, "    region += select(0u, {number}u, {test}(classes_{lens}));");
+                    }
+                    place *= asked.len() as u32 + 1;
+                }
+                text.push_str("    return region;\n");
+            }
+            Self::Passes(passes) => {
+                let mut lenses: Vec<u32> = passes.iter().map(|(lens, _)| *lens).collect();
+                lenses.sort_unstable();
+                lenses.dedup();
+                for lens in lenses {
+                    let _ = writeln!(text, "    let classes_{lens} = {};", classes(lens));
+                }
+                for (number, (lens, class)) in (1..).zip(passes) {
+                    let test = class.function();
+                    let _ = writeln!(text, "    if {test}(classes_{lens}) {{\n        return {number}u;\n    }}");
+                }
+                text.push_str("    return 0u;\n");
+            }
+        }
+        text
+    }
+}
+
+impl Plan {
+    /// What is done in one region, with no question left to ask.
+    pub fn of_region(&self, region: u32) -> Self {
+        let own = self.regions.as_ref().map_or_else(Vec::new, |regions| regions.classes_of(region));
+        let is_own = |scope| match scope {
+            Scope::Everywhere => true,
+            Scope::Lens(lens, class) => own.contains(&(lens, class)),
+        };
+        let steps = self.steps.iter().filter(|s| is_own(s.scope)).cloned();
+        let everywhere = steps.map(|mut step| {
+            step.scope = Scope::Everywhere;
+            step
+        });
+        Self { steps: everywhere.collect(), haze: self.haze, ..Self::default() }
+    }
+}
+
+impl Program {
+    /// How it tells regions apart, if it does.
+    pub fn regions(&self) -> Option<&Regions> {
+        match self {
+            Self::Specialised(plan) => plan.regions.as_ref(),
+            Self::Uber(_) => None,
+        }
+    }
+}
+
+/// `shade` and `styled`, for `pass/shade.wgsl`: a branch for each region, in which its effects are written out (Tiesel 2009,
+/// technique I).
+pub(super) fn branches(plan: &Plan, regions: &Regions, handlers: &[EffectDefinition]) -> String {
+    let body = regions.body(|lens| format!("classes.lens_{lens}"));
+    let mut text = format!("fn region_of(classes: Classes) -> u32 {{\n{body}}}\n\n");
+    let count = regions.count().unwrap_or(1);
+    for region in 0..count {
+        let own = plan.of_region(region);
+        let writer = Writer { plan: &own, handlers, names: &[] };
+        let shade = writer.shade().replace("fn shade(", &format!("fn shade_{region}("));
+        text.push_str(&writer.styled().replace("fn styled(", &format!("fn styled_{region}(")));
+        text.push_str(&shade.replace("return styled(", &format!("return styled_{region}(")));
+    }
+    let mut switch = |head: &str, call: &str| {
+        let _ = writeln!(text, "{head}\n    switch region_of(classes) {{");
+        for region in 1..count {
+            let _ = writeln!(text, "        case {region}u: {{ return {}; }}", call.replace('#', &region.to_string()));
+        }
+        let _ = writeln!(text, "        default: {{ return {}; }}\n    }}\n}}\n", call.replace('#', "0"));
+    };
+    switch("fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {", "shade_#(point, classes)");
+    switch("fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {", "styled_#(start, point, classes)");
+    text
+}
+
+/// `region_at`, which tells places apart by the lens tests of a plan; `names` of its lenses become comments.
+fn region_at(plan: &Plan, regions: &Regions, names: &[&str]) -> String {
+    let mut text = String::new();
+    for (lens, name) in names.iter().enumerate() {
+        let _ = writeln!(text, "// classes_{lens}: {}", one_line(name));
+    }
+    let body = regions.body(|lens| lens_test::classes(plan, lens, "sight"));
+    text + &format!("fn region_at(sight: Sight) -> u32 {{\n{body}}}\n\n")
+}
+
+/// `visible` and what it calls, for the geometry pass: what is not in the region that is drawn is hidden.
+pub(super) fn visible(plan: &Plan, regions: &Regions, names: &[&str]) -> String {
+    let program = Program::Specialised(plan.clone());
+    lens_test::bindings(&program, false) + "\n" + &region_at(plan, regions, names) + VISIBLE
+}
+
+const VISIBLE: &str = "@group(0) @binding(1) var<uniform> drawn: vec4u;     // x: the number of the region
+
+fn visible(fragment: Fragment) -> bool {
+    return region_at(sight_of(fragment)) == drawn.x;
+}
+";
+
+/// `region_at` and what it calls, for the pass that marks regions.
+pub(super) fn marks(plan: &Plan, regions: &Regions, names: &[&str]) -> String {
+    lens_test::bindings(&Program::Specialised(plan.clone()), false) + "\n" + &region_at(plan, regions, names)
+}
+
+/// What the geometry pass' text gets so that it writes down the region too, and how often.
+const WRITTEN: [(&str, &str, usize); 3] = [
+    ("    @location(2) own_depth: f32,\n", "    @location(2) own_depth: f32,\n    @location(3) region: u32,\n", 2),
+    (", 1.0), in.clip.z);", ", 1.0), in.clip.z, drawn.x);", 3),
+    ("color, in.clip.z, depth);", "color, in.clip.z, drawn.x, depth);", 1),
+];
+
+/// The geometry pass with one output more: the number of the region.
+pub(super) fn geometry(text: &str) -> String {
+    WRITTEN.iter().fold(text.to_owned(), |text, (from, to, times)| {
+        debug_assert_eq!(text.matches(from).count(), *times, "{from}");
+        text.replace(from, to)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shader::plan::{PlanLens, Step, VolumeTest};
+
+    fn plan(scopes: &[(u32, ClassTest)]) -> Plan {
+        let lens =
+            |number| PlanLens { number, volumes: vec![VolumeTest::Sphere], leaves: vec![], body: None, border: None };
+        let step = |(i, &(lens, class)): (usize, &(u32, ClassTest))| Step {
+            effect: i as u32,
+            scope: Scope::Lens(lens, class),
+            parameters: 0,
+            blend: None,
+        };
+        let steps = scopes.iter().enumerate().map(step).collect();
+        Plan { lenses: (0..3).map(lens).collect(), steps, ..Plan::default() }
+    }
+
+    #[test]
+    fn the_number_of_lenses_with_one_class_each_is_a_bitmask() {
+        let inside = [0, 1, 2].map(|lens| (lens, ClassTest::Inside));
+        let mut plan = plan(&inside);
+        let regions = Regions::combinations(&plan);
+        plan.regions = Some(regions.clone());
+        assert_eq!(regions.count(), Some(8));
+        for region in 0..8 {
+            let own: Vec<_> = inside.iter().filter(|(lens, _)| region >> lens & 1 == 1).copied().collect();
+            assert_eq!(regions.classes_of(region), own);
+            let done: Vec<u32> = plan.of_region(region).steps.iter().map(|s| s.effect).collect();
+            assert_eq!(done, own.iter().map(|(lens, _)| *lens).collect::<Vec<_>>(), "in the lenses' order");
+        }
+    }
+
+    #[test]
+    fn every_combination_of_classes_has_its_own_number() {
+        use ClassTest::{Behind, Front, Inside, Rest};
+        let plan = plan(&[(0, Rest), (0, Inside), (2, Front), (2, Behind), (2, Inside)]);
+        let regions = Regions::combinations(&plan);
+        assert_eq!(regions.count(), Some(3 * 4), "a lens that does nothing has no part in it");
+        let mut all: Vec<_> = (0..12).map(|region| regions.classes_of(region)).collect();
+        all.sort_by_key(|classes| format!("{classes:?}"));
+        all.dedup();
+        assert_eq!(all.len(), 12);
+        assert!(regions.asks_sides(0) && !regions.asks_sides(1));
+    }
+
+    #[test]
+    fn three_passes_are_four_where_behind_and_rest_differ() {
+        use ClassTest::{Behind, Front, Inside, Rest};
+        let mut one = plan(&[(0, Inside)]);
+        one.lenses.truncate(1);
+        assert_eq!(Regions::passes(&one), Regions::Passes(vec![(0, Inside), (0, Front)]));
+        let mut four = plan(&[(0, Rest), (0, Front)]);
+        four.lenses.truncate(1);
+        four.regions = Some(Regions::passes(&four));
+        let regions = four.regions.as_ref().expect("just made");
+        assert_eq!(*regions, Regions::Passes(vec![(0, Inside), (0, Front), (0, Behind)]));
+        let done = [0, 1, 2, 3].map(|region| four.of_region(region).steps.iter().map(|s| s.effect).collect::<Vec<_>>());
+        assert_eq!(done, [vec![0], vec![], vec![1], vec![]], "rest, inside, front, behind");
+    }
+}
