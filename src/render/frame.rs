@@ -15,7 +15,8 @@
 //! furniture                     title, caption, legends: over the last sample
 //! ```
 //!
-//! A pass that the scene does not call for is not in the list (U3).
+//! A pass that the scene does not call for is not in the list (U3). Techniques that are kept for reference have others for the
+//! geometry and shading (`render::regions`).
 
 use std::{ops::Range, sync::Arc};
 

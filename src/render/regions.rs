@@ -343,6 +343,7 @@ impl Renderer {
         let view = group(&self.gpu, "region", &self.pipelines.layouts.region, &entries);
         pass.set_bind_group(0, &view, &[region.number * STAGE_STRIDE as u32]);
         pass.set_bind_group(2, &groups.lenses, &[]);
+        let program = Program::Specialised(regions.plan.clone());
         let mut counted = (0, 0);
         for (DrawnSection { city, section, image, offset, .. }, chunks) in parts {
             pass.set_vertex_buffer(0, section.vertices.slice(..));
@@ -353,14 +354,13 @@ impl Renderer {
                 pass.set_bind_group(3, image, &[]);
             }
             pass.set_bind_group(1, &groups.cut_city, &[*offset; 2]);
-            let program = Program::Specialised(regions.plan.clone());
             let normals = [smooth, city.buffers.smooth];
             pass.set_pipeline(self.pipelines.get(&geometry_key(
                 section.kind,
                 colored,
                 normals,
                 input.measured,
-                Some(program),
+                Some(program.clone()),
             )));
             let (draws, triangles) = draws_of(chunks.iter().copied());
             draw_ranges(&mut pass, &section.indices, &draws);
@@ -387,7 +387,9 @@ impl Renderer {
         }
         let attachment = color_attachment(&targets.picture.view, wgpu::Color::TRANSPARENT);
         self.paint(encoder, recorder, ("classes", attachment, &targets.depth.view), |pass| {
-            keys.classes.iter().map(|key| self.draw_pieces(pass, key, pieces)).sum()
+            let mut counted = (0, 0);
+            keys.classes.iter().for_each(|key| self.draw_pieces(pass, key, pieces, &mut counted));
+            counted
         });
     }
 
@@ -421,18 +423,19 @@ impl Renderer {
         pass.set_bind_group(2, &groups.lenses, &[]);
         pass.set_bind_group(3, &numbers, &[]);
         pass.set_vertex_buffer(0, self.buffers.mesh.buffer().slice(..));
-        let draws = self.draw_pieces(&mut pass, marks, pieces);
+        let mut counted = (0, 0);
+        self.draw_pieces(&mut pass, marks, pieces, &mut counted);
         if let Some(timer) = &recorder.timer {
             timer.end_count(&mut pass, slot);
         }
         drop(pass);
-        recorder.count(draws, u64::from(draws));
+        recorder.count(counted.0, counted.1);
         let target = if input.samples > 1 { &targets.sums } else { &targets.picture };
         let mut attachment = color_attachment(&target.view, wgpu::Color::TRANSPARENT);
         attachment.ops.load = wgpu::LoadOp::Load;
         let [w, h] = input.tile.size.map(|side| side as f32);
         self.paint(encoder, recorder, ("shade regions", attachment, &depth), |pass| {
-            let mut draws = 0;
+            let mut counted = (0, 0);
             for (region, keys) in regions.passes.iter().zip(&keys.shade) {
                 let own = pieces.iter().map(|(corners, tile)| (corners.clone(), common(*tile, region.part)));
                 let own: Vec<(Range<u32>, PictureTile)> = own.collect();
@@ -440,20 +443,20 @@ impl Renderer {
                     // The triangles lie at depth 0; the depth test finds what lies at the region's.
                     let depth = (first + region.number + 1) as f32 / STEPS;
                     pass.set_viewport(0.0, 0.0, w, h, depth, depth);
-                    draws += self.draw_pieces(pass, key, &own);
+                    self.draw_pieces(pass, key, &own, &mut counted);
                 }
             }
-            draws
+            counted
         });
     }
 
-    /// A pass that shades, chosen by a depth that it only reads; `draw` returns how many draws it made.
+    /// A pass that shades, chosen by a depth that it only reads; `draw` returns its draws and triangles.
     fn paint(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
         (name, target, depth): (&'static str, wgpu::RenderPassColorAttachment, &wgpu::TextureView),
-        draw: impl FnOnce(&mut wgpu::RenderPass) -> u32,
+        draw: impl FnOnce(&mut wgpu::RenderPass) -> (u32, u64),
     ) {
         let Some(groups) = &self.groups else { return };
         let slot = recorder.begin(name, "main", &[], true);
@@ -476,24 +479,22 @@ impl Renderer {
         pass.set_bind_group(1, &groups.shade, &[]);
         pass.set_bind_group(2, &groups.lenses, &[]);
         pass.set_vertex_buffer(0, self.buffers.mesh.buffer().slice(..));
-        let draws = draw(&mut pass);
+        let counted = draw(&mut pass);
         if let Some(timer) = &recorder.timer {
             timer.end_count(&mut pass, slot);
         }
         drop(pass);
-        recorder.count(draws, u64::from(draws));
+        recorder.count(counted.0, counted.1);
     }
 
-    /// Draws parts of the picture, those of the lenses; how many draws that took.
-    fn draw_pieces(&self, pass: &mut wgpu::RenderPass, key: &Key, pieces: &Pieces) -> u32 {
+    /// Draws parts of the picture, those of the lenses; adds draws and triangles to `counted`.
+    fn draw_pieces(&self, pass: &mut wgpu::RenderPass, key: &Key, pieces: &Pieces, counted: &mut (u32, u64)) {
         pass.set_pipeline(self.pipelines.get(key));
-        let mut draws = 0;
         for (corners, tile) in pieces.iter().filter(|(corners, tile)| !corners.is_empty() && !tile.is_empty()) {
             scissor(pass, *tile);
             pass.draw(corners.clone(), 1..2);
-            draws += 1;
+            *counted = (counted.0 + 1, counted.1 + corners.len() as u64 / 3);
         }
-        draws
     }
 }
 

@@ -10,12 +10,12 @@ use crate::{
 /// A technique.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Technique {
-    /// Every effect in turn, where its lens test holds (Tiesel 2009, technique II).
+    /// Every effect in turn, where its lens test holds (Tiesel 2009, §3.4.5, the alternative).
     #[default]
     Accumulate,
-    /// One branch of the shader for each combination of lenses (Tiesel 2009, technique I).
+    /// One branch of the shader for each combination of lenses (Tiesel 2009, §3.4.5).
     Branches,
-    /// One pass over the city for each combination of lenses (Best and Borst, as Tiesel 2009 tells of it).
+    /// One pass over the city for each combination of lenses (Best and Borst 2008, as Tiesel 2009, §3.4.2 tells of it).
     Regions,
     /// What is behind a lens, inside and in front of it in three passes over the city, told apart by two depth maps (Ropinski and
     /// Hinrichs 2004, §3 and §4).

@@ -144,7 +144,7 @@ impl Program {
 }
 
 /// `shade` and `styled`, for `pass/shade.wgsl`: a branch for each region, in which its effects are written out (Tiesel 2009,
-/// technique I).
+/// §3.4.5).
 pub(super) fn branches(plan: &Plan, regions: &Regions, handlers: &[EffectDefinition]) -> String {
     let body = regions.body(|lens| format!("classes.lens_{lens}"));
     let mut text = format!("fn region_of(classes: Classes) -> u32 {{\n{body}}}\n\n");

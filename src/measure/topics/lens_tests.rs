@@ -66,18 +66,20 @@ const TECHNIQUES: &[Technique] = &[
     Technique {
         name: "branches",
         set: |scene| scene.style.technique = Evaluation::Branches,
-        fits: |case| case.lenses.len() <= 6,
+        fits: |case| is_comparable(case) && case.lenses.len() <= 6,
     },
-    Technique { name: "regions", set: |scene| scene.style.technique = Evaluation::Regions, fits: |_| true },
+    Technique { name: "regions", set: |scene| scene.style.technique = Evaluation::Regions, fits: is_comparable },
     Technique {
         name: "three-pass",
         set: |scene| scene.style.technique = Evaluation::ThreePass,
-        fits: |case| {
-            let has_one_front = !["solid", "combination"].contains(&case.shape);
-            has_one_front && (case.arrangement != "overlapping" || case.lenses.len() == 1)
-        },
+        fits: |case| is_comparable(case) && (case.arrangement == "apart" || case.lenses.len() == 1),
     },
 ];
+
+/// What the techniques of the literature are compared at: what they cost grows with the lenses, and their start-up takes seconds.
+fn is_comparable(case: &Case) -> bool {
+    case.arrangement != "alone" && case.moved.is_none()
+}
 
 /// Where several lenses stand: how far one is from the next, as part of the radius.
 const ARRANGEMENTS: [(&str, f64); 2] = [("apart", 2.2), ("overlapping", 0.25)];
