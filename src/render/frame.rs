@@ -194,7 +194,7 @@ impl Renderer {
         self.upload(input, sun_view.as_ref(), &seen, &plans, &cuts, is_uber)?;
         let narrows = self.narrows_lists && is_uber && plans.is_long();
         if narrows {
-            self.prepare_narrowing(&plans.invokers().reaches(&plans.depths))?;
+            self.prepare_narrowing(&plans.invokers().reaches(&plans.rooms))?;
         }
         if self.binds_narrowed != narrows {
             self.binds_narrowed = narrows;

@@ -84,20 +84,24 @@ impl LensVolume {
         Aabb { min: self.bounds.min - reach, max: self.bounds.max + reach }
     }
 
-    /// The distances D along the view axis between which its lens may act as *inside*, metres.
-    pub fn depths(&self, view: &View) -> [f64; 2] {
+    /// The box in which its lens may act as *inside*: x to the right, y up, and the distance D along the view axis, metres from the eye.
+    pub fn room(&self, view: &View) -> [DVec3; 2] {
         if !self.body.is_bounded() {
-            return [f64::NEG_INFINITY, f64::INFINITY];
+            return [DVec3::NEG_INFINITY, DVec3::INFINITY];
         }
+        let placed = |point: DVec3| {
+            let relative = point - view.camera.eye;
+            DVec3::new(relative.dot(view.basis.right), relative.dot(view.basis.up), view.depth(point))
+        };
         let reach = self.reach_m(view);
         if let Some(Volume::Sphere { center, radius }) = self.body.volume() {
-            let middle = view.depth(*center);
+            let middle = placed(*center);
             return [middle - radius - reach, middle + radius + reach];
         }
-        let depths = self.bounds.corners().map(|c| view.depth(c));
-        let ends = [f64::INFINITY, f64::NEG_INFINITY];
-        let [near, far] = depths.into_iter().fold(ends, |[low, high], d| [low.min(d), high.max(d)]);
-        [near - reach, far + reach]
+        let ends = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        let [low, high] =
+            self.bounds.corners().into_iter().map(placed).fold(ends, |[low, high], p| [low.min(p), high.max(p)]);
+        [low - reach, high + reach]
     }
 
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
