@@ -261,6 +261,11 @@ impl OwnSprites {
         (words, self.list.len() as u32)
     }
 
+    /// Whether some of them count rays with more intervals than layers.
+    pub fn counts(&self) -> bool {
+        self.list.iter().any(|one| one.stored.excess > 0)
+    }
+
     /// What was made is lost.
     pub fn forget(&mut self) {
         self.list.iter_mut().for_each(|one| one.is_made = false);
@@ -339,8 +344,13 @@ impl OwnSprites {
 
     /// Those that are there, for reading back.
     pub fn kept(&self) -> Vec<KeptSprite> {
-        let kept =
-            |one: &OwnSprite| KeptSprite { lens: one.lens, space: one.space, bounds: one.bounds, stored: one.stored };
+        let kept = |one: &OwnSprite| KeptSprite {
+            lens: one.lens,
+            space: one.space,
+            bounds: one.bounds,
+            stored: one.stored,
+            is_own: true,
+        };
         self.list.iter().filter(|one| one.is_made).map(kept).collect()
     }
 

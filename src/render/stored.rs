@@ -253,6 +253,8 @@ pub(super) struct KeptSprite {
     pub space: SpriteSpace,
     pub bounds: PictureTile,
     pub stored: Stored,
+    /// Whether it has its own eye.
+    pub is_own: bool,
 }
 
 /// The sprites of the picture's eye.
@@ -262,6 +264,7 @@ pub(super) fn kept_sprites(making: &[Making], view: &View) -> Vec<KeptSprite> {
         space: SpriteSpace { size: m.size, ..SpriteSpace::of(view) },
         bounds: m.bounds,
         stored: m.stored,
+        is_own: false,
     };
     making.iter().filter(|m| m.own.is_none()).map(kept).collect()
 }
@@ -313,15 +316,17 @@ impl Renderer {
         Ok(self.crossing_room > before)
     }
 
-    /// Rays of the last frame that have more intervals than their sprite has layers, by lens.
-    pub fn read_excess(&self) -> Result<Vec<(u32, u32)>, GpuError> {
+    /// Rays that have more intervals than their sprite has layers, by lens: of the sprites of the last frame's eye, and with `own`
+    /// of those that have eyes of their own.
+    pub fn read_excess(&self, own: bool) -> Result<Vec<(u32, u32)>, GpuError> {
         if self.kept_sprites.iter().all(|s| s.stored.excess == 0) {
             return Ok(Vec::new());
         }
         let bytes = self.gpu.read_buffer(self.buffers.counts.buffer())?;
         let counts: &[u32] = bytemuck::cast_slice(&bytes);
+        let is_asked = |s: &&KeptSprite| own || !s.is_own;
         let excess = |s: &KeptSprite| (s.lens, if s.stored.excess == 0 { 0 } else { counts[s.stored.excess as usize] });
-        Ok(self.kept_sprites.iter().map(excess).filter(|(_, rays)| *rays > 0).collect())
+        Ok(self.kept_sprites.iter().filter(is_asked).map(excess).filter(|(_, rays)| *rays > 0).collect())
     }
 
     /// Makes room for the sprites of a frame, of which those with eyes of their own are needed for some volumes; all that are to
@@ -334,7 +339,10 @@ impl Renderer {
     ) -> Result<Vec<Making<'a>>, GpuError> {
         let (gpu, b) = (&self.gpu, &mut self.buffers);
         let mut stale = b.sprites.fit(gpu, 4 * seen.words)?;
-        stale |= b.counts.fit(gpu, 4 * (1 + u64::from(self.own_sprites.room().1) + seen.volumes.len() as u64))?;
+        if seen.lists > 0 || self.own_sprites.counts() {
+            let all = 1 + u64::from(self.own_sprites.room().1) + seen.volumes.len() as u64;
+            stale |= b.counts.fit(gpu, 4 * all)?;
+        }
         if stale {
             self.own_sprites.forget();
         }
