@@ -43,8 +43,22 @@ pub struct LensVolume {
 }
 
 impl LensVolume {
+    /// Whether it is tested by a sprite that has its own eye.
+    pub fn has_own_eye(&self) -> bool {
+        let is_asked = self.sprite.is_some_and(|sprite| sprite.own.is_some()) && !self.body.has_members();
+        is_asked || self.body.saved().is_some()
+    }
+
+    /// How it is tested from the sun: the picture's sprites say nothing of what only the sun sees.
+    pub fn test_from_sun(&self) -> VolumeTest {
+        if self.has_own_eye() { VolumeTest::OwnSprite } else { self.body.test() }
+    }
+
     /// How it is tested in the picture; `masks`: all classes are asked for.
     pub fn test(&self, masks: bool) -> VolumeTest {
+        if self.has_own_eye() {
+            return VolumeTest::OwnSprite;
+        }
         let with_sides = masks || self.asks_sides || self.drawn != LensBody::None;
         match (self.body.test(), self.sprite.filter(|_| !self.body.has_members())) {
             (_, Some(sprite)) if self.body.is_form() && sprite.is_as_the_target() => VolumeTest::Sprite,
@@ -57,7 +71,7 @@ impl LensVolume {
 
     /// All ways in which frames may test it, in the picture and from the sun.
     pub fn tests(&self) -> [Vec<VolumeTest>; 2] {
-        let own = self.body.test();
+        let own = self.test_from_sun();
         let picture = match self.test(true) {
             // As a frame asks for its sides or not; whatever its lens asks for, so that lenses may change places.
             sides if sides.has_sides() => vec![own, sides],
@@ -94,7 +108,7 @@ impl LensVolume {
             DVec3::new(relative.dot(view.basis.right), relative.dot(view.basis.up), view.depth(point))
         };
         let reach = self.reach_m(view);
-        if let Some(Volume::Sphere { center, radius }) = self.body.volume() {
+        if let (Some(Volume::Sphere { center, radius }), false) = (self.body.volume(), self.has_own_eye()) {
             let middle = placed(*center);
             return [middle - radius - reach, middle + radius + reach];
         }
@@ -107,7 +121,8 @@ impl LensVolume {
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
     pub fn seen_part(&self, view: &View, tile: PictureTile) -> Option<Octagon> {
         let whole = Octagon::whole(tile.size);
-        if self.everywhere {
+        // In front of what its own eye sees, or behind it, places may be anywhere.
+        if self.everywhere || (self.has_own_eye() && (self.asks_sides || !self.body.is_bounded())) {
             return Some(whole);
         }
         let margin = match self.drawn {
@@ -142,7 +157,7 @@ impl LensVolume {
     fn projected(&self, view: &View) -> Option<([f64; 4], [f64; 4])> {
         let reach = self.reach_m(view);
         let around = || self.bounds_of_border(view).corners();
-        let Body::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) = &self.body else {
+        let Some(volume) = self.body.volume().filter(|_| !self.has_own_eye()) else {
             return projected_corners(view, around());
         };
         let grown = |center: DVec3, axes: DMat3, half: DVec3| corners_of_box(center, axes, half + reach);
