@@ -64,7 +64,7 @@ fn stored_codes_are_those_of_the_twin() {
                 let of = format!("{shape:?} {sprite:?} from {}", camera.eye);
                 assert_eq!(found.len(), 1, "{of}");
                 let (found, code) = (&found[0], found[0].code);
-                assert_eq!((found.layers, found.size, code.format), (1, SIZE, sprite.format), "{of}");
+                assert_eq!((found.layers, found.space.size, code.format), (1, SIZE, sprite.format), "{of}");
                 let [width, height] = found.bounds.size;
                 assert_eq!(found.codes.len() as u32, width * height, "{of}");
                 let row = if sprite.format == Format::Unorm8 { width.next_multiple_of(2) } else { width };

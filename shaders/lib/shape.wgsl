@@ -35,6 +35,8 @@ const COMBINED_SPRITE: u32 = 11u;
 const FLAT: u32 = 12u;
 // A volume that is tested by a depth sprite in any format.
 const LAYERED_SPRITE: u32 = 13u;
+// One that is tested by a sprite that has its own eye; size_x = number of the first of its rows among the planes.
+const OWN_SPRITE: u32 = 14u;
 
 // Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
 struct Span {

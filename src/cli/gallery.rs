@@ -35,6 +35,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "den-haag-sphere"
     "first-lens"
     "market-square"
+    "out-of-sight"
     "planned-quarter"
     "ropinski-1"
     "ropinski-3"

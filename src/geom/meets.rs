@@ -90,7 +90,7 @@ pub(super) fn nearest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
 }
 
 /// What is left of a convex polygon inside all half spaces n·p ≤ d (Sutherland & Hodgman).
-pub(super) fn clipped(corners: &[DVec3], planes: impl IntoIterator<Item = (DVec3, f64)>) -> Vec<DVec3> {
+pub(crate) fn clipped(corners: &[DVec3], planes: impl IntoIterator<Item = (DVec3, f64)>) -> Vec<DVec3> {
     let mut polygon = corners.to_vec();
     let mut next = Vec::with_capacity(8);
     for (normal, offset) in planes {

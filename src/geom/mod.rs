@@ -12,6 +12,7 @@ pub mod shape;
 pub mod triangulate;
 
 pub use aabb::Aabb;
+pub(crate) use meets::clipped;
 pub use ray::Ray;
 pub use region::Region;
 pub use shape::{Shape, Solid, Volume};

@@ -260,8 +260,13 @@ impl Gpu {
 
     /// Replaces the start of a buffer.
     pub fn write<T: bytemuck::NoUninit>(&self, buffer: &wgpu::Buffer, data: &[T]) {
+        self.write_from(buffer, 0, data);
+    }
+
+    /// Replaces a part of a buffer from a byte on, a multiple of 4.
+    pub fn write_from<T: bytemuck::NoUninit>(&self, buffer: &wgpu::Buffer, first_byte: u64, data: &[T]) {
         self.uploads.fetch_add(1, Relaxed);
-        self.queue.write_buffer(buffer, 0, bytemuck::cast_slice(data));
+        self.queue.write_buffer(buffer, first_byte, bytemuck::cast_slice(data));
     }
 
     /// A 2D texture (array), one sample per texel.

@@ -66,6 +66,11 @@ pub enum Focus {
         /// Extent, metres, ≥ 0.
         size: DVec3,
     },
+    /// What a saved depth sprite holds (S8).
+    Sprite {
+        /// The file, as [`crate::lens::sprite_file`] has it.
+        file: PathBuf,
+    },
     /// The union of the volumes of city objects.
     Objects(Choice),
     /// Everything that belongs to city objects, wherever it is.
@@ -104,7 +109,7 @@ impl Focus {
         is_one(self) || in_parts()
     }
 
-    /// The volumes whose union it is, without a city ([`Solids::volumes`]): of city objects and combinations none; a flat one as
+    /// The volumes whose union it is, without a city ([`Solids::volumes`]): of city objects, depth sprites and combinations none; a flat one as
     /// seen along these sight lines.
     pub fn volumes_seen(&self, sight: &Sightlines) -> Result<Vec<Volume>, String> {
         let city = ShownCity { model: &CityModel::default(), geometries: &[] };

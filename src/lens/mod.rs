@@ -12,6 +12,8 @@ pub mod nearest;
 pub mod ramp;
 pub mod solids;
 pub mod sprite;
+pub mod sprite_file;
+pub mod sprite_volume;
 pub mod thematic;
 
 use std::collections::BTreeMap;
@@ -20,7 +22,8 @@ pub use border::{Border, BorderUnit, Discrete};
 pub use classify::classify;
 pub use content::{Content, Copied};
 pub use focus::Focus;
-pub use sprite::LensSprite;
+pub use sprite::{LensSprite, OwnEye};
+pub use sprite_volume::{PlacedSprite, SpriteSpace, SpriteVolume};
 
 use crate::{geom::Shape, shader::Blend};
 
@@ -57,6 +60,11 @@ impl Lens {
         self.border.filter(|b| b.width > 0.0)
     }
 
+    /// Whether some of its shapes are depth sprites of files (S8).
+    pub fn has_sprite_file(&self) -> bool {
+        self.shapes.iter().any(|s| s.any(&|f| matches!(f, Focus::Sprite { .. })))
+    }
+
     /// How its body is drawn: thematic lenses have no surface, and a flat one has no silhouette that a ray comes close to; they
     /// show a line instead.
     pub fn drawn_body(&self) -> LensBody {
@@ -65,7 +73,9 @@ impl Lens {
         let is_flat = || is_in(&|f| matches!(f, Focus::Shape(Shape::Flat { .. })));
         match self.body {
             LensBody::Shell if is_thematic() => LensBody::Outline,
-            LensBody::Halo if self.sprite.is_some() || is_thematic() || is_flat() => LensBody::Outline,
+            LensBody::Halo if self.sprite.is_some() || is_thematic() || is_flat() || self.has_sprite_file() => {
+                LensBody::Outline
+            }
             body => body,
         }
     }

@@ -26,6 +26,8 @@ use crate::{
     lens::{
         chosen::{Choice, members},
         focus::Focus,
+        sprite_file,
+        sprite_volume::{PlacedSprite, SpriteVolume},
     },
 };
 
@@ -38,6 +40,15 @@ const SAME_M: f64 = 1.0 / 2048.0;
 pub struct Solids {
     made: Vec<Made>,
     hulls: Vec<MadeOfHull>,
+    sprites: Vec<ReadSprite>,
+}
+
+/// A depth sprite of a file.
+#[derive(Debug)]
+struct ReadSprite {
+    file: PathBuf,
+    sprite: Arc<SpriteVolume>,
+    is_wanted: bool,
 }
 
 /// A solid of a convex polytope.
@@ -83,8 +94,8 @@ pub struct Place {
 pub type FocusError = (String, String);
 
 impl Solids {
-    /// The volumes whose union a focus area is, none where it holds nothing; a *thematic* one and a combination
-    /// have none.
+    /// The volumes whose union a focus area is, none where it holds nothing; a *thematic* one, a depth sprite and a
+    /// combination have none.
     pub fn volumes(&mut self, focus: &Focus, city: ShownCity, place: &Place) -> Result<Vec<Volume>, FocusError> {
         if let Some(wrong) = focus.check() {
             return Err((wrong.0.to_owned(), wrong.1));
@@ -93,7 +104,7 @@ impl Solids {
             Focus::Shape(shape) => {
                 return shape.placed(&place.motion, &place.sight).map_err(|error| (String::new(), error.to_string()));
             }
-            Focus::Thematic(_) | Focus::Combined { .. } => return Ok(Vec::new()),
+            Focus::Thematic(_) | Focus::Sprite { .. } | Focus::Combined { .. } => return Ok(Vec::new()),
             _ if focus.is_empty() => return Ok(Vec::new()),
             Focus::Mesh { at, rotation, .. } => (*at, *rotation),
             _ => (DVec3::ZERO, DQuat::IDENTITY),
@@ -117,6 +128,28 @@ impl Solids {
         Ok(made.solid.clone().map(placed).into_iter().collect())
     }
 
+    /// The depth sprite of a file where a lens has it, read when it is first asked for.
+    pub fn sprite(&mut self, file: &Path, city: ShownCity, motion: &Motion) -> Result<PlacedSprite, FocusError> {
+        let index = match self.sprites.iter().position(|s| s.file == file) {
+            Some(index) => index,
+            None => {
+                let sprite = sprite_file::read(file).map_err(|message| ("file".to_owned(), message))?;
+                let sprite = Arc::new(sprite);
+                self.sprites.push(ReadSprite { file: file.to_owned(), sprite, is_wanted: true });
+                self.sprites.len() - 1
+            }
+        };
+        let read = &mut self.sprites[index];
+        read.is_wanted = true;
+        if let (Some(own), Some(of_city)) = (&read.sprite.crs, &city.model.crs)
+            && own != of_city
+        {
+            let file = file.display();
+            return Err(("file".into(), format!("{file} has coordinates of {own}, the city those of {of_city}")));
+        }
+        Ok(PlacedSprite::new(read.sprite.clone(), motion))
+    }
+
     /// A convex polytope as a solid; `None` where rounding leaves nothing of it.
     pub fn of_hull(&mut self, hull: &Hull) -> Option<PlacedSolid> {
         let (at, triangles) = (hull.planes().0, hull.triangles());
@@ -138,6 +171,8 @@ impl Solids {
     pub fn forget_others(&mut self) {
         self.hulls.retain(|m| m.is_wanted);
         self.hulls.iter_mut().for_each(|m| m.is_wanted = false);
+        self.sprites.retain(|s| s.is_wanted);
+        self.sprites.iter_mut().for_each(|s| s.is_wanted = false);
         self.made.retain(|m| m.is_wanted);
         self.made.iter_mut().for_each(|m| m.is_wanted = false);
     }
@@ -221,7 +256,7 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
             };
             Ok((solid, origin))
         }
-        Focus::Shape(_) | Focus::Thematic(_) | Focus::Combined { .. } => Ok((None, DVec3::ZERO)),
+        Focus::Shape(_) | Focus::Thematic(_) | Focus::Sprite { .. } | Focus::Combined { .. } => Ok((None, DVec3::ZERO)),
     }
 }
 

@@ -11,10 +11,17 @@
 //! Lenses compare distances in metres, never stored depths: sprites of other clip settings then just work
 //! (V eq. 3.1 holds for linear depth only).
 
+use crate::{
+    geom::shape::Motion,
+    view::{Camera, MAX_SIZE},
+};
+
 /// The volumetric depth sprite that a lens is tested by (S1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensSprite {
-    /// Texels along the longer side of the picture; `None`: one per pixel.
+    /// The eye that it is made from; `None`: the picture's (S2).
+    pub own: Option<OwnEye>,
+    /// Texels along the longer side of the picture, or of its own frame; `None`: one per pixel, or [`OWN_RESOLUTION`].
     pub resolution: Option<u32>,
     /// What a stored depth is.
     pub format: Format,
@@ -30,6 +37,33 @@ pub struct LensSprite {
     pub aggregate: bool,
 }
 
+/// The own eye of a sprite, and its frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OwnEye {
+    /// In the coordinates of the lens' shapes: it moves with them.
+    pub camera: Camera,
+    /// Width of the frame over its height, > 0.
+    pub aspect: f64,
+}
+
+impl OwnEye {
+    /// Turned and moved.
+    pub fn moved(&self, motion: &Motion) -> Self {
+        let Camera { eye, target, up, .. } = self.camera;
+        let camera =
+            Camera { eye: motion.point(eye), target: motion.point(target), up: motion.rotation * up, ..self.camera };
+        Self { camera, ..*self }
+    }
+
+    /// Width and height of the frame, texels, of which the longer side has so many.
+    pub fn size(&self, longer: u32) -> [u32; 2] {
+        let side = |share: f64| ((f64::from(longer) * share).round() as u32).clamp(1, MAX_SIZE);
+        [side(self.aspect.min(1.0)), side((1.0 / self.aspect).min(1.0))]
+    }
+}
+
+/// Texels along the longer side of the frame of a sprite that has its own eye, where nothing is said.
+pub const OWN_RESOLUTION: u32 = 512;
 /// Layers of a sprite, at most.
 pub const MOST_LAYERS: u32 = 16;
 /// Where nothing is said.
@@ -38,6 +72,7 @@ pub const LAYERS: u32 = 4;
 impl Default for LensSprite {
     fn default() -> Self {
         Self {
+            own: None,
             resolution: None,
             format: Format::default(),
             mapping: Mapping::default(),
@@ -50,6 +85,11 @@ impl Default for LensSprite {
 }
 
 impl LensSprite {
+    /// Width and height of the frame of its own eye, texels, if it has one.
+    pub fn own_size(&self) -> Option<[u32; 2]> {
+        self.own.map(|own| own.size(self.resolution.unwrap_or(OWN_RESOLUTION)))
+    }
+
     /// Whether it stores depths as the depth target of the picture does.
     pub fn is_as_the_target(&self) -> bool {
         (self.format, self.mapping, self.near_m) == (Format::Float32, Mapping::InverseW, None)
@@ -269,6 +309,27 @@ impl DepthCode {
         self.format.quantised(self.encode_f32(d)).clamp(1, self.format.top() - 1)
     }
 
+    /// The code that a stored distance was decoded from, if it was one of these codes; else its code, as [`Self::code`].
+    ///
+    /// A distance that was coded, decoded and rounded to f32 would else often come back as a neighbour of its code.
+    pub fn code_of_stored(&self, d: f32) -> u32 {
+        let decoded = |code: u32| self.decode_f32(self.format.dequantised(code));
+        let lambda = self.encode(f64::from(d)) as f32;
+        let near = self.format.quantised(lambda).clamp(1, self.format.top() - 1);
+        if decoded(near) == d {
+            return near;
+        }
+        // Decoding is monotonic: the first code, from the near plane, that is not nearer.
+        let from_near = |steps: u32| if self.is_increasing() { steps } else { self.format.top() - steps };
+        let (mut low, mut high) = (1, self.format.top() - 1);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if decoded(from_near(middle)) < d { low = middle + 1 } else { high = middle }
+        }
+        let found = from_near(low);
+        if decoded(found) == d { found } else { near }
+    }
+
     /// Where a ray is inside, as codes of its entry and exit; what begins nearer than `seen_m` begins before all that is seen.
     pub fn codes(&self, inside: Option<(f32, f32)>, seen_m: f32) -> [u32; 2] {
         let Some((enter, exit)) = inside else { return [self.farthest(), self.nearest()] };
@@ -390,6 +451,18 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn a_decoded_distance_finds_its_code(near in 0.1..90.0f64, depth in 0.5..5e3f64, part in 0.0..1.0f64) {
+            for (_, format) in Format::WORDS {
+                for mapping in ALL {
+                    let exact = DepthCode { format, ..code(mapping, near, near + depth) };
+                    let d = exact.decode_f32(format.dequantised(exact.code((near + part * depth) as f32)));
+                    let again = exact.decode_f32(format.dequantised(exact.code_of_stored(d)));
+                    prop_assert_eq!(d, again, "{:?}", exact);
+                }
+            }
+        }
+
         #[test]
         fn a_stored_distance_is_off_by_no_more_than_its_quantum(near in 0.1..90.0f64, part in 0.0..1.0f64,
             depth in 0.5..5e3f64) {

@@ -10,6 +10,7 @@ use crate::{
         combination::{self, Operation},
         shape::flat::ENDLESS_M,
     },
+    lens::PlacedSprite,
     render::{flat, layout, solids::SolidPlace},
     shader::VolumeTest,
     view::View,
@@ -31,6 +32,8 @@ pub enum Leaf {
     Volume(Volume),
     /// Membership by object.
     Members(Members),
+    /// A saved depth sprite.
+    Sprite(PlacedSprite),
 }
 
 /// City objects, with all that belongs to them wherever it is.
@@ -114,6 +117,14 @@ impl Body {
         }
     }
 
+    /// The saved depth sprite that it is, if it is one.
+    pub fn saved(&self) -> Option<&PlacedSprite> {
+        match self {
+            Self::One(PlacedLeaf { leaf: Leaf::Sprite(sprite), .. }) => Some(sprite),
+            _ => None,
+        }
+    }
+
     /// How it is tested from its own figures.
     pub fn test(&self) -> VolumeTest {
         match self {
@@ -170,7 +181,8 @@ impl Body {
 
     /// Whether its ends along a ray have a closed form.
     pub fn is_form(&self) -> bool {
-        matches!(self, Self::One(leaf) if !matches!(leaf.leaf.test(), VolumeTest::Solid | VolumeTest::Members))
+        let has_none = |test| matches!(test, VolumeTest::Solid | VolumeTest::Members | VolumeTest::OwnSprite);
+        matches!(self, Self::One(leaf) if !has_none(leaf.leaf.test()))
     }
 
     /// Intervals that a ray may be in it, at most, if its leaves say so: solids may be gone through any number of times.
@@ -182,6 +194,9 @@ impl Body {
     /// The union of bodies as one combination; `None` where that is none or too large for one.
     pub fn union(bodies: &[Self]) -> Option<Self> {
         let mut all: Vec<(PlacedLeaf, Vec<Operation>)> = Vec::new();
+        if bodies.iter().any(|body| body.saved().is_some()) {
+            return None;
+        }
         for (i, body) in bodies.iter().filter(|body| !body.is_empty()).enumerate() {
             match body {
                 Self::One(leaf) => all.push((leaf.clone(), Vec::new())),
@@ -202,7 +217,7 @@ impl Body {
 
     /// Whether anything is in front of it or behind it: not of choices of objects alone.
     pub fn has_sides(&self) -> bool {
-        self.leaves().any(|leaf| matches!(leaf.leaf, Leaf::Volume(_)))
+        self.leaves().any(|leaf| !matches!(leaf.leaf, Leaf::Members(_)))
     }
 
     /// Whether a perspective view's rays start inside of it; a choice of objects counts as the box around them.
@@ -213,6 +228,8 @@ impl Body {
                 let eye = view.camera.eye;
                 eye.cmpge(members.bounds.min).all() && eye.cmple(members.bounds.max).all()
             }
+            // What it is tested by knows nothing of the picture's eye.
+            Leaf::Sprite(_) => false,
         };
         !view.is_orthographic()
             && match self {
@@ -226,6 +243,7 @@ impl Body {
         match self {
             Self::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) => volume.meets_triangle(corners),
             Self::One(PlacedLeaf { leaf: Leaf::Members(members), .. }) => members.has(object),
+            Self::One(PlacedLeaf { leaf: Leaf::Sprite(sprite), .. }) => sprite.meets_triangle(corners),
             Self::Combined(program) => self.meets_part(program, corners, object),
         }
     }
@@ -239,7 +257,8 @@ impl Body {
             let distance = |leaf: &PlacedLeaf| match &leaf.leaf {
                 Leaf::Volume(volume) => volume.signed_distance(middle),
                 Leaf::Members(members) if members.has(object) => f64::NEG_INFINITY,
-                Leaf::Members(_) => f64::INFINITY,
+                // Saved depth sprites are no parts of combinations.
+                Leaf::Members(_) | Leaf::Sprite(_) => f64::INFINITY,
             };
             let join = |operation, a: f64, b: f64| match operation {
                 Operation::Union => a.min(b),
@@ -291,7 +310,7 @@ impl Body {
                 let kind = VolumeTest::Members.number();
                 (layout::Shape { kind, ..figures }, leaf.place.first as f32, then.clone())
             }
-            Leaf::Volume(_) => (leaf.figures(view, planes), 0.0, then.clone()),
+            Leaf::Volume(_) | Leaf::Sprite(_) => (leaf.figures(view, planes), 0.0, then.clone()),
         };
         let leaves: Vec<_> = program.iter().map(leaf).collect();
         let out = layout::Shape {
@@ -322,6 +341,7 @@ impl Leaf {
     pub fn test(&self) -> VolumeTest {
         let volume = match self {
             Self::Members(_) => return VolumeTest::Members,
+            Self::Sprite(_) => return VolumeTest::OwnSprite,
             Self::Volume(volume) => volume,
         };
         match volume {
@@ -341,6 +361,7 @@ impl Leaf {
         match self {
             Self::Volume(volume) => volume.is_empty(),
             Self::Members(members) => members.bounds.is_empty(),
+            Self::Sprite(sprite) => sprite.bounds.is_empty(),
         }
     }
 
@@ -349,6 +370,7 @@ impl Leaf {
         match self {
             Self::Volume(volume) => volume.bounds(),
             Self::Members(members) => members.bounds,
+            Self::Sprite(sprite) => sprite.bounds,
         }
     }
 }
@@ -367,6 +389,8 @@ impl PlacedLeaf {
                 out.size_x = first as f32;
                 return out;
             }
+            // Its rows stand elsewhere (`render::own_sprites`).
+            Leaf::Sprite(_) => return out,
             Leaf::Volume(volume) => volume,
         };
         match volume {

@@ -34,7 +34,7 @@ impl Renderer {
         let cut = cuts.sun.as_ref().zip(programs.sun.as_ref());
         let wanted = Shadow {
             view: view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0),
-            cut: cut.map(|(cut, program)| (program.clone(), cut.all_numbers(input))),
+            cut: cut.map(|(cut, program)| (program.clone(), cut.all_numbers(input, &self.own_sprites))),
             cities: self.city_uniforms(sun.camera.eye),
         };
         if self.shadow_of.as_ref() == Some(&wanted) {

@@ -3,16 +3,36 @@
 use glam::DVec2;
 
 use crate::{
+    gpu::Gpu,
     render::{
         city::Chunk,
         eye::{PictureTile, view_uniform},
         frame::FrameInput,
         hiding::Hiding,
         layout,
+        own_sprites::OwnSprites,
+        pipelines::{self, storage, uniform},
+        volume::LensVolume,
     },
     shader::{Plan, Program, handlers},
     view::View,
 };
+
+/// What the shadow map binds where something is hidden, group 2: object values, parameters, invokers, the main view, shapes,
+/// sprites.
+pub(super) fn shapes_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    use wgpu::ShaderStages as S;
+    let entries = [
+        (1, S::FRAGMENT, storage()),
+        (2, S::FRAGMENT, uniform()),
+        (5, S::FRAGMENT, uniform()),
+        (7, S::VERTEX, uniform()),
+        (8, S::FRAGMENT, storage()),
+        (9, S::FRAGMENT, storage()),
+        (10, S::FRAGMENT, storage()),
+    ];
+    pipelines::layout(gpu, "shapes", &entries)
+}
 
 /// What is hidden from one eye.
 #[derive(Clone, Debug)]
@@ -77,18 +97,21 @@ impl Cut {
     }
 
     /// The shapes of its lenses.
-    pub fn shapes(&self, input: &FrameInput) -> Shapes {
+    pub fn shapes(&self, input: &FrameInput, own_sprites: &OwnSprites) -> Shapes {
         let (mut shapes, mut planes) = (Vec::new(), Vec::new());
-        for volume in input.volumes.iter().filter(|v| self.hiding.lenses.contains(&v.lens)) {
-            shapes.push(volume.figures(&input.view, &mut planes));
+        for (i, volume) in input.volumes.iter().enumerate().filter(|(_, v)| self.hiding.lenses.contains(&v.lens)) {
+            shapes.push(match volume.has_own_eye() {
+                true => own_sprites.figures(i, &input.view, &mut planes),
+                false => volume.figures(&input.view, &mut planes),
+            });
         }
         let whole = PictureTile::whole(input.view.size);
         Shapes { eye: view_uniform(&input.view, whole, DVec2::ZERO, 0, 0.0), shapes, planes }
     }
 
     /// All numbers that decide what is hidden from the sun.
-    pub fn all_numbers(&self, input: &FrameInput) -> Vec<u8> {
-        let Shapes { eye, shapes, planes } = self.shapes(input);
+    pub fn all_numbers(&self, input: &FrameInput, own_sprites: &OwnSprites) -> Vec<u8> {
+        let Shapes { eye, shapes, planes } = self.shapes(input, own_sprites);
         let mut bytes = bytemuck::bytes_of(&eye).to_vec();
         bytes.extend_from_slice(bytemuck::cast_slice(&shapes));
         bytes.extend_from_slice(bytemuck::cast_slice(&planes));
@@ -107,11 +130,12 @@ impl Cuts {
         let sun = sun.and_then(|sun| {
             let frustum = sun.frustum(1.0);
             let hiding = hiding(&|lens| {
-                input.volumes.iter().any(|v| v.lens == lens && (v.everywhere || frustum.meets(&v.bounds)))
+                let is_anywhere = |v: &LensVolume| v.everywhere || (v.has_own_eye() && v.asks_sides);
+                input.volumes.iter().any(|v| v.lens == lens && (is_anywhere(v) || frustum.meets(&v.bounds)))
             });
             let own = input.volumes.iter().filter(|v| hiding.lenses.contains(&v.lens));
             // What the picture's sprites hold says nothing of what only the sun sees.
-            let own = own.map(|v| (v.lens, v.body.test(), v.body.kinds()));
+            let own = own.map(|v| (v.lens, v.test_from_sun(), v.body.kinds()));
             let plan = input.operations.lens_plan(&own.collect::<Vec<_>>(), false, false).hiding(handlers());
             // Nor of how wide a border is that is measured in pixels: shadows end at the volume.
             let plan = plan.map(Plan::without_borders);

@@ -1,8 +1,9 @@
 //! One sample of one view: the frame as a readable list of passes.
 //!
 //! ```text
+//! stored depth sprites          of the lens volumes in view that are tested by them, and those that have eyes of their own
+//!                               and are not there yet
 //! shadow map                    if the sun casts shadows and the map does not hold this view yet
-//! stored depth sprites          of the lens volumes in view that are tested by them
 //! depth sprites                 of the solids in view whose sides are asked for
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
@@ -45,12 +46,12 @@ use crate::{
         solids::SolidTable,
         sprite_passes,
         sprites::Pages,
-        stored,
+        stored::{self, Making},
         targets::Needs,
         volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun, Technique},
-    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, TILE_PX, Uber, handlers},
+    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, TILE_PX, Uber, VolumeTest, handlers},
     view::{Frustum, View},
 };
 
@@ -172,16 +173,34 @@ impl Recorder<'_> {
 impl Renderer {
     /// Draws one sample into the targets; the picture stands in `targets.picture` after the last one.
     pub fn draw(&mut self, input: &FrameInput, timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {
+        let drawn = self.draw_passes(input, timer);
+        if drawn.is_err() {
+            // What was to be made may not be there.
+            self.own_sprites.forget();
+        }
+        drawn
+    }
+
+    fn draw_passes(&mut self, input: &FrameInput, timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {
         if self.city.is_none() {
             return Ok(Vec::new());
         }
         let mut recorder = Recorder { timer, passes: Vec::new() };
-        let all_seen = seen_volumes(input, &self.drawn_box());
-        let list_target = stored::list_target(&all_seen.volumes, input);
-        self.fit_sprites(&all_seen, list_target)?;
-        let Seen { volumes: seen, pages, .. } = all_seen;
+        let city = self.drawn_box();
+        self.own_sprites.plan(input, &city);
+        let all_seen = seen_volumes(input, &city, self.own_sprites.room());
         let sun_view = self.sun_view(&input.view, &input.sun, |frustum| self.content_bounds(input, frustum));
-        let plans = Plans::new(input, &seen);
+        let plans = Plans::new(input, &all_seen.volumes);
+        let is_seen = |lens| all_seen.volumes.iter().any(|v| v.lens == lens);
+        let cuts = Cuts::new(input, is_seen, sun_view.as_ref(), plans.hiding.clone());
+        let is_asked = |volume: usize| {
+            let is_hiding =
+                cuts.sun.as_ref().is_some_and(|cut| cut.hiding.lenses.contains(&input.volumes[volume].lens));
+            is_hiding || all_seen.volumes.iter().any(|v| v.index == volume)
+        };
+        let making = self.fit_sprites(&all_seen, input, is_asked)?;
+        self.finish_own_sprites(is_asked);
+        let Seen { volumes: seen, pages, .. } = &all_seen;
         let filters = plans.filters.len() as u32;
         let lines = if self.has_edges() { lines::draws(input, plans.lining.as_ref(), &plans.seen) } else { Vec::new() };
         self.fit_targets(Needs {
@@ -189,16 +208,15 @@ impl Renderer {
             filter_images: if filters > 0 { behind(input).images() as u32 } else { 0 },
             lines: !lines.is_empty(),
             sprite_depth: seen.iter().any(|v| v.test.has_faces()),
-            ..needs(input, !seen.is_empty(), &pages, self.colored(), self.smooth(), sun_view.is_some())
+            ..needs(input, !seen.is_empty(), pages, self.colored(), self.smooth(), sun_view.is_some())
         })?;
-        let cuts =
-            Cuts::new(input, |lens| seen.iter().any(|v| v.lens == lens), sun_view.as_ref(), plans.hiding.clone());
-        self.kept_sprites = stored::kept_sprites(&seen);
-        let (keys, is_uber) = self.prepare(input, &seen, &plans, &cuts, sun_view.is_some());
-        self.upload(input, sun_view.as_ref(), &seen, &plans, &cuts, is_uber)?;
+        self.kept_sprites = stored::kept_sprites(&making, &input.view);
+        self.kept_sprites.extend(self.own_sprites.kept());
+        let (keys, is_uber) = self.prepare(input, (seen, &making), &plans, &cuts, sun_view.is_some());
+        self.upload(input, sun_view.as_ref(), (seen, &making), &plans, &cuts, is_uber)?;
         let narrows = self.narrows_lists && is_uber && plans.is_long();
         if narrows {
-            self.prepare_narrowing(&plans.invokers().reaches(&plans.depths))?;
+            self.prepare_narrowing(&plans.invokers().reaches(&plans.rooms))?;
         }
         if self.binds_narrowed != narrows {
             self.binds_narrowed = narrows;
@@ -213,7 +231,7 @@ impl Renderer {
             Some(part) => [vec![(mesh.add_beyond(part, size), whole)], mesh.add_cut(part, size)],
             None => [vec![(mesh.all(), whole)], Vec::new()],
         };
-        let filter_parts = filters::parts(&plans.filters, size, &seen, &mut mesh);
+        let filter_parts = filters::parts(&plans.filters, size, seen, &mut mesh);
         self.buffers.mesh.sync(&self.gpu, &mesh.corners)?;
         self.fit_groups();
         if let Some(regions) = &plans.regions {
@@ -221,13 +239,13 @@ impl Renderer {
         }
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        // Before the city: what a lens hides is decided by them.
+        self.stored_pass(&mut encoder, &mut recorder, &making);
         if let Some(sun_view) = &sun_view {
             self.shadow_pass(&mut encoder, &mut recorder, input, sun_view, (&cuts, &keys.cuts));
         }
-        // Before the city: what a lens hides is decided by them.
-        self.stored_pass(&mut encoder, &mut recorder, input, &seen);
         if pages.count > 0 {
-            self.sprite_passes(&mut encoder, &mut recorder, input, &seen, pages.count);
+            self.sprite_passes(&mut encoder, &mut recorder, input, seen, pages.count);
         }
         match &plans.regions {
             None => encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?,
@@ -294,7 +312,7 @@ impl Renderer {
 
     /// The text of a module as it runs where the lenses are in the picture; without lenses in view everywhere.
     pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
-        let seen = seen_volumes(input, &self.drawn_box()).volumes;
+        let seen = seen_volumes(input, &self.drawn_box(), (0, 0)).volumes;
         let plans = Plans::new(input, &seen);
         let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
         let is_written_out = input.backend == Backend::Specialised && !plans.is_long();
@@ -322,7 +340,7 @@ impl Renderer {
         }
         let [picture, sun] = operations.uber_hiding();
         let by_shapes = |mut plan: Plan| {
-            let shapes = seen.iter().map(|v| input.volumes[v.index].body.test());
+            let shapes = seen.iter().map(|v| input.volumes[v.index].test_from_sun());
             plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).zip(shapes).for_each(|(test, shape)| *test = shape);
             plan.without_borders()
         };
@@ -375,7 +393,7 @@ impl Renderer {
         &mut self,
         input: &FrameInput,
         sun: Option<&View>,
-        seen: &[SeenVolume],
+        (seen, making): (&[SeenVolume], &[Making]),
         plans: &Plans,
         cuts: &Cuts,
         is_uber: bool,
@@ -389,8 +407,15 @@ impl Renderer {
         let light = light::uniform(&input.sun, input.background, sun, input.view.camera.eye, radius);
         let (mut stages, mut list_stages, mut stored_stages) = (Vec::new(), Vec::new(), Vec::new());
         let (mut sprite_places, mut shapes, mut planes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut stored_shapes: Vec<(&Making, layout::Shape)> = Vec::new();
+        let mut of_seen = making.iter();
         for volume in seen {
             let body = &input.volumes[volume.index].body;
+            if volume.test == VolumeTest::OwnSprite {
+                shapes.push(self.own_sprites.figures(volume.index, &input.view, &mut planes));
+                sprite_places.push(bytemuck::Zeroable::zeroed());
+                continue;
+            }
             let is_listed = volume.test.is_sprite() && !body.is_form();
             let shape = match is_listed {
                 true => body.program_figures(&input.view, &mut planes),
@@ -409,19 +434,38 @@ impl Renderer {
                     stages.extend(own.iter().flat_map(strided));
                     sprite_places.push(place);
                 }
-                Kept::Stored(how) => {
-                    let (stage, place) = stored::layouts(shape, (volume, sprite, how), view, input.tile);
-                    let lists =
-                        stored::list_stages(body, (&input.view, &stage), sprite, self.list_size(), self.crossing_room);
-                    list_stages.extend(lists.iter().flat_map(stored::placed));
-                    stored_stages.extend(stored::placed(&stage));
-                    sprite_places.push(place);
+                Kept::Stored(_) => {
+                    let Some(making) = of_seen.next() else { continue };
+                    stored_shapes.push((making, shape));
+                    sprite_places.push(stored::place(volume, making, input.tile));
                 }
             }
         }
+        // Those that have eyes of their own follow.
+        for making in of_seen {
+            let own_view = making.own.as_ref().unwrap_or(&input.view);
+            let shape = match making.body.is_form() {
+                true => making.body.figures(own_view, &mut planes),
+                false => making.body.program_figures(own_view, &mut planes),
+            };
+            stored_shapes.push((making, shape));
+        }
+        for (making, shape) in stored_shapes {
+            let (own_view, uniform, target) = match &making.own {
+                None => (&input.view, view, input.tile.size),
+                Some(own) => {
+                    let uniform = view_uniform(own, PictureTile::whole(own.size), DVec2::ZERO, 0, 0.0);
+                    (own, uniform, own.size)
+                }
+            };
+            let stage = stored::stage(shape, making, uniform, target);
+            let lists = stored::list_stages(making, (own_view, &stage), self.list_size(), self.crossing_room);
+            list_stages.extend(lists.iter().flat_map(stored::placed));
+            stored_stages.extend(stored::placed(&stage));
+        }
         let eyes = [Some(input.view.camera.eye), sun.map(|sun| sun.camera.eye)];
         let city_uniforms = eyes.map(|eye| eye.map_or_else(Vec::new, |eye| self.city_uniforms(eye)));
-        let sun_shapes = cuts.sun.as_ref().map(|cut| cut.shapes(input));
+        let sun_shapes = cuts.sun.as_ref().map(|cut| cut.shapes(input, &self.own_sprites));
         let mut parameters = std::borrow::Cow::Borrowed(&input.operations.parameters);
         let (gpu, b) = (&self.gpu, &mut self.buffers);
         let mut stale = false;
@@ -486,7 +530,7 @@ impl Renderer {
     fn prepare(
         &mut self,
         input: &FrameInput,
-        seen: &[SeenVolume],
+        (seen, making): (&[SeenVolume], &[Making]),
         plans: &Plans,
         cuts: &Cuts,
         shadows: bool,
@@ -516,10 +560,10 @@ impl Renderer {
             let body = &input.volumes[volume.index].body;
             match volume.sprite.as_ref().map(|s| &s.kept) {
                 Some(Kept::Page(_)) => keys.extend(sprite_passes::keys(body)),
-                Some(Kept::Stored(_)) => keys.extend(stored::keys(body)),
-                None => {}
+                Some(Kept::Stored(_)) | None => {}
             }
         }
+        keys.extend(making.iter().flat_map(|m| stored::keys(m.body)));
         let clay = input.base == BaseStyle::Clay;
         let shade_to = |target, shown, program: Program| Key::Shade {
             program,

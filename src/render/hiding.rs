@@ -53,6 +53,9 @@ pub fn reaches_of(lens: Option<u32>, class: Class, volumes: &[LensVolume], view:
     let Some(lens) = lens else { return vec![Reach::Everywhere] };
     let of_volume = |volume: &LensVolume| match class {
         Class::Rest => Reach::Everywhere,
+        // In front of what its own eye sees, or behind it, places may be anywhere.
+        Class::Front | Class::Behind if volume.has_own_eye() => Reach::Everywhere,
+        _ if !volume.body.is_bounded() && volume.has_own_eye() => Reach::Everywhere,
         _ if !volume.body.is_bounded() => {
             volume.box_seen(view).map_or(Reach::Everywhere, |(low, high)| Reach::Along(low, high))
         }

@@ -1,5 +1,7 @@
 //! The invoker table of the uber back end (H2), and which of its invokers may run in which tile of the picture (L8).
 
+use glam::DVec3;
+
 use crate::{
     render::{eye::PictureTile, layout, octagon::Octagon},
     shader::{Blend, ClassTest, EffectDefinition, EffectKind, Plan, PlanLens, Scope, Step, TILE_PX, scope_number},
@@ -111,11 +113,12 @@ impl Invokers {
         [self.hides, self.lines, [size[0].div_ceil(TILE_PX), from], [to, 0]].concat()
     }
 
-    /// The distances D between which each may act, metres, where those of the plan's lenses are these; without end for those that
-    /// act on more than what is inside.
-    pub fn reaches(&self, lenses: &[[f32; 2]]) -> Vec<[f32; 2]> {
-        let always = [-f32::MAX, f32::MAX];
-        self.inside_of.iter().map(|lens| lens.and_then(|l| lenses.get(l as usize).copied()).unwrap_or(always)).collect()
+    /// Where each may act, if the plan's lenses do in these rooms: everywhere if it acts on more than what is inside.
+    pub fn reaches(&self, rooms: &[[DVec3; 2]]) -> Vec<layout::Reach> {
+        let of = |lens: &Option<u32>| {
+            lens.and_then(|lens| rooms.get(lens as usize)).map_or(layout::Reach::EVERYWHERE, layout::Reach::of)
+        };
+        self.inside_of.iter().map(of).collect()
     }
 
     /// All of them.

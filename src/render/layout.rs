@@ -237,6 +237,28 @@ pub struct Invoker {
     pub border: u32,
 }
 
+/// `pass/narrow.wgsl`: where an invoker may act.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Reach {
+    pub low: [f32; 3],
+    pub is_everywhere: u32,
+    pub high: [f32; 3],
+    pub pad_0: u32,
+}
+
+impl Reach {
+    /// Everywhere.
+    pub const EVERYWHERE: Self = Self { low: [0.0; 3], is_everywhere: 1, high: [0.0; 3], pad_0: 0 };
+
+    /// In a box of x, y and distance, metres; infinite ones are cut where f32 ends.
+    pub fn of([low, high]: &[glam::DVec3; 2]) -> Self {
+        let most = f64::from(f32::MAX);
+        let cut = |corner: &glam::DVec3| corner.to_array().map(|c| c.clamp(-most, most) as f32);
+        Self { low: cut(low), high: cut(high), ..Self::default() }
+    }
+}
+
 /// `pass/furniture.wgsl`, per instance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -351,6 +373,7 @@ mod tests {
                 &uber,
                 host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number, border }),
             ),
+            (&Module::Narrow, host!(Reach { low, is_everywhere, high, pad_0 })),
             (&cut, host!(City { linear, from_whole, number, from_fraction, first_surface, to, scale })),
             (
                 &shade,

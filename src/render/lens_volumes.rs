@@ -9,18 +9,20 @@ use crate::{
         shape::{Motion, solid},
     },
     lens::{
-        Border, BorderUnit, Class, Focus, Lens, LensBody,
+        Border, BorderUnit, Class, Focus, Lens, LensBody, LensSprite,
         chosen::members,
         solids::{FocusError, Place, ShownCity, Solids},
     },
     render::{
         body::{Body, Leaf, Members, PlacedLeaf, too_large},
+        own_sprites,
         placement::Eye,
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
     },
     scene::Scene,
     shader::VolumeTest,
+    view::CameraError,
 };
 
 /// The volumes of a scene's enabled lenses, and how the volumes of all its lenses may be tested.
@@ -63,14 +65,18 @@ pub(super) fn volumes_of(
             }
         }
         // One sprite for all of a lens (S3).
-        if let Some(union) = lens.sprite.and_then(|_| Body::union(&of_lens)) {
-            of_lens = vec![union];
+        if lens.sprite.is_some() {
+            // Those of files stay as they are.
+            let (mut saved, others): (Vec<Body>, _) = of_lens.into_iter().partition(|body| body.saved().is_some());
+            saved.extend(Body::union(&others).map_or(others, |union| vec![union]));
+            of_lens = saved;
         }
         for mut body in of_lens {
             if lens.content.is_some() {
                 body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city));
             }
-            let volume = volume_of(i as u32, lens, body);
+            let volume = volume_of(i as u32, lens, body, &place.motion)
+                .map_err(|message| format!("[lens.{i}] sprite.camera: {message}"))?;
             let [picture, sun] = volume.tests();
             all.tests[0].extend(picture);
             all.tests[1].extend(sun);
@@ -95,17 +101,20 @@ fn tell_distance(leaf: &mut Leaf, solids: &mut Solids) {
     }
 }
 
-fn volume_of(number: u32, lens: &Lens, body: Body) -> LensVolume {
-    LensVolume {
+fn volume_of(number: u32, lens: &Lens, body: Body, motion: &Motion) -> Result<LensVolume, CameraError> {
+    let sprite = lens.sprite.map(|sprite| LensSprite { own: sprite.own.map(|own| own.moved(motion)), ..sprite });
+    let mut volume = LensVolume {
         lens: number,
         bounds: body.bounds(),
         body,
         everywhere: lens.classes().any(|class| class == Class::Rest),
         drawn: lens.drawn_body(),
-        sprite: lens.sprite,
+        sprite,
         asks_sides: lens.classes().any(|class| class != Class::Inside),
         border: lens.soft_border(),
-    }
+    };
+    volume.bounds = own_sprites::bounds(&volume)?;
+    Ok(volume)
 }
 
 /// Makes the box around chosen objects hold all of their levels of detail: a content may show another than the city does.
@@ -136,7 +145,14 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -
     match focus {
         Focus::Combined { how, parts } => {
             let tree = |(i, part): (usize, &Focus)| {
-                tree_of(part, city, place, solids).map_err(|(key, message)| {
+                let tree = match part {
+                    Focus::Sprite { .. } => Err((
+                        "kind".into(),
+                        "a depth sprite is no part of a combination; a shape of its own would be right".into(),
+                    )),
+                    _ => tree_of(part, city, place, solids),
+                };
+                tree.map_err(|(key, message): FocusError| {
                     let dot = if key.is_empty() { "" } else { "." };
                     (format!("shapes.{i}{dot}{key}"), message)
                 })
@@ -157,8 +173,10 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -
 
 /// The leaves whose union a focus area is that is no combination.
 fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Vec<Leaf>, FocusError> {
-    let Focus::Thematic(choice) = focus else {
-        return Ok(solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect());
+    let choice = match focus {
+        Focus::Thematic(choice) => choice,
+        Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(solids.sprite(file, city, &place.motion)?)]),
+        _ => return Ok(solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),
     };
     let objects = members(city.model, choice);
     let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);

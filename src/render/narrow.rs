@@ -4,6 +4,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         frame::Recorder,
+        layout,
         renderer::{Renderer, group, whole},
         synced::Synced,
         targets::Target,
@@ -68,7 +69,7 @@ impl Narrowing {
     }
 
     /// Makes room; `true` if the lists were replaced by larger ones.
-    fn sync(&mut self, gpu: &Gpu, reaches: &[[f32; 2]], bytes: u64) -> Result<bool, GpuError> {
+    fn sync(&mut self, gpu: &Gpu, reaches: &[layout::Reach], bytes: u64) -> Result<bool, GpuError> {
         self.reaches.sync(gpu, reaches)?;
         let is_small = self.lists.size() < bytes;
         if is_small {
@@ -80,8 +81,8 @@ impl Narrowing {
 }
 
 impl Renderer {
-    /// Makes what narrows lists ready for these, each invoker with the distances between which it may act.
-    pub(super) fn prepare_narrowing(&mut self, reaches: &[[f32; 2]]) -> Result<(), GpuError> {
+    /// Makes what narrows lists ready for these, each invoker with where it may act.
+    pub(super) fn prepare_narrowing(&mut self, reaches: &[layout::Reach]) -> Result<(), GpuError> {
         let is_new = self.narrowing.is_none();
         if is_new {
             self.narrowing = Some(Narrowing::new(&self.gpu)?);

@@ -457,7 +457,7 @@ impl Studio {
                 if records.iter().any(|r| r.name == CLEAR_MASKS) {
                     self.read_masks(scene.lenses.len(), part, picture)?;
                 }
-                for (lens, rays) in self.renderer.read_excess()? {
+                for (lens, rays) in self.renderer.read_excess(part.drawn.origin == [0, 0])? {
                     *picture.excess.entry(lens).or_default() += rays;
                 }
             }

@@ -5,6 +5,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::{
     gpu::Gpu,
     render::{
+        cut,
         key::{GeometryKind, Key},
         worker::Worker,
     },
@@ -60,7 +61,7 @@ pub struct Layouts {
     /// Geometry and shadow where something is hidden, group 1: surfaces, planes of convex volumes, faces of solids; the city, for
     /// the view and for the main eye, at dynamic offsets.
     pub cut_city: wgpu::BindGroupLayout,
-    /// Shadow where something is hidden, group 2: object values, parameters, invokers, the main view, shapes.
+    /// Shadow where something is hidden, group 2.
     pub shapes: wgpu::BindGroupLayout,
     /// Shade where there are lines, group 3: their layer.
     pub lines: wgpu::BindGroupLayout,
@@ -118,11 +119,11 @@ fn buffer(ty: wgpu::BufferBindingType, has_dynamic_offset: bool) -> B {
     B::Buffer { ty, has_dynamic_offset, min_binding_size: None }
 }
 
-fn uniform() -> B {
+pub(super) fn uniform() -> B {
     buffer(wgpu::BufferBindingType::Uniform, false)
 }
 
-fn storage() -> B {
+pub(super) fn storage() -> B {
     buffer(wgpu::BufferBindingType::Storage { read_only: true }, false)
 }
 
@@ -130,7 +131,7 @@ fn image(sample_type: wgpu::TextureSampleType, view_dimension: wgpu::TextureView
     B::Texture { sample_type, view_dimension, multisampled: false }
 }
 
-fn layout(gpu: &Gpu, label: &str, entries: &[(u32, S, B)]) -> wgpu::BindGroupLayout {
+pub(super) fn layout(gpu: &Gpu, label: &str, entries: &[(u32, S, B)]) -> wgpu::BindGroupLayout {
     let entries: Vec<_> = entries
         .iter()
         .map(|&(binding, visibility, ty)| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None })
@@ -227,18 +228,7 @@ impl Layouts {
                     (4, S::VERTEX, dynamic),
                 ],
             ),
-            shapes: layout(
-                gpu,
-                "shapes",
-                &[
-                    (1, S::FRAGMENT, storage()),
-                    (2, S::FRAGMENT, uniform()),
-                    (5, S::FRAGMENT, uniform()),
-                    (7, S::VERTEX, uniform()),
-                    (8, S::FRAGMENT, storage()),
-                    (9, S::FRAGMENT, storage()),
-                ],
-            ),
+            shapes: cut::shapes_layout(gpu),
             lines: layout(gpu, "lines", &[(0, S::FRAGMENT, float)]),
             line_stage: layout(gpu, "line stage", &[(0, all, dynamic), (1, all, dynamic)]),
             region: layout(gpu, "region", &[(0, all, uniform()), (1, S::FRAGMENT, dynamic)]),

@@ -1,5 +1,9 @@
 //! What the shaders of a frame have to do, from what the scene asks for and which lenses are in view.
 
+use std::cell::OnceCell;
+
+use glam::DVec3;
+
 use crate::{
     render::{
         frame::{FrameInput, haze, wants_masks},
@@ -25,8 +29,9 @@ pub(super) struct Plans {
     /// Lenses in view, in the order of the plans, and where.
     pub seen: Vec<u32>,
     pub parts: Vec<Octagon>,
-    /// The distances between which each acts as *inside*, metres.
-    pub depths: Vec<[f32; 2]>,
+    /// The boxes in which each acts as *inside*, as [`LensVolume::room`](super::volume::LensVolume::room) has them.
+    pub rooms: Vec<[DVec3; 2]>,
+    invokers: OnceCell<Invokers>,
     /// The regions that the city is drawn by, where the technique has passes for them.
     pub regions: Option<RegionPasses>,
 }
@@ -47,11 +52,9 @@ impl Plans {
         let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         numbers.dedup();
         let of_lens = || seen.chunk_by(|a, b| a.lens == b.lens);
-        let depths = |volumes: &[SeenVolume]| {
-            let each = volumes.iter().map(|v| input.volumes[v.index].depths(&input.view));
-            let all =
-                each.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-            all.map(|d| d.clamp(-f64::from(f32::MAX), f64::from(f32::MAX)) as f32)
+        let room = |volumes: &[SeenVolume]| {
+            let each = volumes.iter().map(|v| input.volumes[v.index].room(&input.view));
+            each.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([DVec3::NEG_INFINITY, DVec3::INFINITY])
         };
         let (context, mut lenses) = (context.shading(handlers()), lenses.shading(handlers()));
         let has_passes = input.technique.has_passes() && !seen.is_empty();
@@ -61,7 +64,8 @@ impl Plans {
         }
         Self {
             parts: of_lens().filter_map(|volumes| part_of(volumes.iter())).collect(),
-            depths: of_lens().map(depths).collect(),
+            rooms: of_lens().map(room).collect(),
+            invokers: OnceCell::new(),
             filters,
             hiding,
             lining,
@@ -73,8 +77,9 @@ impl Plans {
     }
 
     /// The invokers of the picture.
-    pub fn invokers(&self) -> Invokers {
-        Invokers::new([&self.context, &self.lenses], [self.hiding.as_ref(), self.lining.as_ref()], handlers())
+    pub fn invokers(&self) -> &Invokers {
+        let hidden = [self.hiding.as_ref(), self.lining.as_ref()];
+        self.invokers.get_or_init(|| Invokers::new([&self.context, &self.lenses], hidden, handlers()))
     }
 
     /// Whether it would be too long, written out.

@@ -15,6 +15,7 @@ use crate::{
         furniture::FurnitureOnGpu,
         layout,
         narrow::Narrowing,
+        own_sprites::OwnSprites,
         pipelines::{Layouts, Pipelines},
         regions::RegionsOnGpu,
         solids::SolidTable,
@@ -61,6 +62,8 @@ pub struct Renderer {
     pub(super) regions: Option<RegionsOnGpu>,
     /// Titles, captions and legends, once a picture had some.
     pub(super) furniture: Option<FurnitureOnGpu>,
+    /// The sprites that have eyes of their own.
+    pub(super) own_sprites: OwnSprites,
     /// The stored sprites of the last frame.
     pub(super) kept_sprites: Vec<KeptSprite>,
     /// What passes that list crossings are drawn on, once there was one.
@@ -172,7 +175,7 @@ impl Renderer {
             solids: storage("solids of lenses")?,
             solid_corners: Synced::new(&gpu, "corners of solids", U::VERTEX)?,
             sprite_stages: uniform("sprite stages")?,
-            sprites: Room::new(&gpu, "depth sprites of lenses", U::STORAGE | U::COPY_SRC, COARSER)?,
+            sprites: Room::new(&gpu, "depth sprites of lenses", U::STORAGE | U::COPY_SRC | U::COPY_DST, COARSER)?,
             stored_stages: uniform("stages of stored sprites")?,
             lists: Room::new(&gpu, "lists of crossings", U::STORAGE | U::COPY_DST, COARSER)?,
             crossings: Room::new(&gpu, "crossings", U::STORAGE, COARSER)?,
@@ -221,6 +224,7 @@ impl Renderer {
             furniture: None,
             ran: Vec::new(),
             solids_of: None,
+            own_sprites: OwnSprites::default(),
             kept_sprites: Vec::new(),
             list_target: None,
             lists_crossings: false,
@@ -398,6 +402,7 @@ impl Renderer {
                     (7, whole(b.eye.buffer())),
                     (8, whole(b.shapes.buffer())),
                     (9, whole(b.shape_invokers.buffer())),
+                    (10, whole(b.sprites.buffer())),
                 ],
             ),
             filters: (targets.needs.filters > 0).then(|| {

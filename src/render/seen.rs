@@ -65,14 +65,19 @@ fn sprite_size(input: &FrameInput, sprite: LensSprite) -> [u32; 2] {
     size.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, 16_384))
 }
 
-/// The volumes of a frame that its picture may show; `city`: the box around what is drawn.
-pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb) -> Seen {
+/// The volumes of a frame that its picture may show; `city`: the box around what is drawn; `own`: words and counts of the sprites
+/// that come first, those with eyes of their own.
+pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: (u64, u32)) -> Seen {
     let mut seen: Vec<SeenVolume> = Vec::new();
-    let (mut words, mut lists, mut counts) = (0, 0, 0);
+    let (mut words, mut lists, mut counts) = (own.0, 0, own.1);
+    let masks = input.masks && input.sample == 0;
     for (index, volume) in input.volumes.iter().enumerate() {
-        let Some(part) = volume.seen_part(&input.view, input.tile) else { continue };
+        // Other classes may be anywhere in the own space of a sprite.
+        let has_any_part = masks && volume.has_own_eye();
+        let any_part = has_any_part.then(|| Octagon::whole(input.tile.size));
+        let Some(part) = any_part.or_else(|| volume.seen_part(&input.view, input.tile)) else { continue };
         let bounds = part.rectangle();
-        let (lens, test) = (volume.lens, volume.test(input.masks && input.sample == 0));
+        let (lens, test) = (volume.lens, volume.test(masks));
         let leaves = volume.body.kinds();
         if !test.is_sprite() && !test.has_sides() {
             seen.push(SeenVolume { index, lens, test, leaves, part, bounds, sprite: None });
@@ -90,10 +95,9 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb) -> Seen {
             let code = stored::code_of(&wanted, volume, &input.view, city);
             // Beyond what any card holds; such a buffer is refused.
             let number = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
-            let mut stored = Stored { code, layers: 1, first: number(words), first_list: number(lists), excess: 0 };
+            let layers = wanted.layers_of(&volume.body);
+            let mut stored = Stored { code, layers, first: number(words), first_list: number(lists), excess: 0 };
             if !volume.body.is_form() {
-                let most = volume.body.most_intervals().map_or(wanted.layers, |most| wanted.layers.min(most as u32));
-                stored.layers = if wanted.aggregate { 1 } else { most };
                 lists += u64::from(stored.width(sprite_bounds.size[0])) * u64::from(sprite_bounds.size[1]);
                 counts += 1;
                 stored.excess = if wanted.aggregate { 0 } else { counts };

@@ -6,7 +6,7 @@ use crate::{
     geom::Aabb,
     gpu::GpuError,
     lens::{
-        LensSprite,
+        LensSprite, SpriteSpace,
         sprite::{DepthCode, Format, Mapping},
     },
     render::{
@@ -15,6 +15,7 @@ use crate::{
         frame::{FrameInput, Recorder, color_attachment},
         key::Key,
         layout,
+        own_sprites::OwnSprites,
         renderer::Renderer,
         seen::{Kept, Seen, SeenSprite, SeenVolume},
         volume::LensVolume,
@@ -51,7 +52,7 @@ impl Stored {
     }
 
     /// As the card knows its depth code: number, near and far plane.
-    fn numbers(&self) -> (u32, f32, f32) {
+    pub(super) fn numbers(&self) -> (u32, f32, f32) {
         let DepthCode { mapping, near_m, far_m, format } = self.code;
         (format as u32 | (mapping as u32) << 4, near_m as f32, far_m.min(1e30) as f32)
     }
@@ -80,6 +81,16 @@ pub fn code_of(sprite: &LensSprite, volume: &LensVolume, view: &View, city: &Aab
     let near_m = sprite.near_m.unwrap_or(low.max(seen_m));
     let far_m = sprite.far_m.unwrap_or(high).max(near_m * (1.0 + APART));
     DepthCode { mapping, near_m, far_m: if mapping == Mapping::InverseW { f64::INFINITY } else { far_m }, format }
+}
+
+impl LensSprite {
+    /// Layers that the sprite of a body takes.
+    pub(super) fn layers_of(&self, body: &Body) -> u32 {
+        if body.is_form() || self.aggregate {
+            return 1;
+        }
+        body.most_intervals().map_or(self.layers, |most| self.layers.min(most as u32))
+    }
 }
 
 /// The pipeline that makes the sprite of a body.
@@ -113,20 +124,46 @@ pub(super) fn placed<T: bytemuck::Pod>(value: &T) -> Vec<u8> {
     bytes
 }
 
+/// A sprite that is to be made.
+#[derive(Debug)]
+pub(super) struct Making<'a> {
+    /// Whose it is.
+    pub lens: u32,
+    /// What it is made of.
+    pub body: &'a Body,
+    /// Width and height of the whole sprite, texels, and the part of it that is kept.
+    pub size: [u32; 2],
+    pub bounds: PictureTile,
+    /// How it is stored, and where.
+    pub stored: Stored,
+    /// Its own eye; `None`: the picture's.
+    pub own: Option<View>,
+}
+
+/// The sprites of the picture's eye, all of which are made in every frame.
+pub(super) fn makings<'a>(seen: &[SeenVolume], input: &FrameInput<'a>) -> Vec<Making<'a>> {
+    let making = |v: &SeenVolume| match v.sprite.as_ref()? {
+        &SeenSprite { size, bounds, kept: Kept::Stored(stored) } => {
+            Some(Making { lens: v.lens, body: &input.volumes[v.index].body, size, bounds, stored, own: None })
+        }
+        _ => None,
+    };
+    seen.iter().filter_map(making).collect()
+}
+
 /// What lists the crossings of the solids of a body, whose sprite is `stage`, on a target of `target` texels.
 pub(super) fn list_stages(
-    body: &Body,
-    (volume_view, stage): (&View, &layout::StoredStage),
-    sprite: &SeenSprite,
+    making: &Making,
+    (own_view, stage): (&View, &layout::StoredStage),
     target: [u32; 2],
     room: u64,
 ) -> Vec<layout::ListStage> {
-    let clip_scale: [f32; 2] = std::array::from_fn(|i| sprite.size[i] as f32 / target[i] as f32);
+    let clip_scale: [f32; 2] = std::array::from_fn(|i| making.size[i] as f32 / target[i] as f32);
     // Texels count down the target, clip space up.
-    let side = |i: usize| clip_scale[i] - 2.0 * sprite.bounds.origin[i] as f32 / target[i] as f32 - 1.0;
+    let side = |i: usize| clip_scale[i] - 2.0 * making.bounds.origin[i] as f32 / target[i] as f32 - 1.0;
     let list = |(leaf, of): (u32, &PlacedLeaf)| layout::ListStage {
         view: stage.view,
-        shape: of.figures(volume_view, &mut Vec::new()),
+        shape: of.figures(own_view, &mut Vec::new()),
         clip_scale,
         clip_shift: [side(0), -side(1)],
         width: stage.width,
@@ -136,68 +173,67 @@ pub(super) fn list_stages(
         room: room as u32,
         pad_0: [0; 3],
     };
-    solids_of(body).map(list).collect()
+    solids_of(making.body).map(list).collect()
 }
 
 /// The target on which crossings are listed: as large as the largest sprite that is made from lists.
-pub(super) fn list_target(seen: &[SeenVolume], input: &FrameInput) -> [u32; 2] {
-    let with_lists = seen.iter().filter_map(|v| {
-        let sprite = v.sprite.as_ref().filter(|s| matches!(s.kept, Kept::Stored(_)))?;
-        solids_of(&input.volumes[v.index].body).next().map(|_| sprite.bounds.size)
-    });
+pub(super) fn list_target(making: &[Making]) -> [u32; 2] {
+    let with_lists = making.iter().filter_map(|m| solids_of(m.body).next().map(|_| m.bounds.size));
     with_lists.fold([0; 2], |all, size| std::array::from_fn(|i| all[i].max(size[i])))
 }
 
-/// What makes a sprite, and where it then stands.
-pub(super) fn layouts(
+/// What makes a sprite that its eye sees on a target of `target` pixels.
+pub(super) fn stage(
     shape: layout::Shape,
-    (volume, sprite, stored): (&SeenVolume, &SeenSprite, &Stored),
+    making: &Making,
     view: layout::View,
-    tile: PictureTile,
-) -> (layout::StoredStage, layout::SpritePlace) {
-    let scale: [f32; 2] = std::array::from_fn(|i| sprite.size[i] as f32 / tile.size[i] as f32);
-    let origin = sprite.bounds.origin.map(|o| o as f32);
+    target: [u32; 2],
+) -> layout::StoredStage {
+    let &Making { size, bounds, stored, .. } = making;
     let (kind, near, far) = stored.numbers();
-    let [width, height] = [stored.width(sprite.bounds.size[0]), sprite.bounds.size[1]];
-    let &Stored { layers, first, first_list, excess, .. } = stored;
-    let stage = layout::StoredStage {
+    layout::StoredStage {
         view,
         shape,
-        pixels_per_texel: scale.map(|s| 1.0 / s),
-        origin,
-        width,
-        height,
-        layers,
-        first,
+        pixels_per_texel: std::array::from_fn(|i| target[i] as f32 / size[i] as f32),
+        origin: bounds.origin.map(|o| o as f32),
+        width: stored.width(bounds.size[0]),
+        height: bounds.size[1],
+        layers: stored.layers,
+        first: stored.first,
         kind,
         near,
         far,
-        first_list,
-        excess,
+        first_list: stored.first_list,
+        excess: stored.excess,
         pad_0: [0; 3],
-    };
-    let place = layout::SpritePlace {
+    }
+}
+
+/// Where a sprite of the picture's eye stands.
+pub(super) fn place(volume: &SeenVolume, making: &Making, tile: PictureTile) -> layout::SpritePlace {
+    let &Making { size, bounds, stored, .. } = making;
+    let (kind, near, far) = stored.numbers();
+    layout::SpritePlace {
         origin: volume.bounds.origin.map(|o| o as i32),
         size: volume.bounds.size.map(|s| s as i32),
-        texels_per_pixel: scale,
-        sprite: origin.map(|o| -o),
+        texels_per_pixel: std::array::from_fn(|i| size[i] as f32 / tile.size[i] as f32),
+        sprite: bounds.origin.map(|o| -(o as f32)),
         page: 0,
-        first,
-        width,
-        layers,
+        first: stored.first,
+        width: stored.width(bounds.size[0]),
+        layers: stored.layers,
         kind,
         near,
         far,
         own: 0,
-    };
-    (stage, place)
+    }
 }
 
 /// A stored sprite, read back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpriteTexels {
-    /// Width and height of the whole sprite, texels.
-    pub size: [u32; 2],
+    /// Where it was made, and width and height of all of it.
+    pub space: SpriteSpace,
     /// The part of it that is kept, texels; rays beside it miss the lens.
     pub bounds: PictureTile,
     /// How distances are coded.
@@ -213,21 +249,24 @@ pub struct SpriteTexels {
 /// A sprite of the last frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct KeptSprite {
-    lens: u32,
-    size: [u32; 2],
-    bounds: PictureTile,
-    stored: Stored,
+    pub lens: u32,
+    pub space: SpriteSpace,
+    pub bounds: PictureTile,
+    pub stored: Stored,
+    /// Whether it has its own eye.
+    pub is_own: bool,
 }
 
-/// The sprites of a frame.
-pub(super) fn kept_sprites(seen: &[SeenVolume]) -> Vec<KeptSprite> {
-    let kept = |v: &SeenVolume| match v.sprite.as_ref()? {
-        &SeenSprite { size, bounds, kept: Kept::Stored(stored) } => {
-            Some(KeptSprite { lens: v.lens, size, bounds, stored })
-        }
-        _ => None,
+/// The sprites of the picture's eye.
+pub(super) fn kept_sprites(making: &[Making], view: &View) -> Vec<KeptSprite> {
+    let kept = |m: &Making| KeptSprite {
+        lens: m.lens,
+        space: SpriteSpace { size: m.size, ..SpriteSpace::of(view) },
+        bounds: m.bounds,
+        stored: m.stored,
+        is_own: false,
     };
-    seen.iter().filter_map(kept).collect()
+    making.iter().filter(|m| m.own.is_none()).map(kept).collect()
 }
 
 impl Renderer {
@@ -240,7 +279,7 @@ impl Renderer {
         let bytes = self.gpu.read_buffer(self.buffers.sprites.buffer())?;
         let words: &[u32] = bytemuck::cast_slice(&bytes);
         let texels = |sprite: &&KeptSprite| {
-            let KeptSprite { size, bounds, stored, .. } = **sprite;
+            let KeptSprite { space, bounds, stored, .. } = **sprite;
             let [width, height] = bounds.size;
             let (bits, row) = (stored.code.format.bits(), stored.width(width));
             let code = |number: u32| {
@@ -250,7 +289,7 @@ impl Renderer {
             let texels = (0..height).flat_map(|y| (0..width).map(move |x| y * row + x));
             let layers = texels.flat_map(|texel| (0..stored.layers).map(move |layer| texel * stored.layers + layer));
             SpriteTexels {
-                size,
+                space,
                 bounds,
                 code: stored.code,
                 layers: stored.layers,
@@ -270,34 +309,55 @@ impl Renderer {
         let met = u64::from(bytemuck::cast_slice::<u8, u32>(&bytes)[0]);
         let before = self.crossing_room;
         if met > before {
+            self.own_sprites.forget();
             // And some more: the next frame meets about as many.
             self.crossing_room = (met + met / 8).min(MOST_CROSSINGS);
         }
         Ok(self.crossing_room > before)
     }
 
-    /// Rays of the last frame that have more intervals than their sprite has layers, by lens.
-    pub fn read_excess(&self) -> Result<Vec<(u32, u32)>, GpuError> {
+    /// Rays that have more intervals than their sprite has layers, by lens: of the sprites of the last frame's eye, and with `own`
+    /// of those that have eyes of their own.
+    pub fn read_excess(&self, own: bool) -> Result<Vec<(u32, u32)>, GpuError> {
         if self.kept_sprites.iter().all(|s| s.stored.excess == 0) {
             return Ok(Vec::new());
         }
         let bytes = self.gpu.read_buffer(self.buffers.counts.buffer())?;
         let counts: &[u32] = bytemuck::cast_slice(&bytes);
+        let is_asked = |s: &&KeptSprite| own || !s.is_own;
         let excess = |s: &KeptSprite| (s.lens, if s.stored.excess == 0 { 0 } else { counts[s.stored.excess as usize] });
-        Ok(self.kept_sprites.iter().map(excess).filter(|(_, rays)| *rays > 0).collect())
+        Ok(self.kept_sprites.iter().filter(is_asked).map(excess).filter(|(_, rays)| *rays > 0).collect())
     }
 
-    /// Makes room for the sprites of a frame.
-    pub(super) fn fit_sprites(&mut self, seen: &Seen, target: [u32; 2]) -> Result<(), GpuError> {
+    /// Makes room for the sprites of a frame, of which those with eyes of their own are needed for some volumes; all that are to
+    /// be made.
+    pub(super) fn fit_sprites<'a>(
+        &mut self,
+        seen: &Seen,
+        input: &FrameInput<'a>,
+        is_needed: impl Fn(usize) -> bool,
+    ) -> Result<Vec<Making<'a>>, GpuError> {
         let (gpu, b) = (&self.gpu, &mut self.buffers);
         let mut stale = b.sprites.fit(gpu, 4 * seen.words)?;
-        if seen.lists > 0 {
-            stale |= b.lists.fit(gpu, 4 * seen.lists)?;
-            stale |= b.counts.fit(gpu, 4 * (1 + seen.volumes.len() as u64))?;
+        if seen.lists > 0 || self.own_sprites.counts() {
+            let all = 1 + u64::from(self.own_sprites.room().1) + seen.volumes.len() as u64;
+            stale |= b.counts.fit(gpu, 4 * all)?;
         }
+        if stale {
+            self.own_sprites.forget();
+        }
+        let mut making = makings(&seen.volumes, input);
+        making.extend(self.own_sprites.to_make(input, is_needed, seen.lists));
+        let lists = making.iter().filter(|m| !m.body.is_form()).map(|m| {
+            let texels = u64::from(m.stored.width(m.bounds.size[0])) * u64::from(m.bounds.size[1]);
+            u64::from(m.stored.first_list) + texels
+        });
+        let lists = lists.max().unwrap_or(0);
+        stale |= b.lists.fit(gpu, 4 * lists)?;
+        let target = list_target(&making);
         self.lists_crossings = target != [0; 2];
         if self.lists_crossings {
-            self.crossing_room = self.crossing_room.max((CROSSINGS_PER_TEXEL * seen.lists).min(MOST_CROSSINGS));
+            self.crossing_room = self.crossing_room.max((CROSSINGS_PER_TEXEL * lists).min(MOST_CROSSINGS));
             stale |= b.crossings.fit(gpu, 8 * self.crossing_room)?;
             let has = self.list_target.as_ref().map_or([0; 2], |t| [t.texture().width(), t.texture().height()]);
             if (0..2).any(|i| has[i] < target[i]) {
@@ -310,7 +370,7 @@ impl Renderer {
         if stale {
             self.groups = None;
         }
-        Ok(())
+        Ok(making)
     }
 
     /// Width and height of the target on which crossings are listed, texels.
@@ -319,22 +379,19 @@ impl Renderer {
     }
 
     /// Lists the crossings of rays with the solids of lenses that have sprites.
-    fn list_pass(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        input: &FrameInput,
-        seen: &[SeenVolume],
-    ) {
-        let bodies = seen.iter().filter(|v| v.sprite.as_ref().is_some_and(|s| matches!(s.kept, Kept::Stored(_))));
-        let bodies = bodies.map(|v| (v.lens, &input.volumes[v.index].body));
-        if bodies.clone().all(|(_, body)| body.is_form()) {
+    fn list_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, making: &[Making]) {
+        if making.iter().all(|m| m.body.is_form()) {
             return;
         }
         encoder.clear_buffer(self.buffers.lists.buffer(), 0, None);
-        encoder.clear_buffer(self.buffers.counts.buffer(), 0, None);
+        // The counts of sprites that are kept stay.
+        let counts = self.buffers.counts.buffer();
+        let mut clear = |first: u32, count| encoder.clear_buffer(counts, 4 * u64::from(first), count);
+        clear(0, Some(4));
+        OwnSprites::counts_of(making).for_each(|own| clear(own, Some(4)));
+        clear(1 + self.own_sprites.room().1, None);
         let solids: Vec<(u32, &PlacedLeaf)> =
-            bodies.flat_map(|(lens, body)| solids_of(body).map(move |(_, leaf)| (lens, leaf))).collect();
+            making.iter().flat_map(|m| solids_of(m.body).map(move |(_, leaf)| (m.lens, leaf))).collect();
         let (Some(groups), Some(target), false) = (&self.groups, &self.list_target, solids.is_empty()) else { return };
         let mut lenses: Vec<u32> = solids.iter().map(|(lens, _)| *lens).collect();
         lenses.dedup();
@@ -362,35 +419,26 @@ impl Renderer {
         recorder.count(solids.len() as u32, solids.iter().map(|(_, leaf)| corners(leaf) / 3).sum());
     }
 
-    /// Makes the stored sprites of the volumes in view.
-    pub(super) fn stored_pass(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        input: &FrameInput,
-        seen: &[SeenVolume],
-    ) {
+    /// Makes the stored sprites of a frame.
+    pub(super) fn stored_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder, making: &[Making]) {
         let Some(groups) = &self.groups else { return };
-        let with_sprites = || seen.iter().filter_map(|v| Some((v, v.sprite.as_ref()?)));
-        let stored = with_sprites().filter(|(_, sprite)| matches!(sprite.kept, Kept::Stored(_)));
-        let mut lenses: Vec<u32> = stored.clone().map(|(v, _)| v.lens).collect();
+        let mut lenses: Vec<u32> = making.iter().map(|m| m.lens).collect();
         if lenses.is_empty() {
             return;
         }
         lenses.dedup();
-        self.list_pass(encoder, recorder, input, seen);
-        let lists: usize = stored.clone().map(|(v, _)| solids_of(&input.volumes[v.index].body).count()).sum();
+        self.list_pass(encoder, recorder, making);
+        let lists: usize = making.iter().map(|m| solids_of(m.body).count()).sum();
         let slot = recorder.begin("stored depth sprites", "main", &lenses, false);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("stored depth sprites"),
             timestamp_writes: recorder.timer.as_ref().and_then(|t| t.compute_writes(slot)),
         });
         pass.set_bind_group(1, &groups.planes, &[]);
-        for (i, (volume, sprite)) in stored.enumerate() {
-            let Kept::Stored(how) = &sprite.kept else { continue };
-            let [width, height] = sprite.bounds.size;
-            let together = if how.code.format == Format::Unorm8 { 2 } else { 1 };
-            pass.set_pipeline(self.pipelines.get_compute(&key(&input.volumes[volume.index].body)));
+        for (i, making) in making.iter().enumerate() {
+            let [width, height] = making.bounds.size;
+            let together = if making.stored.code.format == Format::Unorm8 { 2 } else { 1 };
+            pass.set_pipeline(self.pipelines.get_compute(&key(making.body)));
             // After those of the lists.
             pass.set_bind_group(2, &groups.stored, &[((lists + i) as u64 * STORED_STRIDE) as u32]);
             pass.dispatch_workgroups(width.div_ceil(GROUP * together), height.div_ceil(GROUP), 1);

@@ -43,8 +43,22 @@ pub struct LensVolume {
 }
 
 impl LensVolume {
+    /// Whether it is tested by a sprite that has its own eye.
+    pub fn has_own_eye(&self) -> bool {
+        let is_asked = self.sprite.is_some_and(|sprite| sprite.own.is_some()) && !self.body.has_members();
+        is_asked || self.body.saved().is_some()
+    }
+
+    /// How it is tested from the sun: the picture's sprites say nothing of what only the sun sees.
+    pub fn test_from_sun(&self) -> VolumeTest {
+        if self.has_own_eye() { VolumeTest::OwnSprite } else { self.body.test() }
+    }
+
     /// How it is tested in the picture; `masks`: all classes are asked for.
     pub fn test(&self, masks: bool) -> VolumeTest {
+        if self.has_own_eye() {
+            return VolumeTest::OwnSprite;
+        }
         let with_sides = masks || self.asks_sides || self.drawn != LensBody::None;
         match (self.body.test(), self.sprite.filter(|_| !self.body.has_members())) {
             (_, Some(sprite)) if self.body.is_form() && sprite.is_as_the_target() => VolumeTest::Sprite,
@@ -57,7 +71,7 @@ impl LensVolume {
 
     /// All ways in which frames may test it, in the picture and from the sun.
     pub fn tests(&self) -> [Vec<VolumeTest>; 2] {
-        let own = self.body.test();
+        let own = self.test_from_sun();
         let picture = match self.test(true) {
             // As a frame asks for its sides or not; whatever its lens asks for, so that lenses may change places.
             sides if sides.has_sides() => vec![own, sides],
@@ -84,26 +98,31 @@ impl LensVolume {
         Aabb { min: self.bounds.min - reach, max: self.bounds.max + reach }
     }
 
-    /// The distances D along the view axis between which its lens may act as *inside*, metres.
-    pub fn depths(&self, view: &View) -> [f64; 2] {
+    /// The box in which its lens may act as *inside*: x to the right, y up, and the distance D along the view axis, metres from the eye.
+    pub fn room(&self, view: &View) -> [DVec3; 2] {
         if !self.body.is_bounded() {
-            return [f64::NEG_INFINITY, f64::INFINITY];
+            return [DVec3::NEG_INFINITY, DVec3::INFINITY];
         }
+        let placed = |point: DVec3| {
+            let relative = point - view.camera.eye;
+            DVec3::new(relative.dot(view.basis.right), relative.dot(view.basis.up), view.depth(point))
+        };
         let reach = self.reach_m(view);
-        if let Some(Volume::Sphere { center, radius }) = self.body.volume() {
-            let middle = view.depth(*center);
+        if let (Some(Volume::Sphere { center, radius }), false) = (self.body.volume(), self.has_own_eye()) {
+            let middle = placed(*center);
             return [middle - radius - reach, middle + radius + reach];
         }
-        let depths = self.bounds.corners().map(|c| view.depth(c));
-        let ends = [f64::INFINITY, f64::NEG_INFINITY];
-        let [near, far] = depths.into_iter().fold(ends, |[low, high], d| [low.min(d), high.max(d)]);
-        [near - reach, far + reach]
+        let ends = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        let [low, high] =
+            self.bounds.corners().into_iter().map(placed).fold(ends, |[low, high], p| [low.min(p), high.max(p)]);
+        [low - reach, high + reach]
     }
 
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
     pub fn seen_part(&self, view: &View, tile: PictureTile) -> Option<Octagon> {
         let whole = Octagon::whole(tile.size);
-        if self.everywhere {
+        // In front of what its own eye sees, or behind it, places may be anywhere.
+        if self.everywhere || (self.has_own_eye() && (self.asks_sides || !self.body.is_bounded())) {
             return Some(whole);
         }
         let margin = match self.drawn {
@@ -138,7 +157,7 @@ impl LensVolume {
     fn projected(&self, view: &View) -> Option<([f64; 4], [f64; 4])> {
         let reach = self.reach_m(view);
         let around = || self.bounds_of_border(view).corners();
-        let Body::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) = &self.body else {
+        let Some(volume) = self.body.volume().filter(|_| !self.has_own_eye()) else {
             return projected_corners(view, around());
         };
         let grown = |center: DVec3, axes: DMat3, half: DVec3| corners_of_box(center, axes, half + reach);

@@ -62,6 +62,8 @@ fn call(question: Question, test: VolumeTest, volume: &str, place: &str) -> Stri
         (_, T::Sprite) => format!("class_in_sprite({sprite}, {place})"),
         (Q::Covers, T::LayeredSprite) => format!("covers_layers({sprite}, {place})"),
         (_, T::LayeredSprite) => format!("class_in_layers({sprite}, {place})"),
+        (Q::Covers, T::OwnSprite) => format!("covers_own({shape}, {place})"),
+        (_, T::OwnSprite) => format!("class_in_own({shape}, {place})"),
         (Q::Covers, T::SolidSprite | T::CombinedSprite) => format!("covers_sides({sprite}, {place})"),
         (Q::Classes, T::SolidSprite) => format!("class_in_solid({shape}, {sprite}, {place})"),
         (Q::Inside, T::Combined | T::CombinedSprite) => format!("inside_combined({shape}, {place})"),
@@ -125,6 +127,7 @@ fn span(test: VolumeTest, volume: &str) -> String {
         VolumeTest::Sprite | VolumeTest::LayeredSprite => {
             format!("span_in_layers(sprite_places[{volume}], pixel)")
         }
+        VolumeTest::OwnSprite => format!("span_in_own(shapes[{volume}], ray)"),
         _ => format!("span_of_shape(ray, shapes[{volume}], {})", test.constant()),
     }
 }
@@ -147,6 +150,7 @@ fn distance(test: VolumeTest, volume: &str, border: &str) -> String {
             let inside = call(Question::Inside, test, volume, "sight");
             format!("select(FAR_AWAY, -FAR_AWAY, is_inside({inside}))")
         }
+        VolumeTest::OwnSprite => "FAR_AWAY".to_owned(),
         VolumeTest::Solid | VolumeTest::SolidSprite => format!("distance_to_solid({shape}, sight)"),
         VolumeTest::Combined | VolumeTest::CombinedSprite => format!("distance_to_combined({shape}, sight, {border})"),
         _ => format!("distance_to_shape({shape}, {}, sight, {border})", test.constant()),

@@ -52,6 +52,7 @@ files! {
     LENS_SPRITE = "lib/lens-sprite.wgsl";
     DEPTH_CODE = "lib/depth-code.wgsl";
     STORED_SPRITE = "lib/stored-sprite.wgsl";
+    OWN_SPRITE = "lib/own-sprite.wgsl";
     STORED_PASS = "pass/stored-sprite.wgsl";
     STORED_FORM = "lib/stored-form.wgsl";
     STORED_LAYERS = "lib/stored-layers.wgsl";
@@ -306,9 +307,10 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.lenses, CLASS),
         (parts.lenses, SHAPE),
         (parts.shapes, LENS),
-        (parts.sprites || parts.side_sprites, LENS_SPRITE),
-        (parts.sprites, DEPTH_CODE),
-        (parts.sprites, STORED_SPRITE),
+        (parts.sprites || parts.own_sprites || parts.side_sprites, LENS_SPRITE),
+        (parts.sprites || parts.own_sprites, DEPTH_CODE),
+        (parts.sprites || parts.own_sprites, STORED_SPRITE),
+        (parts.own_sprites, OWN_SPRITE),
         (parts.members, MEMBERS),
         (parts.solids, SOLID),
         (parts.side_sprites, SOLID_SPRITE),

@@ -166,11 +166,13 @@ pub enum VolumeTest {
     Flat,
     /// By its volumetric depth sprite, whatever that is stored in.
     LayeredSprite,
+    /// By a volumetric depth sprite that has its own eye.
+    OwnSprite,
 }
 
 impl VolumeTest {
     /// All of them, in the order of their numbers in `lib/shape.wgsl`.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Sphere,
         Self::Box,
         Self::Cylinder,
@@ -185,6 +187,7 @@ impl VolumeTest {
         Self::CombinedSprite,
         Self::Flat,
         Self::LayeredSprite,
+        Self::OwnSprite,
     ];
 
     /// Its number, as `lib/shape.wgsl` knows it.
@@ -192,7 +195,7 @@ impl VolumeTest {
         Self::ALL.iter().position(|t| *t == self).unwrap_or(0) as u32
     }
 
-    /// Whether a volumetric depth sprite alone says where a place is.
+    /// Whether a volumetric depth sprite of the picture's eye alone says where a place is.
     pub fn is_sprite(self) -> bool {
         matches!(self, Self::Sprite | Self::LayeredSprite)
     }
@@ -229,6 +232,7 @@ impl VolumeTest {
             Self::CombinedSprite => "COMBINED_SPRITE",
             Self::Flat => "FLAT",
             Self::LayeredSprite => "LAYERED_SPRITE",
+            Self::OwnSprite => "OWN_SPRITE",
         }
     }
 }
@@ -432,6 +436,7 @@ impl Program {
             shapes: tests.iter().any(|t| !t.is_sprite()) || (matches!(self, Self::Uber(_)) && has_lenses),
             members: tests.contains(&VolumeTest::Members),
             sprites: tests.iter().any(|t| t.is_sprite()),
+            own_sprites: tests.contains(&VolumeTest::OwnSprite),
             solids: tests.iter().any(|t| t.has_faces()),
             side_sprites: tests.iter().any(|t| t.has_sides()),
             combinations: tests.iter().any(|t| t.has_leaves()),
@@ -479,6 +484,8 @@ pub struct Parts {
     pub shapes: bool,
     /// The lens test by depth sprites.
     pub sprites: bool,
+    /// By those that have their own eye.
+    pub own_sprites: bool,
     /// Membership by object.
     pub members: bool,
     /// The lens test from the faces of solids.

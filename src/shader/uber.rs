@@ -151,24 +151,55 @@ fn fades(uber: &Uber) -> bool {
     uber.borders && !uber.tests.is_empty()
 }
 
-/// A loop over invokers, where lenses fade.
+/// Calls of what an invoker asks for; where lenses fade they say how much of it there is.
 pub(super) fn faded(uber: &Uber, text: &str) -> String {
-    if !fades(uber) {
-        return text.to_owned();
-    }
-    text.replace("if runs(by, classes)", "let share = share_at(by, classes);\n        if share > 0.0")
-        .replace("point, by);", "point, by, share);")
+    if fades(uber) { text.replace("point, by);", "point, by, share);") } else { text.to_owned() }
 }
+
+/// Code whose line `EACH(SECTION)` begins a loop over the invokers of that section of the tile's list that run at a place, in their
+/// order. In two steps, for adapters that take many pixels at a time and go through whatever one of them may do: as often as there are
+/// entries in the list it is asked whether they run, but only as often as some run are handlers called. Where lenses fade it is one
+/// step, and each has its `share`: how much is left over from asking, and of it Mesa 22.3 makes something else at some pixels.
+fn each(uber: &Uber, text: &str) -> String {
+    let (before, rest) = text.split_once("    EACH(").expect("a section of the list");
+    let (section, body) = rest.split_once(")\n").expect("its end");
+    let head = if fades(uber) { NEXT_SHARED } else { NEXT };
+    let head = head.replace("SECTION", section).replace("range", &format!("of_{}", section.to_lowercase()));
+    [before, &head, &faded(uber, body)].concat()
+}
+
+const NEXT: &str = "    let range = invokers_of(classes, SECTION);
+    for (var k = range.x; k < range.y; k++) {
+        while !runs(invokers[tile_lists[k]], classes) {
+            k++;
+            if k >= range.y {
+                break;
+            }
+        }
+        if k >= range.y {
+            break;
+        }
+        let by = invokers[tile_lists[k]];
+";
+
+const NEXT_SHARED: &str = "    let range = invokers_of(classes, SECTION);
+    for (var k = range.x; k < range.y; k++) {
+        let by = invokers[tile_lists[k]];
+        let share = share_at(by, classes);
+        if share <= 0.0 {
+            continue;
+        }
+";
 
 /// From the surface to its colour: material, light, the standard style and air, then the styles.
 fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let has = |kind| has(uber, kind, handlers);
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
     if has(EffectKind::Material) {
-        text.push_str(&faded(uber, MATERIALS));
+        text.push_str(&each(uber, MATERIALS));
     }
     if has(EffectKind::Light) {
-        text.push_str(&faded(uber, LIGHTS));
+        text.push_str(&each(uber, LIGHTS));
     }
     let plus = if has(EffectKind::Material) {
         text.push_str("    (*point).highlight = highlights(material, *point);\n");
@@ -200,7 +231,7 @@ fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
         true => "                color += point.highlight;\n",
         false => "",
     };
-    faded(uber, STYLED).replace("                HIGHLIGHT\n", highlight)
+    each(uber, STYLED).replace("                HIGHLIGHT\n", highlight)
 }
 
 /// The table, declared.
@@ -336,33 +367,23 @@ const SHARE_AT: &str = "fn share_at(by: Invoker, classes: Classes) -> f32 {
 ";
 
 const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);
-    let of_materials = invokers_of(classes, MATERIALS);
-    for (var k = of_materials.x; k < of_materials.y; k++) {
-        let by = invokers[tile_lists[k]];
-        if runs(by, classes) {
-            material = invoke_material(material, *point, by);
-        }
+    EACH(MATERIALS)
+        material = invoke_material(material, *point, by);
     }
     (*point).base = material.base;
 ";
 
-const LIGHTS: &str = "    let of_lights = invokers_of(classes, LIGHTS);
-    for (var k = of_lights.x; k < of_lights.y; k++) {
-        let by = invokers[tile_lists[k]];
-        if runs(by, classes) {
-            (*point).arriving = invoke_light((*point).arriving, *point, by);
-        }
+const LIGHTS: &str = "    EACH(LIGHTS)
+        (*point).arriving = invoke_light((*point).arriving, *point, by);
     }
     (*point).shade = luminance((*point).arriving);
 ";
 
 const STYLED: &str = "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {
     var color = start;
-    let run = invokers_of(classes, STYLES);
-    for (var k = run.x; k < run.y; k++) {
-        let by = invokers[tile_lists[k]];
+    EACH(STYLES)
         let is_scene_style = by.number == 1u;
-        if runs(by, classes) && (!is_scene_style || point.surface != NO_SURFACE) {
+        if !is_scene_style || point.surface != NO_SURFACE {
             color = invoke_style(color, point, by);
             if is_scene_style {
                 HIGHLIGHT

@@ -18,13 +18,23 @@ use std::{
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 
+use glam::DVec3;
 use random::Random;
-use veduta::city::{
-    Texture, TextureImage, Wrap,
-    build::ModelBuilder,
-    coplanar, facts, ground,
-    load::{LoadOptions, input, read_input},
-    shown, spatial, texture,
+use veduta::{
+    city::{
+        Texture, TextureImage, Wrap,
+        build::ModelBuilder,
+        coplanar, facts, ground,
+        load::{LoadOptions, input, read_input},
+        shown, spatial, texture,
+    },
+    geom::{Aabb, Volume, shape::Motion},
+    lens::{
+        PlacedSprite, SpriteSpace, SpriteVolume,
+        sprite::{DepthCode, Format, Mapping},
+        sprite_file,
+    },
+    view::{Camera, View},
 };
 
 #[global_allocator]
@@ -61,7 +71,50 @@ fn seeds() -> Vec<Seed> {
     let picture = image::RgbImage::from_fn(9, 7, |x, y| image::Rgb([(x * 28) as u8, (y * 36) as u8, 99]));
     picture.write_to(&mut std::io::Cursor::new(&mut jpeg), image::ImageFormat::Jpeg).expect("a JPEG can be made");
     seeds.push(Seed { name: "picture.jpg".into(), bytes: jpeg });
+    seeds.push(Seed { name: "sprite.exr".into(), bytes: sprite() });
     seeds
+}
+
+/// The file of a small depth sprite.
+fn sprite() -> Vec<u8> {
+    let camera = Camera::looking(DVec3::new(3.0, -9.0, 4.0), DVec3::ZERO, 0.7);
+    let view = View::new(camera, [24, 16], &Aabb::EMPTY).expect("a view");
+    let ball = Volume::Sphere { center: DVec3::ZERO, radius: 2.0 };
+    let texels = (0..16).flat_map(|y| (0..24).map(move |x| (x, y)));
+    let ends = texels.flat_map(|(x, y)| {
+        let both = ball.entry_exit(&view.pixel_ray(x, y)).map_or([0.0; 2], |(enter, exit)| [enter as f32, exit as f32]);
+        [both, [0.0; 2]]
+    });
+    let sprite = SpriteVolume {
+        ends: ends.collect(),
+        space: SpriteSpace::of(&view),
+        origin: [0, 0],
+        kept: [24, 16],
+        layers: 2,
+        code: DepthCode { mapping: Mapping::W, near_m: 0.5, far_m: 50.0, format: Format::Unorm16 },
+        crs: Some("EPSG:7415".into()),
+    };
+    sprite_file::bytes(&sprite).expect("a sprite can be written")
+}
+
+/// What a lens makes of a file.
+fn read_sprite(bytes: &[u8]) -> Result<(), String> {
+    match sprite_file::read_bytes(bytes) {
+        Err(message) if message.is_empty() || message.contains('\n') || message.len() > 2000 => {
+            Err(format!("an unreadable message: {message}"))
+        }
+        Err(_) => Ok(()),
+        Ok(sprite) => {
+            let intervals = sprite.kept[0] as usize * sprite.kept[1] as usize * sprite.layers as usize;
+            if sprite.ends.len() != intervals || sprite.ends.iter().flatten().any(|d| d.is_nan()) {
+                return Err("a sprite that is not sound".into());
+            }
+            let placed = PlacedSprite::new(Arc::new(sprite), &Motion::NONE);
+            let corners = [DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 1.0)];
+            std::hint::black_box(placed.meets_triangle(&corners));
+            Ok(())
+        }
+    }
 }
 
 /// Reads one wrong file in every way that `info` and the renderer do; the error is why the result is not sound.
@@ -74,6 +127,9 @@ fn read(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
             }
             _ => Ok(()),
         };
+    }
+    if name.ends_with(".exr") {
+        return read_sprite(bytes);
     }
     let options = LoadOptions { roots: vec![folder.to_owned()], ..LoadOptions::default() };
     // Libraries of materials are reached through a model; the mutated one lies in `folder`.

@@ -5,7 +5,7 @@ use std::{path::PathBuf, str::FromStr};
 use clap::Args;
 
 use crate::{
-    cli::{Failure, Outcome},
+    cli::{Failure, Outcome, render::sprites::SpriteRequest},
     render::frame::Backend,
 };
 
@@ -14,6 +14,7 @@ Examples:
   veduta render city.city.json -o city.png
   veduta render tiles/*.city.jsonl -o city.png --size 1920x1080 --samples 16
   veduta render scene.toml -o figure.png --set lens.0.shape.radius=80 --set lens.b.enabled=false
+  veduta render scene.toml -o figure.png --sprite hall=hall.exr
   veduta render scene.toml -o figure.png --aov depth=depth.exr --aov object-id=ids.png --stats stats.json
 
 A FILE that ends in .toml is a scene (docs/scene.md); city files get a good first view.
@@ -50,6 +51,9 @@ pub struct Arguments {
     /// Write what each pixel shows: depth, object-id, normal or lens-mask; repeatable
     #[arg(long = "aov", value_name = "KIND=FILE")]
     pub aovs: Vec<AovRequest>,
+    /// Write the depth sprite that a lens is tested by (docs/sprites.md); repeatable
+    #[arg(long = "sprite", value_name = "LENS=FILE.exr")]
+    pub sprites: Vec<SpriteRequest>,
     /// Leave out sky and background: straight alpha
     #[arg(long)]
     pub transparent: bool,
@@ -91,6 +95,7 @@ impl Arguments {
             return Err(Failure::usage(format!("{}: pictures are PNG; OUT.png would be right", self.output.display())));
         }
         let mut outputs: Vec<&PathBuf> = self.aovs.iter().map(|aov| &aov.file).collect();
+        outputs.extend(self.sprites.iter().map(|sprite| &sprite.file));
         outputs.extend(self.stats.iter().chain([&self.output]));
         outputs.sort();
         match outputs.windows(2).find(|pair| pair[0] == pair[1]) {

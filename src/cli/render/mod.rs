@@ -1,6 +1,7 @@
 //! `veduta render`: one picture, no window.
 
 pub mod arguments;
+pub mod sprites;
 
 use std::{
     path::PathBuf,
@@ -40,6 +41,9 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         scene.figure.samples = samples;
     }
     check_masks(&arguments.aovs, &scene)?;
+    for sprite in &arguments.sprites {
+        sprite.lens(&scene)?;
+    }
     let (mut studio, warnings) = open(&scene, &options, global)?;
     let has = |kind| arguments.aovs.iter().any(|aov| aov.kind == kind);
     let request = Request {
@@ -65,6 +69,9 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let notes = notes(&scene, &options);
     for aov in &arguments.aovs {
         write_aov(aov, &picture, scene.lenses.len(), &notes)?;
+    }
+    for sprite in &arguments.sprites {
+        sprites::write(&mut studio, &scene, sprite)?;
     }
     if let Some(file) = &arguments.stats {
         // Those of the files are worded for the command line; the rest is about this picture.

@@ -33,6 +33,7 @@ impl Reader<'_> {
                 rotation,
                 scale: fields.number("scale").unwrap_or(1.0),
             },
+            "sprite" => Focus::Sprite { file: self.path(fields, "file", fields.node("file")?)? },
             "mask" => self.mask(fields)?,
             "mask3d" => {
                 let images = fields.node("images").and_then(Node::list)?;
@@ -186,6 +187,7 @@ pub(super) fn written(focus: &Focus, options: &Options) -> Option<String> {
             }
             out + " }"
         }
+        Focus::Sprite { file } => format!("{{ kind = \"sprite\", file = {} }}", path(file)),
         Focus::Prism { points, holes, base, height } => {
             let mut out = format!("{{ kind = \"mask\", points = {}", ring(points));
             if !holes.is_empty() {

@@ -1,6 +1,9 @@
 //! The one table of scene-file keys: it drives the checks, the messages, `docs/scene.md` and the JSON schema.
 
-use crate::{figure::scene_file::sprite::SPRITE, lens::ramp};
+use crate::{
+    figure::scene_file::sprite::{SPRITE, SPRITE_CAMERA},
+    lens::ramp,
+};
 
 /// What a key takes.
 #[derive(Clone, Copy, Debug)]
@@ -635,6 +638,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("attached_to of a lens", &ATTACHED_TO),
     ("content of a lens", &CONTENT),
     ("sprite of a lens", &SPRITE),
+    ("camera of a sprite", &SPRITE_CAMERA),
     ("border of a lens", &BORDER),
     ("[figure]", &FIGURE),
 ];

@@ -95,7 +95,7 @@ impl<'o> SceneReader<'o> {
     fn top_table(&mut self, name: &str, fields: &Fields, scene: &mut Scene) {
         match name {
             "city" => scene.city = self.city(fields),
-            "camera" => scene.camera = self.camera(fields),
+            "camera" => scene.camera = camera(&mut self.checker, fields),
             "sun" => scene.sun = sun(fields),
             "style" => scene.style = self.style(fields),
             "figure" => scene.figure = figure(fields),
@@ -139,36 +139,6 @@ impl<'o> SceneReader<'o> {
         files
     }
 
-    fn camera(&mut self, fields: &Fields) -> Option<Camera> {
-        let (eye, target) = (fields.point("eye")?, fields.point("target")?);
-        let up = fields.point("up").unwrap_or(DVec3::Z);
-        let fov_y = fields.number("fov_deg").unwrap_or(DEFAULT_FOV_DEG).to_radians();
-        let distance = eye.distance(target);
-        let projection = if fields.text("projection") == Some("orthographic") {
-            let seen = 2.0 * distance * (0.5 * fov_y).tan();
-            Projection::Orthographic { height_m: fields.number("height_m").unwrap_or(seen) }
-        } else {
-            if fields.given("height_m") && !(fields.given("projection") && fields.text("projection").is_none()) {
-                let message = "has a meaning only with projection = \"orthographic\"";
-                self.checker.note(&fields.place, "height_m", fields.line("height_m"), message);
-            }
-            Projection::Perspective { fov_y }
-        };
-        let near_m = fields.number("near_m").unwrap_or_else(|| default_near_m(distance));
-        let camera = Camera { eye, target, up, projection, near_m };
-        if let Err(error) = camera.check() {
-            let key = match error {
-                CameraError::EyeIsTarget(..) => "target",
-                CameraError::FieldOfView(_) => "fov_deg",
-                CameraError::Height(_) => "height_m",
-                CameraError::Near(_) => "near_m",
-                CameraError::NotFinite(_) | CameraError::Size(..) => "eye",
-            };
-            self.checker.note(&fields.place, key, fields.line(key), error.to_string());
-        }
-        Some(camera)
-    }
-
     fn style(&mut self, fields: &Fields) -> Style {
         let (effects, _) = self.effects(fields, false);
         let base = if fields.text("base") == Some("clay") { BaseStyle::Clay } else { BaseStyle::Natural };
@@ -201,13 +171,22 @@ impl<'o> SceneReader<'o> {
         let shapes = self.shapes(fields);
         let (effects, of_effects) = self.effects(fields, true);
         let content = self.content(fields, of_effects);
-        let sprite = sprite::read(&mut self.checker, fields);
+        let is_saved = |shape: &Focus| matches!(shape, Focus::Sprite { .. });
+        let has_saved = shapes.iter().any(|s| s.any(&is_saved));
+        let all_saved = has_saved && shapes.iter().all(is_saved);
+        let sprite = sprite::read(&mut self.checker, fields, all_saved, camera);
         let border = fields
             .node("border")
             .map(|node| self.checker.fields(node, &keys::BORDER, &[], fields.place.within("border", node.line)));
-        if sprite.is_some() && border.is_some() {
-            let message =
-                "is given together with sprite: what is tested by a depth sprite ends at once; leave out one of them";
+        if (sprite.is_some() || has_saved) && border.is_some() {
+            let message = match has_saved {
+                true => {
+                    "is given together with a shape of kind \"sprite\": what is tested by a depth sprite ends at once"
+                }
+                false => {
+                    "is given together with sprite: what is tested by a depth sprite ends at once; leave out one of them"
+                }
+            };
             self.checker.note(&fields.place, "border", fields.line("border"), message);
         }
         Lens {
@@ -517,6 +496,37 @@ impl<'o> SceneReader<'o> {
         }
         Some(used)
     }
+}
+
+/// A camera, of `[camera]` or of a table with its keys.
+fn camera(checker: &mut Checker, fields: &Fields) -> Option<Camera> {
+    let (eye, target) = (fields.point("eye")?, fields.point("target")?);
+    let up = fields.point("up").unwrap_or(DVec3::Z);
+    let fov_y = fields.number("fov_deg").unwrap_or(DEFAULT_FOV_DEG).to_radians();
+    let distance = eye.distance(target);
+    let projection = if fields.text("projection") == Some("orthographic") {
+        let seen = 2.0 * distance * (0.5 * fov_y).tan();
+        Projection::Orthographic { height_m: fields.number("height_m").unwrap_or(seen) }
+    } else {
+        if fields.given("height_m") && !(fields.given("projection") && fields.text("projection").is_none()) {
+            let message = "has a meaning only with projection = \"orthographic\"";
+            checker.note(&fields.place, "height_m", fields.line("height_m"), message);
+        }
+        Projection::Perspective { fov_y }
+    };
+    let near_m = fields.number("near_m").unwrap_or_else(|| default_near_m(distance));
+    let camera = Camera { eye, target, up, projection, near_m };
+    if let Err(error) = camera.check() {
+        let key = match error {
+            CameraError::EyeIsTarget(..) => "target",
+            CameraError::FieldOfView(_) => "fov_deg",
+            CameraError::Height(_) => "height_m",
+            CameraError::Near(_) => "near_m",
+            CameraError::NotFinite(_) | CameraError::Size(..) => "eye",
+        };
+        checker.note(&fields.place, key, fields.line(key), error.to_string());
+    }
+    Some(camera)
 }
 
 fn class_of(word: &str) -> Option<Class> {

@@ -277,6 +277,16 @@ pub const SHAPES: &[Table] = &[
         ],
     },
     Table {
+        name: "sprite",
+        doc: "What a saved depth sprite holds (`veduta render --sprite`, [sprites.md](sprites.md)): what lies between entry and exit of \
+              the ray of each of its texels. It is tested in its own space, as a sprite with a `camera` is; `sprite` of the lens may give it other \
+              `near`, `far`, `format` and `mapping` than it was saved with. It has no soft border and is no part of combinations.",
+        keys: &[
+            shape_kind("\"sprite\""),
+            key("file", Kind::Text, "", "", "The file, OpenEXR, relative to the scene file.", "\"hall.exr\""),
+        ],
+    },
+    Table {
         name: "objects",
         doc: "The union of the volumes of city objects, as they are shown; open ones are closed.",
         keys: &[shape_kind("\"objects\""), IDS, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
@@ -300,4 +310,5 @@ pub const SHAPES: &[Table] = &[
 ];
 
 /// Shapes that are made from files, images, polygons or the city ([`crate::lens::Focus`]).
-pub const FOCUSES: &[&str] = &["mesh", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference"];
+pub const FOCUSES: &[&str] =
+    &["mesh", "sprite", "mask", "mask3d", "objects", "thematic", "union", "intersection", "difference"];

@@ -3,13 +3,14 @@
 use crate::{
     figure::scene_file::{
         check::{Checker, Fields},
-        keys::{FAR_M, Kind, Table, key},
-        write::{number, quoted},
+        keys::{CAMERA, FAR_M, Kind, Table, key},
+        write::{camera_keys, number, quoted},
     },
     lens::{
-        LensSprite,
+        LensSprite, OwnEye,
         sprite::{Format, LAYERS, MOST_LAYERS, Mapping},
     },
+    view::Camera,
 };
 
 /// `sprite` of a lens.
@@ -23,11 +24,21 @@ pub const SPRITE: Table = Table {
           (`veduta measure sprites`).",
     keys: &[
         key(
+            "camera",
+            Kind::Table(&SPRITE_CAMERA),
+            "the picture's eye",
+            "",
+            "An eye of its own that the sprite is made from, and kept between pictures. What is shown is looked for in the sprite's \
+             own space: `front`, `inside` and `behind` are then those of this eye, along its axis. What is behind this eye or out of \
+             its frame is in none of them: `rest`.",
+            "{ eye = [78500.0, 457800.0, 150.0], target = [78600.0, 458000.0, 10.0] }",
+        ),
+        key(
             "resolution",
             Kind::Integer { min: 16, max: 16_384 },
-            "the picture's",
+            "the picture's; with `camera` 512",
             "texels",
-            "Texels along the longer side of the picture.",
+            "Texels along the longer side of the picture, or of the frame of `camera`.",
             "512",
         ),
         key(
@@ -83,11 +94,50 @@ pub const SPRITE: Table = Table {
     ],
 };
 
-/// The sprite of a lens, if it has one.
-pub fn read(checker: &mut Checker, lens: &Fields) -> Option<LensSprite> {
+/// `camera` of the sprite of a lens.
+pub const SPRITE_CAMERA: Table = Table {
+    name: "camera",
+    doc: "The eye that a sprite is made from, with the keys of `[camera]`; it is in the coordinates of the lens' shapes, and moves \
+          with them.",
+    keys: &[
+        CAMERA.keys[0],
+        CAMERA.keys[1],
+        CAMERA.keys[2],
+        CAMERA.keys[3],
+        CAMERA.keys[4],
+        CAMERA.keys[5],
+        key(
+            "near_m",
+            Kind::Number { min: 1e-4, max: 1e6 },
+            "a 512th of the way to the target, 0.125 to 1",
+            "m",
+            "Where a lens begins nearer than this along the axis, this eye counts as inside of it.",
+            "0.5",
+        ),
+        key("aspect", Kind::Number { min: 0.01, max: 100.0 }, "1.0", "", "Width of the frame over its height.", "1.5"),
+    ],
+};
+
+/// The sprite of a lens, if it has one. `camera` reads the keys of a camera. A lens whose shapes are all of files (`is_saved`) has
+/// their eyes, texels and layers.
+pub fn read(
+    checker: &mut Checker,
+    lens: &Fields,
+    is_saved: bool,
+    camera: impl Fn(&mut Checker, &Fields) -> Option<Camera>,
+) -> Option<LensSprite> {
     let node = lens.node("sprite")?;
     let fields = checker.fields(node, &SPRITE, &[], lens.place.within("sprite", node.line));
+    let own = fields.node("camera").and_then(|node| {
+        let own = checker.fields(node, &SPRITE_CAMERA, &[], fields.place.within("camera", node.line));
+        Some(OwnEye { camera: camera(checker, &own)?, aspect: own.number("aspect").unwrap_or(1.0) })
+    });
+    for key in ["camera", "resolution", "layers"].into_iter().filter(|key| is_saved && fields.given(key)) {
+        let message = "has no meaning where all shapes are depth sprites of files, which have theirs";
+        checker.note(&fields.place, key, fields.line(key), message);
+    }
     let sprite = LensSprite {
+        own,
         resolution: fields.integer("resolution"),
         format: chosen(&Format::WORDS, fields.text("format")),
         mapping: chosen(&Mapping::WORDS, fields.text("mapping")),
@@ -113,6 +163,7 @@ fn chosen<T: Copy + Default>(words: &[(&str, T)], word: Option<&str>) -> T {
 pub fn written(sprite: &LensSprite) -> String {
     let word = |name: &str, word: &str, is_default: bool| (!is_default).then(|| format!("{name} = {}", quoted(word)));
     let keys = [
+        sprite.own.as_ref().map(own_written),
         sprite.resolution.map(|resolution| format!("resolution = {resolution}")),
         word("format", sprite.format.word(), sprite.format == Format::default()),
         word("mapping", sprite.mapping.word(), sprite.mapping == Mapping::default()),
@@ -123,4 +174,13 @@ pub fn written(sprite: &LensSprite) -> String {
     ];
     let keys: Vec<String> = keys.into_iter().flatten().collect();
     if keys.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", keys.join(", ")) }
+}
+
+fn own_written(own: &OwnEye) -> String {
+    let mut keys: Vec<String> =
+        camera_keys(&own.camera).into_iter().map(|(key, value)| format!("{key} = {value}")).collect();
+    if own.aspect != 1.0 {
+        keys.push(format!("aspect = {}", number(own.aspect)));
+    }
+    format!("camera = {{ {} }}", keys.join(", "))
 }

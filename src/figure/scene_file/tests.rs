@@ -6,7 +6,7 @@ use crate::{
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
         Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
-        Parameter, Placement,
+        OwnEye, Parameter, Placement,
         chosen::Choice,
         sprite::{Format, Mapping},
     },
@@ -150,7 +150,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"shpere\" }",
-            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, flat, mesh, mask, mask3d, objects, thematic, union, intersection, difference, is \"shpere\"; did you mean \"sphere\"?",
+            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, flat, mesh, mask, mask3d, sprite, objects, thematic, union, intersection, difference, is \"shpere\"; did you mean \"sphere\"?",
         ),
         ("shape = { kind = \"union\" }", "shape.shapes: is missing: The shapes, of any kind"),
         (
@@ -344,6 +344,15 @@ fn every_mistake_in_a_lens_is_named() {
         ("border = { width = -1 }", "border.width: must be a number 0 to 100000, is -1"),
         ("border = { width = 1, unit = \"cm\" }", "border.unit: must be \"m\" or \"px\", is \"cm\""),
         ("sprite = {}\nborder = { width = 1 }", "border: is given together with sprite"),
+        ("sprite = { camera = { eye = [0, 0, 1] } }", "sprite.camera.target: is missing: What it looks at"),
+        (
+            "sprite = { camera = { eye = [0, 0, 1], target = [0, 0, 1] } }",
+            "sprite.camera.target: eye and target are the same point",
+        ),
+        (
+            "sprite = { camera = { eye = [0, 0, 1], target = [0, 0, 2], aspect = 0 } }",
+            "sprite.camera.aspect: must be a number 0.01 to 100, is 0",
+        ),
         (
             "[[lens]]\nname = \"lens-0\"\nshape = { kind = \"sphere\", center = [1, 2, 3], radius = 60.0 }",
             "[lens.1] name: \"lens-0\" is the name of lens.0 already",
@@ -512,6 +521,7 @@ fn plain_focuses() -> impl Strategy<Value = Focus> {
             corner,
             size: size.into()
         }),
+        1 => Just(Focus::Sprite { file: "s.exr".into() }),
         1 => choices().prop_map(Focus::Objects),
         1 => choices().prop_map(Focus::Thematic),
     ]
@@ -576,9 +586,14 @@ prop_compose! {
 prop_compose! {
     fn sprites()(resolution in prop::option::of(16..16_384u32), format in 0..5usize, mapping in 0..4usize,
         near_m in prop::option::of(1e-3..10.0f64), far_m in prop::option::of(11.0..1e4f64), layers in 1..17u32,
-        aggregate in any::<bool>()) -> LensSprite {
+        aggregate in any::<bool>(), own in prop::option::of((point(), point(), 1..1790u32, any::<bool>(), 0.01..100.0f64))) -> LensSprite {
         let (format, mapping) = (Format::WORDS[format].1, Mapping::WORDS[mapping].1);
-        LensSprite { resolution, format, mapping, near_m, far_m, layers, aggregate }
+        let own = own.map(|(eye, target, tenths, is_flat, aspect)| {
+            let fov_y = (f64::from(tenths) / 10.0).to_radians();
+            let projection = if is_flat { Projection::Orthographic { height_m: f64::from(tenths) } } else { Projection::Perspective { fov_y } };
+            OwnEye { camera: Camera { projection, ..Camera::looking(eye, target, fov_y) }, aspect }
+        });
+        LensSprite { own, resolution, format, mapping, near_m, far_m, layers, aggregate }
     }
 }
 
@@ -586,7 +601,9 @@ prop_compose! {
     fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>()) -> Lens {
-        let (sprite, border) = ends;
+        // A soft border needs shapes that have a distance; what shapes of files have, `sprite` does not give.
+        let is_saved = |s: &Focus| matches!(s, Focus::Sprite { .. });
+        let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
         let body = LensBody::WORDS[body].1;
         let kind = if content.is_some() && is_content { LensKind::Content } else { LensKind::Color };
         Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, content, body, sprite, border }

@@ -74,18 +74,7 @@ impl Toml {
 
     fn camera(&mut self, camera: &Camera) {
         self.head("[camera]");
-        self.key("eye", &point(camera.eye));
-        self.key("target", &point(camera.target));
-        self.key_if(camera.up != DVec3::Z, "up", &point(camera.up));
-        match camera.projection {
-            Projection::Perspective { fov_y } => self.key("fov_deg", &number(degrees(fov_y))),
-            Projection::Orthographic { height_m } => {
-                self.key("projection", "\"orthographic\"");
-                self.key("height_m", &number(height_m));
-            }
-        }
-        let default = default_near_m(camera.eye.distance(camera.target));
-        self.key_if(camera.near_m != default, "near_m", &number(camera.near_m));
+        camera_keys(camera).iter().for_each(|(key, value)| self.key(key, value));
     }
 
     fn sun(&mut self, sun: &Sun) {
@@ -152,6 +141,25 @@ impl Toml {
             self.key("border", &format!("{{ width = {}{unit}{discrete} }}", number(border.width)));
         }
     }
+}
+
+/// The keys of a camera.
+pub(super) fn camera_keys(camera: &Camera) -> Vec<(&'static str, String)> {
+    let mut keys = vec![("eye", point(camera.eye)), ("target", point(camera.target))];
+    if camera.up != DVec3::Z {
+        keys.push(("up", point(camera.up)));
+    }
+    match camera.projection {
+        Projection::Perspective { fov_y } => keys.push(("fov_deg", number(degrees(fov_y)))),
+        Projection::Orthographic { height_m } => {
+            keys.push(("projection", quoted("orthographic")));
+            keys.push(("height_m", number(height_m)));
+        }
+    }
+    if camera.near_m != default_near_m(camera.eye.distance(camera.target)) {
+        keys.push(("near_m", number(camera.near_m)));
+    }
+    keys
 }
 
 pub(super) fn list(items: impl IntoIterator<Item = String>) -> String {
