@@ -216,7 +216,8 @@ impl Renderer {
         self.upload(input, sun_view.as_ref(), (seen, &making), &plans, &cuts, is_uber)?;
         let narrows = self.narrows_lists && is_uber && plans.is_long();
         if narrows {
-            self.prepare_narrowing(&plans.invokers().reaches(&plans.rooms))?;
+            let [across, down] = input.tile.size.map(|side| side.div_ceil(TILE_PX));
+            self.prepare_narrowing(&plans.invokers().reaches(&plans.rooms), across * down)?;
         }
         if self.binds_narrowed != narrows {
             self.binds_narrowed = narrows;

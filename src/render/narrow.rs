@@ -12,15 +12,23 @@ use crate::{
     shader::Module,
 };
 
+/// Of the box around what a tile shows: two `vec3f`.
+const BOX_BYTES: u64 = 32;
+/// Tiles that a workgroup of `narrow` goes through.
+const TILES_PER_GROUP: u32 = 8;
+
 /// Made when a picture first has many lenses.
 #[derive(Debug)]
 pub(super) struct Narrowing {
-    pipeline: wgpu::ComputePipeline,
+    /// Boxes around what tiles show, and what is left of their lists.
+    pipelines: [wgpu::ComputePipeline; 2],
     layout: wgpu::BindGroupLayout,
     view: wgpu::BindGroupLayout,
     reaches: Synced,
     /// The narrowed lists.
     pub lists: wgpu::Buffer,
+    /// The boxes.
+    shown: wgpu::Buffer,
 }
 
 impl Narrowing {
@@ -43,37 +51,50 @@ impl Narrowing {
         };
         let view = layout("view of tiles", &[entry(0, buffer(T::Uniform))]);
         let read = || buffer(T::Storage { read_only: true });
-        let own =
-            [entry(0, depth), entry(1, read()), entry(2, read()), entry(3, buffer(T::Storage { read_only: false }))];
+        let written = || buffer(T::Storage { read_only: false });
+        let own = [entry(0, depth), entry(1, read()), entry(2, read()), entry(3, written()), entry(4, written())];
         let own = layout("lists of tiles", &own);
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("narrow"),
             source: wgpu::ShaderSource::Wgsl(Module::Narrow.source().into()),
         });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("narrow"),
-            layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("narrow"),
-                bind_group_layouts: &[Some(&view), Some(&own)],
-                immediate_size: 0,
-            })),
-            module: &module,
-            entry_point: Some("narrow"),
-            compilation_options: Default::default(),
-            cache: None,
+            bind_group_layouts: &[Some(&view), Some(&own)],
+            immediate_size: 0,
+        });
+        let pipelines = ["measure", "narrow"].map(|entry_point| {
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry_point),
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some(entry_point),
+                compilation_options: Default::default(),
+                cache: None,
+            })
         });
         let usage = wgpu::BufferUsages::STORAGE;
-        let lists = gpu.empty_buffer("narrowed invokers of tiles", usage, 256)?;
-        Ok(Self { pipeline, layout: own, view, reaches: Synced::new(gpu, "reaches of invokers", usage)?, lists })
+        Ok(Self {
+            pipelines,
+            layout: own,
+            view,
+            reaches: Synced::new(gpu, "reaches of invokers", usage)?,
+            lists: gpu.empty_buffer("narrowed invokers of tiles", usage, 256)?,
+            shown: gpu.empty_buffer("what tiles show", usage, 256)?,
+        })
     }
 
-    /// Makes room; `true` if the lists were replaced by larger ones.
-    fn sync(&mut self, gpu: &Gpu, reaches: &[layout::Reach], bytes: u64) -> Result<bool, GpuError> {
+    /// Makes room for lists of so many bytes, and so many tiles; `true` if the lists were replaced by larger ones.
+    fn sync(&mut self, gpu: &Gpu, reaches: &[layout::Reach], bytes: u64, tiles: u32) -> Result<bool, GpuError> {
         self.reaches.sync(gpu, reaches)?;
+        let usage = wgpu::BufferUsages::STORAGE;
+        let boxes = u64::from(tiles) * BOX_BYTES;
+        if self.shown.size() < boxes {
+            self.shown = gpu.empty_buffer("what tiles show", usage, boxes.next_power_of_two())?;
+        }
         let is_small = self.lists.size() < bytes;
         if is_small {
-            let usage = wgpu::BufferUsages::STORAGE;
             self.lists = gpu.empty_buffer("narrowed invokers of tiles", usage, bytes.next_power_of_two())?;
         }
         Ok(is_small)
@@ -82,7 +103,7 @@ impl Narrowing {
 
 impl Renderer {
     /// Makes what narrows lists ready for these, each invoker with where it may act.
-    pub(super) fn prepare_narrowing(&mut self, reaches: &[layout::Reach]) -> Result<(), GpuError> {
+    pub(super) fn prepare_narrowing(&mut self, reaches: &[layout::Reach], tiles: u32) -> Result<(), GpuError> {
         let is_new = self.narrowing.is_none();
         if is_new {
             self.narrowing = Some(Narrowing::new(&self.gpu)?);
@@ -91,7 +112,7 @@ impl Renderer {
         self.pipelines.narrowing = Some(is_new || self.pipelines.narrowing == Some(true));
         let bytes = self.buffers.tile_lists.buffer().size();
         if let Some(narrowing) = &mut self.narrowing
-            && narrowing.sync(&self.gpu, reaches, bytes)?
+            && narrowing.sync(&self.gpu, reaches, bytes, tiles)?
         {
             self.groups = None;
         }
@@ -108,6 +129,7 @@ impl Renderer {
             (1, whole(self.buffers.tile_lists.buffer())),
             (2, whole(narrowing.reaches.buffer())),
             (3, whole(&narrowing.lists)),
+            (4, whole(&narrowing.shown)),
         ];
         let lists = group(&self.gpu, "lists of tiles", &narrowing.layout, &lists);
         let slot = recorder.begin("narrow lists", "main", &[], false);
@@ -115,11 +137,14 @@ impl Renderer {
             label: Some("narrow lists"),
             timestamp_writes: recorder.timer.as_ref().and_then(|t| t.compute_writes(slot)),
         });
-        pass.set_pipeline(&narrowing.pipeline);
         pass.set_bind_group(0, &view, &[]);
         pass.set_bind_group(1, &lists, &[]);
-        pass.dispatch_workgroups(tiles[0], tiles[1], 1);
+        let groups = [tiles, [(tiles[0] * tiles[1]).div_ceil(TILES_PER_GROUP), 1]];
+        for (pipeline, [across, down]) in narrowing.pipelines.iter().zip(groups) {
+            pass.set_pipeline(pipeline);
+            pass.dispatch_workgroups(across, down, 1);
+        }
         drop(pass);
-        recorder.count(1, 0);
+        recorder.count(2, 0);
     }
 }
