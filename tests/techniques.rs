@@ -417,3 +417,15 @@ fn the_line_that_refuses_names_the_file_and_the_key() {
     );
     assert!(said.lines().any(|l| l.ends_with(&line)), "{said}");
 }
+
+#[test]
+fn their_second_frame_compiles_and_allocates_nothing() {
+    let mut studio = synthetic(40);
+    let lenses = meeting();
+    for technique in [Technique::Accumulate, Technique::Branches, Technique::Regions] {
+        let scene = by(technique, &scene(cameras()[0], lenses.clone()));
+        draw(&mut studio, &scene, 1, false);
+        let again = draw(&mut studio, &scene, 1, false).statistics;
+        assert_eq!((again.pipelines.compiled, again.frame.allocations), (0, 0), "{technique:?}");
+    }
+}

@@ -40,7 +40,8 @@ fn tiles() -> vec2u {
     return (textureDimensions(scene_depth) + TILE_PX - 1u) / TILE_PX;
 }
 
-@compute @workgroup_size(8, 8)
+// Few invocations with many pixels each: what they join by atomics is done one after the other.
+@compute @workgroup_size(8, 2)
 fn measure(@builtin(workgroup_id) tile: vec3u, @builtin(local_invocation_id) at: vec3u,
            @builtin(local_invocation_index) lane: u32) {
     let size = textureDimensions(scene_depth);
@@ -51,8 +52,8 @@ fn measure(@builtin(workgroup_id) tile: vec3u, @builtin(local_invocation_id) at:
     workgroupBarrier();
     var low = vec3f(FAR_AWAY);
     var high = vec3f(-FAR_AWAY);
-    for (var i = 0u; i < 16u; i++) {
-        let pixel = tile.xy * TILE_PX + at.xy * 4u + vec2u(i % 4u, i / 4u);
+    for (var i = 0u; i < 64u; i++) {
+        let pixel = tile.xy * TILE_PX + at.xy * vec2u(4u, 16u) + vec2u(i % 4u, i / 4u);
         if all(pixel < size) {
             let depth = textureLoad(scene_depth, pixel, 0);
             if depth > 0.0 {
