@@ -26,7 +26,6 @@ use glam::DVec2;
 use crate::{
     geom::Aabb,
     gpu::{GpuError, Slot, Timer},
-    lens::Lens,
     render::{
         city::{CityBuffers, Section, SectionKind, draws_of},
         city_passes::{draw_ranges, geometry_key},
@@ -51,7 +50,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun, Technique},
-    shader::{MOST_SLOTS, MOST_VOLUMES, Module, Plan, Program, TILE_PX, Uber, VolumeTest, handlers},
+    shader::{MOST_SLOTS, MOST_VOLUMES, Plan, Program, TILE_PX, VolumeTest, handlers},
     view::{Frustum, View},
 };
 
@@ -311,54 +310,8 @@ impl Renderer {
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    /// The text of a module as it runs where the lenses are in the picture; without lenses in view everywhere.
-    pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
-        let seen = seen_volumes(input, &self.drawn_box(), (0, 0)).volumes;
-        let plans = Plans::new(input, &seen);
-        let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
-        let is_written_out = input.backend == Backend::Specialised && !plans.is_long();
-        let (plan, operations) = (if seen.is_empty() { plans.context } else { plans.lenses }, input.operations);
-        let shade = match is_written_out {
-            true => Program::Specialised(plan),
-            false => Program::Uber(operations.uber(plan.haze, plan.masks)),
-        };
-        let of = |plan: Option<Plan>, uber: Option<Uber>| match is_written_out {
-            true => plan.map(Program::Specialised),
-            false => uber.map(Program::Uber),
-        };
-        if let Some(regions) = &plans.regions {
-            // Of the last region, which most lenses have a part in.
-            let last = regions.passes.last().map_or_else(Plan::default, |pass| pass.shade.clone());
-            let module = match part {
-                ShaderPart::Shade => Some(Module::Shade(Program::Specialised(last))),
-                ShaderPart::Geometry => Some(Module::Geometry(Some(Program::Specialised(regions.plan.clone())))),
-                _ => None,
-            };
-            if let Some(module) = module {
-                let room = self.gpu.device.limits().max_inter_stage_shader_variables;
-                return module.source_for_people(handlers(), &names, room);
-            }
-        }
-        let [picture, sun] = operations.uber_hiding();
-        let by_shapes = |mut plan: Plan| {
-            let shapes = seen.iter().map(|v| input.volumes[v.index].test_from_sun());
-            plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).zip(shapes).for_each(|(test, shape)| *test = shape);
-            plan.without_borders()
-        };
-        let module = match part {
-            ShaderPart::Shade => Module::Shade(shade),
-            ShaderPart::Geometry => Module::Geometry(of(plans.hiding, picture)),
-            ShaderPart::Shadow => Module::Shadow(of(plans.hiding.map(by_shapes), sun)),
-            ShaderPart::Lines => match of(plans.lining, operations.uber_lining()) {
-                Some(program) => Module::Lines(program),
-                None => return "// Nothing draws lines.\n".to_owned(),
-            },
-        };
-        module.source_for_people(handlers(), &names, self.gpu.device.limits().max_inter_stage_shader_variables)
-    }
-
     /// The box around all cities on the card.
-    fn drawn_box(&self) -> Aabb {
+    pub(super) fn drawn_box(&self) -> Aabb {
         self.cities().fold(Aabb::EMPTY, |all, c| all.union(c.buffers.bounds))
     }
 

@@ -25,6 +25,7 @@ pub mod layout;
 mod lens_volumes;
 pub mod light;
 mod lines;
+mod module_text;
 mod narrow;
 mod occurring;
 pub mod octagon;
