@@ -122,6 +122,14 @@ struct Expected<'a> {
     is_aggregate: bool,
 }
 
+impl<'a> Expected<'a> {
+    /// Of a lens of these shapes, whose stored depths are off by `code` at a distance.
+    fn of(own: View, lens: &[Focus], code: &'a dyn Fn(f64) -> f64) -> Self {
+        let references = lens.iter().map(Reference::of).collect();
+        Self { own, space: SpriteSpace::of(&own), references, code, is_aggregate: false }
+    }
+}
+
 /// The class of a shown place, and of the places that rounding and the steps of the format may take it for.
 fn allowed(expected: &Expected, place: DVec3) -> Vec<Class> {
     let Some(at) = expected.space.texel(place) else { return vec![Class::Rest] };
@@ -201,13 +209,7 @@ fn own_projections_are_those_of_f64() {
                     let code = texels.code;
                     let step = |d: f64| code.quantum_m(d.clamp(code.near_m, code.far_m.min(1e4)));
                     let own = view(own.camera, size);
-                    let expected = Expected {
-                        own,
-                        space: SpriteSpace::of(&own),
-                        references: of_lens.iter().map(Reference::of).collect(),
-                        code: &step,
-                        is_aggregate,
-                    };
+                    let expected = Expected { is_aggregate, ..Expected::of(own, &of_lens, &step) };
                     let (counts, unsure) = compare(&name, &picture, camera, &expected);
                     if sprite.format != Format::Unorm8 {
                         assert!(unsure < 3_000, "{name}: {unsure} are not told");
@@ -282,13 +284,7 @@ fn what_is_saved_is_the_same_lens_again() {
                     let other = Camera::looking(at + DVec3::new(-80.0, -70.0, 50.0), at, 0.8);
                     let seen = own.map_or(view(camera, SIZE), |own| view(own.camera, own.size(RESOLUTION)));
                     let step = |d: f64| code.quantum_m(d.clamp(code.near_m, code.far_m.min(1e4)));
-                    let expected = Expected {
-                        own: seen,
-                        space: SpriteSpace::of(&seen),
-                        references: of_lens.iter().map(Reference::of).collect(),
-                        code: &step,
-                        is_aggregate: false,
-                    };
+                    let expected = Expected::of(seen, &of_lens, &step);
                     let (counts, _) = compare(&name, &drawn(&mut studio, &with(other)), other, &expected);
                     add(&mut all, counts);
                 }
@@ -321,13 +317,7 @@ fn other_clip_settings_are_as_good_as_their_steps() {
                     assert_eq!((code.format, code.mapping), (format, mapping));
                     assert!(near_m.is_none_or(|near| near == code.near_m), "{code:?}");
                     let step = |d: f64| code.quantum_m(d.clamp(code.near_m, code.far_m.min(1e4))) + 1e-3;
-                    let expected = Expected {
-                        own: seen,
-                        space: SpriteSpace::of(&seen),
-                        references: of_lens.iter().map(Reference::of).collect(),
-                        code: &step,
-                        is_aggregate: false,
-                    };
+                    let expected = Expected::of(seen, &of_lens, &step);
                     let (counts, _) = compare(&name, &picture, camera, &expected);
                     assert!(counts[0] > 100 && counts[3] > 1_000, "{name}: {counts:?}");
                 }
@@ -368,13 +358,7 @@ fn coordinates_may_be_those_of_a_country() {
     let code = save(&mut studio, &first, &saved_file);
     let seen = view(own.camera, own.size(RESOLUTION));
     let step = |d: f64| code.quantum_m(d.max(code.near_m));
-    let expected = Expected {
-        own: seen,
-        space: SpriteSpace::of(&seen),
-        references: of_lens.iter().map(Reference::of).collect(),
-        code: &step,
-        is_aggregate: false,
-    };
+    let expected = Expected::of(seen, &of_lens, &step);
     let again = scene(camera, vec![painting(&saved(&saved_file), None)]);
     for scene in [first, again] {
         let (counts, _) = compare("far away", &drawn(&mut studio, &scene), camera, &expected);
@@ -407,13 +391,7 @@ fn sprites_move_with_what_their_lens_is_attached_to() {
         for moved in [DVec3::ZERO, DVec3::new(14.0, -9.0, 3.0)] {
             let own = own_eyes(at + moved)[0];
             let seen = view(own.camera, own.size(RESOLUTION));
-            let expected = Expected {
-                own: seen,
-                space: SpriteSpace::of(&seen),
-                references: shapes(at + moved)[0].iter().map(Reference::of).collect(),
-                code: &|_| 1e-3,
-                is_aggregate: false,
-            };
+            let expected = Expected::of(seen, &shapes(at + moved)[0], &|_| 1e-3);
             let picture = drawn(&mut studio, &attached(lens.clone(), by + moved));
             compare("attached", &picture, camera, &expected);
         }

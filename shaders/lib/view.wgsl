@@ -26,11 +26,10 @@ fn relative_to_eye(whole: vec3i, offset: vec3f) -> vec3f {
 fn clip_from_relative(relative: vec3f) -> vec4f {
     let p = view.view_from_world * relative;
     let distance = -p.z;
-    if view.orthographic == 1u {
-        return vec4f(p.xy * view.projection.xy + view.projection.zw,
-                     (view.far - distance) / (view.far - view.near), 1.0);
-    }
-    return vec4f(p.xy * view.projection.xy + view.projection.zw * distance, view.near, distance);
+    let is_flat = view.orthographic == 1u;
+    let w = select(distance, 1.0, is_flat);
+    let z = select(view.near, (view.far - distance) / (view.far - view.near), is_flat);
+    return vec4f(p.xy * view.projection.xy + view.projection.zw * w, z, w);
 }
 
 // "For ever": beyond any city, far below f32's overflow.

@@ -143,16 +143,14 @@ struct Plane {
 // The depth of a plane is affine in the picture: its slope in x and y, and its value at pixel (0, 0).
 // `room`: distance of the plane from the eye along its normal. Not finite where the eye is in the plane.
 fn plane_in_picture(normal: vec3f, room: f32) -> vec3f {
-    var across: vec2f;              // depth per unit of the picture plane at distance 1 (orthographic: per metre)
-    var middle: f32;                // depth on the view axis
-    if view.orthographic == 1u {
-        let step = 1.0 / (normal.z * (view.far - view.near));
-        across = -step * normal.xy;
-        middle = view.far / (view.far - view.near) + step * room;
-    } else {
-        across = view.near / room * normal.xy;
-        middle = -view.near / room * normal.z;
-    }
+    // Both are computed: Mesa's software driver compiles a vertex shader that branches on a uniform anew for every pass that
+    // binds one.
+    let is_flat = view.orthographic == 1u;
+    let step = 1.0 / (normal.z * (view.far - view.near));
+    let slope = view.near / room;
+    // Depth per unit of the picture plane at distance 1 (orthographic: per metre), and on the view axis.
+    let across = select(slope, -step, is_flat) * normal.xy;
+    let middle = select(-slope * normal.z, view.far / (view.far - view.near) + step * room, is_flat);
     let per_ndc = across / view.projection.xy;
     let per_pixel = per_ndc * vec2f(2.0, -2.0) / view.size;
     return vec3f(per_pixel, middle + dot(per_ndc, vec2f(-1.0, 1.0) - view.projection.zw));

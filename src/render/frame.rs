@@ -627,19 +627,36 @@ impl Renderer {
         keys: &ShadeKeys,
     ) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
-        let slot = recorder.begin("shade", "main", &[], true);
         let target = if input.samples > 1 { &targets.sums } else { &targets.picture };
         let load = if input.sample == 0 { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load };
         let mut attachment = color_attachment(&target.view, wgpu::Color::TRANSPARENT);
         attachment.ops.load = load;
+        let depth = read_depth(&targets.depth.view);
+        self.picture_pass(encoder, recorder, ("shade", Some(attachment), depth), |pass| {
+            pass.set_bind_group(3, &groups.lines, &[]);
+            let mut counted = (0, 0);
+            for (part, keys, pieces) in [(0, &keys.context, outside), (1, &keys.lenses, inside)] {
+                keys.iter().for_each(|key| self.draw_pieces(pass, key, part, &pieces, &mut counted));
+            }
+            counted
+        });
+    }
+
+    /// A pass that reads what the geometry left, over parts of the picture; `draw` returns its draws and triangles.
+    pub(super) fn picture_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        recorder: &mut Recorder,
+        (name, target, depth): PictureTarget<'_>,
+        draw: impl FnOnce(&mut wgpu::RenderPass) -> (u32, u64),
+    ) {
+        let Some(groups) = &self.groups else { return };
+        let slot = recorder.begin(name, "main", &[], true);
+        let color = [target];
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("shade"),
-            color_attachments: &[Some(attachment)],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &targets.depth.view,
-                depth_ops: None, // only read
-                stencil_ops: None,
-            }),
+            label: Some(name),
+            color_attachments: if color[0].is_some() { &color } else { &[] },
+            depth_stencil_attachment: Some(depth),
             timestamp_writes: recorder.timer.as_ref().and_then(|t| t.render_writes(slot)),
             ..Default::default()
         });
@@ -649,26 +666,33 @@ impl Renderer {
         pass.set_bind_group(0, &groups.view, &[]);
         pass.set_bind_group(1, &groups.shade, &[]);
         pass.set_bind_group(2, &groups.lenses, &[]);
-        pass.set_bind_group(3, &groups.lines, &[]);
         pass.set_vertex_buffer(0, self.buffers.mesh.buffer().slice(..));
-        let (mut drawn, mut triangles) = (0, 0);
-        for (part, keys, pieces) in [(0, &keys.context, outside), (1, &keys.lenses, inside)] {
-            let drawn_pieces = || pieces.iter().filter(|(corners, tile)| !corners.is_empty() && !tile.is_empty());
-            for key in keys.iter().filter(|_| drawn_pieces().next().is_some()) {
-                pass.set_pipeline(self.pipelines.get(key));
-                for (corners, tile) in drawn_pieces() {
-                    scissor(&mut pass, *tile);
-                    pass.draw(corners.clone(), part..part + 1);
-                    drawn += 1;
-                    triangles += corners.len() as u64 / 3;
-                }
-            }
-        }
+        let (drawn, triangles) = draw(&mut pass);
         if let Some(timer) = &recorder.timer {
             timer.end_count(&mut pass, slot);
         }
         drop(pass);
         recorder.count(drawn, triangles);
+    }
+
+    /// Draws pieces of the picture, of the context (part 0) or of the lenses (part 1); adds draws and triangles to `counted`.
+    pub(super) fn draw_pieces(
+        &self,
+        pass: &mut wgpu::RenderPass,
+        key: &Key,
+        part: u32,
+        pieces: &[(Range<u32>, PictureTile)],
+        counted: &mut (u32, u64),
+    ) {
+        let mut drawn = pieces.iter().filter(|(corners, tile)| !corners.is_empty() && !tile.is_empty()).peekable();
+        if drawn.peek().is_some() {
+            pass.set_pipeline(self.pipelines.get(key));
+        }
+        for (corners, tile) in drawn {
+            scissor(pass, *tile);
+            pass.draw(corners.clone(), part..part + 1);
+            *counted = (counted.0 + 1, counted.1 + corners.len() as u64 / 3);
+        }
     }
 
     fn resolve_pass(&self, encoder: &mut wgpu::CommandEncoder, recorder: &mut Recorder) {
@@ -686,6 +710,10 @@ impl Renderer {
         recorder.count(1, 1);
     }
 }
+
+/// Name of a pass over the picture, its colour if it has one, and its depth.
+pub(super) type PictureTarget<'a> =
+    (&'static str, Option<wgpu::RenderPassColorAttachment<'a>>, wgpu::RenderPassDepthStencilAttachment<'a>);
 
 /// The pipelines of the shade pass: outside the lenses' bounds, and inside; each for surfaces and for the background.
 #[derive(Clone, Debug, Default)]
@@ -773,6 +801,11 @@ pub(super) fn color_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> 
         resolve_target: None,
         ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
     }
+}
+
+/// A depth that chooses and is not written.
+pub(super) fn read_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: None, stencil_ops: None }
 }
 
 pub(super) fn depth_attachment(view: &wgpu::TextureView, clear: f32) -> wgpu::RenderPassDepthStencilAttachment<'_> {

@@ -25,7 +25,7 @@ use crate::{
         city_passes::{draw_ranges, geometry_key},
         contents::DrawnSection,
         eye::PictureTile,
-        frame::{FrameInput, Recorder, color_attachment, depth_attachment, scissor},
+        frame::{FrameInput, Recorder, color_attachment, depth_attachment, read_depth},
         hiding::{Reach, reaches_of},
         key::{Key, ShadeTarget, Shown},
         occurring::{combinations, may_meet},
@@ -243,6 +243,8 @@ impl RegionsOnGpu {
 
 /// Parts of the mesh, each with the rectangle that cuts it.
 type Pieces = [(Range<u32>, PictureTile)];
+/// The part of shading that is the lenses', as [`Renderer::draw_pieces`] numbers it.
+const LENSES: u32 = 1;
 
 impl Renderer {
     /// Makes room for the regions of a frame.
@@ -386,9 +388,10 @@ impl Renderer {
             return;
         }
         let attachment = color_attachment(&targets.picture.view, wgpu::Color::TRANSPARENT);
-        self.paint(encoder, recorder, ("classes", attachment, &targets.depth.view), |pass| {
+        let depth = read_depth(&targets.depth.view);
+        self.picture_pass(encoder, recorder, ("classes", Some(attachment), depth), |pass| {
             let mut counted = (0, 0);
-            keys.classes.iter().for_each(|key| self.draw_pieces(pass, key, pieces, &mut counted));
+            keys.classes.iter().for_each(|key| self.draw_pieces(pass, key, LENSES, pieces, &mut counted));
             counted
         });
     }
@@ -402,39 +405,23 @@ impl Renderer {
         pieces: &Pieces,
         (regions, keys): (&RegionPasses, &RegionKeys),
     ) {
-        let (Some(targets), Some(groups), Some(own)) = (&self.targets, &self.groups, &self.regions) else { return };
+        let (Some(targets), Some(own)) = (&self.targets, &self.regions) else { return };
         let Some(marks) = &keys.marks else { return };
         let depth = own.depth.create_view(&Default::default());
         let map = wgpu::BindingResource::TextureView(&own.map.create_view(&Default::default()));
         let numbers = group(&self.gpu, "regions", &self.pipelines.layouts.regions, &[(0, map)]);
-        let slot = recorder.begin("regions", "main", &[], true);
-        let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("regions"),
-            depth_stencil_attachment: Some(depth_attachment(&depth, 0.0)),
-            timestamp_writes: writes,
-            ..Default::default()
+        let written = depth_attachment(&depth, 0.0);
+        self.picture_pass(encoder, recorder, ("regions", None, written), |pass| {
+            pass.set_bind_group(3, &numbers, &[]);
+            let mut counted = (0, 0);
+            self.draw_pieces(pass, marks, LENSES, pieces, &mut counted);
+            counted
         });
-        if let Some(timer) = &recorder.timer {
-            timer.begin_count(&mut pass, slot);
-        }
-        pass.set_bind_group(0, &groups.view, &[]);
-        pass.set_bind_group(1, &groups.shade, &[]);
-        pass.set_bind_group(2, &groups.lenses, &[]);
-        pass.set_bind_group(3, &numbers, &[]);
-        pass.set_vertex_buffer(0, self.buffers.mesh.buffer().slice(..));
-        let mut counted = (0, 0);
-        self.draw_pieces(&mut pass, marks, pieces, &mut counted);
-        if let Some(timer) = &recorder.timer {
-            timer.end_count(&mut pass, slot);
-        }
-        drop(pass);
-        recorder.count(counted.0, counted.1);
         let target = if input.samples > 1 { &targets.sums } else { &targets.picture };
         let mut attachment = color_attachment(&target.view, wgpu::Color::TRANSPARENT);
         attachment.ops.load = wgpu::LoadOp::Load;
         let [w, h] = input.tile.size.map(|side| side as f32);
-        self.paint(encoder, recorder, ("shade regions", attachment, &depth), |pass| {
+        self.picture_pass(encoder, recorder, ("shade regions", Some(attachment), read_depth(&depth)), |pass| {
             let mut counted = (0, 0);
             for (region, keys) in regions.passes.iter().zip(&keys.shade) {
                 let own = pieces.iter().map(|(corners, tile)| (corners.clone(), common(*tile, region.part)));
@@ -443,58 +430,11 @@ impl Renderer {
                     // The triangles lie at depth 0; the depth test finds what lies at the region's.
                     let depth = (first + region.number + 1) as f32 / STEPS;
                     pass.set_viewport(0.0, 0.0, w, h, depth, depth);
-                    self.draw_pieces(pass, key, &own, &mut counted);
+                    self.draw_pieces(pass, key, LENSES, &own, &mut counted);
                 }
             }
             counted
         });
-    }
-
-    /// A pass that shades, chosen by a depth that it only reads; `draw` returns its draws and triangles.
-    fn paint(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        recorder: &mut Recorder,
-        (name, target, depth): (&'static str, wgpu::RenderPassColorAttachment, &wgpu::TextureView),
-        draw: impl FnOnce(&mut wgpu::RenderPass) -> (u32, u64),
-    ) {
-        let Some(groups) = &self.groups else { return };
-        let slot = recorder.begin(name, "main", &[], true);
-        let writes = recorder.timer.as_ref().and_then(|t| t.render_writes(slot));
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(name),
-            color_attachments: &[Some(target)],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: depth,
-                depth_ops: None, // only read
-                stencil_ops: None,
-            }),
-            timestamp_writes: writes,
-            ..Default::default()
-        });
-        if let Some(timer) = &recorder.timer {
-            timer.begin_count(&mut pass, slot);
-        }
-        pass.set_bind_group(0, &groups.view, &[]);
-        pass.set_bind_group(1, &groups.shade, &[]);
-        pass.set_bind_group(2, &groups.lenses, &[]);
-        pass.set_vertex_buffer(0, self.buffers.mesh.buffer().slice(..));
-        let counted = draw(&mut pass);
-        if let Some(timer) = &recorder.timer {
-            timer.end_count(&mut pass, slot);
-        }
-        drop(pass);
-        recorder.count(counted.0, counted.1);
-    }
-
-    /// Draws parts of the picture, those of the lenses; adds draws and triangles to `counted`.
-    fn draw_pieces(&self, pass: &mut wgpu::RenderPass, key: &Key, pieces: &Pieces, counted: &mut (u32, u64)) {
-        pass.set_pipeline(self.pipelines.get(key));
-        for (corners, tile) in pieces.iter().filter(|(corners, tile)| !corners.is_empty() && !tile.is_empty()) {
-            scissor(pass, *tile);
-            pass.draw(corners.clone(), 1..2);
-            *counted = (counted.0 + 1, counted.1 + corners.len() as u64 / 3);
-        }
     }
 }
 
