@@ -2,5 +2,5 @@
 
 fn covers_members(s: Shape, pixel: vec2i) -> bool {
     let code = textureLoad(codes, pixel, 0).x;
-    return code != 0u && is_chosen(u32(s.size_x), surface_at(code - 1u).object);
+    return code != 0u && is_chosen(u32(s.size_x), surface_shown(code - 1u).object);
 }

@@ -3,6 +3,7 @@
 override SMOOTH: bool = false;      // whether normals are in the target, not with the surfaces
 override TEXTURED: bool = false;    // whether base colours are in a target of their own
 override CLAY: bool = false;        // one colour for everything
+override SECTIONS: bool = false;    // whether some of what is shown are sections; their colours are in the target
 
 // The shown surface at a pixel; `surface` is NO_SURFACE where there is none (D infinite).
 struct Point {
@@ -28,7 +29,23 @@ const NO_SURFACE: u32 = 0xffffffffu;
 @group(1) @binding(7) var scene_depth: texture_depth_2d;
 @group(1) @binding(8) var colors: texture_2d<f32>;
 
+fn is_section(number: u32) -> bool {
+    return SECTIONS && (number & SECTION) != 0u;
+}
+
+// The surface of a number in the geometry target.
+fn surface_shown(number: u32) -> Surface {
+    if is_section(number) {
+        let object = number & SECTION_OBJECT;
+        return Surface(select(object, NO_OBJECT, object == SECTION_OBJECT), 0u, vec3f(0.0), 0u);
+    }
+    return surface_at(number);
+}
+
 fn base_color(point: Point, pixel: vec2i) -> vec3f {
+    if is_section(point.surface) {
+        return textureLoad(colors, pixel, 0).rgb;
+    }
     if CLAY {
         return vec3f(0.62, 0.585, 0.54);
     }
@@ -46,15 +63,18 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
     point.distance = distance_of_depth(depth);
     point.relative = (ray.origin + point.distance * ray.direction) * view.view_from_world;
     point.surface = code.x - 1u;
-    let surface = surface_at(point.surface);
+    let surface = surface_shown(point.surface);
     point.normal = decode_normal(select(surface.normal, code.y, SMOOTH));
     if dot(point.normal, ray.direction * view.view_from_world) > 0.0 {
         point.normal = -point.normal;
     }
     point.object = surface.object;
-    point.natural = surface.color;
     point.lit = CLAY || (surface.flags & SURFACE_UNLIT) == 0u;
+    point.natural = surface.color;
     point.base = base_color(point, pixel);
+    if is_section(point.surface) {
+        point.natural = point.base;
+    }
     point.sun = sun_share(point.relative, point.normal);
     point.arriving = irradiance(point.normal, point.sun);
     point.shade = luminance(point.arriving);
@@ -80,7 +100,7 @@ fn beside(point: Point, offset: vec2i) -> Beside {
     if code.x == 0u {
         return Beside(0.0, vec3f(0.0, 0.0, 1.0), NO_OBJECT, NO_SURFACE);
     }
-    let surface = surface_at(code.x - 1u);
+    let surface = surface_shown(code.x - 1u);
     let normal = decode_normal(select(surface.normal, code.y, SMOOTH));
     return Beside(textureLoad(scene_depth, pixel, 0), normal, surface.object, code.x - 1u);
 }

@@ -9,6 +9,12 @@ const PART_OTHER: u32 = 0u;
 const PART_ROOF: u32 = 1u;
 const PART_WALL: u32 = 2u;      // with its windows and doors
 const PART_TERRAIN: u32 = 3u;   // terrain, roads, water, land use, the plain ground
+const PART_SECTION: u32 = 4u;   // the inside of a closed shell, where it is laid open: of no surface
+const SURFACE_CLOSED: u32 = 8u;     // its object is a closed shell
+const SURFACE_INWARD: u32 = 16u;    // whose faces look inwards
+// Numbers in the geometry target that are none of a surface: sections, and the bits that say of which object.
+const SECTION: u32 = 0x80000000u;
+const SECTION_OBJECT: u32 = 0x03ffffffu;    // all: of several
 const SURFACES_PER_ROW: u32 = 4096u;
 
 struct Surface {

@@ -120,6 +120,7 @@ mod tests {
             body: Default::default(),
             sprite: None,
             border: None,
+            section: None,
         }
     }
 

@@ -52,6 +52,8 @@ pub struct Lens {
     pub sprite: Option<LensSprite>,
     /// How it ends (L9); `None`: at once.
     pub border: Option<Border>,
+    /// The colour, sRGB 0..1, of the sections through closed shells where it ends; `None`: what is cut is hollow.
+    pub section: Option<[f32; 3]>,
 }
 
 impl Lens {

@@ -128,6 +128,7 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
         body: LensBody::None,
         sprite: None,
         border: None,
+        section: None,
     }
 }
 

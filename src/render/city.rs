@@ -16,6 +16,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         layout::{self, CityVertex},
+        shells::{Shells, closed_shells},
         surfaces::{self, SurfaceTable},
         textures::Textures,
         weld::{Corner, Weld},
@@ -82,6 +83,8 @@ pub struct CityBuffers {
     pub surfaces: wgpu::TextureView,
     /// The same on the CPU, for whoever reads surface numbers back.
     pub surface_table: Vec<layout::Surface>,
+    /// Which objects are closed shells.
+    pub(super) shells: Shells,
     /// Textures by number.
     pub textures: Textures,
     /// Whether some faces have smooth normals.
@@ -198,14 +201,15 @@ impl CityBuffers {
         let textures = Textures::new(gpu, shown)?;
         let bytes_before = gpu.allocated_bytes();
         let extent = extent_of(shown);
-        let mut table = SurfaceTable::new(shown.model, &textures);
+        let tiles = ordered_tiles(shown, &extent);
+        let shells = closed_shells(shown, &tiles, extent.center());
+        let mut table = SurfaceTable::new(shown.model, &textures, &shells);
         let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
         let smooth = is_smooth(shown, &apart);
         // Flat values come from the first corner of a triangle, in OpenGL from the last.
         let provoking = if gpu.info.backend == wgpu::Backend::Gl { 2 } else { 0 };
         let mut plain = Gathered::new(smooth, provoking);
         let mut textured: FxHashMap<(u32, u32), Gathered> = FxHashMap::default();
-        let tiles = ordered_tiles(shown, &extent);
         for &t in &tiles {
             let tile = &shown.model.tiles[t as usize];
             table.begin_tile();
@@ -238,7 +242,7 @@ impl CityBuffers {
         let surfaces = surfaces::upload(gpu, &table.entries)?;
         let surface_table = table.entries;
         let bytes = gpu.allocated_bytes() - bytes_before + textures.bytes();
-        Ok(Self { sections, surfaces, surface_table, textures, smooth, triangles, vertices, bytes, bounds })
+        Ok(Self { sections, surfaces, surface_table, shells, textures, smooth, triangles, vertices, bytes, bounds })
     }
 
     /// Those of the chunks of one section that a frustum may see, in drawing order.

@@ -247,11 +247,15 @@ impl Renderer {
         self.contents.shown = shown.collect();
     }
 
-    /// The entry of the table of surfaces, of the scene's own city and of contents.
-    pub fn surface(&self, number: u32) -> Option<&layout::Surface> {
+    /// The entry of the table of surfaces, of the scene's own city and of contents; of a section, whose it is.
+    pub fn surface(&self, number: u32) -> Option<layout::Surface> {
+        if number & layout::SECTION != 0 {
+            let object = Some(number & layout::SECTION_OBJECT).filter(|&object| object != layout::SECTION_OBJECT);
+            return Some(layout::Surface::new(object.unwrap_or(layout::NO_OBJECT), 0, [0.0; 3], 0));
+        }
         let own = &self.city.as_ref()?.buffers.surface_table;
         let table = if self.contents.surfaces.is_some() { &self.contents.table } else { own };
-        table.get(number as usize)
+        table.get(number as usize).copied()
     }
 
     /// The buffers of a content's city, by its name; 0: of the scene's own.

@@ -41,6 +41,7 @@ use crate::{
         plans::Plans,
         regions::{self, RegionKeys},
         renderer::{CityOnGpu, Renderer, STAGE_STRIDE},
+        sections,
         seen::{Kept, Seen, SeenVolume, part_of, seen_volumes},
         solids::SolidTable,
         sprite_passes,
@@ -197,6 +198,7 @@ impl Renderer {
                 cuts.sun.as_ref().is_some_and(|cut| cut.hiding.lenses.contains(&input.volumes[volume].lens));
             is_hiding || all_seen.volumes.iter().any(|v| v.index == volume)
         };
+        self.has_sections = sections::are_asked_for(input);
         let making = self.fit_sprites(&all_seen, input, is_asked)?;
         self.finish_own_sprites(is_asked);
         let Seen { volumes: seen, pages, .. } = &all_seen;
@@ -237,6 +239,8 @@ impl Renderer {
         if let Some(regions) = &plans.regions {
             self.fit_regions(input.tile.size, regions)?;
         }
+        let rounds = sections::rounds(input, seen, cuts.picture.as_ref());
+        self.fit_sections(input.tile.size, &rounds)?;
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         // Before the city: what a lens hides is decided by them.
@@ -250,6 +254,9 @@ impl Renderer {
         match &plans.regions {
             None => encoder = self.geometry_passes(encoder, &mut recorder, input, (&cuts, &keys.cuts))?,
             Some(regions) => self.region_geometry(&mut encoder, &mut recorder, input, regions),
+        }
+        if let Some(cut) = cuts.picture.as_ref().zip(keys.cuts.picture.as_ref()) {
+            self.section_passes(&mut encoder, &mut recorder, input, &rounds, cut);
         }
         if narrows {
             self.narrow_pass(&mut encoder, &mut recorder, input.tile.size.map(|side| side.div_ceil(TILE_PX)));
@@ -317,12 +324,13 @@ impl Renderer {
 
     /// Whether some faces of the picture have a normal per vertex.
     pub(super) fn smooth(&self) -> bool {
-        self.cities().any(|c| c.buffers.smooth)
+        // Sections have normals of their own.
+        self.has_sections || self.cities().any(|c| c.buffers.smooth)
     }
 
     pub(super) fn colored(&self) -> bool {
         let is_textured = |s: &Section| matches!(s.kind, SectionKind::Textured { .. });
-        self.cities().any(|c| c.buffers.sections.iter().any(is_textured))
+        self.has_sections || self.cities().any(|c| c.buffers.sections.iter().any(is_textured))
     }
 
     /// The sun's view where shadows are wanted. `contents`: what contents show in a frustum, and in all.
@@ -490,7 +498,7 @@ impl Renderer {
         shadows: bool,
     ) -> (ShadeKeys, bool) {
         let Some(city) = &self.city else { return (ShadeKeys::default(), false) };
-        let (colored, smooth) = (self.colored(), self.smooth());
+        let (colored, smooth, has_sections) = (self.colored(), self.smooth(), self.has_sections);
         let mut keys: Vec<Key> = Vec::new();
         if shadows {
             keys.push(Key::Shadow(None));
@@ -508,7 +516,9 @@ impl Renderer {
             let sections = sections.iter().flat_map(|&(kind, own)| {
                 picture.map(|program| geometry_key(kind, colored, [smooth, own], input.measured, Some(program.clone())))
             });
-            sections.chain(sun.map(|program| Key::Shadow(Some(program.clone())))).collect()
+            let caps = picture.filter(|p| has_sections && p.regions().is_none()).into_iter();
+            let caps = caps.flat_map(|program| sections::keys(program, input.measured));
+            sections.chain(caps).chain(sun.map(|program| Key::Shadow(Some(program.clone())))).collect()
         };
         for volume in seen {
             let body = &input.volumes[volume.index].body;
@@ -527,6 +537,7 @@ impl Renderer {
             clay,
             shadows,
             smooth,
+            sections: has_sections,
             behind: behind(input),
         };
         let target = if input.samples > 1 { ShadeTarget::Sums } else { ShadeTarget::Picture };

@@ -59,6 +59,8 @@ pub enum Key {
         shadows: bool,
         /// Normals are in the target.
         smooth: bool,
+        /// Some of what is shown are sections.
+        sections: bool,
         /// What is behind the city.
         behind: Behind,
     },
@@ -71,6 +73,13 @@ pub enum Key {
     },
     /// Regions as depths, and how they are told apart.
     Regions(Plan),
+    /// One of the draws that make sections, and what is hidden.
+    Section {
+        /// What is hidden.
+        program: Program,
+        /// Which draw.
+        draw: SectionDraw,
+    },
     /// One direction of a neighbourhood filter, by its handler.
     Filter(u32),
     /// The mean of samples.
@@ -84,6 +93,20 @@ pub enum Key {
     FurnitureOver,
     /// One lit pass without anything else: what benchmarks compare with.
     Bare,
+}
+
+/// The draws of `pass/sections.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SectionDraw {
+    /// Where volumes end.
+    Ends,
+    /// How many shells are there.
+    Count,
+    /// The sections.
+    Fill {
+        /// Interpolated depth is written, for the AOV.
+        measured: bool,
+    },
 }
 
 /// Pixels that shading is for.
@@ -172,6 +195,7 @@ impl Key {
             Self::Shade { program, .. } => Module::Shade(program.clone()),
             Self::Lines { program, .. } => Module::Lines(program.clone()),
             Self::Regions(plan) => Module::Regions(plan.clone()),
+            Self::Section { program, .. } => Module::Sections(program.clone()),
             Self::Filter(effect) => Module::Filter(*effect),
             Self::Resolve => Module::Resolve,
             Self::Furniture { .. } => Module::Furniture,
@@ -213,7 +237,7 @@ impl Key {
                 SolidStage::FarthestFace => "depth sprite of a combination, farthest of its faces",
             }
             .to_owned(),
-            Self::Shade { shown, textured, clay, target, shadows, .. } => {
+            Self::Shade { shown, textured, clay, target, shadows, sections, .. } => {
                 let list = [
                     (matches!(shown, Shown::Background | Shown::RegionBackground), "background"),
                     (matches!(shown, Shown::RegionSurface | Shown::RegionBackground), "of a region"),
@@ -222,10 +246,20 @@ impl Key {
                     (*target == ShadeTarget::Sums, "summed"),
                     (*target == ShadeTarget::Unfiltered, "unfiltered"),
                     (*shadows, "shadows"),
+                    (*sections, "sections"),
                 ];
                 format!("{}{}", self.module().name(), flags(&list))
             }
             Self::Filter(_) | Self::Lines { .. } | Self::Regions(_) => self.module().name(),
+            Self::Section { draw, .. } => {
+                let draw = match draw {
+                    SectionDraw::Ends => "ends",
+                    SectionDraw::Count => "count",
+                    SectionDraw::Fill { measured: false } => "fill",
+                    SectionDraw::Fill { measured: true } => "fill measured",
+                };
+                format!("{} {draw}", self.module().name())
+            }
             Self::Resolve => "resolve".to_owned(),
             Self::Furniture { layered: false } => "furniture".to_owned(),
             Self::Furniture { layered: true } => "furniture in a layer".to_owned(),
@@ -244,12 +278,13 @@ impl Key {
                 }
                 list
             }
-            Self::Shade { textured, clay, target, shadows, smooth, behind, .. } => vec![
+            Self::Shade { textured, clay, target, shadows, smooth, sections, behind, .. } => vec![
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
                 ("SUMMED", flag(*target == ShadeTarget::Sums)),
                 ("SHADOWS", flag(*shadows)),
                 ("SMOOTH", flag(*smooth)),
+                ("SECTIONS", flag(*sections)),
                 ("BACKGROUND", f64::from(*behind as u32)),
             ],
             Self::Lines { smooth, .. } => vec![("SMOOTH", flag(*smooth))],
@@ -286,6 +321,11 @@ impl Key {
                 };
                 ("vertex", Some(fragment))
             }
+            Self::Section { draw, .. } => match draw {
+                SectionDraw::Ends => ("vertex_everywhere", Some("ends")),
+                SectionDraw::Count => ("vertex", Some("count")),
+                SectionDraw::Fill { .. } => ("vertex_everywhere", Some("fill")),
+            },
             Self::SpriteList => ("vertex", Some("note")),
             Self::SolidSprite(SolidStage::Missed) => ("vertex", Some("missed")),
             Self::SolidSprite(SolidStage::Nearest) => ("vertex_of_solid", Some("nearest")),
@@ -305,7 +345,9 @@ impl Key {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => {
                 vec![vertex, per_vertex(size_of::<layout::Plane>() as u64, PLANE)]
             }
-            Self::Geometry { .. } | Self::Shadow(_) | Self::Bare => vec![vertex],
+            Self::Geometry { .. } | Self::Shadow(_) | Self::Bare | Self::Section { draw: SectionDraw::Count, .. } => {
+                vec![vertex]
+            }
             Self::Lines { .. } => vec![Some(Edge::LAYOUT)],
             Self::Shade { .. } | Self::Regions(_) | Self::Filter(_) => vec![per_vertex(8, CORNER)],
             Self::SpriteList
@@ -365,6 +407,10 @@ impl Key {
                 let write_mask = if stage.is_nearest() { wgpu::ColorWrites::RED } else { wgpu::ColorWrites::GREEN };
                 vec![Some(wgpu::ColorTargetState { format: SPRITES, blend: None, write_mask })]
             }
+            Self::Section { draw: SectionDraw::Fill { measured }, .. } => {
+                let own_depth = measured.then(|| Some(OWN_DEPTH.into()));
+                [Some(SMOOTH_CODES.into()), Some(COLORS.into())].into_iter().chain(own_depth).collect()
+            }
             Self::Filter(_) => vec![Some(FILTERED.into()); 4],
             Self::Shade { target: ShadeTarget::Unfiltered, behind, .. } => {
                 vec![Some(FILTERED.into()); behind.images()]
@@ -400,7 +446,8 @@ impl Key {
             // The triangle lies at depth 0, where nothing is stored.
             Self::Shade { shown: Shown::Surface, .. } => C::Less,
             Self::Shade { shown: Shown::Background | Shown::RegionSurface | Shown::RegionBackground, .. } => C::Equal,
-            Self::Regions(_) => C::Always,
+            Self::Section { draw: SectionDraw::Fill { .. }, .. } => C::Greater,
+            Self::Regions(_) | Self::Section { .. } => C::Always,
             Self::Shade { shown: Shown::Any, .. }
             | Self::StoredForm(_)
             | Self::StoredLayers(_)
@@ -414,7 +461,10 @@ impl Key {
         };
         Some(wgpu::DepthStencilState {
             format: DEPTH,
-            depth_write_enabled: Some(!matches!(self, Self::Shade { .. } | Self::Lines { .. })),
+            depth_write_enabled: Some(match self {
+                Self::Section { draw, .. } => matches!(draw, SectionDraw::Fill { .. }),
+                _ => !matches!(self, Self::Shade { .. } | Self::Lines { .. }),
+            }),
             depth_compare: Some(compare),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),

@@ -68,6 +68,14 @@ pub const NO_OBJECT: u32 = u32::MAX;
 pub const SURFACE_UNLIT: u32 = 1;
 /// `lib/surface.wgsl`: the part stands above this bit of the flags.
 pub const SURFACE_PART_SHIFT: u32 = 1;
+/// `lib/surface.wgsl`: its object is a closed shell.
+pub const SURFACE_CLOSED: u32 = 8;
+/// `lib/surface.wgsl`: a closed shell whose faces look inwards.
+pub const SURFACE_INWARD: u32 = 16;
+/// `lib/surface.wgsl`: of a number in the geometry target, that it is a section, and the bits that hold whose.
+pub const SECTION: u32 = 1 << 31;
+/// `lib/surface.wgsl`: the object of a section; all of these bits: of several.
+pub const SECTION_OBJECT: u32 = (1 << 26) - 1;
 /// `lib/surface.wgsl`: what a surface is part of.
 pub const PART_OTHER: u32 = 0;
 /// `lib/surface.wgsl`.
@@ -98,6 +106,20 @@ pub struct Shape {
     pub size_y: f32,
     pub axis_z: [f32; 3],
     pub size_z: f32,
+}
+
+/// `pass/sections.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct SectionStage {
+    pub center: [f32; 3],
+    pub radius: f32,
+    pub color: [f32; 3],
+    pub volume: u32,
+    pub leaves: u32,
+    pub turn: u32,
+    pub pad_0: u32,
+    pub pad_1: u32,
 }
 
 /// `lib/light.wgsl`.

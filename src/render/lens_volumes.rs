@@ -112,6 +112,7 @@ fn volume_of(number: u32, lens: &Lens, body: Body, motion: &Motion) -> Result<Le
         sprite,
         asks_sides: lens.classes().any(|class| class != Class::Inside),
         border: lens.soft_border(),
+        section: lens.section,
     };
     volume.bounds = own_sprites::bounds(&volume)?;
     Ok(volume)

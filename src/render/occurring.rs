@@ -135,6 +135,7 @@ mod tests {
                 sprite: None,
                 asks_sides: false,
                 border: None,
+                section: None,
             }
         };
         shapes.iter().enumerate().map(volume).collect()

@@ -106,6 +106,7 @@ fn part_of(volume: &LensVolume, view: &View) -> PictureTile {
         sprite: None,
         asks_sides: false,
         border: None,
+        section: None,
         ..*volume
     };
     let part = alone.seen_part(view, whole).map(|part| part.rectangle());

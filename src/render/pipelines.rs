@@ -71,6 +71,8 @@ pub struct Layouts {
     pub region: wgpu::BindGroupLayout,
     /// Regions, group 3: their numbers.
     pub regions: wgpu::BindGroupLayout,
+    /// Sections, group 3: the stage at a dynamic offset, and the ends of rays.
+    pub sections: wgpu::BindGroupLayout,
     /// Filter, group 0: the stage at a dynamic offset, the image, parameters.
     pub filter: wgpu::BindGroupLayout,
     /// Resolve, group 0.
@@ -232,6 +234,11 @@ impl Layouts {
             lines: layout(gpu, "lines", &[(0, S::FRAGMENT, float)]),
             line_stage: layout(gpu, "line stage", &[(0, all, dynamic), (1, all, dynamic)]),
             region: layout(gpu, "region", &[(0, all, uniform()), (1, S::FRAGMENT, dynamic)]),
+            sections: {
+                let written = buffer(wgpu::BufferBindingType::Storage { read_only: false }, false);
+                let stage = buffer(wgpu::BufferBindingType::Storage { read_only: true }, true);
+                layout(gpu, "sections", &[(0, S::FRAGMENT, stage), (1, S::FRAGMENT, written)])
+            },
             regions: layout(gpu, "regions", &[(0, S::FRAGMENT, surfaces)]),
             filter: layout(gpu, "filter", &[(0, all, dynamic), (1, S::FRAGMENT, packed), (2, all, uniform())]),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
@@ -276,6 +283,9 @@ impl Layouts {
             }
             Key::Regions(_) => {
                 vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), Some(&self.regions)]
+            }
+            Key::Section { .. } => {
+                vec![Some(&self.view), Some(&self.cut_city), Some(&self.lenses), Some(&self.sections)]
             }
             Key::Filter(_) => vec![Some(&self.filter)],
             Key::Resolve => vec![Some(&self.resolve)],

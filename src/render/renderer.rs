@@ -18,6 +18,7 @@ use crate::{
         own_sprites::OwnSprites,
         pipelines::{Layouts, Pipelines},
         regions::RegionsOnGpu,
+        sections::SectionsOnGpu,
         solids::SolidTable,
         stored::KeptSprite,
         synced::{Room, Synced},
@@ -60,6 +61,9 @@ pub struct Renderer {
     pub(super) curtain: Option<Curtain>,
     /// Of techniques that draw the city by regions, once there was one.
     pub(super) regions: Option<RegionsOnGpu>,
+    pub(super) sections: Option<SectionsOnGpu>,
+    /// Whether the scene asks for sections, in view or not.
+    pub(super) has_sections: bool,
     /// Titles, captions and legends, once a picture had some.
     pub(super) furniture: Option<FurnitureOnGpu>,
     /// The sprites that have eyes of their own.
@@ -221,6 +225,8 @@ impl Renderer {
             binds_narrowed: false,
             curtain: None,
             regions: None,
+            sections: None,
+            has_sections: false,
             furniture: None,
             ran: Vec::new(),
             solids_of: None,

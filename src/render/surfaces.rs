@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use crate::{
     city::{CityModel, NONE, ObjectClass, StringId, Surface, decode_normal},
     gpu::{Gpu, GpuError},
-    render::{layout, palette, textures::Textures},
+    render::{layout, palette, shells::Shells, textures::Textures},
 };
 
 /// Surfaces per row: `lib/surface.wgsl` knows it too.
@@ -18,6 +18,7 @@ pub const ROW: u32 = 4096;
 pub struct SurfaceTable<'a> {
     model: &'a CityModel,
     textures: &'a Textures,
+    shells: &'a Shells,
     /// The entries, by number.
     pub entries: Vec<layout::Surface>,
     numbers: FxHashMap<(u32, u32), u32>,
@@ -25,8 +26,8 @@ pub struct SurfaceTable<'a> {
 
 impl<'a> SurfaceTable<'a> {
     /// An empty table.
-    pub fn new(model: &'a CityModel, textures: &'a Textures) -> Self {
-        Self { model, textures, entries: Vec::new(), numbers: FxHashMap::default() }
+    pub fn new(model: &'a CityModel, textures: &'a Textures, shells: &'a Shells) -> Self {
+        Self { model, textures, shells, entries: Vec::new(), numbers: FxHashMap::default() }
     }
 
     /// Numbers given so far are not given again: surfaces of another tile are others.
@@ -36,9 +37,9 @@ impl<'a> SurfaceTable<'a> {
 
     /// The number of a model surface (`NONE`: the plain ground) that faces a packed normal.
     pub fn number(&mut self, surface: u32, normal: u32) -> u32 {
-        let Self { model, textures, entries, numbers } = self;
+        let Self { model, textures, shells, entries, numbers } = self;
         *numbers.entry((surface, normal)).or_insert_with(|| {
-            entries.push(entry(model, textures, surface, normal));
+            entries.push(entry(model, (textures, shells), surface, normal));
             (entries.len() - 1) as u32
         })
     }
@@ -63,7 +64,12 @@ pub fn upload(gpu: &Gpu, entries: &[layout::Surface]) -> Result<wgpu::TextureVie
 }
 
 /// What the table says of a model surface (`NONE`: the plain ground) that faces a packed normal.
-pub(super) fn entry(model: &CityModel, textures: &Textures, surface: u32, normal: u32) -> layout::Surface {
+pub(super) fn entry(
+    model: &CityModel,
+    (textures, shells): (&Textures, &Shells),
+    surface: u32,
+    normal: u32,
+) -> layout::Surface {
     let Some(found) = model.surfaces.get(surface as usize) else {
         return layout::Surface::new(
             layout::NO_OBJECT,
@@ -81,7 +87,8 @@ pub(super) fn entry(model: &CityModel, textures: &Textures, surface: u32, normal
     };
     let unlit = if material.is_some_and(|m| m.unlit) { layout::SURFACE_UNLIT } else { 0 };
     let part = part_of(model, found, normal) << layout::SURFACE_PART_SHIFT;
-    layout::Surface::new(found.object, normal, color, unlit | part)
+    let shell = shells.get(&found.object).copied().unwrap_or_default();
+    layout::Surface::new(found.object, normal, color, unlit | part | shell)
 }
 
 /// What a surface is part of: by its semantics; where a building has none, by which way it faces.

@@ -40,6 +40,8 @@ pub struct LensVolume {
     pub asks_sides: bool,
     /// How its lens ends, if not at once: it acts around the volume, too.
     pub border: Option<Border>,
+    /// The colour of its sections, sRGB.
+    pub section: Option<[f32; 3]>,
 }
 
 impl LensVolume {
@@ -269,6 +271,7 @@ mod tests {
                 sprite: None,
                 asks_sides: false,
                 border: None,
+                section: None,
             };
             let (low, high) = lens.projected(&view).expect("it is in front of the eye");
             let (mut least, mut most) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);

@@ -141,6 +141,7 @@ mod tests {
             body: Default::default(),
             sprite: None,
             border: None,
+            section: None,
         };
         let attached = [
             Placement::Camera,

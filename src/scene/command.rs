@@ -184,6 +184,7 @@ mod tests {
             body: Default::default(),
             sprite: None,
             border: None,
+            section: None,
         };
         let mut history = History::default();
         for name in ["a", "b", "c"] {

@@ -79,6 +79,11 @@ fn call(question: Question, test: VolumeTest, volume: &str, place: &str) -> Stri
     }
 }
 
+/// Whether a volume by its number holds the place `sight`.
+pub(super) fn holds(test: VolumeTest, volume: &str) -> String {
+    format!("is_inside({})", call(Question::Inside, test, volume, "sight"))
+}
+
 /// A question to all volumes of a plan's lens.
 fn joined(plan: &Plan, lens: u32, question: Question, place: &str, operator: &str) -> String {
     let (first, tests) = plan.volumes_of(lens);

@@ -12,6 +12,7 @@ mod lens_test;
 mod lining;
 mod plan;
 mod regions;
+mod sections;
 mod specialised;
 mod uber;
 pub mod wgsl;
@@ -91,6 +92,7 @@ files! {
     RESOLVE = "pass/resolve.wgsl";
     NARROW = "pass/narrow.wgsl";
     REGIONS = "pass/regions.wgsl";
+    SECTIONS = "pass/sections.wgsl";
     FURNITURE = "pass/furniture.wgsl";
     FURNITURE_OVER = "pass/furniture-over.wgsl";
     BARE = "pass/bare.wgsl";
@@ -119,6 +121,8 @@ pub enum Module {
     Lines(Program),
     /// Regions as depths, and how they are told apart.
     Regions(Plan),
+    /// Sections through closed shells, and what is hidden.
+    Sections(Program),
     /// One direction of a neighbourhood filter: the number of its handler.
     Filter(u32),
     /// The mean of samples.
@@ -158,6 +162,7 @@ impl Module {
                 format!("lines{uber} ({})", names_of(program))
             }
             Self::Regions(_) => "regions".to_owned(),
+            Self::Sections(program) => format!("sections{}", hidden_name(&Some(program.clone()))),
             Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
             Self::Resolve => "resolve".to_owned(),
             Self::Narrow => "narrow".to_owned(),
@@ -212,6 +217,12 @@ impl Module {
                 &[SURFACE, OBJECTS, REGIONS],
             ]
             .concat(),
+            Self::Sections(program) => &[
+                &[VIEW, VIEW_UNIFORM, SURFACE, SIGHT],
+                &lens_files(program)[..],
+                &[OBJECTS, FRAGMENT, city_file(program), SECTIONS],
+            ]
+            .concat(),
             Self::Filter(_) => &[PACKED, FILTER],
             Self::Resolve => &[RESOLVE],
             Self::Narrow => &[VIEW, VIEW_UNIFORM, NARROW],
@@ -242,6 +253,7 @@ impl Module {
                 let text = if program.regions().is_some() { regions::geometry(&text) } else { text };
                 text.replace("//@handlers\n", &hiding::source(program, handlers, lenses, hiding::Eye::Picture))
             }
+            Self::Sections(program) => text.replace("//@handlers\n", &sections::source(program, handlers, lenses)),
             Self::Regions(plan) => {
                 let own = plan.regions.as_ref().map(|regions| regions::marks(plan, regions, lenses));
                 text.replace("//@handlers\n", &own.unwrap_or_default())

@@ -205,6 +205,11 @@ impl VolumeTest {
         matches!(self, Self::SolidSprite | Self::CombinedSprite)
     }
 
+    /// Whether it says in closed form where rays are inside, and they leave it again.
+    pub fn has_span(self) -> bool {
+        matches!(self, Self::Sphere | Self::Box | Self::Cylinder | Self::Convex | Self::Ellipsoid | Self::Frustum)
+    }
+
     /// Whether it may read the faces of a solid.
     pub fn has_faces(self) -> bool {
         matches!(self, Self::Solid | Self::SolidSprite) || self.has_leaves()

@@ -77,6 +77,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         body: LensBody::None,
         sprite: None,
         border: None,
+        section: None,
     }
 }
 

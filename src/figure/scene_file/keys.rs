@@ -415,6 +415,14 @@ pub const LENS: Table = Table {
             "Has what the lens does end gradually.",
             "{ width = 20.0 }",
         ),
+        key(
+            "section",
+            Kind::Color,
+            "none: what is cut is hollow",
+            "",
+            "The colour of sections: where the lens takes part of a closed body away, or shows part of one, its surface closes what is left. See Sections.",
+            "\"#9c4a3c\"",
+        ),
     ],
 };
 

@@ -208,6 +208,7 @@ impl<'o> SceneReader<'o> {
                 unit: if b.text("unit") == Some("px") { BorderUnit::Pixels } else { BorderUnit::Metres },
                 discrete: if b.text("discrete") == Some("dither") { Discrete::Dither } else { Discrete::Threshold },
             }),
+            section: fields.color("section"),
         }
     }
 

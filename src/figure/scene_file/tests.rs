@@ -600,13 +600,14 @@ prop_compose! {
 prop_compose! {
     fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
-        ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>()) -> Lens {
+        ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
+        section in prop::option::of(prop::array::uniform3(0.0..=1.0f32))) -> Lens {
         // A soft border needs shapes that have a distance; what shapes of files have, `sprite` does not give.
         let is_saved = |s: &Focus| matches!(s, Focus::Sprite { .. });
         let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
         let body = LensBody::WORDS[body].1;
         let kind = if content.is_some() && is_content { LensKind::Content } else { LensKind::Color };
-        Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, content, body, sprite, border }
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, content, body, sprite, border, section }
     }
 }
 

@@ -140,6 +140,9 @@ impl Toml {
             let discrete = if border.discrete == Discrete::Dither { ", discrete = \"dither\"" } else { "" };
             self.key("border", &format!("{{ width = {}{unit}{discrete} }}", number(border.width)));
         }
+        if let Some(section) = lens.section {
+            self.key("section", &color(section));
+        }
     }
 }
 
