@@ -7,7 +7,7 @@
 //           in, in any order of faces, and as each brings its object with it, where it is one shell, whose
 //   fill    where it lies in one, and nothing shown is nearer, the end is what is shown
 //
-// It stands a few of a float's steps behind the volume, so that every lens test has it outside.
+// It stands so little behind the volume that every lens test has it outside.
 
 struct SectionStage {
     center: vec3f,              // of a ball around the volume, view space, metres
@@ -18,9 +18,9 @@ struct SectionStage {
     turn: u32,                  // how many such ends come before the one that is asked for
 }
 
-// The end of a ray, D in metres (0: there is none), and the sum of the faces beyond it.
+// The end of a ray, and the sum of the faces beyond it.
 struct SectionPixel {
-    end: f32,
+    end: u32,                   // D in metres (0: there is none) without its last bits, which say how far beside it to ask
     faces: atomic<u32>,         // 6 bits: how many shells; the others: the sum of their objects
 }
 
@@ -30,12 +30,15 @@ struct SectionPixel {
 
 const SHELL_BITS: u32 = 6u;
 // How far behind the volume the section stands, and how far before its end something is called hidden: of the distance from
-// the eye. Wider than the band of the lens tests (12 * 2^-23) and what faces hold more (4 * 2^-23).
-const BESIDE: f32 = 4e-6;
-// Steps in which the ends of what has no closed form are looked for: what is thinner than this part of its way through the
-// ball around it may be missed. Halvings after that: to the last bit.
-const STEPS: u32 = 96u;
-const HALVINGS: u32 = 26u;
+// the eye, and up to 2^SECTION_DOUBLINGS times as much where the ray goes along a face, which holds a little more than itself
+// (ON_FACE).
+const SECTION_BESIDE: f32 = 4e-6;
+const SECTION_DOUBLINGS: u32 = 10u;
+const DOUBLING_BITS: u32 = 15u;
+// Steps in which the ends of what has no closed form are looked for, from where a ray enters it first to where it leaves it
+// last: gaps and parts that are thinner than one of these may be missed. Halvings after that: to the last bit.
+const SECTION_STEPS: u32 = 96u;
+const SECTION_HALVINGS: u32 = 26u;
 
 //@handlers
 
@@ -47,9 +50,19 @@ fn place_at(ray: Ray, distance: f32) -> vec3f {
     return ray.origin + distance * ray.direction;
 }
 
-// `side`: 1 behind an end, -1 before it.
-fn beside_end(ray: Ray, end: f32, side: f32) -> f32 {
-    return end + side * BESIDE * max(abs(end), length(place_at(ray, end)));
+struct SectionEnd {
+    distance: f32,              // D, metres; 0: there is none
+    room: f32,                  // how far beside it all lens tests agree, metres
+}
+
+fn end_of_bits(ray: Ray, bits: u32) -> SectionEnd {
+    let distance = bitcast<f32>(bits & ~DOUBLING_BITS);
+    let room = SECTION_BESIDE * max(distance, length(place_at(ray, distance)));
+    return SectionEnd(distance, room * f32(1u << (bits & DOUBLING_BITS)));
+}
+
+fn end_at(ray: Ray, pixel: vec2i) -> SectionEnd {
+    return end_of_bits(ray, section_pixels[index_of(pixel)].end);
 }
 
 fn end_of_span(span: Span) -> f32 {
@@ -62,16 +75,17 @@ fn sight_along(ray: Ray, pixel: vec2i, distance: f32) -> Sight {
                  NO_OBJECT);
 }
 
-// Of a volume without closed form: looked for between the ends of a ball around it.
-fn end_by_steps(ray: Ray, pixel: vec2i) -> f32 {
-    let ball = span_of_sphere(ray, stage.center, stage.radius);
-    let first = max(ball.enter, 0.0);
-    let stride = (ball.exit - first) / f32(STEPS);
+// Of a volume without closed form; `whole`: from its first entry to its last exit, as its sprite knows them.
+fn end_by_steps(ray: Ray, pixel: vec2i, whole: Span) -> f32 {
+    let span = meet(span_of_sphere(ray, stage.center, stage.radius), whole);
+    let room = (span.exit - span.enter) / 64.0 + SECTION_BESIDE * abs(span.exit);
+    let first = max(span.enter - room, 0.0);
+    let stride = (span.exit + room - first) / f32(SECTION_STEPS);
     let leaves = stage.leaves == 1u;
     var was = holds_volume(stage.volume, sight_along(ray, pixel, first));
     var turn = 0u;
     var low = 0.0;
-    for (var i = 1u; i <= STEPS; i += 1u) {
+    for (var i = 1u; i <= SECTION_STEPS; i += 1u) {
         let at = first + f32(i) * stride;
         let now = holds_volume(stage.volume, sight_along(ray, pixel, at));
         let is_end = was != now && was == leaves;
@@ -80,13 +94,13 @@ fn end_by_steps(ray: Ray, pixel: vec2i) -> f32 {
         was = now;
     }
     var high = low + stride;
-    for (var i = 0u; i < HALVINGS; i += 1u) {
+    for (var i = 0u; i < SECTION_HALVINGS; i += 1u) {
         let middle = 0.5 * (low + high);
         let is_before = holds_volume(stage.volume, sight_along(ray, pixel, middle)) == leaves;
         low = select(low, middle, is_before);
         high = select(middle, high, is_before);
     }
-    return select(0.0, high, ball.enter <= ball.exit && ball.exit > 0.0 && turn > stage.turn);
+    return select(0.0, high, span.enter <= span.exit && span.exit > 0.0 && turn > stage.turn);
 }
 
 // ---- ends
@@ -99,8 +113,17 @@ fn vertex_everywhere(@builtin(vertex_index) corner: u32) -> @builtin(position) v
 @fragment
 fn ends(@builtin(position) at: vec4f) {
     let pixel = vec2i(at.xy);
-    let end = end_of(ray_of_pixel(at.xy), pixel);
-    section_pixels[index_of(pixel)].end = max(end, 0.0);
+    let ray = ray_of_pixel(at.xy);
+    let bits = bitcast<u32>(max(end_of(ray, pixel), 0.0)) & ~DOUBLING_BITS;
+    let leaves = stage.leaves == 1u;
+    var found = 0u;
+    for (var i = 0u; i <= SECTION_DOUBLINGS; i += 1u) {
+        let end = end_of_bits(ray, bits | i);
+        let was = holds_volume(stage.volume, sight_along(ray, pixel, end.distance - end.room));
+        let is_held = holds_volume(stage.volume, sight_along(ray, pixel, end.distance + end.room));
+        found = select(found, bits | i, found == 0u && end.distance > 0.0 && was == leaves && is_held != leaves);
+    }
+    section_pixels[index_of(pixel)].end = found;
     atomicStore(&section_pixels[index_of(pixel)].faces, 0u);
 }
 
@@ -136,15 +159,14 @@ fn inside_of(surface: Surface, number: u32, ray: Ray, pixel: vec2i, distance: f3
 @fragment
 fn count(in: Face, @builtin(front_facing) is_front: bool) {
     let pixel = vec2i(in.clip.xy);
-    let end = section_pixels[index_of(pixel)].end;
     let surface = surface_at(in.surface);
     let ray = ray_of_pixel(in.clip.xy);
-    let behind = beside_end(ray, end, 1.0);
-    if end <= 0.0 || (surface.flags & SURFACE_CLOSED) == 0u || in.clip.z >= depth_of_distance(behind) {
+    let end = end_at(ray, pixel);
+    let behind = end.distance + end.room;
+    if end.distance <= 0.0 || (surface.flags & SURFACE_CLOSED) == 0u || in.clip.z >= depth_of_distance(behind) {
         return;
     }
-    let before = beside_end(ray, end, -1.0);
-    if visible(inside_of(surface, in.surface, ray, pixel, before)) {
+    if visible(inside_of(surface, in.surface, ray, pixel, end.distance - end.room)) {
         return;
     }
     if !visible(inside_of(surface, in.surface, ray, pixel, behind)) {
@@ -168,15 +190,16 @@ struct Filled {
 fn along(at: vec2f, step: vec2i) -> vec3f {
     let pixel = vec2i(at);
     let ray = ray_of_pixel(at);
-    let own = section_pixels[index_of(pixel)].end;
+    let own = end_at(ray, pixel).distance;
     var best = vec3f(0.0);
     var least = FAR_AWAY;
     for (var side = -1; side <= 1; side += 2) {
         let beside = pixel + side * step;
         let is_there = all(beside >= vec2i(0)) && all(beside < vec2i(view.size));
-        let end = section_pixels[index_of(clamp(beside, vec2i(0), vec2i(view.size) - 1))].end;
+        let ray_beside = ray_of_pixel(at + vec2f(side * step));
+        let end = end_at(ray_beside, clamp(beside, vec2i(0), vec2i(view.size) - 1)).distance;
         let nearer = is_there && end > 0.0 && abs(end - own) < least;
-        let way = f32(side) * (place_at(ray_of_pixel(at + vec2f(side * step)), end) - place_at(ray, own));
+        let way = f32(side) * (place_at(ray_beside, end) - place_at(ray, own));
         best = select(best, way, nearer);
         least = select(least, abs(end - own), nearer);
     }
@@ -187,10 +210,10 @@ fn along(at: vec2f, step: vec2i) -> vec3f {
 fn fill(@builtin(position) at: vec4f) -> Filled {
     let pixel = vec2i(at.xy);
     let ray = ray_of_pixel(at.xy);
-    let end = section_pixels[index_of(pixel)].end;
+    let end = end_at(ray, pixel);
     let faces = atomicLoad(&section_pixels[index_of(pixel)].faces);
     let shells = faces & ((1u << SHELL_BITS) - 1u);
-    if end <= 0.0 || shells == 0u {
+    if end.distance <= 0.0 || shells == 0u {
         discard;
     }
     let object = select(SECTION_OBJECT, faces >> SHELL_BITS, shells == 1u);
@@ -198,7 +221,7 @@ fn fill(@builtin(position) at: vec4f) -> Filled {
     let across = cross(along(at.xy, vec2i(1, 0)), along(at.xy, vec2i(0, 1)));
     let is_known = dot(across, across) > 0.0;
     let facing = select(-ray.direction, select(across, -across, dot(across, ray.direction) > 0.0), is_known);
-    let depth = depth_of_distance(beside_end(ray, end, 1.0));
+    let depth = depth_of_distance(end.distance + end.room);
     let normal = encode_normal(normalize(facing) * view.view_from_world);
     return Filled(vec2u((SECTION | object) + 1u, normal), vec4f(stage.color, 1.0), depth, depth);
 }

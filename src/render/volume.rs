@@ -61,7 +61,7 @@ impl LensVolume {
         if self.has_own_eye() {
             return VolumeTest::OwnSprite;
         }
-        let with_sides = masks || self.asks_sides || self.drawn != LensBody::None;
+        let with_sides = masks || self.asks_sides || self.drawn != LensBody::None || self.section.is_some();
         match (self.body.test(), self.sprite.filter(|_| !self.body.has_members())) {
             (_, Some(sprite)) if self.body.is_form() && sprite.is_as_the_target() => VolumeTest::Sprite,
             (_, Some(_)) => VolumeTest::LayeredSprite,

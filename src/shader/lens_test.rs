@@ -123,7 +123,7 @@ pub(super) fn ends_of(plan: &Plan, lens: u32) -> String {
 }
 
 /// Where a ray meets a volume by its number first and last.
-fn span(test: VolumeTest, volume: &str) -> String {
+pub(super) fn span(test: VolumeTest, volume: &str) -> String {
     match test {
         VolumeTest::Members | VolumeTest::Solid | VolumeTest::Combined => "EMPTY_SPAN".to_owned(),
         VolumeTest::SolidSprite | VolumeTest::CombinedSprite => {

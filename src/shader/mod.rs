@@ -220,6 +220,7 @@ impl Module {
             Self::Sections(program) => &[
                 &[VIEW, VIEW_UNIFORM, SURFACE, SIGHT],
                 &lens_files(program)[..],
+                &span_files(program)[..],
                 &[OBJECTS, FRAGMENT, city_file(program), SECTIONS],
             ]
             .concat(),
@@ -296,11 +297,10 @@ impl Module {
             (parts.bodies, OUTLINE),
             (parts.bodies && parts.members, MEMBER_OUTLINE),
             (parts.shells, GLASS),
-            (parts.shells && parts.side_sprites, SHELL_SIDES),
-            (parts.shells && parts.sprites, SHELL_SPRITE),
             (filters, FILTERED),
             (parts.lines, LINE),
         ];
+        files.extend(if parts.shells { span_files(program) } else { Vec::new() });
         files.extend(optional.iter().filter(|(is_used, _)| *is_used).map(|(_, file)| *file));
         files.push(SHADE);
         files
@@ -333,6 +333,13 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.distances && parts.solids, SOLID_DISTANCE),
         (parts.distances && parts.combinations, COMBINED_DISTANCE),
     ];
+    files.into_iter().filter(|(is_used, _)| *is_used).map(|(_, file)| file).collect()
+}
+
+/// The libraries that tell from sprites where a ray is inside.
+fn span_files(program: &Program) -> Vec<(&'static str, &'static str)> {
+    let parts = program.has();
+    let files = [(parts.side_sprites, SHELL_SIDES), (parts.sprites, SHELL_SPRITE)];
     files.into_iter().filter(|(is_used, _)| *is_used).map(|(_, file)| file).collect()
 }
 
@@ -466,10 +473,14 @@ mod tests {
         };
         let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();
         let hiding = hiding.chain(uber.hiding(handlers()).map(Program::Uber));
+        let has_lenses = |p: &Program| p.has().lenses;
         let lining = plan.lining(handlers()).map(Program::Specialised).into_iter();
         let lining = lining.chain(uber.lining(handlers()).map(Program::Uber));
-        let mut modules: Vec<Module> =
-            hiding.flat_map(|p| [Module::Geometry(Some(p.clone())), Module::Shadow(Some(by_shapes(p)))]).collect();
+        let mut modules: Vec<Module> = hiding
+            .clone()
+            .flat_map(|p| [Module::Geometry(Some(p.clone())), Module::Shadow(Some(by_shapes(p)))])
+            .collect();
+        modules.extend(hiding.filter(has_lenses).map(Module::Sections));
         modules.extend(lining.map(Module::Lines));
         modules.push(Module::Shade(Program::Specialised(plan.shading(handlers()))));
         modules.push(Module::Shade(Program::Uber(uber.shading(handlers()))));

@@ -32,7 +32,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
     switch("fn holds_volume(volume: u32, sight: Sight) -> bool {", "false", &lens_test::holds);
     let end = |test: VolumeTest, volume: &str| match test.has_span() {
         true => format!("end_of_span(span_of_shape(ray, shapes[{volume}], {}))", test.constant()),
-        false => "end_by_steps(ray, pixel)".to_owned(),
+        false => format!("end_by_steps(ray, pixel, {})", lens_test::span(test, volume)),
     };
     switch("fn end_of(ray: Ray, pixel: vec2i) -> f32 {\n    let volume = stage.volume;", "0.0", &end);
     text
