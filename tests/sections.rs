@@ -143,7 +143,7 @@ fn compare(studio: &mut Studio, scene: &Scene, classes: &[Class]) -> (usize, usi
         let away = |axis: DVec3| {
             lenses[number].0.distance(place + step * axis) - lenses[number].0.distance(place - step * axis)
         };
-        let slope = DVec3::new(away(DVec3::X), away(DVec3::Y), away(DVec3::Z)).normalize();
+        let slope = DVec3::new(away(DVec3::X), away(DVec3::Y), away(DVec3::Z)).normalize_or_zero();
         let normal = glam::Vec3::from(normals[i]).as_dvec3();
         assert!(normal.dot(ray.direction) <= 0.0, "pixel {x}, {y}: faces away");
         bent += usize::from(normal.dot(slope).abs() < 0.98);
@@ -215,8 +215,11 @@ fn between_two_lenses_a_slab_is_left() {
     }
 }
 
-/// A file with cubes of 10 m, each with its lower corner and what is done to its six rings.
-fn cubes(name: &str, all: &[([i32; 3], fn(&mut Vec<Vec<u32>>))]) -> Studio {
+/// The lower corner of a cube, and what is done to its six rings.
+type Cube = ([i32; 3], fn(&mut Vec<Vec<u32>>));
+
+/// A file with cubes of 10 m.
+fn cubes(name: &str, all: &[Cube]) -> Studio {
     let (mut objects, mut vertices) = (Vec::new(), Vec::new());
     for (i, (low, change)) in all.iter().enumerate() {
         let first = 8 * i as u32;
@@ -272,6 +275,26 @@ fn shells_may_face_either_way_and_open_ones_stay_open() {
     assert_eq!(opened(&mut open, at), BTreeMap::new(), "what is open encloses nothing");
     let mut turned = cubes("turned", &[([0; 3], |rings| rings[2].reverse())]);
     assert_eq!(opened(&mut turned, at), BTreeMap::new(), "nor does a shell one face of which looks inwards");
+}
+
+#[test]
+fn of_what_is_open_a_warning_tells() {
+    let open: Cube = ([0; 3], |rings| rings.truncate(5));
+    let beside: Cube = ([40, 0, 0], |rings| rings.truncate(5));
+    let mut mixed = cubes("mixed", &[open, ([0, 20, 0], |_| {}), beside]);
+    let camera = Camera::looking(DVec3::new(62.0, -60.0, 44.0), DVec3::new(5.0, 5.0, 4.0), 0.9);
+    let mut told = |lenses: Vec<Lens>| {
+        let warnings = picture(&mut mixed, &scene(camera, lenses), SIZE).statistics.warnings;
+        let found = warnings.into_iter().find(|w| w["code"] == "open-shells");
+        found.map(|w| (w["count"].as_u64().expect("a count"), w["objects"][0].as_str().expect("a name").to_owned()))
+    };
+    let ball = |radius| Shape::Sphere { center: DVec3::new(5.0, 15.0, 5.0), radius };
+    let cut = |radius| cut("ball", ball(radius), Class::Inside);
+    assert_eq!(told(vec![cut(12.0)]), Some((1, "ball".to_owned())), "one of the two that are cut");
+    assert_eq!(told(vec![cut(4.9)]), None, "none is met");
+    assert_eq!(told(vec![cut(30.0)]), None, "both go as a whole, and the third is not met");
+    assert_eq!(told(vec![Lens { section: None, ..cut(12.0) }]), None, "nobody asked");
+    assert_eq!(told(vec![Lens { effects: vec![used("sepia")], ..cut(12.0) }]), None, "nothing is hidden");
 }
 
 #[test]

@@ -44,6 +44,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "ropinski-7"
     "ropinski-8"
     "rotterdam-textures"
+    "sections"
     "see-inside"
     "three-lenses"
     "tiesel-3-12-a"

@@ -53,6 +53,7 @@ mod synced;
 pub mod targets;
 pub mod text;
 mod textures;
+pub mod told;
 pub mod volume;
 mod weld;
 mod worker;

@@ -6,6 +6,8 @@ use std::{
     time::Instant,
 };
 
+use rustc_hash::FxHashSet;
+
 use crate::{
     city::{
         CityModel, Lod,
@@ -38,6 +40,7 @@ use crate::{
         solids::SolidTable,
         stats::{self, Statistics},
         stored::SpriteTexels,
+        told,
         volume::LensVolume,
     },
     scene::{CitySpec, Scene},
@@ -110,7 +113,9 @@ pub struct Picture {
     /// Class bits as the card holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
     classes: Vec<Vec<u32>>,
     /// Rays that have more intervals than the sprite of their lens has layers, by lens.
-    excess: BTreeMap<u32, u32>,
+    pub(super) excess: BTreeMap<u32, u32>,
+    /// Objects by lens that have no section since they are open.
+    pub(super) open: BTreeMap<u32, u32>,
     /// GPU allocations and uploads while drawing (reading back not counted).
     made: (u64, u64),
     /// What it cost.
@@ -240,9 +245,8 @@ impl Studio {
         for part in parts(request.size) {
             self.render_part(scene, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
         }
-        for (lens, rays) in &picture.excess {
-            log::warn!("{}", excess_message(&scene.lenses[*lens as usize].name, *rays));
-        }
+        picture.open = told::open_shells(self, &prepared.volumes, &prepared.operations);
+        told::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
         if request.statistics {
             picture.statistics = self.statistics(scene, request, &prepared, &view, &picture, passes);
             let frame = &mut picture.statistics.frame;
@@ -585,7 +589,7 @@ impl Studio {
                 .collect(),
             contents: prepared.contents.figures(self.shown(), &self.renderer),
             overlays: Vec::new(),
-            warnings: self.warnings().into_iter().chain(excess_warnings(scene, picture)).collect(),
+            warnings: self.warnings().into_iter().chain(told::warnings(scene, picture)).collect(),
             passes,
         }
     }
@@ -594,26 +598,6 @@ impl Studio {
         let warning = |(code, w): (crate::city::WarningCode, &crate::city::warning::Warning)| serde_json::json!({ "code": code.code(), "count": w.count, "objects": w.objects, "message": w.message });
         self.model.warnings.iter().map(warning).collect()
     }
-}
-
-/// The code of the warning that rays have more intervals than a sprite has layers.
-pub const SPRITE_LAYERS: &str = "sprite-layers";
-
-fn excess_message(lens: &str, rays: u32) -> String {
-    format!(
-        "{rays} rays enter lens \"{lens}\" more often than its sprite has layers; more (sprite.layers) would be right"
-    )
-}
-
-/// Of a picture whose sprites have too few layers, in the form of those of files.
-fn excess_warnings(scene: &Scene, picture: &Picture) -> Option<serde_json::Value> {
-    let lenses: Vec<&str> = picture.excess.keys().map(|lens| scene.lenses[*lens as usize].name.as_str()).collect();
-    let messages: Vec<String> =
-        lenses.iter().zip(picture.excess.values()).map(|(l, n)| excess_message(l, *n)).collect();
-    let count: u32 = picture.excess.values().sum();
-    let warning =
-        serde_json::json!({ "code": SPRITE_LAYERS, "count": count, "objects": lenses, "message": messages.join("; ") });
-    (count > 0).then_some(warning)
 }
 
 fn input<'a>(
@@ -674,7 +658,7 @@ fn lens_figures(
         visible,
         objects: match prepared.contents.of_lens(index as u32) {
             Some(content) => content.objects_meeting(studio.shown(), &volumes),
-            None => objects_meeting(studio, &volumes),
+            None => objects_meeting(studio, &volumes).len() as u64,
         },
         covered: inside,
         pixels: if acts_inside { inside } else { 0 },
@@ -690,12 +674,12 @@ fn lens_figures(
 }
 
 /// City objects of which a shown triangle meets one of the volumes; exact in f64.
-fn objects_meeting(studio: &Studio, volumes: &[&LensVolume]) -> u64 {
+pub(super) fn objects_meeting(studio: &Studio, volumes: &[&LensVolume]) -> FxHashSet<u32> {
     let model = &studio.model;
     let index = || studio.index.get_or_init(|| SpatialIndex::build(model, &studio.geometries));
     let convex = volumes.iter().filter_map(|v| v.body.volume()).filter(|v| v.is_convex()).cloned();
     let convex: Vec<Volume> = convex.collect();
-    let mut met: rustc_hash::FxHashSet<u32> = match convex.is_empty() {
+    let mut met: FxHashSet<u32> = match convex.is_empty() {
         true => Default::default(),
         false => {
             intersection::objects_meeting(model, index(), &intersection::regions(&[&convex])).into_iter().collect()
@@ -718,7 +702,7 @@ fn objects_meeting(studio: &Studio, volumes: &[&LensVolume]) -> u64 {
             met.insert(geometry.object);
         }
     }
-    met.len() as u64
+    met
 }
 
 impl Picture {
@@ -736,6 +720,7 @@ impl Picture {
             lens_mask: None,
             classes: vec![vec![0; pixels]; planes],
             excess: BTreeMap::new(),
+            open: BTreeMap::new(),
             made: (0, 0),
             statistics: Statistics::default(),
         }

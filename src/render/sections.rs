@@ -12,7 +12,9 @@ use crate::{
         frame::{FrameInput, Recorder, color_attachment, read_depth, scissor, strided},
         hiding::Reach,
         key::{Key, SectionDraw},
-        layout, palette,
+        layout,
+        operations::Operations,
+        palette,
         renderer::{Renderer, group, whole},
         seen::SeenVolume,
         synced::{Room, Synced},
@@ -47,15 +49,15 @@ pub(super) struct SectionsOnGpu {
 
 /// Whether some lens of the scene asks for sections, in view or not, and hides something or shows something else.
 pub(super) fn are_asked_for(input: &FrameInput) -> bool {
-    input.volumes.iter().any(|v| v.section.is_some() && !ends_of(input, v.lens).is_empty())
+    input.volumes.iter().any(|v| v.section.is_some() && !ends_of(input.operations, v.lens).is_empty())
 }
 
 /// Of which of its ends a lens has sections: where rays leave it (`true`), where they enter it.
-fn ends_of(input: &FrameInput, lens: u32) -> Vec<bool> {
+pub(super) fn ends_of(operations: &Operations, lens: u32) -> Vec<bool> {
     let hides = |effect: u32| handlers()[effect as usize].kind == EffectKind::Hide;
-    let hidden = input.operations.list.iter().filter(|o| o.lens == Some(lens) && hides(o.effect)).map(|o| o.class);
+    let hidden = operations.list.iter().filter(|o| o.lens == Some(lens) && hides(o.effect)).map(|o| o.class);
     let hidden: Vec<Class> = hidden.collect();
-    let shown: Vec<Class> = input.operations.contents.iter().filter(|c| c.lens == lens).map(|c| c.class).collect();
+    let shown: Vec<Class> = operations.contents.iter().filter(|c| c.lens == lens).map(|c| c.class).collect();
     // What is shown in front of a volume ends where rays enter it, and is seen to end nowhere.
     let leaves = hidden.contains(&Class::Inside) || shown.iter().any(|c| [Class::Inside, Class::Behind].contains(c));
     let enters = hidden.contains(&Class::Front) || shown.contains(&Class::Inside);
@@ -78,7 +80,7 @@ pub(super) fn rounds(input: &FrameInput, seen: &[SeenVolume], cut: Option<&Cut>)
         let center = [middle.dot(view.basis.right), middle.dot(view.basis.up), -view.depth(bounds.center())];
         let radius = 1.01 * bounds.center().distance(bounds.max);
         let turns = if of_seen.test.has_span() { 1 } else { TURNS };
-        for leaves in ends_of(input, volume.lens) {
+        for leaves in ends_of(input.operations, volume.lens) {
             rounds.extend((0..turns).map(|turn| SectionRound {
                 lens: volume.lens,
                 part: of_seen.bounds,

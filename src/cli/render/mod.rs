@@ -20,8 +20,8 @@ use crate::{
     },
     gpu::Gpu,
     render::{
-        picture::{Aovs, Picture, RenderError, Request, SPRITE_LAYERS, Studio},
-        stats,
+        picture::{Aovs, Picture, RenderError, Request, Studio},
+        stats, told,
     },
     scene::{History, Scene, check_against},
 };
@@ -75,7 +75,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     }
     if let Some(file) = &arguments.stats {
         // Those of the files are worded for the command line; the rest is about this picture.
-        let is_of_picture = |w: &serde_json::Value| w["code"] == SPRITE_LAYERS;
+        let is_of_picture = |w: &serde_json::Value| w["code"].as_str().is_some_and(|code| told::CODES.contains(&code));
         let of_picture: Vec<_> = picture.statistics.warnings.into_iter().filter(is_of_picture).collect();
         picture.statistics.warnings = warnings.into_iter().chain(of_picture).collect();
         output::write(file, |out| {

@@ -1,0 +1,109 @@
+//! What a picture warns of: codes that come from the scene and not from a file (docs/warnings.md).
+
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashSet;
+
+use crate::{
+    render::{
+        operations::Operations,
+        picture::{Picture, Studio, objects_meeting},
+        sections::ends_of,
+        volume::LensVolume,
+    },
+    scene::Scene,
+};
+
+/// The codes.
+pub const CODES: [&str; 2] = [SPRITE_LAYERS, OPEN_SHELLS];
+
+/// Rays have more intervals than a sprite has layers.
+const SPRITE_LAYERS: &str = "sprite-layers";
+/// What sections were asked for encloses nothing.
+const OPEN_SHELLS: &str = "open-shells";
+
+/// City objects by lens that are cut by it and would have a section, were they closed shells: some of their triangles meet it,
+/// and some of their corners lie outside.
+pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &Operations) -> BTreeMap<u32, u32> {
+    let mut open = BTreeMap::new();
+    let Some(city) = studio.renderer.city() else { return open };
+    let is_closed =
+        |object: &u32| city.shells.contains_key(object) || studio.model.objects[*object as usize].class.is_ground();
+    for of_lens in volumes.chunk_by(|a, b| a.lens == b.lens).filter(|v| v[0].section.is_some()) {
+        if ends_of(operations, of_lens[0].lens).is_empty() {
+            continue;
+        }
+        let met = objects_meeting(studio, &of_lens.iter().collect::<Vec<_>>());
+        let met: FxHashSet<u32> = met.into_iter().filter(|object| !is_closed(object)).collect();
+        let cut: FxHashSet<u32> = beyond(studio, &met, of_lens).collect();
+        let count = cut.len() as u32;
+        if count > 0 {
+            open.insert(of_lens[0].lens, count);
+        }
+    }
+    open
+}
+
+/// Those of some objects that have corners outside volumes, once for each geometry.
+fn beyond(studio: &Studio, objects: &FxHashSet<u32>, volumes: &[LensVolume]) -> impl Iterator<Item = u32> {
+    let model = &studio.model;
+    let geometries = studio.geometries.iter().map(|&g| &model.geometries[g as usize]);
+    geometries.filter(|g| objects.contains(&g.object)).filter_map(move |geometry| {
+        let tiles = &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize];
+        let mut corners = tiles.iter().flat_map(|t| t.vertices.clone().map(move |v| model.position(t, v)));
+        let is_in = |corner| volumes.iter().any(|v| v.body.meets(&[corner; 3], geometry.object));
+        corners.any(|corner| !is_in(corner)).then_some(geometry.object)
+    })
+}
+
+type Told = (&'static str, fn(&Picture) -> &BTreeMap<u32, u32>, fn(&str, u32) -> String);
+
+const TOLD: [Told; 2] = [
+    (
+        SPRITE_LAYERS,
+        |picture| &picture.excess,
+        |lens, rays| {
+            format!(
+                "{rays} rays enter lens \"{lens}\" more often than its sprite has layers; more (sprite.layers) would be right"
+            )
+        },
+    ),
+    (
+        OPEN_SHELLS,
+        |picture| &picture.open,
+        |lens, objects| {
+            let are = if objects == 1 { "object that lens" } else { "objects that lens" };
+            let what =
+                if objects == 1 { "is no closed shell: it shows its" } else { "are no closed shells: they show their" };
+            format!("{objects} {are} \"{lens}\" meets {what} inside where it is cut, and no section")
+        },
+    ),
+];
+
+fn each<'a>(scene: &'a Scene, picture: &'a Picture, (_, counts, message): Told) -> Vec<(&'a str, u32, String)> {
+    let of_lens = |(lens, count): (&u32, &u32)| {
+        let name = scene.lenses[*lens as usize].name.as_str();
+        (name, *count, message(name, *count))
+    };
+    counts(picture).iter().map(of_lens).collect()
+}
+
+/// One line for each lens that something is told of.
+pub(super) fn messages(scene: &Scene, picture: &Picture) -> Vec<String> {
+    TOLD.into_iter().flat_map(|told| each(scene, picture, told)).map(|(_, _, message)| message).collect()
+}
+
+/// The same in the form of warnings of files.
+pub(super) fn warnings(scene: &Scene, picture: &Picture) -> Vec<serde_json::Value> {
+    let warning = |told: Told| {
+        let all = each(scene, picture, told);
+        let lenses: Vec<&str> = all.iter().map(|(lens, ..)| *lens).collect();
+        let messages: Vec<&str> = all.iter().map(|(.., message)| message.as_str()).collect();
+        let count: u32 = all.iter().map(|(_, count, _)| count).sum();
+        let code = told.0;
+        (count > 0).then(
+            || serde_json::json!({ "code": code, "count": count, "objects": lenses, "message": messages.join("; ") }),
+        )
+    };
+    TOLD.into_iter().filter_map(warning).collect()
+}
