@@ -16,6 +16,7 @@ struct SectionStage {
     volume: u32,                // its number among the frame's
     leaves: u32,                // 1: where rays leave it; 0: where they enter it
     turn: u32,                  // how many such ends come before the one that is asked for
+    has_forms: u32,             // whether all leaves of a combination have closed forms
 }
 
 // The end of a ray, and the sum of the faces beyond it.
@@ -117,11 +118,11 @@ fn ends(@builtin(position) at: vec4f) {
     let bits = bitcast<u32>(max(end_of(ray, pixel), 0.0)) & ~DOUBLING_BITS;
     let leaves = stage.leaves == 1u;
     var found = 0u;
-    for (var i = 0u; i <= SECTION_DOUBLINGS; i += 1u) {
+    for (var i = 0u; i <= SECTION_DOUBLINGS && bits != 0u && found == 0u; i += 1u) {
         let end = end_of_bits(ray, bits | i);
         let was = holds_volume(stage.volume, sight_along(ray, pixel, end.distance - end.room));
         let is_held = holds_volume(stage.volume, sight_along(ray, pixel, end.distance + end.room));
-        found = select(found, bits | i, found == 0u && end.distance > 0.0 && was == leaves && is_held != leaves);
+        found = select(0u, bits | i, was == leaves && is_held != leaves);
     }
     section_pixels[index_of(pixel)].end = found;
     atomicStore(&section_pixels[index_of(pixel)].faces, 0u);

@@ -118,8 +118,8 @@ pub struct SectionStage {
     pub volume: u32,
     pub leaves: u32,
     pub turn: u32,
+    pub has_forms: u32,
     pub pad_0: u32,
-    pub pad_1: u32,
 }
 
 /// `lib/light.wgsl`.

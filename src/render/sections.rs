@@ -23,7 +23,7 @@ use crate::{
     shader::{EffectKind, Program, handlers},
 };
 
-/// How often rays may leave a volume without closed form, or enter it, and have a section there.
+/// How often rays may leave a volume that is not convex, or enter it, and have a section there.
 const TURNS: u32 = 4;
 /// What of a pixel the card keeps, bytes: `SectionPixel` of `pass/sections.wgsl`.
 const PIXEL_BYTES: u64 = 8;
@@ -58,9 +58,10 @@ pub(super) fn ends_of(operations: &Operations, lens: u32) -> Vec<bool> {
     let hidden = operations.list.iter().filter(|o| o.lens == Some(lens) && hides(o.effect)).map(|o| o.class);
     let hidden: Vec<Class> = hidden.collect();
     let shown: Vec<Class> = operations.contents.iter().filter(|c| c.lens == lens).map(|c| c.class).collect();
-    // What is shown in front of a volume ends where rays enter it, and is seen to end nowhere.
-    let leaves = hidden.contains(&Class::Inside) || shown.iter().any(|c| [Class::Inside, Class::Behind].contains(c));
-    let enters = hidden.contains(&Class::Front) || shown.contains(&Class::Inside);
+    // What is shown instead begins where its class does, and what is below it again where that ends.
+    let is_one = |classes: &[Class], asked: &[Class]| classes.iter().any(|class| asked.contains(class));
+    let leaves = hidden.contains(&Class::Inside) || is_one(&shown, &[Class::Inside, Class::Behind]);
+    let enters = hidden.contains(&Class::Front) || is_one(&shown, &[Class::Inside, Class::Front]);
     [(true, leaves), (false, enters)].into_iter().filter(|(_, is_one)| *is_one).map(|(end, _)| end).collect()
 }
 
@@ -79,7 +80,8 @@ pub(super) fn rounds(input: &FrameInput, seen: &[SeenVolume], cut: Option<&Cut>)
         let middle = bounds.center() - view.camera.eye;
         let center = [middle.dot(view.basis.right), middle.dot(view.basis.up), -view.depth(bounds.center())];
         let radius = 1.01 * bounds.center().distance(bounds.max);
-        let turns = if of_seen.test.has_span() { 1 } else { TURNS };
+        let intervals = volume.body.most_intervals();
+        let turns = intervals.map_or(TURNS, |most| TURNS.min(most as u32));
         for leaves in ends_of(input.operations, volume.lens) {
             rounds.extend((0..turns).map(|turn| SectionRound {
                 lens: volume.lens,
@@ -92,8 +94,8 @@ pub(super) fn rounds(input: &FrameInput, seen: &[SeenVolume], cut: Option<&Cut>)
                     volume: number as u32,
                     leaves: u32::from(leaves),
                     turn,
+                    has_forms: u32::from(intervals.is_some()),
                     pad_0: 0,
-                    pad_1: 0,
                 },
             }));
         }

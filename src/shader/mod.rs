@@ -64,6 +64,7 @@ files! {
     MEMBER_OUTLINE = "lib/member-outline.wgsl";
     SOLID_SPRITE = "lib/solid-sprite.wgsl";
     COMBINED = "lib/combined.wgsl";
+    COMBINED_SECTION = "lib/combined-section.wgsl";
     COMBINED_SPRITE = "lib/combined-sprite.wgsl";
     COMBINED_PASS = "pass/combined-sprite.wgsl";
     OBJECTS = "lib/objects.wgsl";
@@ -221,6 +222,7 @@ impl Module {
                 &[VIEW, VIEW_UNIFORM, SURFACE, SIGHT],
                 &lens_files(program)[..],
                 &span_files(program)[..],
+                program.has().combinations.then_some(COMBINED_SECTION).as_slice(),
                 &[OBJECTS, FRAGMENT, city_file(program), SECTIONS],
             ]
             .concat(),

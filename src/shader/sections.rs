@@ -30,9 +30,12 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         let _ = writeln!(text, "        default: {{ return {otherwise}; }}\n    }}\n}}\n");
     };
     switch("fn holds_volume(volume: u32, sight: Sight) -> bool {", "false", &lens_test::holds);
-    let end = |test: VolumeTest, volume: &str| match test.has_span() {
-        true => format!("end_of_span(span_of_shape(ray, shapes[{volume}], {}))", test.constant()),
-        false => format!("end_by_steps(ray, pixel, {})", lens_test::span(test, volume)),
+    let end = |test: VolumeTest, volume: &str| match test {
+        _ if test.has_span() => format!("end_of_span(span_of_shape(ray, shapes[{volume}], {}))", test.constant()),
+        _ if test.has_leaves() => {
+            format!("end_of_combined(shapes[{volume}], ray, pixel, {})", lens_test::span(test, volume))
+        }
+        _ => format!("end_by_steps(ray, pixel, {})", lens_test::span(test, volume)),
     };
     switch("fn end_of(ray: Ray, pixel: vec2i) -> f32 {\n    let volume = stage.volume;", "0.0", &end);
     text
