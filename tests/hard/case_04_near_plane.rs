@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use glam::{DQuat, DVec2, DVec3};
 use veduta::{
     geom::{Aabb, Shape, Volume},
-    lens::{Class, classify},
+    lens::{Class, EffectUse, Focus, Lens, classify},
     render::picture::Studio,
     view::{Camera, View},
 };
@@ -129,4 +129,43 @@ fn the_near_plane_changes_nothing_beyond_it() {
         }
         assert!(beyond.iter().all(|&i| close.rgba[i] == far.rgba[i]), "from {}", some[0].0);
     }
+}
+
+#[test]
+fn nor_does_it_for_solids_and_combinations() {
+    let mut studio = studio::synthetic(40);
+    let (eye, target) = eye(&studio);
+    let forward = (target - eye).normalize_or(DVec3::X);
+    let places = [
+        ("eye in its middle", eye, 25.0),
+        ("around the near plane", eye + forward * 0.6, 0.7),
+        ("outside", eye + forward * 20.0, 14.0),
+        ("behind the eye", eye - forward * 30.0, 20.0),
+    ];
+    let mut held = 0;
+    for (what, at, r) in places {
+        // What has no closed form: the last four.
+        let shapes = studio::shapes(at, r).split_off(7);
+        for class in [Class::Inside, Class::Front, Class::Behind] {
+            let lens = |(i, shape): (usize, &Focus)| {
+                let effect = EffectUse { class, ..studio::used("sepia") };
+                Lens { effects: vec![effect], ..studio::lens(&i.to_string(), vec![shape.clone()], "sepia") }
+            };
+            let lenses: Vec<Lens> = shapes.iter().enumerate().map(lens).collect();
+            let mut of = |near_m: f64| {
+                let camera = Camera { near_m, ..Camera::looking(eye, target, 1.2) };
+                studio::picture(&mut studio, &studio::scene(camera, lenses.clone()), SIZE)
+            };
+            let (close, far) = (of(0.125), of(1.0));
+            let depth = far.depth.as_ref().expect("depth");
+            let beyond: Vec<usize> = (0..depth.len()).filter(|&i| depth[i] > 1.0).collect();
+            for bit in 0..lenses.len() {
+                let (close, far) = (studio::bits(&close, bit), studio::bits(&far, bit));
+                assert!(beyond.iter().all(|&i| close[i] == far[i]), "{what}, {class:?}, shape {bit}");
+                held += close.iter().filter(|held| **held).count();
+            }
+            assert!(beyond.iter().all(|&i| close.rgba[i] == far.rgba[i]), "{what}, {class:?}");
+        }
+    }
+    assert!(held > 10_000, "{held} pixels are in some lens");
 }
