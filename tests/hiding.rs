@@ -20,29 +20,6 @@ use veduta::{
 
 const SIZE: [u32; 2] = [120, 80];
 
-/// A triangle of the city: corners, object, surface.
-struct Triangle {
-    corners: [DVec3; 3],
-    object: u32,
-    surface: u32,
-}
-
-fn triangles(studio: &Studio) -> Vec<Triangle> {
-    let model = &studio.model;
-    let mut all = Vec::new();
-    for &g in &studio.geometries {
-        for t in model.geometries[g as usize].tiles.clone() {
-            let tile = &model.tiles[t as usize];
-            for corners in model.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
-                let surface = model.vertices[(tile.vertices.start + corners[0]) as usize].surface;
-                let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + corners[k]));
-                all.push(Triangle { corners, object: model.surfaces[surface as usize].object, surface });
-            }
-        }
-    }
-    all
-}
-
 fn eraser(parameters: &[(&str, Parameter)], class: Class) -> EffectUse {
     let parameters: BTreeMap<_, _> = parameters.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
     EffectUse { parameters, class, ..used("eraser") }

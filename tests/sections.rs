@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use glam::{DQuat, DVec2, DVec3};
 use studio::*;
 use veduta::{
+    city::CityModel,
     geom::{Aabb, Ray, Shape, ray::TriangleTest},
     lens::{Class, EffectUse, Focus, Lens, LensSprite, Parameter},
     render::{
@@ -26,24 +27,6 @@ fn cut(name: &str, shape: impl Into<Focus>, class: Class) -> Lens {
     Lens { effects: vec![effect], section: Some(CUT), ..lens(name, vec![shape.into()], "eraser") }
 }
 
-/// Corners and object of each triangle, and whether it is of what the eraser keeps.
-fn triangles(studio: &Studio) -> Vec<([DVec3; 3], u32, bool)> {
-    let model = &studio.model;
-    let mut all = Vec::new();
-    for &g in &studio.geometries {
-        for t in model.geometries[g as usize].tiles.clone() {
-            let tile = &model.tiles[t as usize];
-            for corners in model.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
-                let surface = model.vertices[(tile.vertices.start + corners[0]) as usize].surface;
-                let places = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + corners[k]));
-                let object = model.surfaces[surface as usize].object;
-                all.push((places, object, model.objects[object as usize].class.is_ground()));
-            }
-        }
-    }
-    all
-}
-
 /// What a ray shows: object + 1 (0: several, or nothing), D, and whether it is a section, of which lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shown {
@@ -53,13 +36,13 @@ struct Shown {
 }
 
 /// What a ray shows of closed shells that lenses cut, each given with the class that it hides.
-fn shown(all: &[([DVec3; 3], u32, bool)], lenses: &[(Reference, Class)], ray: &Ray) -> Shown {
+fn shown((model, all): (&CityModel, &[Triangle]), lenses: &[(Reference, Class)], ray: &Ray) -> Shown {
     let test = TriangleTest::new(ray).expect("a direction");
     let hits: Vec<(f64, f64, u32, bool)> = all
         .iter()
-        .filter_map(|(corners, object, stays)| {
-            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-            Some((test.hit(*corners)?, normal.dot(ray.direction).signum(), *object, *stays))
+        .filter_map(|&Triangle { corners: [a, b, c], object, .. }| {
+            let stays = model.objects[object as usize].class.is_ground();
+            Some((test.hit([a, b, c])?, (b - a).cross(c - a).dot(ray.direction).signum(), object, stays))
         })
         .collect();
     let inside: Vec<Vec<(f64, f64)>> = lenses.iter().map(|(shape, _)| shape.intervals(ray)).collect();
@@ -101,6 +84,8 @@ fn finest_part(inside: &[(f64, f64)]) -> f64 {
 /// Compares pictures with rays; returns how many pixels show sections, and how many of them face elsewhere than the lens.
 fn compare(studio: &mut Studio, scene: &Scene, classes: &[Class]) -> (usize, usize) {
     let all = triangles(studio);
+    let model = studio.model.clone();
+    let city = (&*model, &all[..]);
     let lenses: Vec<(Reference, Class)> =
         scene.lenses.iter().zip(classes).map(|(lens, class)| (Reference::of(&lens.shapes[0]), *class)).collect();
     let view = View::new(scene.camera.expect("a camera"), SIZE, &studio.extent()).expect("a view");
@@ -110,11 +95,11 @@ fn compare(studio: &mut Studio, scene: &Scene, classes: &[Class]) -> (usize, usi
     let (mut sections, mut borders, mut bent) = (0, 0, 0);
     for (i, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
         let ray = view.pixel_ray(x, y);
-        let wanted = shown(&all, &lenses, &ray);
+        let wanted = shown(city, &lenses, &ray);
         // A pixel belongs to whoever covers its centre, to 1/256 pixel and what floats make of it.
         let beside = [[0.02, 0.0], [-0.02, 0.0], [0.0, 0.02], [0.0, -0.02]].map(|step| {
             let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
-            shown(&all, &lenses, &view.ray(middle + DVec2::from(step)))
+            shown(city, &lenses, &view.ray(middle + DVec2::from(step)))
         });
         let is_same = |s: &Shown| (s.object, s.section) == (wanted.object, wanted.section);
         let is_near = |s: &Shown| s.distance == wanted.distance || (s.distance / wanted.distance - 1.0).abs() < 0.01;

@@ -58,6 +58,33 @@ pub fn synthetic(buildings: u64) -> Studio {
     made
 }
 
+/// A triangle of what a studio shows.
+pub struct Triangle {
+    /// Metres.
+    pub corners: [DVec3; 3],
+    /// Index of its object.
+    pub object: u32,
+    /// Index of its surface.
+    pub surface: u32,
+}
+
+/// All of them.
+pub fn triangles(studio: &Studio) -> Vec<Triangle> {
+    let model = &studio.model;
+    let mut all = Vec::new();
+    for &g in &studio.geometries {
+        for t in model.geometries[g as usize].tiles.clone() {
+            let tile = &model.tiles[t as usize];
+            for corners in model.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
+                let surface = model.vertices[(tile.vertices.start + corners[0]) as usize].surface;
+                let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + corners[k]));
+                all.push(Triangle { corners, object: model.surfaces[surface as usize].object, surface });
+            }
+        }
+    }
+    all
+}
+
 /// A scene without shadows, seen by `camera`.
 pub fn scene(camera: Camera, lenses: Vec<Lens>) -> Scene {
     Scene { camera: Some(camera), lenses, sun: Sun { shadows: false, ..Sun::default() }, ..Scene::default() }
