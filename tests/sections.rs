@@ -297,7 +297,8 @@ fn where_shells_overlap_a_section_is_of_none_of_them() {
 fn what_is_not_taken_away_whole_has_no_sections() {
     let (mut studio, at) = town();
     let camera = cameras(at)[0];
-    let shape = Shape::Sphere { center: at, radius: 6.0 };
+    let shape = Shape::Sphere { center: at, radius: 11.0 };
+    let whole = picture(&mut studio, &scene(camera, vec![]), SIZE);
     let mut drawn = |effect: EffectUse, section| {
         let lens = Lens { effects: vec![effect], section, ..cut("cut", shape.clone(), Class::Inside) };
         picture(&mut studio, &scene(camera, vec![lens]), SIZE)
@@ -306,6 +307,7 @@ fn what_is_not_taken_away_whole_has_no_sections() {
     let walls = EffectUse { parameters: walls, ..used("eraser") };
     let [without, with] = [None, Some(CUT)].map(|section| drawn(walls.clone(), section));
     assert_eq!(without.depth, with.depth, "walls alone are no shell");
+    assert_ne!(without.depth, whole.depth, "walls are gone");
     let [without, with] = [None, Some(CUT)].map(|section| drawn(used("sepia"), section));
     assert_eq!(without.rgba, with.rgba);
     let passes = |p: &Picture| p.statistics.passes.iter().map(|pass| pass.name.clone()).collect::<Vec<_>>();
@@ -313,7 +315,14 @@ fn what_is_not_taken_away_whole_has_no_sections() {
 }
 
 fn request(backend: Backend) -> Request {
-    Request { size: SIZE, samples: 2, transparent: false, aovs: Aovs::default(), statistics: true, backend }
+    Request {
+        size: SIZE,
+        samples: 2,
+        transparent: false,
+        aovs: Aovs { lens_mask: false, ..ALL },
+        statistics: true,
+        backend,
+    }
 }
 
 #[test]
@@ -346,6 +355,8 @@ fn both_back_ends_close_the_same_and_a_moving_lens_compiles_nothing() {
             let [one, other] =
                 [Backend::Specialised, Backend::Uber].map(|b| studio.render(&scene, &request(b)).expect("a picture"));
             assert!(one.rgba == other.rgba, "{shape:?} {sprite:?}");
+            assert!(one.depth == other.depth && one.object_id == other.object_id, "{shape:?} {sprite:?}");
+            assert!(one.normal == other.normal, "{shape:?} {sprite:?}");
         }
     }
 }
