@@ -331,7 +331,7 @@ fn both_back_ends_close_the_same_and_a_moving_lens_compiles_nothing() {
     let camera = cameras(at)[0];
     let sprite = Some(LensSprite { resolution: Some(256), ..LensSprite::default() });
     for backend in [Backend::Specialised, Backend::Uber] {
-        for (i, shape) in shapes(at, 6.0).into_iter().enumerate().step_by(3) {
+        for (i, shape) in shapes(at + DVec3::new(2.0, -5.0, 3.0), 9.0).into_iter().enumerate().step_by(3) {
             let at_step = |by: f64| {
                 let moved = Focus::from(Shape::Sphere { center: at + DVec3::new(by, 0.0, 0.0), radius: 8.0 });
                 let lenses = vec![cut("still", shape.clone(), Class::Inside), cut("moving", moved, Class::Inside)];
@@ -348,7 +348,7 @@ fn both_back_ends_close_the_same_and_a_moving_lens_compiles_nothing() {
             assert_eq!(draw(0.0).statistics.frame.allocations, 0, "{backend:?} {i}");
         }
     }
-    for shape in shapes(at, 6.0) {
+    for shape in shapes(at + DVec3::new(2.0, -5.0, 3.0), 9.0) {
         for sprite in [None, sprite] {
             let lens = Lens { sprite, ..cut("cut", shape.clone(), Class::Inside) };
             let scene = scene(camera, vec![lens]);
@@ -357,6 +357,10 @@ fn both_back_ends_close_the_same_and_a_moving_lens_compiles_nothing() {
             assert!(one.rgba == other.rgba, "{shape:?} {sprite:?}");
             assert!(one.depth == other.depth && one.object_id == other.object_id, "{shape:?} {sprite:?}");
             assert!(one.normal == other.normal, "{shape:?} {sprite:?}");
+            let mut hollow = scene.clone();
+            hollow.lenses[0].section = None;
+            let hollow = studio.render(&hollow, &request(Backend::Specialised)).expect("a picture");
+            assert!(one.depth != hollow.depth, "{shape:?} {sprite:?}: no section is seen");
         }
     }
 }
