@@ -80,7 +80,8 @@ pub(super) fn rounds(input: &FrameInput, seen: &[SeenVolume], cut: Option<&Cut>)
         let middle = bounds.center() - view.camera.eye;
         let center = [middle.dot(view.basis.right), middle.dot(view.basis.up), -view.depth(bounds.center())];
         let radius = 1.01 * bounds.center().distance(bounds.max);
-        let intervals = volume.body.most_intervals();
+        // What a file's sprite holds need not be convex.
+        let intervals = volume.body.most_intervals().filter(|_| volume.body.saved().is_none());
         let turns = intervals.map_or(TURNS, |most| TURNS.min(most as u32));
         for leaves in ends_of(input.operations, volume.lens) {
             rounds.extend((0..turns).map(|turn| SectionRound {
