@@ -94,6 +94,9 @@ fn fragment(in: Corner) -> Lines {
         third += a.z * p + b.z * q;
         fourth += a.w * p + b.w * q;
         weights += a + b;
+        if i >= stage.reach + 2 {
+            break;
+        }
     }
     // Pixels beyond the picture have no weight.
     let scale = 1.0 / max(weights, vec4f(1e-30));

@@ -134,6 +134,9 @@ fn unfiltered(in: Corner) -> Unfiltered {
         }
         four.color = vec4u(four.color.yzw, packed(paint.rgb * paint.a));
         four.opacity = vec4u(four.opacity.yzw, packed(vec3f(paint.a)));
+        if i == 3 {
+            break;
+        }
     }
     return four;
 }

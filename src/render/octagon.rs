@@ -59,7 +59,18 @@ impl Octagon {
             low: std::array::from_fn(|i| moved.low[i].max(whole.low[i])),
             high: std::array::from_fn(|i| moved.high[i].min(whole.high[i])),
         };
-        (cut.area() > 0.0).then_some(cut)
+        cut.has_inside().then_some(cut)
+    }
+
+    /// Whether it has an area. Of what its lines leave for x and for y: y lies between pairs of lines at an x, if each lower one is
+    /// below each upper one there.
+    fn has_inside(&self) -> bool {
+        let [x0, y0, ..] = self.low.map(f64::from);
+        let [x1, y1, ..] = self.high.map(f64::from);
+        let [[s0, s1], [d0, d1]] = self.slants();
+        let low = x0.max(y0 + d0).max(s0 - y1).max(0.5 * (s0 + d0));
+        let high = x1.min(s1 - y0).min(y1 + d1).min(0.5 * (s1 + d1));
+        x0 < x1 && y0 < y1 && s0 < s1 && d0 < d1 && low < high
     }
 
     /// The rectangle around its first two pairs of lines; of an octagon inside its picture.
@@ -320,8 +331,25 @@ mod tests {
                 area += f64::from(u8::from(is_in));
             }
             assert!((area - octagon.area()).abs() <= 12.0, "{octagon:?}: {area} pixels, {}", octagon.area());
+            assert!(octagon.has_inside() && octagon.area() > 0.0);
         }
         assert!(slanted > 5 && halved > 2, "{slanted} {halved}");
+    }
+
+    #[test]
+    fn it_has_an_area_where_its_corners_span_one() {
+        let (mut with, mut without, mut seed) = (0, 0, 7_u32);
+        for _ in 0..20_000 {
+            let mut number = |most: u32| {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                ((seed >> 16) % most) as i32
+            };
+            let low = [number(12), number(12), number(24), number(24) - 12];
+            let one = octagon(low, low.map(|least| least + number(9)));
+            assert_eq!(one.has_inside(), one.area() > 0.0, "{one:?}: {}", one.area());
+            *(if one.has_inside() { &mut with } else { &mut without }) += 1;
+        }
+        assert!(with > 2000 && without > 2000, "{with} {without}");
     }
 
     #[test]

@@ -206,14 +206,14 @@ impl Operations {
                 of.leaves = each_once([&of.leaves[..], leaves].concat());
                 continue;
             }
-            let body = self.bodies.iter().find(|(o, _)| *o == lens).map(|(_, body)| *body);
+            let body = of_lens(&self.bodies, lens);
             // Without masks nobody asks for a lens' number: equal plans are equal then.
             let number = if masks { lens } else { numbers.len() as u32 };
-            let border = self.borders.iter().find(|(o, _)| *o == lens).map(|(_, border)| *border);
+            let border = of_lens(&self.borders, lens);
             lenses.push(PlanLens { number, volumes: vec![test], leaves: leaves.clone(), body, border });
             numbers.push(lens);
         }
-        let place = |lens| numbers.iter().position(|&n| n == lens).map(|i| i as u32);
+        let place = |lens| numbers.binary_search(&lens).ok().map(|i| i as u32);
         let steps = self.steps(place);
         let content = |c: &ContentUse| {
             let (lens, class) = (place(c.lens)?, class_test(c.class));
@@ -235,12 +235,15 @@ impl Operations {
         self.list.iter().filter_map(step).collect()
     }
 
-    /// The neighbourhood filters of the context and of the lenses `seen`, in the order of their images: each with the
+    /// The neighbourhood filters of the context and of the lenses `seen`, which ascend, in the order of their images: each with the
     /// plan of the image it filters. That is its lens' own, unmasked: what the context does, then what the lens does to
     /// the same class before it (K3).
     pub fn filters(&self, seen: &[u32], haze: bool) -> Vec<Filter> {
+        if !self.list.iter().any(Operation::is_filter) {
+            return Vec::new();
+        }
         let hides = |o: &Operation| shader::handlers()[o.effect as usize].kind == EffectKind::Hide;
-        let is_seen = |o: &&Operation| !hides(o) && o.lens.is_none_or(|lens| seen.contains(&lens));
+        let is_seen = |o: &&Operation| !hides(o) && o.lens.is_none_or(|lens| seen.binary_search(&lens).is_ok());
         let operations: Vec<&Operation> = self.list.iter().filter(is_seen).collect();
         let filter = |(i, operation): (usize, &&Operation)| {
             let is_own = |o: &Operation| o.lens.is_none() || (o.lens, o.class) == (operation.lens, operation.class);
@@ -335,6 +338,11 @@ impl Operations {
 fn in_any<T, E>(models: &[&CityModel], ask: impl Fn(&CityModel) -> Result<T, E>) -> Result<T, E> {
     let [own, others @ ..] = models else { return ask(&CityModel::default()) };
     ask(own).or_else(|error| others.iter().find_map(|model| ask(model).ok()).ok_or(error))
+}
+
+/// What a lens has of what some have, ascending.
+fn of_lens<T: Copy>(of: &[(u32, T)], lens: u32) -> Option<T> {
+    of.binary_search_by_key(&lens, |(owner, _)| *owner).ok().map(|i| of[i].1)
 }
 
 /// Ascending, each once.

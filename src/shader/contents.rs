@@ -59,16 +59,18 @@ const SHOWN: &str = "fn shown_cities(PLACE) -> u32 {
     var below = 0u;
     for (var i = table.tiles.y; i < table.tiles.z; i++) {
         let by = invokers[i];
-        if (by.weight == 1u && fragment.part == PART_TERRAIN) || !runs(by) {
-            continue;
+        if (by.weight == 0u || fragment.part != PART_TERRAIN) && runs(by) {
+            let own = 1u << by.handler;
+            switch by.number {
+                case 0u: { shown = own; }
+                case 1u: { shown |= own; }
+                default: { shown = select(0u, own, (below & ~own) == 0u); }
+            }
+            below |= own;
         }
-        let own = 1u << by.handler;
-        switch by.number {
-            case 0u: { shown = own; }
-            case 1u: { shown |= own; }
-            default: { shown = select(0u, own, (below & ~own) == 0u); }
+        if i + 1u == table.tiles.z {
+            break;
         }
-        below |= own;
     }
     return shown;
 }

@@ -177,6 +177,9 @@ const RUNS: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
     var all = MISSED;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         all |= class_of(v, sight_of(fragment));
+        if v + 1u == by.first_volume + by.volumes {
+            break;
+        }
     }
     switch by.scope {
         case 1u: { return is_inside(all); }
@@ -197,6 +200,9 @@ const RUNS_DITHERED: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
     var all = MISSED;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         all |= class_of(v, sight);
+        if v + 1u == by.first_volume + by.volumes {
+            break;
+        }
     }
     let share = share_of(by, all, sight);
     if by.border != 0u && parameters[by.border - 1u].z > 0.5 {
@@ -223,6 +229,9 @@ const VISIBLE: &str = "    let range = table.ranges.xy;
         let by = invokers[i];
         if runs(by, fragment) && hides(fragment, by) {
             return false;
+        }
+        if i + 1u == range.y {
+            break;
         }
     }
     return true;

@@ -156,39 +156,46 @@ pub(super) fn faded(uber: &Uber, text: &str) -> String {
     if fades(uber) { text.replace("point, by);", "point, by, share);") } else { text.to_owned() }
 }
 
-/// Code whose line `EACH(SECTION)` begins a loop over the invokers of that section of the tile's list that run at a place, in their
-/// order. In two steps, for adapters that take many pixels at a time and go through whatever one of them may do: as often as there are
-/// entries in the list it is asked whether they run, but only as often as some run are handlers called. Where lenses fade it is one
-/// step, and each has its `share`: how much is left over from asking, and of it Mesa 22.3 makes something else at some pixels.
-fn each(uber: &Uber, text: &str) -> String {
-    let (before, rest) = text.split_once("    EACH(").expect("a section of the list");
-    let (section, body) = rest.split_once(")\n").expect("its end");
-    let head = if fades(uber) { NEXT_SHARED } else { NEXT };
-    let head = head.replace("SECTION", section).replace("range", &format!("of_{}", section.to_lowercase()));
-    [before, &head, &faded(uber, body)].concat()
+/// A loop over the invokers of a section of the tile's list that run at a place, in their order; `body`: what is done with each, `by`.
+///
+/// In two steps, for adapters that take many pixels at a time and go through whatever one of them may do: as often as there are entries
+/// in the list it is asked whether they run, but only as often as some run are handlers called. Where lenses fade it is one step, and
+/// each has its `share`: how much is left over from asking, and of it Mesa 22.3 makes something else at some pixels.
+fn each(uber: &Uber, section: &str, body: &str) -> String {
+    let loops = if fades(uber) { EACH_SHARE } else { EACH };
+    let indented: String = body.lines().map(|line| format!("{:1$}{line}\n", "", 12)).collect();
+    let text = loops.replace("SECTION", section).replace("LIST", &format!("of_{}", section.to_lowercase()));
+    text.replace("            BODY\n", &faded(uber, &indented))
 }
 
-const NEXT: &str = "    let range = invokers_of(classes, SECTION);
-    for (var k = range.x; k < range.y; k++) {
-        while !runs(invokers[tile_lists[k]], classes) {
-            k++;
-            if k >= range.y {
+const EACH: &str = "    let LIST = invokers_of(classes, SECTION);
+    for (var first = LIST.x; first < LIST.y; first += 32u) {
+        var left = running(first, min(first + 32u, LIST.y), classes);
+        while left != 0u {
+            let by = invokers[tile_lists[first + firstTrailingBit(left)]];
+            BODY
+            left &= left - 1u;
+            if left == 0u {
                 break;
             }
         }
-        if k >= range.y {
+        if first + 32u >= LIST.y {
             break;
         }
-        let by = invokers[tile_lists[k]];
+    }
 ";
 
-const NEXT_SHARED: &str = "    let range = invokers_of(classes, SECTION);
-    for (var k = range.x; k < range.y; k++) {
+const EACH_SHARE: &str = "    let LIST = invokers_of(classes, SECTION);
+    for (var k = LIST.x; k < LIST.y; k++) {
         let by = invokers[tile_lists[k]];
         let share = share_at(by, classes);
-        if share <= 0.0 {
-            continue;
+        if share > 0.0 {
+            BODY
         }
+        if k + 1u == LIST.y {
+            break;
+        }
+    }
 ";
 
 /// From the surface to its colour: material, light, the standard style and air, then the styles.
@@ -196,10 +203,13 @@ fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let has = |kind| has(uber, kind, handlers);
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
     if has(EffectKind::Material) {
-        text.push_str(&each(uber, MATERIALS));
+        text.push_str("    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);\n");
+        text.push_str(&each(uber, "MATERIALS", "material = invoke_material(material, *point, by);"));
+        text.push_str("    (*point).base = material.base;\n");
     }
     if has(EffectKind::Light) {
-        text.push_str(&each(uber, LIGHTS));
+        text.push_str(&each(uber, "LIGHTS", "(*point).arriving = invoke_light((*point).arriving, *point, by);"));
+        text.push_str("    (*point).shade = luminance((*point).arriving);\n");
     }
     let plus = if has(EffectKind::Material) {
         text.push_str("    (*point).highlight = highlights(material, *point);\n");
@@ -227,12 +237,24 @@ fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
             .to_owned();
     }
     let highlight = match has(EffectKind::Material) {
-        true if fades(uber) => "                color += point.highlight * share;\n",
-        true => "                color += point.highlight;\n",
+        true if fades(uber) => "        color += point.highlight * share;\n",
+        true => "        color += point.highlight;\n",
         false => "",
     };
-    each(uber, STYLED).replace("                HIGHLIGHT\n", highlight)
+    let body = STYLE.replace("        HIGHLIGHT\n", highlight);
+    let text =
+        "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n    var color = start;\n".to_owned();
+    text + &each(uber, "STYLES", &body) + "    return color;\n}\n\n"
 }
+
+const STYLE: &str = "let is_scene_style = by.number == 1u;
+if !is_scene_style || point.surface != NO_SURFACE {
+    color = invoke_style(color, point, by);
+    if is_scene_style {
+        HIGHLIGHT
+    }
+}
+";
 
 /// The table, declared.
 pub(super) static TABLE_SOURCE: LazyLock<String> =
@@ -279,6 +301,18 @@ fn invokers_of(classes: Classes, section: u32) -> vec2u {
     return vec2u(tile_lists[record], tile_lists[record + 1u]);
 }
 
+// Which of the invokers from `first` up to `end` of the lists, at most 32, run at a place: a bit for each.
+fn running(first: u32, end: u32, classes: Classes) -> u32 {
+    var bits = 0u;
+    for (var k = first; k < end; k++) {
+        bits |= select(0u, 1u << (k - first), runs(invokers[tile_lists[k]], classes));
+        if k + 1u == end {
+            break;
+        }
+    }
+    return bits;
+}
+
 ";
 
 const NO_CLASSES: &str = "struct Classes {
@@ -317,6 +351,9 @@ fn classes_of(by: Invoker, classes: Classes) -> u32 {
     var all = MISSED;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         all |= class_of(v, classes.sight);
+        if v + 1u == by.first_volume + by.volumes {
+            break;
+        }
     }
     return all;
 }
@@ -345,6 +382,9 @@ pub(super) const SHARE_OF: &str = "fn share_of(by: Invoker, all: u32, sight: Sig
     var distance = FAR_AWAY;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         distance = min(distance, distance_to(v, sight, border));
+        if v + 1u == by.first_volume + by.volumes {
+            break;
+        }
     }
     let interest = degree_of_interest(distance, border, sight);
     switch by.scope {
@@ -366,35 +406,6 @@ const SHARE_AT: &str = "fn share_at(by: Invoker, classes: Classes) -> f32 {
 
 ";
 
-const MATERIALS: &str = "    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);
-    EACH(MATERIALS)
-        material = invoke_material(material, *point, by);
-    }
-    (*point).base = material.base;
-";
-
-const LIGHTS: &str = "    EACH(LIGHTS)
-        (*point).arriving = invoke_light((*point).arriving, *point, by);
-    }
-    (*point).shade = luminance((*point).arriving);
-";
-
-const STYLED: &str = "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {
-    var color = start;
-    EACH(STYLES)
-        let is_scene_style = by.number == 1u;
-        if !is_scene_style || point.surface != NO_SURFACE {
-            color = invoke_style(color, point, by);
-            if is_scene_style {
-                HIGHLIGHT
-            }
-        }
-    }
-    return color;
-}
-
-";
-
 const NO_OUTLINES: &str = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
     var paint = start;
     return paint;
@@ -408,6 +419,9 @@ const LENS_COVERS: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
         if volume_covers(v, pixel) {
             return true;
         }
+        if v + 1u == by.first_volume + by.volumes {
+            break;
+        }
     }
     return false;
 }
@@ -419,6 +433,9 @@ const LENS_DISTANCE: &str = "fn lens_distance(lens: u32, sight: Sight) -> f32 {
     var distance = FAR_AWAY;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         distance = min(distance, distance_to(v, sight, vec4f(0.0)));
+        if v + 1u == by.first_volume + by.volumes {
+            break;
+        }
     }
     return distance;
 }
@@ -430,6 +447,9 @@ const LENS_ENDS: &str = "fn lens_ends(lens: u32, pixel: vec2i, ray: Ray) -> Span
     var ends = EMPTY_SPAN;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         ends = with_span(ends, ends_of_volume(v, pixel, ray));
+        if v + 1u == by.first_volume + by.volumes {
+            break;
+        }
     }
     return ends;
 }
@@ -458,7 +478,7 @@ fn outlines_of(kinds: &[BodyKind]) -> String {
         let line = if kind.has_outline() { line } else { "" };
         let _ = write!(text, "        if by.handler == {}u {{\n{drawn}{line}        }}\n", kind.number());
     }
-    text + "    }\n    return paint;\n}\n\n"
+    text + "        if k + 1u == run.y {\n            break;\n        }\n    }\n    return paint;\n}\n\n"
 }
 
 const WRITE_CLASSES: &str = "    var bits = vec3u(0u);
@@ -473,6 +493,9 @@ const WRITE_CLASSES: &str = "    var bits = vec3u(0u);
             textureStore(class_masks, pixel, layer + 1, vec4u(bits.y, 0u, 0u, 0u));
             textureStore(class_masks, pixel, layer + 2, vec4u(bits.z, 0u, 0u, 0u));
             bits = vec3u(0u);
+        }
+        if k + 1u == run.y {
+            break;
         }
     }
 ";
