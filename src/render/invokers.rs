@@ -16,7 +16,7 @@ type Entry = (u32, Option<u32>);
 /// The invokers of a picture.
 #[derive(Debug, Default)]
 pub struct Invokers {
-    all: Vec<layout::Invoker>,
+    all: Vec<layout::PackedInvoker>,
     /// Of each, the lens of the plan that it acts inside of, and nowhere else.
     inside_of: Vec<Option<u32>>,
     hides: [u32; 2],
@@ -33,7 +33,8 @@ impl Invokers {
         let first = out.all.len() as u32;
         if let Some(plan) = hiding {
             let volumes = volumes_before(plan);
-            out.all.extend(plan.steps.iter().map(|s| invoker(plan, &volumes, s, &handlers[s.effect as usize])));
+            out.all
+                .extend(plan.steps.iter().map(|s| invoker(plan, &volumes, s, &handlers[s.effect as usize]).packed()));
         }
         out.hides = [first, out.all.len() as u32];
         let first = out.all.len() as u32;
@@ -41,22 +42,26 @@ impl Invokers {
             let volumes = volumes_before(plan);
             out.all.extend(plan.steps.iter().map(|step| {
                 let handler = &handlers[step.effect as usize];
-                layout::Invoker { number: to_lines(handler), ..invoker(plan, &volumes, step, handler) }
+                layout::Invoker { kind: to_lines(handler), ..invoker(plan, &volumes, step, handler) }.packed()
             }));
         }
         out.lines = [first, out.all.len() as u32];
         let first = out.all.len() as u32;
         if let Some(plan) = hiding.or(lining) {
             let volumes = volumes_before(plan);
-            out.all.extend(plan.contents.iter().map(|content| layout::Invoker {
-                handler: content.city,
-                scope: scope_number(Scope::Lens(content.lens, content.class)),
-                first_volume: volumes[content.lens as usize],
-                volumes: plan.lenses[content.lens as usize].volumes.len() as u32,
-                weight: u32::from(content.keeps_terrain),
-                number: content.clip.number(),
-                border: plan.lenses[content.lens as usize].border.map_or(0, |b| b.parameters + 1),
-                ..layout::Invoker::default()
+            out.all.extend(plan.contents.iter().map(|content| {
+                let lens = &plan.lenses[content.lens as usize];
+                let invoker = layout::Invoker {
+                    handler: content.city,
+                    scope: scope_number(Scope::Lens(content.lens, content.class)),
+                    first_volume: volumes[content.lens as usize],
+                    volumes: lens.volumes.len() as u32,
+                    weight: u32::from(content.keeps_terrain),
+                    kind: content.clip.number(),
+                    border: lens.border.map_or(0, |b| b.parameters + 1),
+                    ..layout::Invoker::default()
+                };
+                invoker.packed()
             }));
         }
         out.contents = [first, out.all.len() as u32];
@@ -67,8 +72,8 @@ impl Invokers {
 
     fn sections_of(&mut self, plan: &Plan, handlers: &[EffectDefinition]) -> [Vec<Entry>; SECTIONS] {
         let volumes = volumes_before(plan);
-        let mut add = |invoker, lens: Option<u32>, is_inside: bool| {
-            self.all.push(invoker);
+        let mut add = |invoker: layout::Invoker, lens: Option<u32>, is_inside: bool| {
+            self.all.push(invoker.packed());
             self.inside_of.push(lens.filter(|_| is_inside));
             (self.all.len() as u32 - 1, lens)
         };
@@ -122,16 +127,16 @@ impl Invokers {
     }
 
     /// All of them.
-    pub fn all(&self) -> &[layout::Invoker] {
+    pub fn all(&self) -> &[layout::PackedInvoker] {
         &self.all
     }
 
     /// The lists of all tiles of a picture, where the lenses of the plan may be seen in these parts of it: for each tile where
-    /// its sections begin and the last one ends, and then the invokers. First those outside of all lenses.
+    /// its sections begin and the last one ends, and then the invokers, three words each. First those outside of all lenses.
     pub fn tile_lists(&self, parts: &[Octagon], size: [u32; 2]) -> Vec<u32> {
         let [across, down] = size.map(|side| side.div_ceil(TILE_PX));
         // Which lenses a tile may show; ascending, as they are gone through in order.
-        let mut seen: Vec<Vec<u32>> = vec![Vec::new(); (across * down) as usize];
+        let mut pairs: Vec<(u32, u32)> = Vec::new();
         for (lens, part) in (0..).zip(parts) {
             let around = part.rectangle();
             let [x, y] = around.origin.map(|o| o / TILE_PX);
@@ -140,47 +145,54 @@ impl Invokers {
                 for column in x..end(0, across) {
                     let tile = PictureTile { origin: [column * TILE_PX, row * TILE_PX], size: [TILE_PX; 2] };
                     if part.within(tile).is_some() {
-                        seen[(row * across + column) as usize].push(lens);
+                        pairs.push((row * across + column, lens));
                     }
                 }
             }
         }
+        // Stable: lenses of a tile keep their order.
+        pairs.sort_by_key(|(tile, _)| *tile);
         let [context, lenses] = &self.sections;
+        let mut words = vec![0; 6 * (1 + (across * down) as usize)];
+        let put = |words: &mut Vec<u32>, (invoker, _): &Entry| {
+            let kept = &self.all[*invoker as usize];
+            words.extend([kept.place, kept.call, *invoker]);
+        };
+        for (i, section) in context.iter().enumerate() {
+            words[i] = words.len() as u32;
+            section.iter().for_each(|entry| put(&mut words, entry));
+        }
+        words[SECTIONS] = words.len() as u32;
         // The entries of each lens stand together, in the order of lenses, but those of the context come first.
-        let begin = |section: &[Entry]| -> Vec<u32> {
-            let mut first = vec![0; parts.len() + 1];
-            for (_, lens) in section {
-                first[lens.map_or(0, |l| l as usize + 1).min(parts.len())] += 1;
+        let begins: Vec<Vec<u32>> = lenses.iter().map(|section| begins_of(section, parts.len())).collect();
+        let mut shown = pairs.chunk_by(|a, b| a.0 == b.0).peekable();
+        for tile in 0..across * down {
+            let own = shown.next_if(|pairs| pairs[0].0 == tile).unwrap_or_default();
+            let record = 6 * (1 + tile as usize);
+            for (i, section) in lenses.iter().enumerate() {
+                words[record + i] = words.len() as u32;
+                section[..begins[i][0] as usize].iter().for_each(|entry| put(&mut words, entry));
+                for (_, lens) in own {
+                    let [from, to] = [0, 1].map(|end| begins[i][*lens as usize + end] as usize);
+                    section[from..to].iter().for_each(|entry| put(&mut words, entry));
+                }
             }
-            for i in 1..first.len() {
-                first[i] += first[i - 1];
-            }
-            first
-        };
-        let begins: Vec<Vec<u32>> = lenses.iter().map(|section| begin(section)).collect();
-        let records = 6 * (1 + seen.len());
-        let mut words = vec![0; records];
-        let put = |words: &mut Vec<u32>, record: usize, lists: [Vec<u32>; SECTIONS]| {
-            for (i, list) in lists.into_iter().enumerate() {
-                words[6 * record + i] = words.len() as u32;
-                words.extend(list);
-            }
-            words[6 * record + SECTIONS] = words.len() as u32;
-        };
-        put(&mut words, 0, std::array::from_fn(|i| context[i].iter().map(|(invoker, _)| *invoker).collect()));
-        for (tile, shown) in seen.iter().enumerate() {
-            let list = |i: usize| -> Vec<u32> {
-                let of = |from: usize, to: u32| lenses[i][from..to as usize].iter().map(|(invoker, _)| *invoker);
-                let own = |lens: &u32| {
-                    let lens = *lens as usize;
-                    of(begins[i][lens] as usize, begins[i][lens + 1])
-                };
-                of(0, begins[i][0]).chain(shown.iter().flat_map(own)).collect()
-            };
-            put(&mut words, 1 + tile, std::array::from_fn(list));
+            words[record + SECTIONS] = words.len() as u32;
         }
         words
     }
+}
+
+/// Where the entries of each of so many lenses begin in a section, and those of the last one end.
+fn begins_of(section: &[Entry], lenses: usize) -> Vec<u32> {
+    let mut begins = vec![0; lenses + 1];
+    for (_, lens) in section {
+        begins[lens.map_or(0, |l| l as usize + 1).min(lenses)] += 1;
+    }
+    for i in 1..begins.len() {
+        begins[i] += begins[i - 1];
+    }
+    begins
 }
 
 /// How many volumes come before those of each lens of a plan.
@@ -221,7 +233,8 @@ fn invoker(plan: &Plan, volumes: &[u32], step: &Step, handler: &EffectDefinition
         parameters: if handler.kind == EffectKind::Filter { step.image(handler) } else { step.parameters },
         blend: step.blend.map_or(0, Blend::number),
         weight: step.weight(handler).unwrap_or(0),
-        number: u32::from(handler.kind == EffectKind::Scene),
+        kind: u32::from(handler.kind == EffectKind::Scene),
+        number: 0,
         border: border.map_or(0, |b| b.parameters + 1),
     }
 }

@@ -244,9 +244,18 @@ pub struct FilterStage {
     pub pad_0: u32,
 }
 
-/// `shader::uber`: one entry of the invoker table.
+/// `shader::uber`: one entry of the invoker table, as the card keeps it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct PackedInvoker {
+    pub place: u32,
+    pub call: u32,
+    pub slots: u32,
+    pub number: u32,
+}
+
+/// An entry of the invoker table.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Invoker {
     pub handler: u32,
     pub scope: u32,
@@ -255,30 +264,55 @@ pub struct Invoker {
     pub parameters: u32,
     pub blend: u32,
     pub weight: u32,
+    /// What a style acts on, what a handler is to lines, how a content is clipped.
+    pub kind: u32,
+    /// Of a lens: its bit in the masks.
     pub number: u32,
     pub border: u32,
 }
 
-/// `pass/narrow.wgsl`: where an invoker may act.
+impl Invoker {
+    /// Few words: on software adapters an invoker costs the words that are read of it.
+    pub fn packed(&self) -> PackedInvoker {
+        PackedInvoker {
+            place: self.scope | self.first_volume << 3 | self.volumes << 14,
+            call: self.handler | self.parameters << 13 | self.blend << 26 | self.kind << 29,
+            slots: self.weight | self.border << 16,
+            number: self.number,
+        }
+    }
+}
+
+/// `pass/narrow.wgsl`: where an invoker may act, in x, y and distance: from and to, two halves of a word each.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Reach {
-    pub low: [f32; 3],
-    pub is_everywhere: u32,
-    pub high: [f32; 3],
-    pub pad_0: u32,
+    pub x: u32,
+    pub y: u32,
+    pub distance: u32,
 }
 
 impl Reach {
     /// Everywhere.
-    pub const EVERYWHERE: Self = Self { low: [0.0; 3], is_everywhere: 1, high: [0.0; 3], pad_0: 0 };
+    pub const EVERYWHERE: Self = Self { x: 0x7c00_fc00, y: 0x7c00_fc00, distance: 0x7c00_fc00 };
 
-    /// In a box of x, y and distance, metres; infinite ones are cut where f32 ends.
+    /// In a box of x, y and distance, metres; rounded outwards.
     pub fn of([low, high]: &[glam::DVec3; 2]) -> Self {
-        let most = f64::from(f32::MAX);
-        let cut = |corner: &glam::DVec3| corner.to_array().map(|c| c.clamp(-most, most) as f32);
-        Self { low: cut(low), high: cut(high), ..Self::default() }
+        let word = |low: f64, high: f64| u32::from(half_above(-low) ^ 0x8000) | u32::from(half_above(high)) << 16;
+        Self { x: word(low.x, high.x), y: word(low.y, high.y), distance: word(low.z, high.z) }
     }
+}
+
+/// The bits of the least number of half precision that is not less; infinity above 65504.
+fn half_above(number: f64) -> u16 {
+    let size = number.abs();
+    // Steps of 2^-24 below 2^-14, of 2^-10 of a power of two above.
+    let exponent = size.max(1.0 / 16_384.0).min(65_536.0).log2().floor();
+    let steps = size.min(65_536.0) * (10.0 - exponent).exp2();
+    let whole = if number < 0.0 { steps.floor() } else { steps.ceil() };
+    // From the steps of one power of two to those of the next the bits go on.
+    let bits = (whole as u32 + ((exponent + 14.0) as u32) * 1024).min(0x7c00) as u16;
+    if number < 0.0 { bits.min(0x7bff) | 0x8000 } else { bits }
 }
 
 /// `pass/furniture.wgsl`, per instance.
@@ -333,6 +367,31 @@ mod tests {
             }
         }
         wrong
+    }
+
+    #[test]
+    fn halves_are_the_next_ones_above() {
+        let number = |bits: u16| {
+            let (size, exponent) = (f64::from(bits & 0x3ff), i32::from(bits >> 10 & 31));
+            let size = match exponent {
+                31 => f64::INFINITY,
+                0 => size * 2_f64.powi(-24),
+                _ => (1024.0 + size) * 2_f64.powi(exponent - 25),
+            };
+            if bits & 0x8000 == 0 { size } else { -size }
+        };
+        // In ascending order, minus zero left out.
+        let all: Vec<u16> = (0x8001..0xfc00).rev().chain(0..=0x7c00).collect();
+        for pair in all.windows(2) {
+            let [below, above] = [number(pair[0]), number(pair[1])];
+            let between = if above.is_finite() { 0.5 * (below + above) } else { 1e300 };
+            for inside in [above, between, below + 1e-9 * (above.min(1e5) - below)] {
+                assert_eq!(number(half_above(inside)), above, "{inside} is above {below}");
+            }
+        }
+        assert_eq!(number(half_above(-1e300)), -65504.0);
+        let [low, high] = [glam::DVec3::NEG_INFINITY, glam::DVec3::INFINITY];
+        assert_eq!(Reach::of(&[low, high]), Reach::EVERYWHERE);
     }
 
     #[test]
@@ -391,11 +450,8 @@ mod tests {
             ),
             (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin, clip_scale, clip_shift, leaves })),
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, length, layers, layer, pad_0 })),
-            (
-                &uber,
-                host!(Invoker { handler, scope, first_volume, volumes, parameters, blend, weight, number, border }),
-            ),
-            (&Module::Narrow, host!(Reach { low, is_everywhere, high, pad_0 })),
+            (&uber, host!(PackedInvoker { place, call, slots, number })),
+            (&Module::Narrow, host!(Reach { x, y, distance })),
             (&cut, host!(City { linear, from_whole, number, from_fraction, first_surface, to, scale })),
             (
                 &shade,

@@ -12,22 +12,22 @@ use crate::{
     shader::Module,
 };
 
-/// Of the box around what a tile shows: two `vec3f`.
-const BOX_BYTES: u64 = 32;
+/// Of the depths that a tile shows: a `vec2f` for each two columns.
+const SHOWN_BYTES: u64 = 16 * 8;
 /// Tiles that a workgroup of `narrow` goes through.
 const TILES_PER_GROUP: u32 = 8;
 
 /// Made when a picture first has many lenses.
 #[derive(Debug)]
 pub(super) struct Narrowing {
-    /// Boxes around what tiles show, and what is left of their lists.
+    /// The depths that tiles show, and what is left of their lists.
     pipelines: [wgpu::ComputePipeline; 2],
     layout: wgpu::BindGroupLayout,
     view: wgpu::BindGroupLayout,
     reaches: Synced,
     /// The narrowed lists.
     pub lists: wgpu::Buffer,
-    /// The boxes.
+    /// The depths.
     shown: wgpu::Buffer,
 }
 
@@ -89,9 +89,9 @@ impl Narrowing {
     fn sync(&mut self, gpu: &Gpu, reaches: &[layout::Reach], bytes: u64, tiles: u32) -> Result<bool, GpuError> {
         self.reaches.sync(gpu, reaches)?;
         let usage = wgpu::BufferUsages::STORAGE;
-        let boxes = u64::from(tiles) * BOX_BYTES;
-        if self.shown.size() < boxes {
-            self.shown = gpu.empty_buffer("what tiles show", usage, boxes.next_power_of_two())?;
+        let depths = u64::from(tiles) * SHOWN_BYTES;
+        if self.shown.size() < depths {
+            self.shown = gpu.empty_buffer("what tiles show", usage, depths.next_power_of_two())?;
         }
         let is_small = self.lists.size() < bytes;
         if is_small {

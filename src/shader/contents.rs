@@ -53,15 +53,15 @@ pub(super) fn uber(place: &str, runs: &str) -> String {
     SHOWN.replace("PLACE", place).replace("runs(by)", runs)
 }
 
-/// `handler` of an invoker is the city's number, `number` that of the clip, `weight` 1 where terrain stays.
+/// `handler` of an invoker is the city's number, `kind` that of the clip, `weight` 1 where terrain stays.
 const SHOWN: &str = "fn shown_cities(PLACE) -> u32 {
     var shown = 1u;
     var below = 0u;
     for (var i = table.tiles.y; i < table.tiles.z; i++) {
-        let by = invokers[i];
+        let by = invoker(i);
         if (by.weight == 0u || fragment.part != PART_TERRAIN) && runs(by) {
             let own = 1u << by.handler;
-            switch by.number {
+            switch by.kind {
                 case 0u: { shown = own; }
                 case 1u: { shown |= own; }
                 default: { shown = select(0u, own, (below & ~own) == 0u); }

@@ -308,6 +308,9 @@ impl EffectDefinition {
     }
 }
 
+/// What the 13 bits of an invoker's handler can tell apart.
+const MOST_HANDLERS: usize = 8192;
+
 /// The handlers there are. Definitions are never freed: a pipeline may refer to one that was replaced.
 static EFFECTS: LazyLock<RwLock<&'static [EffectDefinition]>> = LazyLock::new(|| {
     let read = |(path, text): &(&str, &str)| {
@@ -342,6 +345,10 @@ pub fn add(path: &str, text: &str) -> Result<(), FileError> {
     let mut all = EFFECTS.write().unwrap_or_else(std::sync::PoisonError::into_inner);
     if all.iter().any(|e| e.name == effect.name) {
         let message = format!("there is an effect \"{}\" already; expected another name", effect.name);
+        return Err(FileError { path: path.to_owned(), line: 1, column: 1, message });
+    }
+    if all.len() == MOST_HANDLERS {
+        let message = format!("there are {MOST_HANDLERS} effects already; expected no more");
         return Err(FileError { path: path.to_owned(), line: 1, column: 1, message });
     }
     let mut more = all.to_vec();

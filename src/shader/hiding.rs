@@ -226,7 +226,7 @@ const RUNS_WITHOUT_LENSES: &str = "fn runs(by: Invoker, fragment: Fragment) -> b
 
 const VISIBLE: &str = "    let range = table.ranges.xy;
     for (var i = range.x; i < range.y; i++) {
-        let by = invokers[i];
+        let by = invoker(i);
         if runs(by, fragment) && hides(fragment, by) {
             return false;
         }

@@ -175,29 +175,29 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     text.push_str(LINE_KINDS);
 }
 
-/// `by.number` says what an invoker is to lines: as `render::operations` writes it.
+/// `by.kind` says what an invoker is to lines: as `render::operations` writes it.
 const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, other: Fragment, classes: Classes) -> vec4f {
     var color = vec3f(0.0);
     var opacity = 0.0;
     var is_hidden = false;
     let range = table.ranges.zw;
-    let drawing = invokers[range.x + step];
+    let drawing = invoker(range.x + step);
     for (var i = range.x; i < range.y; i++) {
-        let by = invokers[i];
+        let by = invoker(i);
         let share = line_share(by, fragment, classes);
         if share <= 0.0 {
             continue;
         }
-        if by.number == POST {
+        if by.kind == POST {
             STYLED
         }
-        if (by.number == SCENE || by.number == SCENE_WITH_LINES) && drawing.number == SCENE_WITH_LINES {
+        if (by.kind == SCENE || by.kind == SCENE_WITH_LINES) && drawing.kind == SCENE_WITH_LINES {
             opacity = select(opacity * (1.0 - share), 0.0, by.border == 0u);
         }
-        if by.number == HIDE && hides(fragment, by) && hides(other, by) {
+        if by.kind == HIDE && hides(fragment, by) && hides(other, by) {
             is_hidden = true;
         }
-        let draws = by.number == SCENE_WITH_LINES || (by.number == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
+        let draws = by.kind == SCENE_WITH_LINES || (by.kind == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
         if draws && i == range.x + step {
             color = line_color(by);
             opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u) * share;
@@ -218,7 +218,7 @@ const LINE_SHARE: &str = "fn line_share(by: Invoker, fragment: Fragment, classes
 
 /// The same where lenses fade: what hides is there or not.
 const LINE_SHARE_FADED: &str = "fn line_share(by: Invoker, fragment: Fragment, classes: Classes) -> f32 {
-    if by.number == HIDE || by.number == HIDE_WITH_LINES {
+    if by.kind == HIDE || by.kind == HIDE_WITH_LINES {
         return select(0.0, 1.0, is_there(by, fragment, classes));
     }
     return share_at(by, classes);

@@ -169,30 +169,30 @@ fn each(uber: &Uber, section: &str, body: &str) -> String {
 }
 
 const EACH: &str = "    let LIST = invokers_of(classes, SECTION);
-    for (var first = LIST.x; first < LIST.y; first += 32u) {
-        var left = running(first, min(first + 32u, LIST.y), classes);
+    for (var first = LIST.x; first < LIST.y; first += 32u * ENTRY) {
+        var left = running(first, min(first + 32u * ENTRY, LIST.y), classes);
         while left != 0u {
-            let by = invokers[tile_lists[first + firstTrailingBit(left)]];
+            let by = listed(first + ENTRY * firstTrailingBit(left));
             BODY
             left &= left - 1u;
             if left == 0u {
                 break;
             }
         }
-        if first + 32u >= LIST.y {
+        if first + 32u * ENTRY >= LIST.y {
             break;
         }
     }
 ";
 
 const EACH_SHARE: &str = "    let LIST = invokers_of(classes, SECTION);
-    for (var k = LIST.x; k < LIST.y; k++) {
-        let by = invokers[tile_lists[k]];
+    for (var k = LIST.x; k < LIST.y; k += ENTRY) {
+        let by = listed(k);
         let share = share_at(by, classes);
         if share > 0.0 {
             BODY
         }
-        if k + 1u == LIST.y {
+        if k + ENTRY == LIST.y {
             break;
         }
     }
@@ -247,7 +247,7 @@ fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     text + &each(uber, "STYLES", &body) + "    return color;\n}\n\n"
 }
 
-const STYLE: &str = "let is_scene_style = by.number == 1u;
+const STYLE: &str = "let is_scene_style = by.kind == 1u;
 if !is_scene_style || point.surface != NO_SURFACE {
     color = invoke_style(color, point, by);
     if is_scene_style {
@@ -271,8 +271,17 @@ struct Invoker {
     parameters: u32,            // its first slot
     blend: u32,                 // 0 replaces
     weight: u32,                // slot of its weight, if blended
-    number: u32,                // of a style: 1 = for surfaces alone; of a lens: its bit in the masks
+    kind: u32,                  // of a style: 1 = for surfaces alone
+    number: u32,                // of a lens: its bit in the masks
     border: u32,                // of a lens that fades: the slot after that of its border; 0 else
+}
+
+// One as it is kept: a software adapter takes long for each word that it reads.
+struct PackedInvoker {
+    place: u32,                 // scope: 3 bits, first_volume: 11, volumes: 11
+    call: u32,                  // handler: 13 bits, parameters: 13, blend: 3, kind: 3
+    slots: u32,                 // weight, border: 16 bits each
+    number: u32,
 }
 
 struct InvokerTable {
@@ -282,12 +291,23 @@ struct InvokerTable {
 
 // A uniform, as it always was: with none at this place Mesa 22.3 takes others for each other, and crashes.
 @group(2) @binding(5) var<uniform> table: InvokerTable;
-@group(2) @binding(9) var<storage, read> invokers: array<Invoker>;
+@group(2) @binding(9) var<storage, read> invokers: array<PackedInvoker>;
+
+fn unpacked_invoker(kept: PackedInvoker) -> Invoker {
+    return Invoker(
+        kept.call & 8191u, kept.place & 7u, (kept.place >> 3u) & 2047u, kept.place >> 14u, (kept.call >> 13u) & 8191u,
+        (kept.call >> 26u) & 7u, kept.slots & 65535u, kept.call >> 29u, kept.number, kept.slots >> 16u);
+}
+
+fn invoker(i: u32) -> Invoker {
+    return unpacked_invoker(invokers[i]);
+}
 
 ";
 
 /// Which invokers may run at a pixel, for shading (L8): those of the lenses that its tile may show. Sections in their order.
-const TILES: &str = "// Per tile six places: where its invokers of each section begin, and where the last end; first those outside of all lenses.
+const TILES: &str = "// Per tile six places: where its invokers of each section begin, and where the last end; first those outside of all lenses. Then the
+// invokers, three words each: place and call, which most is asked of, and the number in the table.
 @group(2) @binding(8) var<storage, read> tile_lists: array<u32>;
 
 const MATERIALS: u32 = 0u;
@@ -295,18 +315,26 @@ const LIGHTS: u32 = 1u;
 const STYLES: u32 = 2u;
 const OUTLINES: u32 = 3u;
 const MASKS: u32 = 4u;
+const ENTRY: u32 = 3u;          // words
 
 fn invokers_of(classes: Classes, section: u32) -> vec2u {
     let record = 6u * tile_of(classes) + section;
     return vec2u(tile_lists[record], tile_lists[record + 1u]);
 }
 
+fn listed(at: u32) -> Invoker {
+    let others = invokers[tile_lists[at + 2u]];
+    return unpacked_invoker(PackedInvoker(tile_lists[at], tile_lists[at + 1u], others.slots, others.number));
+}
+
 // Which of the invokers from `first` up to `end` of the lists, at most 32, run at a place: a bit for each.
 fn running(first: u32, end: u32, classes: Classes) -> u32 {
     var bits = 0u;
-    for (var k = first; k < end; k++) {
-        bits |= select(0u, 1u << (k - first), runs(invokers[tile_lists[k]], classes));
-        if k + 1u == end {
+    var bit = 1u;
+    for (var k = first; k < end; k += ENTRY) {
+        bits |= select(0u, bit, runs(listed(k), classes));
+        bit <<= 1u;
+        if k + ENTRY == end {
             break;
         }
     }
@@ -414,7 +442,7 @@ const NO_OUTLINES: &str = "fn outlines(start: vec4f, pixel: vec2i, classes: Clas
 ";
 
 const LENS_COVERS: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
-    let by = invokers[lens];
+    let by = invoker(lens);
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         if volume_covers(v, pixel) {
             return true;
@@ -429,7 +457,7 @@ const LENS_COVERS: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
 ";
 
 const LENS_DISTANCE: &str = "fn lens_distance(lens: u32, sight: Sight) -> f32 {
-    let by = invokers[lens];
+    let by = invoker(lens);
     var distance = FAR_AWAY;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         distance = min(distance, distance_to(v, sight, vec4f(0.0)));
@@ -443,7 +471,7 @@ const LENS_DISTANCE: &str = "fn lens_distance(lens: u32, sight: Sight) -> f32 {
 ";
 
 const LENS_ENDS: &str = "fn lens_ends(lens: u32, pixel: vec2i, ray: Ray) -> Span {
-    let by = invokers[lens];
+    let by = invoker(lens);
     var ends = EMPTY_SPAN;
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
         ends = with_span(ends, ends_of_volume(v, pixel, ray));
@@ -461,9 +489,9 @@ fn outlines_of(kinds: &[BodyKind]) -> String {
     let mut text = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
     var paint = start;
     let run = invokers_of(classes, OUTLINES);
-    for (var k = run.x; k < run.y; k++) {
-        let lens = tile_lists[k];
-        let by = invokers[lens];
+    for (var k = run.x; k < run.y; k += ENTRY) {
+        let lens = tile_lists[k + 2u];
+        let by = listed(k);
         let color = parameters[by.parameters];
         let width = parameters[by.parameters + 1u].x;
 "
@@ -478,23 +506,23 @@ fn outlines_of(kinds: &[BodyKind]) -> String {
         let line = if kind.has_outline() { line } else { "" };
         let _ = write!(text, "        if by.handler == {}u {{\n{drawn}{line}        }}\n", kind.number());
     }
-    text + "        if k + 1u == run.y {\n            break;\n        }\n    }\n    return paint;\n}\n\n"
+    text + "        if k + ENTRY == run.y {\n            break;\n        }\n    }\n    return paint;\n}\n\n"
 }
 
 const WRITE_CLASSES: &str = "    var bits = vec3u(0u);
     let run = invokers_of(classes, MASKS);
-    for (var k = run.x; k < run.y; k++) {
-        let by = invokers[tile_lists[k]];
+    for (var k = run.x; k < run.y; k += ENTRY) {
+        let by = listed(k);
         let all = classes_of(by, classes);
         bits |= select(vec3u(0u), vec3u(1u << (by.number % 32u)), (vec3u(all) & vec3u(INSIDE, FRONT, BEHIND)) != vec3u(0u));
         let layer = i32(by.number / 32u) * 3;
-        if k + 1u == run.y || invokers[tile_lists[k + 1u]].number / 32u != by.number / 32u {
+        if k + ENTRY == run.y || listed(k + ENTRY).number / 32u != by.number / 32u {
             textureStore(class_masks, pixel, layer, vec4u(bits.x, 0u, 0u, 0u));
             textureStore(class_masks, pixel, layer + 1, vec4u(bits.y, 0u, 0u, 0u));
             textureStore(class_masks, pixel, layer + 2, vec4u(bits.z, 0u, 0u, 0u));
             bits = vec3u(0u);
         }
-        if k + 1u == run.y {
+        if k + ENTRY == run.y {
             break;
         }
     }
