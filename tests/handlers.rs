@@ -181,7 +181,7 @@ fn the_text_of_a_scene_is_readable_and_says_whose_it_is() {
     assert!(text.contains("if is_inside(classes.lens_0) {\n        color = sepia(color, point, sepia_parameters("));
     assert!(text.lines().all(|line| line.len() <= 160 && line.trim_end() == line), "a long line, or blanks at its end");
     let uber = studio.shader(&scene, SIZE, Backend::Uber, ShaderPart::Shade).expect("a text");
-    assert!(uber.contains("invokers: array<Invoker>") && !text.contains("Invoker"));
+    assert!(uber.contains("invokers: array<PackedInvoker>") && !text.contains("Invoker"));
     let mut scene = scene;
     scene.lenses[0].effects.push(used("wireframe"));
     let part = |part: ShaderPart| studio.shader(&scene, SIZE, Backend::Specialised, part).expect("a text");

@@ -7,7 +7,8 @@
 use std::ops::Range;
 
 use crate::render::{
-    frame::{FrameInput, Recorder, behind, color_attachment},
+    eye::PictureTile,
+    frame::{FrameInput, Recorder, behind, color_attachment, scissor},
     key::Key,
     layout,
     octagon::{Mesh, Octagon, merged},
@@ -62,7 +63,7 @@ impl Renderer {
                 for image in 0..images {
                     let stage = |direction| ((2 * (k * images + image) + direction) as u64 * STAGE_STRIDE) as u32;
                     let lines = 4 * (k * images + image);
-                    let mut filter_in = |name, group, direction, into: &[wgpu::TextureView], parts: &[Range<u32>]| {
+                    let mut filter_in = |name, group, direction, into: &[wgpu::TextureView], parts: &[Piece]| {
                         self.filter_pass(encoder, recorder, (name, &lenses), into, parts, |pass| {
                             pass.set_pipeline(self.pipelines.get(&Key::Filter(filters[k].effect)));
                             pass.set_bind_group(0, group, &[stage(direction)]);
@@ -82,7 +83,7 @@ impl Renderer {
         recorder: &mut Recorder,
         (name, lenses): (&'static str, &[u32]),
         into: &[wgpu::TextureView],
-        parts: &[Range<u32>],
+        parts: &[Piece],
         set: impl FnOnce(&mut wgpu::RenderPass),
     ) {
         let slot = recorder.begin(name, "main", lenses, true);
@@ -106,15 +107,17 @@ impl Renderer {
         }
         set(&mut pass);
         pass.set_vertex_buffer(0, self.buffers.mesh.buffer().slice(..));
-        for part in parts {
-            pass.draw(part.clone(), 0..1);
+        let (mut draws, mut triangles) = (0, 0);
+        for (corners, tile) in parts.iter().filter(|(_, tile)| !tile.is_empty()) {
+            scissor(&mut pass, *tile);
+            pass.draw(corners.clone(), 0..1);
+            (draws, triangles) = (draws + 1, triangles + corners.len() as u64 / 3);
         }
         if let Some(timer) = &recorder.timer {
             timer.end_count(&mut pass, slot);
         }
         drop(pass);
-        let triangles: usize = parts.iter().map(|part| part.len() / 3).sum();
-        recorder.count(parts.len() as u32, triangles as u64);
+        recorder.count(draws, triangles);
     }
 }
 
@@ -122,12 +125,15 @@ fn lenses_of(filter: &Filter) -> impl Iterator<Item = u32> {
     filter.uses.iter().filter_map(|(lens, _)| *lens)
 }
 
-/// Where a filter and what it reads are drawn: corners of the frame's mesh.
+/// Corners of the frame's mesh, and texels that cut what they span.
+type Piece = (Range<u32>, PictureTile);
+
+/// Where a filter and what it reads are drawn.
 pub(super) struct FilterParts {
     /// The image that it reads, and others that read the same; of the first of these.
-    unfiltered: Vec<Range<u32>>,
-    down: Vec<Range<u32>>,
-    across: Vec<Range<u32>>,
+    unfiltered: Vec<Piece>,
+    down: Vec<Piece>,
+    across: Vec<Piece>,
 }
 
 /// Where the uses of a filter may be seen.
@@ -146,7 +152,7 @@ pub(super) fn parts(filters: &[Filter], size: [u32; 2], seen: &[SeenVolume], mes
     let parts_of = |i: usize| {
         let reach = filters[i].reach as i32;
         let mut add =
-            |parts: Vec<Octagon>, block| merged(parts).into_iter().map(|p| mesh.add(p, size, block)).collect();
+            |parts: Vec<Octagon>, block| merged(parts).into_iter().flat_map(|p| mesh.add(p, size, block)).collect();
         let unfiltered = match is_first(filters, i) {
             true => with_same_image(filters, i).flat_map(|k| grown(k, [filters[k].reach as i32; 2])).collect(),
             false => Vec::new(),

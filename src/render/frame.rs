@@ -230,7 +230,7 @@ impl Renderer {
         let mut mesh = Mesh::default();
         let (size, whole) = (input.tile.size, PictureTile::whole(input.tile.size));
         let shade_parts = match part_of(seen.iter()) {
-            Some(part) => [vec![(mesh.add_beyond(part, size), whole)], mesh.add_cut(part, size)],
+            Some(part) => [vec![(mesh.add_beyond(part, size), whole)], mesh.add(part, size, [1, 1])],
             None => [vec![(mesh.all(), whole)], Vec::new()],
         };
         let filter_parts = filters::parts(&plans.filters, size, seen, &mut mesh);

@@ -117,16 +117,16 @@ impl Octagon {
         (2..n).flat_map(|i| [zigzag(i - 2), zigzag(i - 1), zigzag(i)]).collect()
     }
 
-    /// The same as one triangle for its left half and one for its right, each with the rectangle that cuts it; `None` where a
-    /// side of one half reaches into the other. No block of pixels lies on two triangles then.
-    pub fn halves(&self) -> Option<[([DVec2; 3], PictureTile); 2]> {
+    /// The same as one triangle for its left half and one for its right, each with the rectangle of texels that cuts it, of blocks of so
+    /// many pixels; `None` where a side of one half reaches into the other. No four by four texels lie on two triangles then.
+    pub fn halves(&self, block: [u32; 2]) -> Option<[([DVec2; 3], PictureTile); 2]> {
         let [[s0, s1], [d0, d1]] = self.slants();
-        let PictureTile { origin: [x, y], size: [w, h] } = self.rectangle();
-        let [y0, y1] = [y, y + h].map(f64::from);
-        // Between the slanted sides of the left half and those of the right, at the border of a block.
-        let from = (s0 - y0).max(d0 + y1).max(x.into());
-        let middle = (from / 4.0).ceil() * 4.0;
-        if middle > (s1 - y1).min(d1 + y0).min((x + w).into()) {
+        let [[x0, y0], [x1, y1]] = [self.low, self.high].map(|[x, y, ..]| [x, y].map(f64::from));
+        // Between the slanted sides of the left half and those of the right.
+        let from = (s0 - y0).max(d0 + y1).max(x0);
+        let side = f64::from(4 * block[0]);
+        let middle = (from / side).ceil() * side;
+        if middle > (s1 - y1).min(d1 + y0).min(x1) {
             return None;
         }
         let half = |[s, d]: [f64; 2], along: f64| {
@@ -135,10 +135,13 @@ impl Octagon {
             let reach = (tip.x - middle).abs() + 1.0;
             [tip, tip + DVec2::new(along * reach, -reach), tip + DVec2::new(along * reach, reach)]
         };
-        let wide = middle as u32 - x;
-        let left = PictureTile { origin: [x, y], size: [wide, h] };
-        let right = PictureTile { origin: [x + wide, y], size: [w - wide, h] };
-        Some([(half([s0, d0], 1.0), left), (half([s1, d1], -1.0), right)])
+        // The first texel whose middle is not before a pixel.
+        let texel = |i: usize, pixel: f64| (pixel / f64::from(block[i]) - 0.5).ceil().max(0.0) as u32;
+        let texels = |from: f64, to: f64| {
+            let (low, high) = ([texel(0, from), texel(1, y0)], [texel(0, to), texel(1, y1)]);
+            PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] }
+        };
+        Some([(half([s0, d0], 1.0), texels(x0, middle)), (half([s1, d1], -1.0), texels(middle, x1))])
     }
 
     /// Triangles that cover once what of a picture it leaves; they reach beyond the picture.
@@ -184,26 +187,20 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Adds a part of a target whose texels are blocks of so many pixels: all blocks that hold a pixel of it. Which corners
-    /// these are.
-    pub fn add(&mut self, part: Octagon, size: [u32; 2], block: [u32; 2]) -> Range<u32> {
+    /// Adds a part of a target whose texels are blocks of so many pixels: all blocks that hold a pixel of it. In as few triangles as it
+    /// takes: which corners these are, each cut by a rectangle of texels.
+    pub fn add(&mut self, part: Octagon, size: [u32; 2], block: [u32; 2]) -> Vec<(Range<u32>, PictureTile)> {
         // A pixel's centre is so near to that of its block.
         let grown = part.grown(block.map(|side| side as i32 / 2));
         let target = in_blocks(size, block);
-        match grown.within(PictureTile::whole(target)) {
-            None => 0..0,
-            Some(part) if part.area() == f64::from(target[0]) * f64::from(target[1]) => self.all(),
-            Some(part) => self.triangles(&part.triangles(), target),
+        let whole = PictureTile::whole(std::array::from_fn(|i| target[i] / block[i]));
+        let Some(part) = grown.within(PictureTile::whole(target)) else { return Vec::new() };
+        if part.area() == f64::from(target[0]) * f64::from(target[1]) {
+            return vec![(self.all(), whole)];
         }
-    }
-
-    /// Adds a part of a picture in as few triangles as it takes, each cut by a rectangle.
-    pub fn add_cut(&mut self, part: Octagon, size: [u32; 2]) -> Vec<(Range<u32>, PictureTile)> {
-        let whole = PictureTile::whole(size);
-        let is_all = part.area() == f64::from(size[0]) * f64::from(size[1]);
-        match part.halves().filter(|_| !is_all) {
-            Some(halves) => halves.map(|(half, tile)| (self.triangles(&half, size), tile)).to_vec(),
-            None => vec![(self.add(part, size, [1, 1]), whole)],
+        match part.halves(block) {
+            Some(halves) => halves.map(|(half, tile)| (self.triangles(&half, target), tile)).to_vec(),
+            None => vec![(self.triangles(&part.triangles(), target), whole)],
         }
     }
 
@@ -305,9 +302,9 @@ mod tests {
         ];
         some.push(some[0].with(some[4]));
         some.push(some[1].grown([5, 1]));
-        let (mut slanted, mut halved) = (0, 0);
+        let (mut slanted, mut halved, mut in_blocks) = (0, 0, 0);
         for octagon in some.into_iter().filter_map(|o| o.within(part)) {
-            let (inside, outside, halves) = (octagon.triangles(), octagon.beyond(size), octagon.halves());
+            let (inside, outside, halves) = (octagon.triangles(), octagon.beyond(size), octagon.halves([1, 1]));
             halved += usize::from(halves.is_some());
             slanted += usize::from(octagon.area() < f64::from(octagon.rectangle().size.iter().product::<u32>()));
             let mut area = 0.0;
@@ -330,10 +327,23 @@ mod tests {
                 assert_eq!(found, [usize::from(is_in), usize::from(!is_in)], "{octagon:?} at {x} {y}");
                 area += f64::from(u8::from(is_in));
             }
+            for block in [[4, 1], [4, 4]] {
+                let Some(halves) = octagon.halves(block) else { continue };
+                for (i, k) in (0..5).flat_map(|k| (0..6).map(move |i| (i, k))) {
+                    let centre = |i: u32, side: u32| f64::from(side) * (f64::from(i) + 0.5);
+                    // What is drawn of which a side goes through the middle.
+                    let p = DVec2::new(centre(i, block[0]) + 1e-4, centre(k, block[1]) + 3e-4);
+                    let holds =
+                        |t: &PictureTile| (0..2).all(|a| (t.origin[a]..t.origin[a] + t.size[a]).contains(&[i, k][a]));
+                    let drawn: usize = halves.iter().filter(|(_, t)| holds(t)).map(|(half, _)| hits(half, p)).sum();
+                    assert_eq!(drawn, hits(&inside, p), "texel {i} {k} of {block:?}, {octagon:?}");
+                    in_blocks += drawn;
+                }
+            }
             assert!((area - octagon.area()).abs() <= 12.0, "{octagon:?}: {area} pixels, {}", octagon.area());
             assert!(octagon.has_inside() && octagon.area() > 0.0);
         }
-        assert!(slanted > 5 && halved > 2, "{slanted} {halved}");
+        assert!(slanted > 5 && halved > 2 && in_blocks > 50, "{slanted} {halved} {in_blocks}");
     }
 
     #[test]

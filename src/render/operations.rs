@@ -156,6 +156,7 @@ impl Operations {
                 kinds.dedup();
                 kinds
             },
+            sides: lenses.iter().any(|l| l.classes().any(|class| class != Class::Inside)),
             borders: lenses.iter().any(|l| l.soft_border().is_some()),
             dithers: lenses.iter().any(|l| l.soft_border().is_some_and(|b| b.discrete == Discrete::Dither)),
             blends: uses().any(|e| blend_of(e).is_some()),

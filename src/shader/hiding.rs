@@ -149,10 +149,10 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
         true => text.push_str(RUNS_WITHOUT_LENSES),
         false if uber.borders => {
             let tests = &uber.tests;
-            let (classes, distances) = (lens_test::class_of(tests), lens_test::distance_to(tests));
+            let (classes, distances) = (lens_test::class_of(uber), lens_test::distance_to(tests));
             text.push_str(&(classes + &distances + SHARE_OF + RUNS_DITHERED));
         }
-        false => text.push_str(&(lens_test::class_of(&uber.tests) + RUNS)),
+        false => text.push_str(&(lens_test::class_of(uber) + RUNS)),
     }
     text.push_str("fn hides(fragment: Fragment, by: Invoker) -> bool {\n    switch by.handler {\n");
     for &number in &uber.effects {

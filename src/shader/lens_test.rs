@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    plan::{Plan, Program, VolumeTest},
+    plan::{Plan, Program, Uber, VolumeTest},
     uber::MOST_VOLUMES,
 };
 
@@ -241,8 +241,9 @@ pub(super) fn distance_to(tests: &[VolumeTest]) -> String {
 }
 
 /// `class_of`, for the uber back end.
-pub(super) fn class_of(tests: &[VolumeTest]) -> String {
-    let body = by_number(tests, Question::Classes, "sight");
+pub(super) fn class_of(uber: &Uber) -> String {
+    let question = if uber.asks_inside_alone() { Question::Inside } else { Question::Classes };
+    let body = by_number(&uber.tests, question, "sight");
     format!("fn class_of(v: u32, sight: Sight) -> u32 {{\n{body}}}\n\n")
 }
 

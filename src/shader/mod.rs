@@ -465,6 +465,7 @@ mod tests {
             },
             leaves: LEAVES[seed % 8..].to_vec(),
             bodies: plan.bodies(),
+            sides: !seed.is_multiple_of(3),
             borders: plan.has_borders(),
             dithers: plan.has_borders(),
             blends: plan.has_blends(),

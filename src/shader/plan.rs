@@ -370,6 +370,8 @@ pub struct Uber {
     pub leaves: Vec<VolumeTest>,
     /// What their bodies are drawn as, ascending, each once.
     pub bodies: Vec<BodyKind>,
+    /// Whether something may act on other classes of them than *inside*.
+    pub sides: bool,
     /// Whether some of them have soft borders.
     pub borders: bool,
     /// Whether what cannot be had by halves is dithered along some of these.
@@ -395,17 +397,23 @@ impl Uber {
             tests: self.tests.clone(),
             leaves: self.leaves.clone(),
             contents: self.contents,
+            sides: self.sides,
             borders: self.dithers,
             ..Self::default()
         })
+    }
+
+    /// Whether nobody asks for other classes of lenses than *inside*.
+    pub fn asks_inside_alone(&self) -> bool {
+        !self.sides && !self.masks
     }
 
     /// What of it lines go through; `None` where nobody may draw any.
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        let (borders, dithers, contents) = (self.borders, self.dithers, self.contents);
-        let all = Self { effects, tests, leaves, borders, dithers, contents, ..Self::default() };
+        let Self { sides, borders, dithers, contents, .. } = *self;
+        let all = Self { effects, tests, leaves, sides, borders, dithers, contents, ..Self::default() };
         self.lines.then_some(Self { blends: self.blends, lines: true, ..all })
     }
 
