@@ -71,11 +71,6 @@ impl Stage {
     }
 }
 
-fn with_numbers(effect: &str, numbers: &[(&str, f64)]) -> EffectUse {
-    let parameters = numbers.iter().map(|(name, n)| ((*name).to_owned(), Parameter::Number(*n))).collect();
-    EffectUse { parameters, ..used(effect) }
-}
-
 /// Effects that need no parameter.
 fn ready() -> impl Iterator<Item = &'static EffectDefinition> {
     effects().filter(|e| !e.parameters.iter().any(|p| p.is_required()))

@@ -6,7 +6,7 @@ use glam::DVec3;
 use studio::*;
 use veduta::{
     geom::{Aabb, Shape},
-    lens::{Border, BorderUnit, Class, Discrete, EffectUse, Lens, LensBody},
+    lens::{Border, BorderUnit, Class, Discrete, EffectUse, Lens, LensBody, color},
     render::{
         frame::Backend,
         picture::{Aovs, Picture, Request, Studio},
@@ -107,6 +107,48 @@ fn more_lenses_than_are_written_out_are_gone_through_tile_by_tile() {
         let names = &drawn.statistics.pipelines.names;
         assert_eq!(names.iter().any(|name| name.contains("shade uber")), is_listed, "{count}: {names:?}");
     }
+}
+
+/// Lists are gone through in parts of 32 invokers; here one place runs more than two of these.
+#[test]
+fn many_at_one_place_run_in_their_order() {
+    let mut studio = synthetic(60);
+    let middle = studio.extent().center();
+    let camera = Camera::looking(middle + DVec3::new(90.0, -140.0, 90.0), middle, 0.9);
+    // Every second one inverts what the ones before it left.
+    let one = |i: usize| {
+        let effect = if i.is_multiple_of(2) { with_numbers("overlay", &[("opacity", 0.08)]) } else { used("invert") };
+        let shape = Shape::Sphere { center: middle, radius: 20.0 + 1.5 * ((7 * i) % 75) as f64 };
+        Lens { effects: vec![effect], ..lens(&format!("{i}"), vec![shape], "invert") }
+    };
+    let plain = draw(&mut studio, &scene(camera, Vec::new()), Backend::Specialised);
+    let all = scene(camera, (0..75).map(one).collect());
+    let drawn = draw(&mut studio, &all, Backend::Specialised);
+    let inside: Vec<Vec<bool>> = (0..75).map(|i| bits(&drawn, i)).collect();
+    let paint = color::linear_from_srgb([0xd5, 0x5e, 0x00].map(|c| f32::from(c as u8) / 255.0)).map(f64::from);
+    let (mut most, mut some) = (0, 0);
+    for (i, (before, after)) in plain.rgba.iter().zip(&drawn.rgba).enumerate() {
+        let running: Vec<usize> = (0..75).filter(|&lens| inside[lens][i]).collect();
+        let mut c =
+            color::linear_from_srgb([before[0], before[1], before[2]].map(|c| f32::from(c) / 255.0)).map(f64::from);
+        for &lens in &running {
+            c = match lens % 2 {
+                0 => std::array::from_fn(|k| 0.92 * c[k] + 0.08 * paint[k]),
+                _ => {
+                    let negative = color::srgb_from_linear(c.map(|c| c as f32)).map(|c| 1.0 - c);
+                    color::linear_from_srgb(negative).map(f64::from)
+                }
+            };
+        }
+        let wanted = color::srgb_from_linear(c.map(|c| c as f32)).map(|c| 255.0 * c);
+        for k in 0..3 {
+            let wrong = (wanted[k] - f32::from(after[k])).abs();
+            // What the plain picture is rounded by.
+            assert!(wrong <= 2.0, "pixel {i}, lenses {running:?}: {after:?}, not {wanted:?}");
+        }
+        (most, some) = (most.max(running.len()), some + usize::from((33..65).contains(&running.len())));
+    }
+    assert!(most > 64 && some > 1000, "{most} lenses at a place, more than 32 at {some}");
 }
 
 #[test]

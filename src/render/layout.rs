@@ -4,7 +4,10 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::render::palette;
+use crate::{
+    render::palette,
+    shader::{MOST_SLOTS, MOST_VOLUMES, effect::MOST_HANDLERS},
+};
 
 /// `lib/view.wgsl`.
 #[repr(C)]
@@ -270,6 +273,9 @@ pub struct Invoker {
     pub number: u32,
     pub border: u32,
 }
+
+// What `shader::uber` reads of the bits of an invoker.
+const _: () = assert!(MOST_VOLUMES < 1 << 11 && MOST_SLOTS < 1 << 13 && MOST_HANDLERS <= 1 << 13);
 
 impl Invoker {
     /// Few words: on software adapters an invoker costs the words that are read of it.

@@ -309,7 +309,7 @@ impl EffectDefinition {
 }
 
 /// What the 13 bits of an invoker's handler can tell apart.
-const MOST_HANDLERS: usize = 8192;
+pub const MOST_HANDLERS: usize = 8192;
 
 /// The handlers there are. Definitions are never freed: a pipeline may refer to one that was replaced.
 static EFFECTS: LazyLock<RwLock<&'static [EffectDefinition]>> = LazyLock::new(|| {

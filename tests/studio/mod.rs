@@ -18,7 +18,7 @@ use veduta::{
     },
     geom::{Ray, Shape, Volume, combination::Operation},
     gpu::Gpu,
-    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind, classify::intervals},
+    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, classify::intervals},
     render::picture::{Aovs, Picture, Request, Studio},
     scene::{CitySpec, Scene, Sun},
     view::{Camera, Projection},
@@ -111,6 +111,12 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
 /// An effect with its defaults.
 pub fn used(effect: &str) -> EffectUse {
     EffectUse { effect: effect.into(), class: Class::Inside, blend: None, weight: None, parameters: BTreeMap::new() }
+}
+
+/// An effect with these numbers.
+pub fn with_numbers(effect: &str, numbers: &[(&str, f64)]) -> EffectUse {
+    let parameters = numbers.iter().map(|(name, n)| ((*name).to_owned(), Parameter::Number(*n))).collect();
+    EffectUse { parameters, ..used(effect) }
 }
 
 /// What a focus area holds, in f64, from its parts.
