@@ -313,7 +313,7 @@ impl Reach {
 fn half_above(number: f64) -> u16 {
     let size = number.abs();
     // Steps of 2^-24 below 2^-14, of 2^-10 of a power of two above.
-    let exponent = size.max(1.0 / 16_384.0).min(65_536.0).log2().floor();
+    let exponent = size.clamp(1.0 / 16_384.0, 65_536.0).log2().floor();
     let steps = size.min(65_536.0) * (10.0 - exponent).exp2();
     let whole = if number < 0.0 { steps.floor() } else { steps.ceil() };
     // From the steps of one power of two to those of the next the bits go on.
