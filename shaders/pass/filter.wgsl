@@ -94,6 +94,7 @@ fn fragment(in: Corner) -> Lines {
         third += a.z * p + b.z * q;
         fourth += a.w * p + b.w * q;
         weights += a + b;
+        // Here, not at the beginning: a software adapter goes through a whole round to find that there is none.
         if i >= stage.reach + 2 {
             break;
         }

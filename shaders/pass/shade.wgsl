@@ -134,6 +134,7 @@ fn unfiltered(in: Corner) -> Unfiltered {
         }
         four.color = vec4u(four.color.yzw, packed(paint.rgb * paint.a));
         four.opacity = vec4u(four.opacity.yzw, packed(vec3f(paint.a)));
+        // Here, not at the beginning: a software adapter goes through a whole round to find that there is none.
         if i == 3 {
             break;
         }

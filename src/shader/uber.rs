@@ -160,7 +160,8 @@ pub(super) fn faded(uber: &Uber, text: &str) -> String {
 ///
 /// In two steps, for adapters that take many pixels at a time and go through whatever one of them may do: as often as there are entries
 /// in the list it is asked whether they run, but only as often as some run are handlers called. Where lenses fade it is one step, and
-/// each has its `share`: how much is left over from asking, and of it Mesa 22.3 makes something else at some pixels.
+/// each has its `share`: how much is left over from asking, and of it Mesa 22.3 makes something else at some pixels. Loops here leave at
+/// the end of their last round: such an adapter goes through a whole round to find that there is none.
 fn each(uber: &Uber, section: &str, body: &str) -> String {
     let loops = if fades(uber) { EACH_SHARE } else { EACH };
     let indented: String = body.lines().map(|line| format!("{:1$}{line}\n", "", 12)).collect();
