@@ -14,7 +14,8 @@
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     let roots = cone_roots(color);
     let lightness = lightness_of_roots(roots);
-    let step = (floor(min(lightness, 0.9999) * p.steps) + 0.5) / p.steps;
+    let step = (floor(min(lightness, 0.9999) * p.steps) + 0.5) * (1.0 / p.steps);
     // Chroma follows lightness.
-    return max(linear_from_roots(step + (step / max(lightness, 0.01)) * (roots - lightness)), vec3f(0.0));
+    let chroma = (1.0 / max(lightness, 0.01)) * (roots - lightness);
+    return max(linear_from_roots(step + step * chroma), vec3f(0.0));
 }
