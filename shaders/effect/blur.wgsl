@@ -12,6 +12,6 @@
 //! doc = "How far a point is spread: two and a half standard deviations."
 
 fn effect(offset: f32, p: Parameters) -> f32 {
-    let deviations = 2.5 * offset / max(p.radius, 1e-3);
+    let deviations = offset * (2.5 / max(p.radius, 1e-3));
     return exp(-0.5 * deviations * deviations);
 }

@@ -29,7 +29,7 @@ fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
 
 fn blended(below: vec3f, p: Parameters) -> vec3f {
     let multiplied = below * p.color;
-    let screened = 1.0 - (1.0 - below) * (1.0 - p.color);
+    let screened = below + p.color - multiplied;
     if p.mode == MODE_MULTIPLY {
         return multiplied;
     }
