@@ -1,7 +1,11 @@
 //! Lenses of city objects: a thematic lens is what belongs to its objects and nothing else, whatever is beside it; the volumes
-//! of objects hold the objects' own walls and roofs. Oracle: the object ids of the picture.
+//! of objects hold the objects' own walls and roofs; what shapes enclose are whole buildings. Oracle: the object ids of the picture.
 
+use std::collections::BTreeSet;
+
+use glam::DVec3;
 use veduta::{
+    geom::{Shape, combination::Operation},
     lens::{
         Focus, Lens, LensBody,
         chosen::{Choice, members},
@@ -19,7 +23,7 @@ mod studio;
 const SIZE: [u32; 2] = [240, 160];
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: studio::ALL, statistics: false, backend };
+    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: studio::ALL, statistics: true, backend };
     studio.render(scene, &request).expect("a picture")
 }
 
@@ -158,4 +162,126 @@ fn the_volumes_of_objects_hold_their_own_walls_and_roofs() {
         }
         assert!(found > 3_000 && 500 * past_edges < found, "{found}, {past_edges} past edges");
     }
+}
+
+/// The point of a triangle that is nearest to p (Ericson, Real-Time Collision Detection, 5.1.5).
+fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return a;
+    }
+    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return b;
+    }
+    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return c;
+    }
+    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + d1 / (d1 - d3) * ab;
+    }
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + d2 / (d2 - d6) * ac;
+    }
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+    }
+    let all = va + vb + vc;
+    a + vb / all * ab + vc / all * ac
+}
+
+/// The buildings that a ball touches, or holds with all their corners; ids of roots. By all their triangles.
+fn in_ball(studio: &Studio, center: DVec3, radius: f64, whole: bool) -> BTreeSet<u32> {
+    let root = |mut object: u32| {
+        while let Some(&parent) = studio.model.objects[object as usize].parents.first() {
+            object = parent;
+        }
+        object
+    };
+    let triangles: Vec<_> = studio::triangles(studio)
+        .into_iter()
+        .filter(|t| !studio.model.objects[t.object as usize].class.is_ground())
+        .collect();
+    let touches = |t: &&studio::Triangle| nearest(center, t.corners).distance(center) <= radius;
+    let is_cut = |t: &&studio::Triangle| t.corners.iter().any(|c| c.distance(center) > radius);
+    let mut found: BTreeSet<u32> = triangles.iter().filter(touches).map(|t| root(t.object)).collect();
+    if whole {
+        triangles.iter().filter(is_cut).for_each(|t| {
+            found.remove(&root(t.object));
+        });
+    }
+    found
+}
+
+/// One per object: whether its root is among these.
+fn with_parts(studio: &Studio, roots: &BTreeSet<u32>) -> Vec<bool> {
+    let mut all = vec![false; studio.model.objects.len()];
+    let mut next: Vec<u32> = roots.iter().copied().collect();
+    while let Some(object) = next.pop() {
+        all[object as usize] = true;
+        next.extend(&studio.model.objects[object as usize].children);
+    }
+    all
+}
+
+fn ball(center: DVec3, radius: f64) -> Focus {
+    Shape::Sphere { center, radius }.into()
+}
+
+#[test]
+fn a_lens_of_what_is_enclosed_acts_on_whole_buildings() {
+    let mut studio = studio::synthetic(60);
+    let camera = cameras(&studio)[1];
+    let (middle, size) = (studio.extent().center(), studio.extent().size());
+    let mut seen = [BTreeSet::new(), BTreeSet::new()];
+    let mut compiled = Vec::new();
+    for step in 0..6 {
+        let (center, radius) = (middle + size * DVec3::new(0.1 * f64::from(step) - 0.3, 0.05, 0.0), 0.2 * size.x);
+        let enclosed = |whole| Focus::Enclosed { parts: vec![ball(center, radius)], whole };
+        let lenses: Vec<Lens> = [false, true]
+            .map(|whole| studio::lens(if whole { "whole" } else { "touched" }, [enclosed(whole)], "sepia"))
+            .to_vec();
+        let scene = studio::scene(camera, lenses);
+        let one = drawn(&mut studio, &scene, Backend::Specialised);
+        let other = drawn(&mut studio, &scene, Backend::Uber);
+        assert!(one.rgba == other.rgba && one.lens_mask == other.lens_mask, "the back ends differ");
+        compiled.push(one.statistics.pipelines.compiled + other.statistics.pipelines.compiled);
+        for (i, whole) in [false, true].into_iter().enumerate() {
+            let roots = in_ball(&studio, center, radius, whole);
+            assert!(studio::bits(&one, i) == shows(&one, &with_parts(&studio, &roots)), "step {step}, whole: {whole}");
+            seen[i].insert(roots);
+        }
+    }
+    // It moves on: others are enclosed, and nothing is compiled for them.
+    assert!(seen.iter().all(|s| s.len() > 3) && seen[0].iter().all(|s| s.len() > 3), "{seen:?}");
+    assert!(compiled[0] > 0 && compiled[1..].iter().all(|count| *count == 0), "{compiled:?}");
+}
+
+#[test]
+fn a_part_stands_for_its_building_and_the_ground_for_nothing() {
+    let mut studio = studio::studio(&[studio::citydata("two-wings.city.json")]);
+    let camera = cameras(&studio)[1];
+    let at = |x: f64, y: f64| DVec3::new(78_000.0 + x, 457_000.0 + y, 2.0);
+    let mut named = |parts: Vec<Focus>, whole: bool| -> Vec<String> {
+        let lens = studio::lens("enclosed", [Focus::Enclosed { parts, whole }], "sepia");
+        let picture = drawn(&mut studio, &studio::scene(camera, vec![lens]), Backend::Specialised);
+        let (inside, ids) = (studio::bits(&picture, 0), picture.object_id.as_ref().expect("object ids"));
+        let shown: BTreeSet<u32> = (0..ids.len()).filter(|&i| inside[i]).map(|i| ids[i]).collect();
+        shown.into_iter().map(|id| studio.model.objects[id as usize - 1].id.to_string()).collect()
+    };
+    let hall = ["hall-west", "hall-east"];
+    assert_eq!(named(vec![ball(at(5.0, 5.0), 6.0)], false), hall, "both wings, though one is touched");
+    assert!(named(vec![ball(at(5.0, 5.0), 20.0)], true).is_empty(), "a wing lies outside");
+    assert_eq!(named(vec![ball(at(5.0, 5.0), 20.0), ball(at(45.0, 5.0), 20.0)], true), hall, "one wing in each");
+    assert_eq!(named(vec![ball(at(3.0, 28.0), 9.0)], true), ["shed"], "and not the lawn");
+    assert!(named(vec![ball(at(25.0, 5.0), 5.0)], false).is_empty(), "the lawn alone");
+    // By object within by object, and in combinations.
+    let shed = Choice { ids: vec!["shed".into()], ..Choice::default() };
+    assert_eq!(named(vec![Focus::Thematic(shed.clone())], false), ["shed"]);
+    let all = ball(at(25.0, 15.0), 60.0);
+    let others = Focus::Combined { how: Operation::Difference, parts: vec![all, Focus::Thematic(shed)] };
+    assert_eq!(named(vec![others], false), hall);
 }

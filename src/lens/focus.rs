@@ -1,6 +1,6 @@
 //! Where a lens acts: its focus areas (L1, L3).
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::OnceLock};
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -75,6 +75,13 @@ pub enum Focus {
     Objects(Choice),
     /// Everything that belongs to city objects, wherever it is.
     Thematic(Choice),
+    /// Everything that belongs to the city objects that lie in some shapes, wherever it is (S6, by object).
+    Enclosed {
+        /// The shapes; at least one.
+        parts: Vec<Focus>,
+        /// Only objects of which no corner is outside.
+        whole: bool,
+    },
     /// A boolean combination: the first part with the second, that with the third, and so on.
     Combined {
         /// How.
@@ -103,7 +110,12 @@ impl Focus {
         lengths.into_iter().find(|(_, v)| *v < 0.0).map(|(key, v)| (key, format!("must be ≥ 0, is {v}")))
     }
 
-    /// Whether it, or a part of it, is such a one.
+    /// Whether it means objects as such, not places.
+    pub fn is_by_object(&self) -> bool {
+        matches!(self, Self::Thematic(_) | Self::Enclosed { .. })
+    }
+
+    /// Whether it, or a part that it is combined from, is such a one.
     pub fn any(&self, is_one: &dyn Fn(&Self) -> bool) -> bool {
         let in_parts = || matches!(self, Self::Combined { parts, .. } if parts.iter().any(|p| p.any(is_one)));
         is_one(self) || in_parts()
@@ -112,7 +124,7 @@ impl Focus {
     /// The volumes whose union it is, without a city ([`Solids::volumes`]): of city objects, depth sprites and combinations none; a flat one as
     /// seen along these sight lines.
     pub fn volumes_seen(&self, sight: &Sightlines) -> Result<Vec<Volume>, String> {
-        let city = ShownCity { model: &CityModel::default(), geometries: &[] };
+        let city = ShownCity { model: &CityModel::default(), geometries: &[], index: &OnceLock::new() };
         let place = Place { motion: Motion::NONE, sight: *sight };
         Solids::default().volumes(self, city, &place).map_err(|(_, message)| message)
     }

@@ -67,15 +67,15 @@ impl Lens {
         self.shapes.iter().any(|s| s.any(&|f| matches!(f, Focus::Sprite { .. })))
     }
 
-    /// How its body is drawn: thematic lenses have no surface, and a flat one has no silhouette that a ray comes close to; they
+    /// How its body is drawn: lenses by object have no surface, and a flat one has no silhouette that a ray comes close to; they
     /// show a line instead.
     pub fn drawn_body(&self) -> LensBody {
         let is_in = |is_one: &dyn Fn(&Focus) -> bool| self.shapes.iter().any(|s| s.any(is_one));
-        let is_thematic = || is_in(&|f| matches!(f, Focus::Thematic(_)));
+        let is_by_object = || is_in(&Focus::is_by_object);
         let is_flat = || is_in(&|f| matches!(f, Focus::Shape(Shape::Flat { .. })));
         match self.body {
-            LensBody::Shell if is_thematic() => LensBody::Outline,
-            LensBody::Halo if self.sprite.is_some() || is_thematic() || is_flat() || self.has_sprite_file() => {
+            LensBody::Shell if is_by_object() => LensBody::Outline,
+            LensBody::Halo if self.sprite.is_some() || is_by_object() || is_flat() || self.has_sprite_file() => {
                 LensBody::Outline
             }
             body => body,

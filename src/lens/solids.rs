@@ -2,7 +2,7 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::Arc,
+    sync::{Arc, OnceLock},
 };
 
 use glam::{DQuat, DVec3};
@@ -14,6 +14,7 @@ use crate::{
         load::{self, LoadOptions},
         model::{Texture, TextureImage},
         shown::shown_geometries,
+        spatial::SpatialIndex,
         texture,
     },
     geom::{
@@ -79,6 +80,15 @@ pub struct ShownCity<'a> {
     pub model: &'a CityModel,
     /// Its geometries that are shown.
     pub geometries: &'a [u32],
+    /// Finds their triangles; made when first asked for.
+    pub index: &'a OnceLock<SpatialIndex>,
+}
+
+impl ShownCity<'_> {
+    /// What finds the triangles that are shown.
+    pub fn index(&self) -> &SpatialIndex {
+        self.index.get_or_init(|| SpatialIndex::build(self.model, self.geometries))
+    }
 }
 
 /// Where focus areas stand, and what flat ones are looked through along.
@@ -94,7 +104,7 @@ pub struct Place {
 pub type FocusError = (String, String);
 
 impl Solids {
-    /// The volumes whose union a focus area is, none where it holds nothing; a *thematic* one, a depth sprite and a
+    /// The volumes whose union a focus area is, none where it holds nothing; one by object, a depth sprite and a
     /// combination have none.
     pub fn volumes(&mut self, focus: &Focus, city: ShownCity, place: &Place) -> Result<Vec<Volume>, FocusError> {
         if let Some(wrong) = focus.check() {
@@ -104,7 +114,9 @@ impl Solids {
             Focus::Shape(shape) => {
                 return shape.placed(&place.motion, &place.sight).map_err(|error| (String::new(), error.to_string()));
             }
-            Focus::Thematic(_) | Focus::Sprite { .. } | Focus::Combined { .. } => return Ok(Vec::new()),
+            Focus::Thematic(_) | Focus::Enclosed { .. } | Focus::Sprite { .. } | Focus::Combined { .. } => {
+                return Ok(Vec::new());
+            }
             _ if focus.is_empty() => return Ok(Vec::new()),
             Focus::Mesh { at, rotation, .. } => (*at, *rotation),
             _ => (DVec3::ZERO, DQuat::IDENTITY),
@@ -227,7 +239,8 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
             let loaded = load::load(std::slice::from_ref(file), &options, &load::Quiet);
             let model = loaded.map_err(|e| wrong(e.to_string()))?;
             let geometries = shown_geometries(&model, None);
-            let bodies = bodies(ShownCity { model: &model, geometries: &geometries }, |_| true, *scale);
+            let bodies =
+                bodies(ShownCity { model: &model, geometries: &geometries, index: &OnceLock::new() }, |_| true, *scale);
             if bodies.is_empty() {
                 return Err(wrong(format!(
                     "{} has no faces; a file with a closed body would be right",
@@ -256,7 +269,11 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
             };
             Ok((solid, origin))
         }
-        Focus::Shape(_) | Focus::Thematic(_) | Focus::Sprite { .. } | Focus::Combined { .. } => Ok((None, DVec3::ZERO)),
+        Focus::Shape(_)
+        | Focus::Thematic(_)
+        | Focus::Enclosed { .. }
+        | Focus::Sprite { .. }
+        | Focus::Combined { .. } => Ok((None, DVec3::ZERO)),
     }
 }
 

@@ -1,6 +1,9 @@
 //! The contents of a scene's lenses: loaded when their lenses are first seen, kept as long as these are enabled.
 
-use std::{path::PathBuf, sync::Arc};
+use std::{
+    path::PathBuf,
+    sync::{Arc, OnceLock},
+};
 
 use rustc_hash::FxHashSet;
 
@@ -141,7 +144,7 @@ impl ContentCities {
         let wants_ground = !is_own && stage.scene.city.ground;
         let ground = wants_ground.then(|| plain_ground(&model, &geometries)).flatten();
         self.given += 1;
-        let city = Arc::new(ContentCity { id: self.given, model, geometries, ground, is_own });
+        let city = Arc::new(ContentCity { id: self.given, model, geometries, ground, is_own, index: OnceLock::new() });
         self.cities.push((content.files.clone(), content.lod, city.clone()));
         let is_shown = city.is_own && city.geometries == stage.geometries;
         Ok((!is_shown).then_some(city))
@@ -239,7 +242,11 @@ fn placement(
 impl WantedContent {
     /// What it shows; `own`: the scene's city.
     pub fn shown<'a>(&'a self, own: ShownCity<'a>) -> ShownCity<'a> {
-        self.city.as_ref().map_or(own, |city| ShownCity { model: &city.model, geometries: &city.geometries })
+        self.city.as_ref().map_or(own, |city| ShownCity {
+            model: &city.model,
+            geometries: &city.geometries,
+            index: &city.index,
+        })
     }
 
     /// Box around where it stands, metres.

@@ -15,6 +15,7 @@ use crate::{
     },
     render::{
         body::{Body, Leaf, Members, PlacedLeaf, too_large},
+        enclosed::enclosed,
         own_sprites,
         placement::Eye,
         solids::{MOST_ENTRIES, SolidTable},
@@ -153,10 +154,7 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -
                     )),
                     _ => tree_of(part, city, place, solids),
                 };
-                tree.map_err(|(key, message): FocusError| {
-                    let dot = if key.is_empty() { "" } else { "." };
-                    (format!("shapes.{i}{dot}{key}"), message)
-                })
+                tree.map_err(|error| within(i, error))
             };
             let trees: Result<Vec<_>, _> = parts.iter().enumerate().map(tree).collect();
             Ok(Tree::joined(*how, trees?))
@@ -174,15 +172,37 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -
 
 /// The leaves whose union a focus area is that is no combination.
 fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Vec<Leaf>, FocusError> {
-    let choice = match focus {
-        Focus::Thematic(choice) => choice,
+    let objects = match focus {
+        Focus::Thematic(choice) => members(city.model, choice),
+        Focus::Enclosed { parts, whole } => objects_in(parts, *whole, city, place, solids)?,
         Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(solids.sprite(file, city, &place.motion)?)]),
         _ => return Ok(solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),
     };
-    let objects = members(city.model, choice);
     let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);
     let bounds = shown.filter(|g| objects[g.object as usize]).fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
     Ok(vec![Leaf::Members(Members { objects: objects.into(), bounds })])
+}
+
+/// The objects that some shapes hold, one per object of the city.
+fn objects_in(
+    parts: &[Focus],
+    whole: bool,
+    city: ShownCity,
+    place: &Place,
+    solids: &mut Solids,
+) -> Result<Vec<bool>, FocusError> {
+    let mut bodies = Vec::new();
+    for (i, part) in parts.iter().enumerate() {
+        bodies.extend(bodies_of(part, city, place, solids).map_err(|error| within(i, error))?);
+    }
+    let areas: Vec<_> = bodies.iter().filter(|body| !body.is_empty()).map(|body| (body, body.bounds())).collect();
+    Ok(enclosed(city, &areas, whole))
+}
+
+/// What is wrong with part i of a focus area.
+fn within(i: usize, (key, message): FocusError) -> FocusError {
+    let dot = if key.is_empty() { "" } else { "." };
+    (format!("shapes.{i}{dot}{key}"), message)
 }
 
 impl LensVolumes {

@@ -12,6 +12,7 @@ pub mod contents;
 mod curtain;
 mod cut;
 pub mod edges;
+mod enclosed;
 pub mod eye;
 mod filters;
 mod flat;

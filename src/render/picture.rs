@@ -6,8 +6,6 @@ use std::{
     time::Instant,
 };
 
-use rustc_hash::FxHashSet;
-
 use crate::{
     city::{
         CityModel, Lod,
@@ -18,10 +16,10 @@ use crate::{
         shown::shown_geometries,
         spatial::SpatialIndex,
     },
-    geom::{Aabb, Volume},
+    geom::Aabb,
     gpu::{Gpu, GpuError, Timer},
     lens::{
-        Class, intersection,
+        Class,
         solids::{ShownCity, Solids},
     },
     render::{
@@ -29,6 +27,7 @@ use crate::{
         body::Leaf,
         city::Shown,
         content_cities::{self, ContentCities, SceneContents},
+        enclosed::{areas, objects_meeting},
         eye::PictureTile,
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
@@ -195,8 +194,8 @@ impl Studio {
     }
 
     /// The city, and what is shown of it.
-    fn shown(&self) -> ShownCity<'_> {
-        ShownCity { model: &self.model, geometries: &self.geometries }
+    pub(super) fn shown(&self) -> ShownCity<'_> {
+        ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index }
     }
 
     /// Box around the shown city, without the plain ground; empty for an empty city.
@@ -658,7 +657,7 @@ fn lens_figures(
         visible,
         objects: match prepared.contents.of_lens(index as u32) {
             Some(content) => content.objects_meeting(studio.shown(), &volumes),
-            None => objects_meeting(studio, &volumes).len() as u64,
+            None => objects_meeting(studio.shown(), &areas(&volumes)).len() as u64,
         },
         covered: inside,
         pixels: if acts_inside { inside } else { 0 },
@@ -671,38 +670,6 @@ fn lens_figures(
             stats::Classified { front: side(front), inside: Some(inside), behind: side(behind), rest: Some(rest) }
         },
     }
-}
-
-/// City objects of which a shown triangle meets one of the volumes; exact in f64.
-pub(super) fn objects_meeting(studio: &Studio, volumes: &[&LensVolume]) -> FxHashSet<u32> {
-    let model = &studio.model;
-    let index = || studio.index.get_or_init(|| SpatialIndex::build(model, &studio.geometries));
-    let convex = volumes.iter().filter_map(|v| v.body.volume()).filter(|v| v.is_convex()).cloned();
-    let convex: Vec<Volume> = convex.collect();
-    let mut met: FxHashSet<u32> = match convex.is_empty() {
-        true => Default::default(),
-        false => {
-            intersection::objects_meeting(model, index(), &intersection::regions(&[&convex])).into_iter().collect()
-        }
-    };
-    let others: Vec<&&LensVolume> = volumes.iter().filter(|v| !v.body.is_convex()).collect();
-    let geometries = if others.is_empty() { &[][..] } else { &studio.geometries };
-    for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
-        if met.contains(&geometry.object) {
-            continue;
-        }
-        let near: Vec<_> = others.iter().filter(|v| v.bounds.meets(&geometry.bounds)).collect();
-        let hit = |tile: &crate::city::Tile| {
-            (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
-                let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + model.indices[i + k]));
-                near.iter().any(|v| v.body.meets(&corners, geometry.object))
-            })
-        };
-        if !near.is_empty() && model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {
-            met.insert(geometry.object);
-        }
-    }
-    met
 }
 
 impl Picture {

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use rustc_hash::FxHashSet;
-
 use crate::{
     render::{
+        enclosed::{areas, objects_meeting, with_corners_outside},
         operations::Operations,
-        picture::{Picture, Studio, objects_meeting},
+        picture::{Picture, Studio},
         sections::ends_of,
         volume::LensVolume,
     },
@@ -33,27 +32,15 @@ pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &
         if ends_of(operations, of_lens[0].lens).is_empty() {
             continue;
         }
-        let met = objects_meeting(studio, &of_lens.iter().collect::<Vec<_>>());
-        let met: FxHashSet<u32> = met.into_iter().filter(|object| !is_closed(object)).collect();
-        let cut: FxHashSet<u32> = beyond(studio, &met, of_lens).collect();
-        let count = cut.len() as u32;
+        let areas = areas(of_lens);
+        let mut met = objects_meeting(studio.shown(), &areas);
+        met.retain(|object| !is_closed(object));
+        let count = with_corners_outside(studio.shown(), &met, &areas).len() as u32;
         if count > 0 {
             open.insert(of_lens[0].lens, count);
         }
     }
     open
-}
-
-/// Those of some objects that have corners outside volumes, once for each geometry.
-fn beyond(studio: &Studio, objects: &FxHashSet<u32>, volumes: &[LensVolume]) -> impl Iterator<Item = u32> {
-    let model = &studio.model;
-    let geometries = studio.geometries.iter().map(|&g| &model.geometries[g as usize]);
-    geometries.filter(|g| objects.contains(&g.object)).filter_map(move |geometry| {
-        let tiles = &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize];
-        let mut corners = tiles.iter().flat_map(|t| t.vertices.clone().map(move |v| model.position(t, v)));
-        let is_in = |corner| volumes.iter().any(|v| v.body.meets(&[corner; 3], geometry.object));
-        corners.any(|corner| !is_in(corner)).then_some(geometry.object)
-    })
 }
 
 type Told = (&'static str, fn(&Picture) -> &BTreeMap<u32, u32>, fn(&str, u32) -> String);

@@ -85,7 +85,7 @@ fn check_focus(focus: &Focus, table: &str, at: &str, model: &CityModel, problems
                 message: format!("chooses nothing: {message}"),
             }));
         }
-        Focus::Combined { parts, .. } => {
+        Focus::Combined { parts, .. } | Focus::Enclosed { parts, .. } => {
             for (i, part) in parts.iter().enumerate() {
                 check_focus(part, table, &format!("{at}.shapes.{i}"), model, problems);
             }

@@ -173,6 +173,7 @@ pub(super) fn written(focus: &Focus, options: &Options) -> Option<String> {
     let path = |path: &PathBuf| quoted(&options.written(path));
     let flat = |p: &DVec2| list(p.to_array().map(number));
     let ring = |points: &Vec<DVec2>| list(points.iter().map(flat));
+    let all = |parts: &[Focus]| list(parts.iter().map(|part| super::write::focus(part, options)));
     let standing = |base: f64, height: f64| format!("base = {}, height = {}", number(base), number(height));
     Some(match focus {
         Focus::Shape(_) => return None,
@@ -211,9 +212,10 @@ pub(super) fn written(focus: &Focus, options: &Options) -> Option<String> {
         ),
         Focus::Objects(choice) => choice_written("objects", choice),
         Focus::Thematic(choice) => choice_written("thematic", choice),
-        Focus::Combined { how, parts } => {
-            let parts = list(parts.iter().map(|part| super::write::focus(part, options)));
-            format!("{{ kind = \"{}\", shapes = {parts} }}", how.word())
+        Focus::Combined { how, parts } => format!("{{ kind = \"{}\", shapes = {} }}", how.word(), all(parts)),
+        Focus::Enclosed { parts, whole } => {
+            let whole = if *whole { ", whole = true" } else { "" };
+            format!("{{ kind = \"enclosed\", shapes = {}{whole} }}", all(parts))
         }
     })
 }

@@ -326,12 +326,17 @@ impl<'o> SceneReader<'o> {
             return None;
         };
         let fields = self.checker.fields(node, table, &[], place.clone());
-        if let Some(how) = Operation::ALL.into_iter().find(|how| how.word() == table.name) {
+        let how = Operation::ALL.into_iter().find(|how| how.word() == table.name);
+        if how.is_some() || table.name == "enclosed" {
             let nodes = fields.node("shapes").and_then(Node::list)?;
             let part =
                 |(i, node): (usize, &Node)| self.shape(node, &fields.place.within(&format!("shapes.{i}"), node.line));
             let parts: Vec<Focus> = nodes.iter().enumerate().filter_map(part).collect();
-            return (parts.len() == nodes.len()).then_some(Focus::Combined { how, parts });
+            let whole = fields.boolean("whole").unwrap_or(false);
+            return (parts.len() == nodes.len()).then_some(match how {
+                Some(how) => Focus::Combined { how, parts },
+                None => Focus::Enclosed { parts, whole },
+            });
         }
         let turn = rotation(fields.node("rotation_deg").and_then(Node::numbers::<3>).unwrap_or([0.0; 3]));
         let (checker, options, lacks_data) = (&mut self.checker, self.options, &mut self.lacks_data);

@@ -296,6 +296,29 @@ pub const SHAPES: &[Table] = &[
         doc: "Everything that belongs to city objects, wherever it is: membership by object, not by place. Nothing is in front of it or behind it.",
         keys: &[shape_kind("\"thematic\""), IDS, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
     },
+    Table {
+        name: "enclosed",
+        doc: "Everything that belongs to the city objects that some shapes hold or touch, wherever it is: the lens acts on whole buildings, and as it moves, on others. A part stands for all of its building; what others stand on (terrain, water, roads, land use) is never meant. Nothing is in front of it or behind it.",
+        keys: &[
+            shape_kind("\"enclosed\""),
+            key(
+                "shapes",
+                Kind::Shapes,
+                "",
+                "",
+                "What encloses them: shapes of any kind.",
+                "[{ kind = \"sphere\", center = [78600.0, 457950.0, 10.0], radius = 60.0 }]",
+            ),
+            key(
+                "whole",
+                Kind::Boolean,
+                "false",
+                "",
+                "Only objects that lie in the shapes with all their corners.",
+                "true",
+            ),
+        ],
+    },
     Table { name: "union", doc: "What is in any of some shapes.", keys: &[shape_kind("\"union\""), PARTS] },
     Table {
         name: "intersection",

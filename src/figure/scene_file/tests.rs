@@ -484,8 +484,11 @@ fn choices() -> impl Strategy<Value = Choice> {
 
 fn focuses() -> impl Strategy<Value = Focus> {
     plain_focuses().prop_recursive(2, 6, 3, |inner| {
-        (prop::sample::select(Operation::ALL.to_vec()), prop::collection::vec(inner, 1..3))
-            .prop_map(|(how, parts)| Focus::Combined { how, parts })
+        let how = prop::option::of(prop::sample::select(Operation::ALL.to_vec()));
+        (how, any::<bool>(), prop::collection::vec(inner, 1..3)).prop_map(|(how, whole, parts)| match how {
+            Some(how) => Focus::Combined { how, parts },
+            None => Focus::Enclosed { parts, whole },
+        })
     })
 }
 
@@ -666,7 +669,8 @@ fn same(a: &Scene, b: &Scene) -> bool {
 /// Gives `b` the rotations of `a` where they agree within a rounding.
 fn turn_alike(a: &Focus, b: &mut Focus) {
     let turns = match (a, b) {
-        (Focus::Combined { parts: a, .. }, Focus::Combined { parts: b, .. }) => {
+        (Focus::Combined { parts: a, .. }, Focus::Combined { parts: b, .. })
+        | (Focus::Enclosed { parts: a, .. }, Focus::Enclosed { parts: b, .. }) => {
             a.iter().zip(b).for_each(|(a, b)| turn_alike(a, b));
             None
         }

@@ -47,13 +47,14 @@ impl Drop for Folder {
 struct City {
     model: CityModel,
     geometries: Vec<u32>,
+    index: OnceLock<SpatialIndex>,
 }
 
 impl City {
     fn of(path: &Path) -> Self {
         let model = load::load(&[path.to_owned()], &LoadOptions::default(), &load::Quiet).unwrap();
         let geometries = shown_geometries(&model, None);
-        Self { model, geometries }
+        Self { model, geometries, index: OnceLock::new() }
     }
 
     fn named(name: &str) -> Self {
@@ -61,7 +62,7 @@ impl City {
     }
 
     fn shown(&self) -> ShownCity<'_> {
-        ShownCity { model: &self.model, geometries: &self.geometries }
+        ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index }
     }
 
     fn ask(&self, solids: &mut Solids, focus: &Focus) -> Result<Vec<Volume>, FocusError> {
@@ -157,7 +158,7 @@ fn open_buildings_are_closed_and_flat_objects_hold_nothing() {
 #[test]
 fn masks_are_the_light_pixels_of_images() {
     let folder = Folder::new();
-    let nowhere = City { model: CityModel::default(), geometries: vec![] };
+    let nowhere = City { model: CityModel::default(), geometries: vec![], index: OnceLock::new() };
     let image = folder.image("mask.png", &["#.+", "-o#"]);
     let mask = |size: DVec2, height: f64| Focus::Mask {
         image: image.clone(),
@@ -195,7 +196,7 @@ fn masks_are_the_light_pixels_of_images() {
 
 #[test]
 fn meshes_are_what_files_enclose() {
-    let nowhere = City { model: CityModel::default(), geometries: vec![] };
+    let nowhere = City { model: CityModel::default(), geometries: vec![], index: OnceLock::new() };
     let ring = nowhere.one(&mesh("citydata/ring.obj"));
     assert_holds(&ring, &[[1.0, 0.0, 0.0], [0.0, -1.2, 0.1]], &[[0.0, 0.0, 0.0], [1.4, 0.0, 0.0], [1.0, 0.0, 0.4]]);
     assert_eq!(solid(&ring).solid.mended, 0);
@@ -222,7 +223,7 @@ fn meshes_are_what_files_enclose() {
 
 #[test]
 fn what_was_made_is_kept_while_it_is_asked_for() {
-    let nowhere = City { model: CityModel::default(), geometries: vec![] };
+    let nowhere = City { model: CityModel::default(), geometries: vec![], index: OnceLock::new() };
     let mut solids = Solids::default();
     let first = nowhere.ask(&mut solids, &mesh("citydata/ring.obj")).unwrap();
     let moved = Focus::Mesh {
@@ -255,7 +256,7 @@ fn what_was_made_is_kept_while_it_is_asked_for() {
 #[test]
 fn wrong_files_are_named_with_their_key() {
     let folder = Folder::new();
-    let nowhere = City { model: CityModel::default(), geometries: vec![] };
+    let nowhere = City { model: CityModel::default(), geometries: vec![], index: OnceLock::new() };
     let text = folder.file("text.png", "hello");
     let black = folder.image("black.png", &[".."]);
     let no_face = folder.file("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
