@@ -62,8 +62,9 @@ fn texel(n: i32, beside: vec2i) -> mat3x4f {
     return four_unpacked(textureLoad(image, place, stage.layer + select(0, n & 3, is_turned), 0));
 }
 
-fn is_known(n: i32) -> bool {
-    return n >= 0 && n < stage.length;
+// Beyond the picture nothing is known: the kernel is cut there.
+fn known(n: i32, weights: vec4f) -> vec4f {
+    return select(vec4f(0.0), weights, n >= 0 && n < stage.length);
 }
 
 @fragment
@@ -79,23 +80,27 @@ fn fragment(in: Corner) -> Lines {
     var third = mat3x4f();
     var fourth = mat3x4f();
     var weights = vec4f(0.0);
-    // What the texel that is read weighs in each of the four. Two texels at a time; there is an even number of them.
-    var odd = vec4f(0.0);
-    for (var i = -stage.reach; i < stage.reach + 4; i += 2) {
-        let even = vec4f(weight_at(i, own), odd.xyz);
-        odd = vec4f(weight_at(i + 1, own), even.xyz);
-        // Beyond the picture nothing is known: the kernel is cut there.
-        let a = select(vec4f(0.0), even, is_known(start + i));
-        let b = select(vec4f(0.0), odd, is_known(start + i + 1));
+    // What the texel that is read weighs in each of the four. Four texels at a time: a software adapter masks all sums once in
+    // every round. Beyond the kernel's reach weights are 0.
+    var last = vec4f(0.0);
+    for (var i = -stage.reach; i < stage.reach + 4; i += 4) {
+        let w = vec4f(weight_at(i, own), weight_at(i + 1, own), weight_at(i + 2, own), weight_at(i + 3, own));
+        let a = known(start + i, vec4f(w.x, last.wzy));
+        let b = known(start + i + 1, vec4f(w.yx, last.wz));
+        let c = known(start + i + 2, vec4f(w.zyx, last.w));
+        let d = known(start + i + 3, w.wzyx);
+        last = w;
         let p = texel(start + i, beside);
         let q = texel(start + i + 1, beside);
-        first += a.x * p + b.x * q;
-        second += a.y * p + b.y * q;
-        third += a.z * p + b.z * q;
-        fourth += a.w * p + b.w * q;
-        weights += a + b;
+        let r = texel(start + i + 2, beside);
+        let s = texel(start + i + 3, beside);
+        first += (a.x * p + b.x * q) + (c.x * r + d.x * s);
+        second += (a.y * p + b.y * q) + (c.y * r + d.y * s);
+        third += (a.z * p + b.z * q) + (c.z * r + d.z * s);
+        fourth += (a.w * p + b.w * q) + (c.w * r + d.w * s);
+        weights += (a + b) + (c + d);
         // Here, not at the beginning: a software adapter goes through a whole round to find that there is none.
-        if i >= stage.reach + 2 {
+        if i + 4 >= stage.reach + 4 {
             break;
         }
     }
