@@ -240,7 +240,7 @@ fn a_lens_of_what_is_enclosed_acts_on_whole_buildings() {
     let mut compiled = Vec::new();
     for step in 0..6 {
         let (center, radius) = (middle + size * DVec3::new(0.1 * f64::from(step) - 0.3, 0.05, 0.0), 0.2 * size.x);
-        let enclosed = |whole| Focus::Enclosed { parts: vec![ball(center, radius)], whole };
+        let enclosed = |whole| Focus::Enclosed { parts: vec![ball(center, radius)], whole, types: vec![] };
         let lenses: Vec<Lens> = [false, true]
             .map(|whole| studio::lens(if whole { "whole" } else { "touched" }, [enclosed(whole)], "sepia"))
             .to_vec();
@@ -265,14 +265,19 @@ fn a_part_stands_for_its_building_and_the_ground_for_nothing() {
     let mut studio = studio::studio(&[studio::citydata("two-wings.city.json")]);
     let camera = cameras(&studio)[1];
     let at = |x: f64, y: f64| DVec3::new(78_000.0 + x, 457_000.0 + y, 2.0);
-    let mut named = |parts: Vec<Focus>, whole: bool| -> Vec<String> {
-        let lens = studio::lens("enclosed", [Focus::Enclosed { parts, whole }], "sepia");
+    let mut of_types = |parts: Vec<Focus>, whole: bool, types: &[&str]| -> Vec<String> {
+        let types = types.iter().map(|t| (*t).to_owned()).collect();
+        let lens = studio::lens("enclosed", [Focus::Enclosed { parts, whole, types }], "sepia");
         let picture = drawn(&mut studio, &studio::scene(camera, vec![lens]), Backend::Specialised);
         let (inside, ids) = (studio::bits(&picture, 0), picture.object_id.as_ref().expect("object ids"));
         let shown: BTreeSet<u32> = (0..ids.len()).filter(|&i| inside[i]).map(|i| ids[i]).collect();
         shown.into_iter().map(|id| studio.model.objects[id as usize - 1].id.to_string()).collect()
     };
     let hall = ["hall-west", "hall-east"];
+    let all = || vec![ball(at(25.0, 15.0), 60.0)];
+    assert_eq!(of_types(all(), false, &["Building"]), [hall[0], hall[1], "shed"], "parts are of their building's type");
+    assert!(of_types(all(), false, &["Bridge", "BuildingPart", "LandUse"]).is_empty());
+    let mut named = |parts: Vec<Focus>, whole: bool| of_types(parts, whole, &[]);
     assert_eq!(named(vec![ball(at(5.0, 5.0), 6.0)], false), hall, "both wings, though one is touched");
     assert!(named(vec![ball(at(5.0, 5.0), 20.0)], true).is_empty(), "a wing lies outside");
     assert_eq!(named(vec![ball(at(5.0, 5.0), 20.0), ball(at(45.0, 5.0), 20.0)], true), hall, "one wing in each");
@@ -281,7 +286,7 @@ fn a_part_stands_for_its_building_and_the_ground_for_nothing() {
     // By object within by object, and in combinations.
     let shed = Choice { ids: vec!["shed".into()], ..Choice::default() };
     assert_eq!(named(vec![Focus::Thematic(shed.clone())], false), ["shed"]);
-    let all = ball(at(25.0, 15.0), 60.0);
-    let others = Focus::Combined { how: Operation::Difference, parts: vec![all, Focus::Thematic(shed)] };
-    assert_eq!(named(vec![others], false), hall);
+    let parts = all().into_iter().chain([Focus::Thematic(shed)]).collect();
+    let others = Focus::Combined { how: Operation::Difference, parts };
+    assert_eq!(of_types(vec![others], false, &[]), hall);
 }

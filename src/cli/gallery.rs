@@ -34,6 +34,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "den-haag-district"
     "den-haag-sphere"
     "first-lens"
+    "houses-on-the-way"
     "market-square"
     "out-of-sight"
     "planned-quarter"

@@ -81,6 +81,8 @@ pub enum Focus {
         parts: Vec<Focus>,
         /// Only objects of which no corner is outside.
         whole: bool,
+        /// Only objects of these types, as their files call them; parts are of the type that they are part of. Empty: all.
+        types: Vec<String>,
     },
     /// A boolean combination: the first part with the second, that with the third, and so on.
     Combined {

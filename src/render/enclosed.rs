@@ -64,11 +64,20 @@ pub fn with_corners_outside(city: ShownCity, objects: &FxHashSet<u32>, areas: &[
 
 /// The objects that some bodies hold, one per object of the city: those that touch one of them, with all that they are part of and
 /// all parts of that; with `whole` without those of which some shown corner is in none. What others stand on (terrain, water,
-/// roads, land use) is never among them.
-pub fn enclosed(city: ShownCity, areas: &[Area], whole: bool) -> Vec<bool> {
+/// roads, land use) is never among them. `types`: of what is part of nothing; empty: all.
+pub fn enclosed(city: ShownCity, areas: &[Area], whole: bool, types: &[String]) -> Vec<bool> {
     let model = city.model;
+    let kinds: Vec<_> = types.iter().filter_map(|name| model.strings.find(name)).collect();
+    let is_wanted = |mut object: u32| {
+        // As far as ways up go, whatever files say of who belongs to whom.
+        for _ in 0..model.objects.len() {
+            let Some(&parent) = model.objects[object as usize].parents.first() else { break };
+            object = parent;
+        }
+        types.is_empty() || kinds.contains(&model.objects[object as usize].kind)
+    };
     let mut met = objects_meeting(city, areas);
-    met.retain(|&object| !model.objects[object as usize].class.is_ground());
+    met.retain(|&object| !model.objects[object as usize].class.is_ground() && is_wanted(object));
     let mut held = all_of(city, &met);
     if whole {
         let mine = (0..model.objects.len() as u32).filter(|&object| held[object as usize]).collect();

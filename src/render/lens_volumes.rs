@@ -174,7 +174,7 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -
 fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Vec<Leaf>, FocusError> {
     let objects = match focus {
         Focus::Thematic(choice) => members(city.model, choice),
-        Focus::Enclosed { parts, whole } => objects_in(parts, *whole, city, place, solids)?,
+        Focus::Enclosed { parts, whole, types } => objects_in(parts, (*whole, types), city, place, solids)?,
         Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(solids.sprite(file, city, &place.motion)?)]),
         _ => return Ok(solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),
     };
@@ -186,7 +186,7 @@ fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids)
 /// The objects that some shapes hold, one per object of the city.
 fn objects_in(
     parts: &[Focus],
-    whole: bool,
+    (whole, types): (bool, &[String]),
     city: ShownCity,
     place: &Place,
     solids: &mut Solids,
@@ -196,7 +196,7 @@ fn objects_in(
         bodies.extend(bodies_of(part, city, place, solids).map_err(|error| within(i, error))?);
     }
     let areas: Vec<_> = bodies.iter().filter(|body| !body.is_empty()).map(|body| (body, body.bounds())).collect();
-    Ok(enclosed(city, &areas, whole))
+    Ok(enclosed(city, &areas, whole, types))
 }
 
 /// What is wrong with part i of a focus area.

@@ -1,5 +1,7 @@
 //! What a scene names in its city and is not there.
 
+use std::collections::BTreeSet;
+
 use crate::{
     city::CityModel,
     lens::{Focus, Placement, chosen::absent, nearest::did_you_mean, thematic::attribute_names},
@@ -86,12 +88,30 @@ fn check_focus(focus: &Focus, table: &str, at: &str, model: &CityModel, problems
             }));
         }
         Focus::Combined { parts, .. } | Focus::Enclosed { parts, .. } => {
+            if let Focus::Enclosed { types, .. } = focus {
+                problems.extend(absent_types(model, types).into_iter().map(|(i, message)| SceneProblem {
+                    table: table.to_owned(),
+                    key: format!("{at}.types.{i}"),
+                    message,
+                }));
+            }
             for (i, part) in parts.iter().enumerate() {
                 check_focus(part, table, &format!("{at}.shapes.{i}"), model, problems);
             }
         }
         _ => {}
     }
+}
+
+/// Types that no object of the city has: their places, and messages.
+fn absent_types(model: &CityModel, types: &[String]) -> Vec<(usize, String)> {
+    let known: BTreeSet<&str> = model.objects.iter().map(|o| model.strings.get(o.kind)).collect();
+    let absent = types.iter().enumerate().filter(|(_, name)| !known.contains(name.as_str()));
+    let told = absent.map(|(i, name)| {
+        let hint = did_you_mean(name, known.iter().copied());
+        (i, format!("no object of the city is of the type \"{name}\"{hint}"))
+    });
+    told.collect()
 }
 
 #[cfg(test)]
@@ -156,6 +176,9 @@ mod tests {
             |name: &str, min: f64| Choice { attribute: Some(name.into()), min: Some(min), ..Choice::default() };
         let union = |parts| Focus::Combined { how: Operation::Union, parts };
         scene.lenses[0].shapes = vec![Focus::Objects(by_id("town-hall")), Focus::Thematic(by_id("town-hal"))];
+        let types = vec!["Building".into(), "building".into()];
+        scene.lenses[4].shapes =
+            vec![Focus::Enclosed { parts: vec![Focus::Thematic(by_id("town"))], whole: false, types }];
         scene.lenses[3].shapes = vec![union(vec![
             Focus::Objects(by_year("yearOfConstruction", 1931.0)),
             union(vec![
@@ -176,6 +199,8 @@ mod tests {
                 "[lens.0] shapes.1.ids.1: chooses nothing: the city has no object \"town-hal\"; did you mean \"town-hall\"?",
                 "[lens.3] shape.shapes.1.shapes.0.attribute: chooses nothing: no object of the city has the attribute \"yearofConstruction\"; did you mean \"yearOfConstruction\"?",
                 "[lens.3] shape.shapes.1.shapes.1.min: chooses nothing: no object has such a \"yearOfConstruction\"; it is 1931 to 1931",
+                "[lens.4] shape.types.1: no object of the city is of the type \"building\"; did you mean \"Building\"?",
+                "[lens.4] shape.shapes.0.ids.1: chooses nothing: the city has no object \"town\"; did you mean \"town-hall\"?",
                 "[poi.1] object: the city has no object \"townhall\"; did you mean \"town-hall\"?",
             ]
         );

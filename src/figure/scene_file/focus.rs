@@ -213,15 +213,24 @@ pub(super) fn written(focus: &Focus, options: &Options) -> Option<String> {
         Focus::Objects(choice) => choice_written("objects", choice),
         Focus::Thematic(choice) => choice_written("thematic", choice),
         Focus::Combined { how, parts } => format!("{{ kind = \"{}\", shapes = {} }}", how.word(), all(parts)),
-        Focus::Enclosed { parts, whole } => {
-            let whole = if *whole { ", whole = true" } else { "" };
-            format!("{{ kind = \"enclosed\", shapes = {}{whole} }}", all(parts))
+        Focus::Enclosed { parts, whole, types } => {
+            let mut out = format!("{{ kind = \"enclosed\", shapes = {}", all(parts));
+            if *whole {
+                out.push_str(", whole = true");
+            }
+            if !types.is_empty() {
+                let _ = write!(out, ", types = {}", texts(types));
+            }
+            out + " }"
         }
     })
 }
 
+fn texts(all: &[String]) -> String {
+    list(all.iter().map(|t| quoted(t)))
+}
+
 fn choice_written(kind: &str, choice: &Choice) -> String {
-    let texts = |all: &Vec<String>| list(all.iter().map(|t| quoted(t)));
     let mut out = format!("{{ kind = \"{kind}\"");
     if !choice.ids.is_empty() {
         let _ = write!(out, ", ids = {}", texts(&choice.ids));

@@ -333,9 +333,14 @@ impl<'o> SceneReader<'o> {
                 |(i, node): (usize, &Node)| self.shape(node, &fields.place.within(&format!("shapes.{i}"), node.line));
             let parts: Vec<Focus> = nodes.iter().enumerate().filter_map(part).collect();
             let whole = fields.boolean("whole").unwrap_or(false);
+            let types = fields.node("types").and_then(Node::list).unwrap_or_default();
+            if fields.given("types") && types.is_empty() {
+                self.checker.note(&fields.place, "types", fields.line("types"), "must name at least one type");
+            }
+            let types = types.iter().filter_map(|n| n.text().map(str::to_owned)).collect();
             return (parts.len() == nodes.len()).then_some(match how {
                 Some(how) => Focus::Combined { how, parts },
-                None => Focus::Enclosed { parts, whole },
+                None => Focus::Enclosed { parts, whole, types },
             });
         }
         let turn = rotation(fields.node("rotation_deg").and_then(Node::numbers::<3>).unwrap_or([0.0; 3]));

@@ -150,7 +150,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"shpere\" }",
-            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, flat, mesh, mask, mask3d, sprite, objects, thematic, union, intersection, difference, is \"shpere\"; did you mean \"sphere\"?",
+            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, flat, mesh, mask, mask3d, sprite, objects, thematic, enclosed, union, intersection, difference, is \"shpere\"; did you mean \"sphere\"?",
         ),
         ("shape = { kind = \"union\" }", "shape.shapes: is missing: The shapes, of any kind"),
         (
@@ -200,6 +200,15 @@ fn every_mistake_in_a_lens_is_named() {
         (
             "shape = { kind = \"corridor\", points = [[0, 0, 0]], width = 3, height = 2 }",
             "shape.points: a line needs at least 2 points, has 1",
+        ),
+        ("shape = { kind = \"enclosed\", shapes = [] }", "shape.shapes: must be a list of at least one shape, is []"),
+        (
+            "shape = { kind = \"enclosed\", shapes = [{ kind = \"sphere\", center = [0, 0, 0], radius = -1 }] }",
+            "shape.shapes.0.radius: must be",
+        ),
+        (
+            "shape = { kind = \"enclosed\", shapes = [{ kind = \"thematic\", ids = [\"a\"] }], types = [] }",
+            "shape.types: must name at least one type",
         ),
         ("shape = { center = [0, 0, 0] }", "shape.kind: is missing: one of sphere"),
         ("shape = \"sphere\"", "shape: must be a table { kind = ..., ... }, is \"sphere\""),
@@ -485,9 +494,11 @@ fn choices() -> impl Strategy<Value = Choice> {
 fn focuses() -> impl Strategy<Value = Focus> {
     plain_focuses().prop_recursive(2, 6, 3, |inner| {
         let how = prop::option::of(prop::sample::select(Operation::ALL.to_vec()));
-        (how, any::<bool>(), prop::collection::vec(inner, 1..3)).prop_map(|(how, whole, parts)| match how {
+        let types = prop::collection::vec("[A-Z\"]{1,5}", 0..3);
+        (how, any::<bool>(), types, prop::collection::vec(inner, 1..3)).prop_map(|(how, whole, types, parts)| match how
+        {
             Some(how) => Focus::Combined { how, parts },
-            None => Focus::Enclosed { parts, whole },
+            None => Focus::Enclosed { parts, whole, types },
         })
     })
 }
