@@ -7,7 +7,7 @@ use studio::*;
 use veduta::{
     geom::{Aabb, Shape, shape::FlatFigure},
     lens::{
-        Border, BorderUnit, Class, Discrete, EffectUse, Lens, Placement, border::degree_of_interest,
+        Border, BorderUnit, Class, Discrete, EffectUse, Lens, LensSprite, Placement, border::degree_of_interest,
         color::linear_from_srgb,
     },
     render::{
@@ -118,6 +118,94 @@ fn both_back_ends_fade_alike_to_the_byte() {
         let [one, other] = BACKENDS.map(|backend| draw(&mut studio, &scene, 2, backend));
         assert!(one.rgba == other.rgba);
     }
+}
+
+#[test]
+fn a_lens_that_is_a_skin_is_where_rays_enter_and_leave_as_f64_says() {
+    // Half the width, and what its ends are rounded by, metres.
+    const HALF: f64 = 2.5;
+    const BAND: f64 = 1e-3;
+    let mut studio = synthetic(60);
+    let middle = studio.extent().center();
+    let eye = middle + DVec3::new(60.0, -110.0, 80.0);
+    let border = Some(Border { width: 2.0 * HALF, unit: BorderUnit::Ray, discrete: Discrete::Threshold });
+    // From outside, from within the larger ones, and with parallel rays.
+    let within = Camera::looking(middle + DVec3::new(0.0, 0.0, 30.0), middle + DVec3::new(60.0, 20.0, 0.0), 1.2);
+    for camera in [Camera::looking(eye, middle, 0.8), within, orthographic(eye, middle, 150.0)] {
+        let is_first = camera == Camera::looking(eye, middle, 0.8);
+        let is_parallel = view_of(camera).is_orthographic();
+        let view = view_of(camera);
+        let [below, above] = both(&mut studio, camera);
+        let depth = below.depth.as_ref().expect("depth was asked for");
+        let mut on = 0;
+        for (i, focus) in shapes(middle + DVec3::new(0.0, 0.0, -4.0), 42.0).into_iter().enumerate() {
+            let reference = Reference::of(&focus);
+            // Whether each pixel is on the skin; none where rounding decides.
+            let is_on = |(i, d): (usize, &f32)| {
+                let (x, y) = (i as u32 % SIZE[0], i as u32 / SIZE[0]);
+                let start = if is_parallel { f64::NEG_INFINITY } else { 0.0 };
+                // What lies behind the eye is not seen.
+                let mut found = reference.intervals(&view.pixel_ray(x, y));
+                found.retain(|(_, exit)| *exit > start);
+                let ends = found.first().zip(found.last()).filter(|_| d.is_finite());
+                let Some((first, last)) = ends else { return Some(false) };
+                let away = [first.0.max(start), last.1].map(|end| (f64::from(*d) - end).abs());
+                let nearest = away[0].min(away[1]);
+                (away.iter().all(|away| (away - HALF).abs() > BAND)).then_some(nearest <= HALF)
+            };
+            let expected: Vec<Option<bool>> = depth.iter().enumerate().map(is_on).collect();
+            on += expected.iter().filter(|on| **on == Some(true)).count();
+            // Modules for many shapes take seconds to compile: both back ends and sprites for the first eye alone.
+            let sprites = if is_first { vec![None, Some(LensSprite::default())] } else { vec![None] };
+            for sprite in sprites {
+                let lens = Lens { border, sprite, ..lens("a", [focus.clone()], "invert") };
+                let scene = scene(camera, vec![lens]);
+                let found = draw(&mut studio, &scene, 1, Backend::Specialised);
+                if is_first {
+                    assert!(draw(&mut studio, &scene, 1, Backend::Uber).rgba == found.rgba, "shape {i}: not alike");
+                }
+                let right = |(i, on): (usize, &Option<bool>)| {
+                    on.is_none_or(|on| found.rgba[i] == if on { above.rgba[i] } else { below.rgba[i] })
+                };
+                let wrong = expected.iter().enumerate().filter(|e| !right(*e)).count();
+                // Edges of solids and of what they are combined with are drawn on a grid of 1/256 pixel.
+                let most = if i < 7 { 0 } else { 24 };
+                assert!(wrong <= most, "shape {i}, {sprite:?}, {camera:?}: {wrong} pixels are wrong");
+            }
+        }
+        assert!(on > 1_000, "{on} pixels on a skin");
+    }
+}
+
+#[test]
+fn a_skin_hides_what_lies_on_it_alone() {
+    let mut studio = synthetic(60);
+    let middle = studio.extent().center();
+    let camera = Camera::looking(middle + DVec3::new(60.0, -110.0, 80.0), middle, 0.8);
+    let border = Some(Border { width: 4.0, unit: BorderUnit::Ray, discrete: Discrete::Threshold });
+    let ball = Shape::Sphere { center: middle, radius: 40.0 };
+    let lens = Lens { border, ..lens("a", [ball.clone()], "eraser") };
+    let reference = Reference::of(&ball.into());
+    let plain = draw(&mut studio, &scene(camera, vec![]), 1, Backend::Specialised);
+    let [one, other] = BACKENDS.map(|backend| draw(&mut studio, &scene(camera, vec![lens.clone()]), 1, backend));
+    assert!(one.rgba == other.rgba && one.depth == other.depth);
+    let (view, mut gone) = (view_of(camera), 0);
+    let [before, after] = [&plain, &one].map(|p| p.depth.as_ref().expect("depth was asked for"));
+    for (i, (was, is)) in before.iter().zip(after).enumerate() {
+        let found = reference.intervals(&view.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]));
+        let away = |d: f32| {
+            let ends = found.iter().flat_map(|(a, b)| [*a, *b]);
+            ends.map(|end| (f64::from(d) - end).abs()).fold(f64::INFINITY, f64::min)
+        };
+        if was.is_finite() && away(*was) < 1.999 {
+            gone += 1;
+            assert!(is > was, "pixel {i} still shows what lies on the skin");
+        } else if was.is_finite() && away(*was) > 2.001 {
+            assert!(is == was, "pixel {i} shows {is} instead of {was}");
+        }
+        assert!(!is.is_finite() || away(*is) > 1.999, "pixel {i} shows what lies on the skin");
+    }
+    assert!(gone > 300, "{gone} pixels");
 }
 
 #[test]

@@ -1,15 +1,28 @@
 // Soft borders of lenses (L9): the degree of interest by how far a place is from a lens. Twin: `veduta::lens::border`.
 
-// Of a lens' parameters: x the width, y 1 where that is in pixels, z 1 where what cannot be had by halves is dithered.
+// Of a lens' parameters: x the width, y 1 where that is in pixels, z 1 where what cannot be had by halves is dithered, w 1 where
+// distances are along the ray.
 fn border_width(border: vec4f, sight: Sight) -> f32 {
     let metres_per_pixel = abs(view.across_from_pixel.y) * select(max(sight.distance, 0.0), 1.0, sight.is_parallel);
     return border.x * select(1.0, metres_per_pixel, border.y > 0.5);
 }
 
 fn degree_of_interest(distance: f32, border: vec4f, sight: Sight) -> f32 {
+    if border.w > 0.5 {
+        return select(0.0, 1.0, distance <= 0.5 * border.x);
+    }
     let width = max(border_width(border, sight), 1e-30);
     let t = clamp(0.5 - distance / width, 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
+}
+
+// How far a place is along its ray from where that enters or leaves a volume (S5, Equal). A perspective ray starts at the eye: in a
+// volume that holds the eye it begins there.
+fn distance_to_ends(ends: Span, sight: Sight) -> f32 {
+    let is_met = ends.enter <= ends.exit && (sight.is_parallel || ends.exit > 0.0);
+    let enter = select(max(ends.enter, 0.0), ends.enter, sight.is_parallel);
+    let away = min(abs(sight.distance - enter), abs(sight.distance - ends.exit));
+    return select(FAR_AWAY, away, is_met && sight.distance < FAR_AWAY);
 }
 
 // What of a class of L4 a place has. Inside of a volume one of the sides is named, too: so that inside and outside share what

@@ -21,6 +21,9 @@ pub enum BorderUnit {
     Metres,
     /// Pixels at the distance of what is shown: the width in metres grows with it.
     Pixels,
+    /// Metres along the ray: a lens is all there within half the width of where the ray enters and leaves it, and nowhere else (S5,
+    /// *Equal*).
+    Ray,
 }
 
 /// How effects end that are there or not.
@@ -39,7 +42,7 @@ impl Border {
     pub fn reach_m(&self, view: &View, distance_m: f64) -> f64 {
         let half = 0.5 * self.width;
         match self.unit {
-            BorderUnit::Metres => half,
+            BorderUnit::Metres | BorderUnit::Ray => half,
             BorderUnit::Pixels if view.is_orthographic() => half * metres_per_pixel(view, 1.0),
             BorderUnit::Pixels => {
                 // What is shown lies at most its own share of its distance behind the volume.
@@ -52,7 +55,7 @@ impl Border {
     /// δ in metres at a distance along the view axis, metres.
     pub fn width_m(&self, view: &View, distance_m: f64) -> f64 {
         match self.unit {
-            BorderUnit::Metres => self.width,
+            BorderUnit::Metres | BorderUnit::Ray => self.width,
             BorderUnit::Pixels => self.width * metres_per_pixel(view, distance_m),
         }
     }

@@ -51,7 +51,8 @@ pub(super) fn volumes_of(
         for (j, focus) in lens.shapes.iter().enumerate() {
             match bodies_of(focus, city, &place, solids) {
                 Ok(mut bodies) => {
-                    if lens.soft_border().is_some() || has_surface(lens.drawn_body()) {
+                    let fades = lens.soft_border().is_some() && !ends_along_rays(lens);
+                    if fades || has_surface(lens.drawn_body()) {
                         let leaves = bodies.iter_mut().flat_map(Body::leaves_mut);
                         leaves.for_each(|leaf| tell_distance(&mut leaf.leaf, solids));
                     }
@@ -111,12 +112,17 @@ fn volume_of(number: u32, lens: &Lens, body: Body, motion: &Motion) -> Result<Le
         everywhere: lens.classes().any(|class| class == Class::Rest),
         drawn: lens.drawn_body(),
         sprite,
-        asks_sides: lens.classes().any(|class| class != Class::Inside),
+        asks_sides: lens.classes().any(|class| class != Class::Inside) || ends_along_rays(lens),
         border: lens.soft_border(),
         section: lens.section,
     };
     volume.bounds = own_sprites::bounds(&volume)?;
     Ok(volume)
+}
+
+/// Whether it asks where rays enter and leave it.
+fn ends_along_rays(lens: &Lens) -> bool {
+    lens.soft_border().is_some_and(|border| border.unit == BorderUnit::Ray)
 }
 
 /// Makes the box around chosen objects hold all of their levels of detail: a content may show another than the city does.
@@ -231,7 +237,7 @@ impl LensVolumes {
 fn asked_for(volume: &LensVolume, solid: &Solid) -> f64 {
     let widest = solid::widest_reach(&solid.bounds());
     let border = match volume.border {
-        None => 0.0,
+        None | Some(Border { unit: BorderUnit::Ray, .. }) => 0.0,
         Some(Border { unit: BorderUnit::Metres, width, .. }) => 0.5 * width,
         Some(_) => widest,
     };

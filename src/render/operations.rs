@@ -134,10 +134,13 @@ impl Operations {
         for (i, lens) in active() {
             let Some(border) = lens.soft_border() else { continue };
             let parameters = out.parameters.len() as u32;
-            let dithers = border.discrete == Discrete::Dither;
-            let [in_pixels, dithered] = [border.unit == BorderUnit::Pixels, dithers].map(|is| f32::from(u8::from(is)));
-            out.borders.push((i as u32, PlanBorder { parameters, dithers }));
-            out.parameters.push([border.width as f32, in_pixels, dithered, 0.0]);
+            let by_ray = border.unit == BorderUnit::Ray;
+            // What is there or not is asked of a border along rays as of one that dithers: all of it, or nothing.
+            let dithers = by_ray || border.discrete == Discrete::Dither;
+            let flags = [border.unit == BorderUnit::Pixels, dithers, by_ray];
+            let [in_pixels, dithered, along] = flags.map(|is| f32::from(u8::from(is)));
+            out.borders.push((i as u32, PlanBorder { parameters, dithers, by_ray }));
+            out.parameters.push([border.width as f32, in_pixels, dithered, along]);
         }
         Ok(out)
     }
@@ -158,7 +161,10 @@ impl Operations {
             },
             sides: lenses.iter().any(|l| l.classes().any(|class| class != Class::Inside)),
             borders: lenses.iter().any(|l| l.soft_border().is_some()),
-            dithers: lenses.iter().any(|l| l.soft_border().is_some_and(|b| b.discrete == Discrete::Dither)),
+            dithers: lenses
+                .iter()
+                .any(|l| l.soft_border().is_some_and(|b| b.discrete == Discrete::Dither || b.unit == BorderUnit::Ray)),
+            by_ray: lenses.iter().any(|l| l.soft_border().is_some_and(|b| b.unit == BorderUnit::Ray)),
             blends: uses().any(|e| blend_of(e).is_some()),
             lines: uses().any(|e| shader::effect::find(&e.effect).is_some_and(|h| h.lines)),
             contents: lenses.iter().any(|l| l.content.is_some()),
@@ -184,7 +190,8 @@ impl Operations {
     /// The uber back end's part of the modules of geometry and shadow, where something may be hidden.
     pub fn uber_hiding(&self) -> [Option<Uber>; 2] {
         let picture = self.uber.hiding(shader::handlers());
-        let sun = picture.clone().map(|uber| Uber { tests: self.shape_tests.clone(), borders: false, ..uber });
+        let sun =
+            picture.clone().map(|uber| Uber { tests: self.shape_tests.clone(), borders: false, by_ray: false, ..uber });
         [picture, sun]
     }
 

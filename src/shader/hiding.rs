@@ -149,7 +149,7 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
         true => text.push_str(RUNS_WITHOUT_LENSES),
         false if uber.borders => {
             let tests = &uber.tests;
-            let (classes, distances) = (lens_test::class_of(uber), lens_test::distance_to(tests));
+            let (classes, distances) = (lens_test::class_of(uber), lens_test::distance_to(tests, uber.by_ray));
             text.push_str(&(classes + &distances + SHARE_OF + RUNS_DITHERED));
         }
         false => text.push_str(&(lens_test::class_of(uber) + RUNS)),

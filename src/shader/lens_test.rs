@@ -111,7 +111,11 @@ pub(super) fn interest(plan: &Plan, lens: u32, border: &str) -> String {
 /// How far a place is from one lens of a plan.
 pub(super) fn distance_of(plan: &Plan, lens: u32, border: &str) -> String {
     let (first, tests) = plan.volumes_of(lens);
-    let distances = (first..).zip(tests).map(|(volume, test)| distance(*test, &volume.to_string(), border));
+    let by_ray = plan.border_of(lens).is_some_and(|border| border.by_ray);
+    let distances = (first..).zip(tests).map(|(volume, test)| match by_ray {
+        true => along_ray(*test, &volume.to_string()),
+        false => distance(*test, &volume.to_string(), border),
+    });
     distances.reduce(|all, one| format!("min({all}, {one})")).unwrap_or_else(|| "FAR_AWAY".to_owned())
 }
 
@@ -124,16 +128,25 @@ pub(super) fn ends_of(plan: &Plan, lens: u32) -> String {
 
 /// Where a ray meets a volume by its number first and last.
 pub(super) fn span(test: VolumeTest, volume: &str) -> String {
+    span_of(test, volume, "pixel", "ray")
+}
+
+/// How far a place is from where its ray enters or leaves a volume by its number.
+fn along_ray(test: VolumeTest, volume: &str) -> String {
+    format!("distance_to_ends({}, sight)", span_of(test, volume, "sight.pixel", "sight.ray"))
+}
+
+fn span_of(test: VolumeTest, volume: &str, pixel: &str, ray: &str) -> String {
     match test {
         VolumeTest::Members | VolumeTest::Solid | VolumeTest::Combined => "EMPTY_SPAN".to_owned(),
         VolumeTest::SolidSprite | VolumeTest::CombinedSprite => {
-            format!("span_in_sides(sprite_places[{volume}], pixel)")
+            format!("span_in_sides(sprite_places[{volume}], {pixel})")
         }
         VolumeTest::Sprite | VolumeTest::LayeredSprite => {
-            format!("span_in_layers(sprite_places[{volume}], pixel)")
+            format!("span_in_layers(sprite_places[{volume}], {pixel})")
         }
-        VolumeTest::OwnSprite => format!("span_in_own(shapes[{volume}], ray)"),
-        _ => format!("span_of_shape(ray, shapes[{volume}], {})", test.constant()),
+        VolumeTest::OwnSprite => format!("span_in_own(shapes[{volume}], {ray})"),
+        _ => format!("span_of_shape({ray}, shapes[{volume}], {})", test.constant()),
     }
 }
 
@@ -231,11 +244,15 @@ fn leaf_distances(kinds: &[VolumeTest]) -> String {
 }
 
 /// `distance_to`, for the uber back end.
-pub(super) fn distance_to(tests: &[VolumeTest]) -> String {
+pub(super) fn distance_to(tests: &[VolumeTest], by_ray: bool) -> String {
     let head = "fn distance_to(v: u32, sight: Sight, border: vec4f) -> f32 {\n    switch shapes[v].kind {\n";
     let mut text = head.to_owned();
     for test in tests {
-        let _ = writeln!(text, "        case {}: {{ return {}; }}", test.constant(), distance(*test, "v", "border"));
+        let mut away = distance(*test, "v", "border");
+        if by_ray {
+            away = format!("select({away}, {}, border.w > 0.5)", along_ray(*test, "v"));
+        }
+        let _ = writeln!(text, "        case {}: {{ return {away}; }}", test.constant());
     }
     text + "        default: { return FAR_AWAY; }\n    }\n}\n\n"
 }

@@ -331,6 +331,8 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.combinations, COMBINED),
         (parts.combined_sprites, COMBINED_SPRITE),
         (parts.borders, BORDER),
+        (parts.by_ray && parts.side_sprites, SHELL_SIDES),
+        (parts.by_ray && parts.sprites, SHELL_SPRITE),
         (parts.distances, DISTANCE),
         (parts.distances && parts.solids, SOLID_DISTANCE),
         (parts.distances && parts.combinations, COMBINED_DISTANCE),
@@ -341,7 +343,9 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
 /// The libraries that tell from sprites where a ray is inside.
 fn span_files(program: &Program) -> Vec<(&'static str, &'static str)> {
     let parts = program.has();
-    let files = [(parts.side_sprites, SHELL_SIDES), (parts.sprites, SHELL_SPRITE)];
+    // With borders along rays they are there already.
+    let is_new = !parts.by_ray;
+    let files = [(parts.side_sprites && is_new, SHELL_SIDES), (parts.sprites && is_new, SHELL_SPRITE)];
     files.into_iter().filter(|(is_used, _)| *is_used).map(|(_, file)| file).collect()
 }
 
@@ -401,6 +405,7 @@ mod tests {
             }
             Program::Uber(uber) => {
                 uber.borders = false;
+                uber.by_ray = false;
                 uber.tests.iter_mut().for_each(by_shape);
                 uber.tests.sort_unstable();
                 uber.tests.dedup();
@@ -443,7 +448,11 @@ mod tests {
             volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % VolumeTest::ALL.len()]).collect(),
             leaves: LEAVES[seed % 8..].to_vec(),
             body,
-            border: seed.is_multiple_of(5).then_some(PlanBorder { parameters: 5, dithers: seed.is_multiple_of(2) }),
+            border: seed.is_multiple_of(5).then_some(PlanBorder {
+                parameters: 5,
+                dithers: seed.is_multiple_of(2),
+                by_ray: seed.is_multiple_of(3),
+            }),
         };
         let kind = [BodyKind::Outline, BodyKind::Shell, BodyKind::Halo][seed / 2 % 3];
         let body = seed.is_multiple_of(2).then_some(PlanBody { kind, parameters: 3 });
@@ -467,6 +476,7 @@ mod tests {
             bodies: plan.bodies(),
             sides: !seed.is_multiple_of(3),
             borders: plan.has_borders(),
+            by_ray: plan.has_borders() && seed.is_multiple_of(3),
             dithers: plan.has_borders(),
             blends: plan.has_blends(),
             haze: plan.haze,

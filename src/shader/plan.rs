@@ -133,6 +133,8 @@ pub struct PlanBorder {
     pub parameters: u32,
     /// Whether what cannot be had by halves is dithered.
     pub dithers: bool,
+    /// Whether it is told by the distance along the ray.
+    pub by_ray: bool,
 }
 
 /// How it is decided where a place is with regard to a lens volume (S7).
@@ -374,6 +376,8 @@ pub struct Uber {
     pub sides: bool,
     /// Whether some of them have soft borders.
     pub borders: bool,
+    /// Whether some of these are told along rays.
+    pub by_ray: bool,
     /// Whether what cannot be had by halves is dithered along some of these.
     pub dithers: bool,
     /// Whether some effects are blended.
@@ -399,6 +403,7 @@ impl Uber {
             contents: self.contents,
             sides: self.sides,
             borders: self.dithers,
+            by_ray: self.by_ray,
             ..Self::default()
         })
     }
@@ -412,8 +417,8 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        let Self { sides, borders, dithers, contents, .. } = *self;
-        let all = Self { effects, tests, leaves, sides, borders, dithers, contents, ..Self::default() };
+        let Self { sides, borders, by_ray, dithers, contents, .. } = *self;
+        let all = Self { effects, tests, leaves, sides, borders, by_ray, dithers, contents, ..Self::default() };
         self.lines.then_some(Self { blends: self.blends, lines: true, ..all })
     }
 
@@ -437,6 +442,10 @@ impl Program {
         let (bodies, blends, lines, borders) = match self {
             Self::Specialised(plan) => (plan.bodies(), plan.has_blends(), plan.lines, plan.has_borders()),
             Self::Uber(uber) => (uber.bodies.clone(), uber.blends, uber.lines, uber.borders && has_lenses),
+        };
+        let by_ray = match self {
+            Self::Specialised(plan) => plan.borders().any(|border| border.by_ray),
+            Self::Uber(uber) => uber.by_ray && borders,
         };
         let contents = match self {
             Self::Specialised(plan) => !plan.contents.is_empty(),
@@ -463,6 +472,7 @@ impl Program {
             lines,
             contents,
             borders,
+            by_ray,
         }
     }
 
@@ -527,6 +537,8 @@ pub struct Parts {
     pub contents: bool,
     /// Soft borders of lenses.
     pub borders: bool,
+    /// Borders of lenses along rays.
+    pub by_ray: bool,
 }
 
 impl Plan {
@@ -548,7 +560,12 @@ impl Plan {
 
     /// Whether some lens fades.
     pub fn has_borders(&self) -> bool {
-        (0..self.lenses.len() as u32).any(|lens| self.border_of(lens).is_some())
+        self.borders().next().is_some()
+    }
+
+    /// The soft borders of its lenses that do something here.
+    pub fn borders(&self) -> impl Iterator<Item = PlanBorder> {
+        (0..self.lenses.len() as u32).filter_map(|lens| self.border_of(lens))
     }
 
     /// The soft border of one of its lenses that does something here.

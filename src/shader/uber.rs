@@ -74,7 +74,7 @@ pub(super) fn classes(uber: &Uber) -> String {
         false => {
             let tests = &uber.tests;
             let has_distances = Program::Uber(uber.clone()).has().distances;
-            let distances = if has_distances { lens_test::distance_to(tests) } else { String::new() };
+            let distances = if has_distances { lens_test::distance_to(tests, uber.by_ray) } else { String::new() };
             let shares = if uber.borders { [SHARE_OF, SHARE_AT].concat() } else { String::new() };
             lens_test::class_of(uber) + &distances + CLASSES + &shares
         }

@@ -535,10 +535,10 @@ pub const BORDER: Table = Table {
         ),
         key(
             "unit",
-            Kind::Word { now: &["m", "px"], later: &[] },
+            Kind::Word { now: &["m", "px", "ray"], later: &[] },
             "\"m\"",
             "",
-            "Of the width: metres, or pixels at the distance of what is shown.",
+            "Of the width: metres, or pixels at the distance of what is shown. `ray`: metres along the ray, and nothing fades: all of what the lens does is seen where what is shown lies within half the width of where its ray first enters or last leaves the volume, before or behind it, and nowhere else. So a lens acts on a skin, where it meets the city. Tested by a sprite, half the width should be no less than a step of its format.",
             "\"px\"",
         ),
         key(

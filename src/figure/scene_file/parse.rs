@@ -178,7 +178,8 @@ impl<'o> SceneReader<'o> {
         let border = fields
             .node("border")
             .map(|node| self.checker.fields(node, &keys::BORDER, &[], fields.place.within("border", node.line)));
-        if (sprite.is_some() || has_saved) && border.is_some() {
+        let fades = border.as_ref().is_some_and(|b| b.text("unit") != Some("ray"));
+        if (sprite.is_some() || has_saved) && fades {
             let message = match has_saved {
                 true => {
                     "is given together with a shape of kind \"sprite\": what is tested by a depth sprite ends at once"
@@ -205,7 +206,11 @@ impl<'o> SceneReader<'o> {
             sprite,
             border: border.map(|b| Border {
                 width: b.number("width").unwrap_or(0.0),
-                unit: if b.text("unit") == Some("px") { BorderUnit::Pixels } else { BorderUnit::Metres },
+                unit: match b.text("unit") {
+                    Some("px") => BorderUnit::Pixels,
+                    Some("ray") => BorderUnit::Ray,
+                    _ => BorderUnit::Metres,
+                },
                 discrete: if b.text("discrete") == Some("dither") { Discrete::Dither } else { Discrete::Threshold },
             }),
             section: fields.color("section"),

@@ -351,7 +351,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         ("border = {}", "border.width: is missing: From where"),
         ("border = { width = -1 }", "border.width: must be a number 0 to 100000, is -1"),
-        ("border = { width = 1, unit = \"cm\" }", "border.unit: must be \"m\" or \"px\", is \"cm\""),
+        ("border = { width = 1, unit = \"cm\" }", "border.unit: must be \"m\" or \"px\" or \"ray\", is \"cm\""),
         ("sprite = {}\nborder = { width = 1 }", "border: is given together with sprite"),
         ("sprite = { camera = { eye = [0, 0, 1] } }", "sprite.camera.target: is missing: What it looks at"),
         (
@@ -575,8 +575,8 @@ fn effects() -> impl Strategy<Value = EffectUse> {
 /// A sprite or a border, or neither.
 fn ends() -> impl Strategy<Value = (Option<LensSprite>, Option<Border>)> {
     let sprite = sprites().prop_map(|sprite| (Some(sprite), None));
-    let border = (0.0..1e5, any::<bool>(), any::<bool>()).prop_map(|(width, in_pixels, dithers)| {
-        let unit = if in_pixels { BorderUnit::Pixels } else { BorderUnit::Metres };
+    let units = prop::sample::select(vec![BorderUnit::Metres, BorderUnit::Pixels, BorderUnit::Ray]);
+    let border = (0.0..1e5, units, any::<bool>()).prop_map(|(width, unit, dithers)| {
         let discrete = if dithers { Discrete::Dither } else { Discrete::Threshold };
         (None, Some(Border { width, unit, discrete }))
     });

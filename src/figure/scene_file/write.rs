@@ -136,7 +136,11 @@ impl Toml {
             self.key("sprite", &sprite::written(sprite));
         }
         if let Some(border) = lens.border {
-            let unit = if border.unit == BorderUnit::Pixels { ", unit = \"px\"" } else { "" };
+            let unit = match border.unit {
+                BorderUnit::Metres => "",
+                BorderUnit::Pixels => ", unit = \"px\"",
+                BorderUnit::Ray => ", unit = \"ray\"",
+            };
             let discrete = if border.discrete == Discrete::Dither { ", discrete = \"dither\"" } else { "" };
             self.key("border", &format!("{{ width = {}{unit}{discrete} }}", number(border.width)));
         }
