@@ -290,3 +290,18 @@ fn a_part_stands_for_its_building_and_the_ground_for_nothing() {
     let others = Focus::Combined { how: Operation::Difference, parts };
     assert_eq!(of_types(vec![others], false, &[]), hall);
 }
+
+#[test]
+fn a_member_of_a_group_stands_for_itself() {
+    let mut studio = studio::studio(&[studio::citydata("group.city.json")]);
+    let camera = cameras(&studio)[1];
+    for (at, name) in [(2.0, "one"), (8.0, "two")] {
+        let parts = vec![ball(DVec3::new(at, 2.0, 2.0), 3.0)];
+        let enclosed = Focus::Enclosed { parts, whole: false, types: vec!["Building".into()] };
+        let scene = studio::scene(camera, vec![studio::lens("enclosed", [enclosed], "sepia")]);
+        let picture = drawn(&mut studio, &scene, Backend::Specialised);
+        let only: Vec<bool> = studio.model.objects.iter().map(|o| &*o.id == name).collect();
+        let expected = shows(&picture, &only);
+        assert!(expected.contains(&true) && studio::bits(&picture, 0) == expected, "{name}");
+    }
+}

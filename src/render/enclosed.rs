@@ -62,8 +62,8 @@ pub fn with_corners_outside(city: ShownCity, objects: &FxHashSet<u32>, areas: &[
     geometries.filter(is_cut).map(|geometry| geometry.object).collect()
 }
 
-/// The objects that some bodies hold, one per object of the city: those that touch one of them, with all that they are part of and
-/// all parts of that; with `whole` without those of which some shown corner is in none. What others stand on (terrain, water,
+/// The objects that some bodies hold, one per object of the city: those that touch one of them, with all that they are part of (but for
+/// groups) and all parts of that; with `whole` without those of which some shown corner is in none. What others stand on (terrain, water,
 /// roads, land use) is never among them. `types`: of what is part of nothing; empty: all.
 pub fn enclosed(city: ShownCity, areas: &[Area], whole: bool, types: &[String]) -> Vec<bool> {
     let model = city.model;
@@ -71,7 +71,7 @@ pub fn enclosed(city: ShownCity, areas: &[Area], whole: bool, types: &[String]) 
     let is_wanted = |mut object: u32| {
         // As far as ways up go, whatever files say of who belongs to whom.
         for _ in 0..model.objects.len() {
-            let Some(&parent) = model.objects[object as usize].parents.first() else { break };
+            let Some(parent) = wholes(city, object).next() else { break };
             object = parent;
         }
         types.is_empty() || kinds.contains(&model.objects[object as usize].kind)
@@ -97,9 +97,20 @@ fn all_of(city: ShownCity, objects: &FxHashSet<u32>) -> Vec<bool> {
     while let Some(object) = next.pop() {
         // Each once, whatever files say of who belongs to whom.
         if !std::mem::replace(&mut marked[object as usize], true) {
-            let object = &model.objects[object as usize];
-            next.extend(object.parents.iter().chain(&object.children));
+            let is_group = is_group(city, object);
+            let parts = model.objects[object as usize].children.iter().filter(|_| !is_group);
+            next.extend(parts.copied().chain(wholes(city, object)));
         }
     }
     marked
+}
+
+/// What an object is part of. Of a group it is a member, not a part.
+fn wholes(city: ShownCity<'_>, object: u32) -> impl Iterator<Item = u32> {
+    let parents = city.model.objects[object as usize].parents.iter().copied();
+    parents.filter(move |&parent| !is_group(city, parent))
+}
+
+fn is_group(city: ShownCity, object: u32) -> bool {
+    city.model.strings.get(city.model.objects[object as usize].kind) == "CityObjectGroup"
 }

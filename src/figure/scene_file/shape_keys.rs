@@ -298,7 +298,7 @@ pub const SHAPES: &[Table] = &[
     },
     Table {
         name: "enclosed",
-        doc: "Everything that belongs to the city objects that some shapes hold or touch, wherever it is: the lens acts on whole buildings, and as it moves, on others. A part stands for all of its building; what others stand on (terrain, water, roads, land use) is never meant. Nothing is in front of it or behind it.",
+        doc: "Everything that belongs to the city objects that some shapes hold or touch, wherever it is: the lens acts on whole buildings, and as it moves, on others. A part stands for all of its building, a member of a group for itself; what others stand on (terrain, water, roads, land use) is never meant. Nothing is in front of it or behind it.",
         keys: &[
             shape_kind("\"enclosed\""),
             key(
