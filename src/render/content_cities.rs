@@ -1,9 +1,6 @@
 //! The contents of a scene's lenses: loaded when their lenses are first seen, kept as long as these are enabled.
 
-use std::{
-    path::PathBuf,
-    sync::{Arc, OnceLock},
-};
+use std::{path::PathBuf, sync::Arc};
 
 use rustc_hash::FxHashSet;
 
@@ -144,7 +141,7 @@ impl ContentCities {
         let wants_ground = !is_own && stage.scene.city.ground;
         let ground = wants_ground.then(|| plain_ground(&model, &geometries)).flatten();
         self.given += 1;
-        let city = Arc::new(ContentCity { id: self.given, model, geometries, ground, is_own, index: OnceLock::new() });
+        let city = Arc::new(ContentCity { id: self.given, model, geometries, ground, is_own });
         self.cities.push((content.files.clone(), content.lod, city.clone()));
         let is_shown = city.is_own && city.geometries == stage.geometries;
         Ok((!is_shown).then_some(city))
@@ -193,8 +190,8 @@ impl SceneContents {
     pub fn figures(&self, own: ShownCity, renderer: &Renderer) -> Vec<stats::Content> {
         let mut counted: Vec<u64> = Vec::new();
         let figure = |w: &WantedContent| {
-            let shown = w.shown(own);
-            let objects = shown.geometries.iter().map(|&g| shown.model.geometries[g as usize].object);
+            let (model, shown) = w.shown(own);
+            let objects = shown.iter().map(|&g| model.geometries[g as usize].object);
             let city = w.city.as_ref();
             let on_gpu = renderer.content_city(city.map_or(0, |city| city.id));
             let is_new = city.is_some_and(|city| !counted.contains(&city.id));
@@ -240,13 +237,9 @@ fn placement(
 }
 
 impl WantedContent {
-    /// What it shows; `own`: the scene's city.
-    pub fn shown<'a>(&'a self, own: ShownCity<'a>) -> ShownCity<'a> {
-        self.city.as_ref().map_or(own, |city| ShownCity {
-            model: &city.model,
-            geometries: &city.geometries,
-            index: &city.index,
-        })
+    /// The model that it shows, and the geometries of it; `own`: the scene's city.
+    fn shown<'a>(&'a self, own: ShownCity<'a>) -> (&'a CityModel, &'a [u32]) {
+        self.city.as_ref().map_or((own.model, own.geometries), |city| (&*city.model, &city.geometries[..]))
     }
 
     /// Box around where it stands, metres.
@@ -265,10 +258,9 @@ impl WantedContent {
     }
 }
 
-fn met(shown: ShownCity, placement: &Placement, volumes: &[&LensVolume]) -> FxHashSet<u32> {
-    let model = shown.model;
+fn met((model, geometries): (&CityModel, &[u32]), placement: &Placement, volumes: &[&LensVolume]) -> FxHashSet<u32> {
     let mut met = FxHashSet::default();
-    for geometry in shown.geometries.iter().map(|&g| &model.geometries[g as usize]) {
+    for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
         let bounds = placement.boxed(&geometry.bounds);
         let near: Vec<_> = volumes.iter().filter(|v| v.bounds.meets(&bounds)).collect();
         if near.is_empty() || met.contains(&geometry.object) {

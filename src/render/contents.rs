@@ -4,14 +4,12 @@
 //! the uniform `City` differs. The surfaces of all stand in one table, the scene's own first, so that a pixel's code says
 //! all there is to know; directions in it are those after turning.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
-    city::{
-        CityModel, coplanar::coplanar_triangles, decode_normal, encode_normal, ground::Ground, spatial::SpatialIndex,
-    },
+    city::{CityModel, coplanar::coplanar_triangles, decode_normal, encode_normal, ground::Ground},
     geom::Aabb,
     gpu::GpuError,
     render::{
@@ -40,8 +38,6 @@ pub struct ContentCity {
     pub ground: Option<Ground>,
     /// Whether it is the scene's own model.
     pub is_own: bool,
-    /// Finds the triangles that are shown; made when first asked for.
-    pub index: OnceLock<SpatialIndex>,
 }
 
 /// Where a content stands: `from` comes to `to`, and all else turned and scaled about it.
