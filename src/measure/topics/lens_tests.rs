@@ -16,10 +16,12 @@ use crate::{
 };
 
 /// Share of the picture that a lens alone covers, and one of several.
-const SHARES: [f64; 2] = [0.2, 0.03];
+const SHARES: [f64; 2] = [0.2, 0.1];
 
-/// How many lenses.
-const COUNTS: [usize; 5] = [1, 2, 4, 7, 10];
+/// How many lenses; `branches` ends at 6.
+const COUNTS: [usize; 5] = [1, 2, 4, 6, 10];
+/// What lenses do, in turn.
+const EFFECTS: [&str; 6] = ["posterise", "sepia", "engraving", "saturate", "invert", "overlay"];
 /// With how many of them still and moving ones are compared.
 const MOVING: [usize; 2] = [1, 10];
 /// How far a lens moves from one frame to the next, as part of its radius.
@@ -117,7 +119,8 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
         let techniques: Vec<&Technique> = TECHNIQUES.iter().filter(|technique| (technique.fits)(&case)).collect();
         let motion = if case.moved.is_some() { "moving" } else { "still" };
         let mut scene = plain.clone();
-        let one = |(i, focus): (usize, Focus)| -> Lens { lens(&format!("lens {i}"), focus, &["sepia"]) };
+        let one =
+            |(i, focus): (usize, Focus)| -> Lens { lens(&format!("lens {i}"), focus, &[EFFECTS[i % EFFECTS.len()]]) };
         scene.lenses = case.lenses.into_iter().enumerate().map(one).collect();
         let reference = stage.shot(scene.clone(), 1);
         for technique in techniques {
