@@ -19,6 +19,13 @@ fn sight_of(fragment: Fragment) -> Sight {
                  fragment.object);
 }
 
-fn part_of(surface: Surface) -> u32 {
-    return (surface.flags & SURFACE_PART) >> SURFACE_PART_SHIFT;
+// What is drawn at a place of the target.
+fn fragment_at(at: vec2f, depth: f32, code: u32) -> Fragment {
+    let ray = ray_of_pixel(at);
+    let position = ray.origin + distance_of_depth(depth) * ray.direction;
+    let up = view.view_from_world[2];       // dot(column, p) = p's share of the world's z
+    let height = f32(view.eye_whole.z) + view.eye_fraction.z + dot(up, position);
+    let surface = surface_at(code - 1u);
+    return Fragment(vec2i(at), depth, position, height, code - 1u, surface.object, part_of(surface),
+                    decode_normal(surface.normal), ray, view.orthographic == 1u, city_number());
 }

@@ -14,6 +14,9 @@ struct Point {
     normal: vec3f,              // unit, towards the eye
     surface: u32,
     object: u32,                // or NO_OBJECT
+    part: u32,                  // PART_*
+    layer: u32,                 // of a translucent one: how many are nearer; of what is opaque 0
+    last_layer: u32,            // how many lie behind the nearest in all
     natural: vec3f,             // its own colour, linear; where it has a texture, that of the material
     base: vec3f,                // its colour before light, linear: clay, texture or natural
     lit: bool,                  // whether light acts on it
@@ -24,6 +27,7 @@ struct Point {
 }
 
 const NO_SURFACE: u32 = 0xffffffffu;
+const CLAY_COLOR = vec3f(0.62, 0.585, 0.54);
 
 @group(1) @binding(6) var codes: texture_2d<u32>;
 @group(1) @binding(7) var scene_depth: texture_depth_2d;
@@ -47,7 +51,7 @@ fn base_color(point: Point, pixel: vec2i) -> vec3f {
         return textureLoad(colors, pixel, 0).rgb;
     }
     if CLAY {
-        return vec3f(0.62, 0.585, 0.54);
+        return CLAY_COLOR;
     }
     if TEXTURED {
         return textureLoad(colors, pixel, 0).rgb;
@@ -56,7 +60,16 @@ fn base_color(point: Point, pixel: vec2i) -> vec3f {
 }
 
 fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
-    let code = textureLoad(codes, pixel, 0).xy;
+    var point = point_of(pixel, ray, depth, textureLoad(codes, pixel, 0).xy);
+    point.base = base_color(point, pixel);
+    if is_section(point.surface) {
+        point.natural = point.base;
+    }
+    return point;
+}
+
+// That of a number, and where it has one a normal, in the geometry target; it has no base colour yet.
+fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u) -> Point {
     var point: Point;
     point.pixel = pixel;
     point.depth = depth;
@@ -69,12 +82,9 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
         point.normal = -point.normal;
     }
     point.object = surface.object;
+    point.part = part_of(surface);
     point.lit = CLAY || (surface.flags & SURFACE_UNLIT) == 0u;
     point.natural = surface.color;
-    point.base = base_color(point, pixel);
-    if is_section(point.surface) {
-        point.natural = point.base;
-    }
     point.sun = sun_share(point.relative, point.normal);
     point.arriving = irradiance(point.normal, point.sun);
     point.shade = luminance(point.arriving);
@@ -82,8 +92,8 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
 }
 
 fn nowhere(pixel: vec2i) -> Point {
-    return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, vec3f(0.0), vec3f(0.0),
-                 false, 1.0, vec3f(1.0), 1.0, vec3f(0.0));
+    return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, PART_OTHER, 0u, 0u,
+                 vec3f(0.0), vec3f(0.0), false, 1.0, vec3f(1.0), 1.0, vec3f(0.0));
 }
 
 // What is shown beside a point, `offset` pixels away; at the picture's edge, what is at the edge.
@@ -103,6 +113,12 @@ fn beside(point: Point, offset: vec2i) -> Beside {
     let surface = surface_shown(code.x - 1u);
     let normal = decode_normal(select(surface.normal, code.y, SMOOTH));
     return Beside(textureLoad(scene_depth, pixel, 0), normal, surface.object, code.x - 1u);
+}
+
+// From a point to the eye: unit, world axes.
+fn towards_eye(point: Point) -> vec3f {
+    let back = vec3f(0.0, 0.0, 1.0) * view.view_from_world;
+    return select(-normalize(point.relative), back, view.orthographic == 1u);
 }
 
 // Metres of the picture plane at a point that one pixel spans.

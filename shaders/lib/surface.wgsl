@@ -32,6 +32,10 @@ fn surface_at(number: u32) -> Surface {
     return Surface(texel.x, texel.y, color, texel.w >> 16u);
 }
 
+fn part_of(surface: Surface) -> u32 {
+    return (surface.flags & SURFACE_PART) >> SURFACE_PART_SHIFT;
+}
+
 // Octahedral, 2 x snorm16: the inverse of the host's `encode_normal`. Multiplied where the built-in functions divide:
 // it runs per pixel.
 fn decode_normal(code: u32) -> vec3f {

@@ -158,6 +158,10 @@ fn plane_in_picture(normal: vec3f, room: f32) -> vec3f {
 
 @vertex
 fn vertex_coplanar(in: Vertex, plane: Plane) -> CoplanarVarying {
+    return coplanar(in, plane);
+}
+
+fn coplanar(in: Vertex, plane: Plane) -> CoplanarVarying {
     let face = placed(in);
     let facing = city_direction(plane.normal);
     let room = dot(facing, city_relative(plane.origin, vec3f(0.0))) + city_length(plane.offset);

@@ -27,7 +27,7 @@ const NO_END: u32 = 0x7c00u;
 
 const TILE_PX: u32 = 32u;
 const PAIRS: u32 = 16u;         // of columns of a tile
-const SECTIONS: u32 = 5u;
+const SECTIONS: u32 = 6u;
 const ENTRY: u32 = 3u;          // words
 // Places are rounded on both sides.
 const SLACK: f32 = 1e-4;

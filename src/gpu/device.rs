@@ -68,6 +68,7 @@ fn wanted_features() -> wgpu::Features {
         | wgpu::Features::PIPELINE_STATISTICS_QUERY
         | wgpu::Features::FLOAT32_BLENDABLE
         | wgpu::Features::FLOAT32_FILTERABLE
+        | wgpu::Features::SHADER_EARLY_DEPTH_TEST
 }
 
 impl Gpu {
@@ -157,6 +158,11 @@ impl Gpu {
     /// Whether the adapter is a program, not a card.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Whether shaders that store can have the depth test before them.
+    pub fn tests_depth_early(&self) -> bool {
+        self.device.features().contains(wgpu::Features::SHADER_EARLY_DEPTH_TEST)
     }
 
     /// `hardware`, `integrated`, `virtual`, `software` or `other`.

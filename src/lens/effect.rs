@@ -15,9 +15,6 @@ use crate::{
     },
 };
 
-/// Effects whose names are fixed but which this version does not have.
-pub const LATER: &[&str] = &["x-ray"];
-
 /// Stands among the effects of a lens for a content in another level of detail ([`crate::lens::Content`]).
 pub const LOD: &str = "lod";
 
@@ -59,10 +56,11 @@ pub fn check(used: &EffectUse) -> Vec<EffectProblem> {
     {
         problems.push(problem("min", format!("must be less than max = {max}, is {min}")));
     }
-    if definition.kind == EffectKind::Hide {
+    if definition.kind.decides_visibility() {
+        let does = if definition.kind == EffectKind::Hide { "hides things" } else { "says how opaque things are" };
         let blended = [("blend", used.blend.is_some()), ("weight", used.weight.is_some())];
         for (key, _) in blended.iter().filter(|(_, is_given)| *is_given) {
-            problems.push(problem(key, format!("\"{}\" hides things; there is nothing to blend", used.effect)));
+            problems.push(problem(key, format!("\"{}\" {does}; there is nothing to blend", used.effect)));
         }
     }
     if let Some(weight) = used.weight
@@ -75,10 +73,6 @@ pub fn check(used: &EffectUse) -> Vec<EffectProblem> {
 
 /// The message for a name that is no effect of this version.
 pub fn unknown_effect(name: &str) -> String {
-    if LATER.contains(&name) {
-        let all: Vec<&str> = effects().map(|e| e.name.as_str()).collect();
-        return format!("effect = \"{name}\" is not available yet; available: {}", all.join(", "));
-    }
     match did_you_mean(name, effects().map(|e| e.name.as_str())) {
         hint if hint.is_empty() => {
             format!("there is no effect \"{name}\"; effects of your own come from a folder: --effects DIR")
@@ -201,7 +195,7 @@ mod tests {
     #[test]
     fn the_table_is_well_formed() {
         for effect in effects() {
-            assert!(effect.doc.ends_with('.') && !effect.spec.is_empty() && !LATER.contains(&effect.name.as_str()));
+            assert!(effect.doc.ends_with('.') && !effect.spec.is_empty());
             for p in &effect.parameters {
                 assert!(p.doc.ends_with('.') && !RESERVED.contains(&p.name.as_str()), "{}.{}", effect.name, p.name);
                 // The shader reads every parameter, so every one has a value.
@@ -230,7 +224,6 @@ mod tests {
         let message =
             |problems: Vec<EffectProblem>| problems.first().map(|p| format!("{}: {}", p.key, p.message)).unwrap();
         assert_eq!(message(with("sepai", &[])), "effect: there is no effect \"sepai\"; did you mean \"sepia\"?");
-        assert!(message(with("x-ray", &[])).starts_with("effect: effect = \"x-ray\" is not available yet"));
         assert!(message(with("thematic", &[])).starts_with("attribute: is missing"));
         assert_eq!(
             message(with("sepia", &[("amonut", Parameter::Number(1.0))])),

@@ -11,7 +11,7 @@ use crate::{
         cut::{Cut, CutPrograms, Cuts},
         eye::{PictureTile, view_uniform},
         frame::{FrameInput, Recorder, color_attachment, depth_attachment},
-        key::{GeometryKind, Key},
+        key::Key,
         renderer::{Renderer, Shadow},
     },
     shader::Program,
@@ -213,12 +213,7 @@ pub(super) fn geometry_key(
     measured: bool,
     cut: Option<Program>,
 ) -> Key {
-    let section = match kind {
-        SectionKind::Plain => GeometryKind::Plain,
-        SectionKind::Textured { alpha_cutoff, .. } => GeometryKind::Textured(alpha_cutoff.to_bits()),
-        SectionKind::Coplanar => GeometryKind::Coplanar,
-    };
-    Key::Geometry { section, colored, smooth, flat: smooth && !own, measured, cut }
+    Key::Geometry { section: kind.into(), colored, smooth, flat: smooth && !own, measured, cut }
 }
 
 pub(super) fn draw_ranges(pass: &mut wgpu::RenderPass, indices: &wgpu::Buffer, draws: &[Draw]) {

@@ -7,11 +7,13 @@
 //! depth sprites                 of the solids in view whose sides are asked for
 //! geometry                      everything once; on a software adapter what is near, and then
 //! geometry beyond               what that does not hide, where it hides much
+//! layers, composite             what is translucent, listed by pixel, sorted and laid one over the other
 //! narrow lists                  of many lenses, those that each tile shows something of
 //! lines                         edges, where effects draw them
 //! unfiltered, filter down,      for each neighbourhood filter in view: its lens' own image over the lens' bounds
 //! filter across                 and what the filter reaches beyond them, and the filter
 //! shade                         outside of where lenses may be seen without them, inside with them
+//! shown layers                  where AOVs are asked for
 //! resolve                       the mean of the samples, after the last of several
 //! furniture                     title, caption, legends: over the last sample
 //! ```
@@ -35,6 +37,7 @@ use crate::{
         furniture::Furniture,
         invokers::Invokers,
         key::{Behind, Key, ShadeTarget, Shown},
+        layers::{self, LayerDraw, LayerFigures, LayerKeys},
         layout, light, lines,
         octagon::Mesh,
         operations::Operations,
@@ -89,6 +92,8 @@ pub struct FrameInput<'a> {
     pub backend: Backend,
     /// Whether interpolated depth is kept, for the AOV.
     pub measured: bool,
+    /// Whether surfaces are kept for AOVs that translucent layers may be the shown surface of.
+    pub shown: bool,
     /// Whether every pixel's classes are kept, for AOVs and statistics; of the first sample.
     pub masks: bool,
     /// Which sample this is.
@@ -186,6 +191,7 @@ impl Renderer {
             return Ok(Vec::new());
         }
         let mut recorder = Recorder { timer, passes: Vec::new() };
+        self.layer_figures = LayerFigures::default();
         let city = self.drawn_box();
         self.own_sprites.plan(input, &city);
         let all_seen = seen_volumes(input, &city, self.own_sprites.room());
@@ -204,7 +210,10 @@ impl Renderer {
         let Seen { volumes: seen, pages, .. } = &all_seen;
         let filters = plans.filters.len() as u32;
         let lines = if self.has_edges() { lines::draws(input, plans.lining.as_ref(), &plans.seen) } else { Vec::new() };
+        let shows_layers = plans.layering.is_some() && (input.shown || input.measured || wants_masks(input));
         self.fit_targets(Needs {
+            veils: plans.layering.is_some(),
+            shown_layers: shows_layers,
             filters,
             filter_images: if filters > 0 { behind(input).images() as u32 } else { 0 },
             lines: !lines.is_empty(),
@@ -215,7 +224,8 @@ impl Renderer {
         self.kept_sprites.extend(self.own_sprites.kept());
         let (keys, is_uber) = self.prepare(input, (seen, &making), &plans, &cuts, sun_view.is_some());
         self.upload(input, sun_view.as_ref(), (seen, &making), &plans, &cuts, is_uber)?;
-        let narrows = self.narrows_lists && is_uber && plans.is_long();
+        // What is narrowed is what is opaque.
+        let narrows = self.narrows_lists && is_uber && plans.is_long() && plans.layering.is_none();
         if narrows {
             let [across, down] = input.tile.size.map(|side| side.div_ceil(TILE_PX));
             self.prepare_narrowing(&plans.invokers().reaches(&plans.rooms), across * down)?;
@@ -258,11 +268,19 @@ impl Renderer {
         if let Some(cut) = cuts.picture.as_ref().zip(keys.cuts.picture.as_ref()) {
             self.section_passes(&mut encoder, &mut recorder, input, &rounds, cut);
         }
-        if narrows {
-            self.narrow_pass(&mut encoder, &mut recorder, input.tile.size.map(|side| side.div_ceil(TILE_PX)));
-        }
         if !seen.is_empty() && wants_masks(input) {
             self.clear_masks(&mut encoder, &mut recorder, input);
+        }
+        if let Some((keys, cut)) = keys.layers.as_ref().zip(cuts.picture.as_ref()) {
+            let is_everywhere = plans.context.veils;
+            let [outside, inside] = &shade_parts;
+            let pieces = if is_everywhere || inside.is_empty() { all_parts(outside, inside) } else { inside.clone() };
+            let part = u32::from(!seen.is_empty());
+            let draw = LayerDraw { cut, keys, pieces: &pieces, part };
+            encoder = self.layer_passes(encoder, &mut recorder, input, &draw)?;
+        }
+        if narrows {
+            self.narrow_pass(&mut encoder, &mut recorder, input.tile.size.map(|side| side.div_ceil(TILE_PX)));
         }
         if let (false, Some(key)) = (lines.is_empty(), &keys.lines) {
             self.lines_pass(&mut encoder, &mut recorder, input, (&lines, cuts.picture.as_ref()), key);
@@ -276,6 +294,9 @@ impl Renderer {
                 self.shade_pass(&mut encoder, &mut recorder, input, [outside, Vec::new()], &keys);
                 self.shade_regions(&mut encoder, &mut recorder, input, &inside, (regions, &keys.regions));
             }
+        }
+        if let Some(key) = keys.layers.as_ref().and_then(|layers| layers.shown.as_ref()) {
+            self.show_layers(&mut encoder, &mut recorder, input, key);
         }
         if input.samples > 1 && input.sample + 1 == input.samples {
             self.resolve_pass(&mut encoder, &mut recorder);
@@ -461,7 +482,7 @@ impl Renderer {
             stale |= b.shape_planes.sync(gpu, &shapes.planes)?;
             if let (true, Some(cut)) = (is_uber, &cuts.sun) {
                 let none = Plan::default();
-                let invokers = Invokers::new([&none, &none], [Some(&cut.plan), None], handlers());
+                let invokers = Invokers::new([&none, &none], [Some(&cut.plan), None, None], handlers());
                 stale |= b.shape_invoker_table.sync(gpu, &invokers.table([0, 0]))?;
                 stale |= b.shape_invokers.sync(gpu, invokers.all())?;
             }
@@ -545,36 +566,69 @@ impl Renderer {
             [Shown::Surface, Shown::Background].map(|shown| shade_to(target, shown, program.clone())).to_vec()
         };
         let lines_key = |program: Program| Key::Lines { program, smooth };
-        let parts =
-            |context: Program, lenses: Program, city: Vec<Key>, cuts: CutPrograms, lines: Option<Program>| ShadeKeys {
-                lines: lines.map(lines_key),
-                city,
-                cuts,
-                context: both(context),
-                lenses: if seen.is_empty() || plans.regions.is_some() { Vec::new() } else { both(lenses) },
-                regions: plans.regions.as_ref().map_or_else(RegionKeys::default, |regions| {
-                    let masks = wants_masks(input).then(|| Plan { steps: Vec::new(), ..plans.lenses.clone() });
-                    regions::keys(input, regions, masks, shade_to)
-                }),
-                // Written out on either back end: a few steps without a lens.
-                filters: plans
-                    .filters
-                    .iter()
-                    .map(|f| shade_to(ShadeTarget::Unfiltered, Shown::Any, Program::Specialised(f.plan.clone())))
-                    .collect(),
-            };
+        let shown = (input.shown || input.measured || wants_masks(input))
+            .then_some(Key::ShownLayers { smooth, measured: input.measured });
+        let layer_keys = |noting: Option<Program>, composite: Option<Program>| {
+            let (noting, program) = noting.zip(composite)?;
+            let textured = colored && !clay;
+            let count = plans.layering.as_ref().filter(|plan| layers::asks_most(plan));
+            let words = LayerKeys::words(smooth, textured);
+            let sort = LayerKeys::sorting(words, self.longest_list);
+            Some(LayerKeys {
+                noting,
+                composite: Key::Composite {
+                    program,
+                    textured,
+                    clay,
+                    shadows,
+                    smooth,
+                    shown: shown.is_some(),
+                    sorted: !sort.is_empty(),
+                },
+                count: count.map(|_| Key::CountLayers(words)),
+                sort,
+                shown: shown.clone(),
+                textured,
+                smooth,
+            })
+        };
+        let parts = |context: Program,
+                     lenses: Program,
+                     city: Vec<Key>,
+                     cuts: CutPrograms,
+                     [lines, layers]: [Option<Program>; 2]| ShadeKeys {
+            lines: lines.map(lines_key),
+            layers: layer_keys(cuts.picture.clone(), layers),
+            city,
+            cuts,
+            context: both(context),
+            lenses: if seen.is_empty() || plans.regions.is_some() { Vec::new() } else { both(lenses) },
+            regions: plans.regions.as_ref().map_or_else(RegionKeys::default, |regions| {
+                let masks = wants_masks(input).then(|| Plan { steps: Vec::new(), ..plans.lenses.clone() });
+                regions::keys(input, regions, masks, shade_to)
+            }),
+            // Written out on either back end: a few steps without a lens.
+            filters: plans
+                .filters
+                .iter()
+                .map(|f| shade_to(ShadeTarget::Unfiltered, Shown::Any, Program::Specialised(f.plan.clone())))
+                .collect(),
+        };
         let specialised = || {
             let cuts = cuts.specialised();
             let by_region = plans.regions.as_ref().map(|regions| Program::Specialised(regions.plan.clone()));
             let city = cut_keys(cuts.picture.as_ref().or(by_region.as_ref()), cuts.sun.as_ref());
             let [context, lenses] = [&plans.context, &plans.lenses].map(|plan| Program::Specialised(plan.clone()));
-            parts(context, lenses, city, cuts, plans.lining.clone().map(Program::Specialised))
+            let others = [&plans.lining, &plans.layering].map(|plan| plan.clone().map(Program::Specialised));
+            parts(context, lenses, city, cuts, others)
         };
         let uber = || {
             let uber = Program::Uber(input.operations.uber(haze(input) > 0.0, wants_masks(input)));
             let hiding = input.operations.uber_hiding().map(|uber| uber.map(Program::Uber));
             let city = cut_keys(hiding[0].as_ref(), hiding[1].as_ref().filter(|_| shadows));
-            parts(uber.clone(), uber, city, cuts.uber(hiding), input.operations.uber_lining().map(Program::Uber))
+            let layering = input.operations.uber_layering(haze(input) > 0.0, wants_masks(input));
+            let others = [input.operations.uber_lining(), layering.filter(|_| plans.layering.is_some())];
+            parts(uber.clone(), uber, city, cuts.uber(hiding), others.map(|uber| uber.map(Program::Uber)))
         };
         let shade_keys = match input.backend {
             // Those kept for reference are written out.
@@ -592,6 +646,10 @@ impl Renderer {
             }
         };
         keys.extend(shade_keys.all().cloned());
+        if let Some(layers) = &shade_keys.layers {
+            let early = self.gpu.tests_depth_early();
+            keys.extend(sections.iter().map(|&(kind, own)| layers.noting_key(kind.into(), own, early)));
+        }
         keys.extend(plans.filters.iter().map(|f| Key::Filter(f.effect)));
         if input.samples > 1 {
             keys.push(Key::Resolve);
@@ -605,6 +663,7 @@ impl Renderer {
         }
         self.ran.extend(plans.context.effects());
         self.ran.extend(plans.lenses.effects());
+        self.ran.extend(plans.layering.iter().flat_map(|plan| plan.effects()));
         self.ran.extend(plans.lining.iter().flat_map(|plan| plan.effects()));
         self.ran.extend(cuts.all().flat_map(|cut| cut.plan.effects()));
         self.ran.sort_unstable();
@@ -738,6 +797,8 @@ struct ShadeKeys {
     city: Vec<Key>,
     /// What draws lines.
     lines: Option<Key>,
+    /// What lists and lays translucent layers.
+    layers: Option<LayerKeys>,
     /// What marks and shades regions.
     regions: RegionKeys,
 }
@@ -745,8 +806,13 @@ struct ShadeKeys {
 impl ShadeKeys {
     fn all(&self) -> impl Iterator<Item = &Key> {
         let parts = self.context.iter().chain(&self.lenses).chain(&self.filters).chain(&self.city).chain(&self.lines);
-        parts.chain(self.regions.all())
+        parts.chain(self.regions.all()).chain(self.layers.iter().flat_map(LayerKeys::all))
     }
+}
+
+/// What shading draws outside of the lenses' bounds, and inside.
+fn all_parts<T: Clone>(outside: &[T], inside: &[T]) -> Vec<T> {
+    [outside, inside].concat()
 }
 
 /// Whether this sample writes the lens masks.
@@ -782,6 +848,8 @@ fn needs(input: &FrameInput, has_lenses: bool, pages: &Pages, colors: bool, smoo
         filters: 0,
         filter_images: 0,
         lines: false,
+        veils: false,
+        shown_layers: false,
         shadow: if shadows { light::SHADOW_SIZE } else { 0 },
     }
 }

@@ -12,7 +12,7 @@ use crate::{
         operations::Operations,
         volume::{LensVolume, projected_box},
     },
-    shader::{EffectKind, handlers},
+    shader::handlers,
     view::View,
 };
 
@@ -81,7 +81,7 @@ impl Hiding {
     /// main view.
     pub fn new(operations: &Operations, volumes: &[LensVolume], view: &View, is_active: impl Fn(u32) -> bool) -> Self {
         let mut hiding = Self::default();
-        let hides = |effect: u32| handlers()[effect as usize].kind == EffectKind::Hide;
+        let hides = |effect: u32| handlers()[effect as usize].kind.decides_visibility();
         let is_active = |lens: Option<u32>| lens.is_none_or(&is_active);
         for operation in operations.list.iter().filter(|o| hides(o.effect) && is_active(o.lens)) {
             hiding.lenses.extend(operation.lens);

@@ -7,8 +7,8 @@ use crate::{
     shader::{Blend, ClassTest, EffectDefinition, EffectKind, Plan, PlanLens, Scope, Step, TILE_PX, scope_number},
 };
 
-/// Sections of the lists of a tile, as `shader::uber` numbers them: materials, lights, styles, bodies, masks.
-const SECTIONS: usize = 5;
+/// Sections of the lists of a tile, as `shader::uber` numbers them: opacity rules, materials, lights, styles, bodies, masks.
+const SECTIONS: usize = 6;
 
 /// An invoker of a section, and the lens of the plan that it belongs to; none: the context.
 type Entry = (u32, Option<u32>);
@@ -27,8 +27,12 @@ pub struct Invokers {
 }
 
 impl Invokers {
-    /// Of the context's plan and the lenses', of what is hidden, and of what lines go through.
-    pub fn new(plans: [&Plan; 2], [hiding, lining]: [Option<&Plan>; 2], handlers: &[EffectDefinition]) -> Self {
+    /// Of the context's plan and the lenses', of what is hidden, of what lines go through, and of translucent layers.
+    pub fn new(
+        plans: [&Plan; 2],
+        [hiding, lining, layering]: [Option<&Plan>; 3],
+        handlers: &[EffectDefinition],
+    ) -> Self {
         let mut out = Self::default();
         let first = out.all.len() as u32;
         if let Some(plan) = hiding {
@@ -66,11 +70,19 @@ impl Invokers {
         }
         out.contents = [first, out.all.len() as u32];
         out.inside_of.resize(out.all.len(), None);
-        out.sections = plans.map(|plan| out.sections_of(plan, handlers));
+        let [context, lenses] = plans;
+        let rules = |is_one: &dyn Fn(Scope) -> bool| -> Vec<Step> {
+            let all = layering.iter().flat_map(|plan| plan.steps_of(EffectKind::Opacity, handlers));
+            all.filter(|(step, _)| is_one(step.scope)).map(|(step, _)| step.clone()).collect()
+        };
+        out.sections = [
+            out.sections_of(context, &rules(&|scope| scope == Scope::Everywhere), handlers),
+            out.sections_of(lenses, &rules(&|_| true), handlers),
+        ];
         out
     }
 
-    fn sections_of(&mut self, plan: &Plan, handlers: &[EffectDefinition]) -> [Vec<Entry>; SECTIONS] {
+    fn sections_of(&mut self, plan: &Plan, rules: &[Step], handlers: &[EffectDefinition]) -> [Vec<Entry>; SECTIONS] {
         let volumes = volumes_before(plan);
         let mut add = |invoker: layout::Invoker, lens: Option<u32>, is_inside: bool| {
             self.all.push(invoker.packed());
@@ -78,7 +90,7 @@ impl Invokers {
             (self.all.len() as u32 - 1, lens)
         };
         let mut of_kinds = |kinds: &[EffectKind]| -> Vec<Entry> {
-            let steps = plan.steps.iter().map(|s| (s, &handlers[s.effect as usize]));
+            let steps = plan.steps.iter().chain(rules).map(|s| (s, &handlers[s.effect as usize]));
             let chosen = steps.filter(|(_, h)| kinds.contains(&h.kind));
             let one = |(step, handler): (&Step, &EffectDefinition)| {
                 let invoker = invoker(plan, &volumes, step, handler);
@@ -89,6 +101,7 @@ impl Invokers {
             };
             chosen.map(one).collect()
         };
+        let opacities = of_kinds(&[EffectKind::Opacity]);
         let materials = of_kinds(&[EffectKind::Material]);
         let lights = of_kinds(&[EffectKind::Light]);
         let styles = of_kinds(&[EffectKind::Scene, EffectKind::Post, EffectKind::Filter]);
@@ -109,7 +122,7 @@ impl Invokers {
         };
         let bodies = of_lenses(&|lens| lens.body.is_some());
         let masks = of_lenses(&|_| plan.masks);
-        [materials, lights, styles, bodies, masks]
+        [opacities, materials, lights, styles, bodies, masks]
     }
 
     /// The table as `shader::uber` declares it, for a picture of this size.
@@ -153,7 +166,7 @@ impl Invokers {
         // Stable: lenses of a tile keep their order.
         pairs.sort_by_key(|(tile, _)| *tile);
         let [context, lenses] = &self.sections;
-        let mut words = vec![0; 6 * (1 + (across * down) as usize)];
+        let mut words = vec![0; (SECTIONS + 1) * (1 + (across * down) as usize)];
         let put = |words: &mut Vec<u32>, (invoker, _): &Entry| {
             let kept = &self.all[*invoker as usize];
             words.extend([kept.place, kept.call, *invoker]);
@@ -168,7 +181,7 @@ impl Invokers {
         let mut shown = pairs.chunk_by(|a, b| a.0 == b.0).peekable();
         for tile in 0..across * down {
             let own = shown.next_if(|pairs| pairs[0].0 == tile).unwrap_or_default();
-            let record = 6 * (1 + tile as usize);
+            let record = (SECTIONS + 1) * (1 + tile as usize);
             for (i, section) in lenses.iter().enumerate() {
                 words[record + i] = words.len() as u32;
                 section[..begins[i][0] as usize].iter().for_each(|entry| put(&mut words, entry));
@@ -233,7 +246,11 @@ fn invoker(plan: &Plan, volumes: &[u32], step: &Step, handler: &EffectDefinition
         parameters: if handler.kind == EffectKind::Filter { step.image(handler) } else { step.parameters },
         blend: step.blend.map_or(0, Blend::number),
         weight: step.weight(handler).unwrap_or(0),
-        kind: u32::from(handler.kind == EffectKind::Scene),
+        kind: match handler.kind {
+            EffectKind::Scene => 1,
+            EffectKind::Opacity => 2,
+            _ => 0,
+        },
         number: 0,
         border: border.map_or(0, |b| b.parameters + 1),
     }

@@ -2,10 +2,12 @@
 
 use crate::{
     render::{
+        city::SectionKind,
         edges::Edge,
         layout,
         pipelines::{
             CODES, COLORS, DEPTH, FILTERED, FURNITURE_LAYER, LINES, OWN_DEPTH, PICTURE, REGIONS, SMOOTH_CODES, SPRITES,
+            VEIL,
         },
         sprite_passes::SolidStage,
         stored::LIST_TARGET,
@@ -70,6 +72,54 @@ pub enum Key {
         program: Program,
         /// Normals are in the target.
         smooth: bool,
+    },
+    /// Lists of translucent layers.
+    Layers {
+        /// How vertices are laid out and where depth comes from.
+        section: GeometryKind,
+        /// Whether some faces of the picture have normals per vertex.
+        smooth: bool,
+        /// Whether they are in other cities of the picture, and this one has flat faces alone.
+        flat: bool,
+        /// Whether the picture has textures.
+        textured: bool,
+        /// What is translucent.
+        program: Program,
+        /// Whether the depth test can come first.
+        early: bool,
+    },
+    /// Translucent layers, one over the other.
+    Composite {
+        /// What the context and the lenses do.
+        program: Program,
+        /// Base colours come from textures.
+        textured: bool,
+        /// One clay colour.
+        clay: bool,
+        /// There is a shadow map.
+        shadows: bool,
+        /// Normals are in the lists.
+        smooth: bool,
+        /// Which layer is the shown surface is written down.
+        shown: bool,
+        /// Lists are in order.
+        sorted: bool,
+    },
+    /// How many layers the pixel has that has most, of notes of so many words.
+    CountLayers(u32),
+    /// A step of sorting long lists.
+    SortLayers {
+        /// Words of a note.
+        words: u32,
+        /// How many notes are in order before.
+        width: u32,
+    },
+    /// Layers that are the shown surface.
+    ShownLayers {
+        /// Normals are in the target.
+        smooth: bool,
+        /// Depth is written, for the AOV.
+        measured: bool,
     },
     /// Regions as depths, and how they are told apart.
     Regions(Plan),
@@ -164,6 +214,16 @@ pub enum GeometryKind {
     Coplanar,
 }
 
+impl From<SectionKind> for GeometryKind {
+    fn from(kind: SectionKind) -> Self {
+        match kind {
+            SectionKind::Plain => Self::Plain,
+            SectionKind::Textured { alpha_cutoff, .. } => Self::Textured(alpha_cutoff.to_bits()),
+            SectionKind::Coplanar => Self::Coplanar,
+        }
+    }
+}
+
 const VERTEX: &[wgpu::VertexAttribute] =
     &wgpu::vertex_attr_array![0 => Sint32x3, 1 => Uint32, 2 => Float32x3, 3 => Uint32];
 const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x2];
@@ -194,6 +254,13 @@ impl Key {
             Self::SolidSprite(_) => Module::Sprite,
             Self::Shade { program, .. } => Module::Shade(program.clone()),
             Self::Lines { program, .. } => Module::Lines(program.clone()),
+            Self::Layers { program, early, section, .. } => {
+                Module::Layers(program.clone(), *early && *section != GeometryKind::Coplanar)
+            }
+            Self::Composite { program, .. } => Module::Composite(program.clone()),
+            Self::CountLayers(_) => Module::CountLayers,
+            Self::SortLayers { .. } => Module::SortLayers,
+            Self::ShownLayers { .. } => Module::ShownLayers,
             Self::Regions(plan) => Module::Regions(plan.clone()),
             Self::Section { program, .. } => Module::Sections(program.clone()),
             Self::Filter(effect) => Module::Filter(*effect),
@@ -250,6 +317,29 @@ impl Key {
                 ];
                 format!("{}{}", self.module().name(), flags(&list))
             }
+            Self::Layers { section, smooth, flat, textured, .. } => {
+                let kind = match section {
+                    GeometryKind::Plain => "",
+                    GeometryKind::Textured(0) => " of textures",
+                    GeometryKind::Textured(_) => " of textures with holes",
+                    GeometryKind::Coplanar => " coplanar",
+                };
+                let flags = flags(&[(*textured, "textured"), (*smooth, "smooth"), (*flat, "flat")]);
+                format!("{}{kind}{flags}", self.module().name())
+            }
+            Self::Composite { textured, clay, shadows, smooth, shown, sorted, .. } => {
+                let list = [
+                    (*sorted, "sorted"),
+                    (*textured, "textured"),
+                    (*clay, "clay"),
+                    (*shadows, "shadows"),
+                    (*smooth, "smooth"),
+                    (*shown, "shown"),
+                ];
+                format!("{}{}", self.module().name(), flags(&list))
+            }
+            Self::SortLayers { width, .. } => format!("{} by {width}", self.module().name()),
+            Self::CountLayers(_) | Self::ShownLayers { .. } => self.module().name(),
             Self::Filter(_) | Self::Lines { .. } | Self::Regions(_) => self.module().name(),
             Self::Section { draw, .. } => {
                 let draw = match draw {
@@ -287,6 +377,23 @@ impl Key {
                 ("SECTIONS", flag(*sections)),
                 ("BACKGROUND", f64::from(*behind as u32)),
             ],
+            Self::Layers { section, smooth, flat, textured, .. } => {
+                let mut list =
+                    vec![("SMOOTH", flag(*smooth)), ("FLAT_CITY", flag(*flat)), ("TEXTURED", flag(*textured))];
+                if let GeometryKind::Textured(cutoff) = section {
+                    list.push(("ALPHA_CUTOFF", f64::from(f32::from_bits(*cutoff))));
+                }
+                list
+            }
+            Self::Composite { textured, clay, shadows, smooth, sorted, .. } => vec![
+                ("SORTED", flag(*sorted)),
+                ("TEXTURED", flag(*textured)),
+                ("CLAY", flag(*clay)),
+                ("SHADOWS", flag(*shadows)),
+                ("SMOOTH", flag(*smooth)),
+            ],
+            Self::CountLayers(words) => vec![("WORDS", f64::from(*words))],
+            Self::SortLayers { words, width } => vec![("WORDS", f64::from(*words)), ("WIDTH", f64::from(*width))],
             Self::Lines { smooth, .. } => vec![("SMOOTH", flag(*smooth))],
             Self::StoredForm(kind) => vec![("KIND", f64::from(kind.number()))],
             _ => Vec::new(),
@@ -294,7 +401,12 @@ impl Key {
     }
 
     pub(super) fn compute_entry(&self) -> Option<&'static str> {
-        matches!(self, Self::StoredForm(_) | Self::StoredLayers(_)).then_some("store")
+        match self {
+            Self::StoredForm(_) | Self::StoredLayers(_) => Some("store"),
+            Self::CountLayers(_) => Some("count"),
+            Self::SortLayers { .. } => Some("sort"),
+            _ => None,
+        }
     }
 
     pub(super) fn entry_points(&self) -> (&'static str, Option<&'static str>) {
@@ -312,6 +424,13 @@ impl Key {
                     }
                 }
             }
+            Self::Layers { section, smooth, .. } => match (section, smooth) {
+                (GeometryKind::Plain, false) => ("vertex", Some("note_plain")),
+                (GeometryKind::Plain, true) => ("vertex_smooth", Some("note_smooth")),
+                (GeometryKind::Textured(_), _) => ("vertex_textured", Some("note_textured")),
+                (GeometryKind::Coplanar, _) => ("vertex_coplanar_layer", Some("note_coplanar")),
+            },
+            Self::Composite { shown, .. } => ("vertex", Some(if *shown { "veil_and_shown" } else { "veil" })),
             Self::Shadow(None) => ("vertex", None),
             Self::Shade { shown, .. } => {
                 let fragment = match shown {
@@ -341,15 +460,21 @@ impl Key {
     pub(super) fn vertex_buffers(&self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
         let vertex = per_vertex(size_of::<layout::CityVertex>() as u64, VERTEX);
         match self {
-            Self::Geometry { section: GeometryKind::Textured(_), .. } => vec![vertex, per_vertex(8, TEXCOORD)],
-            Self::Geometry { section: GeometryKind::Coplanar, .. } => {
+            Self::Geometry { section: GeometryKind::Textured(_), .. }
+            | Self::Layers { section: GeometryKind::Textured(_), .. } => vec![vertex, per_vertex(8, TEXCOORD)],
+            Self::Geometry { section: GeometryKind::Coplanar, .. }
+            | Self::Layers { section: GeometryKind::Coplanar, .. } => {
                 vec![vertex, per_vertex(size_of::<layout::Plane>() as u64, PLANE)]
             }
-            Self::Geometry { .. } | Self::Shadow(_) | Self::Bare | Self::Section { draw: SectionDraw::Count, .. } => {
-                vec![vertex]
-            }
+            Self::Geometry { .. }
+            | Self::Layers { .. }
+            | Self::Shadow(_)
+            | Self::Bare
+            | Self::Section { draw: SectionDraw::Count, .. } => vec![vertex],
             Self::Lines { .. } => vec![Some(Edge::LAYOUT)],
-            Self::Shade { .. } | Self::Regions(_) | Self::Filter(_) => vec![per_vertex(8, CORNER)],
+            Self::Shade { .. } | Self::Composite { .. } | Self::Regions(_) | Self::Filter(_) => {
+                vec![per_vertex(8, CORNER)]
+            }
             Self::SpriteList
             | Self::SolidSprite(SolidStage::Nearest | SolidStage::Farthest)
             | Self::CombinedSprite(SolidStage::NearestFace | SolidStage::FarthestFace, _) => {
@@ -397,6 +522,14 @@ impl Key {
                     write_mask: wgpu::ColorWrites::ALL,
                 })]
             }
+            Self::Composite { shown, .. } => {
+                let all = [VEIL, SMOOTH_CODES, OWN_DEPTH].map(|format| Some(format.into()));
+                all[..if *shown { 3 } else { 1 }].to_vec()
+            }
+            Self::ShownLayers { smooth, measured } => {
+                let codes = if *smooth { SMOOTH_CODES } else { CODES };
+                [Some(codes.into())].into_iter().chain(measured.then(|| Some(OWN_DEPTH.into()))).collect()
+            }
             Self::SpriteList => vec![Some(wgpu::ColorTargetState {
                 format: LIST_TARGET,
                 blend: None,
@@ -435,7 +568,11 @@ impl Key {
         let compare = match self {
             Self::SolidSprite(SolidStage::Missed) => return None,
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
-            Self::Geometry { .. } | Self::Shadow(_) | Self::Bare | Self::Lines { .. } => C::Greater,
+            // Its own depth is not the interpolated one.
+            Self::Layers { section: GeometryKind::Coplanar, .. } => C::Always,
+            Self::Geometry { .. } | Self::Layers { .. } | Self::Shadow(_) | Self::Bare | Self::Lines { .. } => {
+                C::Greater
+            }
             Self::SolidSprite(stage) | Self::CombinedSprite(stage, _) => {
                 if stage.is_nearest() {
                     C::Greater
@@ -452,6 +589,10 @@ impl Key {
             | Self::StoredForm(_)
             | Self::StoredLayers(_)
             | Self::SpriteList
+            | Self::Composite { .. }
+            | Self::CountLayers(_)
+            | Self::SortLayers { .. }
+            | Self::ShownLayers { .. }
             | Self::Filter(_)
             | Self::Resolve
             | Self::Furniture { .. }
@@ -463,7 +604,7 @@ impl Key {
             format: DEPTH,
             depth_write_enabled: Some(match self {
                 Self::Section { draw, .. } => matches!(draw, SectionDraw::Fill { .. }),
-                _ => !matches!(self, Self::Shade { .. } | Self::Lines { .. }),
+                _ => !matches!(self, Self::Shade { .. } | Self::Layers { .. } | Self::Lines { .. }),
             }),
             depth_compare: Some(compare),
             stencil: wgpu::StencilState::default(),

@@ -22,6 +22,7 @@ mod furniture_passes;
 pub mod hiding;
 pub mod invokers;
 pub mod key;
+pub mod layers;
 pub mod layout;
 mod lens_volumes;
 pub mod light;

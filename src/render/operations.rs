@@ -182,6 +182,11 @@ impl Operations {
         self.uber.lining(shader::handlers())
     }
 
+    /// The uber back end's module of translucent layers, where there may be some.
+    pub fn uber_layering(&self, haze: bool, masks: bool) -> Option<Uber> {
+        Uber { haze, masks, ..self.uber.clone() }.layering(shader::handlers())
+    }
+
     /// Whether the context or an enabled lens draws lines.
     pub fn draws_lines(&self) -> bool {
         self.list.iter().any(|o| shader::handlers()[o.effect as usize].lines)
@@ -228,7 +233,7 @@ impl Operations {
             Some(PlanContent { lens, class, city: c.city, clip: c.clip, keeps_terrain: c.keeps_terrain })
         };
         let contents = self.contents.iter().filter_map(content).collect();
-        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks, contents, regions: None }
+        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks, contents, ..Plan::default() }
     }
 
     /// The list as steps; `place` finds a lens in the plan.
@@ -250,7 +255,7 @@ impl Operations {
         if !self.list.iter().any(Operation::is_filter) {
             return Vec::new();
         }
-        let hides = |o: &Operation| shader::handlers()[o.effect as usize].kind == EffectKind::Hide;
+        let hides = |o: &Operation| shader::handlers()[o.effect as usize].kind.decides_visibility();
         let is_seen = |o: &&Operation| !hides(o) && o.lens.is_none_or(|lens| seen.binary_search(&lens).is_ok());
         let operations: Vec<&Operation> = self.list.iter().filter(is_seen).collect();
         let filter = |(i, operation): (usize, &&Operation)| {

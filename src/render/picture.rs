@@ -449,7 +449,7 @@ impl Studio {
             let before = (self.renderer.gpu.allocations(), self.renderer.gpu.uploads());
             let mut records = self.renderer.draw(&input, timer.as_mut())?;
             // Later samples are added to those before; they meet about as many crossings.
-            if sample == 0 && self.renderer.makes_room()? {
+            if sample == 0 && (self.renderer.makes_room()? | self.renderer.sorts_longer()?) {
                 timer = timer.map(|_| Timer::new(&self.renderer.gpu)).transpose()?;
                 records = self.renderer.draw(&input, timer.as_mut())?;
             }
@@ -621,6 +621,7 @@ fn input<'a>(
         operations: &prepared.operations,
         backend: request.backend,
         measured: request.aovs.depth,
+        shown: request.aovs.object_id || request.aovs.normal,
         masks: request.statistics || request.aovs.lens_mask,
         sample: 0,
         samples: request.samples.max(1),

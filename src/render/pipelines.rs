@@ -34,6 +34,8 @@ pub const SPRITES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Lines before they are laid over the picture: linear, premultiplied.
 pub const LINES: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Translucent layers before they are laid over the picture: linear, premultiplied; alpha: what is let through.
+pub const VEIL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Furniture before it is laid over a transparent picture: linear, premultiplied.
 pub const FURNITURE_LAYER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
@@ -63,8 +65,16 @@ pub struct Layouts {
     pub cut_city: wgpu::BindGroupLayout,
     /// Shadow where something is hidden, group 2.
     pub shapes: wgpu::BindGroupLayout,
-    /// Shade where there are lines, group 3: their layer.
+    /// Shade where there are lines or translucent layers, group 3: both, as they are laid over the picture.
     pub lines: wgpu::BindGroupLayout,
+    /// Layers, group 0: the view, lists, notes, the depth of what is opaque.
+    pub layers: wgpu::BindGroupLayout,
+    /// Composite, group 3: lists, notes.
+    pub layer_lists: wgpu::BindGroupLayout,
+    /// Count and sort layers, group 0: lists, notes.
+    pub layer_order: wgpu::BindGroupLayout,
+    /// Shown layers, group 0: which are, and their depth.
+    pub shown_layers: wgpu::BindGroupLayout,
     /// Lines, group 3: the stage and the city, at dynamic offsets.
     pub line_stage: wgpu::BindGroupLayout,
     /// Geometry of a region, group 0: the view, and the number of the region at a dynamic offset.
@@ -231,7 +241,19 @@ impl Layouts {
                 ],
             ),
             shapes: cut::shapes_layout(gpu),
-            lines: layout(gpu, "lines", &[(0, S::FRAGMENT, float)]),
+            lines: layout(gpu, "lines and layers", &[(0, S::FRAGMENT, float), (1, S::FRAGMENT, float)]),
+            layers: layout(
+                gpu,
+                "layers",
+                &[(0, all, uniform()), (1, S::FRAGMENT, written), (2, S::FRAGMENT, written), (3, S::FRAGMENT, depth)],
+            ),
+            layer_lists: layout(gpu, "lists of layers", &[(0, S::FRAGMENT, written), (1, S::FRAGMENT, storage())]),
+            layer_order: layout(gpu, "order of layers", &[(0, S::COMPUTE, written), (1, S::COMPUTE, written)]),
+            shown_layers: layout(
+                gpu,
+                "shown layers",
+                &[(0, S::FRAGMENT, image(T::Uint, D::D2)), (1, S::FRAGMENT, float)],
+            ),
             line_stage: layout(gpu, "line stage", &[(0, all, dynamic), (1, all, dynamic)]),
             region: layout(gpu, "region", &[(0, all, uniform()), (1, S::FRAGMENT, dynamic)]),
             sections: {
@@ -275,9 +297,19 @@ impl Layouts {
                 vec![Some(&self.view), Some(&self.planes), Some(&self.stage)]
             }
             Key::Shade { program, .. } => {
-                let lines = program.has().lines.then_some(&self.lines);
+                let has = program.has();
+                let lines = (has.lines || has.veils).then_some(&self.lines);
                 vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), lines]
             }
+            Key::Layers { section, .. } => {
+                let image = matches!(section, GeometryKind::Textured(_)).then_some(&self.image);
+                vec![Some(&self.layers), Some(&self.cut_city), Some(&self.lenses), image]
+            }
+            Key::Composite { .. } => {
+                vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), Some(&self.layer_lists)]
+            }
+            Key::CountLayers(_) | Key::SortLayers { .. } => vec![Some(&self.layer_order)],
+            Key::ShownLayers { .. } => vec![Some(&self.shown_layers)],
             Key::Lines { .. } => {
                 vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), Some(&self.line_stage)]
             }

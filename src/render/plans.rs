@@ -26,6 +26,8 @@ pub(super) struct Plans {
     pub hiding: Option<Plan>,
     /// What lines go through.
     pub lining: Option<Plan>,
+    /// What is made of translucent layers.
+    pub layering: Option<Plan>,
     /// Lenses in view, in the order of the plans, and where.
     pub seen: Vec<u32>,
     pub parts: Vec<Octagon>,
@@ -49,6 +51,7 @@ impl Plans {
         let context = input.operations.context_plan(haze);
         let whole = if seen.is_empty() { &context } else { &lenses };
         let (hiding, lining) = (whole.hiding(handlers()), whole.lining(handlers()));
+        let layering = whole.layering(handlers());
         let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         numbers.dedup();
         let of_lens = || seen.chunk_by(|a, b| a.lens == b.lens);
@@ -69,6 +72,7 @@ impl Plans {
             filters,
             hiding,
             lining,
+            layering,
             seen: numbers,
             context,
             lenses,
@@ -78,7 +82,7 @@ impl Plans {
 
     /// The invokers of the picture.
     pub fn invokers(&self) -> &Invokers {
-        let hidden = [self.hiding.as_ref(), self.lining.as_ref()];
+        let hidden = [self.hiding.as_ref(), self.lining.as_ref(), self.layering.as_ref()];
         self.invokers.get_or_init(|| Invokers::new([&self.context, &self.lenses], hidden, handlers()))
     }
 

@@ -13,6 +13,7 @@ use crate::{
         curtain::Curtain,
         edges::EdgeBuffers,
         furniture::FurnitureOnGpu,
+        layers::{LayerFigures, LayersOnGpu},
         layout,
         narrow::Narrowing,
         own_sprites::OwnSprites,
@@ -75,6 +76,14 @@ pub struct Renderer {
     /// Whether the last frame listed crossings, and how many of them there is room for.
     pub(super) lists_crossings: bool,
     pub(super) crossing_room: u64,
+    /// Lists of translucent layers, once there were some, and what the last frame had of them.
+    pub(super) layers: Option<LayersOnGpu>,
+    pub(super) layer_figures: LayerFigures,
+    /// The longest list that frames sort; 0: none is long.
+    pub(super) longest_list: u32,
+    /// How many notes of translucent layers have room at a time; `None`: as many as [`crate::render::layers::LAYER_BYTES`]
+    /// hold. What does not fit is drawn in bands.
+    pub most_layers: Option<u64>,
     /// Counts cities, so that the shadow of an old one is not taken for the new one's.
     generation: u32,
 }
@@ -231,6 +240,10 @@ impl Renderer {
             ran: Vec::new(),
             solids_of: None,
             own_sprites: OwnSprites::default(),
+            layers: None,
+            layer_figures: LayerFigures::default(),
+            longest_list: 0,
+            most_layers: None,
             kept_sprites: Vec::new(),
             list_target: None,
             lists_crossings: false,
@@ -243,6 +256,7 @@ impl Renderer {
     /// Puts a city on the card in place of the last one.
     pub fn set_city(&mut self, shown: &Shown) -> Result<(), GpuError> {
         self.city = None;
+        self.longest_list = 0;
         self.contents = Contents::default();
         self.city = Some(self.city_on_gpu(shown)?);
         self.groups = None;
@@ -389,7 +403,7 @@ impl Renderer {
                     (10, whole(b.sprites.buffer())),
                 ],
             ),
-            lines: group(gpu, "lines", &p.lines, &[(0, all_of(&targets.lines))]),
+            lines: group(gpu, "lines and layers", &p.lines, &[(0, all_of(&targets.lines)), (1, all_of(&targets.veil))]),
             line_stage: targets.needs.lines.then(|| {
                 let entries =
                     [(0, one_of::<layout::LineStage>(&b.line_stages)), (1, one_of::<layout::City>(&b.cities))];
@@ -437,7 +451,7 @@ fn stage_of(buffer: &Synced, size: usize) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size })
 }
 
-fn all_of(target: &Target) -> wgpu::BindingResource<'_> {
+pub(super) fn all_of(target: &Target) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(&target.view)
 }
 

@@ -2,7 +2,9 @@
 
 use crate::{
     gpu::Gpu,
-    render::pipelines::{CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES},
+    render::pipelines::{
+        CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, VEIL,
+    },
 };
 
 /// What a frame needs beside codes, depth and the picture.
@@ -30,6 +32,10 @@ pub struct Needs {
     pub filter_images: u32,
     /// A layer of lines.
     pub lines: bool,
+    /// Translucent layers.
+    pub veils: bool,
+    /// Which of them is the shown surface.
+    pub shown_layers: bool,
     /// Side of the shadow map, 0 for none.
     pub shadow: u32,
 }
@@ -53,6 +59,8 @@ impl Needs {
             filters: self.filters.max(before.filters),
             filter_images: self.filter_images.max(before.filter_images),
             lines: self.lines || before.lines,
+            veils: self.veils || before.veils,
+            shown_layers: self.shown_layers || before.shown_layers,
             shadow: self.shadow.max(before.shadow),
         }
     }
@@ -109,6 +117,12 @@ pub struct Targets {
     pub filtered: Target,
     /// Lines over what is shaded, linear colours times opacity (1×1 where not needed).
     pub lines: Target,
+    /// Translucent layers over what is shaded, linear colours times opacity; alpha: what is let through (1×1 where not needed).
+    pub veil: Target,
+    /// The layer that is the shown surface, as `codes`, always with its normal (1×1 where not needed).
+    pub shown_code: Target,
+    /// Its depth (1×1 where not needed).
+    pub shown_depth: Target,
     /// Depth from the sun (1×1 where not needed).
     pub shadow: Target,
 }
@@ -135,6 +149,9 @@ impl Targets {
             half_filtered,
             self.filtered,
             self.lines,
+            self.veil,
+            self.shown_code,
+            self.shown_depth,
             self.shadow,
             self.sprite_depth,
         ]
@@ -200,6 +217,9 @@ impl Targets {
                 true,
             ),
             lines: make_any("lines", full(needs.lines), LINES, drawn, false),
+            veil: make_any("translucent layers", full(needs.veils), VEIL, drawn, false),
+            shown_code: make_any("shown layer", full(needs.shown_layers), SMOOTH_CODES, drawn, false),
+            shown_depth: make_any("depth of the shown layer", full(needs.shown_layers), OWN_DEPTH, drawn, false),
             shadow: make_any("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn, false),
         }
     }

@@ -2,7 +2,7 @@
 //! comparison. The picture is the same; what a technique cannot do is refused.
 
 use crate::{
-    lens::{Class, Lens, LensBody},
+    lens::{Class, EffectUse, Lens, LensBody},
     scene::{Scene, SceneProblem},
     shader::{EffectKind, effect::find},
 };
@@ -93,6 +93,13 @@ impl Technique {
             let count = combinations.map_or_else(|| "more".to_owned(), |count| count.to_string());
             return Some(format!("takes at most {room} combinations of lenses and classes; the scene has {count}"));
         }
+        let context = || scene.style.effects.iter().map(|used| (used, "the context".to_owned()));
+        let of_lenses =
+            || lenses.iter().flat_map(|lens| lens.effects.iter().map(|e| (e, format!("lens \"{}\"", lens.name))));
+        let is_rule = |used: &EffectUse| find(&used.effect).is_some_and(|e| e.kind == EffectKind::Opacity);
+        if let Some((used, whose)) = context().chain(of_lenses()).find(|(used, _)| is_rule(used)) {
+            return Some(format!("shows nothing translucent, and {whose} has the effect \"{}\"", used.effect));
+        }
         if !self.has_passes() {
             return None;
         }
@@ -109,10 +116,7 @@ impl Technique {
                 ));
             }
         }
-        let context = scene.style.effects.iter().map(|used| (used, "the context".to_owned()));
-        let of_lenses =
-            lenses.iter().flat_map(|lens| lens.effects.iter().map(|e| (e, format!("lens \"{}\"", lens.name))));
-        for (used, whose) in context.chain(of_lenses) {
+        for (used, whose) in context().chain(of_lenses()) {
             let Some(definition) = find(&used.effect) else { continue };
             let what = match definition.kind {
                 _ if definition.lines => "draws no lines",

@@ -35,6 +35,9 @@ const FILES: &[(&str, &str)] = &[
     built_in!("edges"),
     built_in!("iso-lines"),
     built_in!("eraser"),
+    built_in!("transparent"),
+    built_in!("x-ray"),
+    built_in!("peel"),
     built_in!("brick"),
     built_in!("gloss"),
     built_in!("marble"),
@@ -52,6 +55,8 @@ const FILES: &[(&str, &str)] = &[
 pub enum EffectKind {
     /// Takes parts of the city away, before anything is seen of them.
     Hide,
+    /// Says how much of a surface stands between the eye and what is behind it; from 1, lens by lens.
+    Opacity,
     /// Changes what surfaces are made of, before light falls on them.
     Material,
     /// Changes the light that falls on them.
@@ -68,13 +73,14 @@ pub enum EffectKind {
 
 impl EffectKind {
     /// All, in the order of their execution.
-    pub const ALL: [Self; 7] =
-        [Self::Hide, Self::Material, Self::Light, Self::Scene, Self::Air, Self::Post, Self::Filter];
+    pub const ALL: [Self; 8] =
+        [Self::Hide, Self::Opacity, Self::Material, Self::Light, Self::Scene, Self::Air, Self::Post, Self::Filter];
 
     /// As people read it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Hide => "hiding",
+            Self::Opacity => "opacity rule",
             Self::Material => "material",
             Self::Light => "light",
             Self::Scene => "scene style",
@@ -88,6 +94,7 @@ impl EffectKind {
     pub fn subject(self) -> (&'static str, &'static str) {
         match self {
             Self::Hide => ("fragment", "Fragment"),
+            Self::Opacity => ("opacity", "f32"),
             Self::Material => ("material", "Material"),
             Self::Light => ("arriving", "vec3f"),
             Self::Scene | Self::Air | Self::Post => ("color", "vec3f"),
@@ -103,6 +110,11 @@ impl EffectKind {
     /// Whether its handlers have a say in how a line looks: materials and light do not, nor does what is beside it.
     pub fn touches_lines(self) -> bool {
         matches!(self, Self::Hide | Self::Scene | Self::Post)
+    }
+
+    /// Whether its handlers decide what the geometry pass shows, by each fragment's own depth (K4).
+    pub fn decides_visibility(self) -> bool {
+        matches!(self, Self::Hide | Self::Opacity)
     }
 
     /// Whether its handlers run before the surface has a colour.
@@ -269,8 +281,10 @@ pub struct EffectDefinition {
     pub is_users: bool,
     /// It looks at what it takes first, so it cannot stand in for what is below it.
     pub reads_below: bool,
-    /// The WGSL of its functions, names qualified.
+    /// The WGSL of its functions, names qualified; that of its parameters first.
     pub source: String,
+    /// Where the WGSL of its parameters ends in it.
+    pub parameters_end: usize,
 }
 
 impl EffectDefinition {
@@ -296,6 +310,25 @@ impl EffectDefinition {
         all.filter_map(|p| p.kind.in_shader().map(|(type_name, floats)| (p, type_name, floats)))
     }
 
+    /// Of an opacity rule: which fragments it makes translucent at all, as a condition on what has `object` and `part` of this
+    /// name, and its parameters from `first`; `None`: all of them. The others stay with what is opaque.
+    pub fn acts_on(&self, place: &str, first: &str) -> Option<String> {
+        let own = format!("{}({first})", self.own("parameters"));
+        let mut conditions = Vec::new();
+        if self.parameters.iter().any(|p| p.name == KEEP_TERRAIN && p.kind == ParameterKind::Boolean) {
+            conditions.push(format!("!({place}.part == PART_TERRAIN && {own}.{KEEP_TERRAIN})"));
+        }
+        if self.objects == Some(PerObject::Chosen) {
+            conditions.push(format!("is_chosen({own}.first, {place}.object)"));
+        }
+        (!conditions.is_empty()).then(|| conditions.join(" && "))
+    }
+
+    /// The WGSL of its parameters alone.
+    pub fn parameters_source(&self) -> &str {
+        &self.source[..self.parameters_end]
+    }
+
     /// How many numbers its WGSL reads of its parameters: the first value per object is one.
     pub fn floats(&self) -> usize {
         let floats: usize = self.shader_parameters().map(|(_, _, floats)| floats).sum();
@@ -307,6 +340,9 @@ impl EffectDefinition {
         self.floats().div_ceil(4) as u32
     }
 }
+
+/// The parameter of an opacity rule by which terrain stays opaque.
+const KEEP_TERRAIN: &str = "keep_terrain";
 
 /// What the 13 bits of an invoker's handler can tell apart.
 pub const MOST_HANDLERS: usize = 8192;

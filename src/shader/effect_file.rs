@@ -172,6 +172,7 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
         is_users,
         reads_below: false,
         source: String::new(),
+        parameters_end: 0,
     };
     for parameter in header.parameters {
         let (span, name) = (parameter.name.span(), parameter.name.get_ref().clone());
@@ -215,7 +216,9 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
     };
     effect.reads_below = reads_first_argument(text, &tokens, main);
     let renamed = qualified(&effect, text, &tokens, &declared);
-    effect.source = format!("{}{}", parameters_source(&effect), body_of(&renamed.text));
+    effect.source = parameters_source(&effect);
+    effect.parameters_end = effect.source.len();
+    effect.source.push_str(body_of(&renamed.text));
     Ok((effect, renamed))
 }
 
@@ -405,13 +408,14 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
     check_control_flow(&file)?;
     check_cost(&file)?;
     if effect.mode != Mode::Local || effect.kind == EffectKind::Air {
-        let message = "mode, and kind = \"air\", are for handlers of the program; expected kind = hide, material, light, scene, post or filter";
+        let message = "mode, and kind = \"air\", are for handlers of the program; expected kind = hide, opacity, material, light, scene, post or filter";
         return Err(file.error(0, message));
     }
     let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, blend: None }];
     let module = match effect.kind {
         EffectKind::Filter => Module::Filter(0),
         EffectKind::Hide => Module::Geometry(Some(Program::Specialised(Plan { steps, ..Plan::default() }))),
+        EffectKind::Opacity => Module::Composite(Program::Specialised(Plan { steps, ..Plan::default() })),
         _ => Module::Shade(Program::Specialised(Plan { steps, ..Plan::default() })),
     };
     let source = module.source_with(std::slice::from_ref(&effect));
@@ -651,7 +655,7 @@ mod tests {
             ),
             (
                 HEADER.replace("post", "past"),
-                "my.wgsl:2:12: unknown variant `past`, expected one of `hide`, `material`, `light`, `scene`, `air`, `post`, `filter`",
+                "my.wgsl:2:12: unknown variant `past`, expected one of `hide`, `opacity`, `material`, `light`, `scene`, `air`, `post`, `filter`",
             ),
             (HEADER.replace("spec", "spek"), "my.wgsl:3:5: unknown field `spek`"),
             (HEADER.to_owned(), "my.wgsl:5:1: expected `fn effect(color: vec3f, point: Point) -> vec3f`"),

@@ -1,5 +1,6 @@
 //! What is there: `visible` and what it calls (architecture, decision 4), for the geometry pass and the shadow map, on both
-//! back ends. A hiding effect says for each fragment, by its own depth, whether it is taken away (K4).
+//! back ends. A hiding effect says for each fragment, by its own depth, whether it is taken away (K4), an opacity rule whether it
+//! is translucent: then it is in the list of its pixel instead, by `is_layer`, and casts no shadow.
 
 use std::fmt::Write as _;
 
@@ -18,6 +19,8 @@ use crate::shader::{
 pub(super) enum Eye {
     /// The picture's.
     Picture,
+    /// The picture's, for what is translucent.
+    Layers,
     /// The sun's: of a place that the picture may not show, the shapes alone say where it is.
     Sun,
 }
@@ -36,7 +39,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
     }
     match eye {
-        Eye::Picture => text.push_str(&lens_test::bindings(program, false)),
+        Eye::Picture | Eye::Layers => text.push_str(&lens_test::bindings(program, false)),
         Eye::Sun if !program.has().lenses => {}
         Eye::Sun => {
             text.push_str(
@@ -51,14 +54,17 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
     text.push_str(&cities(program, eye));
     text.push('\n');
     for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {
-        let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
+        // How opaque it is, is asked where it has a place in the order of layers.
+        let source = if effect.kind == EffectKind::Opacity { effect.parameters_source() } else { &effect.source };
+        let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, source.trim_end());
     }
+    let is_layers = eye == Eye::Layers;
     match program {
         Program::Specialised(plan) => {
             text.push_str("// ==== this scene\n\n");
-            specialised(&mut text, plan, handlers, names);
+            specialised(&mut text, plan, handlers, names, is_layers);
         }
-        Program::Uber(uber) => uber_source(&mut text, uber, handlers),
+        Program::Uber(uber) => uber_source(&mut text, uber, handlers, is_layers),
     }
     text
 }
@@ -66,8 +72,8 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
 /// Where vertices stand.
 fn cities(program: &Program, eye: Eye) -> String {
     match (eye, program.has().contents) {
-        (Eye::Picture, false) => String::new(),
-        (Eye::Picture, true) => contents::binding(1, 3, "city"),
+        (Eye::Picture | Eye::Layers, false) => String::new(),
+        (Eye::Picture | Eye::Layers, true) => contents::binding(1, 3, "city"),
         (Eye::Sun, false) => RELATIVE.replace("PLACED", "(vec3f(whole - eye.eye_whole) - eye.eye_fraction) + offset"),
         (Eye::Sun, true) => {
             let both = contents::binding(1, 3, "city") + &contents::binding(1, 4, "main_city");
@@ -82,11 +88,12 @@ fn relative_to_main_eye(whole: vec3i, offset: vec3f) -> vec3f {
 }
 ";
 
-/// `visible` begins with this.
-fn head(has_contents: bool) -> String {
-    let head = "fn visible(fragment: Fragment) -> bool {\n";
+/// `visible`, or `is_layer`, begins with this.
+fn head(has_contents: bool, is_layers: bool) -> String {
+    let name = if is_layers { "is_layer" } else { "visible" };
+    let head = format!("fn {name}(fragment: Fragment) -> bool {{\n");
     match has_contents {
-        false => head.to_owned(),
+        false => head,
         true => {
             format!("{head}    if !({}) {{\n        return false;\n    }}\n", IS_SHOWN.replace("PLACE", "fragment"))
         }
@@ -98,8 +105,11 @@ fn call(handler: &EffectDefinition, first: &str) -> String {
     format!("{}(fragment{own})", handler.wgsl_name())
 }
 
-fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], names: &[&str]) {
-    let steps = || plan.steps_of(EffectKind::Hide, handlers);
+fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], names: &[&str], is_layers: bool) {
+    let steps = || {
+        let kinds = [EffectKind::Hide, EffectKind::Opacity];
+        kinds.into_iter().flat_map(|kind| plan.steps_of(kind, handlers))
+    };
     let mut lenses: Vec<u32> =
         steps().filter_map(|(step, _)| if let Scope::Lens(lens, _) = step.scope { Some(lens) } else { None }).collect();
     lenses.extend(plan.contents.iter().map(|c| c.lens));
@@ -124,26 +134,39 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
         let (classes, interest) = (|lens| of("classes_of", lens), |lens| of("interest_in", lens));
         text.push_str(&contents::specialised(plan, "fragment: Fragment", classes, interest));
     }
-    text.push_str(&head(!plan.contents.is_empty()));
+    text.push_str(&head(!plan.contents.is_empty(), is_layers));
     for (step, handler) in steps() {
-        let is_hidden = call(handler, &format!("{}u", step.parameters));
-        let condition = match step.scope {
-            Scope::Everywhere => is_hidden,
-            Scope::Lens(lens, class) if plan.border_of(lens).is_some() => {
-                let of = |what: &str| format!("{what}_lens_{lens}(sight_of(fragment))");
-                let share = format!("{}({}, {})", class.share(), of("classes_of"), of("interest_in"));
-                format!("is_dithered({share}, fragment.pixel) && {is_hidden}")
-            }
+        let first = format!("{}u", step.parameters);
+        let is_rule = handler.kind == EffectKind::Opacity;
+        let acts = if is_rule { handler.acts_on("fragment", &first) } else { Some(call(handler, &first)) };
+        let scope = match step.scope {
+            Scope::Everywhere => None,
             Scope::Lens(lens, class) => {
-                format!("{}(classes_of_lens_{lens}(sight_of(fragment))) && {is_hidden}", class.function())
+                let of = |what: &str| format!("{what}_lens_{lens}(sight_of(fragment))");
+                let share = || format!("{}({}, {})", class.share(), of("classes_of"), of("interest_in"));
+                Some(match plan.border_of(lens) {
+                    Some(_) if is_rule => format!("{} > 0.0", share()),
+                    Some(border) if border.dithers => format!("is_dithered({}, fragment.pixel)", share()),
+                    _ => format!("{}({})", class.function(), of("classes_of")),
+                })
             }
         };
-        let _ = writeln!(text, "    if {condition} {{\n        return false;\n    }}");
+        let conditions: Vec<String> = scope.into_iter().chain(acts).collect();
+        let answer = format!("return {};", is_layers && is_rule);
+        match conditions.is_empty() {
+            true => {
+                let _ = writeln!(text, "    {answer}\n}}");
+                return;
+            }
+            false => {
+                let _ = writeln!(text, "    if {} {{\n        {answer}\n    }}", conditions.join(" && "));
+            }
+        }
     }
-    text.push_str("    return true;\n}\n");
+    let _ = writeln!(text, "    return {};\n}}", !is_layers);
 }
 
-fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
+fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition], is_layers: bool) {
     text.push_str(&TABLE_SOURCE);
     match uber.tests.is_empty() {
         true => text.push_str(RUNS_WITHOUT_LENSES),
@@ -156,18 +179,19 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     }
     text.push_str("fn hides(fragment: Fragment, by: Invoker) -> bool {\n    switch by.handler {\n");
     for &number in &uber.effects {
-        let _ = writeln!(
-            text,
-            "        case {number}u: {{ return {}; }}",
-            call(&handlers[number as usize], "by.parameters")
-        );
+        let handler = &handlers[number as usize];
+        let answer = match handler.kind {
+            EffectKind::Opacity => handler.acts_on("fragment", "by.parameters").unwrap_or_else(|| "true".to_owned()),
+            _ => call(handler, "by.parameters"),
+        };
+        let _ = writeln!(text, "        case {number}u: {{ return {answer}; }}");
     }
     text.push_str("        default: { return false; }\n    }\n}\n\n");
     if uber.contents {
         text.push_str(&contents::uber("fragment: Fragment", "runs(by, fragment)"));
     }
-    text.push_str(&head(uber.contents));
-    text.push_str(VISIBLE);
+    text.push_str(&head(uber.contents, is_layers));
+    text.push_str(if is_layers { IS_LAYER } else { VISIBLE });
 }
 
 const RUNS: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
@@ -205,6 +229,9 @@ const RUNS_DITHERED: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
         }
     }
     let share = share_of(by, all, sight);
+    if by.border != 0u && by.kind == 2u {
+        return share > 0.0;
+    }
     if by.border != 0u && parameters[by.border - 1u].z > 0.5 {
         return is_dithered(share, fragment.pixel);
     }
@@ -235,5 +262,22 @@ const VISIBLE: &str = "    let range = table.ranges.xy;
         }
     }
     return true;
+}
+";
+
+/// `by.kind` is 2 for opacity rules. Nothing is returned out of the loop: what that leaves behind, Mesa 22.3 gets wrong.
+const IS_LAYER: &str = "    let range = table.ranges.xy;
+    var is_hidden = false;
+    var is_translucent = false;
+    for (var i = range.x; i < range.y; i++) {
+        let by = invoker(i);
+        let acts = runs(by, fragment) && hides(fragment, by);
+        is_hidden |= acts && by.kind != 2u;
+        is_translucent |= acts && by.kind == 2u;
+        if i + 1u == range.y {
+            break;
+        }
+    }
+    return is_translucent && !is_hidden;
 }
 ";

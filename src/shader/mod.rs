@@ -70,6 +70,7 @@ files! {
     OBJECTS = "lib/objects.wgsl";
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
+    VEIL = "lib/veil.wgsl";
     EDGE = "lib/edge.wgsl";
     ONE_CITY = "lib/one-city.wgsl";
     CITIES = "lib/cities.wgsl";
@@ -89,6 +90,11 @@ files! {
     SPRITE = "pass/sprite.wgsl";
     SHADE = "pass/shade.wgsl";
     LINES = "pass/lines.wgsl";
+    LAYERS = "pass/layers.wgsl";
+    COMPOSITE = "pass/composite.wgsl";
+    COUNT_LAYERS = "pass/count-layers.wgsl";
+    SORT_LAYERS = "pass/sort-layers.wgsl";
+    SHOWN = "pass/shown.wgsl";
     FILTER = "pass/filter.wgsl";
     RESOLVE = "pass/resolve.wgsl";
     NARROW = "pass/narrow.wgsl";
@@ -120,6 +126,16 @@ pub enum Module {
     Shade(Program),
     /// Edges as lines, and what lenses make of them.
     Lines(Program),
+    /// Lists of translucent layers, and what is translucent; whether the adapter can test depth before the shader runs.
+    Layers(Program, bool),
+    /// Translucent layers, one over the other, and what the lenses make of each.
+    Composite(Program),
+    /// How many layers the pixel has that has most.
+    CountLayers,
+    /// Long lists of layers in order.
+    SortLayers,
+    /// Layers that are the shown surface, in the targets of what is opaque.
+    ShownLayers,
     /// Regions as depths, and how they are told apart.
     Regions(Plan),
     /// Sections through closed shells, and what is hidden.
@@ -162,6 +178,14 @@ impl Module {
                 let uber = if matches!(program, Program::Uber(_)) { " uber" } else { "" };
                 format!("lines{uber} ({})", names_of(program))
             }
+            Self::Layers(program, _) => format!("layers{}", hidden_name(&Some(program.clone()))),
+            Self::Composite(program) => {
+                let uber = if matches!(program, Program::Uber(_)) { " uber" } else { "" };
+                format!("composite{uber} ({})", names_of(program))
+            }
+            Self::CountLayers => "count layers".to_owned(),
+            Self::SortLayers => "sort layers".to_owned(),
+            Self::ShownLayers => "shown layers".to_owned(),
             Self::Regions(_) => "regions".to_owned(),
             Self::Sections(program) => format!("sections{}", hidden_name(&Some(program.clone()))),
             Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
@@ -226,6 +250,16 @@ impl Module {
                 &[OBJECTS, FRAGMENT, city_file(program), SECTIONS],
             ]
             .concat(),
+            Self::Layers(program, _) => &[
+                &[VIEW, VIEW_UNIFORM, SURFACE, PACKED, SIGHT],
+                &lens_files(program)[..],
+                &[OBJECTS, FRAGMENT, city_file(program), GEOMETRY, LAYERS],
+            ]
+            .concat(),
+            Self::Composite(program) => &[&Self::files_of_shade(program, handlers)[..], &[COMPOSITE]].concat(),
+            Self::CountLayers => &[COUNT_LAYERS],
+            Self::SortLayers => &[SORT_LAYERS],
+            Self::ShownLayers => &[SHOWN],
             Self::Filter(_) => &[PACKED, FILTER],
             Self::Resolve => &[RESOLVE],
             Self::Narrow => &[VIEW, VIEW_UNIFORM, NARROW],
@@ -241,14 +275,29 @@ impl Module {
             text.push_str(&lens_test::leaves(kinds));
         }
         match self {
-            Self::Shade(program) => {
+            Self::Shade(program) | Self::Composite(program) => {
                 let (own, of_scene) = match program {
                     Program::Specialised(plan) => {
                         (carried::of_plan(plan, handlers, room), specialised::source(plan, handlers, lenses))
                     }
                     Program::Uber(uber) => (carried::nothing(), uber::source(uber, handlers)),
                 };
-                text.replace("//@carried\n", &own.members).replace("//@handlers\n", &(own.functions + &of_scene))
+                let text =
+                    text.replace("//@carried\n", &own.members).replace("//@handlers\n", &(own.functions + &of_scene));
+                if matches!(self, Self::Shade(_)) {
+                    return text;
+                }
+                let opacity = match program {
+                    Program::Specialised(plan) => specialised::opacity(plan, handlers),
+                    Program::Uber(uber) => uber::opacity(uber, handlers),
+                };
+                // Its pixels are no other shader's, whatever is opaque behind them.
+                text.replace("//@opacity\n", &opacity).replace(specialised::ONLY_SHOWN, "")
+            }
+            Self::Layers(program, is_early) => {
+                let own = hiding::source(program, handlers, lenses, hiding::Eye::Layers) + NOTHING_CUT;
+                let (early, behind) = if *is_early { (EARLY, "") } else { ("", BEHIND) };
+                text.replace("//@handlers\n", &own).replace(" //@early", early).replace("    //@behind\n", behind)
             }
             Self::Lines(program) => text.replace("//@handlers\n", &lining::source(program, handlers, lenses)),
             Self::Geometry(None) => text.replace("//@handlers\n", NOTHING_CUT),
@@ -301,6 +350,7 @@ impl Module {
             (parts.shells, GLASS),
             (filters, FILTERED),
             (parts.lines, LINE),
+            (parts.veils, VEIL),
         ];
         files.extend(if parts.shells { span_files(program) } else { Vec::new() });
         files.extend(optional.iter().filter(|(is_used, _)| *is_used).map(|(_, file)| *file));
@@ -351,6 +401,12 @@ fn span_files(program: &Program) -> Vec<(&'static str, &'static str)> {
 
 /// Where nothing is hidden.
 const NOTHING_CUT: &str = "fn cut(at: vec2f, depth: f32, code: u32) {}\n";
+
+/// Where the depth test comes before the shader.
+const EARLY: &str = " @early_depth_test(force)";
+
+/// Where it may come after, when the note is taken already.
+const BEHIND: &str = "    if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) >= in.clip.z {\n        return;\n    }\n";
 
 fn names_of(program: &Program) -> String {
     let names: Vec<&str> = program.effects().iter().map(|&e| handlers()[e as usize].name.as_str()).collect();
@@ -463,7 +519,7 @@ mod tests {
             haze: seed.is_multiple_of(5),
             masks: seed.is_multiple_of(7),
             contents: contents_of(seed),
-            regions: None,
+            ..Plan::default()
         };
         let uber = Uber {
             effects: plan.effects(),
@@ -482,6 +538,7 @@ mod tests {
             haze: plan.haze,
             masks: plan.masks,
             lines: plan.lines,
+            veils: false,
             contents: !plan.contents.is_empty(),
         };
         let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();
@@ -491,8 +548,13 @@ mod tests {
         let lining = lining.chain(uber.lining(handlers()).map(Program::Uber));
         let mut modules: Vec<Module> = hiding
             .clone()
-            .flat_map(|p| [Module::Geometry(Some(p.clone())), Module::Shadow(Some(by_shapes(p)))])
+            .flat_map(|p| {
+                let layers = [false, true].map(|early| Module::Layers(p.clone(), early));
+                [Module::Geometry(Some(p.clone())), Module::Shadow(Some(by_shapes(p)))].into_iter().chain(layers)
+            })
             .collect();
+        modules.extend(plan.layering(handlers()).map(|plan| Module::Composite(Program::Specialised(plan))));
+        modules.extend(uber.layering(handlers()).map(|uber| Module::Composite(Program::Uber(uber))));
         modules.extend(hiding.filter(has_lenses).map(Module::Sections));
         modules.extend(lining.map(Module::Lines));
         modules.push(Module::Shade(Program::Specialised(plan.shading(handlers()))));
@@ -520,6 +582,7 @@ mod tests {
         let is_filter = |e: &u32| handlers()[*e as usize].kind == EffectKind::Filter;
         modules.extend(numbers().into_iter().filter(is_filter).map(Module::Filter));
         modules.extend([Module::Furniture, Module::FurnitureOver]);
+        modules.extend([Module::CountLayers, Module::SortLayers, Module::ShownLayers]);
         modules
     }
 
@@ -553,7 +616,9 @@ mod tests {
         };
         let mut validator = wgpu::naga::valid::Validator::new(
             wgpu::naga::valid::ValidationFlags::all(),
-            wgpu::naga::valid::Capabilities::default() | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,
+            wgpu::naga::valid::Capabilities::default()
+                | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32
+                | wgpu::naga::valid::Capabilities::EARLY_DEPTH_TEST,
         );
         if let Err(error) = validator.validate(&parsed) {
             panic!("{name}: {}", error.emit_to_string(source));

@@ -24,6 +24,8 @@ pub struct Plan {
     pub masks: bool,
     /// Whether some effect draws lines.
     pub lines: bool,
+    /// Whether something is seen through: what shading lays over its picture.
+    pub veils: bool,
     /// What its lenses show in themselves, bottom lens first (C6).
     pub contents: Vec<PlanContent>,
     /// How places are told apart, for the techniques that are kept for reference (C2); `None`: by accumulation.
@@ -388,6 +390,8 @@ pub struct Uber {
     pub masks: bool,
     /// Whether some effects draw lines.
     pub lines: bool,
+    /// Whether something may be seen through.
+    pub veils: bool,
     /// Whether some lenses have own content.
     pub contents: bool,
 }
@@ -395,14 +399,14 @@ pub struct Uber {
 impl Uber {
     /// What of it says what is there; `None` where nothing may be hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
-        let effects = self.of(handlers, |kind| kind == EffectKind::Hide);
+        let effects = self.of(handlers, EffectKind::decides_visibility);
         (!effects.is_empty() || self.contents).then(|| Self {
             effects,
             tests: self.tests.clone(),
             leaves: self.leaves.clone(),
             contents: self.contents,
             sides: self.sides,
-            borders: self.dithers,
+            borders: self.dithers || (self.borders && self.is_seen_through(handlers)),
             by_ray: self.by_ray,
             ..Self::default()
         })
@@ -424,7 +428,19 @@ impl Uber {
 
     /// What of it says how things look.
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
-        Self { effects: self.of(handlers, |kind| kind != EffectKind::Hide), contents: false, ..self }
+        let veils = self.is_seen_through(handlers);
+        Self { effects: self.of(handlers, |kind| !kind.decides_visibility()), veils, contents: false, ..self }
+    }
+
+    /// What of it says how much of each translucent layer is seen, and how that looks; `None` where nothing may be seen through.
+    pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
+        let all = Self { effects, bodies: Vec::new(), lines: false, veils: false, contents: false, ..self.clone() };
+        self.is_seen_through(handlers).then_some(all)
+    }
+
+    fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
+        self.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Opacity)
     }
 
     fn of(&self, handlers: &[EffectDefinition], is_wanted: impl Fn(EffectKind) -> bool) -> Vec<u32> {
@@ -442,6 +458,10 @@ impl Program {
         let (bodies, blends, lines, borders) = match self {
             Self::Specialised(plan) => (plan.bodies(), plan.has_blends(), plan.lines, plan.has_borders()),
             Self::Uber(uber) => (uber.bodies.clone(), uber.blends, uber.lines, uber.borders && has_lenses),
+        };
+        let veils = match self {
+            Self::Specialised(plan) => plan.veils,
+            Self::Uber(uber) => uber.veils,
         };
         let by_ray = match self {
             Self::Specialised(plan) => plan.borders().any(|border| border.by_ray),
@@ -470,6 +490,7 @@ impl Program {
             distances: borders || has_body(BodyKind::Shell) || has_body(BodyKind::Halo),
             blends: blends || borders,
             lines,
+            veils,
             contents,
             borders,
             by_ray,
@@ -533,6 +554,8 @@ pub struct Parts {
     pub blends: bool,
     /// Lines over what was shaded.
     pub lines: bool,
+    /// Translucent layers over what was shaded.
+    pub veils: bool,
     /// Contents of lenses.
     pub contents: bool,
     /// Soft borders of lenses.
@@ -627,12 +650,18 @@ impl Plan {
 
     /// What of it says what is there; `None` where nothing is hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
-        let steps: Vec<Step> = self.steps_of(EffectKind::Hide, handlers).map(|(step, _)| step.clone()).collect();
+        let decides = |step: &&Step| handlers[step.effect as usize].kind.decides_visibility();
+        let steps: Vec<Step> = self.steps.iter().filter(decides).cloned().collect();
         if steps.is_empty() && self.contents.is_empty() {
             return None;
         }
         let (mut lenses, contents) = (self.plain_lenses(), self.contents.clone());
-        lenses.iter_mut().for_each(|lens| lens.border = lens.border.filter(|b| b.dithers));
+        // What fades is translucent in all of its border.
+        let fades = |lens: u32| {
+            let mut rules = self.steps_of(EffectKind::Opacity, handlers);
+            rules.any(|(step, _)| matches!(step.scope, Scope::Lens(l, _) if l == lens))
+        };
+        (0..).zip(&mut lenses).for_each(|(i, lens)| lens.border = lens.border.filter(|b| b.dithers || fades(i)));
         Some(Self { lenses, steps, contents, ..Self::default() })
     }
 
@@ -656,9 +685,25 @@ impl Plan {
 
     /// What of it says how things look.
     pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
-        self.steps.retain(|step| handlers[step.effect as usize].kind != EffectKind::Hide);
+        self.veils = self.is_seen_through(handlers);
+        self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
         self.contents.clear();
         self
+    }
+
+    /// What of it says how much of each translucent layer is seen, and how that looks; `None` where nothing is seen through.
+    pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let is_of_layers =
+            |step: &&Step| !matches!(handlers[step.effect as usize].kind, EffectKind::Hide | EffectKind::Filter);
+        let steps = self.steps.iter().filter(is_of_layers).cloned().collect();
+        let mut lenses = self.lenses.clone();
+        lenses.iter_mut().for_each(|lens| lens.body = None);
+        let all = Self { lenses, steps, haze: self.haze, masks: self.masks, ..Self::default() };
+        self.is_seen_through(handlers).then_some(all)
+    }
+
+    fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
+        self.steps_of(EffectKind::Opacity, handlers).next().is_some()
     }
 
     /// How many `vec4f` of the parameters it reads.

@@ -33,6 +33,11 @@ pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str])
     text
 }
 
+/// `opacity_at`, for `pass/composite.wgsl`.
+pub(super) fn opacity(plan: &Plan, handlers: &[EffectDefinition]) -> String {
+    Writer { plan, handlers, names: &[] }.opacity()
+}
+
 pub(super) struct Writer<'a> {
     pub(super) plan: &'a Plan,
     pub(super) handlers: &'a [EffectDefinition],
@@ -210,6 +215,31 @@ impl Writer<'_> {
         text
     }
 
+    /// How much of a translucent layer is seen, for `pass/composite.wgsl`.
+    fn opacity(&self) -> String {
+        let mut text = "fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n".to_owned();
+        for (step, handler) in self.plan.steps_of(EffectKind::Opacity, self.handlers) {
+            let first = format!("{}u", step.parameters);
+            let own = match handler.slots() {
+                0 => String::new(),
+                _ => format!(", {}({first})", handler.own("parameters")),
+            };
+            let value = format!("contained_opacity({}(opacity, point{own}))", handler.wgsl_name());
+            let (scope, value) = match (step.scope, self.share(step)) {
+                (Scope::Everywhere, _) => (None, value),
+                (_, Some(share)) => (None, format!("mix(opacity, {value}, {share})")),
+                (Scope::Lens(lens, class), None) => (Some(format!("{}(classes.lens_{lens})", class.function())), value),
+            };
+            let conditions: Vec<String> = scope.into_iter().chain(handler.acts_on("point", &first)).collect();
+            let _ = match conditions.is_empty() {
+                true => writeln!(text, "    opacity = {value};"),
+                false => writeln!(text, "    if {} {{\n        opacity = {value};\n    }}", conditions.join(" && ")),
+            };
+        }
+        text.push_str("    return opacity;\n}\n");
+        text
+    }
+
     /// Scene styles and post styles, in lens order: what replaces the colour leaves nothing of the styles below (C5).
     pub(super) fn styled(&self) -> String {
         let is_style = |(_, h): &(&Step, &EffectDefinition)| h.kind.is_style();
@@ -262,11 +292,11 @@ impl Writer<'_> {
             }
         }
         text.push_str("fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n");
-        if bodies.is_empty() && !self.plan.lines {
+        if bodies.is_empty() && !self.plan.lines && !self.plan.veils {
             text.push_str("    return start;\n}\n\n");
             return text;
         }
-        text.push_str(if self.plan.lines { LINED } else { "    var paint = start;\n" });
+        text.push_str(&laid_over(self.plan.lines, self.plan.veils));
         for (i, PlanBody { kind, parameters }) in bodies {
             let (color, width) = (format!("parameters[{parameters}]"), format!("parameters[{}].x", parameters + 1));
             match kind {
@@ -290,6 +320,9 @@ impl Writer<'_> {
         let mut text = "fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n".to_owned();
         if self.plan.masks {
             text.push_str(ONLY_SHOWN);
+            if self.plan.veils {
+                text.push_str(NOT_THROUGH_LAYERS);
+            }
             let mut words: Vec<u32> = self.plan.lenses.iter().map(|l| l.number / 32).collect();
             words.dedup();
             for word in words {
@@ -325,8 +358,12 @@ pub(super) fn kernel(filter: &EffectDefinition) -> String {
     )
 }
 
-/// Lines of the city are below those of the lenses.
-pub(super) const LINED: &str = "    var paint = with_lines(start, pixel);\n";
+/// What stands over the shaded picture and below the bodies of lenses: lines of the city, and translucent layers over these.
+pub(super) fn laid_over(lines: bool, veils: bool) -> String {
+    let veiled = if veils { "    paint = with_veil(paint, pixel);\n" } else { "" };
+    let start = if lines { "with_lines(start, pixel)" } else { "start" };
+    format!("    var paint = {start};\n{veiled}")
+}
 
 /// Where masks are written.
 pub(super) const MASKS: &str = "// Layers, per 32 lenses: inside, in front, behind.\n\
@@ -335,6 +372,9 @@ pub(super) const MASKS: &str = "// Layers, per 32 lenses: inside, in front, behi
 /// A shader that stores may run before the depth test that chooses between surface and background.
 pub(super) const ONLY_SHOWN: &str = "    // This may run before the depth test that chooses between surface and background.\n    \
     if (textureLoad(scene_depth, pixel, 0) > 0.0) != (point.surface != NO_SURFACE) {\n        return;\n    }\n";
+
+/// What shows a layer has that one's classes.
+pub(super) const NOT_THROUGH_LAYERS: &str = "    if is_layer_shown(pixel) {\n        return;\n    }\n";
 
 /// The number that the uber back end knows a scope by: 0 is everywhere.
 pub fn scope_number(scope: Scope) -> u32 {

@@ -8,7 +8,7 @@ use crate::shader::{
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
     plan::{BodyKind, Program, Uber},
-    specialised::{LINED, MASKS, ONLY_SHOWN},
+    specialised::{MASKS, NOT_THROUGH_LAYERS, ONLY_SHOWN, laid_over},
 };
 
 /// Side of the tiles that have lists of invokers, pixels.
@@ -57,14 +57,25 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     }
     let outlines = if parts.bodies { outlines_of(&uber.bodies) } else { NO_OUTLINES.to_owned() };
     let plain = "    var paint = start;\n";
-    text.push_str(&if uber.lines { outlines.replace(plain, LINED) } else { outlines });
+    text.push_str(&outlines.replace(plain, &laid_over(uber.lines, uber.veils)));
     text.push_str("fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n");
     if uber.masks && !uber.tests.is_empty() {
         text.push_str(ONLY_SHOWN);
+        if uber.veils {
+            text.push_str(NOT_THROUGH_LAYERS);
+        }
         text.push_str(WRITE_CLASSES);
     }
     text.push_str("}\n");
     text
+}
+
+/// `opacity_at`, for `pass/composite.wgsl`.
+pub(super) fn opacity(uber: &Uber, handlers: &[EffectDefinition]) -> String {
+    let mut text = invoke(uber, "opacity", &[EffectKind::Opacity], handlers);
+    text.push_str("fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n");
+    text.push_str(&each(uber, "OPACITIES", "opacity = invoke_opacity(opacity, point, by);"));
+    text + "    return opacity;\n}\n"
 }
 
 /// Which classes a place has, and which invokers run there.
@@ -121,6 +132,14 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
             _ => format!("{name}(below, point{own})"),
         };
         let call = match (handler.is_users, handler.kind) {
+            (_, EffectKind::Opacity) => {
+                let asked = handler.acts_on("point", "by.parameters");
+                let asked = asked.map_or_else(String::new, |asked| format!("if {asked} {{ above = "));
+                let end = if asked.is_empty() { "" } else { "; }" };
+                let start = if asked.is_empty() { "above = " } else { "" };
+                let _ = writeln!(text, "        case {number}u: {{ {asked}{start}contained_opacity({call}){end} }}");
+                continue;
+            }
             (false, _) | (_, EffectKind::Filter) => call,
             (true, EffectKind::Material) => format!("contained_material({call})"),
             (true, _) => format!("contained({call})"),
@@ -128,7 +147,8 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
         let _ = writeln!(text, "        case {number}u: {{ above = {call}; }}");
     }
     text.push_str("        default: {}\n    }\n");
-    if uber.blends {
+    let is_rule = kinds[0] == EffectKind::Opacity;
+    if uber.blends && !is_rule {
         let blended = match kinds[0] {
             EffectKind::Material => "blended_material(by.blend, below, above, parameters[by.weight].x)",
             _ => "weighed(below, blend(by.blend, below, above), parameters[by.weight].x)",
@@ -138,6 +158,7 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
     if fades(uber) {
         let laid = match kinds[0] {
             EffectKind::Material => "blended_material(1u, below, above, share)",
+            EffectKind::Opacity => "mix(below, above, share)",
             _ => "weighed(below, above, share)",
         };
         let _ = writeln!(text, "    if by.border != 0u {{\n        above = {laid};\n    }}");
@@ -272,7 +293,7 @@ struct Invoker {
     parameters: u32,            // its first slot
     blend: u32,                 // 0 replaces
     weight: u32,                // slot of its weight, if blended
-    kind: u32,                  // of a style: 1 = for surfaces alone
+    kind: u32,                  // 1 = a style for surfaces alone, 2 = an opacity rule
     number: u32,                // of a lens: its bit in the masks
     border: u32,                // of a lens that fades: the slot after that of its border; 0 else
 }
@@ -307,19 +328,20 @@ fn invoker(i: u32) -> Invoker {
 ";
 
 /// Which invokers may run at a pixel, for shading (L8): those of the lenses that its tile may show. Sections in their order.
-const TILES: &str = "// Per tile six places: where its invokers of each section begin, and where the last end; first those outside of all lenses. Then the
+const TILES: &str = "// Per tile seven places: where its invokers of each section begin, and where the last end; first those outside of all lenses. Then the
 // invokers, three words each: place and call, which most is asked of, and the number in the table.
 @group(2) @binding(8) var<storage, read> tile_lists: array<u32>;
 
-const MATERIALS: u32 = 0u;
-const LIGHTS: u32 = 1u;
-const STYLES: u32 = 2u;
-const OUTLINES: u32 = 3u;
-const MASKS: u32 = 4u;
+const OPACITIES: u32 = 0u;
+const MATERIALS: u32 = 1u;
+const LIGHTS: u32 = 2u;
+const STYLES: u32 = 3u;
+const OUTLINES: u32 = 4u;
+const MASKS: u32 = 5u;
 const ENTRY: u32 = 3u;          // words
 
 fn invokers_of(classes: Classes, section: u32) -> vec2u {
-    let record = 6u * tile_of(classes) + section;
+    let record = 7u * tile_of(classes) + section;
     return vec2u(tile_lists[record], tile_lists[record + 1u]);
 }
 

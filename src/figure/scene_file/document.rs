@@ -9,7 +9,7 @@ use crate::{
         keys::{self, CLASSES, Key, Kind, LATER_TABLES, TABLES, Table},
         shape_keys::SHAPES,
     },
-    lens::effect::{LATER, LOD},
+    lens::effect::LOD,
     shader::{
         Blend,
         effect::{EffectKind, ParameterKind, effects as all_effects},
@@ -39,7 +39,6 @@ pub fn reference() -> String {
     let names: Vec<&str> = all_effects().map(|e| e.name.as_str()).collect();
     let _ = write!(out, "The effects are {}; [effects.md](effects.md) has their parameters.\n\n", words(&names));
     out += "`lod` may stand among them too: `{ effect = \"lod\", lod = \"1.2\" }`, with a `class`, is `content = { lod = \"1.2\" }` of its\nlens, and written as that.\n\n";
-    let _ = write!(out, "Not available yet: {}.\n\n", words(LATER));
     let _ = writeln!(out, "Tables of later versions: {}.", words(LATER_TABLES));
     out
 }

@@ -327,7 +327,11 @@ fn every_mistake_in_a_lens_is_named() {
             "effects = [{ effect = \"lod\", lod = 2, clas = \"rest\" }]",
             "\"lod\" has no such parameter; did you mean \"class\"?",
         ),
-        ("effects = [\"x-ray\"]", "effects.0: effect = \"x-ray\" is not available yet"),
+        ("effects = [\"xray\"]", "effects.0: there is no effect \"xray\"; did you mean \"x-ray\"?"),
+        (
+            "effects = [{ effect = \"x-ray\", blend = \"add\" }]",
+            "says how opaque things are; there is nothing to blend",
+        ),
         ("effects = [{ effect = \"thematic\" }]", "effects.0.attribute: is missing"),
         (
             "effects = [{ effect = \"sepia\", amuont = 1 }]",

@@ -1,0 +1,75 @@
+//! name = "x-ray"
+//! kind = "opacity"
+//! spec = "O3, O4"
+//! doc = "Faces that look at the eye are clear, those seen edge on are dense: what stands in front is known by its form."
+//! objects = "chosen"
+//!
+//! [[parameter]]
+//! name = "exponent"
+//! type = "number"
+//! range = [0, 8]
+//! default = 0.6
+//! doc = "How soon faces grow dense as they turn away: the opacity is 1 less the cosine to this power; 0 = clear throughout."
+//!
+//! [[parameter]]
+//! name = "least"
+//! type = "number"
+//! range = [0, 1]
+//! default = 0.05
+//! doc = "Opacity of a face that looks at the eye."
+//!
+//! [[parameter]]
+//! name = "most"
+//! type = "number"
+//! range = [0, 1]
+//! default = 0.85
+//! doc = "Opacity of a face seen edge on."
+//!
+//! [[parameter]]
+//! name = "keep_terrain"
+//! type = "boolean"
+//! default = true
+//! doc = "Terrain, roads, water, land use and the plain ground stay opaque."
+//!
+//! [[parameter]]
+//! name = "attribute"
+//! type = "text"
+//! without = "all objects"
+//! doc = "Only objects that have this attribute; an object without it takes its parent's."
+//!
+//! [[parameter]]
+//! name = "values"
+//! type = "texts"
+//! without = "any"
+//! doc = "Only where the attribute is one of these."
+//!
+//! [[parameter]]
+//! name = "min"
+//! type = "number"
+//! without = "none"
+//! unit = "the attribute's"
+//! doc = "Only where the attribute is at least this."
+//!
+//! [[parameter]]
+//! name = "max"
+//! type = "number"
+//! without = "none"
+//! unit = "the attribute's"
+//! doc = "Only where the attribute is at most this."
+//!
+//! [[parameter]]
+//! name = "except"
+//! type = "boolean"
+//! default = false
+//! doc = "The objects that the attribute chooses stay opaque, and the others do not."
+
+fn effect(opacity: f32, point: Point, p: Parameters) -> f32 {
+    let facing = min(abs(dot(point.normal, towards_eye(point))), 1.0);
+    return mix(p.least, p.most, density(facing, p.exponent));
+}
+
+// 0 where the exponent is, 1 where the face is edge on (below 2^-60), else 1 - facing^exponent.
+fn density(facing: f32, exponent: f32) -> f32 {
+    let power = exp2(exponent * log2(max(facing, 8.7e-19)));
+    return select(select(1.0 - power, 1.0, facing < 8.7e-19), 0.0, exponent == 0.0);
+}

@@ -1,0 +1,185 @@
+// Translucent layers of a pixel (O7), as `pass/layers.wgsl` noted them: sorted by their full depth, each shaded as what is opaque
+// is, with its own place in the lenses, and laid one over the other in f32, nearest first.
+//
+// The nearest eight notes are found at a time, in one walk through the list; that goes on from the last of them until all are
+// laid or nothing more would be seen. That there are lists of more than LONG notes is told; the host has these sorted
+// before (`pass/sort-layers.wgsl`). Equal depths are told apart by the number of the surface, so the order in which the
+// city is drawn does not matter.
+
+@group(3) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
+@group(3) @binding(1) var<storage, read> notes: array<u32>;
+
+const FIRST_HEAD: u32 = 2u;
+const NOTED_CODE: u32 = 0x07ffffffu;
+override SORTED: bool = false;  // whether lists are in order
+const LONG: u32 = 256u;
+const MOST_LAYERS: u32 = 1u;    // the word of `heads` that has the largest number of layers of a pixel
+// What is let through below this is not seen, whatever its colour.
+const NOTHING_SEEN: f32 = 5.9604645e-8;     // 2^-24
+
+// A note, and what it is sorted by.
+struct Note {
+    depth: u32,                 // bits of the stored depth: the larger, the nearer; 0: none
+    code: u32,                  // surface + 1, below how many layers of its plane may be over it
+    number: u32,
+}
+
+const NO_NOTE = Note(0u, 0u, 0u);
+
+fn note_words() -> u32 {
+    return 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
+}
+
+// How many layers the pixel of the picture has that has most.
+fn most_layers() -> u32 {
+    return atomicLoad(&heads[MOST_LAYERS]);
+}
+
+// What a rule returned, as an opacity: nothing that is no number.
+fn contained_opacity(opacity: f32) -> f32 {
+    return select(0.0, min(opacity, 1.0), opacity > 0.0);
+}
+
+//@opacity
+
+// Whether a note comes before another: it is nearer, or stands in the plane of the other and is put before it.
+fn precedes(a: Note, b: Note) -> bool {
+    let is_before = a.code < b.code || (a.code == b.code && a.number < b.number);
+    return a.depth > b.depth || (a.depth == b.depth && is_before);
+}
+
+// Keeps the nearer one; `other` is the farther one then.
+fn keep_nearer(kept: ptr<function, Note>, other: ptr<function, Note>) {
+    if precedes(*other, *kept) {
+        let farther = *kept;
+        *kept = *other;
+        *other = farther;
+    }
+}
+
+struct Composite {
+    @location(0) veil: vec4f,   // colours times opacity; a: what is let through
+    @location(1) shown: vec2u,  // number and normal of the layer that is the shown surface, as the geometry target has them; 0: none
+    @location(2) depth: f32,    // its stored depth
+}
+
+@fragment
+fn veil(in: Corner) -> @location(0) vec4f {
+    return composite(in).veil;
+}
+
+@fragment
+fn veil_and_shown(in: Corner) -> Composite {
+    return composite(in);
+}
+
+fn composite(in: Corner) -> Composite {
+    take(in);
+    let pixel = vec2i(in.clip.xy);
+    let ray = ray_of_pixel(in.clip.xy);
+    let words = note_words();
+    let head = atomicLoad(&heads[FIRST_HEAD + u32(pixel.y) * u32(view.size.x) + u32(pixel.x)]);
+    var color = vec3f(0.0);
+    var through = 1.0;
+    var shown = vec2u(0u);
+    var shown_depth = 0.0;
+    var laid = 0u;
+    var last = Note(0xffffffffu, 0u, 0u);
+    var count = 0u;
+    var listed = head;          // of a list in order: the next note
+    var is_left = head != 0u;
+    if SORTED {
+        for (var next = head; next != 0u; next = notes[(next - 1u) * words]) {
+            count += 1u;
+        }
+    }
+    while is_left {
+        var found_0 = NO_NOTE;
+        var found_1 = NO_NOTE;
+        var found_2 = NO_NOTE;
+        var found_3 = NO_NOTE;
+        var found_4 = NO_NOTE;
+        var found_5 = NO_NOTE;
+        var found_6 = NO_NOTE;
+        var found_7 = NO_NOTE;
+        var next = select(head, 0u, SORTED);
+        count = select(0u, count, SORTED);
+        if SORTED {
+            let place = (listed - 1u) * words;
+            found_0 = Note(notes[place + 1u], notes[place + 2u], listed);
+            listed = notes[place];
+        }
+        while next != 0u {
+            let place = (next - 1u) * words;
+            var note = Note(notes[place + 1u], notes[place + 2u], next);
+            if !precedes(last, note) {
+                note = NO_NOTE;
+            }
+            keep_nearer(&found_0, &note);
+            keep_nearer(&found_1, &note);
+            keep_nearer(&found_2, &note);
+            keep_nearer(&found_3, &note);
+            keep_nearer(&found_4, &note);
+            keep_nearer(&found_5, &note);
+            keep_nearer(&found_6, &note);
+            keep_nearer(&found_7, &note);
+            count += 1u;
+            next = notes[place];
+            // Here, not at the beginning: a software adapter goes through a whole round to find that there is none.
+            if next == 0u {
+                break;
+            }
+        }
+        if !SORTED && count > LONG {
+            atomicMax(&heads[MOST_LAYERS], count);
+        }
+        while found_0.depth != 0u {
+            let note = found_0;
+            let place = (note.number - 1u) * words;
+            let depth = bitcast<f32>(note.depth);
+            var normal = 0u;
+            if SMOOTH {
+                normal = notes[place + 3u];
+            }
+            let code = note.code & NOTED_CODE;
+            var point = point_of(pixel, ray, depth, vec2u(code, normal));
+            point.base = point.natural;
+            if TEXTURED {
+                point.base = unpacked(notes[place + words - 1u]);
+            }
+            if CLAY {
+                point.base = CLAY_COLOR;
+            }
+            point.layer = laid;
+            point.last_layer = count - 1u;
+            let classes = classes_at(sight_at(pixel, ray, depth, point.object), in.part.x);
+            let opacity = opacity_at(point, classes);
+            let paint = shade(&point, classes);
+            color += (through * opacity) * paint;
+            through *= 1.0 - opacity;
+            if through <= 0.5 && shown.x == 0u {
+                shown = vec2u(code, normal);
+                shown_depth = depth;
+                write_classes(pixel, point, classes);
+            }
+            laid += 1u;
+            last = note;
+            found_0 = found_1;
+            found_1 = found_2;
+            found_2 = found_3;
+            found_3 = found_4;
+            found_4 = found_5;
+            found_5 = found_6;
+            found_6 = found_7;
+            found_7 = NO_NOTE;
+            if found_0.depth == 0u || through < NOTHING_SEEN {
+                break;
+            }
+        }
+        is_left = laid < count && through >= NOTHING_SEEN;
+        if !is_left {
+            break;
+        }
+    }
+    return Composite(vec4f(color, through), shown, shown_depth);
+}

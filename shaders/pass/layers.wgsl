@@ -1,0 +1,96 @@
+// Translucent layers (O7): every fragment that is seen through is noted in a list of its pixel. `pass/composite.wgsl` sorts them.
+//
+// A list begins at `heads` and goes on from note to note. A note has three words and, where the picture has them, a normal per
+// vertex and a colour of a texture. Notes that find no room are counted all the same: the host sees it, and draws what
+// did not fit in narrower bands.
+
+override TEXTURED: bool = false;    // whether the picture has textures
+
+// What is in the first words of `heads`; those of the pixels follow.
+const NOTED: u32 = 0u;              // how many notes there are, those without room included
+const FIRST_HEAD: u32 = 2u;
+// The bits of a noted number that are that of the surface. Above them is how many layers of a plane may be over this one.
+const NOTED_CODE: u32 = 0x07ffffffu;
+const PLANE_SHIFT: u32 = 27u;
+const MOST_IN_PLANE: u32 = 31u;
+const ALONE: u32 = 0xf8000000u;     // in its plane: as the lowest
+
+@group(0) @binding(1) var<storage, read_write> heads: array<atomic<u32>>;   // number of the note + 1; 0: none
+@group(0) @binding(2) var<storage, read_write> notes: array<u32>;
+@group(0) @binding(3) var opaque_depth: texture_depth_2d;
+
+fn note_words() -> u32 {
+    return 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
+}
+
+// `plane`: what is noted with the number, of its layer in a plane.
+fn note(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) {
+    if !is_layer(fragment_at(at, depth, code)) {
+        return;
+    }
+    let number = atomicAdd(&heads[NOTED], 1u);
+    let place = number * note_words();
+    if place + note_words() > arrayLength(&notes) {
+        return;
+    }
+    let pixel = vec2u(at);
+    notes[place] = atomicExchange(&heads[FIRST_HEAD + pixel.y * u32(view.size.x) + pixel.x], number + 1u);
+    notes[place + 1u] = bitcast<u32>(depth);
+    notes[place + 2u] = code | plane;
+    if SMOOTH {
+        notes[place + 3u] = normal;
+    }
+    if TEXTURED {
+        notes[place + note_words() - 1u] = color;
+    }
+}
+
+fn natural_color(code: u32) -> u32 {
+    if TEXTURED {
+        return packed(surface_at(code - 1u).color);
+    }
+    return 0u;
+}
+
+@fragment //@early
+fn note_plain(in: Varying) {
+    //@behind
+    note(in.clip.xy, in.clip.z, in.code, ALONE, 0u, natural_color(in.code));
+}
+
+@fragment //@early
+fn note_smooth(in: SmoothVarying) {
+    //@behind
+    note(in.clip.xy, in.clip.z, in.code, ALONE, normal_code(in.normal, in.code), natural_color(in.code));
+}
+
+@fragment //@early
+fn note_textured(in: TexturedVarying) {
+    let texel = textureSample(image, image_sampler, in.texcoord);
+    //@behind
+    if texel.a < ALPHA_CUTOFF {
+        return;
+    }
+    let normal = select(0u, encode_normal(in.normal), SMOOTH);
+    note(in.clip.xy, in.clip.z, in.code, ALONE, normal, packed(texel.rgb * surface_at(in.code - 1u).color));
+}
+
+// The instance is the layer of the face in its plane: of equal depths the upper one is nearer. It is told with the number.
+@vertex
+fn vertex_coplanar_layer(in: Vertex, plane: Plane, @builtin(instance_index) layer: u32) -> CoplanarVarying {
+    var face = coplanar(in, plane);
+    face.code = (face.code & NOTED_CODE) | ((MOST_IN_PLANE - min(layer, MOST_IN_PLANE)) << PLANE_SHIFT);
+    return face;
+}
+
+// Its depth is that of the plane, not the interpolated one that the depth test would take.
+@fragment
+fn note_coplanar(in: CoplanarVarying) {
+    let depth = depth_on_plane(in);
+    if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) > depth {
+        return;
+    }
+    let code = in.code & NOTED_CODE;
+    let normal = select(0u, normal_code(in.normal, code), SMOOTH);
+    note(in.clip.xy, depth, code, in.code & ~NOTED_CODE, normal, natural_color(code));
+}
