@@ -276,6 +276,12 @@ fn what_has_no_room_is_drawn_in_bands_or_counted() {
     let (found, figures) = at(0);
     assert_eq!(figures, LayerFigures { notes, bands: 1, excess: notes });
     assert!(found.iter().all(|v| *v == [0.0, 0.0, 0.0, 1.0]));
+    let told = Request { size: SIZE, statistics: true, aovs: Aovs::default(), ..request(Backend::Specialised) };
+    let picture = studio.render(&scene, &told).expect("a picture");
+    let layers = picture.statistics.frame.layers.expect("there are some");
+    assert_eq!((layers.fragments, layers.missing), (notes, notes));
+    let warning = &picture.statistics.warnings[0];
+    assert_eq!((&warning["code"], &warning["count"]), (&"layer-room".into(), &notes.into()));
 }
 
 #[test]
@@ -423,6 +429,26 @@ fn the_shown_surface_is_where_half_of_the_light_comes_from() {
             }
         }
     }
+}
+
+#[test]
+fn what_is_opaque_is_known_behind_layers() {
+    let mut random = Random(12);
+    let mut all = panes(7, &mut random);
+    all[6] = Pane { low: [0, 0], high: [9000, 9000], ..all[6] };
+    let mut studio = studio_of(&all);
+    let stacks = stacks(&mut studio, &all);
+    let clear = rule("transparent", &[("opacity", 0.25)], Some(&[6]), true);
+    let found = studio.transmittance(&of_context(vec![clear]), SIZE).expect("a frame");
+    let ids =
+        picture(&mut studio, &of_context(vec![rule("eraser", &[], Some(&[6]), true)]), SIZE).object_id.expect("ids");
+    assert_eq!(found.object_id, ids);
+    for (stack, through) in stacks.iter().zip(&found.through) {
+        let layers = stack.iter().filter(|(pane, _)| *pane != 6).count();
+        assert!((f64::from(*through) - 0.75_f64.powi(layers as i32)).abs() < 1e-6);
+    }
+    let plain = studio.transmittance(&of_context(vec![]), SIZE).expect("a frame");
+    assert!(plain.through.iter().all(|t| *t == 1.0));
 }
 
 #[test]

@@ -56,6 +56,7 @@ pub mod targets;
 pub mod text;
 mod textures;
 pub mod told;
+pub mod transmittance;
 pub mod volume;
 mod weld;
 mod worker;

@@ -31,6 +31,7 @@ use crate::{
         eye::PictureTile,
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
+        layers::LayerFigures,
         lens_volumes::{LensVolumes, volumes_of},
         operations::{MOST_FILTERS, Operations},
         parts::{Part, parts, put, whole},
@@ -115,6 +116,8 @@ pub struct Picture {
     pub(super) excess: BTreeMap<u32, u32>,
     /// Objects by lens that have no section since they are open.
     pub(super) open: BTreeMap<u32, u32>,
+    /// Translucent layers.
+    pub(super) layers: LayerFigures,
     /// GPU allocations and uploads while drawing (reading back not counted).
     made: (u64, u64),
     /// What it cost.
@@ -453,6 +456,10 @@ impl Studio {
                 timer = timer.map(|_| Timer::new(&self.renderer.gpu)).transpose()?;
                 records = self.renderer.draw(&input, timer.as_mut())?;
             }
+            let layers = self.renderer.layer_figures();
+            picture.layers.notes += layers.notes;
+            picture.layers.bands += layers.bands;
+            picture.layers.excess += layers.excess;
             picture.made.0 += self.renderer.gpu.allocations() - before.0;
             picture.made.1 += self.renderer.gpu.uploads() - before.1;
             if sample == 0 {
@@ -507,9 +514,7 @@ impl Studio {
             }
         };
         if let Some(out) = &mut picture.object_id {
-            // The plain ground is no object: its NO_OBJECT wraps to 0.
-            let object = |code: u32| code.checked_sub(1).and_then(surface).map_or(0, |s| s.object.wrapping_add(1));
-            let ids: Vec<u32> = codes.iter().map(|&[code, _]| object(code)).collect();
+            let ids: Vec<u32> = codes.iter().map(|&[code, _]| self.renderer.object_id(code)).collect();
             put(out, request.size, part, &ids);
         }
         if let Some(out) = &mut picture.normal {
@@ -579,6 +584,11 @@ impl Studio {
                 gpu_ms: passes.iter().map(|p| p.gpu_ms).sum(),
                 samples: request.samples,
                 peak_gpu_bytes: gpu.allocated_bytes(),
+                layers: (picture.layers.bands > 0).then_some(stats::Layers {
+                    fragments: picture.layers.notes,
+                    bands: picture.layers.bands,
+                    missing: picture.layers.excess,
+                }),
                 ..Default::default()
             },
             pipelines: stats::Pipelines { compiled, reused: names.len() as u32 - compiled, names },
@@ -689,6 +699,7 @@ impl Picture {
             classes: vec![vec![0; pixels]; planes],
             excess: BTreeMap::new(),
             open: BTreeMap::new(),
+            layers: LayerFigures::default(),
             made: (0, 0),
             statistics: Statistics::default(),
         }

@@ -304,6 +304,12 @@ impl Renderer {
         self.ran.iter().map(|&e| handlers()[e as usize].name.clone()).collect()
     }
 
+    /// The AOV's number of what has this code in the geometry target: object index + 1, 0 = nothing.
+    pub(super) fn object_id(&self, code: u32) -> u32 {
+        // The plain ground is no object: its NO_OBJECT wraps to 0.
+        code.checked_sub(1).and_then(|number| self.surface(number)).map_or(0, |s| s.object.wrapping_add(1))
+    }
+
     /// The pipelines.
     pub fn pipelines(&self) -> &Pipelines {
         &self.pipelines

@@ -92,6 +92,19 @@ pub struct Frame {
     pub allocations: u64,
     /// GPU uploads while drawing.
     pub uploads: u64,
+    /// Translucent layers of all samples; `null` where nothing is seen through.
+    pub layers: Option<Layers>,
+}
+
+/// Translucent layers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Layers {
+    /// Fragments that are seen through and not behind what is opaque.
+    pub fragments: u64,
+    /// Bands that the picture was drawn in, for want of room.
+    pub bands: u32,
+    /// Fragments that are missing, for want of room.
+    pub missing: u64,
 }
 
 /// One pass.

@@ -14,12 +14,22 @@ use crate::{
 };
 
 /// The codes.
-pub const CODES: [&str; 2] = [SPRITE_LAYERS, OPEN_SHELLS];
+pub const CODES: [&str; 3] = [SPRITE_LAYERS, OPEN_SHELLS, LAYER_ROOM];
 
 /// Rays have more intervals than a sprite has layers.
 const SPRITE_LAYERS: &str = "sprite-layers";
 /// What sections were asked for encloses nothing.
 const OPEN_SHELLS: &str = "open-shells";
+
+/// Translucent fragments found no room.
+const LAYER_ROOM: &str = "layer-room";
+
+/// What is missing of translucent layers, of all samples and parts of a picture.
+fn missing_layers(picture: &Picture) -> Option<(u64, String)> {
+    let count = picture.layers.excess;
+    let all = picture.layers.notes;
+    (count > 0).then(|| (count, format!("{count} of {all} translucent fragments found no room and are missing")))
+}
 
 /// City objects by lens that are cut by it and would have a section, were they closed shells: some of their triangles meet it,
 /// and some of their corners lie outside.
@@ -77,7 +87,8 @@ fn each<'a>(scene: &'a Scene, picture: &'a Picture, (_, counts, message): Told) 
 
 /// One line for each lens that something is told of.
 pub(super) fn messages(scene: &Scene, picture: &Picture) -> Vec<String> {
-    TOLD.into_iter().flat_map(|told| each(scene, picture, told)).map(|(_, _, message)| message).collect()
+    let of_lenses = TOLD.into_iter().flat_map(|told| each(scene, picture, told)).map(|(_, _, message)| message);
+    of_lenses.chain(missing_layers(picture).map(|(_, message)| message)).collect()
 }
 
 /// The same in the form of warnings of files.
@@ -92,5 +103,8 @@ pub(super) fn warnings(scene: &Scene, picture: &Picture) -> Vec<serde_json::Valu
             || serde_json::json!({ "code": code, "count": count, "objects": lenses, "message": messages.join("; ") }),
         )
     };
-    TOLD.into_iter().filter_map(warning).collect()
+    let layers = missing_layers(picture).map(
+        |(count, message)| serde_json::json!({ "code": LAYER_ROOM, "count": count, "objects": [], "message": message }),
+    );
+    TOLD.into_iter().filter_map(warning).chain(layers).collect()
 }
