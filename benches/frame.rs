@@ -4,7 +4,8 @@
 //! `cargo bench --bench frame [-- --pairs N]`: frames A and B are drawn in turn, and the median of their ratios is
 //! given with its 95 % interval; a target is met when the interval's upper end meets it. "All" is the plain frame with what
 //! near buildings hide: it draws the very triangles that the bare draw does. `-- --only "V2 ten"` draws only the rows whose A it is,
-//! `-- --profile "V1 plain"` one of them over and over, for a profiler to watch.
+//! `-- --profile "V1 plain"` one of them over and over, for a profiler to watch, and `-- --passes "V1 plain"` tells what each of its
+//! passes takes.
 
 #![expect(clippy::print_stdout, reason = "a bench prints its table")]
 
@@ -17,12 +18,15 @@ use veduta::{
     city::load::{LoadOptions, Quiet, load},
     geom::{Aabb, Shape},
     gpu::Gpu,
-    lens::Focus,
+    lens::{EffectUse, Focus, Lens},
     measure::{
         ratio::{Estimate, in_turn, ratios},
         stage::{lens, plain_scene, sphere_around, sphere_covering},
     },
-    render::picture::Studio,
+    render::{
+        frame::Backend,
+        picture::{Aovs, Request, Studio},
+    },
     scene::{CitySpec, Scene},
     view::{Camera, View},
 };
@@ -42,14 +46,15 @@ enum Frame {
 }
 
 fn main() {
-    let (mut pairs, mut profile, mut only) = (31, None, None);
+    let (mut pairs, mut profile, mut only, mut passes) = (31, None, None, None);
     let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
     while let Some(argument) = arguments.next() {
         match (argument.as_str(), arguments.next()) {
             ("--pairs", Some(n)) => pairs = n.parse().expect("--pairs wants a number"),
             ("--profile", name @ Some(_)) => profile = name,
             ("--only", name @ Some(_)) => only = name,
-            _ => panic!("{argument} is neither --pairs N nor --only NAME nor --profile NAME"),
+            ("--passes", name @ Some(_)) => passes = name,
+            _ => panic!("{argument} is neither --pairs N nor --only NAME nor --profile NAME nor --passes NAME"),
         }
     }
     let model = load(&[bench_city::written(bench_city::BENCH_BUILDINGS)], &LoadOptions::default(), &Quiet)
@@ -66,6 +71,12 @@ fn main() {
         let many = with_ten(v, &lensed, &mut studio);
         let [few, thousand] = [10, 1000].map(|count| spread(&scene, &studio.extent(), count));
         let moving = (0..8).map(|step| moved(&thousand, f64::from(step)));
+        let through =
+            Scene { lenses: vec![Lens { effects: see_through(), ..lensed.lenses[0].clone() }], ..scene.clone() };
+        let mut city = scene.clone();
+        city.style.effects = see_through();
+        frames.push((format!("{v} see-through"), Frame::Full(through)));
+        frames.push((format!("{v} see-through city"), Frame::Full(city)));
         frames.push((format!("{v} moving"), Frame::Turns(moving.collect(), Cell::new(0))));
         let one_moves = (0..8).map(|step| moved(&lensed, f64::from(step)));
         frames.push((format!("{v} lens moving"), Frame::Turns(one_moves.collect(), Cell::new(0))));
@@ -82,7 +93,7 @@ fn main() {
         let found = frames.iter().find(|(n, _)| n == name);
         &found
             .unwrap_or_else(|| {
-                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten, ten all, few, thousand, lens moving or moving")
+                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten, ten all, few, thousand, lens moving, moving, see-through or see-through city")
             })
             .1
     };
@@ -92,6 +103,10 @@ fn main() {
         let times: Vec<f64> = (0..pairs).map(|_| timed(&mut studio, named(&name))).collect();
         let best = times.iter().copied().fold(f64::INFINITY, f64::min);
         println!("{name}: {best:.1} ms at best, {:.1} in the mean", times.iter().sum::<f64>() / pairs as f64);
+        return;
+    }
+    if let Some(name) = passes {
+        pass_times(&mut studio, named(&name), pairs);
         return;
     }
     println!("{:<22} {:>9} {:>9} {:>24} {:>8}", "A / B", "A ms", "B ms", "ratio (95 % interval)", "target");
@@ -105,7 +120,7 @@ fn main() {
 }
 
 /// Frames A and B, and what their ratio is to be at most.
-const ROWS: [(&str, &str, f64); 13] = [
+const ROWS: [(&str, &str, f64); 17] = [
     ("V1 plain", "V1 bare", 1.30),
     ("V2 all", "V2 bare", 1.45),
     ("V2 plain", "V2 bare", 1.45),
@@ -119,6 +134,10 @@ const ROWS: [(&str, &str, f64); 13] = [
     ("V2 thousand", "V2 few", 1.50),
     ("V1 moving", "V1 thousand", 1.05),
     ("V2 moving", "V2 thousand", 1.05),
+    ("V1 see-through", "V1 plain", 1.50),
+    ("V2 see-through", "V2 plain", 2.00),
+    ("V1 see-through city", "V1 plain", 10.0),
+    ("V2 see-through city", "V2 plain", 10.0),
 ];
 
 /// Frames in which a lens moves, and the same in which it does not.
@@ -203,6 +222,11 @@ fn with_lens(v: &str, scene: &Scene, studio: &mut Studio) -> Scene {
     Scene { lenses: vec![lens("lens", shape, &["greyscale"])], ..scene.clone() }
 }
 
+/// Exactly translucent: every layer counts.
+fn see_through() -> Vec<EffectUse> {
+    lens("", Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }, &["transparent"]).effects
+}
+
 /// The effects of ten colour lenses, two of them neighbourhood filters.
 const TEN: [&str; 10] =
     ["greyscale", "blur", "sepia", "invert", "darken", "brighten", "saturate", "posterise", "overlay", "blur"];
@@ -281,6 +305,32 @@ fn parts(studio: &mut Studio, frame: &Frame) -> [f64; 2] {
     [processor_ms() - before, whole]
 }
 
+/// Prints the median time of each pass of a frame, by the card's clock.
+fn pass_times(studio: &mut Studio, frame: &Frame, pairs: usize) {
+    let (Frame::Full(scene) | Frame::Unculled(scene)) = frame else { panic!("a scene is drawn in passes") };
+    let request = Request {
+        size: SIZE,
+        samples: 1,
+        transparent: false,
+        aovs: Aovs::default(),
+        statistics: true,
+        backend: Backend::default(),
+    };
+    let mut times: Vec<(String, u64, Vec<f64>)> = Vec::new();
+    for round in 0..=pairs {
+        let picture = studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}"));
+        for (i, pass) in picture.statistics.passes.into_iter().enumerate().filter(|_| round > 0) {
+            if times.len() == i {
+                times.push((pass.name, pass.triangles, Vec::new()));
+            }
+            times[i].2.extend(pass.gpu_ms);
+        }
+    }
+    for (name, triangles, ms) in times {
+        println!("{name:<22} {triangles:>9} triangles {:>9.2} ms", Estimate::of(&ms).map_or(f64::NAN, |e| e.median));
+    }
+}
+
 /// Draws A and B in turn and prints the median of A/B with its 95 % interval.
 fn compare<'a>(studio: &mut Studio, pairs: usize, named: impl Fn(&str) -> &'a Frame, names: [&str; 2], target: f64) {
     let [a, b] = names.map(named);
@@ -300,4 +350,10 @@ fn compare<'a>(studio: &mut Studio, pairs: usize, named: impl Fn(&str) -> &'a Fr
         of_a,
         of_b
     );
+    timed(studio, a);
+    let layers = studio.renderer.layer_figures();
+    if layers.notes > 0 {
+        let each = (of_a - of_b) * 1e6 / layers.notes as f64;
+        println!("    {} translucent fragments in {} bands, {each:.0} ns each", layers.notes, layers.bands);
+    }
 }

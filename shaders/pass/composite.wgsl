@@ -1,10 +1,10 @@
 // Translucent layers of a pixel (O7), as `pass/layers.wgsl` noted them: sorted by their full depth, each shaded as what is opaque
 // is, with its own place in the lenses, and laid one over the other in f32, nearest first.
 //
-// The nearest eight notes are found at a time, in one walk through the list; that goes on from the last of them until all are
-// laid or nothing more would be seen. That there are lists of more than LONG notes is told; the host has these sorted
-// before (`pass/sort-layers.wgsl`). Equal depths are told apart by the number of the surface, so the order in which the
-// city is drawn does not matter.
+// The nearest notes are found several at a time, in one walk through the list; that goes on from the last of them until all are
+// laid or nothing more would be seen. What is not done after MOST_ROUNDS is told; the host has lists sorted then
+// (`pass/sort-layers.wgsl`). Equal depths are told apart by the number of the surface, so the order in which the city is
+// drawn does not matter.
 
 @group(3) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
 @group(3) @binding(1) var<storage, read> notes: array<u32>;
@@ -12,7 +12,8 @@
 const FIRST_HEAD: u32 = 2u;
 const NOTED_CODE: u32 = 0x07ffffffu;
 override SORTED: bool = false;  // whether lists are in order
-const LONG: u32 = 256u;
+// Mesa's software driver ends the loops of a shader after 65535 rounds in all.
+const MOST_ROUNDS: u32 = 50000u;
 const MOST_LAYERS: u32 = 1u;    // the word of `heads` that has the largest number of layers of a pixel
 // What is let through below this is not seen, whatever its colour.
 const NOTHING_SEEN: f32 = 5.9604645e-8;     // 2^-24
@@ -86,6 +87,7 @@ fn composite(in: Corner) -> Composite {
     var laid = 0u;
     var last = Note(0xffffffffu, 0u, 0u);
     var count = 0u;
+    var rounds = 0u;            // of walks
     var listed = head;          // of a list in order: the next note
     var is_left = head != 0u;
     if SORTED {
@@ -94,14 +96,7 @@ fn composite(in: Corner) -> Composite {
         }
     }
     while is_left {
-        var found_0 = NO_NOTE;
-        var found_1 = NO_NOTE;
-        var found_2 = NO_NOTE;
-        var found_3 = NO_NOTE;
-        var found_4 = NO_NOTE;
-        var found_5 = NO_NOTE;
-        var found_6 = NO_NOTE;
-        var found_7 = NO_NOTE;
+        //@found
         var next = select(head, 0u, SORTED);
         count = select(0u, count, SORTED);
         if SORTED {
@@ -115,14 +110,7 @@ fn composite(in: Corner) -> Composite {
             if !precedes(last, note) {
                 note = NO_NOTE;
             }
-            keep_nearer(&found_0, &note);
-            keep_nearer(&found_1, &note);
-            keep_nearer(&found_2, &note);
-            keep_nearer(&found_3, &note);
-            keep_nearer(&found_4, &note);
-            keep_nearer(&found_5, &note);
-            keep_nearer(&found_6, &note);
-            keep_nearer(&found_7, &note);
+            //@keep
             count += 1u;
             next = notes[place];
             // Here, not at the beginning: a software adapter goes through a whole round to find that there is none.
@@ -130,9 +118,7 @@ fn composite(in: Corner) -> Composite {
                 break;
             }
         }
-        if !SORTED && count > LONG {
-            atomicMax(&heads[MOST_LAYERS], count);
-        }
+        rounds += count;
         while found_0.depth != 0u {
             let note = found_0;
             let place = (note.number - 1u) * words;
@@ -164,19 +150,16 @@ fn composite(in: Corner) -> Composite {
             }
             laid += 1u;
             last = note;
-            found_0 = found_1;
-            found_1 = found_2;
-            found_2 = found_3;
-            found_3 = found_4;
-            found_4 = found_5;
-            found_5 = found_6;
-            found_6 = found_7;
-            found_7 = NO_NOTE;
+            //@shift
             if found_0.depth == 0u || through < NOTHING_SEEN {
                 break;
             }
         }
         is_left = laid < count && through >= NOTHING_SEEN;
+        if is_left && !SORTED && rounds + count > MOST_ROUNDS {
+            atomicMax(&heads[MOST_LAYERS], count);
+            is_left = false;
+        }
         if !is_left {
             break;
         }

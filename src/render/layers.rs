@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! layers            every fragment that is seen through and not behind what is opaque, into the list of its pixel
-//! sort layers       where a list is long
+//! sort layers       where a list is very long
 //! count layers      where opacity rules ask how many layers the picture has
 //! composite         the lists, sorted and laid one over the other
 //! shown layers      where AOVs are asked for: layers that are the shown surface take the place of what is opaque
@@ -38,8 +38,6 @@ const MOST_BANDS: usize = 4096;
 const HEADER: u64 = 2;
 /// Storage buffers that a shader of layers binds: two of lists, and what lens tests read.
 const BUFFERS: u32 = 8;
-/// `pass/composite.wgsl`: longer lists are sorted before.
-const LONG: u32 = 256;
 /// What to do where the card has no such buffer.
 const SMALLER: &str = "a smaller picture would be right";
 
@@ -438,7 +436,7 @@ impl Renderer {
         encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 8);
         self.gpu.queue.submit([encoder.finish()]);
         let longest = self.gpu.mapped(&own.counted, |bytes| bytemuck::pod_read_unaligned::<u32>(&bytes[4..8]))?;
-        let is_longer = longest > LONG && longest > self.longest_list;
+        let is_longer = longest > self.longest_list;
         if is_longer {
             self.longest_list = longest;
         }

@@ -287,6 +287,18 @@ impl Module {
                 if matches!(self, Self::Shade(_)) {
                     return text;
                 }
+                let each = |count: u32, line: &dyn Fn(u32) -> String| (0..count).map(line).collect::<String>();
+                let text = text
+                    .replace("        //@found\n", &each(FOUND, &|i| format!("        var found_{i} = NO_NOTE;\n")))
+                    .replace(
+                        "            //@keep\n",
+                        &each(FOUND, &|i| format!("            keep_nearer(&found_{i}, &note);\n")),
+                    )
+                    .replace(
+                        "            //@shift\n",
+                        &(each(FOUND - 1, &|i| format!("            found_{i} = found_{};\n", i + 1))
+                            + &format!("            found_{} = NO_NOTE;\n", FOUND - 1)),
+                    );
                 let opacity = match program {
                     Program::Specialised(plan) => specialised::opacity(plan, handlers),
                     Program::Uber(uber) => uber::opacity(uber, handlers),
@@ -401,6 +413,9 @@ fn span_files(program: &Program) -> Vec<(&'static str, &'static str)> {
 
 /// Where nothing is hidden.
 const NOTHING_CUT: &str = "fn cut(at: vec2f, depth: f32, code: u32) {}\n";
+
+/// How many notes of a list `pass/composite.wgsl` finds at a time.
+const FOUND: u32 = 8;
 
 /// Where the depth test comes before the shader.
 const EARLY: &str = " @early_depth_test(force)";
