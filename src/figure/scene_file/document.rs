@@ -198,6 +198,7 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Tables(table) => json!({ "type": "array", "items": object(table) }),
         Kind::Shape => json!({ "$ref": SHAPE }),
         Kind::Shapes => json!({ "type": "array", "items": { "$ref": SHAPE }, "minItems": 1 }),
+        Kind::Numbers => json!({ "type": ["number", "array"] }),
         Kind::Effects => json!({ "type": "array", "items": { "anyOf": effects() } }),
     }
 }
