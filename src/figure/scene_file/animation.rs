@@ -331,3 +331,90 @@ pub const TABLES: [(&str, &Table); 4] = [
     ("change of the animation", &CHANGE),
     ("keys of a change", &CHANGE_KEY),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::scene_file::{Options, parse};
+
+    const SCENE: &str = r#"
+veduta = 1
+[camera]
+eye = [0, -90, 60]
+target = [0, 0, 5]
+fov_deg = 30.0
+[animation]
+fps = 10
+speed = "constant"
+camera = [
+  { at = 0.5, eye = [0, -90, 60], target = [0, 0, 5] },
+  { at = 2.0, eye = [90, 0, 60], target = [0, 0, 5], fov_deg = 60.0 },
+]
+[[animation.change]]
+path = "lens.\"a.b\".shape.center"
+keys = [{ at = 0, value = [0, 0, 0] }, { at = 3.04, value = [9, 0, 0] }]
+[[animation.change]]
+path = "lens.a.shape.points"
+keys = [{ at = 1, value = [[0, 0], [1, 1]] }]
+"#;
+
+    fn read(text: &str) -> Result<Animation, String> {
+        let scene = parse(text, "s", &Options::for_command_line()).map_err(|error| error.to_string())?;
+        Ok(scene.animation.unwrap())
+    }
+
+    #[test]
+    fn an_animation_is_read_with_what_its_keys_leave_to_the_camera() {
+        let found = read(SCENE).unwrap();
+        assert_eq!((found.frames, found.fps, found.speed), (31, 10.0, Speed::Constant), "up to the last key");
+        let fov = |i: usize| match found.camera[i].projection {
+            Projection::Perspective { fov_y } => fov_y.to_degrees().round(),
+            Projection::Orthographic { .. } => f64::NAN,
+        };
+        assert_eq!((fov(0), fov(1), found.camera[0].up), (30.0, 60.0, DVec3::Z));
+        let places: Vec<bool> = found.changes.iter().map(|change| change.is_place).collect();
+        assert_eq!(places, [true, false]);
+        assert_eq!(found.changes[1].keys[0].value.to_string(), "[[0.0, 0.0], [1.0, 1.0]]");
+        let flat = SCENE
+            .replace("fov_deg = 30.0", "projection = \"orthographic\"\nheight_m = 7")
+            .replace(", fov_deg = 60.0", "");
+        let flat = read(&flat).unwrap();
+        assert_eq!(flat.camera[1].projection, Projection::Orthographic { height_m: 7.0 });
+    }
+
+    #[test]
+    fn every_mistake_names_its_line_place_and_remedy() {
+        for (from, to, expected) in [
+            ("fps = 10", "fps = 0", "s:8: [animation] fps: must be a number 0.01 to 1000, is 0"),
+            ("fps = 10", "frmes = 10", "s:8: [animation] frmes: unknown key; did you mean \"frames\"?"),
+            ("at = 2.0", "at = 0.5", "s:12: [animation] camera.1: `at` must be a later time"),
+            ("at = 0.5, ", "", "s:11: [animation] camera.0.at: is missing: When, later than the key before."),
+            ("eye = [90, 0, 60]", "eye = [0, 0, 5]", "s:12: [animation] camera.1: eye and target are the same point"),
+            ("eye = [90, 0, 60]", "eye = [0, -90, 60]", "at constant speed no time is left for what else changes"),
+            ("fov_deg = 60.0", "height_m = 60.0", "camera.1.height_m: has no meaning in this projection; fov_deg"),
+            ("fov_deg = 60.0", "up = [0, 0, -1]", "camera.1: `up` is the opposite of that of the key before"),
+            ("lens.a.shape", "camera.shape", "s:18: [animation] change.1.path: the camera has keys of its own"),
+            (
+                "lens.a.shape",
+                "city.shape",
+                "change.1.path: \"city\" is the same in all frames; an animation changes lens",
+            ),
+            ("lens.a.shape", "lense.shape", "there is no \"lense\" in a scene; did you mean \"lens\"?"),
+            ("value = [9, 0, 0]", "value = [9, 0]", "change.0.keys.1.value: has another form than [0.0, 0.0, 0.0]"),
+            ("value = [9, 0, 0]", "value = true", "keys.1.value: must be a number, or a list of numbers, is true"),
+            ("value = [9, 0, 0]", "value = \"#ff0000\"", "keys.1.value: must be a number, or a list of numbers"),
+            ("at = 3.04", "at = 0", "change.0.keys.1.at: `at` must be a later time than that of the key before"),
+            ("keys = [{ at = 1, value = [[0, 0], [1, 1]] }]", "keys = []", "change.1.keys: is empty"),
+            (
+                "keys = [{ at = 1,",
+                "speed = \"constant\"\nkeys = [{ at = 1,",
+                "change.1.speed: has a meaning only for a place",
+            ),
+            ("at = 3.04", "at = 900000", "[animation] frames: is 9000001 up to the last key; at most 1000000"),
+        ] {
+            assert!(SCENE.contains(from), "{from}");
+            let message = read(&SCENE.replacen(from, to, 1)).unwrap_err();
+            assert!(message.contains(expected) && message.lines().count() == 1, "{to}: {message}");
+        }
+    }
+}

@@ -157,7 +157,7 @@ impl Page<'_> {
         }
         let mut places = vec![[0, 0]; sheet.grid()[0] * columns];
         let wraps = lines != sheet.grid()[0];
-        for line in 0..lines {
+        for (line, row_heading) in rows.iter().enumerate() {
             // Of this line: the cells by place, each with its column.
             let of_line: Vec<(usize, usize, f32)> = (0..per_line)
                 .map(|at| (at, if wraps { line * per_line + at } else { at }))
@@ -178,7 +178,7 @@ impl Page<'_> {
                 }
                 y += tallest + if tallest > 0.0 { pen.painter.px(0.2) } else { 0.0 };
             }
-            pen.put(&rows[line], [margin, y + ((h - height_of(&rows[line])) / 2.0).round()]);
+            pen.put(row_heading, [margin, y + ((h - height_of(row_heading)) / 2.0).round()]);
             let mut below = 0.0_f32;
             for &(_, column, x) in &of_line {
                 let cell = if wraps { column } else { line * columns + column };

@@ -6,6 +6,7 @@
 //! ```
 
 pub mod cells;
+pub mod document;
 pub mod file;
 pub mod keys;
 pub mod layout;
