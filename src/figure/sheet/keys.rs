@@ -131,7 +131,7 @@ pub const ROOT: Table = Table {
         key(
             "text_px",
             Kind::Number { min: 6.0, max: 400.0 },
-            "36 on A4 (8.6 pt); with `cell_size` a 97th of the width of all columns, at least 10",
+            "36 on A4 (8.6 pt), down to 25 (6 pt) where there is little room; with `cell_size` a 97th of the width of all columns, at least 10",
             "pixels",
             "Size of the text.",
             "24.0",

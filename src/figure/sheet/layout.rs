@@ -32,14 +32,16 @@ use crate::{
 pub const A4: [u32; 2] = [3508, 2480];
 /// Dots per inch of it.
 pub const A4_DPI: f64 = 300.0;
-/// The em on it, pixels: 8.6 pt.
-const A4_EM_PX: f32 = 36.0;
+/// The em on it, pixels: 8.6 pt, and what it may be where there is little room: 7.2 and 6 pt.
+const A4_EMS_PX: [f32; 3] = [36.0, 30.0, 25.0];
 /// Width of all columns of a sheet with cells of a given size, em.
 const COLUMNS_EM: f32 = 97.0;
 /// No text is smaller unless the sheet says so, pixels.
 const LEAST_EM_PX: f32 = 10.0;
 /// No cell is narrower unless the sheet says so, em.
 const LEAST_CELL_EM: f32 = 8.0;
+/// Width of the cells of a sheet that is longer than A4, em.
+const LONG_CELL_EM: f32 = 20.0;
 /// Title and caption have at least this width, em.
 const LEAST_WIDTH_EM: f32 = 20.0;
 /// Width of headings of rows, of a legend, and of a caption beside legends at least, em.
@@ -105,27 +107,31 @@ struct Page<'a> {
 }
 
 impl Page<'_> {
-    /// With the largest cells that fit A4; what fits with none is larger.
+    /// With the largest cells that fit A4, with smaller text where there are none; what does not fit with any is longer.
     fn on_a4(&self, [w, h]: [u32; 2]) -> Layout {
-        let em = self.sheet.text_px.map_or(A4_EM_PX, |px| px as f32);
-        let of_width = |width: u32| {
+        let ems = self.sheet.text_px.map_or(A4_EMS_PX.to_vec(), |px| vec![px as f32]);
+        let of_width = |width: u32, em: f32| {
             let height = (f64::from(width) * f64::from(h) / f64::from(w)).round().clamp(1.0, f64::from(MAX_SIZE));
             self.with([width, height as u32], em)
         };
-        let fits = |found: &Layout| found.size[0] <= A4[0] && found.size[1] <= A4[1];
-        let mut low = (LEAST_CELL_EM * em).ceil() as u32;
-        let mut high = A4[0];
-        let mut best = of_width(low);
-        while fits(&best) && low + 1 < high {
-            let middle = u32::midpoint(low, high);
-            let found = of_width(middle);
-            if fits(&found) {
-                (low, best) = (middle, found);
-            } else {
-                high = middle;
+        let [lines, per_line] = self.sheet.lines().map(|n| n as u32);
+        let least = |em: f32| (LEAST_CELL_EM * em).ceil() as u32;
+        for em in &ems {
+            let mut width = A4[0];
+            while width >= least(*em) {
+                let found = of_width(width, *em);
+                let [over_x, over_y] = [0, 1].map(|axis| found.size[axis].saturating_sub(A4[axis]));
+                if over_x == 0 && over_y == 0 {
+                    return found;
+                }
+                // The narrower the cells, the longer what stands below them: no width between this one and the next fits.
+                let of_height = f64::from(over_y) / f64::from(lines) * f64::from(w) / f64::from(h);
+                let step = over_x.div_ceil(per_line).max(of_height.ceil().min(f64::from(MAX_SIZE)) as u32).max(1);
+                width = width.saturating_sub(step);
             }
         }
-        best
+        let em = ems[ems.len() - 1];
+        of_width((LONG_CELL_EM * em).ceil() as u32, em)
     }
 
     fn with(&self, cell: [u32; 2], em: f32) -> Layout {
@@ -342,15 +348,24 @@ mod tests {
 
     #[test]
     fn a_sheet_fills_a4_and_nothing_meets() {
-        for (rows, columns) in [(1, 1), (1, 4), (3, 4), (6, 2), (2, 9)] {
+        for (rows, columns) in [(1, 1), (1, 4), (3, 4), (4, 3), (2, 9)] {
             let named = |key: &str, n| (0..n).map(|i| format!("[[{key}]]\nname = \"{key}-{i}\"\n")).collect::<String>();
             let found = laid(&format!("{TEXTS}{}{}", named("row", rows), named("column", columns)), 3).unwrap();
             assert!(found.size[0] <= A4[0] && found.size[1] <= A4[1], "{:?}", found.size);
-            let is_full = found.size[0] + 40 > A4[0] || found.size[1] + 40 > A4[1];
+            // A caption that takes a line more in a narrower cell leaves a line free in each row.
+            let is_full = found.size[0] + 40 > A4[0] || found.size[1] + 40 + 60 * rows as u32 > A4[1];
             assert!(is_full, "{rows}x{columns}: {:?}", found.size);
             assert_eq!(found.cells.len(), rows * columns);
             check_apart(&found);
         }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_longer_and_not_smaller_than_legible() {
+        let rows = "[[row]]\n".repeat(30);
+        let found = laid(&format!("{TEXTS}{rows}[[column]]\n[[column]]\n"), 3).unwrap();
+        assert!(found.text_px == 25.0 && found.cell_size == [500, 281] && found.size[1] > A4[1], "{:?}", found.size);
+        check_apart(&found);
     }
 
     #[test]
