@@ -392,7 +392,7 @@ fn every_scene_ships_and_reads() {
         let file = folder.join(&sheet.scene);
         let options = veduta::figure::scene_file::Options::for_file(&file);
         let scene = veduta::figure::scene_file::read(&file, &options).unwrap();
-        let cells = veduta::figure::sheet::cells(&sheet, &scene, name);
+        let cells = veduta::figure::sheet::cells(&sheet, &scene, name, &options);
         assert!(cells.is_ok(), "{}", cells.unwrap_err());
     }
     for name in listed {

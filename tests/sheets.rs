@@ -192,6 +192,8 @@ fn what_cannot_be_drawn_is_said_before_anything_is() {
         1,
         "no point of interest \"hal\"; did you mean \"hall\"?",
     );
+    let outside = SHEET.replace("lens.a.shape.radius=20", "city.files=['/etc/a.json']");
+    wrong(&outside, &[], 1, "leads out of the scene's folder");
     wrong(SCENE, &[], 1, "g.sheet.toml:1: is a scene; a sheet begins with veduta_sheet = 1");
     wrong(SHEET, &["--set", "lens.b.enabled=false"], 2, "there is no lens \"b\"");
     let output = run(&["sheet", text(&sheet), "-o", text(&folder.join("out.jpg"))]);

@@ -142,7 +142,11 @@ fn json(drawn: &Drawn) -> serde_json::Value {
 /// Draws a sheet. `kept` is a studio that may have its city, and gets the last one used.
 pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalArguments) -> Outcome<Drawn> {
     let Task { name, sheet, scene, options } = task;
-    let mut cells = sheet::cells(sheet, scene, name).map_err(Failure::failed)?;
+    // Folders of files that the command line put into the scene are named by that.
+    let named = scene.city.files.iter().filter_map(|file| file.parent()).map(Path::to_owned);
+    let roots = options.roots.iter().cloned().chain(named).collect();
+    let of_sheet = Options { roots, ..options.clone() };
+    let mut cells = sheet::cells(sheet, scene, name, &of_sheet).map_err(Failure::failed)?;
     let failed = |message: String| Failure::failed(format!("{name}: {message}"));
     let count = cells.len();
     let size = scene.figure.size;

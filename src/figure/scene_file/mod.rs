@@ -21,7 +21,7 @@ use std::{fmt, io::Read, path::Path};
 pub use check::Problem;
 pub use parse::rotation;
 pub use paths::{Options, PathProblem};
-pub use set::set;
+pub use set::{set, set_within};
 
 use crate::scene::Scene;
 

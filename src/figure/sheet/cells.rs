@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::{
     figure::{
-        scene_file::{self, SceneFileError},
+        scene_file::{self, Options, SceneFileError},
         sheet::{CellFigure, Setting, Sheet},
     },
     lens::nearest::did_you_mean,
@@ -29,11 +29,11 @@ pub struct Cell {
 }
 
 /// The cells of a sheet over a scene, row by row. Changes come in the order: of all, of the row, of the column, of the cell.
-/// `name` stands for the sheet file in messages.
+/// `name` stands for the sheet file in messages; paths in changes are read with `options`, those of the scene's file.
 ///
 /// # Errors
 /// All changes that cannot be made, each once, with the first cell that it cannot be made in.
-pub fn cells(sheet: &Sheet, base: &Scene, name: &str) -> Result<Vec<Cell>, SceneFileError> {
+pub fn cells(sheet: &Sheet, base: &Scene, name: &str, options: &Options) -> Result<Vec<Cell>, SceneFileError> {
     let [rows, columns] = sheet.grid();
     let mut found = Vec::with_capacity(rows * columns);
     let mut problems: BTreeMap<(u32, String), String> = BTreeMap::new();
@@ -48,7 +48,7 @@ pub fn cells(sheet: &Sheet, base: &Scene, name: &str) -> Result<Vec<Cell>, Scene
         let mut scene = base.clone();
         let mut is_right = true;
         for setting in sheet.settings.iter().chain(of_row).chain(of_column).chain(of_cell) {
-            match scene_file::set(&scene, &setting.assignment) {
+            match scene_file::set_within(&scene, &setting.assignment, options) {
                 Ok(command) => command.redo(&mut scene),
                 Err(error) => {
                     is_right = false;
@@ -152,7 +152,7 @@ shape = { kind = "sphere", center = [0, 0, 0], radius = 60.0 }
     fn made(text: &str) -> Result<Vec<Cell>, String> {
         let base = scene_file::parse(SCENE, "scene", &Options::for_command_line()).unwrap();
         let sheet = file::parse(&format!("veduta_sheet = 1\nscene = \"a\"\n{text}"), "s").unwrap();
-        cells(&sheet, &base, "s").map_err(|error| error.to_string())
+        cells(&sheet, &base, "s", &Options::for_command_line()).map_err(|error| error.to_string())
     }
 
     fn radius(cell: &Cell) -> f64 {
