@@ -74,7 +74,7 @@ fn help_and_version_are_no_failures() {
         assert_eq!(code(&output), 0, "{arguments:?}");
         assert!(!out(&output).is_empty() && err(&output).is_empty(), "{arguments:?}");
     }
-    for command in ["info", "synth", "effects", "render", "gallery", "measure"] {
+    for command in ["info", "synth", "effects", "render", "sheet", "animate", "gallery", "measure"] {
         let help = out(&run(&[command, "--help"]));
         assert!(help.contains("Examples:"), "veduta {command} --help has no examples:\n{help}");
     }
@@ -382,7 +382,19 @@ fn every_scene_ships_and_reads() {
         .map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
         .collect();
     files.sort();
+    let (sheets, files): (Vec<String>, Vec<String>) = files.into_iter().partition(|name| name.ends_with(".sheet"));
     assert_eq!(listed, files);
+    let named: Vec<String> = veduta::cli::gallery::SHEETS.iter().map(|(name, _)| format!("{name}.sheet")).collect();
+    assert_eq!(named, sheets);
+    for (name, text) in veduta::cli::gallery::SHEETS {
+        assert!(!listed.contains(name), "{name} is the name of a scene too");
+        let sheet = veduta::figure::sheet::file::parse(text, name).unwrap();
+        let file = folder.join(&sheet.scene);
+        let options = veduta::figure::scene_file::Options::for_file(&file);
+        let scene = veduta::figure::scene_file::read(&file, &options).unwrap();
+        let cells = veduta::figure::sheet::cells(&sheet, &scene, name, &options);
+        assert!(cells.is_ok(), "{}", cells.unwrap_err());
+    }
     for name in listed {
         let file = folder.join(name).with_extension("toml");
         let mut options = veduta::figure::scene_file::Options::for_file(&file);

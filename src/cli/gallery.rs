@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::{
-    cli::{Failure, GlobalArguments, Outcome, output, render, terminal},
+    cli::{Failure, GlobalArguments, Outcome, output, render, sheet, terminal},
     figure::{
         self, picture,
         scene_file::{self, Options},
     },
     render::picture::{Request, Studio},
-    scene::CitySpec,
+    scene::{CitySpec, Scene},
 };
 
 const EXAMPLES: &str = "\
@@ -70,6 +70,9 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "window"
 };
 
+/// The sheets that ship with it, by the names of their pictures; each varies one of the scenes.
+pub const SHEETS: &[(&str, &str)] = &[("colour-styles", include_str!("../../scenes/colour-styles.sheet.toml"))];
+
 /// Arguments of `veduta gallery`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -85,8 +88,8 @@ pub struct Arguments {
 /// Draws the scenes, one picture each.
 pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     for name in &arguments.names {
-        if !SCENES.iter().any(|(known, _)| known == name) {
-            let known: Vec<&str> = SCENES.iter().map(|(known, _)| *known).collect();
+        if !SCENES.iter().chain(SHEETS).any(|(known, _)| known == name) {
+            let known: Vec<&str> = SCENES.iter().chain(SHEETS).map(|(known, _)| *known).collect();
             return Err(Failure::usage(format!("gallery: no scene {name}; there are {}", known.join(", "))));
         }
     }
@@ -96,13 +99,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let mut scenes = Vec::new();
     for (name, text) in SCENES.iter().filter(|(name, _)| is_asked(name)) {
         let options = Options::for_file(&PathBuf::from("scenes").join(name));
-        match scene_file::parse(text, &format!("scenes/{name}.toml"), &options) {
-            Ok(scene) => scenes.push((name, scene, options)),
-            Err(error) if error.is_data_absent => {
-                output::print(&format!("{name}: skipped: data absent (VEDUTA_DATA is not set)\n"))?;
-            }
-            Err(error) => return Err(Failure::failed(error)),
-        }
+        scenes.extend(parsed(name, name, text, &options)?.map(|scene| (name, scene, options)));
     }
     // Scenes of one city follow each other: it is loaded once.
     scenes.sort_by(|(_, a, _), (_, b, _)| a.city.files.cmp(&b.city.files));
@@ -130,5 +127,36 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         output::print(&format!("{}\n", file.display()))?;
         last = Some((scene.city, studio));
     }
+    for (name, text) in SHEETS.iter().filter(|(name, _)| is_asked(name)) {
+        let Some(task) = task_of(name, text)? else { continue };
+        let file = folder.join(format!("{name}.png"));
+        sheet::save(&file, &sheet::draw(&task, &mut last, global)?)?;
+        output::print(&format!("{}\n", file.display()))?;
+    }
     Ok(())
+}
+
+/// A scene that ships; `None`, and said for what is called `name`, where it is of a data set that is not there.
+fn parsed(name: &str, scene: &str, text: &str, options: &Options) -> Outcome<Option<Scene>> {
+    match scene_file::parse(text, &format!("scenes/{scene}.toml"), options) {
+        Ok(scene) => Ok(Some(scene)),
+        Err(error) if error.is_data_absent => {
+            output::print(&format!("{name}: skipped: data absent (VEDUTA_DATA is not set)\n"))?;
+            Ok(None)
+        }
+        Err(error) => Err(Failure::failed(error)),
+    }
+}
+
+/// A sheet that ships, with its scene.
+fn task_of(name: &str, text: &str) -> Outcome<Option<sheet::Task>> {
+    let file = format!("scenes/{name}.sheet.toml");
+    let sheet = figure::sheet::file::parse(text, &file).map_err(Failure::failed)?;
+    let stem = sheet.scene.trim_end_matches(".toml");
+    let Some((known, text)) = SCENES.iter().find(|(known, _)| *known == stem) else {
+        return Err(Failure::failed(format!("{file}: scene: there is no {} in the gallery", sheet.scene)));
+    };
+    let options = Options::for_file(&PathBuf::from("scenes").join(known));
+    let scene = parsed(name, known, text, &options)?;
+    Ok(scene.map(|scene| sheet::Task { name: file, sheet, scene, options }))
 }

@@ -3,6 +3,7 @@
 //! One file per command: a clap struct of its arguments and a `run` that gives `Ok` or one readable [`Failure`].
 //! What a command prints goes through [`output`], what it says meanwhile through [`terminal`].
 
+pub mod animate;
 pub mod effects;
 pub mod failure;
 pub mod gallery;
@@ -13,6 +14,7 @@ pub mod output;
 pub mod render;
 pub mod report;
 pub mod shader;
+pub mod sheet;
 mod synth;
 pub mod terminal;
 
@@ -82,6 +84,10 @@ pub enum Command {
     View(ViewArguments),
     /// Draws one picture of a scene or of city files
     Render(render::arguments::Arguments),
+    /// Draws a scene's variations side by side
+    Sheet(sheet::Arguments),
+    /// Draws the frames of a scene along its paths
+    Animate(animate::Arguments),
     /// Says what is in city files
     Info(info::Arguments),
     /// Makes a synthetic city
@@ -133,6 +139,8 @@ fn run(cli: Cli) -> Outcome {
     match cli.command {
         Some(Command::View(arguments)) => view(&arguments),
         Some(Command::Render(arguments)) => render::run(&arguments, global),
+        Some(Command::Sheet(arguments)) => sheet::run(&arguments, global),
+        Some(Command::Animate(arguments)) => animate::run(&arguments, global),
         Some(Command::Gallery(arguments)) => gallery::run(&arguments, global),
         Some(Command::Info(arguments)) => info::run(&arguments, global),
         Some(Command::Synth(arguments)) => synth::run(&arguments, global),

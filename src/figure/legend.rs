@@ -64,6 +64,25 @@ pub fn legends(scene: &Scene, model: &CityModel, seen: &[bool]) -> Vec<Legend> {
     legends
 }
 
+/// Adds the legends of another picture: those of one scale and title are shared, and belong to the lenses of both.
+pub fn join(all: &mut Vec<Legend>, others: Vec<Legend>) {
+    for other in others {
+        let has_room = all.len() < MOST;
+        let is_same = |l: &&mut Legend| l.scale == other.scale && l.title == other.title && l.unit == other.unit;
+        match all.iter_mut().find(is_same) {
+            // What holds in a context holds everywhere.
+            Some(same) if same.lenses.is_empty() => {}
+            Some(same) if other.lenses.is_empty() => same.lenses.clear(),
+            Some(same) => {
+                let new: Vec<_> = other.lenses.into_iter().filter(|lens| !same.lenses.contains(lens)).collect();
+                same.lenses.extend(new);
+            }
+            None if has_room => all.push(other),
+            None => {}
+        }
+    }
+}
+
 fn is_thematic(used: &EffectUse) -> bool {
     find(&used.effect).is_some_and(|definition| definition.objects == Some(PerObject::Colors))
 }

@@ -1,10 +1,12 @@
 //! A figure is a frame written down: scene files and back, pictures and their metadata, titles, captions and legends.
 
+pub mod animation;
 pub mod file;
 pub mod furniture;
 pub mod legend;
 pub mod picture;
 pub mod scene_file;
+pub mod sheet;
 pub mod ticks;
 
 use crate::{

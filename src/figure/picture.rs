@@ -27,9 +27,14 @@ fn png(
     depth: png::BitDepth,
     notes: &[Note],
     data: &[u8],
+    dpi: Option<f64>,
 ) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_pixel_dims(dpi.map(|dpi| {
+        let per_metre = (dpi / 0.0254).round() as u32;
+        png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }
+    }));
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.set_compression(png::Compression::Balanced);
@@ -54,7 +59,7 @@ fn save_png(
     data: &[u8],
 ) -> Result<(), WriteError> {
     let bytes =
-        png(size, color, depth, notes, data).map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
+        png(size, color, depth, notes, data, None).map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
     write_whole(path, |out| out.write_all(&bytes))
 }
 
@@ -72,6 +77,20 @@ pub fn save_picture(
     } else {
         save_png(path, size, png::ColorType::Rgba, png::BitDepth::Eight, notes, bytemuck::cast_slice(rgba))
     }
+}
+
+/// A page to print: sRGB, without alpha, at so many dots per inch.
+pub fn save_page(
+    path: &Path,
+    size: [u32; 2],
+    rgba: &[[u8; 4]],
+    dpi: Option<f64>,
+    notes: &[Note],
+) -> Result<(), WriteError> {
+    let rgb: Vec<u8> = rgba.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
+    let bytes = png(size, png::ColorType::Rgb, png::BitDepth::Eight, notes, &rgb, dpi)
+        .map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
+    write_whole(path, |out| out.write_all(&bytes))
 }
 
 /// Whether a path asks for EXR (else PNG); anything else is refused.

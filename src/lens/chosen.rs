@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use rustc_hash::FxHashSet;
+
 use crate::{
     city::{CityModel, Value},
     lens::{
@@ -91,7 +93,10 @@ pub fn members(model: &CityModel, choice: &Choice) -> Vec<bool> {
     let count = model.objects.len();
     if !choice.ids.is_empty() {
         let mut objects = vec![choice.except; count];
-        let mut next: Vec<u32> = choice.ids.iter().filter_map(|id| model.find_object(id)).collect();
+        // In one go over the city, however many are named.
+        let named: FxHashSet<&str> = choice.ids.iter().map(String::as_str).collect();
+        let is_named = |object: &u32| named.contains(&*model.objects[*object as usize].id);
+        let mut next: Vec<u32> = (0..count as u32).filter(is_named).collect();
         while let Some(object) = next.pop() {
             // Each once: parts may be named by several objects.
             if objects[object as usize] == choice.except {

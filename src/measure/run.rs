@@ -12,10 +12,11 @@ use crate::{
         topic::{Shot, Topic, Trial, Value, Variant},
     },
     render::{
+        parts::TILE,
         picture::{Aovs, Picture, RenderError, Request, Studio},
         stats,
     },
-    scene::CitySpec,
+    scene::{CitySpec, Scene},
 };
 
 /// What is measured on.
@@ -141,6 +142,32 @@ pub fn measure(
         plain_ms: estimate(&times[0])?,
         rows,
     })
+}
+
+/// Time of a scene's frame, one sample, against that of another of the same size: drawn in turn, so many times.
+///
+/// # Errors
+/// What drawing cannot do, and pictures larger than a target.
+pub fn frame_ratio(
+    studio: &mut Studio,
+    scene: &Scene,
+    plain: &Scene,
+    size: [u32; 2],
+    pairs: usize,
+) -> Result<Estimate, RenderError> {
+    if size.iter().any(|side| *side > TILE) {
+        let message = format!(
+            "frames of {}x{} pixels cannot be timed; at most {TILE} on a side would be right",
+            size[0], size[1]
+        );
+        return Err(RenderError::Scene(message));
+    }
+    let shots = [scene, plain].map(|scene| Stage { studio, size }.shot(scene.clone(), 1));
+    let times = in_turn(2, pairs, |i| {
+        warm_up(studio, &shots[i])?;
+        timed(studio, &shots[i])
+    })?;
+    estimate(&ratios(&times[0], &times[1]))
 }
 
 fn estimate(values: &[f64]) -> Result<Estimate, RenderError> {

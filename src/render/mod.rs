@@ -33,6 +33,7 @@ mod occurring;
 pub mod octagon;
 pub mod operations;
 mod own_sprites;
+mod page;
 pub mod palette;
 pub mod parts;
 pub mod picture;

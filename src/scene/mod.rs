@@ -3,6 +3,7 @@
 //! Everything is in model coordinates, metres and radians; edits are commands.
 
 pub mod anchor;
+pub mod animation;
 pub mod check;
 pub mod command;
 pub mod technique;
@@ -16,6 +17,7 @@ use crate::{
     view::Camera,
 };
 
+pub use animation::Animation;
 pub use check::{SceneProblem, check_against};
 pub use command::{Command, History};
 pub use technique::Technique;
@@ -37,6 +39,8 @@ pub struct Scene {
     pub lenses: Vec<Lens>,
     /// How a picture is made of it.
     pub figure: Figure,
+    /// How it changes over time; a picture shows nothing of it.
+    pub animation: Option<Animation>,
 }
 
 /// Which city, and how much of it.

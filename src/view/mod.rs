@@ -1,4 +1,4 @@
-//! The eye: cameras, how they project, and where to look from at first.
+//! The eye: cameras, how they project, where to look from at first, and paths over time.
 //!
 //! ```text
 //!            up                        pixel (0,0) at the top left, centres at +½
@@ -12,6 +12,7 @@ pub mod basis;
 pub mod first;
 pub mod frustum;
 pub mod jitter;
+pub mod path;
 pub mod project;
 
 use glam::DVec3;

@@ -24,7 +24,7 @@ includes image-space lenses. The same input on the same adapter gives the same b
 /// Pixels on a side at most.
 const MAX_SIDE: u32 = 16_384;
 /// Samples per pixel at most.
-const MAX_SAMPLES: i64 = 1024;
+pub const MAX_SAMPLES: i64 = 1024;
 
 /// Arguments of `veduta render`.
 #[derive(Args, Clone, Debug, Default)]

@@ -88,9 +88,11 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         .map_err(output::unwritten)
 }
 
-/// What a picture says about itself: the program's version and a hash of the scene, paths relative to its file.
+/// What a picture says about itself: the program's version and a hash of the scene, paths relative to its file. An animation is no
+/// part of a picture.
 pub fn notes(scene: &Scene, options: &Options) -> Vec<Note> {
-    picture::notes(Some(picture::hash(&scene_file::to_toml_for(scene, options))))
+    let still = Scene { animation: None, ..scene.clone() };
+    picture::notes(Some(picture::hash(&scene_file::to_toml_for(&still, options))))
 }
 
 /// How paths of a scene file, or of the command line, are read.
@@ -111,6 +113,11 @@ pub fn scene_of(files: &[PathBuf], settings: &[String], options: &Options) -> Ou
             scene
         }
     };
+    changed(scene, settings)
+}
+
+/// The scene after every `--set`, in order.
+pub fn changed(scene: Scene, settings: &[String]) -> Outcome<Scene> {
     let mut history = History::new(scene);
     for assignment in settings {
         let command = scene_file::set(history.scene(), assignment).map_err(Failure::usage)?;

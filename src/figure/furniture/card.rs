@@ -145,7 +145,8 @@ impl Painter {
         height
     }
 
-    fn line(&mut self, line: &Line, [x, y]: [f32; 2]) {
+    /// Puts one line there.
+    pub fn line(&mut self, line: &Line, [x, y]: [f32; 2]) {
         match &line.content {
             Content::Gap => {}
             Content::Texts(texts) => {

@@ -12,8 +12,8 @@
 //! All of it stands on quiet cards, which are readable over dark and light cities and on paper. Sizes follow the em,
 //! the em follows the picture; what has no room is shortened, counted, and at last left out with a warning.
 
-mod card;
-mod section;
+pub(in crate::figure) mod card;
+pub(in crate::figure) mod section;
 
 use crate::{
     figure::legend::Legend,
@@ -84,7 +84,7 @@ pub fn lay_out(figure: &Figure, legends: &[Legend], size: [u32; 2]) -> Furniture
 }
 
 /// Height of lines one below the other, pixels.
-fn height_of(lines: &[Line]) -> f32 {
+pub(in crate::figure) fn height_of(lines: &[Line]) -> f32 {
     lines.iter().map(|line| line.height).sum()
 }
 

@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::{
     city::Lod,
     figure::scene_file::{
+        animation,
         keys::{FAR_M, Key, Kind, Table},
         node::{Data, Node},
     },
@@ -211,6 +212,7 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         Kind::Color => color(node).is_some(),
         Kind::Background => node.text() == Some("sky") || color(node).is_some(),
         Kind::Lod => lod(node).is_some(),
+        Kind::Numbers => animation::numbers(node).is_some(),
         Kind::Size => {
             node.list().is_some_and(|l| l.len() == 2 && l.iter().all(|n| matches!(n.data, Data::Integer(1..=16_384))))
         }

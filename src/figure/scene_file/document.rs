@@ -78,7 +78,8 @@ fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
-fn section(out: &mut String, head: &str, table: &Table) {
+/// A table of the docs.
+pub(in crate::figure) fn section(out: &mut String, head: &str, table: &Table) {
     let _ = write!(out, "## {head}\n\n{}\n\n", table.doc);
     rows(out, table.keys);
 }
@@ -125,7 +126,8 @@ pub fn schema_text() -> String {
     format!("{:#}\n", schema())
 }
 
-fn object(table: &Table) -> Map<String, Value> {
+/// The schema of a table.
+pub(in crate::figure) fn object(table: &Table) -> Map<String, Value> {
     let mut properties = Map::new();
     for key in table.keys {
         let mut of_key = of_kind(&key.kind);
@@ -197,6 +199,7 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Tables(table) => json!({ "type": "array", "items": object(table) }),
         Kind::Shape => json!({ "$ref": SHAPE }),
         Kind::Shapes => json!({ "type": "array", "items": { "$ref": SHAPE }, "minItems": 1 }),
+        Kind::Numbers => json!({ "type": ["number", "array"] }),
         Kind::Effects => json!({ "type": "array", "items": { "anyOf": effects() } }),
     }
 }
@@ -284,11 +287,11 @@ fn of_parameter(kind: &ParameterKind) -> Value {
 }
 
 #[cfg(test)]
-mod tests {
+pub(in crate::figure) mod tests {
     use super::*;
 
     /// Compares with the committed file; `VEDUTA_UPDATE=docs` writes it instead.
-    fn committed(name: &str, made: impl Fn(&str) -> String) {
+    pub(in crate::figure) fn committed(name: &str, made: impl Fn(&str) -> String) {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name);
         let old = std::fs::read_to_string(&path).unwrap_or_default();
         let new = made(&old);
@@ -296,6 +299,15 @@ mod tests {
             std::fs::write(&path, &new).unwrap();
         } else {
             assert!(old == new, "docs/{name} is not what the tables say: VEDUTA_UPDATE=docs cargo test document");
+        }
+    }
+
+    /// Every key stands in the docs, with a sentence and an example that is TOML.
+    pub(in crate::figure) fn check_examples(table: &Table, text: &str) {
+        for key in table.keys {
+            assert!(text.contains(&format!("| `{}` |", key.name)), "{}", key.name);
+            assert!(key.doc.ends_with('.') && !key.example.is_empty(), "{}", key.name);
+            format!("v = {}", key.example).parse::<toml::Table>().unwrap_or_else(|e| panic!("{}: {e}", key.name));
         }
     }
 
@@ -326,11 +338,7 @@ mod tests {
     fn every_key_is_documented_with_an_example_that_is_right() {
         let text = reference();
         for (_, table) in TABLES.iter().copied().chain(SHAPES.iter().map(|s| ("", s))) {
-            for key in table.keys {
-                assert!(text.contains(&format!("| `{}` |", key.name)), "{}", key.name);
-                assert!(key.doc.ends_with('.') && !key.example.is_empty(), "{}", key.name);
-                format!("v = {}", key.example).parse::<toml::Table>().unwrap_or_else(|e| panic!("{}: {e}", key.name));
-            }
+            check_examples(table, &text);
         }
         for effect in all_effects() {
             assert!(text.contains(&format!("`{}`", effect.name)));

@@ -1,7 +1,10 @@
 //! The one table of scene-file keys: it drives the checks, the messages, `docs/scene.md` and the JSON schema.
 
 use crate::{
-    figure::scene_file::sprite::{SPRITE, SPRITE_CAMERA},
+    figure::scene_file::{
+        animation::{self, ANIMATION},
+        sprite::{SPRITE, SPRITE_CAMERA},
+    },
     lens::ramp,
 };
 
@@ -73,6 +76,8 @@ pub enum Kind {
     Shapes,
     /// Names of effects, or tables `{ effect = NAME, ... }`.
     Effects,
+    /// A number, or a list of numbers, or of such lists.
+    Numbers,
 }
 
 /// Farthest a coordinate may lie from the origin, metres; beyond it f64 is coarser than a micrometre.
@@ -106,7 +111,7 @@ pub struct Table {
     pub keys: &'static [Key],
 }
 
-pub(super) const fn key(
+pub(in crate::figure) const fn key(
     name: &'static str,
     kind: Kind,
     default: &'static str,
@@ -150,6 +155,14 @@ pub const ROOT: Table = Table {
             "",
             "How a picture is made.",
             "{ size = [1920, 1080] }",
+        ),
+        key(
+            "animation",
+            Kind::Table(&ANIMATION),
+            "none",
+            "",
+            "What changes from frame to frame.",
+            "{ frames = 120, change = [] }",
         ),
     ],
 };
@@ -629,6 +642,7 @@ impl Kind {
             Self::Tables(_) => "a list of tables".into(),
             Self::Shape => "a table { kind = ..., ... }".into(),
             Self::Shapes => "a list of at least one shape".into(),
+            Self::Numbers => "a number, or a list of numbers".into(),
             Self::Effects => "a list of effects: names or tables { effect = NAME, ... }".into(),
         }
     }
@@ -649,6 +663,10 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("camera of a sprite", &SPRITE_CAMERA),
     ("border of a lens", &BORDER),
     ("[figure]", &FIGURE),
+    animation::TABLES[0],
+    animation::TABLES[1],
+    animation::TABLES[2],
+    animation::TABLES[3],
 ];
 
 /// The names of a table's keys.

@@ -3,11 +3,12 @@
 //! `keys` is the one table of keys; `node` reads TOML with line numbers, `check` holds it against the table, `parse`
 //! makes a [`Scene`], `write` the file again, `set` applies `PATH=VALUE`, `document` makes the docs and the schema.
 
+pub mod animation;
 pub mod check;
 pub mod document;
 mod focus;
 pub mod keys;
-mod node;
+pub(in crate::figure) mod node;
 mod parse;
 mod paths;
 mod set;
@@ -19,8 +20,8 @@ use std::{fmt, io::Read, path::Path};
 
 pub use check::Problem;
 pub use parse::rotation;
-pub use paths::Options;
-pub use set::set;
+pub use paths::{Options, PathProblem};
+pub use set::{set, set_within};
 
 use crate::scene::Scene;
 
@@ -61,7 +62,7 @@ impl fmt::Display for SceneFileError {
 }
 
 impl SceneFileError {
-    fn whole(name: &str, line: u32, message: impl Into<String>) -> Self {
+    pub(in crate::figure) fn whole(name: &str, line: u32, message: impl Into<String>) -> Self {
         let problem = Problem { line, table: String::new(), key: String::new(), message: message.into() };
         Self { name: name.into(), problems: vec![problem], has_lines: true, is_data_absent: false }
     }
@@ -70,7 +71,12 @@ impl SceneFileError {
 /// Reads a scene file (`-`: standard input).
 pub fn read(path: &Path, options: &Options) -> Result<Scene, SceneFileError> {
     let name = path.display().to_string();
-    let failed = |e: std::io::Error| SceneFileError::whole(&name, 0, format!("cannot be read: {e}"));
+    parse(&read_text(path, &name, "scene")?, &name, options)
+}
+
+/// The text of a file of this kind (`-`: standard input); `name` stands for it in messages.
+pub(in crate::figure) fn read_text(path: &Path, name: &str, kind: &str) -> Result<String, SceneFileError> {
+    let failed = |e: std::io::Error| SceneFileError::whole(name, 0, format!("cannot be read: {e}"));
     let mut bytes = Vec::new();
     if path == Path::new("-") {
         std::io::stdin().lock().take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
@@ -79,13 +85,13 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene, SceneFileError> {
         file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
     }
     if bytes.len() as u64 > MAX_BYTES {
-        return Err(SceneFileError::whole(&name, 0, "is larger than 16 MiB; a scene file is a page of text"));
+        let message = format!("is larger than 16 MiB; a {kind} file is a page of text");
+        return Err(SceneFileError::whole(name, 0, message));
     }
-    let text = String::from_utf8(bytes).map_err(|e| {
+    String::from_utf8(bytes).map_err(|e| {
         let line = e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count() as u32 + 1;
-        SceneFileError::whole(&name, line, "is not UTF-8 text; a scene file is TOML")
-    })?;
-    parse(&text, &name, options)
+        SceneFileError::whole(name, line, format!("is not UTF-8 text; a {kind} file is TOML"))
+    })
 }
 
 /// Reads a scene from text; `name` stands for it in messages.
@@ -93,6 +99,9 @@ pub fn parse(text: &str, name: &str, options: &Options) -> Result<Scene, SceneFi
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let root =
         node::parse(text).map_err(|(line, message)| SceneFileError::whole(name, line, message.replace('\n', ", ")))?;
+    if root.has("veduta_sheet") {
+        return Err(SceneFileError::whole(name, 1, "is a sheet and not a scene; `veduta sheet` draws it"));
+    }
     let mut reader = parse::SceneReader::new(options);
     let scene = reader.scene(&root);
     let mut problems = reader.checker.problems;

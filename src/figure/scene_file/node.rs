@@ -93,6 +93,11 @@ impl Lines {
 }
 
 impl Node {
+    /// Whether it is a table with this key.
+    pub fn has(&self, key: &str) -> bool {
+        matches!(&self.data, Data::Table(entries) if entries.iter().any(|(name, ..)| name == key))
+    }
+
     /// A number, whole or not.
     pub fn number(&self) -> Option<f64> {
         match self.data {

@@ -7,6 +7,7 @@ use glam::{DQuat, DVec2, DVec3};
 use crate::{
     city::Lod,
     figure::scene_file::{
+        animation,
         check::{Checker, Fields, Place, lod},
         focus::Reader,
         keys::{self, CLASSES, Kind},
@@ -99,6 +100,7 @@ impl<'o> SceneReader<'o> {
             "sun" => scene.sun = sun(fields),
             "style" => scene.style = self.style(fields),
             "figure" => scene.figure = figure(fields),
+            "animation" => scene.animation = animation::read(&mut self.checker, fields, scene.camera.as_ref()),
             _ => {}
         }
     }

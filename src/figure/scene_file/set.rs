@@ -9,7 +9,7 @@ use crate::{
         Options, SceneFileError,
         check::Problem,
         keys::{self, Kind},
-        parse, to_toml,
+        parse, to_toml_for,
     },
     lens::nearest::did_you_mean,
     scene::{Command, Scene},
@@ -23,7 +23,18 @@ const UNSET: &str = "unset";
 /// A path is keys and, in lists, places from 0 or names: `lens.0.shape.radius`, `lens.NAME.enabled`,
 /// `lens."a.b".color`; the place after the last adds an element. The value is TOML, or a bare word, which is a text;
 /// `unset` takes the key or element away.
+///
+/// Paths are those of the command line: relative to the current folder, and free to lead anywhere.
 pub fn set(scene: &Scene, assignment: &str) -> Result<Command, SceneFileError> {
+    set_by(scene, assignment, &Options::default(), &Options::for_command_line())
+}
+
+/// [`set`] for an assignment that stands in a file: its paths are read with `options`.
+pub fn set_within(scene: &Scene, assignment: &str, options: &Options) -> Result<Command, SceneFileError> {
+    set_by(scene, assignment, options, options)
+}
+
+fn set_by(scene: &Scene, assignment: &str, written: &Options, read: &Options) -> Result<Command, SceneFileError> {
     let name = format!("--set {assignment}");
     let fail = |key: &str, message: String| SceneFileError {
         name: name.clone(),
@@ -35,11 +46,11 @@ pub fn set(scene: &Scene, assignment: &str) -> Result<Command, SceneFileError> {
         split(assignment).ok_or_else(|| fail("", "must be PATH=VALUE, for example lens.0.shape.radius=80".into()))?;
     let segments = segments(path).map_err(|message| fail(path, message))?;
     let value = value_of(value.trim()).map_err(|message| fail(path, message))?;
-    let mut root: Table = to_toml(scene).parse().map_err(|e: toml::de::Error| fail(path, e.message().to_owned()))?;
+    let mut root: Table =
+        to_toml_for(scene, written).parse().map_err(|e: toml::de::Error| fail(path, e.message().to_owned()))?;
     assign(&mut root, &segments, value).map_err(|message| fail(path, message))?;
     let text = toml::to_string(&root).map_err(|e| fail(path, e.to_string()))?;
-    let after = parse(&text, &name, &Options::for_command_line())
-        .map_err(|error| SceneFileError { has_lines: false, ..error })?;
+    let after = parse(&text, &name, read).map_err(|error| SceneFileError { has_lines: false, ..error })?;
     Ok(Command::new(format!("set {path}"), scene.clone(), after))
 }
 

@@ -10,9 +10,15 @@ use crate::{
         chosen::Choice,
         sprite::{Format, Mapping},
     },
-    scene::{Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique},
+    scene::{
+        Animation, Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique,
+        animation::{Change, ChangeKey, Numbers},
+    },
     shader::{Blend, Clip},
-    view::{Camera, Projection},
+    view::{
+        Camera, Projection,
+        path::{CameraKey, Speed},
+    },
 };
 
 const MINIMAL: &str = "veduta = 1\n";
@@ -639,13 +645,53 @@ prop_compose! {
 }
 
 prop_compose! {
+    fn changes()(path in "[a-z.\"]{1,9}", is_place in any::<bool>(), constant in any::<bool>(), steps in prop::collection::vec((0.01..9.0f64, point()), 1..4)) -> Change {
+        let mut at = 0.0;
+        let key = |(step, p): (f64, DVec3)| {
+            at += step;
+            let place = Numbers::List(p.to_array().map(Numbers::One).to_vec());
+            ChangeKey { at, value: if is_place { place } else { Numbers::List(vec![place, Numbers::One(p.x)]) } }
+        };
+        let keys = steps.into_iter().map(key).collect();
+        let speed = if constant && is_place { Speed::Constant } else { Speed::Keys };
+        Change { path: format!("lens.{path}.{}", if is_place { "center" } else { "points" }), speed, is_place, keys }
+    }
+}
+
+prop_compose! {
+    /// Its camera's keys are of the projection of `camera`.
+    fn animations()(frames in 1..1_000_000u32, fps in 0.01..1000.0f64, constant in any::<bool>(),
+        changes in prop::collection::vec(changes(), 0..3), keys in prop::collection::vec((0.01..9.0f64, point(), point(), 1..1790u32), 0..4)) -> (Animation, Vec<u32>) {
+        let (mut at, mut tenths) = (0.0, Vec::new());
+        let mut camera: Vec<CameraKey> = Vec::new();
+        for (step, eye, target, tenth) in keys {
+            at += step;
+            camera.push(CameraKey { at, eye, target, up: DVec3::new(0.0, 0.5, 2.0), projection: Projection::Orthographic { height_m: 1.0 } });
+            tenths.push(tenth);
+        }
+        let speed = if constant { Speed::Constant } else { Speed::Keys };
+        (Animation { frames, fps, speed, camera, changes }, tenths)
+    }
+}
+
+prop_compose! {
     fn scenes()(eye in point(), target in point(), ortho in any::<bool>(), tenths in 1..1790u32, with_camera in any::<bool>(),
         near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
-        figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3)) -> Scene {
-        let fov_y = (f64::from(tenths) / 10.0).to_radians();
-        let projection = if ortho { Projection::Orthographic { height_m: f64::from(tenths) } } else { Projection::Perspective { fov_y } };
+        figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
+        animation in prop::option::of(animations())) -> Scene {
+        let projection_of = |tenths: u32, ortho: bool| match ortho {
+            true => Projection::Orthographic { height_m: f64::from(tenths) },
+            false => Projection::Perspective { fov_y: (f64::from(tenths) / 10.0).to_radians() },
+        };
+        let projection = projection_of(tenths, ortho);
+        let animation = animation.map(|(mut animation, tenths)| {
+            for (key, tenths) in animation.camera.iter_mut().zip(tenths) {
+                key.projection = projection_of(tenths, ortho && with_camera);
+            }
+            animation
+        });
         let up = if clay { DVec3::Z } else { target };
         for (i, lens) in lenses.iter_mut().enumerate() {
             lens.name = format!("n\"{i}\\ü");
@@ -657,6 +703,7 @@ prop_compose! {
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).collect(),
             lenses,
             figure: Figure { size, samples, ..figure },
+            animation,
             ..Scene::default()
         };
         scene.city.files = files.into_iter().filter(|f| !f.contains("${")).map(Into::into).collect();

@@ -6,6 +6,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use crate::{
     figure::scene_file::{
+        animation,
         parse::{lens_color, rotation},
         paths::Options,
         sprite,
@@ -49,6 +50,10 @@ pub fn write(scene: &Scene, options: &Options) -> String {
             out.key_if(text.is_some(), key, &quoted(text.as_deref().unwrap_or_default()));
         }
         out.key_if(scene.figure.text_px.is_some(), "text_px", &number(scene.figure.text_px.unwrap_or_default()));
+    }
+    if let Some(own) = &scene.animation {
+        out.head("[animation]");
+        animation::written(own).iter().for_each(|(key, value)| out.key(key, value));
     }
     out.text
 }
@@ -205,7 +210,7 @@ pub fn quoted(text: &str) -> String {
 }
 
 /// The degrees with the fewest decimals that read back as the same radians; else the nearest there are.
-fn degrees(radians: f64) -> f64 {
+pub(super) fn degrees(radians: f64) -> f64 {
     let exact = radians.to_degrees();
     rounded(exact).find(|d| d.to_radians() == radians).unwrap_or(exact)
 }

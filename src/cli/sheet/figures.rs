@@ -1,0 +1,109 @@
+//! The numbers below a cell of a sheet.
+
+use serde_json::json;
+
+use crate::{
+    figure::sheet::{Cell, CellFigure, Sheet, share::share_in},
+    measure::{ratio::Estimate, run::frame_ratio},
+    render::picture::{RenderError, Request, Studio},
+    scene::Scene,
+};
+
+/// What was found of one cell; `None`: not asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Figures {
+    /// The share of the point of interest that is seen; `None` within: it is not in the picture.
+    share: Option<Option<f64>>,
+    /// City objects that enabled lenses meet.
+    occluders: Option<u64>,
+    /// Time of the frame against that of the plain one.
+    ratio: Option<Estimate>,
+}
+
+/// Finds what a sheet asks for of a cell.
+pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, RenderError> {
+    let wants = |figure| sheet.figures.contains(&figure);
+    let mut found = Figures::default();
+    if let (true, Some(id)) = (wants(CellFigure::VisibleShare), &cell.poi) {
+        found.share = Some(share_in(studio, &cell.scene, id)?);
+    }
+    if wants(CellFigure::Occluders) {
+        let asked = Request { statistics: true, ..one_sample(&cell.scene) };
+        let statistics = studio.render(&cell.scene, &asked)?.statistics;
+        found.occluders = Some(statistics.lenses.iter().map(|lens| lens.objects).sum());
+    }
+    if wants(CellFigure::FrameRatio) {
+        let plain = Scene { lenses: Vec::new(), ..cell.scene.clone() };
+        found.ratio = Some(frame_ratio(studio, &cell.scene, &plain, cell.scene.figure.size, sheet.pairs)?);
+    }
+    Ok(found)
+}
+
+fn one_sample(scene: &Scene) -> Request {
+    Request {
+        size: scene.figure.size,
+        samples: 1,
+        transparent: false,
+        aovs: Default::default(),
+        statistics: false,
+        backend: Default::default(),
+    }
+}
+
+impl Figures {
+    /// The line below the cell.
+    pub fn text(&self, figure: CellFigure) -> String {
+        match figure {
+            CellFigure::VisibleShare => match self.share.flatten() {
+                Some(share) => format!("visible share {}", percent(share)),
+                None => "out of the picture".to_owned(),
+            },
+            CellFigure::Occluders => match self.occluders.unwrap_or(0) {
+                1 => "1 object touched".to_owned(),
+                count => format!("{count} objects touched"),
+            },
+            CellFigure::FrameRatio => match self.ratio {
+                Some(ratio) => format!("frame × {:.2} ({:.2}–{:.2})", ratio.median, ratio.low, ratio.high),
+                None => "–".to_owned(),
+            },
+        }
+    }
+
+    /// All of them, with the names of the cell.
+    pub fn json(&self, cell: &Cell) -> serde_json::Value {
+        let mut all = json!({ "name": cell.name, "row": cell.row, "column": cell.column });
+        if let Some(share) = self.share {
+            all[CellFigure::VisibleShare.word()] = json!(share);
+        }
+        if let Some(count) = self.occluders {
+            all[CellFigure::Occluders.word()] = json!(count);
+        }
+        if let Some(ratio) = self.ratio {
+            all[CellFigure::FrameRatio.word()] = json!(ratio);
+        }
+        all
+    }
+}
+
+/// A share as people read it: 0 % and 100 % only where it is that.
+fn percent(share: f64) -> String {
+    let whole = (100.0 * share).round();
+    match whole {
+        _ if share <= 0.0 => "0 %".to_owned(),
+        _ if share >= 1.0 => "100 %".to_owned(),
+        0.0 => "< 1 %".to_owned(),
+        100.0 => "> 99 %".to_owned(),
+        whole => format!("{whole} %"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_and_nothing_are_said_of_nothing_else() {
+        let said = [0.0, 0.001, 0.426, 0.9999, 1.0].map(percent);
+        assert_eq!(said, ["0 %", "< 1 %", "43 %", "> 99 %", "100 %"]);
+    }
+}

@@ -1,0 +1,420 @@
+//! `[animation]` of scene files: its keys, read and written.
+
+use glam::DVec3;
+
+use crate::{
+    figure::scene_file::{
+        check::{Checker, Fields, Place},
+        keys::{CAMERA, CONTENT, Kind, POI, Table, key},
+        node::{Data, Node},
+        parse::DEFAULT_FOV_DEG,
+        shape_keys::SHAPES,
+        write::{degrees, list, number, point, quoted},
+    },
+    lens::nearest::did_you_mean,
+    scene::animation::{Animation, Change, ChangeKey, MOST_FRAMES, Numbers, Track},
+    view::{
+        Camera, Projection,
+        path::{CameraKey, CameraPath, PathError, Speed},
+    },
+};
+
+/// Latest time of a key, seconds.
+const LATEST_S: f64 = 1e6;
+/// Pictures per second where none are given.
+const FPS: f64 = 30.0;
+/// What an animation can change, by the first word of the way to it.
+const CHANGED: [&str; 4] = ["lens", "poi", "style", "sun"];
+
+const AT: Kind = Kind::Number { min: 0.0, max: LATEST_S };
+const SPEED: Kind = Kind::Word { now: &["keys", "constant"], later: &[] };
+
+/// `[animation]`.
+pub const ANIMATION: Table = Table {
+    name: "animation",
+    doc: "What changes from frame to frame of `veduta animate`: the camera along a path, and numbers along theirs; see Animations. \
+          Pictures by `veduta render` show nothing of it.",
+    keys: &[
+        key(
+            "frames",
+            Kind::Integer { min: 1, max: MOST_FRAMES as i64 },
+            "up to the last key",
+            "",
+            "How many pictures; frame i, from 0, is at i / `fps` seconds.",
+            "300",
+        ),
+        key("fps", Kind::Number { min: 0.01, max: 1000.0 }, "30.0", "per second", "Pictures per second.", "25.0"),
+        key(
+            "speed",
+            SPEED,
+            "\"keys\"",
+            "",
+            "How the camera's path is followed: each key at its time (`keys`), or from the first to the last at one speed (`constant`), \
+             when the times between say nothing.",
+            "\"constant\"",
+        ),
+        key(
+            "camera",
+            Kind::Tables(&CAMERA_KEY),
+            "it stays",
+            "",
+            "Where the camera is when.",
+            "[{ at = 0.0, eye = [0, -90, 60], target = [0, 0, 5] }, { at = 4.0, eye = [90, 0, 60], target = [0, 0, 5] }]",
+        ),
+        key(
+            "change",
+            Kind::Tables(&CHANGE),
+            "nothing",
+            "",
+            "What else changes.",
+            "[{ path = \"lens.a.shape.radius\", keys = [{ at = 0.0, value = 20.0 }, { at = 4.0, value = 60.0 }] }]",
+        ),
+    ],
+};
+
+/// An element of `camera` of `[animation]`.
+pub const CAMERA_KEY: Table = Table {
+    name: "camera",
+    doc: "The camera at a time. It goes through the keys on a centripetal Catmull-Rom curve. What a key does not say is as in \
+          `[camera]`.",
+    keys: &[
+        key("at", AT, "", "s", "When, later than the key before.", "2.5"),
+        CAMERA.keys[0],
+        CAMERA.keys[1],
+        key("up", Kind::Direction, "that of `[camera]`", "", "What is up in the picture.", "[0, 0, 1]"),
+        key(
+            "fov_deg",
+            Kind::Number { min: 0.01, max: 179.0 },
+            "that of `[camera]`, else 45.0",
+            "degrees",
+            "Vertical field of view.",
+            "60.0",
+        ),
+        key(
+            "height_m",
+            Kind::Number { min: 0.001, max: 1e7 },
+            "that of `[camera]`",
+            "m",
+            "Height of the picture, where `[camera]` is orthographic.",
+            "250.0",
+        ),
+    ],
+};
+
+/// An element of `change` of `[animation]`.
+pub const CHANGE: Table = Table {
+    name: "change",
+    doc: "A number, or a list of numbers, of a lens, a point of interest, the style or the sun over time.",
+    keys: &[
+        key(
+            "path",
+            Kind::Text,
+            "",
+            "",
+            "The way to it, as `--set` has it; it begins with `lens`, `poi`, `style` or `sun`.",
+            "\"lens.a.shape.center\"",
+        ),
+        key(
+            "keys",
+            Kind::Tables(&CHANGE_KEY),
+            "",
+            "",
+            "What it is when. Places (`center`, `at`, `from`, `to` ...) go through them on a curve, as the camera does; all else goes from \
+             key to key and never beyond them.",
+            "[{ at = 0.0, value = 20.0 }, { at = 4.0, value = 60.0 }]",
+        ),
+        key(
+            "speed",
+            SPEED,
+            "\"keys\"",
+            "",
+            "How the path of a place is followed, as that of the camera.",
+            "\"constant\"",
+        ),
+    ],
+};
+
+/// An element of `keys` of a change.
+pub const CHANGE_KEY: Table = Table {
+    name: "keys",
+    doc: "A value at a time.",
+    keys: &[
+        key("at", AT, "", "s", "When, later than the key before.", "2.5"),
+        key(
+            "value",
+            Kind::Numbers,
+            "",
+            "",
+            "What it is: a number or a list of numbers, in all keys of one form. Texts and `true` or `false` have nothing between them.",
+            "[10.0, 20.0, 3.0]",
+        ),
+    ],
+};
+
+/// Whether the last word of a way is the name of a place.
+fn is_place(path: &str) -> bool {
+    let last = path.rsplit('.').next().unwrap_or_default().trim_matches('"');
+    let tables = SHAPES.iter().chain([&CONTENT, &POI, &CAMERA]);
+    tables.flat_map(|table| table.keys).any(|key| key.name == last && matches!(key.kind, Kind::Point))
+}
+
+/// The numbers of a value; `None` where it has others.
+pub(super) fn numbers(node: &Node) -> Option<Numbers> {
+    match &node.data {
+        Data::Integer(_) | Data::Number(_) => node.number().filter(|n| n.is_finite()).map(Numbers::One),
+        Data::List(all) if !all.is_empty() => all.iter().map(numbers).collect::<Option<_>>().map(Numbers::List),
+        _ => None,
+    }
+}
+
+/// Reads the table; `camera`: the scene's, whose values keys fall back on.
+pub(super) fn read(checker: &mut Checker, fields: &Fields, camera: Option<&Camera>) -> Option<Animation> {
+    let before = checker.problems.len();
+    let speed = speed_of(fields);
+    let cameras = camera_keys(checker, fields, camera, speed);
+    let changes = elements(fields, "change")
+        .into_iter()
+        .filter_map(|(key, node)| change(checker, &fields.place.within(&key, node.line), node))
+        .collect::<Vec<Change>>();
+    if checker.problems.len() > before {
+        return None;
+    }
+    let fps = fields.number("fps").unwrap_or(FPS);
+    let last_camera = cameras.iter().map(|key| key.at);
+    let last = changes.iter().flat_map(|change| change.keys.iter().map(|key| key.at)).chain(last_camera);
+    let by_keys = (last.fold(0.0, f64::max) * fps).round() + 1.0;
+    if !fields.given("frames") && by_keys > f64::from(MOST_FRAMES) {
+        let message = format!("is {by_keys} up to the last key; at most {MOST_FRAMES} would be right");
+        checker.note(&fields.place, "frames", fields.place.line, message);
+    }
+    let frames = fields.integer("frames").unwrap_or(by_keys as u32);
+    Some(Animation { frames, fps, speed, camera: cameras, changes })
+}
+
+fn elements<'a>(fields: &Fields<'a>, key: &str) -> Vec<(String, &'a Node)> {
+    let list = fields.node(key).and_then(Node::list).unwrap_or_default();
+    list.iter().enumerate().map(|(i, node)| (format!("{key}.{i}"), node)).collect()
+}
+
+fn speed_of(fields: &Fields) -> Speed {
+    if fields.text("speed") == Some("constant") { Speed::Constant } else { Speed::Keys }
+}
+
+fn camera_keys(checker: &mut Checker, fields: &Fields, camera: Option<&Camera>, speed: Speed) -> Vec<CameraKey> {
+    let mut found = Vec::new();
+    let mut lines = Vec::new();
+    for (key, node) in elements(fields, "camera") {
+        let own = checker.fields(node, &CAMERA_KEY, &[], fields.place.within(&key, node.line));
+        let default = camera.map(|camera| camera.projection);
+        let (given, other) = match default {
+            Some(Projection::Orthographic { .. }) => ("height_m", "fov_deg"),
+            _ => ("fov_deg", "height_m"),
+        };
+        if own.given(other) {
+            let message = format!("has no meaning in this projection; {given} would be right");
+            checker.note(&own.place, other, own.line(other), message);
+        }
+        let projection = match default {
+            Some(Projection::Orthographic { height_m }) => {
+                Projection::Orthographic { height_m: own.number("height_m").unwrap_or(height_m) }
+            }
+            Some(Projection::Perspective { fov_y }) => {
+                Projection::Perspective { fov_y: own.number("fov_deg").map_or(fov_y, f64::to_radians) }
+            }
+            None => Projection::Perspective { fov_y: own.number("fov_deg").unwrap_or(DEFAULT_FOV_DEG).to_radians() },
+        };
+        let up = own.point("up").or(camera.map(|camera| camera.up)).unwrap_or(DVec3::Z);
+        let (Some(at), Some(eye), Some(target)) = (own.number("at"), own.point("eye"), own.point("target")) else {
+            continue;
+        };
+        found.push(CameraKey { at, eye, target, up, projection });
+        lines.push(own.place);
+    }
+    if let Err(error) = CameraPath::new(&found, speed, None)
+        && error != PathError::Empty
+    {
+        let (PathError::Time(i)
+        | PathError::Camera(i, _)
+        | PathError::OppositeUp(i)
+        | PathError::Projection(i)
+        | PathError::Rests(i)) = error
+        else {
+            return found;
+        };
+        let place = lines.get(i).unwrap_or(&fields.place);
+        // The place says which key it is.
+        let text = error.to_string();
+        let message = text.split_once(": ").map_or(text.as_str(), |(_, message)| message);
+        checker.note(place, "", place.line, message);
+    }
+    found
+}
+
+fn change(checker: &mut Checker, place: &Place, node: &Node) -> Option<Change> {
+    let fields = checker.fields(node, &CHANGE, &[], place.clone());
+    let path = fields.text("path")?.to_owned();
+    let first = path.split('.').next().unwrap_or_default();
+    if !CHANGED.contains(&first) {
+        let message = match first {
+            "camera" => "the camera has keys of its own: camera = [{ at = ..., eye = ..., target = ... }]".to_owned(),
+            "city" | "figure" | "animation" | "veduta" => {
+                format!("\"{first}\" is the same in all frames; an animation changes {}", CHANGED.join(", "))
+            }
+            _ => format!("there is no \"{first}\" in a scene{}", did_you_mean(first, CHANGED)),
+        };
+        checker.note(&fields.place, "path", fields.line("path"), message);
+    }
+    let mut keys: Vec<ChangeKey> = Vec::new();
+    for (key, node) in elements(&fields, "keys") {
+        let own = checker.fields(node, &CHANGE_KEY, &[], fields.place.within(&key, node.line));
+        let (Some(at), Some(value)) = (own.number("at"), own.node("value").and_then(numbers)) else { continue };
+        if let Some(before) = keys.last() {
+            if at <= before.at {
+                checker.note(&own.place, "at", own.line("at"), PathError::Time(0).to_string().replace("key 0: ", ""));
+            }
+            if !value.is_like(&before.value) {
+                let message = format!("has another form than {}, that of the key before", before.value);
+                checker.note(&own.place, "value", own.line("value"), message);
+            }
+        }
+        keys.push(ChangeKey { at, value });
+    }
+    let change = Change { is_place: is_place(&path), path, speed: speed_of(&fields), keys };
+    if change.keys.is_empty() && fields.node("keys").is_some_and(|n| n.list().is_some_and(<[Node]>::is_empty)) {
+        checker.note(&fields.place, "keys", fields.line("keys"), "is empty; a change has one key or more");
+    }
+    if change.speed == Speed::Constant && !change.is_place {
+        let message = "has a meaning only for a place, such as a center";
+        checker.note(&fields.place, "speed", fields.line("speed"), message);
+    }
+    Track::new(&change).map(|_| change)
+}
+
+/// The keys of the table, as TOML.
+pub(super) fn written(animation: &Animation) -> Vec<(&'static str, String)> {
+    let speed = |speed: Speed| (speed == Speed::Constant).then(|| quoted("constant"));
+    let camera = |key: &CameraKey| {
+        let mut keys =
+            vec![("at", number(key.at)), ("eye", point(key.eye)), ("target", point(key.target)), ("up", point(key.up))];
+        keys.push(match key.projection {
+            Projection::Perspective { fov_y } => ("fov_deg", number(degrees(fov_y))),
+            Projection::Orthographic { height_m } => ("height_m", number(height_m)),
+        });
+        table(keys)
+    };
+    let change = |change: &Change| {
+        let key = |key: &ChangeKey| table(vec![("at", number(key.at)), ("value", key.value.to_string())]);
+        let mut keys = vec![("path", quoted(&change.path)), ("keys", list(change.keys.iter().map(key)))];
+        keys.extend(speed(change.speed).map(|word| ("speed", word)));
+        table(keys)
+    };
+    let mut keys = vec![("frames", animation.frames.to_string()), ("fps", number(animation.fps))];
+    keys.extend(speed(animation.speed).map(|word| ("speed", word)));
+    if !animation.camera.is_empty() {
+        keys.push(("camera", list(animation.camera.iter().map(camera))));
+    }
+    if !animation.changes.is_empty() {
+        keys.push(("change", list(animation.changes.iter().map(change))));
+    }
+    keys
+}
+
+fn table(keys: Vec<(&'static str, String)>) -> String {
+    let keys: Vec<String> = keys.into_iter().map(|(key, value)| format!("{key} = {value}")).collect();
+    format!("{{ {} }}", keys.join(", "))
+}
+
+/// Tables of it, for the docs.
+pub const TABLES: [(&str, &Table); 4] = [
+    ("[animation]", &ANIMATION),
+    ("camera of the animation", &CAMERA_KEY),
+    ("change of the animation", &CHANGE),
+    ("keys of a change", &CHANGE_KEY),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::scene_file::{Options, parse};
+
+    const SCENE: &str = r#"
+veduta = 1
+[camera]
+eye = [0, -90, 60]
+target = [0, 0, 5]
+fov_deg = 30.0
+[animation]
+fps = 10
+speed = "constant"
+camera = [
+  { at = 0.5, eye = [0, -90, 60], target = [0, 0, 5] },
+  { at = 2.0, eye = [90, 0, 60], target = [0, 0, 5], fov_deg = 60.0 },
+]
+[[animation.change]]
+path = "lens.\"a.b\".shape.center"
+keys = [{ at = 0, value = [0, 0, 0] }, { at = 3.04, value = [9, 0, 0] }]
+[[animation.change]]
+path = "lens.a.shape.points"
+keys = [{ at = 1, value = [[0, 0], [1, 1]] }]
+"#;
+
+    fn read(text: &str) -> Result<Animation, String> {
+        let scene = parse(text, "s", &Options::for_command_line()).map_err(|error| error.to_string())?;
+        Ok(scene.animation.unwrap())
+    }
+
+    #[test]
+    fn an_animation_is_read_with_what_its_keys_leave_to_the_camera() {
+        let found = read(SCENE).unwrap();
+        assert_eq!((found.frames, found.fps, found.speed), (31, 10.0, Speed::Constant), "up to the last key");
+        let fov = |i: usize| match found.camera[i].projection {
+            Projection::Perspective { fov_y } => fov_y.to_degrees().round(),
+            Projection::Orthographic { .. } => f64::NAN,
+        };
+        assert_eq!((fov(0), fov(1), found.camera[0].up), (30.0, 60.0, DVec3::Z));
+        let places: Vec<bool> = found.changes.iter().map(|change| change.is_place).collect();
+        assert_eq!(places, [true, false]);
+        assert_eq!(found.changes[1].keys[0].value.to_string(), "[[0.0, 0.0], [1.0, 1.0]]");
+        let flat = SCENE
+            .replace("fov_deg = 30.0", "projection = \"orthographic\"\nheight_m = 7")
+            .replace(", fov_deg = 60.0", "");
+        let flat = read(&flat).unwrap();
+        assert_eq!(flat.camera[1].projection, Projection::Orthographic { height_m: 7.0 });
+    }
+
+    #[test]
+    fn every_mistake_names_its_line_place_and_remedy() {
+        for (from, to, expected) in [
+            ("fps = 10", "fps = 0", "s:8: [animation] fps: must be a number 0.01 to 1000, is 0"),
+            ("fps = 10", "frmes = 10", "s:8: [animation] frmes: unknown key; did you mean \"frames\"?"),
+            ("at = 2.0", "at = 0.5", "s:12: [animation] camera.1: `at` must be a later time"),
+            ("at = 0.5, ", "", "s:11: [animation] camera.0.at: is missing: When, later than the key before."),
+            ("eye = [90, 0, 60]", "eye = [0, 0, 5]", "s:12: [animation] camera.1: eye and target are the same point"),
+            ("eye = [90, 0, 60]", "eye = [0, -90, 60]", "at constant speed no time is left for what else changes"),
+            ("fov_deg = 60.0", "height_m = 60.0", "camera.1.height_m: has no meaning in this projection; fov_deg"),
+            ("fov_deg = 60.0", "up = [0, 0, -1]", "camera.1: `up` is the opposite of that of the key before"),
+            ("lens.a.shape", "camera.shape", "s:18: [animation] change.1.path: the camera has keys of its own"),
+            (
+                "lens.a.shape",
+                "city.shape",
+                "change.1.path: \"city\" is the same in all frames; an animation changes lens",
+            ),
+            ("lens.a.shape", "lense.shape", "there is no \"lense\" in a scene; did you mean \"lens\"?"),
+            ("value = [9, 0, 0]", "value = [9, 0]", "change.0.keys.1.value: has another form than [0.0, 0.0, 0.0]"),
+            ("value = [9, 0, 0]", "value = true", "keys.1.value: must be a number, or a list of numbers, is true"),
+            ("value = [9, 0, 0]", "value = \"#ff0000\"", "keys.1.value: must be a number, or a list of numbers"),
+            ("at = 3.04", "at = 0", "change.0.keys.1.at: `at` must be a later time than that of the key before"),
+            ("keys = [{ at = 1, value = [[0, 0], [1, 1]] }]", "keys = []", "change.1.keys: is empty"),
+            (
+                "keys = [{ at = 1,",
+                "speed = \"constant\"\nkeys = [{ at = 1,",
+                "change.1.speed: has a meaning only for a place",
+            ),
+            ("at = 3.04", "at = 900000", "[animation] frames: is 9000001 up to the last key; at most 1000000"),
+        ] {
+            assert!(SCENE.contains(from), "{from}");
+            let message = read(&SCENE.replacen(from, to, 1)).unwrap_err();
+            assert!(message.contains(expected) && message.lines().count() == 1, "{to}: {message}");
+        }
+    }
+}
