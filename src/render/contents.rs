@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
-    city::{CityModel, coplanar::coplanar_triangles, decode_normal, encode_normal, ground::Ground},
+    city::{CityModel, coplanar::stacked_triangles, decode_normal, encode_normal, ground::Ground},
     geom::Aabb,
     gpu::GpuError,
     render::{
@@ -32,12 +32,25 @@ pub struct ContentCity {
     pub id: u64,
     /// The model.
     pub model: Arc<CityModel>,
+    /// Whose objects its objects are; the model itself, if it was not derived of another.
+    pub source: Arc<CityModel>,
     /// Its geometries that are shown.
     pub geometries: Vec<u32>,
+    /// Heights that tell faces in one plane apart, as [`crate::city::derived::Derived::heights`].
+    pub heights: Vec<[f32; 3]>,
     /// Its plain ground; `None` where there is none, or where it is the one of the scene's city.
     pub ground: Option<Ground>,
-    /// Whether it is the scene's own model.
+    /// Whether its objects are those of the scene's own model.
     pub is_own: bool,
+    /// Objects that were to be derived and are shown as they are, and such of which nothing is left.
+    pub not_derived: [u32; 2],
+}
+
+impl ContentCity {
+    /// Whether it is the scene's own model, or another data set, as it is.
+    pub fn is_derived(&self) -> bool {
+        !Arc::ptr_eq(&self.model, &self.source)
+    }
 }
 
 /// Where a content stands: `from` comes to `to`, and all else turned and scaled about it.
@@ -174,10 +187,10 @@ impl Renderer {
                 model: &city.model,
                 geometries: &city.geometries,
                 coplanar: &[],
-                ground: if city.is_own { ground } else { city.ground.as_ref() },
+                ground: if city.is_own && !city.is_derived() { ground } else { city.ground.as_ref() },
             };
             if !self.contents.cities.iter().any(|(id, _)| *id == city.id) {
-                let coplanar = coplanar_triangles(&city.model, &city.geometries);
+                let coplanar = stacked_triangles(&city.model, &city.geometries, &city.heights);
                 let made = self.city_on_gpu(&Shown { coplanar: &coplanar, ..plain })?;
                 self.contents.cities.push((city.id, made));
             }

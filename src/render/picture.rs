@@ -115,6 +115,8 @@ pub struct Picture {
     pub(super) excess: BTreeMap<u32, u32>,
     /// Objects by lens that have no section since they are open.
     pub(super) open: BTreeMap<u32, u32>,
+    /// Objects by lens that have no form that its content derives: shown as they are, and left out.
+    pub(super) not_derived: [BTreeMap<u32, u32>; 2],
     /// GPU allocations and uploads while drawing (reading back not counted).
     made: (u64, u64),
     /// What it cost.
@@ -245,6 +247,7 @@ impl Studio {
             self.render_part(scene, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
         }
         picture.open = told::open_shells(self, &prepared.volumes, &prepared.operations);
+        picture.not_derived = told::not_derived(&prepared.contents);
         told::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
         if request.statistics {
             picture.statistics = self.statistics(scene, request, &prepared, &view, &picture, passes);
@@ -688,6 +691,7 @@ impl Picture {
             classes: vec![vec![0; pixels]; planes],
             excess: BTreeMap::new(),
             open: BTreeMap::new(),
+            not_derived: Default::default(),
             made: (0, 0),
             statistics: Statistics::default(),
         }

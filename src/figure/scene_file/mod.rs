@@ -4,6 +4,7 @@
 //! makes a [`Scene`], `write` the file again, `set` applies `PATH=VALUE`, `document` makes the docs and the schema.
 
 pub mod check;
+mod content;
 pub mod document;
 mod focus;
 pub mod keys;
