@@ -252,7 +252,7 @@ fn overlap(a: &[DVec2; 3], b: &[DVec2; 3]) -> bool {
 }
 
 /// The intersection of two counter-clockwise triangles, and how many corners it has (Sutherland–Hodgman).
-fn intersection(a: &[DVec2; 3], b: &[DVec2; 3]) -> ([DVec2; 8], usize) {
+pub(super) fn intersection(a: &[DVec2; 3], b: &[DVec2; 3]) -> ([DVec2; 8], usize) {
     // A triangle cut by three lines has at most six corners.
     let mut polygon = [DVec2::ZERO; 8];
     polygon[..3].copy_from_slice(a);

@@ -1,5 +1,8 @@
-//! `flat`: an object pressed down to its lowest point (O5, ad hoc). What is seen of it from above lies there as in a map: faces that
-//! look up, and roofs whichever way they were turned; the highest is seen where several lie on each other.
+//! `flat`: an object pressed to the ground (O5, ad hoc). What is seen of it from above lies there as in a map: faces that look up, and
+//! roofs whichever way they were turned; the highest is seen where several lie on each other.
+//!
+//! Where the city has a ground of its own below the object, its faces are cut along the triangles of that and lie on them, so that they
+//! follow slopes; elsewhere they are level, at the object's lowest point.
 
 use super::{
     Form, LIFT_M,
@@ -18,9 +21,9 @@ pub(super) fn change(source: &Source, unit: &Unit, form: &Form) -> Change {
     let z = (unit.bounds.min.z * PER_M).round() / PER_M + lift;
     let sides = || source.faces_of(unit).map(|face| 0.5 * face.normal().z);
     if sides().any(|side| side > LEAST_AREA_M2) {
-        Change::Level { z, base: unit.bounds.min.z, from_below: false }
+        Change::Level { z, base: unit.bounds.min.z, lift, from_below: false }
     } else if sides().any(|side| side < -LEAST_AREA_M2) {
-        Change::Level { z, base: unit.bounds.min.z, from_below: true }
+        Change::Level { z, base: unit.bounds.min.z, lift, from_below: true }
     } else {
         Change::Gone
     }

@@ -11,6 +11,7 @@
 mod bodies;
 mod boxes;
 mod flat;
+mod ground;
 mod height;
 mod hull;
 mod moved;
@@ -22,7 +23,7 @@ mod tests;
 
 use crate::{city::CityModel, geom::Aabb};
 
-use self::source::Source;
+use self::{ground::GroundFaces, source::Source};
 
 /// What a city is derived by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,9 +46,9 @@ pub enum Form {
     Prism,
     /// Its convex hull.
     Hull,
-    /// Its faces that are seen from above, at its lowest point.
+    /// Its faces that are seen from above, on the ground below it; where that has none, at its lowest point.
     Flat {
-        /// How far above that, metres, ≥ 0.
+        /// How far above these, metres, ≥ 0.
         lift_m: f64,
     },
     /// Itself, as high as this: walls stretched or shortened, roofs moved.
@@ -63,8 +64,8 @@ pub enum Height {
     Factor(f64),
 }
 
-/// How far flattened objects lie above their lowest points where nothing else is asked for, metres: a ground through these points is
-/// told from them then.
+/// How far flattened objects lie above the ground, or their lowest points, where nothing else is asked for, metres: depth tells them
+/// from it then.
 pub const LIFT_M: f64 = 0.05;
 
 /// A form as scene files have it.
@@ -126,7 +127,11 @@ impl Form {
             // From the lowest point that any level of detail may show.
             Self::Height(Height::Metres(metres)) => reach.max.z += metres,
             Self::Height(Height::Factor(factor)) => reach.max.z += size.z * (factor - 1.0).max(0.0),
-            Self::Flat { lift_m } => reach.max.z += lift_m,
+            // On ground that rises and falls by no more than it is wide.
+            Self::Flat { lift_m } => {
+                let slope = size.truncate().length();
+                (reach.min.z, reach.max.z) = (bounds.min.z - slope, bounds.max.z + slope + lift_m);
+            }
             Self::Box { .. } | Self::Prism | Self::Hull => {}
         }
         reach
@@ -149,7 +154,10 @@ pub struct Derived {
 
 /// Derives a city from what is `shown` of one (indices of geometries).
 pub fn derive(model: &CityModel, shown: &[u32], how: &Derive) -> Derived {
-    let source = Source::new(model, shown, how.parts);
+    let mut source = Source::new(model, shown, how.parts);
+    if matches!(how.form, Form::Flat { .. }) {
+        source.ground = GroundFaces::new(model, shown);
+    }
     match how.form.row().make {
         Make::Body(make) => bodies::derived(&source, &how.form, make),
         Make::Moved(make) => moved::derived(&source, &how.form, make),

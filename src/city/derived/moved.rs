@@ -1,15 +1,16 @@
 //! Forms that are an object's own faces, at other heights: textures, semantics and the objects of parts stay.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::{
     Derived, Form, flat,
+    ground::GroundFaces,
     source::{Face, Part, Source, Target, Unit},
 };
 use crate::{
-    city::{CutTriangle, Geometry, NONE, Tile, Vertex, decode_normal, encode_normal},
+    city::{CutTriangle, Geometry, NONE, Tile, Vertex, coplanar::intersection, decode_normal, encode_normal},
     geom::{Aabb, plane::Plane},
 };
 
@@ -29,6 +30,8 @@ pub(super) enum Change {
         z: f64,
         /// The lowest point before, metres.
         base: f64,
+        /// How far above the ground, where there is some, metres.
+        lift: f64,
         /// Whether it has none that look up.
         from_below: bool,
     },
@@ -73,6 +76,8 @@ enum PlaneKey {
     Old(u32),
     /// Level, at so many micrometres.
     Level(i64),
+    /// That of a triangle of the ground, raised by so much (bits).
+    Ground(u32, u64),
     /// One of the source, moved: bits of the offset and the slope of heights.
     Moved(u32, [u64; 2]),
 }
@@ -151,6 +156,14 @@ impl Chunk {
             let old = order.map(|k| model.indices[3 * triangle as usize + k]);
             let vertices = old.map(|i| &model.vertices[(tile.vertices.start + i) as usize]);
             let corners = order.map(|k| face.corners[k]);
+            if let (Change::Level { base, lift, .. }, Some(ground)) = (change, &source.ground) {
+                let texcoords = is_textured.then(|| old.map(|i| model.texcoords[(tile.texcoords + i) as usize]));
+                let sheet = Sheet { tile, surface: face.surface, corners, texcoords, first_vertex };
+                let covered = sheet.lay(self, ground, *base, *lift);
+                if covered {
+                    continue;
+                }
+            }
             let normals = normals(vertices.map(|v| v.normal), &corners, change);
             for ((old, vertex), normal) in old.into_iter().zip(vertices).zip(normals) {
                 let next = self.vertices.len() as u32 - first_vertex;
@@ -187,6 +200,76 @@ impl Chunk {
             });
         }
         bounds
+    }
+}
+
+/// A face that is laid on the ground.
+struct Sheet<'a> {
+    tile: &'a Tile,
+    surface: u32,
+    /// Counter-clockwise from above, metres.
+    corners: [DVec3; 3],
+    texcoords: Option<[[f32; 2]; 3]>,
+    first_vertex: u32,
+}
+
+/// Part of a face that may have no ground below it and is left out nevertheless: gaps between triangles of the ground.
+const UNCOVERED: f64 = 1e-3;
+
+impl Sheet<'_> {
+    /// Lays the face on all triangles of the ground below it. Whether they cover it.
+    fn lay(&self, chunk: &mut Chunk, ground: &GroundFaces, base: f64, lift: f64) -> bool {
+        let from_above = self.corners.map(DVec3::truncate);
+        let twice_area = |p: &[DVec2]| {
+            (1..p.len().max(2) - 1).map(|k| (p[k] - p[0]).perp_dot(p[k + 1] - p[0])).sum::<f64>()
+        };
+        let all = twice_area(&from_above);
+        let mut covered = 0.0;
+        for (number, below) in ground.below(&from_above) {
+            let (polygon, count) = intersection(&from_above, &below.corners);
+            let piece = &polygon[..count];
+            let area = if count < 3 { 0.0 } else { twice_area(piece) };
+            if area <= 2.0 * flat::LEAST_AREA_M2 {
+                continue;
+            }
+            covered += area;
+            let key = match below.group {
+                0 => PlaneKey::Ground(number, lift.to_bits()),
+                group => PlaneKey::Moved(group, [lift.to_bits(), 1.0_f64.to_bits()]),
+            };
+            self.add(chunk, piece, key, base, |p| below.height(p) + lift);
+        }
+        covered >= all * (1.0 - UNCOVERED)
+    }
+
+    /// Adds a convex piece of the face.
+    fn add(&self, chunk: &mut Chunk, piece: &[DVec2], key: PlaneKey, base: f64, height: impl Fn(DVec2) -> f64) {
+        let [a, b, c] = self.corners.map(DVec3::truncate);
+        let area = (b - a).perp_dot(c - a);
+        let shares = |p: DVec2| {
+            let (u, v) = ((p - a).perp_dot(c - a) / area, (b - a).perp_dot(p - a) / area);
+            [1.0 - u - v, u, v]
+        };
+        let origin = self.tile.origin.as_dvec3();
+        let first = chunk.vertices.len() as u32 - self.first_vertex;
+        let normal = encode_normal(DVec3::Z);
+        let was = |p: DVec2| {
+            let z = shares(p).into_iter().zip(self.corners).map(|(share, corner)| share * corner.z).sum::<f64>();
+            (z - base).max(0.0) as f32
+        };
+        for &p in piece {
+            let position = (p.extend(height(p)) - origin).as_vec3().to_array();
+            chunk.vertices.push(Vertex { position, normal, surface: self.surface });
+            chunk.texcoords.extend(self.texcoords.map(|at| {
+                let share = shares(p).map(|share| share as f32);
+                [0, 1].map(|k| (0..3).map(|corner| share[corner] * at[corner][k]).sum())
+            }));
+        }
+        for k in 1..piece.len() as u32 - 1 {
+            chunk.indices.extend([first, first + k, first + k + 1]);
+            chunk.planes.push(key);
+            chunk.heights.push([0, k as usize, k as usize + 1].map(|i| was(piece[i])));
+        }
     }
 }
 
@@ -264,6 +347,7 @@ fn plane_of(source: &Source, key: PlaneKey) -> Option<Plane> {
     match key {
         PlaneKey::None => None,
         PlaneKey::Old(group) => Some(old(group)),
+        PlaneKey::Ground(number, lift) => Some(source.ground.as_ref()?.plane(number, f64::from_bits(lift))),
         PlaneKey::Level(z) => Some(Plane { normal: DVec3::Z, offset: z as f64 * 1e-6 }),
         PlaneKey::Moved(group, bits) => {
             // n · p = k at old heights (z − offset) / slope.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 use rustc_hash::FxHashMap;
 
+use super::ground::GroundFaces;
 use crate::{
     city::{CityModel, CityObject, Geometry, NONE, StringId, Strings, Surface, Tile},
     geom::Aabb,
@@ -35,6 +36,8 @@ pub(super) struct Source<'a> {
     pub geometries: Vec<u32>,
     /// By object.
     pub units: Vec<Unit>,
+    /// What flattened objects lie on; `None` where there is none, or nobody asks.
+    pub ground: Option<GroundFaces>,
     roof: Option<StringId>,
     wall: Option<StringId>,
 }
@@ -86,7 +89,7 @@ impl<'a> Source<'a> {
             }
         }
         let (roof, wall) = (model.strings.find("RoofSurface"), model.strings.find("WallSurface"));
-        Self { model, geometries: pairs.into_iter().map(|(_, g)| g).collect(), units, roof, wall }
+        Self { model, geometries: pairs.into_iter().map(|(_, g)| g).collect(), units, ground: None, roof, wall }
     }
 
     /// The geometries of a unit.
@@ -107,7 +110,11 @@ impl<'a> Source<'a> {
 
     /// A triangle of a tile, by its number in the model.
     pub fn face(&self, tile: &Tile, triangle: u32) -> Face {
-        let model = self.model;
+        Self::triangle(self.model, tile, triangle)
+    }
+
+    /// The same of any model.
+    pub fn triangle(model: &CityModel, tile: &Tile, triangle: u32) -> Face {
         let origin = tile.origin.as_dvec3();
         let corners = [0, 1, 2].map(|k| {
             &model.vertices[(tile.vertices.start + model.indices[3 * triangle as usize + k]) as usize]
