@@ -22,14 +22,17 @@ pub type Point = [i64; 2];
 pub type Part = Vec<Vec<Point>>;
 
 /// Rings of more edges are not tried pair by pair.
-const MOST_PAIRS: usize = 160;
+const MOST_PAIRS: usize = 1000;
+/// More triangles that overlap or touch in other ways than edge to edge have no outline: each is tried against each place.
+const MOST_OVERLAID: usize = 2000;
 /// Gaps and notches narrower than this are closed, lattice units: what rounding to the lattice opens between neighbours.
 const GAP: f64 = 2.0;
 
 /// What triangles cover together, whichever way they turn.
 ///
 /// Where they neither overlap nor enclose a hole the outline is exact, with the very corners of the triangles. Elsewhere crossings of
-/// edges are rounded to the lattice (by half a unit per axis at most) and gaps narrower than two units are closed.
+/// edges are rounded to the lattice (by half a unit per axis at most) and gaps narrower than two units are closed; more than 2,000
+/// such triangles have no outline.
 pub fn union(triangles: &[[Point; 3]]) -> Vec<Part> {
     let turned: Vec<[Point; 3]> = triangles
         .iter()
@@ -41,6 +44,7 @@ pub fn union(triangles: &[[Point; 3]]) -> Vec<Part> {
         .collect();
     match border(&turned) {
         Some(ring) => vec![vec![ring]],
+        None if turned.len() > MOST_OVERLAID => Vec::new(),
         None => overlaid(&turned),
     }
 }
@@ -107,8 +111,7 @@ fn overlaid(triangles: &[[Point; 3]]) -> Vec<Part> {
     let Some(&[origin, ..]) = triangles.first() else { return Vec::new() };
     let local = |p: Point| Point2::new((p[0] - origin[0]) as f64, (p[1] - origin[1]) as f64);
     let Some(net) = net_of(triangles, local) else { return Vec::new() };
-    let near: Vec<[DVec2; 3]> =
-        triangles.iter().map(|t| t.map(|p| DVec2::new(local(p).x, local(p).y))).collect();
+    let near: Vec<[DVec2; 3]> = triangles.iter().map(|t| t.map(|p| DVec2::new(local(p).x, local(p).y))).collect();
     let is_in = |p: DVec2| {
         near.iter().any(|[a, b, c]| {
             let left = |from: &DVec2, to: &DVec2| (*to - *from).perp_dot(p - *from) >= 0.0;
@@ -154,9 +157,8 @@ fn close_gaps(net: &Net, covered: &mut [bool]) {
         let length = |edge: &Edge<'_>| edge.length_2().sqrt();
         let edges = face.adjacent_edges();
         let Some(longest) = edges.iter().copied().max_by(|a, b| length(a).total_cmp(&length(b))) else { continue };
-        let is_beside = |edge: &Edge<'_>| {
-            2.0 * length(edge) > length(&longest) && covered[edge.rev().face().fix().index()]
-        };
+        let is_beside =
+            |edge: &Edge<'_>| 2.0 * length(edge) > length(&longest) && covered[edge.rev().face().fix().index()];
         if 2.0 * face.area() < GAP * length(&longest) && edges.iter().any(is_beside) {
             narrow.push(face.fix().index());
         }

@@ -147,9 +147,8 @@ fn looks(source: &Source, unit: &Unit) -> Looks {
             None => list.push((material, area)),
         }
     }
-    let [roof, wall] = areas.map(|list| {
-        list.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(NONE, |(material, _)| material)
-    });
+    let [roof, wall] =
+        areas.map(|list| list.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(NONE, |(material, _)| material));
     Looks { roof, wall }
 }
 

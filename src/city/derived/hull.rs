@@ -18,7 +18,9 @@ pub(super) fn body(triangles: &Triangles, _: &Form) -> Option<Body> {
         .chunk_by(|a, b| a[0] == b[0])
         .flat_map(|level| {
             let height = level[0][0] as f64;
-            convex(level.iter().map(|&[_, x, y]| [x, y])).into_iter().map(move |[x, y]| DVec3::new(x as f64, y as f64, height))
+            convex(level.iter().map(|&[_, x, y]| [x, y]))
+                .into_iter()
+                .map(move |[x, y]| DVec3::new(x as f64, y as f64, height))
         })
         .collect();
     let hull = Hull::new(&outer).ok()?;

@@ -213,6 +213,9 @@ struct Sheet<'a> {
     first_vertex: u32,
 }
 
+/// A face over more triangles of the ground than this is not laid on them.
+const MOST_PIECES: usize = 4096;
+
 /// Part of a face that may have no ground below it and is left out nevertheless: gaps between triangles of the ground.
 const UNCOVERED: f64 = 1e-3;
 
@@ -220,12 +223,15 @@ impl Sheet<'_> {
     /// Lays the face on all triangles of the ground below it. Whether they cover it.
     fn lay(&self, chunk: &mut Chunk, ground: &GroundFaces, base: f64, lift: f64) -> bool {
         let from_above = self.corners.map(DVec3::truncate);
-        let twice_area = |p: &[DVec2]| {
-            (1..p.len().max(2) - 1).map(|k| (p[k] - p[0]).perp_dot(p[k + 1] - p[0])).sum::<f64>()
-        };
+        let twice_area =
+            |p: &[DVec2]| (1..p.len().max(2) - 1).map(|k| (p[k] - p[0]).perp_dot(p[k + 1] - p[0])).sum::<f64>();
         let all = twice_area(&from_above);
         let mut covered = 0.0;
-        for (number, below) in ground.below(&from_above) {
+        let below = ground.below(&from_above);
+        if below.len() > MOST_PIECES {
+            return false;
+        }
+        for (number, below) in below {
             let (polygon, count) = intersection(&from_above, &below.corners);
             let piece = &polygon[..count];
             let area = if count < 3 { 0.0 } else { twice_area(piece) };
@@ -328,8 +334,7 @@ fn plane_key(source: &Source, group: u32, corners: &[DVec3; 3], change: &Change)
         Change::Steps(steps) => steps,
     };
     let Plane { normal, offset } = source.model.plane_equations[group as usize - 1];
-    let (is_below, is_above) =
-        (corners.iter().all(|c| c.z <= steps.knee), corners.iter().all(|c| c.z >= steps.knee));
+    let (is_below, is_above) = (corners.iter().all(|c| c.z <= steps.knee), corners.iter().all(|c| c.z >= steps.knee));
     match normal.z {
         0.0 => PlaneKey::Old(group),
         z if z.abs() == 1.0 => level(steps.at(offset * z)),
@@ -382,9 +387,8 @@ pub(super) fn append(target: &mut Target, source: &Source, chunks: impl IntoIter
             texcoords: if tile.texcoords == NONE { NONE } else { tile.texcoords + first_texcoord },
             ..tile
         }));
-        all.geometries.extend(
-            chunk.geometries.into_iter().map(|g| Geometry { tiles: later(&g.tiles, first_tile), ..g }),
-        );
+        all.geometries
+            .extend(chunk.geometries.into_iter().map(|g| Geometry { tiles: later(&g.tiles, first_tile), ..g }));
         let cuts = chunk.cut_polygons.into_iter();
         all.cut_polygons.extend(cuts.map(|cut| CutTriangle { triangle: cut.triangle + first_triangle, ..cut }));
         all.vertices.extend(vertices);

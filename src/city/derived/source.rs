@@ -116,9 +116,8 @@ impl<'a> Source<'a> {
     /// The same of any model.
     pub fn triangle(model: &CityModel, tile: &Tile, triangle: u32) -> Face {
         let origin = tile.origin.as_dvec3();
-        let corners = [0, 1, 2].map(|k| {
-            &model.vertices[(tile.vertices.start + model.indices[3 * triangle as usize + k]) as usize]
-        });
+        let corners = [0, 1, 2]
+            .map(|k| &model.vertices[(tile.vertices.start + model.indices[3 * triangle as usize + k]) as usize]);
         let surface = corners[0].surface;
         Face { corners: corners.map(|v| origin + Vec3::from(v.position).as_dvec3()), surface }
     }

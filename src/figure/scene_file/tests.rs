@@ -312,8 +312,14 @@ fn every_mistake_in_a_lens_is_named() {
         ("content = { file = \"a\" }", "content.file: unknown key; did you mean \"files\"?"),
         ("content = { files = [] }", "content.files: is empty: name the files"),
         ("content = { files = [\"builtin:moon\"] }", "content.files.0: there is no \"builtin:moon\""),
-        ("content = { derive = \"cube\" }", "content.derive: must be \"box\" or \"prism\" or \"hull\" or \"flat\" or \"height\", is \"cube\""),
-        ("content = { derive = \"prism\", oriented = true }", "content.oriented: has a meaning only with derive = \"box\""),
+        (
+            "content = { derive = \"cube\" }",
+            "content.derive: must be \"box\" or \"prism\" or \"hull\" or \"flat\" or \"height\", is \"cube\"",
+        ),
+        (
+            "content = { derive = \"prism\", oriented = true }",
+            "content.oriented: has a meaning only with derive = \"box\"",
+        ),
         ("content = { lift = 1.0 }", "content.lift: has a meaning only with derive = \"flat\""),
         ("content = { derive = \"flat\", lift = -1.0 }", "content.lift: must be a number 0 to 1000, is -1"),
         ("content = { parts = true }", "content.parts: has a meaning only with derive"),
