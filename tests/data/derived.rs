@@ -15,8 +15,8 @@ use veduta::{
 /// (file, buildings at least, those without a prism at most)
 const CITIES: [(&str, usize, u32); 3] = [
     ("denhaag-01/DenHaag_01.v1.0.city.json", 800, 8),
-    ("vienna-102081/vienna_102081.v1.1.city.jsonl", 300, 8),
-    ("3dbag-delft/3dbag_5908_delft.v1.1.city.jsonl", 300, 8),
+    ("vienna-102081/vienna_102081.v1.1.city.jsonl", 90, 8),
+    ("3dbag-delft/3dbag_5908_delft.v1.1.city.jsonl", 90, 8),
 ];
 
 pub fn trials() -> Vec<Trial> {
