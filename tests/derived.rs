@@ -225,14 +225,14 @@ fn nothing_is_made_anew_where_lenses_move_and_members_change() {
         let mut compiled = |focus: Focus| {
             let picture = drawn(&mut studio, &scene(camera, vec![showing(form, focus)]), backend);
             let contents = picture.statistics.contents;
-            (picture.statistics.pipelines.compiled, contents[0].triangles, studio.renderer.gpu.allocated_bytes())
+            (picture.statistics.pipelines.compiled, contents[0].triangles, studio.renderer.gpu.allocations())
         };
         for [first, second] in [[by_place(0.0).into(), by_place(9.0).into()], [by_object(1950.0), by_object(1990.0)]] {
-            let (_, triangles, _) = compiled(first.clone());
-            let (_, _, bytes) = compiled(first);
+            let (_, triangles, before) = compiled(first);
             let (count, again, after) = compiled(second);
             assert_eq!((count, again), (0, triangles), "{backend:?}");
-            assert!(after <= bytes + 4096, "{backend:?}: {bytes} then {after} bytes");
+            // A picture allocates what it is read through.
+            assert!(after - before < 16, "{backend:?}: {} allocations", after - before);
         }
     }
 }

@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use crate::{
     city::{
         CityModel, Lod,
-        derived::{Derive, derive},
+        derived::{Derive, Form, derive},
         ground::plain_ground,
         load::{self, LoadOptions},
         shown::shown_geometries,
@@ -148,7 +148,17 @@ impl ContentCities {
                 let wants_ground = !is_own && stage.scene.city.ground;
                 let ground = wants_ground.then(|| plain_ground(&model, &geometries)).flatten();
                 let (source, heights) = (model.clone(), Vec::new());
-                ContentCity { id: self.given, model, source, geometries, heights, ground, is_own, not_derived: [0; 2] }
+                ContentCity {
+                    id: self.given,
+                    model,
+                    source,
+                    geometries,
+                    heights,
+                    ground,
+                    is_own,
+                    has_shadow: true,
+                    not_derived: [0; 2],
+                }
             }
         };
         let city = Arc::new(city);
@@ -237,6 +247,7 @@ fn derived(id: u64, source: Arc<CityModel>, geometries: &[u32], how: &Derive, is
         heights: made.heights,
         ground: None,
         is_own,
+        has_shadow: !matches!(how.form, Form::Flat { .. }),
         not_derived: [made.unchanged, made.left_out],
     }
 }

@@ -42,6 +42,8 @@ pub struct ContentCity {
     pub ground: Option<Ground>,
     /// Whether its objects are those of the scene's own model.
     pub is_own: bool,
+    /// Whether it throws shadows: what is pressed flat to the ground does not.
+    pub has_shadow: bool,
     /// Objects that were to be derived and are shown as they are, and such of which nothing is left.
     pub not_derived: [u32; 2],
 }
@@ -143,6 +145,7 @@ struct ShownContent {
     number: u32,
     id: u64,
     placement: Placement,
+    has_shadow: bool,
     first_surface: u32,
     /// Chunks of each section where they stand; empty: where they are.
     chunks: Vec<Vec<Chunk>>,
@@ -160,6 +163,8 @@ pub(super) struct DrawnSection<'a> {
     pub content: Option<u32>,
     /// Offset of its `City`.
     pub offset: u32,
+    /// Whether it throws shadows.
+    pub has_shadow: bool,
 }
 
 impl DrawnSection<'_> {
@@ -255,7 +260,8 @@ impl Renderer {
                 },
                 |i| before.swap_remove(i).chunks,
             );
-            ShownContent { number: w.number, id, placement, first_surface, chunks }
+            let has_shadow = w.city.as_ref().is_none_or(|city| city.has_shadow);
+            ShownContent { number: w.number, id, placement, has_shadow, first_surface, chunks }
         });
         self.contents.shown = shown.collect();
     }
@@ -285,12 +291,13 @@ impl Renderer {
     pub(super) fn drawn_sections(&self, cut: Option<&Cut>) -> Vec<DrawnSection<'_>> {
         let Some(own) = &self.city else { return Vec::new() };
         let mut drawn = Vec::new();
-        add_sections(&mut drawn, own, (None, 0), &[]);
+        add_sections(&mut drawn, own, (None, 0, true), &[]);
         for (i, content) in self.contents.shown.iter().enumerate() {
             let is_asked = cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == content.number));
             let offset = (i as u32 + 1) * STAGE_STRIDE as u32;
             if let Some(city) = self.contents.city(own, content.id).filter(|_| is_asked) {
-                add_sections(&mut drawn, city, (Some(content.number), offset), &content.chunks);
+                let which = (Some(content.number), offset, content.has_shadow);
+                add_sections(&mut drawn, city, which, &content.chunks);
             }
         }
         drawn
@@ -347,7 +354,7 @@ impl Renderer {
 fn add_sections<'a>(
     drawn: &mut Vec<DrawnSection<'a>>,
     city: &'a CityOnGpu,
-    (content, offset): (Option<u32>, u32),
+    (content, offset, has_shadow): (Option<u32>, u32, bool),
     chunks: &'a [Vec<Chunk>],
 ) {
     let sections = city.buffers.sections.iter().zip(&city.images).enumerate();
@@ -358,6 +365,7 @@ fn add_sections<'a>(
         chunks: chunks.get(i).unwrap_or(&section.chunks),
         content,
         offset,
+        has_shadow,
     }));
 }
 

@@ -82,7 +82,8 @@ fn check(model: &CityModel, least: usize, most: u32) -> Result<(), Failed> {
         if (in_box - size.x * size.y * size.z).abs() > slack {
             return Err(format!("{id}: a box of {in_box} m³ is {size}").into());
         }
-        for around in [of_prism, of_hull] {
+        // What has no such form is shown under the numbers of its parts; there are few, as counted above.
+        for around in [of_prism, of_hull].into_iter().filter(|around| !around.is_empty()) {
             let off = (around.min - bounds.min).abs().max((around.max - bounds.max).abs()).max_element();
             if off > 2.1e-3 {
                 return Err(format!("{id}: {off} m from its box").into());
