@@ -2,6 +2,8 @@
 //!
 //! One module per room below `tests/data/`; each gives its trials, which are made even without the data.
 
+#[path = "data/derived.rs"]
+mod derived;
 #[path = "data/edges.rs"]
 mod edges;
 #[path = "data/faces.rs"]
@@ -34,8 +36,15 @@ fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 's
 
 fn main() {
     let arguments = Arguments::from_args();
-    let rooms =
-        [edges::trials(), faces::trials(), info::trials(), meshes::trials(), pictures::trials(), scenes::trials()];
+    let rooms = [
+        derived::trials(),
+        edges::trials(),
+        faces::trials(),
+        info::trials(),
+        meshes::trials(),
+        pictures::trials(),
+        scenes::trials(),
+    ];
     let trials = rooms.into_iter().flatten().collect();
     libtest_mimic::run(&arguments, trials).exit();
 }

@@ -3,7 +3,7 @@
 //! Depth cannot tell them apart, so a fixed order does: the same triangle wins in every frame, from every side (hard
 //! case 3). Which planes are the same is known exactly from load ([`CityModel::planes`]).
 
-use std::cmp::Reverse;
+use std::{cmp::Reverse, collections::BTreeSet};
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -46,6 +46,12 @@ pub struct CoplanarTriangle {
 /// above other surfaces, these above ground surfaces; then the object whose id comes first in byte order; then what was
 /// read first.
 pub fn coplanar_triangles(model: &CityModel, shown: &[u32]) -> Vec<CoplanarTriangle> {
+    stacked_triangles(model, shown, &[])
+}
+
+/// The same, but of two triangles that cover each other that is above that was higher, in the middle of what they share.
+/// `heights`: of each corner of each triangle of the model; empty: as [`coplanar_triangles`] has it.
+pub fn stacked_triangles(model: &CityModel, shown: &[u32], heights: &[[f32; 3]]) -> Vec<CoplanarTriangle> {
     let mut members: Vec<CoplanarTriangle> = Vec::new();
     for geometry in shown.iter().filter_map(|&geometry| model.geometries.get(geometry as usize)) {
         for number in geometry.tiles.clone() {
@@ -62,11 +68,16 @@ pub fn coplanar_triangles(model: &CityModel, shown: &[u32]) -> Vec<CoplanarTrian
     let ranks: FxHashMap<StringId, u8> = surface_ranks(model);
     let groups: Vec<&[CoplanarTriangle]> =
         members.chunk_by(|a, b| a.group == b.group).filter(|group| group.len() > 1).collect();
-    groups.into_par_iter().flat_map_iter(|group| covered(model, group, &ranks)).collect()
+    groups.into_par_iter().flat_map_iter(|group| covered(model, group, &ranks, heights)).collect()
 }
 
 /// The members of one plane that cover another one, by priority.
-fn covered(model: &CityModel, group: &[CoplanarTriangle], ranks: &FxHashMap<StringId, u8>) -> Vec<CoplanarTriangle> {
+fn covered(
+    model: &CityModel,
+    group: &[CoplanarTriangle],
+    ranks: &FxHashMap<StringId, u8>,
+    heights: &[[f32; 3]],
+) -> Vec<CoplanarTriangle> {
     let corners: Vec<[DVec3; 3]> = group.iter().map(|member| world_corners(model, member)).collect();
     let flat = flatten(&corners, model.plane_equations[group[0].group as usize - 1].normal);
     // Which others each one overlaps.
@@ -92,13 +103,23 @@ fn covered(model: &CityModel, group: &[CoplanarTriangle], ranks: &FxHashMap<Stri
         (0..group.len()).into_par_iter().map(of).collect()
     };
     let mut order: Vec<usize> = (0..group.len()).filter(|&i| !others[i].is_empty()).collect();
-    order.sort_by_cached_key(|&i| {
-        let member = &group[i];
-        let surface = model.surfaces[first_vertex_surface(model, member) as usize];
-        let object = &model.objects[surface.object as usize];
-        let rank = ranks.get(&surface.kind).copied().unwrap_or(OTHER_SURFACE);
-        (class_rank(object.class), rank, Reverse(&object.id), Reverse(member.triangle))
-    });
+    if heights.is_empty() {
+        order.sort_by_cached_key(|&i| {
+            let member = &group[i];
+            let surface = model.surfaces[first_vertex_surface(model, member) as usize];
+            let object = &model.objects[surface.object as usize];
+            let rank = ranks.get(&surface.kind).copied().unwrap_or(OTHER_SURFACE);
+            (class_rank(object.class), rank, Reverse(&object.id), Reverse(member.triangle))
+        });
+    } else {
+        let base = corners[0][0];
+        let raised = |(member, corners): (&CoplanarTriangle, &[DVec3; 3])| {
+            let heights = heights[member.triangle as usize].map(f64::from);
+            [0, 1, 2].map(|k| ((corners[k] - base).truncate(), heights[k]))
+        };
+        let raised: Vec<Raised> = group.iter().zip(&corners).map(raised).collect();
+        order = stacked(order, &others, &raised);
+    }
     // From the lowest up: one layer above the highest that it overlaps.
     let mut layers: Vec<Option<u32>> = vec![None; group.len()];
     let number = |(priority, i): (usize, usize)| {
@@ -108,6 +129,57 @@ fn covered(model: &CityModel, group: &[CoplanarTriangle], ranks: &FxHashMap<Stri
         CoplanarTriangle { priority: priority as u32, layer, ..group[i] }
     };
     order.into_iter().enumerate().map(number).collect()
+}
+
+/// A level triangle, and how high each corner was.
+type Raised = [(DVec2, f64); 3];
+
+/// Triangles from the lowest up: each after all that it covers and that were below it. Where some go round in a circle, that whose
+/// highest corner is lowest is taken first.
+fn stacked(members: Vec<usize>, others: &[Vec<u32>], raised: &[Raised]) -> Vec<usize> {
+    let top = |i: usize| raised[i].iter().fold(0.0, |top: f64, (_, z)| top.max(*z));
+    // Heights are not negative, so their bits are in their order.
+    let key = |i: usize| (top(i).to_bits(), i);
+    let mut above: Vec<Vec<usize>> = vec![Vec::new(); raised.len()];
+    let mut below = vec![0_u32; raised.len()];
+    for &i in &members {
+        for j in others[i].iter().map(|&j| j as usize).filter(|&j| j > i) {
+            let (low, high) = if is_above(&raised[i], &raised[j]).unwrap_or(key(i) > key(j)) { (j, i) } else { (i, j) };
+            above[low].push(high);
+            below[high] += 1;
+        }
+    }
+    let mut left: BTreeSet<(u64, usize)> = members.iter().map(|&i| key(i)).collect();
+    let mut free: BTreeSet<(u64, usize)> = left.iter().copied().filter(|&(_, i)| below[i] == 0).collect();
+    let mut order = Vec::with_capacity(members.len());
+    while let Some(next) = free.pop_first().or_else(|| left.first().copied()) {
+        left.remove(&next);
+        order.push(next.1);
+        for &high in &above[next.1] {
+            below[high] = below[high].saturating_sub(1);
+            if below[high] == 0 && left.contains(&key(high)) {
+                free.insert(key(high));
+            }
+        }
+    }
+    order
+}
+
+/// Whether the first is the higher one in the middle of what two share; `None` where they are as high there, to a millimetre.
+fn is_above(a: &Raised, b: &Raised) -> Option<bool> {
+    let turned = |t: &Raised| {
+        let [p, q, r] = t.map(|(p, _)| p);
+        if (q - p).perp_dot(r - p) < 0.0 { [p, r, q] } else { [p, q, r] }
+    };
+    let (polygon, count) = intersection(&turned(a), &turned(b));
+    let middle = polygon[..count].iter().sum::<DVec2>() / count.max(1) as f64;
+    let height = |[(p, z), (q, y), (r, x)]: &Raised| {
+        let area = (*q - *p).perp_dot(*r - *p);
+        let (u, v) = ((middle - *p).perp_dot(*r - *p) / area, (*q - *p).perp_dot(middle - *p) / area);
+        z + u * (y - z) + v * (x - z)
+    };
+    let difference = height(a) - height(b);
+    (difference.abs() > 1e-3).then_some(difference > 0.0)
 }
 
 /// What stands on the ground above it; among the ground, what is laid on what.
@@ -179,8 +251,8 @@ fn overlap(a: &[DVec2; 3], b: &[DVec2; 3]) -> bool {
     area > LEAST_AREA_M2 && 2.0 * area > LEAST_WIDTH_M * border
 }
 
-/// Area and perimeter of the intersection of two counter-clockwise triangles (Sutherland–Hodgman).
-fn clipped(a: &[DVec2; 3], b: &[DVec2; 3]) -> (f64, f64) {
+/// The intersection of two counter-clockwise triangles, and how many corners it has (Sutherland–Hodgman).
+pub(super) fn intersection(a: &[DVec2; 3], b: &[DVec2; 3]) -> ([DVec2; 8], usize) {
     // A triangle cut by three lines has at most six corners.
     let mut polygon = [DVec2::ZERO; 8];
     polygon[..3].copy_from_slice(a);
@@ -204,6 +276,12 @@ fn clipped(a: &[DVec2; 3], b: &[DVec2; 3]) -> (f64, f64) {
         }
         (polygon, count) = (next, kept);
     }
+    (polygon, count)
+}
+
+/// Area and perimeter of the intersection of two counter-clockwise triangles.
+fn clipped(a: &[DVec2; 3], b: &[DVec2; 3]) -> (f64, f64) {
+    let (polygon, count) = intersection(a, b);
     let base = polygon[0];
     let (mut area, mut border) = (0.0, 0.0);
     for k in 0..count {

@@ -5,6 +5,7 @@ pub mod builtin;
 pub mod cityjson;
 pub mod coplanar;
 pub mod crs;
+pub mod derived;
 pub mod edges;
 pub mod facts;
 pub mod gltf;

@@ -5,6 +5,7 @@ pub mod bvh;
 pub mod combination;
 pub mod exact;
 mod meets;
+pub mod outline;
 pub mod plane;
 pub mod ray;
 pub mod region;

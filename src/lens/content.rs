@@ -1,12 +1,16 @@
-//! What a lens shows in itself in place of what is below it (C3, C6): the city in another level of detail, another data set, or
-//! a part of it elsewhere, turned and scaled (Tiesel's object-level effects, section 3.4.3, and the source box of Borst et
-//! al. 2007).
+//! What a lens shows in itself in place of what is below it (C3, C6): the city in another level of detail, another data set,
+//! something made of its objects (O3, O5), or a part of it elsewhere, turned and scaled (Tiesel's object-level effects, section
+//! 3.4.3, and the source box of Borst et al. 2007).
 
 use std::path::PathBuf;
 
 use glam::{DQuat, DVec3};
 
-use crate::{city::Lod, lens::Class, shader::Clip};
+use crate::{
+    city::{Lod, derived::Derive},
+    lens::Class,
+    shader::Clip,
+};
 
 /// Own content of a lens.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +19,8 @@ pub struct Content {
     pub files: Vec<PathBuf>,
     /// No level of detail finer than this, one that the data set has; `None`: the finest.
     pub lod: Option<Lod>,
+    /// What its objects are shown as; `None`: as themselves. Terrain, roads, water and land use stay as they are below.
+    pub derive: Option<Derive>,
     /// Where along the sight line it shows (L4).
     pub class: Class,
     /// What becomes of what is below.
@@ -30,11 +36,42 @@ impl Default for Content {
         Self {
             files: Vec::new(),
             lod: None,
+            derive: None,
             class: Class::Inside,
             clip: Clip::Order,
             keep_terrain: false,
             copied: None,
         }
+    }
+}
+
+/// Which city a content shows; contents of one city differ in where it shows and stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContentSource {
+    /// As [`Content::files`].
+    pub files: Vec<PathBuf>,
+    /// As [`Content::lod`].
+    pub lod: Option<Lod>,
+    /// As [`Content::derive`].
+    pub derive: Option<Derive>,
+}
+
+impl ContentSource {
+    /// Whether it is the scene's own city as it is shown.
+    pub fn is_shown_city(&self) -> bool {
+        self.files.is_empty() && self.lod.is_none() && self.derive.is_none()
+    }
+}
+
+impl Content {
+    /// The city that it shows.
+    pub fn source(&self) -> ContentSource {
+        ContentSource { files: self.files.clone(), lod: self.lod, derive: self.derive }
+    }
+
+    /// Whether terrain, roads, water and land use stay as they are below.
+    pub fn keeps_terrain(&self) -> bool {
+        self.keep_terrain || self.derive.is_some()
     }
 }
 

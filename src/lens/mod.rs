@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 
 pub use border::{Border, BorderUnit, Discrete};
 pub use classify::classify;
-pub use content::{Content, Copied};
+pub use content::{Content, ContentSource, Copied};
 pub use focus::Focus;
 pub use sprite::{LensSprite, OwnEye};
 pub use sprite_volume::{PlacedSprite, SpriteSpace, SpriteVolume};

@@ -55,7 +55,7 @@ impl Renderer {
         // Casters may stand before the picture's edge, never behind the sun.
         let frustum = sun.frustum(1.0);
         let own_cut = cut.map(|(cut, _)| cut);
-        for drawn in self.drawn_sections(own_cut) {
+        for drawn in self.drawn_sections(own_cut).into_iter().filter(|drawn| drawn.has_shadow) {
             let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, own_cut, &input.view));
             let seen = CityBuffers::visible(shown, &frustum, sun.camera.eye);
             let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();

@@ -1,18 +1,19 @@
 //! The contents of a scene's lenses: loaded when their lenses are first seen, kept as long as these are enabled.
 
-use std::{path::PathBuf, sync::Arc};
+use std::{path::PathBuf, sync::Arc, time::Instant};
 
 use rustc_hash::FxHashSet;
 
 use crate::{
     city::{
         CityModel, Lod,
+        derived::{Derive, Form, derive},
         ground::plain_ground,
         load::{self, LoadOptions},
         shown::shown_geometries,
     },
     geom::{Aabb, shape::Motion},
-    lens::{Class, Content, Lens, solids::ShownCity},
+    lens::{Class, Content, ContentSource, Lens, solids::ShownCity},
     render::{
         Renderer,
         contents::{ContentCity, Placement, WantedContent},
@@ -28,7 +29,7 @@ use crate::{
 #[derive(Debug, Default)]
 pub struct ContentCities {
     models: Vec<(Vec<PathBuf>, Arc<CityModel>)>,
-    cities: Vec<(Vec<PathBuf>, Option<Lod>, Arc<ContentCity>)>,
+    cities: Vec<(ContentSource, Arc<ContentCity>)>,
     /// Names given so far.
     given: u64,
 }
@@ -76,9 +77,10 @@ impl ContentCities {
         let with_content = || lenses.clone().filter_map(|(i, lens)| Some((i, lens, lens.content.as_ref()?)));
         // Numbers are those of all lenses, so that one that comes and goes changes no other.
         let mut numbers: Vec<&Content> = Vec::new();
-        let mut used: FxHashSet<(Vec<PathBuf>, Option<Lod>)> = FxHashSet::default();
+        let mut used: Vec<ContentSource> = Vec::new();
         for (i, lens, content) in with_content() {
-            let is_same = |c: &&Content| (&c.files, c.lod, c.copied) == (&content.files, content.lod, None);
+            let source = content.source();
+            let is_same = |c: &&Content| (c.source(), c.copied) == (source.clone(), None);
             let before = numbers.iter().position(is_same);
             let number = before.unwrap_or(numbers.len()) as u32 + 1;
             if before.is_none() {
@@ -89,11 +91,10 @@ impl ContentCities {
                 return Err(format!("[lens.{i}] content: the scene has more contents than one picture takes: {most}"));
             }
             if lens.enabled {
-                used.insert((content.files.clone(), content.lod));
+                used.push(source.clone());
             }
             let volumes: Vec<&LensVolume> = stage.volumes.iter().filter(|v| v.lens as usize == i).collect();
-            let is_loaded = content.files.is_empty() && content.lod.is_none()
-                || self.cities.iter().any(|(files, lod, _)| (files, *lod) == (&content.files, content.lod));
+            let is_loaded = source.is_shown_city() || self.cities.iter().any(|(known, _)| *known == source);
             if volumes.is_empty() || !(is_loaded || volumes.iter().any(|v| (stage.is_seen)(v))) {
                 continue;
             }
@@ -101,29 +102,28 @@ impl ContentCities {
             let city = self.city(content, stage).map_err(wrong)?;
             let placement = placement(content, lens, &volumes, stage).map_err(wrong)?;
             let class = content.class;
-            let (clip, keeps_terrain) = (content.clip, content.keep_terrain);
+            let (clip, keeps_terrain) = (content.clip, content.keeps_terrain());
             found.uses.push(ContentUse { lens: i as u32, class, city: number, clip, keeps_terrain });
             if !found.wanted.iter().any(|w| w.number == number) {
                 let first_object = found.first_object(stage.model, city.as_deref());
                 found.wanted.push(WantedContent { number, city, first_object, placement });
             }
         }
-        let is_used = |files: &Vec<PathBuf>, lod: Option<Lod>| used.contains(&(files.clone(), lod));
-        self.cities.retain(|(files, lod, _)| is_used(files, *lod));
-        self.models.retain(|(files, _)| self.cities.iter().any(|(f, ..)| f == files));
+        self.cities.retain(|(source, _)| used.contains(source));
+        self.models.retain(|(files, _)| self.cities.iter().any(|(source, _)| source.files == *files));
         Ok(found)
     }
 
     /// The city that a content shows; `None`: the scene's own, as it is shown.
     fn city(&mut self, content: &Content, stage: &Stage) -> Result<Option<Arc<ContentCity>>, (&'static str, String)> {
         let is_own = content.files.is_empty();
-        if is_own && content.lod.is_none() {
+        let source = content.source();
+        if source.is_shown_city() {
             return Ok(None);
         }
-        let of = |(files, lod, _): &&(Vec<PathBuf>, Option<Lod>, _)| (files, *lod) == (&content.files, content.lod);
-        if let Some((.., city)) = self.cities.iter().find(of) {
-            let is_shown = city.is_own && city.geometries == stage.geometries;
-            return Ok((!is_shown).then(|| city.clone()));
+        let is_shown = |city: &ContentCity| city.is_own && !city.is_derived() && city.geometries == stage.geometries;
+        if let Some((.., city)) = self.cities.iter().find(|(known, _)| *known == source) {
+            return Ok((!is_shown(city)).then(|| city.clone()));
         }
         let model = if is_own { stage.model.clone() } else { self.model(&content.files, stage.reading)? };
         let drawn = || model.geometries.iter().filter(|g| g.triangles > 0);
@@ -134,17 +134,36 @@ impl ContentCities {
             let all: Vec<String> = all.iter().map(Lod::to_string).collect();
             return Err(("lod", format!("nothing has the level of detail {lod}; there are {}", all.join(", "))));
         }
-        let geometries = shown_geometries(&model, content.lod);
+        let geometries = match content.lod {
+            None if is_own => stage.geometries.to_vec(),
+            lod => shown_geometries(&model, lod),
+        };
         if geometries.is_empty() {
             return Err(("files", format!("{} hold nothing that can be shown", named(&content.files))));
         }
-        let wants_ground = !is_own && stage.scene.city.ground;
-        let ground = wants_ground.then(|| plain_ground(&model, &geometries)).flatten();
         self.given += 1;
-        let city = Arc::new(ContentCity { id: self.given, model, geometries, ground, is_own });
-        self.cities.push((content.files.clone(), content.lod, city.clone()));
-        let is_shown = city.is_own && city.geometries == stage.geometries;
-        Ok((!is_shown).then_some(city))
+        let city = match &content.derive {
+            Some(how) => derived(self.given, model, &geometries, how, is_own),
+            None => {
+                let wants_ground = !is_own && stage.scene.city.ground;
+                let ground = wants_ground.then(|| plain_ground(&model, &geometries)).flatten();
+                let (source, heights) = (model.clone(), Vec::new());
+                ContentCity {
+                    id: self.given,
+                    model,
+                    source,
+                    geometries,
+                    heights,
+                    ground,
+                    is_own,
+                    has_shadow: true,
+                    not_derived: [0; 2],
+                }
+            }
+        };
+        let city = Arc::new(city);
+        self.cities.push((source, city.clone()));
+        Ok((!is_shown(&city)).then_some(city))
     }
 
     fn model(&mut self, files: &[PathBuf], reading: &LoadOptions) -> Result<Arc<CityModel>, (&'static str, String)> {
@@ -162,11 +181,11 @@ impl SceneContents {
     /// What the objects of a content's city are counted from.
     fn first_object(&mut self, own: &CityModel, city: Option<&ContentCity>) -> u32 {
         let Some(city) = city.filter(|city| !city.is_own) else { return 0 };
-        let before = self.models.iter().position(|model| Arc::ptr_eq(model, &city.model));
+        let before = self.models.iter().position(|model| Arc::ptr_eq(model, &city.source));
         let count = before.unwrap_or(self.models.len());
         let first = own.objects.len() + self.models[..count].iter().map(|model| model.objects.len()).sum::<usize>();
         if before.is_none() {
-            self.models.push(city.model.clone());
+            self.models.push(city.source.clone());
         }
         first as u32
     }
@@ -211,6 +230,25 @@ impl SceneContents {
     pub fn of_lens(&self, lens: u32) -> Option<&WantedContent> {
         let shown = self.uses.iter().find(|u| u.lens == lens)?;
         self.wanted.iter().find(|w| w.number == shown.city)
+    }
+}
+
+/// The city that is made of another one's objects.
+fn derived(id: u64, source: Arc<CityModel>, geometries: &[u32], how: &Derive, is_own: bool) -> ContentCity {
+    let started = Instant::now();
+    let made = derive(&source, geometries, how);
+    let (word, count) = (how.form.row().word, made.model.geometries.len());
+    log::info!("{count} geometries derived as \"{word}\" in {:.0} ms", started.elapsed().as_secs_f64() * 1e3);
+    ContentCity {
+        id,
+        geometries: made.geometries(),
+        model: Arc::new(made.model),
+        source,
+        heights: made.heights,
+        ground: None,
+        is_own,
+        has_shadow: !matches!(how.form, Form::Flat { .. }),
+        not_derived: [made.unchanged, made.left_out],
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
-    city::{CityModel, coplanar::coplanar_triangles, decode_normal, encode_normal, ground::Ground},
+    city::{CityModel, coplanar::stacked_triangles, decode_normal, encode_normal, ground::Ground},
     geom::Aabb,
     gpu::GpuError,
     render::{
@@ -32,12 +32,27 @@ pub struct ContentCity {
     pub id: u64,
     /// The model.
     pub model: Arc<CityModel>,
+    /// Whose objects its objects are; the model itself, if it was not derived of another.
+    pub source: Arc<CityModel>,
     /// Its geometries that are shown.
     pub geometries: Vec<u32>,
+    /// Heights that tell faces in one plane apart, as [`crate::city::derived::Derived::heights`].
+    pub heights: Vec<[f32; 3]>,
     /// Its plain ground; `None` where there is none, or where it is the one of the scene's city.
     pub ground: Option<Ground>,
-    /// Whether it is the scene's own model.
+    /// Whether its objects are those of the scene's own model.
     pub is_own: bool,
+    /// Whether it throws shadows: what is pressed flat to the ground does not.
+    pub has_shadow: bool,
+    /// Objects that were to be derived and are shown as they are, and such of which nothing is left.
+    pub not_derived: [u32; 2],
+}
+
+impl ContentCity {
+    /// Whether it is the scene's own model, or another data set, as it is.
+    pub fn is_derived(&self) -> bool {
+        !Arc::ptr_eq(&self.model, &self.source)
+    }
 }
 
 /// Where a content stands: `from` comes to `to`, and all else turned and scaled about it.
@@ -130,6 +145,7 @@ struct ShownContent {
     number: u32,
     id: u64,
     placement: Placement,
+    has_shadow: bool,
     first_surface: u32,
     /// Chunks of each section where they stand; empty: where they are.
     chunks: Vec<Vec<Chunk>>,
@@ -147,6 +163,8 @@ pub(super) struct DrawnSection<'a> {
     pub content: Option<u32>,
     /// Offset of its `City`.
     pub offset: u32,
+    /// Whether it throws shadows.
+    pub has_shadow: bool,
 }
 
 impl DrawnSection<'_> {
@@ -174,10 +192,10 @@ impl Renderer {
                 model: &city.model,
                 geometries: &city.geometries,
                 coplanar: &[],
-                ground: if city.is_own { ground } else { city.ground.as_ref() },
+                ground: if city.is_own && !city.is_derived() { ground } else { city.ground.as_ref() },
             };
             if !self.contents.cities.iter().any(|(id, _)| *id == city.id) {
-                let coplanar = coplanar_triangles(&city.model, &city.geometries);
+                let coplanar = stacked_triangles(&city.model, &city.geometries, &city.heights);
                 let made = self.city_on_gpu(&Shown { coplanar: &coplanar, ..plain })?;
                 self.contents.cities.push((city.id, made));
             }
@@ -242,7 +260,8 @@ impl Renderer {
                 },
                 |i| before.swap_remove(i).chunks,
             );
-            ShownContent { number: w.number, id, placement, first_surface, chunks }
+            let has_shadow = w.city.as_ref().is_none_or(|city| city.has_shadow);
+            ShownContent { number: w.number, id, placement, has_shadow, first_surface, chunks }
         });
         self.contents.shown = shown.collect();
     }
@@ -272,12 +291,13 @@ impl Renderer {
     pub(super) fn drawn_sections(&self, cut: Option<&Cut>) -> Vec<DrawnSection<'_>> {
         let Some(own) = &self.city else { return Vec::new() };
         let mut drawn = Vec::new();
-        add_sections(&mut drawn, own, (None, 0), &[]);
+        add_sections(&mut drawn, own, (None, 0, true), &[]);
         for (i, content) in self.contents.shown.iter().enumerate() {
             let is_asked = cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == content.number));
             let offset = (i as u32 + 1) * STAGE_STRIDE as u32;
             if let Some(city) = self.contents.city(own, content.id).filter(|_| is_asked) {
-                add_sections(&mut drawn, city, (Some(content.number), offset), &content.chunks);
+                let which = (Some(content.number), offset, content.has_shadow);
+                add_sections(&mut drawn, city, which, &content.chunks);
             }
         }
         drawn
@@ -334,7 +354,7 @@ impl Renderer {
 fn add_sections<'a>(
     drawn: &mut Vec<DrawnSection<'a>>,
     city: &'a CityOnGpu,
-    (content, offset): (Option<u32>, u32),
+    (content, offset, has_shadow): (Option<u32>, u32, bool),
     chunks: &'a [Vec<Chunk>],
 ) {
     let sections = city.buffers.sections.iter().zip(&city.images).enumerate();
@@ -345,6 +365,7 @@ fn add_sections<'a>(
         chunks: chunks.get(i).unwrap_or(&section.chunks),
         content,
         offset,
+        has_shadow,
     }));
 }
 

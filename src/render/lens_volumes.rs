@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::{
+    city::{CityModel, derived::Derive},
     geom::{
         Aabb, Solid, Volume,
         combination::{Operation, Tree},
@@ -74,8 +75,8 @@ pub(super) fn volumes_of(
             of_lens = saved;
         }
         for mut body in of_lens {
-            if lens.content.is_some() {
-                body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city));
+            if let Some(content) = &lens.content {
+                body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city, content.derive.as_ref()));
             }
             let volume = volume_of(i as u32, lens, body, &place.motion)
                 .map_err(|message| format!("[lens.{i}] sprite.camera: {message}"))?;
@@ -125,12 +126,28 @@ fn ends_along_rays(lens: &Lens) -> bool {
     lens.soft_border().is_some_and(|border| border.unit == BorderUnit::Ray)
 }
 
-/// Makes the box around chosen objects hold all of their levels of detail: a content may show another than the city does.
-fn in_all_levels(leaf: &mut Leaf, city: ShownCity) {
+/// Makes the box around chosen objects hold all that a content may show of them: other levels of detail, and what is derived.
+fn in_all_levels(leaf: &mut Leaf, city: ShownCity, derive: Option<&Derive>) {
     if let Leaf::Members(members) = leaf {
         let all = city.model.geometries.iter().filter(|g| members.objects[g.object as usize]);
         members.bounds = all.fold(members.bounds, |bounds, g| bounds.union(g.bounds));
+        if let Some(how) = derive {
+            let chosen = (0..members.objects.len() as u32).filter(|&object| members.objects[object as usize]);
+            let reach = |object| how.form.reach(&family_bounds(city.model, object));
+            members.bounds = chosen.fold(members.bounds, |bounds, object| bounds.union(reach(object)));
+        }
     }
+}
+
+/// As [`CityModel::family_bounds`], and quick where families are small: it is asked in every frame.
+fn family_bounds(model: &CityModel, object: u32) -> Aabb {
+    let children = &model.objects[object as usize].children;
+    if children.iter().any(|&child| !model.objects[child as usize].children.is_empty()) {
+        return model.family_bounds(object);
+    }
+    let own = std::iter::once(object).chain(children.iter().copied());
+    let geometries = own.flat_map(|member| model.objects[member as usize].geometries.clone());
+    geometries.fold(Aabb::EMPTY, |all, geometry| all.union(model.geometries[geometry as usize].bounds))
 }
 
 /// The bodies whose union a focus area is.

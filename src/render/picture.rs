@@ -118,6 +118,8 @@ pub struct Picture {
     pub(super) open: BTreeMap<u32, u32>,
     /// Translucent layers.
     pub(super) layers: LayerFigures,
+    /// Objects by lens that have no form that its content derives: shown as they are, and left out.
+    pub(super) not_derived: [BTreeMap<u32, u32>; 2],
     /// GPU allocations and uploads while drawing (reading back not counted).
     made: (u64, u64),
     /// What it cost.
@@ -248,6 +250,7 @@ impl Studio {
             self.render_part(scene, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
         }
         picture.open = told::open_shells(self, &prepared.volumes, &prepared.operations);
+        picture.not_derived = told::not_derived(&prepared.contents);
         told::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
         if request.statistics {
             picture.statistics = self.statistics(scene, request, &prepared, &view, &picture, passes);
@@ -700,6 +703,7 @@ impl Picture {
             excess: BTreeMap::new(),
             open: BTreeMap::new(),
             layers: LayerFigures::default(),
+            not_derived: Default::default(),
             made: (0, 0),
             statistics: Statistics::default(),
         }

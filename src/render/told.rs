@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::{
     render::{
+        content_cities::SceneContents,
         enclosed::{areas, objects_meeting, with_corners_outside},
         operations::Operations,
         picture::{Picture, Studio},
@@ -14,12 +15,25 @@ use crate::{
 };
 
 /// The codes.
-pub const CODES: [&str; 3] = [SPRITE_LAYERS, OPEN_SHELLS, LAYER_ROOM];
+pub const CODES: [&str; 5] = [SPRITE_LAYERS, OPEN_SHELLS, NOT_DERIVED, NOTHING_DERIVED, LAYER_ROOM];
 
 /// Rays have more intervals than a sprite has layers.
 const SPRITE_LAYERS: &str = "sprite-layers";
 /// What sections were asked for encloses nothing.
 const OPEN_SHELLS: &str = "open-shells";
+/// What a content was to derive has no such form.
+const NOT_DERIVED: &str = "not-derived";
+/// Of what a content derives nothing is left.
+const NOTHING_DERIVED: &str = "nothing-derived";
+
+/// City objects by lens that its content shows as they are, and such that it leaves out, since they have no form that it derives.
+pub(super) fn not_derived(contents: &SceneContents) -> [BTreeMap<u32, u32>; 2] {
+    [0, 1].map(|which| {
+        let of = |lens: u32| Some(contents.of_lens(lens)?.city.as_ref()?.not_derived[which]);
+        let counts = contents.uses.iter().filter_map(|used| Some((used.lens, of(used.lens)?)));
+        counts.filter(|(_, count)| *count > 0).collect()
+    })
+}
 
 /// Translucent fragments found no room.
 const LAYER_ROOM: &str = "layer-room";
@@ -55,7 +69,7 @@ pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &
 
 type Told = (&'static str, fn(&Picture) -> &BTreeMap<u32, u32>, fn(&str, u32) -> String);
 
-const TOLD: [Told; 2] = [
+const TOLD: [Told; 4] = [
     (
         SPRITE_LAYERS,
         |picture| &picture.excess,
@@ -73,6 +87,22 @@ const TOLD: [Told; 2] = [
             let what =
                 if objects == 1 { "is no closed shell: it shows its" } else { "are no closed shells: they show their" };
             format!("{objects} {are} \"{lens}\" meets {what} inside where it is cut, and no section")
+        },
+    ),
+    (
+        NOT_DERIVED,
+        |picture| &picture.not_derived[0],
+        |lens, objects| {
+            let are = if objects == 1 { "object has" } else { "objects have" };
+            format!("{objects} {are} no such form as lens \"{lens}\" asks for (flat, without area); shown unchanged")
+        },
+    ),
+    (
+        NOTHING_DERIVED,
+        |picture| &picture.not_derived[1],
+        |lens, objects| {
+            let are = if objects == 1 { "object" } else { "objects" };
+            format!("{objects} {are} of which lens \"{lens}\" leaves nothing (upright faces only)")
         },
     ),
 ];

@@ -289,5 +289,19 @@ impl ModelBuilder {
     }
 }
 
+/// A model with these geometries in place of its own, triangulated and tiled as those of files are. Ranges of objects are left to the
+/// caller: geometries stand by object, then by level of detail.
+pub fn with_geometries(mut model: CityModel, geometries: impl IntoIterator<Item = RawGeometry>) -> CityModel {
+    let mut shelf = Shelf::default();
+    for geometry in geometries {
+        if !shelf.add(geometry) {
+            break;
+        }
+    }
+    shelf.parts.sort_by_key(|part| (part.object, part.lod));
+    line::finish_geometries(&mut model, shelf);
+    model
+}
+
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,8 @@ use glam::DVec3;
 use crate::{
     figure::scene_file::{
         check::{Checker, Fields, Place},
-        keys::{CAMERA, CONTENT, Kind, POI, Table, key},
+        content::CONTENT,
+        keys::{CAMERA, Kind, POI, Table, key},
         node::{Data, Node},
         parse::DEFAULT_FOV_DEG,
         shape_keys::SHAPES,

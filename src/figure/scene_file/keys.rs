@@ -3,6 +3,7 @@
 use crate::{
     figure::scene_file::{
         animation::{self, ANIMATION},
+        content::CONTENT,
         sprite::{SPRITE, SPRITE_CAMERA},
     },
     lens::ramp,
@@ -436,71 +437,6 @@ pub const LENS: Table = Table {
             "The colour of sections: where the lens takes part of a closed body away, or shows part of one, its surface closes what is left. See Sections.",
             "\"#9c4a3c\"",
         ),
-    ],
-};
-
-/// `content` of a lens.
-pub const CONTENT: Table = Table {
-    name: "content",
-    doc: "What a lens shows in itself: the scene's city or another data set, in a level of detail, moved or not. See Contents.",
-    keys: &[
-        key(
-            "files",
-            Kind::Texts,
-            "the scene's city",
-            "",
-            "City files or folders of another data set, by the same rules as those of `[city]`.",
-            "[\"plan.city.json\"]",
-        ),
-        key(
-            "lod",
-            Kind::Lod,
-            "as the scene shows its city; of other files the finest",
-            "",
-            "Shows no level of detail finer than this, one that the data set has.",
-            "\"1.2\"",
-        ),
-        key(
-            "class",
-            Kind::Word { now: CLASSES, later: &[] },
-            "\"inside\"",
-            "",
-            "Which part of the sight line it shows in, as that of an effect.",
-            "\"behind\"",
-        ),
-        key(
-            "keep_terrain",
-            Kind::Boolean,
-            "false",
-            "",
-            "Terrain, roads, water, land use and the plain ground stay as they are below, and the content brings none.",
-            "true",
-        ),
-        key(
-            "from",
-            Kind::Point,
-            "`to`: it is turned and scaled in its place",
-            "m",
-            "The point of the data set that is put to `to`.",
-            "[120.0, 40.0, 0.0]",
-        ),
-        key(
-            "to",
-            Kind::Point,
-            "the middle of the box (edges along x, y, z) around the lens, if something else moves it",
-            "m",
-            "Where `from` is put, counted as the shapes' coordinates are.",
-            "[0.0, 0.0, 0.0]",
-        ),
-        key(
-            "rotation_deg",
-            Kind::Angles,
-            "[0, 0, 0]",
-            "degrees",
-            "Turns it about that point: yaw counter-clockwise from above, pitch lifts its east, roll about its east.",
-            "[90.0, 0.0, 0.0]",
-        ),
-        key("scale", Kind::Number { min: 1e-3, max: 1e3 }, "1.0", "", "Scales it about that point.", "2.0"),
     ],
 };
 

@@ -5,6 +5,7 @@
 
 pub mod animation;
 pub mod check;
+mod content;
 pub mod document;
 mod focus;
 pub mod keys;

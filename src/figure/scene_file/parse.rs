@@ -9,6 +9,7 @@ use crate::{
     figure::scene_file::{
         animation,
         check::{Checker, Fields, Place, lod},
+        content,
         focus::Reader,
         keys::{self, CLASSES, Kind},
         node::{Data, Node},
@@ -230,7 +231,7 @@ impl<'o> SceneReader<'o> {
             None => of_effects.map(|(content, _)| content),
             Some(node) => {
                 let place = fields.place.within("content", node.line);
-                let own = self.checker.fields(node, &keys::CONTENT, &[], place);
+                let own = self.checker.fields(node, &content::CONTENT, &[], place);
                 let class = own.text("class").and_then(class_of).unwrap_or_default();
                 let moved = ["from", "to", "rotation_deg", "scale"].into_iter().any(|key| own.given(key));
                 let turn = own.node("rotation_deg").and_then(Node::numbers::<3>).map(rotation);
@@ -246,7 +247,8 @@ impl<'o> SceneReader<'o> {
                     let message = "is empty: name the files, or leave the key away for the scene's own city";
                     self.checker.note(&own.place, "files", own.line("files"), message);
                 }
-                Some(Content { files: self.files(&own), lod, class, clip: Clip::Order, keep_terrain, copied })
+                let derive = content::derived(&own, &mut self.checker);
+                Some(Content { files: self.files(&own), lod, derive, class, clip: Clip::Order, keep_terrain, copied })
             }
         };
         if content.is_none() && fields.given("clip") {

@@ -3,6 +3,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
+    city::derived::{Derive, Form, Height},
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
         Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
@@ -317,6 +318,22 @@ fn every_mistake_in_a_lens_is_named() {
         ("content = { file = \"a\" }", "content.file: unknown key; did you mean \"files\"?"),
         ("content = { files = [] }", "content.files: is empty: name the files"),
         ("content = { files = [\"builtin:moon\"] }", "content.files.0: there is no \"builtin:moon\""),
+        (
+            "content = { derive = \"cube\" }",
+            "content.derive: must be \"box\" or \"prism\" or \"hull\" or \"flat\" or \"height\", is \"cube\"",
+        ),
+        (
+            "content = { derive = \"prism\", oriented = true }",
+            "content.oriented: has a meaning only with derive = \"box\"",
+        ),
+        ("content = { lift = 1.0 }", "content.lift: has a meaning only with derive = \"flat\""),
+        ("content = { derive = \"flat\", lift = -1.0 }", "content.lift: must be a number 0 to 1000, is -1"),
+        ("content = { parts = true }", "content.parts: has a meaning only with derive"),
+        ("content = { derive = \"height\" }", "content.derive: \"height\" needs a height in metres or a factor"),
+        (
+            "content = { derive = \"height\", height = 3.0, factor = 2.0 }",
+            "content.derive: height and factor are both given; either says how high",
+        ),
         ("content = { scale = 0 }", "content.scale: must be a number 0.001 to 1000, is 0"),
         (
             "content = {}\neffects = [{ effect = \"lod\", lod = 1.2 }]",
@@ -593,8 +610,21 @@ fn ends() -> impl Strategy<Value = (Option<LensSprite>, Option<Border>)> {
     prop_oneof![Just((None, None)), sprite, border]
 }
 
+fn derives() -> impl Strategy<Value = Derive> {
+    let form = prop_oneof![
+        any::<bool>().prop_map(|oriented| Form::Box { oriented }),
+        Just(Form::Prism),
+        Just(Form::Hull),
+        prop_oneof![Just(0.05), 0.0..1000.0f64].prop_map(|lift_m| Form::Flat { lift_m }),
+        (1e-3..1e5f64).prop_map(|metres| Form::Height(Height::Metres(metres))),
+        (1e-3..1e3f64).prop_map(|factor| Form::Height(Height::Factor(factor))),
+    ];
+    (form, any::<bool>()).prop_map(|(form, parts)| Derive { form, parts })
+}
+
 prop_compose! {
     fn contents()(files in prop::collection::vec("[ -~äß]{1,9}", 0..3), tenths in prop::option::of(0..99u8),
+        derive in prop::option::of(derives()),
         class in prop::sample::select(vec![Class::Inside, Class::Front, Class::Behind, Class::Rest]),
         clip in prop::sample::select(Clip::ALL.to_vec()), keep_terrain in any::<bool>(),
         copied in prop::option::of((prop::option::of(point()), prop::option::of(point()), 1e-3..1e3f64, any::<bool>(), prop::array::uniform3(-1800..1800i32)))) -> Content {
@@ -603,7 +633,7 @@ prop_compose! {
             false => Copied { from, to, rotation: rotation(angles.map(|a| f64::from(a) / 10.0)), scale },
         });
         let files = files.into_iter().filter(|f| !f.contains("${") && !f.starts_with("builtin:")).map(Into::into).collect();
-        Content { files, lod: tenths.map(|tenths| crate::city::Lod { tenths }), class, clip, keep_terrain, copied }
+        Content { files, lod: tenths.map(|tenths| crate::city::Lod { tenths }), derive, class, clip, keep_terrain, copied }
     }
 }
 

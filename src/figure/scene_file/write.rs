@@ -7,6 +7,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 use crate::{
     figure::scene_file::{
         animation,
+        content::derive_keys,
         parse::{lens_color, rotation},
         paths::Options,
         sprite,
@@ -338,6 +339,7 @@ fn content(content: &Content, options: &Options) -> String {
         keys.push(format!("files = {}", list(content.files.iter().map(|f| quoted(&options.written(f))))));
     }
     keys.extend(content.lod.map(|lod| format!("lod = {}", quoted(&lod.to_string()))));
+    keys.extend(content.derive.iter().flat_map(derive_keys));
     keys.extend(class_word(content.class).map(|word| format!("class = {}", quoted(word))));
     if content.keep_terrain {
         keys.push("keep_terrain = true".to_owned());
