@@ -8,6 +8,7 @@ mod meets;
 pub mod plane;
 pub mod ray;
 pub mod region;
+pub mod shaft;
 pub mod shape;
 pub mod triangulate;
 
