@@ -26,3 +26,4 @@ pub mod render;
 pub mod scene;
 pub mod shader;
 pub mod view;
+pub mod visibility;

@@ -106,8 +106,7 @@ fn segment_by_clipping(eye: V, [a, b]: [V; 2], t: &[V; 3]) -> Option<bool> {
         return None;
     }
     let plane = through(eye, n);
-    let planes =
-        [plane, reversed(plane), through(eye, cross(n, sub(a, eye))), through(eye, cross(sub(b, eye), n))];
+    let planes = [plane, reversed(plane), through(eye, cross(n, sub(a, eye))), through(eye, cross(sub(b, eye), n))];
     Some(is_left(t, &planes, through(a, cross(n, sub(b, a)))))
 }
 
@@ -232,9 +231,8 @@ fn slivers_are_met_on_the_right_side_of_a_micrometre() {
         let y = -1.0e-6 * f64::from(step) - 0.5e-6;
         // Along the lower side of the shaft, half-way: it is met where it reaches above y = -½.
         let x = 49.5;
-        let sliver = |top: f64| {
-            [[x, top, -500.0], [x, top - 0.001, -500.0], [x, top, 500.0]].map(|p| at + DVec3::from(p))
-        };
+        let sliver =
+            |top: f64| [[x, top, -500.0], [x, top - 0.001, -500.0], [x, top, 500.0]].map(|p| at + DVec3::from(p));
         assert!(shaft.meets(&sliver(-0.5 - y)) && !shaft.meets(&sliver(-0.5 + y)), "{step}");
     }
     let around_eye = [[-1e6, -1e6, 0.1], [1e6, -1e6, 0.1], [0.0, 1e6, 0.1]].map(|p| at + DVec3::from(p));
