@@ -110,8 +110,7 @@ impl Technique {
             }
         }
         let context = scene.style.effects.iter().map(|used| (used, "the context".to_owned()));
-        let of_lenses =
-            lenses.iter().flat_map(|lens| lens.effects.iter().map(|e| (e, format!("lens \"{}\"", lens.name))));
+        let of_lenses = lenses.iter().flat_map(|lens| lens.uses().map(|e| (e, format!("lens \"{}\"", lens.name))));
         for (used, whose) in context.chain(of_lenses) {
             let Some(definition) = find(&used.effect) else { continue };
             let what = match definition.kind {

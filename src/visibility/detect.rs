@@ -26,8 +26,6 @@ pub struct Scope<'a> {
     pub units: &'a Units,
     /// Finds the triangles that are shown.
     pub index: &'a SpatialIndex,
-    /// The geometries that are shown.
-    pub shown: &'a [u32],
 }
 
 /// What is asked.
@@ -229,8 +227,7 @@ impl Scope<'_> {
 
     /// The shafts to the faces that are shown of a unit.
     fn faces_of(&self, unit: u32, eye: DVec3) -> Vec<TriangleShaft> {
-        let geometries = self.shown.iter().map(|&g| &self.model.geometries[g as usize]);
-        let own = geometries.filter(|g| self.units.of_object[g.object as usize] == unit);
+        let own = self.units.geometries(unit).iter().map(|&g| &self.model.geometries[g as usize]);
         let tiles = own.flat_map(|g| &self.model.tiles[g.tiles.start as usize..g.tiles.end as usize]);
         tiles
             .flat_map(|tile| {

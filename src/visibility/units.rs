@@ -5,7 +5,6 @@ use glam::DVec3;
 use crate::{
     city::CityModel,
     geom::{Aabb, bvh::Bvh},
-    view::{Camera, CameraError, Projection},
     visibility::Set,
 };
 
@@ -21,6 +20,9 @@ pub struct Units {
     pub boxes: Vec<Aabb>,
     /// Per unit, the box around all that is shown of it, metres.
     pub shown: Vec<Aabb>,
+    /// Shown geometries, by unit, and where those of each unit begin.
+    geometries: Vec<u32>,
+    starts: Vec<u32>,
     /// Finds `boxes`.
     pub(super) tree: Bvh,
 }
@@ -44,13 +46,6 @@ pub enum Poi {
 }
 
 impl Viewer {
-    /// The viewer of a camera.
-    pub fn new(camera: &Camera) -> Result<Self, CameraError> {
-        let is_parallel = matches!(camera.projection, Projection::Orthographic { .. });
-        let along = if is_parallel { Some(camera.basis()?.forward) } else { None };
-        Ok(Self { eye: camera.eye, along })
-    }
-
     /// Where sight lines to places in a box begin: the eye. Parallel ones are taken as those of an eye 2²⁰ times as far away as
     /// box and eye are from each other, so that they are parallel to a millionth.
     pub(super) fn eye_for(&self, target: &Aabb) -> DVec3 {
@@ -81,8 +76,15 @@ impl Units {
         }
         let is_top = |object: u32| model.objects[object as usize].parents.iter().all(|&parent| is_group(model, parent));
         let mut number = vec![u32::MAX; lead.len()];
-        let mut units =
-            Self { of_object: vec![0; lead.len()], roots: vec![], boxes: vec![], shown: vec![], tree: Bvh::build(&[]) };
+        let mut units = Self {
+            of_object: vec![0; lead.len()],
+            roots: vec![],
+            boxes: vec![],
+            shown: vec![],
+            geometries: vec![],
+            starts: vec![],
+            tree: Bvh::build(&[]),
+        };
         let mut has_top = Vec::new();
         for object in 0..lead.len() as u32 {
             let leader = first(&mut lead, object) as usize;
@@ -106,6 +108,11 @@ impl Units {
                 units.boxes[unit] = units.boxes[unit].union(geometry.bounds);
             }
         }
+        units.geometries = shown.to_vec();
+        let unit_of = |g: u32| units.of_object[model.geometries[g as usize].object as usize];
+        units.geometries.sort_by_key(|&g| unit_of(g));
+        let begin = |unit: u32| units.geometries.partition_point(|&g| unit_of(g) < unit) as u32;
+        units.starts = (0..=units.roots.len() as u32).map(begin).collect();
         units.tree = Bvh::build(&units.boxes);
         units
     }
@@ -118,6 +125,12 @@ impl Units {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.roots.is_empty()
+    }
+
+    /// The geometries that are shown of a unit.
+    pub fn geometries(&self, unit: u32) -> &[u32] {
+        let [start, end] = [0, 1].map(|i| self.starts[unit as usize + i] as usize);
+        &self.geometries[start..end]
     }
 
     /// The box around a point of interest, metres; empty where nothing of it is shown.
