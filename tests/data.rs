@@ -10,6 +10,8 @@ mod faces;
 mod info;
 #[path = "data/meshes.rs"]
 mod meshes;
+#[path = "data/occluders.rs"]
+mod occluders;
 #[path = "data/pictures.rs"]
 mod pictures;
 #[path = "data/scenes.rs"]
@@ -34,8 +36,15 @@ fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 's
 
 fn main() {
     let arguments = Arguments::from_args();
-    let rooms =
-        [edges::trials(), faces::trials(), info::trials(), meshes::trials(), pictures::trials(), scenes::trials()];
+    let rooms = [
+        edges::trials(),
+        faces::trials(),
+        info::trials(),
+        meshes::trials(),
+        occluders::trials(),
+        pictures::trials(),
+        scenes::trials(),
+    ];
     let trials = rooms.into_iter().flatten().collect();
     libtest_mimic::run(&arguments, trials).exit();
 }

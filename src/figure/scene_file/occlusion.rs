@@ -181,3 +181,91 @@ fn test_written(test: &Test) -> String {
     }
     out + " }"
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        figure::scene_file::{Options, parse},
+        lens::{LensKind, Rendering},
+    };
+
+    fn lens(lines: &str) -> Result<Lens, String> {
+        let text = format!("veduta = 1\n[[lens]]\nkind = \"occlusion\"\n{lines}\n");
+        let scene = parse(&text, "s", &Options::for_command_line()).map_err(|e| e.to_string())?;
+        Ok(scene.lenses[0].clone())
+    }
+
+    #[test]
+    fn little_is_needed() {
+        let plain = lens("poi = \"hall\"").unwrap();
+        let of = Occluders { pois: vec!["hall".into()], ..Occluders::default() };
+        assert_eq!((plain.kind, &plain.shapes[..]), (LensKind::Occlusion, &[Focus::Occluders(of.clone())][..]));
+        assert_eq!(plain.render, Some(Rendering::default()));
+        assert_eq!(plain.uses().map(|used| used.effect.as_str()).collect::<Vec<_>>(), ["eraser"]);
+        let several = lens(
+            "poi = [\"a\", \"b\"]\ntest = { not = { any = [{ kind = \"view-axis\" }, { kind = \"ground\", radius = 3 }] } }\nrender = [\"sepia\"]\neffects = [\"invert\"]",
+        );
+        let several = several.unwrap();
+        let test = Test::Not(Box::new(Test::Any(vec![Test::ViewAxis, Test::Ground { radius: 3.0 }])));
+        assert_eq!(several.occluders(), Some(&Occluders { pois: vec!["a".into(), "b".into()], test, ..of }));
+        assert_eq!(several.uses().map(|used| used.effect.as_str()).collect::<Vec<_>>(), ["sepia", "invert"]);
+        assert!(
+            lens("test = { kind = \"spherical\", radius = 9 }").is_ok(),
+            "who is near asks for no point of interest"
+        );
+    }
+
+    #[test]
+    fn mistakes_are_named_with_what_would_be_right() {
+        for (lines, expected) in [
+            ("", "[lens.0] poi: is missing: the test asks what hides a point of interest"),
+            ("poi = []", "[lens.0] poi: must be a text that is not empty, or a list of at least one, is []"),
+            (
+                "poi = \"a\"\ntest = { kind = \"exakt\" }",
+                "[lens.0] test.kind: must be one of exact, view-axis, spherical, cylindrical, viewer-height, ground, route, is \"exakt\"; did you mean \"exact\"?",
+            ),
+            ("poi = \"a\"\ntest = { any = [{ kind = \"spherical\" }] }", "[lens.0] test.any.0.radius: is missing"),
+            (
+                "poi = \"a\"\ntest = { kind = \"exact\", coverage = 1.5 }",
+                "[lens.0] test.coverage: must be a number 0 to 1, is 1.5",
+            ),
+            ("poi = \"a\"\ntest = { kind = \"exact\", radius = 1.5 }", "[lens.0] test.radius: unknown key"),
+            ("poi = \"a\"\ntest = { al = [] }", "did you mean \"all\"?"),
+            ("poi = \"a\"\ntest = { all = [] }", "[lens.0] test.all: must be a list of at least one test, is []"),
+            (
+                "poi = \"a\"\ntest = { not = { kind = \"ground\", radius = -1 } }",
+                "[lens.0] test.not.radius: must be a number ≥ 0, is -1",
+            ),
+            ("poi = \"a\"\nrender = \"discrad\"", "[lens.0] render: must be \"discard\""),
+            ("poi = \"a\"\nrender = \"discrad\"", "did you mean \"discard\"?"),
+            (
+                "poi = \"a\"\nrender = [\"sepai\"]",
+                "[lens.0] render.0: there is no effect \"sepai\"; did you mean \"sepia\"?",
+            ),
+            (
+                "poi = \"a\"\nrender = [\"gooch\"]\neffects = [\"cel\"]",
+                "\"cel\" is a second scene style beside \"gooch\" of render",
+            ),
+            ("poi = \"a\"\nforce = {}", "[lens.0] force.ids: is missing"),
+            (
+                "poi = \"a\"\nforbid = { ids = [\"b\"], min = 3 }",
+                "[lens.0] forbid.min: has a meaning only with attribute",
+            ),
+            (
+                "poi = \"a\"\nshape = { kind = \"sprite\", file = \"a.exr\" }",
+                "[lens.0] shape: a depth sprite cannot be combined with occluders",
+            ),
+        ] {
+            let message = lens(lines).unwrap_err();
+            assert!(message.contains(expected), "{lines}: {message}");
+        }
+        let other =
+            "veduta = 1\n[[lens]]\nshape = { kind = \"sphere\", center = [0, 0, 0], radius = 1 }\nrender = \"discard\"";
+        let message = parse(other, "s", &Options::for_command_line()).unwrap_err().to_string();
+        assert!(
+            message.contains("[lens.0] render: has a meaning only for a lens of kind = \"occlusion\""),
+            "{message}"
+        );
+    }
+}
