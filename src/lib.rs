@@ -8,12 +8,13 @@
 //! 1. [`geom`]: shapes and numbers; exact predicates, triangulation, the BVH.
 //! 2. [`city`]: files become one plain [`city::CityModel`] and a list of warnings.
 //! 3. [`view`]: the eye. [`shader`]: WGSL text. [`gpu`]: wgpu, and nothing that knows a city.
-//! 4. [`lens`]: what to show where: shapes, effects, depth sprites and their CPU twins.
-//! 5. [`scene`]: plain data: city + view + lenses + POIs + styles, edited by commands.
-//! 6. [`render`]: a scene becomes a frame: a readable list of passes.
-//! 7. [`figure`]: scene files and back, pictures and their metadata.
-//! 8. [`measure`]: what accuracy costs in time.
-//! 9. [`cli`]: what people type.
+//! 4. [`visibility`]: who hides what.
+//! 5. [`lens`]: what to show where: shapes, effects, depth sprites and their CPU twins.
+//! 6. [`scene`]: plain data: city + view + lenses + POIs + styles, edited by commands.
+//! 7. [`render`]: a scene becomes a frame: a readable list of passes.
+//! 8. [`figure`]: scene files and back, pictures and their metadata.
+//! 9. [`measure`]: what accuracy costs in time.
+//! 10. [`cli`]: what people type.
 
 pub mod city;
 pub mod cli;
@@ -26,3 +27,4 @@ pub mod render;
 pub mod scene;
 pub mod shader;
 pub mod view;
+pub mod visibility;

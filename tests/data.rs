@@ -12,6 +12,8 @@ mod faces;
 mod info;
 #[path = "data/meshes.rs"]
 mod meshes;
+#[path = "data/occluders.rs"]
+mod occluders;
 #[path = "data/pictures.rs"]
 mod pictures;
 #[path = "data/scenes.rs"]
@@ -42,6 +44,7 @@ fn main() {
         faces::trials(),
         info::trials(),
         meshes::trials(),
+        occluders::trials(),
         pictures::trials(),
         scenes::trials(),
     ];

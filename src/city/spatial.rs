@@ -74,47 +74,100 @@ impl SpatialIndex {
         &self,
         model: &CityModel,
         region: &Region,
-        mut wanted: impl FnMut(u32) -> bool,
+        wanted: impl FnMut(u32) -> bool,
         mut visit: impl FnMut(u32, u32) -> bool,
     ) {
-        self.top.in_region(
+        self.descend(
+            model,
             |bounds| region.coverage(bounds),
-            |item, is_inside| {
-                let number = self.tiles[item as usize];
-                if !wanted(number) {
-                    return;
-                }
-                let tile = &model.tiles[number as usize];
-                let triangles = tile.indices.start / 3..tile.indices.end / 3;
-                let mut goes_on = true;
-                let mut run = |run: std::ops::Range<u32>, is_inside: bool| {
-                    for triangle in run {
-                        if !goes_on {
-                            return;
-                        }
-                        if is_inside || region.meets_triangle(&corners(model, number, triangle)) {
-                            goes_on = visit(number, triangle);
-                        }
-                    }
-                };
-                match &self.runs[item as usize] {
-                    Some(runs) if !is_inside => runs.in_region(
-                        |bounds| region.coverage(bounds),
-                        |number, is_inside| {
-                            let first = triangles.start + number * RUN as u32;
-                            run(first..(first + RUN as u32).min(triangles.end), is_inside);
-                        },
-                    ),
-                    // Few triangles: first whether their tile is near at all, as its neighbours in a leaf may be.
-                    _ if is_inside => run(triangles, true),
-                    _ => {
-                        if let Some(is_inside) = region.coverage(&tile.bounds) {
-                            run(triangles, is_inside);
-                        }
-                    }
-                }
+            wanted,
+            |tile, triangle, is_inside| {
+                !(is_inside || region.meets_triangle(&corners(model, tile, triangle))) || visit(tile, triangle)
             },
         );
+    }
+
+    /// Visits every triangle of boxes that `may_meet` something, once, by its tile and corners. `visit` says whether more
+    /// triangles of that tile are wanted; of which tiles any are is for `wanted` to say. The boxes that are asked about may be smaller
+    /// than the triangles' own by what f64 loses in a change of origin.
+    pub fn triangles_where(
+        &self,
+        model: &CityModel,
+        may_meet: impl Fn(&Aabb) -> bool,
+        wanted: impl FnMut(u32) -> bool,
+        mut visit: impl FnMut(u32, &[DVec3; 3]) -> bool,
+    ) {
+        self.descend(
+            model,
+            |bounds| may_meet(bounds).then_some(false),
+            wanted,
+            |tile, triangle, _| visit(tile, &corners(model, tile, triangle)),
+        );
+    }
+
+    /// Visits the triangles of the boxes of which `coverage` says something, and whether that was that they are wholly inside.
+    fn descend(
+        &self,
+        model: &CityModel,
+        coverage: impl Fn(&Aabb) -> Option<bool>,
+        mut wanted: impl FnMut(u32) -> bool,
+        mut visit: impl FnMut(u32, u32, bool) -> bool,
+    ) {
+        self.top.in_region(&coverage, |item, is_inside| {
+            let number = self.tiles[item as usize];
+            if !wanted(number) {
+                return;
+            }
+            let tile = &model.tiles[number as usize];
+            let triangles = tile.indices.start / 3..tile.indices.end / 3;
+            let mut goes_on = true;
+            let mut run = |run: std::ops::Range<u32>, is_inside: bool| {
+                for triangle in run {
+                    if !goes_on {
+                        return;
+                    }
+                    goes_on = visit(number, triangle, is_inside);
+                }
+            };
+            match &self.runs[item as usize] {
+                Some(runs) if !is_inside => runs.in_region(&coverage, |number, is_inside| {
+                    let first = triangles.start + number * RUN as u32;
+                    run(first..(first + RUN as u32).min(triangles.end), is_inside);
+                }),
+                // Few triangles: first whether their tile is near at all, as its neighbours in a leaf may be.
+                _ if is_inside => run(triangles, true),
+                _ => {
+                    if let Some(is_inside) = coverage(&tile.bounds) {
+                        run(triangles, is_inside);
+                    }
+                }
+            }
+        });
+    }
+
+    /// Visits every triangle that a ray meets not farther than `t_max`, in no particular order; one without direction meets none.
+    pub fn hits(&self, model: &CityModel, ray: &Ray, t_max: f64, mut visit: impl FnMut(&Hit)) {
+        let Some(test) = TriangleTest::new(ray) else { return };
+        self.top.along_ray(ray, t_max, |item, end| {
+            let number = self.tiles[item as usize];
+            let tile = &model.tiles[number as usize];
+            let object = model.geometries[tile.geometry as usize].object;
+            let mut try_triangle = |triangle: u32| {
+                if let Some(t) = test.hit(corners(model, number, triangle)).filter(|t| *t <= t_max) {
+                    visit(&Hit { object, geometry: tile.geometry, tile: number, triangle, t });
+                }
+            };
+            let triangles = tile.indices.start / 3..tile.indices.end / 3;
+            match &self.runs[item as usize] {
+                None => triangles.for_each(try_triangle),
+                Some(runs) => runs.along_ray(ray, end, |run, end| {
+                    let first = triangles.start + run * RUN as u32;
+                    (first..(first + RUN as u32).min(triangles.end)).for_each(&mut try_triangle);
+                    end
+                }),
+            }
+            end
+        });
     }
 
     /// Follows vertices of the model that moved; tiles, triangles and what is shown are the same. The bounds of the

@@ -44,7 +44,7 @@ pub struct Row {
 pub fn legends(scene: &Scene, model: &CityModel, seen: &[bool]) -> Vec<Legend> {
     let context = scene.style.effects.iter().map(|used| (used, None));
     let lenses = scene.lenses.iter().enumerate().rev().filter(|(i, lens)| lens.enabled && seen.get(*i) == Some(&true));
-    let of_lenses = lenses.flat_map(|(_, lens)| lens.effects.iter().map(move |used| (used, Some(lens))));
+    let of_lenses = lenses.flat_map(|(_, lens)| lens.uses().map(move |used| (used, Some(lens))));
     let mut legends: Vec<Legend> = Vec::new();
     for (used, lens) in context.chain(of_lenses).filter(|(used, _)| is_thematic(used)) {
         let Ok(scale) = ThematicScale::new(model, used) else { continue };
@@ -135,6 +135,7 @@ mod tests {
             placement: Default::default(),
             shapes: vec![],
             effects,
+            render: None,
             content: None,
             body: Default::default(),
             sprite: None,

@@ -9,6 +9,7 @@ pub mod outline;
 pub mod plane;
 pub mod ray;
 pub mod region;
+pub mod shaft;
 pub mod shape;
 pub mod triangulate;
 

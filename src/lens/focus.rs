@@ -13,6 +13,7 @@ use crate::{
     },
     lens::{
         chosen::Choice,
+        occluders::Occluders,
         solids::{Place, ShownCity, Solids},
     },
 };
@@ -84,6 +85,8 @@ pub enum Focus {
         /// Only objects of these types, as their files call them; parts are of the type that they are part of. Empty: all.
         types: Vec<String>,
     },
+    /// Everything that belongs to the city objects that hide something, wherever it is (O2).
+    Occluders(Occluders),
     /// A boolean combination: the first part with the second, that with the third, and so on.
     Combined {
         /// How.
@@ -114,7 +117,25 @@ impl Focus {
 
     /// Whether it means objects as such, not places.
     pub fn is_by_object(&self) -> bool {
-        matches!(self, Self::Thematic(_) | Self::Enclosed { .. })
+        matches!(self, Self::Thematic(_) | Self::Enclosed { .. } | Self::Occluders(_))
+    }
+
+    /// What of it scene files give as a shape: of what is intersected with occluders the rest, of occluders nothing.
+    pub fn own_shape(&self) -> Option<&Self> {
+        match self {
+            Self::Occluders(_) => None,
+            Self::Combined { parts, .. } if self.occluders().is_some() => parts.get(1),
+            other => Some(other),
+        }
+    }
+
+    /// The occluders that it is, or that its first part is.
+    pub fn occluders(&self) -> Option<&Occluders> {
+        match self {
+            Self::Occluders(occluders) => Some(occluders),
+            Self::Combined { parts, .. } => parts.first().and_then(Self::occluders),
+            _ => None,
+        }
     }
 
     /// Whether it, or a part that it is combined from, is such a one.

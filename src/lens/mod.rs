@@ -9,7 +9,9 @@ pub mod effect;
 pub mod focus;
 pub mod intersection;
 pub mod nearest;
+pub mod occluders;
 pub mod ramp;
+pub mod rendering;
 pub mod solids;
 pub mod sprite;
 pub mod sprite_file;
@@ -22,6 +24,8 @@ pub use border::{Border, BorderUnit, Discrete};
 pub use classify::classify;
 pub use content::{Content, ContentSource, Copied};
 pub use focus::Focus;
+pub use occluders::Occluders;
+pub use rendering::Rendering;
 pub use sprite::{LensSprite, OwnEye};
 pub use sprite_volume::{PlacedSprite, SpriteSpace, SpriteVolume};
 
@@ -42,7 +46,9 @@ pub struct Lens {
     pub placement: Placement,
     /// Its focus areas: inside where any of them is (L1).
     pub shapes: Vec<Focus>,
-    /// What it does, in order (K1: at most one scene style).
+    /// How the occluders of an occlusion lens are drawn (O3).
+    pub render: Option<Rendering>,
+    /// What it does, in order (K1: at most one scene style), after what it is drawn by.
     pub effects: Vec<EffectUse>,
     /// What it shows in place of what is below it (C6); `None`: it acts on that.
     pub content: Option<Content>,
@@ -106,6 +112,8 @@ pub enum LensKind {
     Color,
     /// Shows something else in it (C3).
     Content,
+    /// Draws what hides a point of interest so that it can be seen (O2, O3).
+    Occlusion,
 }
 
 impl LensKind {
@@ -114,6 +122,7 @@ impl LensKind {
         match self {
             Self::Color => "color",
             Self::Content => "content",
+            Self::Occlusion => "occlusion",
         }
     }
 }
@@ -121,7 +130,17 @@ impl LensKind {
 impl Lens {
     /// The classes it acts on, of what it does and shows.
     pub fn classes(&self) -> impl Iterator<Item = Class> {
-        self.effects.iter().map(|e| e.class).chain(self.content.iter().map(|c| c.class))
+        self.uses().map(|e| e.class).chain(self.content.iter().map(|c| c.class))
+    }
+
+    /// What it does, in order: how it draws occluders, then its effects.
+    pub fn uses(&self) -> impl Iterator<Item = &EffectUse> {
+        self.render.iter().flat_map(|render| &render.effects).chain(&self.effects)
+    }
+
+    /// Whom it looks for, if it is an occlusion lens.
+    pub fn occluders(&self) -> Option<&Occluders> {
+        self.shapes.first().and_then(Focus::occluders)
     }
 }
 

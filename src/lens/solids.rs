@@ -114,7 +114,11 @@ impl Solids {
             Focus::Shape(shape) => {
                 return shape.placed(&place.motion, &place.sight).map_err(|error| (String::new(), error.to_string()));
             }
-            Focus::Thematic(_) | Focus::Enclosed { .. } | Focus::Sprite { .. } | Focus::Combined { .. } => {
+            Focus::Thematic(_)
+            | Focus::Enclosed { .. }
+            | Focus::Occluders(_)
+            | Focus::Sprite { .. }
+            | Focus::Combined { .. } => {
                 return Ok(Vec::new());
             }
             _ if focus.is_empty() => return Ok(Vec::new()),
@@ -271,6 +275,7 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
         }
         Focus::Shape(_)
         | Focus::Thematic(_)
+        | Focus::Occluders(_)
         | Focus::Enclosed { .. }
         | Focus::Sprite { .. }
         | Focus::Combined { .. } => Ok((None, DVec3::ZERO)),

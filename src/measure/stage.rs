@@ -124,6 +124,7 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
         placement: Default::default(),
         shapes: vec![shape.into()],
         effects: effects.iter().map(use_of).collect(),
+        render: None,
         content: None,
         body: LensBody::None,
         sprite: None,

@@ -17,14 +17,16 @@ use crate::{
     render::{
         body::{Body, Leaf, Members, PlacedLeaf, too_large},
         enclosed::enclosed,
+        occlusion::Occlusion,
         own_sprites,
         placement::Eye,
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
     },
-    scene::Scene,
+    scene::{Poi, Scene},
     shader::VolumeTest,
     view::CameraError,
+    visibility::Viewer,
 };
 
 /// The volumes of a scene's enabled lenses, and how the volumes of all its lenses may be tested.
@@ -36,13 +38,20 @@ pub struct LensVolumes {
     pub tests: [Vec<VolumeTest>; 3],
 }
 
+/// What focus areas are made with.
+pub(super) struct Tools<'a> {
+    /// Solids made so far.
+    pub solids: &'a mut Solids,
+    /// Whom lenses found hiding something.
+    pub occlusion: &'a mut Occlusion,
+    /// What it hides.
+    pub pois: &'a [Poi],
+    /// From where.
+    pub viewer: Viewer,
+}
+
 /// Resolves the focus areas of a scene. An error names the key of the scene file.
-pub(super) fn volumes_of(
-    scene: &Scene,
-    city: ShownCity,
-    eye: &Eye,
-    solids: &mut Solids,
-) -> Result<LensVolumes, String> {
+pub(super) fn volumes_of(scene: &Scene, city: ShownCity, eye: &Eye, tools: &mut Tools) -> Result<LensVolumes, String> {
     let mut all = LensVolumes::default();
     for (i, lens) in scene.lenses.iter().enumerate() {
         // Attached to what is not there, it acts nowhere.
@@ -50,17 +59,19 @@ pub(super) fn volumes_of(
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
         let mut of_lens: Vec<Body> = Vec::new();
         for (j, focus) in lens.shapes.iter().enumerate() {
-            match bodies_of(focus, city, &place, solids) {
+            match bodies_of(focus, city, &place, tools) {
                 Ok(mut bodies) => {
                     let fades = lens.soft_border().is_some() && !ends_along_rays(lens);
                     if fades || has_surface(lens.drawn_body()) {
                         let leaves = bodies.iter_mut().flat_map(Body::leaves_mut);
-                        leaves.for_each(|leaf| tell_distance(&mut leaf.leaf, solids));
+                        leaves.for_each(|leaf| tell_distance(&mut leaf.leaf, tools.solids));
                     }
                     of_lens.extend(bodies);
                 }
                 Err(_) if !lens.enabled => {}
                 Err((key, message)) => {
+                    // The shape of an occlusion lens is intersected with its occluders, which have no key.
+                    let key = if focus.occluders().is_some() { key.trim_start_matches("shapes.1.") } else { &key };
                     let place = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
                     let dot = if key.is_empty() { "" } else { "." };
                     return Err(format!("[lens.{i}] {place}{dot}{key}: {message}"));
@@ -90,7 +101,8 @@ pub(super) fn volumes_of(
             }
         }
     }
-    solids.forget_others();
+    tools.solids.forget_others();
+    tools.occlusion.forget_others();
     Ok(all)
 }
 
@@ -151,11 +163,11 @@ fn family_bounds(model: &CityModel, object: u32) -> Aabb {
 }
 
 /// The bodies whose union a focus area is.
-fn bodies_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Vec<Body>, FocusError> {
+fn bodies_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Body>, FocusError> {
     if !matches!(focus, Focus::Combined { .. }) {
-        return Ok(leaves_of(focus, city, place, solids)?.into_iter().map(|leaf| Body::One(leaf.into())).collect());
+        return Ok(leaves_of(focus, city, place, tools)?.into_iter().map(|leaf| Body::One(leaf.into())).collect());
     }
-    let program = tree_of(focus, city, place, solids)?.program();
+    let program = tree_of(focus, city, place, tools)?.program();
     if let Some((what, count, most)) = too_large(&program) {
         return Err(("shapes".into(), format!("a combination may have at most {most} {what}, has {count}")));
     }
@@ -166,7 +178,7 @@ fn bodies_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids)
     })
 }
 
-fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Tree<PlacedLeaf>, FocusError> {
+fn tree_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Tree<PlacedLeaf>, FocusError> {
     match focus {
         Focus::Combined { how, parts } => {
             let tree = |(i, part): (usize, &Focus)| {
@@ -175,7 +187,7 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -
                         "kind".into(),
                         "a depth sprite is no part of a combination; a shape of its own would be right".into(),
                     )),
-                    _ => tree_of(part, city, place, solids),
+                    _ => tree_of(part, city, place, tools),
                 };
                 tree.map_err(|error| within(i, error))
             };
@@ -183,7 +195,7 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -
             Ok(Tree::joined(*how, trees?))
         }
         _ => {
-            let leaves = leaves_of(focus, city, place, solids)?;
+            let leaves = leaves_of(focus, city, place, tools)?;
             let trees = leaves.into_iter().map(|leaf| match leaf.is_empty() {
                 true => Tree::Nothing,
                 false => Tree::Leaf(leaf.into()),
@@ -194,16 +206,17 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -
 }
 
 /// The leaves whose union a focus area is that is no combination.
-fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, solids: &mut Solids) -> Result<Vec<Leaf>, FocusError> {
-    let objects = match focus {
-        Focus::Thematic(choice) => members(city.model, choice),
-        Focus::Enclosed { parts, whole, types } => objects_in(parts, (*whole, types), city, place, solids)?,
-        Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(solids.sprite(file, city, &place.motion)?)]),
-        _ => return Ok(solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),
+fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, FocusError> {
+    let objects: Arc<[bool]> = match focus {
+        Focus::Thematic(choice) => members(city.model, choice).into(),
+        Focus::Occluders(of) => tools.occlusion.objects(of, tools.pois, city, tools.viewer),
+        Focus::Enclosed { parts, whole, types } => objects_in(parts, (*whole, types), city, place, tools)?.into(),
+        Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(tools.solids.sprite(file, city, &place.motion)?)]),
+        _ => return Ok(tools.solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),
     };
     let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);
     let bounds = shown.filter(|g| objects[g.object as usize]).fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
-    Ok(vec![Leaf::Members(Members { objects: objects.into(), bounds })])
+    Ok(vec![Leaf::Members(Members { objects, bounds })])
 }
 
 /// The objects that some shapes hold, one per object of the city.
@@ -212,11 +225,11 @@ fn objects_in(
     (whole, types): (bool, &[String]),
     city: ShownCity,
     place: &Place,
-    solids: &mut Solids,
+    tools: &mut Tools,
 ) -> Result<Vec<bool>, FocusError> {
     let mut bodies = Vec::new();
     for (i, part) in parts.iter().enumerate() {
-        bodies.extend(bodies_of(part, city, place, solids).map_err(|error| within(i, error))?);
+        bodies.extend(bodies_of(part, city, place, tools).map_err(|error| within(i, error))?);
     }
     let areas: Vec<_> = bodies.iter().filter(|body| !body.is_empty()).map(|body| (body, body.bounds())).collect();
     Ok(enclosed(city, &areas, whole, types))

@@ -29,6 +29,7 @@ pub mod light;
 mod lines;
 mod module_text;
 mod narrow;
+mod occlusion;
 mod occurring;
 pub mod octagon;
 pub mod operations;

@@ -120,7 +120,7 @@ impl Operations {
         }
         let active = || lenses.iter().enumerate().filter(|(i, _)| visible.get(*i) == Some(&true));
         for (i, lens) in active() {
-            for effect in &lens.effects {
+            for effect in lens.uses() {
                 out.add(effect, Some(i as u32), models)?;
             }
         }
@@ -147,7 +147,7 @@ impl Operations {
 
     /// What one module of the uber back end has to hold for this scene.
     fn uber_of(context: &[EffectUse], lenses: &[Lens]) -> Uber {
-        let uses = || context.iter().chain(lenses.iter().flat_map(|l| &l.effects));
+        let uses = || context.iter().chain(lenses.iter().flat_map(Lens::uses));
         let mut effects: Vec<u32> = uses().filter_map(|e| shader::effect::number_of(&e.effect)).collect();
         effects.sort_unstable();
         effects.dedup();

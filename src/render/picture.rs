@@ -19,7 +19,7 @@ use crate::{
     geom::Aabb,
     gpu::{Gpu, GpuError, Timer},
     lens::{
-        Class,
+        Class, Lens,
         solids::{ShownCity, Solids},
     },
     render::{
@@ -32,7 +32,8 @@ use crate::{
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
         layers::LayerFigures,
-        lens_volumes::{LensVolumes, volumes_of},
+        lens_volumes::{LensVolumes, Tools, volumes_of},
+        occlusion::Occlusion,
         operations::{MOST_FILTERS, Operations},
         parts::{Part, parts, put, whole},
         placement::Eye,
@@ -146,6 +147,8 @@ pub struct Studio {
     /// Solids of lenses made so far, and as the card reads them.
     solids: Mutex<Solids>,
     solid_table: Mutex<Arc<SolidTable>>,
+    /// Whom occlusion lenses found last.
+    occlusion: Mutex<Occlusion>,
     /// How contents of lenses are loaded.
     pub reading: LoadOptions,
     /// Those loaded so far.
@@ -192,6 +195,7 @@ impl Studio {
             backend: Backend::default(),
             solids: Mutex::default(),
             solid_table: Mutex::default(),
+            occlusion: Mutex::default(),
             reading: LoadOptions::default(),
             content_cities: Mutex::default(),
             index: OnceLock::new(),
@@ -361,7 +365,24 @@ impl Studio {
     fn volumes_of(&self, scene: &Scene, size: [u32; 2]) -> Result<LensVolumes, RenderError> {
         let city = self.shown();
         let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
-        volumes_of(scene, city, &Eye::new(&self.camera(scene, size))?, &mut solids).map_err(RenderError::Scene)
+        let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
+        let eye = Eye::new(&self.camera(scene, size))?;
+        let mut tools =
+            Tools { solids: &mut solids, occlusion: &mut occlusion, pois: &scene.pois, viewer: eye.viewer() };
+        volumes_of(scene, city, &eye, &mut tools).map_err(RenderError::Scene)
+    }
+
+    /// How often the city was asked for occluders so far.
+    pub fn occlusion_tests(&self) -> u64 {
+        self.occlusion.lock().unwrap_or_else(PoisonError::into_inner).asked()
+    }
+
+    /// Whom an occlusion lens finds, with reasons; `None` for other lenses.
+    fn occluders(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<Vec<stats::Occluder>> {
+        let of = lens.occluders()?;
+        let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };
+        let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
+        Some(occlusion.explained(of, &scene.pois, self.shown(), eye.viewer()))
     }
 
     fn prepare(&self, scene: &Scene, size: [u32; 2]) -> Result<Prepared, RenderError> {
@@ -597,7 +618,10 @@ impl Studio {
             pipelines: stats::Pipelines { compiled, reused: names.len() as u32 - compiled, names },
             handlers: self.renderer.handlers(),
             lenses: (0..scene.lenses.len())
-                .map(|i| lens_figures(self, scene, prepared, picture, i, lens_seen(i)))
+                .map(|i| stats::LensFigures {
+                    occluders: self.occluders(scene, &scene.lenses[i], view),
+                    ..lens_figures(self, scene, prepared, picture, i, lens_seen(i))
+                })
                 .collect(),
             contents: prepared.contents.figures(self.shown(), &self.renderer),
             overlays: Vec::new(),
@@ -683,6 +707,7 @@ fn lens_figures(
             let side = |count| has_sides.then_some(count);
             stats::Classified { front: side(front), inside: Some(inside), behind: side(behind), rest: Some(rest) }
         },
+        occluders: None,
     }
 }
 

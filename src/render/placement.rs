@@ -8,6 +8,7 @@ use crate::{
     lens::Lens,
     scene::{Scene, anchor::anchor},
     view::{Basis, Camera, CameraError, Projection},
+    visibility::Viewer,
 };
 
 /// The eye of the view that lenses are placed for.
@@ -27,6 +28,11 @@ impl Eye {
     /// What flat lenses are looked through along.
     pub(super) fn sight(&self) -> Sightlines {
         if self.is_orthographic { Sightlines::Along(self.basis.forward) } else { Sightlines::From(self.at) }
+    }
+
+    /// From where occluders are looked for.
+    pub(super) fn viewer(&self) -> Viewer {
+        Viewer { eye: self.at, along: self.is_orthographic.then_some(self.basis.forward) }
     }
 
     /// From a lens' own coordinates to the model's; `None` where what it is attached to is not there:

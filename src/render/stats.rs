@@ -157,6 +157,31 @@ pub struct LensFigures {
     pub pixels: u64,
     /// Pixels by class (L4).
     pub classified: Classified,
+    /// Of an occlusion lens, whom it found (O2).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub occluders: Option<Vec<Occluder>>,
+}
+
+/// A city object that hides something, with its parts.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Occluder {
+    /// Its id.
+    pub id: String,
+    /// The tests that held, `not …` for those under `not` that did not, `forced`.
+    pub why: Vec<String>,
+    /// How much of a point of interest it covers, at most; `null` where no test measures it.
+    pub coverage: Option<Coverage>,
+}
+
+/// A share of what is seen of a point of interest, were it alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Coverage {
+    /// 0 to 1.
+    pub share: f64,
+    /// Lower end of the 95 % interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
 }
 
 /// Pixels by class; `null` where a class does not exist.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::{
     city::CityModel,
-    lens::{Focus, Placement, chosen::absent, nearest::did_you_mean, thematic::attribute_names},
+    lens::{Focus, Occluders, Placement, chosen::absent, nearest::did_you_mean, thematic::attribute_names},
     scene::{
         PoiPlace, Scene,
         anchor::{AnchorProblem, anchor},
@@ -27,9 +27,11 @@ pub struct SceneProblem {
 pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
     let mut problems = Vec::new();
     let mut names: Option<Vec<&str>> = None;
-    let places = [("style".to_owned(), &scene.style.effects)].into_iter();
-    let lenses = scene.lenses.iter().enumerate().map(|(i, lens)| (format!("lens.{i}"), &lens.effects));
-    for (table, effects) in places.chain(lenses) {
+    let places = [("style".to_owned(), "effects", &scene.style.effects)].into_iter();
+    let numbered = || scene.lenses.iter().enumerate().map(|(i, lens)| (format!("lens.{i}"), lens));
+    let drawn = numbered().filter_map(|(table, lens)| Some((table, "render", &lens.render.as_ref()?.effects)));
+    let lenses = numbered().map(|(table, lens)| (table, "effects", &lens.effects));
+    for (table, list, effects) in places.chain(drawn).chain(lenses) {
         for (i, used) in effects.iter().enumerate() {
             let Some(attribute) = used.text("attribute") else { continue };
             let names = names.get_or_insert_with(|| attribute_names(model));
@@ -37,7 +39,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
                 let hint = did_you_mean(attribute, names.iter().copied());
                 problems.push(SceneProblem {
                     table: table.clone(),
-                    key: format!("effects.{i}.attribute"),
+                    key: format!("{list}.{i}.attribute"),
                     message: format!("no object of the city has the attribute \"{attribute}\"{hint}"),
                 });
             }
@@ -58,9 +60,14 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
         });
     }
     for (i, lens) in scene.lenses.iter().enumerate() {
-        for (j, focus) in lens.shapes.iter().enumerate() {
+        for (j, focus) in lens.shapes.iter().enumerate().filter_map(|(j, shape)| Some((j, shape.own_shape()?))) {
             let key = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
             check_focus(focus, &format!("lens.{i}"), &key, model, &mut problems);
+        }
+    }
+    for (i, lens) in scene.lenses.iter().enumerate() {
+        if let Some(occluders) = lens.occluders() {
+            check_occluders(occluders, &format!("lens.{i}"), scene, model, &mut problems);
         }
     }
     for (i, poi) in scene.pois.iter().enumerate() {
@@ -75,6 +82,32 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
         }
     }
     problems
+}
+
+/// The names of an occlusion lens.
+fn check_occluders(of: &Occluders, table: &str, scene: &Scene, model: &CityModel, problems: &mut Vec<SceneProblem>) {
+    let mut problem =
+        |key: String, message: String| problems.push(SceneProblem { table: table.to_owned(), key, message });
+    for (i, name) in of.pois.iter().enumerate() {
+        let placement = Placement::Poi(name.clone());
+        match anchor(&placement, &scene.pois, model) {
+            // It is told of the point of interest.
+            Ok(_) | Err(AnchorProblem::NoObject(..)) => {}
+            Err(wrong) => {
+                let key = if of.pois.len() == 1 { "poi".to_owned() } else { format!("poi.{i}") };
+                let why = match wrong {
+                    AnchorProblem::NoGeometry(id) => format!("\"{id}\" has no geometry, nor have its parts"),
+                    other => other.to_string(),
+                };
+                problem(key, format!("nobody hides it: {why}"));
+            }
+        }
+    }
+    for (key, choice) in [("force", &of.force), ("forbid", &of.forbid)] {
+        for (at, message) in choice.iter().flat_map(|choice| absent(model, choice)) {
+            problem(format!("{key}.{at}"), format!("chooses nothing: {message}"));
+        }
+    }
 }
 
 /// The choices of objects of a focus area and its parts.
@@ -157,6 +190,7 @@ mod tests {
             placement,
             shapes: vec![],
             effects: vec![],
+            render: None,
             content: None,
             body: Default::default(),
             sprite: None,

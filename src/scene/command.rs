@@ -180,6 +180,7 @@ mod tests {
             placement: Default::default(),
             shapes: vec![],
             effects: vec![],
+            render: None,
             content: None,
             body: Default::default(),
             sprite: None,

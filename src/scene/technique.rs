@@ -94,8 +94,7 @@ impl Technique {
             return Some(format!("takes at most {room} combinations of lenses and classes; the scene has {count}"));
         }
         let context = || scene.style.effects.iter().map(|used| (used, "the context".to_owned()));
-        let of_lenses =
-            || lenses.iter().flat_map(|lens| lens.effects.iter().map(|e| (e, format!("lens \"{}\"", lens.name))));
+        let of_lenses = || lenses.iter().flat_map(|lens| lens.uses().map(|e| (e, format!("lens \"{}\"", lens.name))));
         let is_rule = |used: &EffectUse| find(&used.effect).is_some_and(|e| e.kind == EffectKind::Opacity);
         if let Some((used, whose)) = context().chain(of_lenses()).find(|(used, _)| is_rule(used)) {
             return Some(format!("shows nothing translucent, and {whose} has the effect \"{}\"", used.effect));

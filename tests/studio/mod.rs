@@ -100,6 +100,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         placement: Default::default(),
         shapes: shapes.into_iter().map(Into::into).collect(),
         effects: vec![used(effect)],
+        render: None,
         content: None,
         body: LensBody::None,
         sprite: None,

@@ -11,7 +11,7 @@ use crate::{
         keys::{FAR_M, Key, Kind, Table},
         node::{Data, Node},
     },
-    lens::{color::parse_hex, nearest::did_you_mean},
+    lens::{Rendering, color::parse_hex, nearest::did_you_mean},
 };
 
 /// One thing that is wrong: `[lens.0] shape.radius: must be ...`.
@@ -218,6 +218,13 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         }
         Kind::Table(_) | Kind::Shape => matches!(node.data, Data::Table(_)),
         Kind::Shapes => node.list().is_some_and(|l| !l.is_empty()),
+        Kind::Names => match node.list() {
+            Some(list) => !list.is_empty() && list.iter().all(|n| n.text().is_some_and(|t| !t.is_empty())),
+            None => node.text().is_some_and(|t| !t.is_empty()),
+        },
+        Kind::Test => matches!(node.data, Data::Table(_)),
+        Kind::Tests => node.list().is_some_and(|l| !l.is_empty()),
+        Kind::Rendering => return wrong_rendering(kind, node),
         Kind::Tables(_) | Kind::Effects => node.list().is_some(),
     };
     let is_far = |n: f64| n.is_finite() && n.abs() > FAR_M;
@@ -226,6 +233,17 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         _ => String::new(),
     };
     (!ok).then(|| format!("must be {}{most}, is {}", kind.describe(), node.quoted()))
+}
+
+fn wrong_rendering(kind: &Kind, node: &Node) -> Option<String> {
+    match (node.text(), node.list()) {
+        (Some(word), _) if Rendering::of_word(word).is_some() => None,
+        (None, Some(_)) => None,
+        (text, _) => {
+            let hint = text.map_or_else(String::new, |word| did_you_mean(word, Rendering::words()));
+            Some(format!("must be {}, is {}{hint}", kind.describe(), node.quoted()))
+        }
+    }
 }
 
 fn wrong_word(kind: &Kind, now: &[&str], later: &[&str], node: &Node) -> Option<String> {

@@ -8,8 +8,9 @@ use crate::{
     figure::scene_file::{
         keys::{self, CLASSES, Key, Kind, LATER_TABLES, TABLES, Table},
         shape_keys::SHAPES,
+        test_keys::TESTS,
     },
-    lens::effect::LOD,
+    lens::{effect::LOD, rendering::ROWS},
     shader::{
         Blend,
         effect::{EffectKind, ParameterKind, effects as all_effects},
@@ -27,6 +28,18 @@ pub fn reference() -> String {
         let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
         rows(&mut out, table.keys);
     }
+    out += "## Detection tests\n\nThe table `test` of an occlusion lens. The box of an object is the one (edges along x, y, z) around what is shown of it and its parts;\n\
+            all tests but `exact` and `route` count an object whose box holds the eye. What others stand on (terrain, water, roads, land use) is never asked.\n\n";
+    for table in TESTS {
+        let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
+        rows(&mut out, table.keys);
+    }
+    out += "## Renderings\n\nWords for `render` of an occlusion lens.\n\n| word | what one sees | made of |\n| --- | --- | --- |\n";
+    for row in ROWS {
+        let made: Vec<String> = (row.effects)().into_iter().map(|used| format!("`{}`", used.effect)).collect();
+        let _ = writeln!(out, "| `{}` | {} ({}) | {} |", row.word, row.doc, row.spec, made.join(", "));
+    }
+    out.push('\n');
     out += "## Effects\n\n`effects` is a list; each element is a name (`\"sepia\"`) or a table of `effect` (the name), `class` and parameters.\n\
             `class` says which part of the sight line it acts on: `\"inside\"` the lens (default), in `\"front\"` of it, `\"behind\"` it,\n\
             or the `\"rest\"`, where the sight line misses the lens. It has a meaning only in a lens.\n\n";
@@ -114,12 +127,14 @@ pub fn schema() -> Value {
     schema.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
     schema.insert("title".into(), "Veduta scene".into());
     // Shapes may hold shapes.
-    schema.insert("$defs".into(), json!({ "shape": shapes() }));
+    schema.insert("$defs".into(), json!({ "shape": shapes(), "test": tests() }));
     Value::Object(schema)
 }
 
 /// Where the schema describes shapes.
 const SHAPE: &str = "#/$defs/shape";
+/// Where it describes detection tests.
+const TEST: &str = "#/$defs/test";
 
 /// The schema as the file `docs/scene.schema.json` holds it.
 pub fn schema_text() -> String {
@@ -148,11 +163,15 @@ pub(in crate::figure) fn object(table: &Table) -> Map<String, Value> {
         map.insert("required".into(), required.into());
     }
     if table.keys.iter().any(|k| k.name == "shape") {
-        map.insert("oneOf".into(), json!([{ "required": ["shape"] }, { "required": ["shapes"] }]));
+        let none = json!({ "not": { "anyOf": [{ "required": ["shape"] }, { "required": ["shapes"] }] } });
+        let of_occluders =
+            json!({ "properties": { "kind": { "const": "occlusion" } }, "required": ["kind"], "allOf": [none] });
+        map.insert("oneOf".into(), json!([{ "required": ["shape"] }, { "required": ["shapes"] }, of_occluders]));
     }
     let one_of: &[&str] = match table.name {
         "flat" => &["radius", "size", "points"],
         "attached_to" => &["object", "poi"],
+        "choice" => &["ids", "attribute"],
         _ => &[],
     };
     if !one_of.is_empty() {
@@ -201,6 +220,16 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Shapes => json!({ "type": "array", "items": { "$ref": SHAPE }, "minItems": 1 }),
         Kind::Numbers => json!({ "type": ["number", "array"] }),
         Kind::Effects => json!({ "type": "array", "items": { "anyOf": effects() } }),
+        Kind::Names => {
+            let name = json!({ "type": "string", "minLength": 1 });
+            json!({ "anyOf": [name, { "type": "array", "items": name, "minItems": 1 }] })
+        }
+        Kind::Test => json!({ "$ref": TEST }),
+        Kind::Tests => json!({ "type": "array", "items": { "$ref": TEST }, "minItems": 1 }),
+        Kind::Rendering => {
+            let words: Vec<&str> = ROWS.iter().map(|row| row.word).collect();
+            json!({ "anyOf": [{ "enum": words }, of_kind(&Kind::Effects)] })
+        }
     }
 }
 
@@ -212,7 +241,16 @@ fn color() -> Value {
 }
 
 fn shapes() -> Value {
-    let each: Vec<Value> = SHAPES
+    by_kind(SHAPES)
+}
+
+fn tests() -> Value {
+    by_kind(TESTS)
+}
+
+/// One of some tables, by their key `kind` where they have one.
+fn by_kind(tables: &[Table]) -> Value {
+    let each: Vec<Value> = tables
         .iter()
         .map(|table| {
             let mut map = object(table);
@@ -337,7 +375,7 @@ pub(in crate::figure) mod tests {
     #[test]
     fn every_key_is_documented_with_an_example_that_is_right() {
         let text = reference();
-        for (_, table) in TABLES.iter().copied().chain(SHAPES.iter().map(|s| ("", s))) {
+        for (_, table) in TABLES.iter().copied().chain(SHAPES.iter().chain(TESTS).map(|s| ("", s))) {
             check_examples(table, &text);
         }
         for effect in all_effects() {

@@ -117,7 +117,7 @@ impl Reader<'_> {
         }
     }
 
-    fn choice(&mut self, fields: &Fields) -> Option<Choice> {
+    pub(super) fn choice(&mut self, fields: &Fields) -> Option<Choice> {
         let texts = |key| {
             let list = fields.node(key).and_then(Node::list)?;
             Some(list.iter().filter_map(|n| n.text().map(str::to_owned)).collect::<Vec<_>>())
@@ -213,6 +213,8 @@ pub(super) fn written(focus: &Focus, options: &Options) -> Option<String> {
         Focus::Objects(choice) => choice_written("objects", choice),
         Focus::Thematic(choice) => choice_written("thematic", choice),
         Focus::Combined { how, parts } => format!("{{ kind = \"{}\", shapes = {} }}", how.word(), all(parts)),
+        // A lens writes them as keys of its own.
+        Focus::Occluders(_) => return None,
         Focus::Enclosed { parts, whole, types } => {
             let mut out = format!("{{ kind = \"enclosed\", shapes = {}", all(parts));
             if *whole {
@@ -230,8 +232,12 @@ fn texts(all: &[String]) -> String {
     list(all.iter().map(|t| quoted(t)))
 }
 
-fn choice_written(kind: &str, choice: &Choice) -> String {
-    let mut out = format!("{{ kind = \"{kind}\"");
+/// A choice as its table, of a kind or (empty) of none.
+pub(super) fn choice_written(kind: &str, choice: &Choice) -> String {
+    let mut out = match kind {
+        "" => String::new(),
+        kind => format!(", kind = \"{kind}\""),
+    };
     if !choice.ids.is_empty() {
         let _ = write!(out, ", ids = {}", texts(&choice.ids));
     }
@@ -249,5 +255,5 @@ fn choice_written(kind: &str, choice: &Choice) -> String {
     if choice.except {
         out.push_str(", except = true");
     }
-    out + " }"
+    format!("{{ {} }}", out.trim_start_matches(", "))
 }

@@ -5,8 +5,9 @@ use crate::{
         animation::{self, ANIMATION},
         content::CONTENT,
         sprite::{SPRITE, SPRITE_CAMERA},
+        test_keys::CHOICE,
     },
-    lens::ramp,
+    lens::{Rendering, ramp},
 };
 
 /// What a key takes.
@@ -79,6 +80,14 @@ pub enum Kind {
     Effects,
     /// A number, or a list of numbers, or of such lists.
     Numbers,
+    /// A text, or texts.
+    Names,
+    /// A detection test: a table of [`super::test_keys::TESTS`].
+    Test,
+    /// Detection tests.
+    Tests,
+    /// A word of [`crate::lens::rendering::ROWS`], or effects.
+    Rendering,
 }
 
 /// Farthest a coordinate may lie from the origin, metres; beyond it f64 is coarser than a micrometre.
@@ -303,9 +312,8 @@ pub const LENS: Table = Table {
         key(
             "kind",
             Kind::Word {
-                now: &["color", "content"],
+                now: &["color", "content", "occlusion"],
                 later: &[
-                    "occlusion",
                     "deformation",
                     "best-view",
                     "map-view",
@@ -322,7 +330,7 @@ pub const LENS: Table = Table {
             },
             "\"color\"",
             "",
-            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it.",
+            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen; see Occlusion lenses.",
             "\"color\"",
         ),
         key(
@@ -362,7 +370,7 @@ pub const LENS: Table = Table {
             Kind::Shape,
             "",
             "",
-            "Its focus area; see Shapes. Or `shapes`.",
+            "Its focus area; see Shapes. Or `shapes`. An occlusion lens needs none; with one it acts on what of its occluders is in it.",
             "{ kind = \"sphere\", center = [0, 0, 0], radius = 60.0 }",
         ),
         key(
@@ -380,6 +388,46 @@ pub const LENS: Table = Table {
             "",
             "What it does, in order: names, or tables with parameters; see Effects. At most one scene style.",
             "[\"sepia\"]",
+        ),
+        key(
+            "poi",
+            Kind::Names,
+            "none",
+            "",
+            "Of an occlusion lens: what shall be seen, the name of a `[[poi]]`, or several. It never hides itself.",
+            "\"hall\"",
+        ),
+        key(
+            "test",
+            Kind::Test,
+            "{ kind = \"exact\" }",
+            "",
+            "Of an occlusion lens: when a city object hides something; see Detection tests.",
+            "{ kind = \"exact\", coverage = 0.05 }",
+        ),
+        key(
+            "force",
+            Kind::Table(&CHOICE),
+            "none",
+            "",
+            "Of an occlusion lens: city objects that hide something whatever the test says; never those of `poi`.",
+            "{ attribute = \"measuredHeight\", min = 60.0 }",
+        ),
+        key(
+            "forbid",
+            Kind::Table(&CHOICE),
+            "none",
+            "",
+            "Of an occlusion lens: city objects that stay as they are whatever the test and `force` say.",
+            "{ ids = [\"town-hall\"] }",
+        ),
+        key(
+            "render",
+            Kind::Rendering,
+            "\"discard\"",
+            "",
+            "Of an occlusion lens: how occluders are drawn; see Renderings. Or a list of effects, as `effects` takes them. `effects` come after.",
+            "\"discard\"",
         ),
         key(
             "content",
@@ -580,6 +628,13 @@ impl Kind {
             Self::Shapes => "a list of at least one shape".into(),
             Self::Numbers => "a number, or a list of numbers".into(),
             Self::Effects => "a list of effects: names or tables { effect = NAME, ... }".into(),
+            Self::Names => "a text that is not empty, or a list of at least one".into(),
+            Self::Test => "a table { kind = ..., ... }, { any = [...] }, { all = [...] } or { not = ... }".into(),
+            Self::Tests => "a list of at least one test".into(),
+            Self::Rendering => {
+                let words: Vec<String> = Rendering::words().map(|word| format!("\"{word}\"")).collect();
+                format!("{}, or a list of effects", words.join(" or "))
+            }
         }
     }
 }
@@ -598,6 +653,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("sprite of a lens", &SPRITE),
     ("camera of a sprite", &SPRITE_CAMERA),
     ("border of a lens", &BORDER),
+    ("force and forbid of a lens", &CHOICE),
     ("[figure]", &FIGURE),
     animation::TABLES[0],
     animation::TABLES[1],

@@ -10,11 +10,13 @@ pub mod document;
 mod focus;
 pub mod keys;
 pub(in crate::figure) mod node;
+mod occlusion;
 mod parse;
 mod paths;
 mod set;
 pub mod shape_keys;
 pub mod sprite;
+pub mod test_keys;
 mod write;
 
 use std::{fmt, io::Read, path::Path};

@@ -13,13 +13,14 @@ use crate::{
         focus::Reader,
         keys::{self, CLASSES, Kind},
         node::{Data, Node},
+        occlusion,
         paths::{Options, PathProblem},
         shape_keys, sprite,
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
         Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, Parameter,
-        Placement, effect,
+        Placement, Rendering, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -143,7 +144,7 @@ impl<'o> SceneReader<'o> {
     }
 
     fn style(&mut self, fields: &Fields) -> Style {
-        let (effects, _) = self.effects(fields, false);
+        let (effects, _) = self.effects(fields, "effects", false);
         let base = if fields.text("base") == Some("clay") { BaseStyle::Clay } else { BaseStyle::Natural };
         let background = fields.color("background").map_or(Background::Sky, Background::Color);
         let technique = fields.text("technique").and_then(Technique::of_word).unwrap_or_default();
@@ -171,8 +172,18 @@ impl<'o> SceneReader<'o> {
 
     fn lens(&mut self, fields: &Fields, index: usize) -> Lens {
         let placement = self.placement(fields);
-        let shapes = self.shapes(fields);
-        let (effects, of_effects) = self.effects(fields, true);
+        let is_occlusion = fields.text("kind") == Some(LensKind::Occlusion.word());
+        let mut shapes = self.shapes(fields, !is_occlusion);
+        let (effects, of_effects) = self.effects(fields, "effects", true);
+        let render = is_occlusion.then(|| self.rendering(fields, &effects));
+        if is_occlusion {
+            shapes = self.occluded(fields, shapes);
+        } else {
+            for key in occlusion::OWN.into_iter().filter(|key| fields.given(key)) {
+                let message = "has a meaning only for a lens of kind = \"occlusion\"";
+                self.checker.note(&fields.place, key, fields.line(key), message);
+            }
+        }
         let content = self.content(fields, of_effects);
         let is_saved = |shape: &Focus| matches!(shape, Focus::Sprite { .. });
         let has_saved = shapes.iter().any(|s| s.any(&is_saved));
@@ -195,11 +206,16 @@ impl<'o> SceneReader<'o> {
         }
         Lens {
             name: fields.text("name").map_or_else(|| format!("lens-{index}"), str::to_owned),
-            kind: if fields.text("kind") == Some("content") { LensKind::Content } else { LensKind::Color },
+            kind: match fields.text("kind") {
+                Some("content") => LensKind::Content,
+                Some("occlusion") => LensKind::Occlusion,
+                _ => LensKind::Color,
+            },
             enabled: fields.boolean("enabled").unwrap_or(true),
             color: fields.color("color").unwrap_or_else(|| lens_color(index)),
             placement,
             shapes,
+            render,
             effects,
             content,
             body: LensBody::WORDS
@@ -218,6 +234,47 @@ impl<'o> SceneReader<'o> {
             }),
             section: fields.color("section"),
         }
+    }
+
+    /// The focus areas of an occlusion lens with these shapes.
+    fn occluded(&mut self, fields: &Fields, shapes: Vec<Focus>) -> Vec<Focus> {
+        let saved = shapes.iter().position(|shape| matches!(shape, Focus::Sprite { .. }));
+        if saved.is_some() {
+            let key = if fields.given("shape") { "shape" } else { "shapes" };
+            let message = "a depth sprite cannot be combined with occluders; a shape of another kind would be right";
+            self.checker.note(&fields.place, key, fields.line(key), message);
+        }
+        let (checker, options, lacks_data) = (&mut self.checker, self.options, &mut self.lacks_data);
+        let of = occlusion::read(&mut Reader { checker, options, lacks_data }, fields);
+        occlusion::areas(of, shapes)
+    }
+
+    /// How an occlusion lens with these effects draws occluders.
+    fn rendering(&mut self, fields: &Fields, effects: &[EffectUse]) -> Rendering {
+        let render = match fields.node("render") {
+            None => Rendering::default(),
+            Some(node) => match node.text().and_then(Rendering::of_word) {
+                Some(render) => render,
+                None => {
+                    let (own, lod) = self.effects(fields, "render", true);
+                    if let Some((_, line)) = lod {
+                        let message = "\"lod\" shows something else in a lens; it stands in effects";
+                        self.checker.note(&fields.place, "render", line, message);
+                    }
+                    Rendering::of_effects(own)
+                }
+            },
+        };
+        let scene_style = |used: &&EffectUse| find_effect(&used.effect).is_some_and(|e| e.kind == EffectKind::Scene);
+        if let (Some(first), Some(second)) = (render.effects.iter().find(scene_style), effects.iter().find(scene_style))
+        {
+            let message = format!(
+                "\"{}\" is a second scene style beside \"{}\" of render; only one is possible",
+                second.effect, first.effect
+            );
+            self.checker.note(&fields.place, "effects", fields.line("effects"), message);
+        }
+        render
     }
 
     /// The content of a lens; `of_effects`: that of its effect `lod`, and the line of it.
@@ -288,13 +345,13 @@ impl<'o> SceneReader<'o> {
         Placement::World
     }
 
-    fn shapes(&mut self, fields: &Fields) -> Vec<Focus> {
+    fn shapes(&mut self, fields: &Fields, must: bool) -> Vec<Focus> {
         match (fields.given("shape"), fields.given("shapes")) {
             (true, true) => {
                 let message = "is given together with shape: put all of them into shapes";
                 self.checker.note(&fields.place, "shapes", fields.line("shapes"), message);
             }
-            (false, false) => {
+            (false, false) if must => {
                 let message = "is missing: a lens acts somewhere. For example shape = { kind = \"sphere\", center = [x, y, z], radius = 60.0 }";
                 self.checker.note(&fields.place, "shape", fields.place.line, message);
             }
@@ -377,13 +434,13 @@ impl<'o> SceneReader<'o> {
         Some(shape.into())
     }
 
-    /// The effects of a lens or of the context, and what its effect `lod` shows, with the line of that.
-    fn effects(&mut self, fields: &Fields, in_lens: bool) -> (Vec<EffectUse>, Option<(Content, u32)>) {
+    /// The effects of a lens or of the context that a key lists, and what its effect `lod` shows, with the line of that.
+    fn effects(&mut self, fields: &Fields, key: &str, in_lens: bool) -> (Vec<EffectUse>, Option<(Content, u32)>) {
         let mut effects = Vec::new();
         let mut content: Option<(Content, u32)> = None;
         let mut scene_style: Option<String> = None;
-        for (i, node) in fields.node("effects").and_then(Node::list).unwrap_or_default().iter().enumerate() {
-            let place = fields.place.within(&format!("effects.{i}"), node.line);
+        for (i, node) in fields.node(key).and_then(Node::list).unwrap_or_default().iter().enumerate() {
+            let place = fields.place.within(&format!("{key}.{i}"), node.line);
             let Some(used) = self.effect(node, &place, in_lens) else { continue };
             if used.effect == effect::LOD {
                 if content.is_some() {

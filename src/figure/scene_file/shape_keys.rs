@@ -24,7 +24,7 @@ const ROTATION: Key = key(
 const BASE: Key = key("base", Kind::Number { min: -FAR_M, max: FAR_M }, "", "m", "Height of its foot.", "0.0");
 const HIGH: Key =
     key("height", Kind::Number { min: 0.0, max: FAR_M }, "", "m", "From its foot to its top; 0 holds nothing.", "80.0");
-const IDS: Key = key(
+pub(super) const IDS: Key = key(
     "ids",
     Kind::Texts,
     "none: `attribute`",
@@ -32,7 +32,7 @@ const IDS: Key = key(
     "Ids of city objects; their parts belong to them.",
     "[\"town-hall\"]",
 );
-const ATTRIBUTE: Key = key(
+pub(super) const ATTRIBUTE: Key = key(
     "attribute",
     Kind::Text,
     "none: `ids`",
@@ -40,8 +40,9 @@ const ATTRIBUTE: Key = key(
     "Objects that have this attribute; one without it takes its parent's.",
     "\"yearOfConstruction\"",
 );
-const VALUES: Key = key("values", Kind::Texts, "any", "", "Only where the attribute is one of these.", "[\"school\"]");
-const MIN: Key = key(
+pub(super) const VALUES: Key =
+    key("values", Kind::Texts, "any", "", "Only where the attribute is one of these.", "[\"school\"]");
+pub(super) const MIN: Key = key(
     "min",
     Kind::Number { min: f64::MIN, max: f64::MAX },
     "none",
@@ -49,7 +50,7 @@ const MIN: Key = key(
     "Only where the attribute is at least this.",
     "1900.0",
 );
-const MAX: Key = key(
+pub(super) const MAX: Key = key(
     "max",
     Kind::Number { min: f64::MIN, max: f64::MAX },
     "none",
@@ -57,7 +58,7 @@ const MAX: Key = key(
     "Only where the attribute is at most this.",
     "1945.0",
 );
-const EXCEPT: Key = key("except", Kind::Boolean, "false", "", "All other objects instead.", "true");
+pub(super) const EXCEPT: Key = key("except", Kind::Boolean, "false", "", "All other objects instead.", "true");
 
 const PARTS: Key = key(
     "shapes",

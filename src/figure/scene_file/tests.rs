@@ -7,7 +7,7 @@ use crate::{
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
         Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
-        OwnEye, Parameter, Placement,
+        Occluders, OwnEye, Parameter, Placement, Rendering,
         chosen::Choice,
         sprite::{Format, Mapping},
     },
@@ -20,6 +20,7 @@ use crate::{
         Camera, Projection,
         path::{CameraKey, Speed},
     },
+    visibility::{Reference, Test},
 };
 
 const MINIMAL: &str = "veduta = 1\n";
@@ -283,12 +284,12 @@ fn every_mistake_in_a_lens_is_named() {
     }
     for (lines, expected) in [
         (
-            "kind = \"occlusion\"",
-            "s.toml:4: [lens.0] kind: \"occlusion\" is not available yet; available: color, content",
+            "kind = \"deformation\"",
+            "s.toml:4: [lens.0] kind: \"deformation\" is not available yet; available: color, content, occlusion",
         ),
         (
             "kind = \"colour\"",
-            "[lens.0] kind: must be \"color\" or \"content\", is \"colour\"; did you mean \"color\"?",
+            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\", is \"colour\"; did you mean \"color\"?",
         ),
         (
             "placement = \"camara\"",
@@ -651,8 +652,49 @@ prop_compose! {
     }
 }
 
+fn detections() -> impl Strategy<Value = Test> {
+    let reference = prop::sample::select(Reference::WORDS.map(|(_, reference)| reference).to_vec());
+    let up = || prop_oneof![Just(DVec3::Z), point().prop_filter_map("a direction", |v| v.try_normalize())];
+    let radius = || 0.0..1e3f64;
+    let one = prop_oneof![
+        (radius(), reference.clone()).prop_map(|(radius, reference)| Test::Spherical { radius, reference }),
+        (radius(), up()).prop_map(|(radius, up)| Test::Cylindrical { radius, up }),
+        (radius(), reference, up()).prop_map(|(radius, reference, up)| Test::ViewerHeight { radius, reference, up }),
+        Just(Test::ViewAxis),
+        radius().prop_map(|radius| Test::Ground { radius }),
+        (0.0..=1.0f64, 1..=65_536u32).prop_map(|(coverage, rays)| Test::Exact { coverage, rays }),
+        prop::collection::vec(point(), 2..4).prop_map(|points| Test::Route { points }),
+    ];
+    one.prop_recursive(2, 6, 3, |inner| {
+        (0..3, prop::collection::vec(inner, 1..3)).prop_map(|(how, mut parts)| match how {
+            0 => Test::Any(parts),
+            1 => Test::All(parts),
+            _ => Test::Not(Box::new(parts.remove(0))),
+        })
+    })
+}
+
+/// An occlusion lens's part of a lens: whom it looks for, and how it draws them.
+fn occluded() -> impl Strategy<Value = (Occluders, Rendering, bool)> {
+    let choice = |id: String| Choice { ids: vec![id], ..Choice::default() };
+    let choice = prop::option::of("[a-z\"]{1,5}".prop_map(choice));
+    let render = prop_oneof![
+        Just(Rendering::default()),
+        Just(Rendering::of_effects(vec![])),
+        // A second scene style beside those of `effects` is refused.
+        effects().prop_filter_map("no scene style", |used| {
+            (used.effect == "sepia").then(|| Rendering::of_effects(vec![used]))
+        }),
+    ];
+    let names = prop::collection::vec("[a-z\"]{1,5}", 1..3);
+    (names, detections(), choice.clone(), choice, render, any::<bool>()).prop_map(
+        |(pois, test, force, forbid, render, has_shape)| (Occluders { pois, test, force, forbid }, render, has_shape),
+    )
+}
+
 prop_compose! {
-    fn lenses()(shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
+    fn lenses()(occluded in prop::option::weighted(0.3, occluded()),
+        shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
         section in prop::option::of(prop::array::uniform3(0.0..=1.0f32))) -> Lens {
@@ -660,8 +702,14 @@ prop_compose! {
         let is_saved = |s: &Focus| matches!(s, Focus::Sprite { .. });
         let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
         let body = LensBody::WORDS[body].1;
-        let kind = if content.is_some() && is_content { LensKind::Content } else { LensKind::Color };
-        Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, content, body, sprite, border, section }
+        let mut kind = if content.is_some() && is_content { LensKind::Content } else { LensKind::Color };
+        let (mut shapes, mut render) = (shapes, None);
+        // Depth sprites are not combined.
+        if let Some((of, drawn, has_shape)) = occluded && !shapes.iter().any(|s| s.any(&is_saved)) {
+            (kind, render) = (LensKind::Occlusion, Some(drawn));
+            shapes = occlusion::areas(of, if has_shape { shapes } else { vec![] });
+        }
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, content, body, sprite, border, section }
     }
 }
 

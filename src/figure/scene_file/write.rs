@@ -8,13 +8,14 @@ use crate::{
     figure::scene_file::{
         animation,
         content::derive_keys,
+        occlusion,
         parse::{lens_color, rotation},
         paths::Options,
         sprite,
     },
     geom::{Shape, shape::FlatFigure},
     lens::{
-        BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
+        BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement, Rendering,
         color::{parse_hex, to_hex},
     },
     scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun, Technique},
@@ -128,9 +129,19 @@ impl Toml {
             Placement::Poi(name) => self.key("attached_to", &format!("{{ poi = {} }}", quoted(name))),
             Placement::Camera => self.key("placement", "\"camera\""),
         }
-        match &lens.shapes[..] {
+        occlusion::written(lens).into_iter().for_each(|(key, value)| self.key(key, &value));
+        let shapes: Vec<&Focus> = lens.shapes.iter().filter_map(Focus::own_shape).collect();
+        match &shapes[..] {
+            [] if lens.occluders().is_some() => {}
             [one] => self.key("shape", &focus(one, options)),
             many => self.key("shapes", &list(many.iter().map(|one| focus(one, options)))),
+        }
+        if let Some(render) = lens.render.as_ref().filter(|render| **render != Rendering::default()) {
+            let written = match render.word {
+                Some(word) => quoted(word),
+                None => list(render.effects.iter().map(effect)),
+            };
+            self.key("render", &written);
         }
         self.key_if(!lens.effects.is_empty(), "effects", &list(lens.effects.iter().map(effect)));
         if let Some(own) = &lens.content {

@@ -51,6 +51,7 @@ pub fn alone(scene: &Scene, model: &CityModel, id: &str) -> Scene {
         sprite: None,
         border: None,
         section: None,
+        render: None,
     }];
     alone
 }

@@ -1,0 +1,23 @@
+//! What is hidden, and by whom: occluder detection (spec O2; V §3.3.1), on the CPU, in f64.
+//!
+//! The unit is the root city object with all its parts ([`Units`]). A [`Test`] says when one is an occluder; [`Scope::detect`]
+//! asks it of a whole city and says of each occluder which parts of the test held ([`Detected`]). [`Memory`] keeps classes from
+//! flickering over time (O6).
+
+mod bounds;
+mod coverage;
+mod detect;
+mod memory;
+mod set;
+mod test;
+mod units;
+
+pub use coverage::Coverage;
+pub use detect::{Detected, Margin, Occluder, Query, Scope};
+pub use memory::{Memory, Pace};
+pub use set::Set;
+pub use test::{Reference, Test};
+pub use units::{Poi, Units, Viewer};
+
+#[cfg(test)]
+mod tests;
