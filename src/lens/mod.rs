@@ -130,7 +130,12 @@ impl LensKind {
 impl Lens {
     /// The classes it acts on, of what it does and shows.
     pub fn classes(&self) -> impl Iterator<Item = Class> {
-        self.uses().map(|e| e.class).chain(self.content.iter().map(|c| c.class))
+        self.uses().map(|e| e.class).chain(self.shown().map(|c| c.class))
+    }
+
+    /// What it shows in itself: its own content, or what it shows occluders as.
+    pub fn shown(&self) -> Option<&Content> {
+        self.content.as_ref().or_else(|| self.render.as_ref()?.content.as_ref())
     }
 
     /// What it does, in order: how it draws occluders, then its effects.

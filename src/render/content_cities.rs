@@ -74,7 +74,7 @@ impl ContentCities {
     pub fn of_scene(&mut self, stage: &Stage) -> Result<SceneContents, String> {
         let mut found = SceneContents::default();
         let lenses = stage.scene.lenses.iter().enumerate();
-        let with_content = || lenses.clone().filter_map(|(i, lens)| Some((i, lens, lens.content.as_ref()?)));
+        let with_content = || lenses.clone().filter_map(|(i, lens)| Some((i, lens, lens.shown()?)));
         // Numbers are those of all lenses, so that one that comes and goes changes no other.
         let mut numbers: Vec<&Content> = Vec::new();
         let mut used: Vec<ContentSource> = Vec::new();

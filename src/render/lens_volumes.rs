@@ -86,7 +86,7 @@ pub(super) fn volumes_of(scene: &Scene, city: ShownCity, eye: &Eye, tools: &mut 
             of_lens = saved;
         }
         for mut body in of_lens {
-            if let Some(content) = &lens.content {
+            if let Some(content) = lens.shown() {
                 body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city, content.derive.as_ref()));
             }
             let volume = volume_of(i as u32, lens, body, &place.motion)

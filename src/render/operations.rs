@@ -167,7 +167,7 @@ impl Operations {
             by_ray: lenses.iter().any(|l| l.soft_border().is_some_and(|b| b.unit == BorderUnit::Ray)),
             blends: uses().any(|e| blend_of(e).is_some()),
             lines: uses().any(|e| shader::effect::find(&e.effect).is_some_and(|h| h.lines)),
-            contents: lenses.iter().any(|l| l.content.is_some()),
+            contents: lenses.iter().any(|l| l.shown().is_some()),
             ..Uber::default()
         }
     }

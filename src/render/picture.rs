@@ -432,7 +432,7 @@ impl Studio {
 
     /// What lenses show in themselves, in a picture of this size.
     fn contents(&self, scene: &Scene, size: [u32; 2], volumes: &[LensVolume]) -> Result<SceneContents, RenderError> {
-        if scene.lenses.iter().all(|lens| lens.content.is_none()) {
+        if scene.lenses.iter().all(|lens| lens.shown().is_none()) {
             self.content_cities.lock().unwrap_or_else(PoisonError::into_inner).clear();
             return Ok(SceneContents::default());
         }

@@ -42,6 +42,7 @@ impl Studio {
             let (blend, weight, parameters) = (None, None, BTreeMap::new());
             scene.lenses[lens].effects = vec![EffectUse { effect, class: Class::Rest, blend, weight, parameters }];
             scene.lenses[lens].content = None;
+            scene.lenses[lens].render = None;
         }
         let found = self.sprites(&scene, size, lens)?;
         match &found[..] {

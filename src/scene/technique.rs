@@ -104,7 +104,7 @@ impl Technique {
         }
         for lens in &lenses {
             let name = &lens.name;
-            if lens.content.is_some() {
+            if lens.shown().is_some() {
                 return Some(format!("shows no contents of lenses, and lens \"{name}\" has one"));
             }
             let body = lens.drawn_body();

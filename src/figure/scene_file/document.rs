@@ -36,7 +36,9 @@ pub fn reference() -> String {
     }
     out += "## Renderings\n\nWords for `render` of an occlusion lens.\n\n| word | what one sees | made of |\n| --- | --- | --- |\n";
     for row in ROWS {
-        let made: Vec<String> = (row.effects)().into_iter().map(|used| format!("`{}`", used.effect)).collect();
+        let form = row.form.map(|form| format!("`content.derive = \"{}\"`", form.row().word));
+        let effects = (row.effects)().into_iter().map(|used| format!("`{}`", used.effect));
+        let made: Vec<String> = form.into_iter().chain(effects).collect();
         let _ = writeln!(out, "| `{}` | {} ({}) | {} |", row.word, row.doc, row.spec, made.join(", "));
     }
     out.push('\n');
