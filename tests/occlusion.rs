@@ -1,6 +1,8 @@
 //! Occlusion lenses (O2, O3): with `discard` all of a point of interest is seen, and nothing that does not hide it is gone. Oracle: the
 //! object ids of pictures, of the whole city and of the point of interest alone with the ground.
 
+#![allow(clippy::print_stdout, reason = "what was measured, for those who ask with --no-capture")]
+
 mod studio;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -114,20 +116,22 @@ fn discard_shows_all_of_a_point_of_interest_and_takes_nothing_else() {
 #[test]
 fn back_ends_agree_and_shadows_go() {
     let mut studio = synthetic(60);
-    let (mut scene, _) = views(&studio, 3).remove(2);
-    scene.sun.shadows = true;
-    let of = Occluders { pois: vec!["it".into()], ..Occluders::default() };
-    let plain = picture(&mut studio, &scene, SIZE);
-    scene.lenses = vec![occlusion(of)];
-    let mut draw = |backend| {
-        let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: false, backend };
-        studio.render(&scene, &request).expect("a picture")
-    };
-    let (a, b) = (draw(Backend::Specialised), draw(Backend::Uber));
-    assert!(a.rgba == b.rgba && a.object_id == b.object_id && a.lens_mask == b.lens_mask);
-    let same_surface = (0..plain.rgba.len()).filter(|&i| ids(&plain)[i] == ids(&a)[i] && ids(&a)[i] > 0);
-    let lit = same_surface.filter(|&i| plain.rgba[i] != a.rgba[i]).count();
-    assert!(lit > 20, "shadows of what is gone are gone: {lit}");
+    let mut lit = 0;
+    for (mut scene, _) in views(&studio, 8) {
+        scene.sun.shadows = true;
+        let of = Occluders { pois: vec!["it".into()], ..Occluders::default() };
+        let plain = picture(&mut studio, &scene, SIZE);
+        scene.lenses = vec![occlusion(of)];
+        let mut draw = |backend| {
+            let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: false, backend };
+            studio.render(&scene, &request).expect("a picture")
+        };
+        let (a, b) = (draw(Backend::Specialised), draw(Backend::Uber));
+        assert!(a.rgba == b.rgba && a.object_id == b.object_id && a.lens_mask == b.lens_mask);
+        let same_surface = (0..plain.rgba.len()).filter(|&i| ids(&plain)[i] == ids(&a)[i] && ids(&a)[i] > 0);
+        lit += same_surface.filter(|&i| plain.rgba[i] != a.rgba[i]).count();
+    }
+    assert!(lit > 100, "shadows of what is gone are gone: {lit}");
 }
 
 #[test]
@@ -155,7 +159,7 @@ fn with_a_shape_what_of_occluders_is_in_it_goes() {
         (both.iter().filter(|b| **b).count(), whole.iter().filter(|b| **b).count())
     });
     let (both, whole) = found.fold((0, 0), |(a, b), (c, d)| (a + c, b + d));
-    assert!(both > 500 && whole > 2 * both, "{both} of {whole}");
+    assert!(both > 500 && whole > both + 5_000, "{both} of {whole}");
 }
 
 #[test]
@@ -183,6 +187,9 @@ fn the_city_is_asked_again_only_where_the_answer_may_be_another() {
     let Focus::Occluders(of) = &mut scene.lenses[0].shapes[0] else { panic!("occluders") };
     of.test = Test::ViewAxis;
     assert_eq!(asked(&scene), 1, "another test, of one of both");
+    scene.lenses[0].enabled = false;
+    scene.camera = Some(Camera { eye: camera.eye + DVec3::Y, ..camera });
+    assert_eq!(asked(&scene), 1, "of one that is disabled nobody is looked for");
 }
 
 #[test]

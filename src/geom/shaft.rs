@@ -100,7 +100,7 @@ impl Face {
     fn side(&self, j: usize, eye: DVec3, p: DVec3) -> f64 {
         let [a, b] = self.line(j, eye);
         let side = robust::orient2d(a, b, plan(p, self.axes[0], self.axes[1 + j / 2])) * self.toward;
-        if j % 2 == 0 { side } else { -side }
+        if j.is_multiple_of(2) { side } else { -side }
     }
 
     /// The two ends of its edge at side `j`.
@@ -170,7 +170,7 @@ impl Face {
         }
         (0..4).all(|j| {
             let across = self.axes[1 + j / 2];
-            let out = if j % 2 == 0 { self.toward } else { -self.toward };
+            let out = if j == 0 || j == 2 { self.toward } else { -self.toward };
             let [along, over] = [self.plane - eye[axis], self.ends[j] - eye[across]];
             // along · (p_across − eye) − over · (p_axis − eye), at the corner where it is largest.
             let most = |factor: f64, k: usize| {

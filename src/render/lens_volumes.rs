@@ -48,12 +48,15 @@ pub(super) struct Tools<'a> {
     pub pois: &'a [Poi],
     /// From where.
     pub viewer: Viewer,
+    /// Whether the lens acts: of one that does not nobody is looked for.
+    pub is_enabled: bool,
 }
 
 /// Resolves the focus areas of a scene. An error names the key of the scene file.
 pub(super) fn volumes_of(scene: &Scene, city: ShownCity, eye: &Eye, tools: &mut Tools) -> Result<LensVolumes, String> {
     let mut all = LensVolumes::default();
     for (i, lens) in scene.lenses.iter().enumerate() {
+        tools.is_enabled = lens.enabled;
         // Attached to what is not there, it acts nowhere.
         let motion = eye.motion(lens, scene, city.model);
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
@@ -209,6 +212,7 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> 
 fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, FocusError> {
     let objects: Arc<[bool]> = match focus {
         Focus::Thematic(choice) => members(city.model, choice).into(),
+        Focus::Occluders(_) if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
         Focus::Occluders(of) => tools.occlusion.objects(of, tools.pois, city, tools.viewer),
         Focus::Enclosed { parts, whole, types } => objects_in(parts, (*whole, types), city, place, tools)?.into(),
         Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(tools.solids.sprite(file, city, &place.motion)?)]),

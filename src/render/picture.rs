@@ -367,8 +367,13 @@ impl Studio {
         let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
         let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
         let eye = Eye::new(&self.camera(scene, size))?;
-        let mut tools =
-            Tools { solids: &mut solids, occlusion: &mut occlusion, pois: &scene.pois, viewer: eye.viewer() };
+        let mut tools = Tools {
+            solids: &mut solids,
+            occlusion: &mut occlusion,
+            pois: &scene.pois,
+            viewer: eye.viewer(),
+            is_enabled: true,
+        };
         volumes_of(scene, city, &eye, &mut tools).map_err(RenderError::Scene)
     }
 

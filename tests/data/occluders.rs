@@ -2,6 +2,8 @@
 //! micrometre of the border of a shaft are told apart by no such clipping: where an object is an occluder by these alone it is left
 //! out, and counted.
 
+#![allow(clippy::print_stdout, reason = "what was measured, for those who ask with --no-capture")]
+
 use std::{path::Path, sync::Arc};
 
 use glam::DVec3;

@@ -74,8 +74,8 @@ fn read_test(checker: &mut Checker, node: &Node, place: &Place) -> Option<Test> 
         let all = kinds().collect::<Vec<_>>().join(", ");
         let (line, message) = match find("kind") {
             None => {
-                let hint = entries.iter().map(|(name, ..)| did_you_mean(name, joints.into_iter().chain(["kind"])));
-                let hint = hint.filter(|h| !h.is_empty()).next().unwrap_or_default();
+                let mut hints = entries.iter().map(|(name, ..)| did_you_mean(name, joints.into_iter().chain(["kind"])));
+                let hint = hints.find(|hint| !hint.is_empty()).unwrap_or_default();
                 (
                     node.line,
                     format!(
