@@ -6,7 +6,7 @@ use veduta::{
     city::load::{LoadOptions, Quiet, load},
     figure::scene_file::{self, Options},
     geom::{Volume, shape::Sightlines},
-    lens::Placement,
+    lens::{Focus, Placement},
     scene::{Scene, check_against},
     view::View,
 };
@@ -78,7 +78,12 @@ fn those_of_the_built_in_town_name_what_it_has() {
         assert_eq!(check_against(&scene, &model), [], "{}", path.display());
         for lens in scene.lenses.iter().filter(|l| l.placement == Placement::World) {
             let sight = Sightlines::From(scene.camera.unwrap().eye);
-            let volumes = lens.shapes.iter().flat_map(|s| s.volumes_seen(&sight).unwrap());
+            // Of whole objects: what they stand in.
+            let areas = lens.shapes.iter().flat_map(|shape| match shape {
+                Focus::Enclosed { parts, .. } => parts.iter().collect(),
+                shape => vec![shape],
+            });
+            let volumes = areas.flat_map(|s| s.volumes_seen(&sight).unwrap());
             let meets = volumes.into_iter().any(|v| v.bounds().meets(&model.extent()));
             assert!(meets, "{}: {} acts on nothing", path.display(), lens.name);
         }
