@@ -73,7 +73,10 @@ pub const SCENES: &[(&str, &str)] = scenes! {
 };
 
 /// The sheets that ship with it, by the names of their pictures; each varies one of the scenes.
-pub const SHEETS: &[(&str, &str)] = &[("colour-styles", include_str!("../../scenes/colour-styles.sheet.toml"))];
+pub const SHEETS: &[(&str, &str)] = &[
+    ("colour-styles", include_str!("../../scenes/colour-styles.sheet.toml")),
+    ("occlusion-styles", include_str!("../../scenes/occlusion-styles.sheet.toml")),
+];
 
 /// Arguments of `veduta gallery`.
 #[derive(Args, Clone, Debug)]

@@ -49,14 +49,14 @@ pub const ROWS: &[Row] = &[
         word: "transparent",
         spec: "O1, O3",
         doc: "Translucent, with their textures and colours.",
-        effects: || vec![with("transparent", &[("opacity", 0.08)])],
+        effects: || vec![with("transparent", &[("opacity", 0.18)])],
         form: None,
     },
     Row {
         word: "transparent-plain",
         spec: "O1, O3",
         doc: "Translucent, without them.",
-        effects: || vec![with("transparent", &[("opacity", 0.08)]), plain("clay")],
+        effects: || vec![with("transparent", &[("opacity", 0.18)]), plain("clay")],
         form: None,
     },
     Row {

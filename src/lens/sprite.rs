@@ -208,7 +208,8 @@ impl Format {
         match self {
             Self::Unorm8 => 0.5 / 255.0,
             Self::Unorm16 => 0.5 / 65_535.0,
-            Self::Uint32 => HALF_ULP * lambda + 0.5 / 4_294_967_296.0,
+            // Cut off, not rounded.
+            Self::Uint32 => HALF_ULP * lambda + 1.0 / 4_294_967_296.0,
             Self::Float16 => (lambda / 2048.0).max(0.5 / 16_777_216.0),
             Self::Float32 => HALF_ULP * lambda,
         }

@@ -77,8 +77,9 @@ pub fn share_in(studio: &mut Studio, scene: &Scene, id: &str) -> Result<Option<f
         Ok(ids.iter().map(is_of).collect())
     };
     let whole = shows(&alone(scene, &model, id))?;
-    let shown = shows(scene)?;
-    Ok(visible_share(&whole, |i| f64::from(u8::from(shown[i]))))
+    let seen = studio.transmittance(scene, scene.figure.size)?;
+    let is_of = |code: u32| code.checked_sub(1).and_then(|i| objects.get(i as usize)) == Some(&true);
+    Ok(visible_share(&whole, |i| if is_of(seen.object_id[i]) { f64::from(seen.through[i]) } else { 0.0 }))
 }
 
 #[cfg(test)]
