@@ -316,18 +316,18 @@ fn pass_times(studio: &mut Studio, frame: &Frame, pairs: usize) {
         statistics: true,
         backend: Backend::default(),
     };
-    let mut times: Vec<(String, u64, Vec<f64>)> = Vec::new();
+    let mut times: Vec<(String, [u64; 2], Vec<f64>)> = Vec::new();
     for round in 0..=pairs {
         let picture = studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}"));
         for (i, pass) in picture.statistics.passes.into_iter().enumerate().filter(|_| round > 0) {
             if times.len() == i {
-                times.push((pass.name, pass.triangles, Vec::new()));
+                times.push((pass.name, [u64::from(pass.draws), pass.triangles], Vec::new()));
             }
             times[i].2.extend(pass.gpu_ms);
         }
     }
-    for (name, triangles, ms) in times {
-        println!("{name:<22} {triangles:>9} triangles {:>9.2} ms", Estimate::of(&ms).map_or(f64::NAN, |e| e.median));
+    for (name, [draws, triangles], ms) in times {
+        println!("{name:<22} {draws:>6} draws {triangles:>9} triangles {:>9.2} ms", Estimate::of(&ms).map_or(f64::NAN, |e| e.median));
     }
 }
 

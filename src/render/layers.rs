@@ -289,7 +289,9 @@ impl Renderer {
             let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
             let DrawnSection { city, section, image, content, offset, .. } = drawn;
             let parts = Cut::parts(Some(draw.cut), &input.view, &chunks, content.is_some());
-            let Some((reached, _)) = parts.into_iter().find(|(_, is_reached)| *is_reached) else { continue };
+            let Some((mut reached, _)) = parts.into_iter().find(|(_, is_reached)| *is_reached) else { continue };
+            // What is opaque is there already, so the order is free: neighbours become one draw.
+            reached.sort_unstable_by_key(|chunk| chunk.range.start);
             let key = draw.keys.noting_key(section.kind.into(), city.buffers.smooth, early);
             pass.set_pipeline(self.pipelines.get(&key));
             pass.set_bind_group(1, &groups.cut_city, &[offset; 2]);
