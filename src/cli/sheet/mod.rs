@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::{
+    city::builtin,
     cli::{Failure, GlobalArguments, Outcome, output, render, terminal},
     figure::{
         file::write_whole,
@@ -143,7 +144,11 @@ fn json(drawn: &Drawn) -> serde_json::Value {
 pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalArguments) -> Outcome<Drawn> {
     let Task { name, sheet, scene, options } = task;
     // Folders of files that the command line put into the scene are named by that.
-    let named = scene.city.files.iter().filter_map(|file| file.parent()).map(Path::to_owned);
+    let folder = |file: &PathBuf| {
+        let folder = file.parent().filter(|_| !file.to_string_lossy().starts_with(builtin::PREFIX))?;
+        Some(if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_owned() })
+    };
+    let named = scene.city.files.iter().filter_map(folder);
     let roots = options.roots.iter().cloned().chain(named).collect();
     let of_sheet = Options { roots, ..options.clone() };
     let mut cells = sheet::cells(sheet, scene, name, &of_sheet).map_err(Failure::failed)?;
