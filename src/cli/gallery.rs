@@ -33,6 +33,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "delft-streets"
     "den-haag-district"
     "den-haag-sphere"
+    "den-haag-x-ray"
     "first-lens"
     "houses-on-the-way"
     "in-the-way"

@@ -68,6 +68,8 @@ impl LoadOptions {
 }
 
 fn absolute(path: &Path) -> PathBuf {
+    // The folder of `scene.toml` is written as nothing, which is no path: it would hold everything.
+    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
@@ -276,4 +278,17 @@ fn expand(paths: &[PathBuf]) -> Result<Vec<Found>, LoadError> {
 
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_of_no_name_is_the_current_one_and_no_other() {
+        let options = LoadOptions { roots: vec![PathBuf::new()], ..LoadOptions::default() };
+        assert!(options.allows(Path::new("Cargo.toml")) && options.allows(Path::new("citydata/cube.city.json")));
+        assert!(!options.allows(Path::new("../elsewhere.city.json")) && !options.allows(&std::env::temp_dir()));
+        assert!(matches!(options.sibling(Path::new("Cargo.toml"), "../elsewhere.png"), Sibling::Outside(_)));
+    }
 }
