@@ -1,4 +1,5 @@
-//! Who hides what: each detection test through the tree of boxes or triangles, against a look at all of them.
+//! Who hides what: each detection test through the tree of boxes or triangles, against a look at all of them (the exact test: at every
+//! triangle of every object whose box meets the box around the eye and a point of interest).
 //!
 //! `cargo bench --bench occluders [-- --pairs N] [FILE...]`: 40 eyes in the streets, each with ten points of interest near it;
 //! all of them one way and then the other in turn, and the median of the ratios with its 95 % interval. Both must find the same
@@ -155,6 +156,7 @@ fn every(model: &CityModel, units: &Units, standing: &[u32], test: &Test, (eye, 
                 let to = |poi: &Poi| segment_meets_box([*eye, units.box_of(*poi).center()], b);
                 holds_eye(b) || pois.iter().any(to)
             }
+            _ if !shafts.iter().any(|(_, target, _)| target.grown(*eye).meets(b)) => false,
             _ => corners(model, units, unit).iter().any(|t| {
                 let around = Aabb::from_points(*t);
                 let before = |(shaft, target, faces): &(BoxShaft, Aabb, Vec<TriangleShaft>)| {
