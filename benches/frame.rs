@@ -327,7 +327,10 @@ fn pass_times(studio: &mut Studio, frame: &Frame, pairs: usize) {
         }
     }
     for (name, [draws, triangles], ms) in times {
-        println!("{name:<22} {draws:>6} draws {triangles:>9} triangles {:>9.2} ms", Estimate::of(&ms).map_or(f64::NAN, |e| e.median));
+        println!(
+            "{name:<22} {draws:>6} draws {triangles:>9} triangles {:>9.2} ms",
+            Estimate::of(&ms).map_or(f64::NAN, |e| e.median)
+        );
     }
 }
 

@@ -11,7 +11,7 @@ use veduta::{
     lens::{EffectUse, Lens, Parameter, color},
     render::picture::{Aovs, Picture, Request, Studio},
     scene::Scene,
-    shader::{EffectDefinition, EffectKind, effects},
+    shader::{EffectDefinition, EffectKind, effect::find, effects},
     view::Camera,
 };
 
@@ -86,7 +86,7 @@ fn every_effect_changes_the_inside_and_nothing_else() {
         assert!(changed * 20 > inside, "{} changed {changed} of {inside} pixels", effect.name);
         assert_eq!(picture.statistics.handlers.as_slice(), std::slice::from_ref(&effect.name));
         // What shows after something was hidden may lie elsewhere.
-        let hides = effect.kind == EffectKind::Hide;
+        let hides = effect.kind.decides_visibility();
         assert!(hides || picture.statistics.lenses[0].pixels as usize == inside, "{}", effect.name);
     }
 }
@@ -420,15 +420,26 @@ fn draws_lines(effects: &[&str]) -> bool {
     effects.iter().any(|e| ["wireframe", "hidden-line"].contains(e))
 }
 
+/// Whether some of these effects are opacity rules.
+fn is_seen_through(effects: &[&str]) -> bool {
+    effects.iter().any(|name| find(name).is_some_and(|e| e.kind == EffectKind::Opacity))
+}
+
 /// The passes that a lens with these effects adds to a plain frame, from what the kinds of effects are.
 fn predicted(effects: &[&str]) -> Vec<String> {
     let filters = effects.iter().filter(|e| **e == "blur").count();
     let mut names = vec!["geometry", "clear lens masks"];
+    if is_seen_through(effects) {
+        names.push("layers");
+        names.extend(effects.contains(&"peel").then_some("count layers"));
+        names.push("composite");
+    }
     names.extend(draws_lines(effects).then_some("lines"));
     for _ in 0..filters {
         names.extend(["unfiltered", "filter down", "filter across"]);
     }
     names.push("shade");
+    names.extend(is_seen_through(effects).then_some("shown layers"));
     names.into_iter().map(str::to_owned).collect()
 }
 
@@ -451,9 +462,12 @@ fn each_effect_and_each_pair_adds_its_own_passes_and_handlers() {
         assert_eq!(ran, wanted);
         // Beside geometry: shading without and with the lens, of surfaces and of the sky; what a filter reads, and the filter.
         let filters = names.iter().filter(|n| **n == "blur").count();
-        let pipelines = statistics.pipelines.names.iter().filter(|n| !n.starts_with("geometry"));
+        let of_city = |n: &&String| n.starts_with("geometry") || n.starts_with("layers");
+        let pipelines = statistics.pipelines.names.iter().filter(|n| !of_city(n));
         let lines = usize::from(draws_lines(&names));
-        assert_eq!(pipelines.count(), 4 + 2 * filters + lines, "{:?}", statistics.pipelines.names);
+        // What lays layers over each other, what shows them to AOVs, and what counts them.
+        let layers = if is_seen_through(&names) { 2 + usize::from(names.contains(&"peel")) } else { 0 };
+        assert_eq!(pipelines.count(), 4 + 2 * filters + lines + layers, "{:?}", statistics.pipelines.names);
     }
 }
 

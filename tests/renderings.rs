@@ -46,7 +46,8 @@ fn every_rendering_shows_the_point_of_interest_and_takes_nothing_else_away() {
     let before = share_in(&mut studio, &plain, "church").expect("a picture").expect("it is in the picture");
     assert!(before < 0.6, "it is hidden: {before}");
     let told = studio.render(&scene, &request(Backend::Specialised, true)).expect("a picture");
-    let occluders: BTreeSet<String> = told.statistics.lenses[0].occluders.iter().flatten().map(|o| o.id.clone()).collect();
+    let occluders: BTreeSet<String> =
+        told.statistics.lenses[0].occluders.iter().flatten().map(|o| o.id.clone()).collect();
     assert!(occluders.len() > 5, "{occluders:?}");
     let seen = studio.render(&plain, &request(Backend::Specialised, true)).expect("a picture").object_id.expect("ids");
     let ids: BTreeSet<u32> = seen.into_iter().filter(|id| *id > 0).collect();

@@ -61,6 +61,9 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "trapp-3-2-3-a"
     "trapp-3-2-3-b"
     "trapp-3-2-3-c"
+    "trapp-3-3-2-a"
+    "trapp-3-3-2-b"
+    "trapp-3-3-2-c"
     "trapp-3-5-1"
     "trapp-3-5-2-a"
     "trapp-3-5-2-b"
@@ -70,6 +73,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "trapp-3-5-3-c"
     "vienna-roofs"
     "vienna-shapes"
+    "who-hides-the-church"
     "window"
 };
 

@@ -30,8 +30,8 @@ use crate::{
 
 /// What notes take at most, bytes: what exceeds it is drawn in bands.
 pub const LAYER_BYTES: u64 = 96 << 20;
-/// Notes that there is room for before anything is known, per pixel.
-const FIRST_GUESS: u64 = 2;
+/// Notes that there is room for before anything is known: per pixel, and at least.
+const FIRST_GUESS: [u64; 2] = [2, 1 << 16];
 /// Bands of a picture at most; of what is left over, the excess is counted.
 const MOST_BANDS: usize = 4096;
 /// Words of the lists before those of the pixels: how many notes there are, how many layers at most.
@@ -180,7 +180,7 @@ impl Renderer {
         own.heads.fit(&self.gpu, 4 * (HEADER + u64::from(size[0]) * u64::from(size[1])))?;
         let most = self.most_layers.unwrap_or(LAYER_BYTES / (4 * words));
         let pixels = u64::from(region.size[0]) * u64::from(region.size[1]);
-        own.notes.fit(&self.gpu, 4 * words * most.min(FIRST_GUESS * pixels))?;
+        own.notes.fit(&self.gpu, 4 * words * most.min((FIRST_GUESS[0] * pixels).max(FIRST_GUESS[1])))?;
         let mut bands = vec![region];
         let mut fitting: Vec<(PictureTile, u64)> = Vec::new();
         let mut figures = LayerFigures::default();
