@@ -415,7 +415,7 @@ fn span_files(program: &Program) -> Vec<(&'static str, &'static str)> {
 const NOTHING_CUT: &str = "fn cut(at: vec2f, depth: f32, code: u32) {}\n";
 
 /// How many notes of a list `pass/composite.wgsl` finds at a time.
-const FOUND: u32 = 8;
+const FOUND: u32 = 16;
 
 /// Where the depth test comes before the shader.
 const EARLY: &str = " @early_depth_test(force)";

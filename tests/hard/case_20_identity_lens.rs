@@ -10,7 +10,7 @@ use veduta::{
         picture::{Aovs, Picture, Request, Studio},
     },
     scene::{Background, Scene},
-    shader::{EffectKind, Mode, handlers},
+    shader::{Mode, handlers},
     view::Camera,
 };
 
@@ -49,7 +49,7 @@ fn identities(middle: DVec3) -> Vec<(String, Lens)> {
         }),
     ];
     // Every effect that is laid over what is below, with nothing of its own; on each class, with borders and without.
-    let laid = |h: &&veduta::shader::EffectDefinition| h.mode == Mode::Local && h.kind != EffectKind::Hide;
+    let laid = |h: &&veduta::shader::EffectDefinition| h.mode == Mode::Local && !h.kind.decides_visibility();
     for (i, handler) in handlers().iter().filter(laid).enumerate() {
         let class = [Class::Inside, Class::Front, Class::Behind, Class::Rest][i % 4];
         let mut parameters = BTreeMap::new();
