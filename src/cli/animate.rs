@@ -40,7 +40,7 @@ The scene has a table [animation] (docs/scene.md). DIR gets 0000.png, 0001.png, 
 #[derive(Args, Clone, Debug, Default)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// A scene with an [animation]; `-` for stdin
+    /// A scene with a table `[animation]`; `-` for stdin
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     /// The folder to write to; made where it is missing
