@@ -1,4 +1,5 @@
-//! The built-in cities, so that there is something to look at without any file: `builtin:square`, `builtin:town`.
+//! The built-in cities, so that there is something to look at without any file: `builtin:square`, `builtin:town`,
+//! `builtin:rooms`.
 
 use std::path::Path;
 
@@ -16,10 +17,11 @@ enum Origin {
     Generator(SynthOptions),
 }
 
-/// Names after the prefix: a hand-made market square, and streets and blocks by the generator.
+/// Names after the prefix: a hand-made market square, streets and blocks by the generator, and a house with rooms.
 const CITIES: &[(&str, Origin)] = &[
     ("square", Origin::File(include_bytes!("../../citydata/square.city.json"))),
     ("town", Origin::Generator(SynthOptions { buildings: 400, seed: 7 })),
+    ("rooms", Origin::File(include_bytes!("../../citydata/rooms.city.json"))),
 ];
 
 fn find(path: &str) -> Option<Origin> {
@@ -52,14 +54,14 @@ mod tests {
     use crate::city::load::{LoadOptions, Quiet, load};
 
     #[test]
-    fn both_load_and_nothing_else_is_built_in() {
-        for (name, objects) in [("builtin:square", 20), ("builtin:town", 400)] {
+    fn all_load_and_nothing_else_is_built_in() {
+        for (name, objects) in [("builtin:square", 20), ("builtin:town", 400), ("builtin:rooms", 21)] {
             let model = load(&[name.into()], &LoadOptions::default(), &Quiet).unwrap();
             assert!(model.objects.len() >= objects && model.warnings.is_empty(), "{name}: {}", model.objects.len());
             assert!(!model.extent().is_empty());
         }
         assert_eq!(read(Path::new("builtin:moon")), None);
-        let message = "there is no \"builtin:moon\"; built in: builtin:square, builtin:town";
+        let message = "there is no \"builtin:moon\"; built in: builtin:square, builtin:town, builtin:rooms";
         assert_eq!(check("builtin:moon"), Err(message.into()));
     }
 }

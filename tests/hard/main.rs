@@ -16,10 +16,14 @@ mod case_11_rays_through_edges;
 mod case_12_slivers;
 mod case_13_dirty_rings;
 mod case_14_non_planar_faces;
+mod case_15_layer_room;
+mod case_16_translucency;
 mod case_20_identity_lens;
 mod case_21_extreme_views;
 mod case_23_jitter;
 mod lenses;
 mod oracle;
+#[path = "../panes/mod.rs"]
+mod panes;
 #[path = "../studio/mod.rs"]
 mod studio;

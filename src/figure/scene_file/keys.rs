@@ -190,7 +190,7 @@ pub const CITY: Table = Table {
             Kind::Texts,
             "none",
             "",
-            "City files or folders, relative to the scene file; several make one city. `${VEDUTA_DATA}` stands for the folder that variable names, `builtin:square` and `builtin:town` for the built-in cities.",
+            "City files or folders, relative to the scene file; several make one city. `${VEDUTA_DATA}` stands for the folder that variable names, `builtin:square`, `builtin:town` and `builtin:rooms` for the built-in cities.",
             "[\"city.city.json\"]",
         ),
         key("lod", Kind::Lod, "the finest there is", "", "Shows no level of detail finer than this.", "\"1.3\""),
