@@ -9,11 +9,12 @@
 @group(3) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
 @group(3) @binding(1) var<storage, read> notes: array<u32>;
 
-const FIRST_HEAD: u32 = 2u;
+const FIRST_HEAD: u32 = 3u;
 const NOTED_CODE: u32 = 0x07ffffffu;
 override SORTED: bool = false;  // whether lists are in order
 // Mesa's software driver ends the loops of a shader after 65535 rounds in all.
 const MOST_ROUNDS: u32 = 50000u;
+const LONGEST: u32 = 2u;        // the word of `heads` that has the length of the longest list that was not done
 const MOST_LAYERS: u32 = 1u;    // the word of `heads` that has the largest number of layers of a pixel
 // What is let through below this is not seen, whatever its colour.
 const NOTHING_SEEN: f32 = 5.9604645e-8;     // 2^-24
@@ -157,7 +158,7 @@ fn composite(in: Corner) -> Composite {
         }
         is_left = laid < count && through >= NOTHING_SEEN;
         if is_left && !SORTED && rounds + count > MOST_ROUNDS {
-            atomicMax(&heads[MOST_LAYERS], count);
+            atomicMax(&heads[LONGEST], count);
             is_left = false;
         }
         if !is_left {

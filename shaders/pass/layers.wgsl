@@ -8,7 +8,7 @@ override TEXTURED: bool = false;    // whether the picture has textures
 
 // What is in the first words of `heads`; those of the pixels follow.
 const NOTED: u32 = 0u;              // how many notes there are, those without room included
-const FIRST_HEAD: u32 = 2u;
+const FIRST_HEAD: u32 = 3u;
 // The bits of a noted number that are that of the surface. Above them is how many layers of a plane may be over this one.
 const NOTED_CODE: u32 = 0x07ffffffu;
 const PLANE_SHIFT: u32 = 27u;

@@ -4,8 +4,8 @@
 @group(0) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
 @group(0) @binding(1) var<storage, read_write> notes: array<u32>;
 
-const MOST_LAYERS: u32 = 1u;
-const FIRST_HEAD: u32 = 2u;
+const LONGEST: u32 = 2u;
+const FIRST_HEAD: u32 = 3u;
 override WORDS: u32 = 3u;           // of a note
 override WIDTH: u32 = 1u;
 
@@ -68,5 +68,5 @@ fn sort(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     if last != 0u {
         notes[(last - 1u) * WORDS] = 0u;
     }
-    atomicMax(&heads[MOST_LAYERS], count);
+    atomicMax(&heads[LONGEST], count);
 }

@@ -34,8 +34,9 @@ pub const LAYER_BYTES: u64 = 96 << 20;
 const FIRST_GUESS: [u64; 2] = [2, 1 << 16];
 /// Bands of a picture at most; of what is left over, the excess is counted.
 const MOST_BANDS: usize = 4096;
-/// Words of the lists before those of the pixels: how many notes there are, how many layers at most.
-const HEADER: u64 = 2;
+/// Words of the lists before those of the pixels: how many notes there are, how many layers at most, the longest list that was not
+/// done.
+const HEADER: u64 = 3;
 /// Storage buffers that a shader of layers binds: two of lists, and what lens tests read.
 const BUFFERS: u32 = 8;
 /// What to do where the card has no such buffer.
@@ -173,7 +174,7 @@ impl Renderer {
                 LayersOnGpu {
                     heads: Room::new(&self.gpu, "lists of layers", lists, SMALLER)?,
                     notes: Room::new(&self.gpu, "layers", usage, SMALLER)?,
-                    counted: self.gpu.empty_buffer("number of layers", read, 8)?,
+                    counted: self.gpu.empty_buffer("number of layers", read, 4 * HEADER)?,
                 }
             }
         };
@@ -188,11 +189,14 @@ impl Renderer {
         let counts_first = draw.keys.count.is_some();
         while let Some(band) = bands.pop() {
             let mut room = most.min(own.notes.buffer().size() / (4 * words));
-            let mut notes = self.note_layers(&mut encoder, recorder, input, draw, &own, (band, room * words))?;
+            let [mut notes, longest] =
+                self.note_layers(&mut encoder, recorder, input, draw, &own, (band, room * words))?;
+            // The last frame says how long its lists were: nobody may have asked since.
+            self.longest_list = self.longest_list.max(if fitting.is_empty() { longest as u32 } else { 0 });
             if notes > room && room < most {
                 own.notes.fit(&self.gpu, 4 * words * notes.min(most))?;
                 room = most.min(own.notes.buffer().size() / (4 * words));
-                notes = self.note_layers(&mut encoder, recorder, input, draw, &own, (band, room * words))?;
+                [notes, _] = self.note_layers(&mut encoder, recorder, input, draw, &own, (band, room * words))?;
             }
             let is_last = fitting.len() + bands.len() + 1 >= MOST_BANDS || most == 0;
             if let Some(parts) = halves(band).filter(|_| notes > room && !is_last) {
@@ -200,7 +204,7 @@ impl Renderer {
                 continue;
             }
             if fitting.is_empty() {
-                encoder.clear_buffer(own.heads.buffer(), 4, Some(4));
+                encoder.clear_buffer(own.heads.buffer(), 4, Some(8));
             }
             figures.notes += notes;
             figures.bands += 1;
@@ -239,7 +243,8 @@ impl Renderer {
         });
     }
 
-    /// Notes the layers of a band, and reads how many there are. `encoder` is submitted and begun anew.
+    /// Notes the layers of a band, and reads how many there are, and the longest list that the lists before told of. `encoder` is
+    /// submitted and begun anew.
     fn note_layers(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -248,8 +253,8 @@ impl Renderer {
         draw: &LayerDraw,
         own: &LayersOnGpu,
         (band, words): (PictureTile, u64),
-    ) -> Result<u64, GpuError> {
-        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return Ok(0) };
+    ) -> Result<[u64; 2], GpuError> {
+        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return Ok([0; 2]) };
         let layouts = &self.pipelines.layouts;
         encoder.clear_buffer(own.heads.buffer(), 0, Some(4));
         encoder.clear_buffer(own.heads.buffer(), 4 * HEADER, None);
@@ -312,11 +317,14 @@ impl Renderer {
         }
         drop(pass);
         recorder.count(counted.0, counted.1);
-        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 8);
+        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let done = std::mem::replace(encoder, self.gpu.device.create_command_encoder(&descriptor));
         self.gpu.queue.submit([done.finish()]);
-        self.gpu.mapped(&own.counted, |bytes| u64::from(bytemuck::pod_read_unaligned::<u32>(&bytes[..4])))
+        self.gpu.mapped(&own.counted, |bytes| {
+            let [notes, _, longest] = bytemuck::pod_read_unaligned::<[u32; HEADER as usize]>(&bytes[..12]);
+            [notes, longest].map(u64::from)
+        })
     }
 
     /// Goes through all lists of a picture of this size.
@@ -435,9 +443,9 @@ impl Renderer {
         let Some(own) = self.layers.as_ref().filter(|_| self.layer_figures.notes > 0) else { return Ok(false) };
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("longest list") };
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
-        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 8);
+        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER);
         self.gpu.queue.submit([encoder.finish()]);
-        let longest = self.gpu.mapped(&own.counted, |bytes| bytemuck::pod_read_unaligned::<u32>(&bytes[4..8]))?;
+        let longest = self.gpu.mapped(&own.counted, |bytes| bytemuck::pod_read_unaligned::<u32>(&bytes[8..12]))?;
         let is_longer = longest > self.longest_list;
         if is_longer {
             self.longest_list = longest;

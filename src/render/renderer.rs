@@ -256,7 +256,7 @@ impl Renderer {
     /// Puts a city on the card in place of the last one.
     pub fn set_city(&mut self, shown: &Shown) -> Result<(), GpuError> {
         self.city = None;
-        self.longest_list = 0;
+        (self.layers, self.longest_list) = (None, 0);
         self.contents = Contents::default();
         self.city = Some(self.city_on_gpu(shown)?);
         self.groups = None;

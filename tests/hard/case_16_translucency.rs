@@ -76,10 +76,13 @@ fn ten_thousand_layers_are_laid_over_each_other() {
     let size = [4, 4];
     let a = f64::from(0.0003_f32);
     let scene = of_context(vec![rule("transparent", &[("opacity", a)], None, false)]);
+    // Frame by frame, the third knows how long the lists of the first were.
+    let frames = [(); 3].map(|()| veil(&mut studio, &scene, Backend::Specialised, size));
     // A picture is drawn anew where lists turn out to be long; the next frame knows.
     let base = Request { size, aovs: Aovs::default(), ..request(Backend::Specialised) };
     studio.render(&scene, &base).expect("a picture");
     let found = veil(&mut studio, &scene, Backend::Specialised, size);
+    assert_eq!(frames[2], found);
     // One of each material is enough to know the colours.
     let own: Vec<[f32; 3]> = (0..MATERIALS.len())
         .map(|i| {
