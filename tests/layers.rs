@@ -134,6 +134,26 @@ fn the_shown_surface_is_where_half_of_the_light_comes_from() {
 }
 
 #[test]
+fn a_lens_out_of_view_leaves_no_layers_behind() {
+    let mut random = Random(8);
+    let all = panes(5, &mut random);
+    let mut studio = studio_of(&all);
+    let at = |x: f64| {
+        let shape = Shape::Sphere { center: DVec3::new(x, 5.0, 5.0), radius: 6.0 };
+        let clear = with_numbers("transparent", &[("opacity", 0.2)]);
+        scene(camera(), vec![Lens { effects: vec![clear], ..lens("l", vec![shape], "eraser") }])
+    };
+    for backend in [Backend::Uber, Backend::Specialised] {
+        let mut drawn = |scene: &Scene| studio.render(scene, &request(backend)).expect("a picture").rgba;
+        let plain = drawn(&scene(camera(), vec![]));
+        // Never in view before, then in view, and gone again.
+        assert_eq!(drawn(&at(-900.0)), plain, "{backend:?}");
+        assert_ne!(drawn(&at(0.0)), plain, "{backend:?}");
+        assert_eq!(drawn(&at(-900.0)), plain, "{backend:?}");
+    }
+}
+
+#[test]
 fn what_is_opaque_is_known_behind_layers() {
     let mut random = Random(12);
     let mut all = panes(7, &mut random);

@@ -22,6 +22,8 @@ pub struct Invokers {
     hides: [u32; 2],
     lines: [u32; 2],
     contents: [u32; 2],
+    /// Whether something is seen through.
+    has_layers: bool,
     /// Outside of all lenses, and where they may be seen.
     sections: [[Vec<Entry>; SECTIONS]; 2],
 }
@@ -33,7 +35,7 @@ impl Invokers {
         [hiding, lining, layering]: [Option<&Plan>; 3],
         handlers: &[EffectDefinition],
     ) -> Self {
-        let mut out = Self::default();
+        let mut out = Self { has_layers: layering.is_some(), ..Self::default() };
         let first = out.all.len() as u32;
         if let Some(plan) = hiding {
             let volumes = volumes_before(plan);
@@ -128,7 +130,7 @@ impl Invokers {
     /// The table as `shader::uber` declares it, for a picture of this size.
     pub fn table(&self, size: [u32; 2]) -> Vec<u32> {
         let [from, to] = self.contents;
-        [self.hides, self.lines, [size[0].div_ceil(TILE_PX), from], [to, 0]].concat()
+        [self.hides, self.lines, [size[0].div_ceil(TILE_PX), from], [to, u32::from(self.has_layers)]].concat()
     }
 
     /// Where each may act, if the plan's lenses do in these rooms: everywhere if it acts on more than what is inside.

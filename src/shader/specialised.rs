@@ -296,7 +296,7 @@ impl Writer<'_> {
             text.push_str("    return start;\n}\n\n");
             return text;
         }
-        text.push_str(&laid_over(self.plan.lines, self.plan.veils));
+        text.push_str(&laid_over(self.plan.lines, if self.plan.veils { WITH_VEIL } else { "" }));
         for (i, PlanBody { kind, parameters }) in bodies {
             let (color, width) = (format!("parameters[{parameters}]"), format!("parameters[{}].x", parameters + 1));
             match kind {
@@ -359,8 +359,7 @@ pub(super) fn kernel(filter: &EffectDefinition) -> String {
 }
 
 /// What stands over the shaded picture and below the bodies of lenses: lines of the city, and translucent layers over these.
-pub(super) fn laid_over(lines: bool, veils: bool) -> String {
-    let veiled = if veils { "    paint = with_veil(paint, pixel);\n" } else { "" };
+pub(super) fn laid_over(lines: bool, veiled: &str) -> String {
     let start = if lines { "with_lines(start, pixel)" } else { "start" };
     format!("    var paint = {start};\n{veiled}")
 }
@@ -372,6 +371,8 @@ pub(super) const MASKS: &str = "// Layers, per 32 lenses: inside, in front, behi
 /// A shader that stores may run before the depth test that chooses between surface and background.
 pub(super) const ONLY_SHOWN: &str = "    // This may run before the depth test that chooses between surface and background.\n    \
     if (textureLoad(scene_depth, pixel, 0) > 0.0) != (point.surface != NO_SURFACE) {\n        return;\n    }\n";
+
+const WITH_VEIL: &str = "    paint = with_veil(paint, pixel);\n";
 
 /// What shows a layer has that one's classes.
 pub(super) const NOT_THROUGH_LAYERS: &str = "    if is_layer_shown(pixel) {\n        return;\n    }\n";

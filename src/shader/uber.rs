@@ -57,12 +57,12 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     }
     let outlines = if parts.bodies { outlines_of(&uber.bodies) } else { NO_OUTLINES.to_owned() };
     let plain = "    var paint = start;\n";
-    text.push_str(&outlines.replace(plain, &laid_over(uber.lines, uber.veils)));
+    text.push_str(&outlines.replace(plain, &laid_over(uber.lines, if uber.veils { WITH_VEIL } else { "" })));
     text.push_str("fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n");
     if uber.masks && !uber.tests.is_empty() {
         text.push_str(ONLY_SHOWN);
         if uber.veils {
-            text.push_str(NOT_THROUGH_LAYERS);
+            text.push_str(&NOT_THROUGH_LAYERS.replace("if ", "if table.tiles.w != 0u && "));
         }
         text.push_str(WRITE_CLASSES);
     }
@@ -77,6 +77,9 @@ pub(super) fn opacity(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     text.push_str(&each(uber, "OPACITIES", "opacity = invoke_opacity(opacity, point, by);"));
     text + "    return opacity;\n}\n"
 }
+
+/// Where nothing is seen through in a frame, the layers are those of another.
+const WITH_VEIL: &str = "    if table.tiles.w != 0u {\n        paint = with_veil(paint, pixel);\n    }\n";
 
 /// Which classes a place has, and which invokers run there.
 pub(super) fn classes(uber: &Uber) -> String {
@@ -308,7 +311,7 @@ struct PackedInvoker {
 
 struct InvokerTable {
     ranges: vec4u,              // from up to (not included): what hides; what lines go through
-    tiles: vec4u,               // x: tiles of the picture in a row; y, z: contents of lenses, from up to
+    tiles: vec4u,               // x: tiles of the picture in a row; y, z: contents of lenses, from up to; w: 1 where there are layers
 }
 
 // A uniform, as it always was: with none at this place Mesa 22.3 takes others for each other, and crashes.
