@@ -17,6 +17,7 @@ pub mod eye;
 mod filters;
 mod flat;
 pub mod frame;
+mod frame_keys;
 pub mod furniture;
 mod furniture_passes;
 pub mod hiding;
