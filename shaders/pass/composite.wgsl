@@ -9,7 +9,7 @@
 @group(3) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
 @group(3) @binding(1) var<storage, read> notes: array<u32>;
 
-const FIRST_HEAD: u32 = 3u;
+const FIRST_HEAD: u32 = 272u;
 const NOTED_CODE: u32 = 0x07ffffffu;
 override SORTED: bool = false;  // whether lists are in order
 // Mesa's software driver ends the loops of a shader after 65535 rounds in all.

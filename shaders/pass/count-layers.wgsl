@@ -4,7 +4,7 @@
 @group(0) @binding(1) var<storage, read_write> notes: array<u32>;
 
 const MOST_LAYERS: u32 = 1u;
-const FIRST_HEAD: u32 = 3u;
+const FIRST_HEAD: u32 = 272u;
 override WORDS: u32 = 3u;           // of a note
 
 @compute @workgroup_size(64)

@@ -1,14 +1,23 @@
 // Translucent layers (O7): every fragment that is seen through is noted in a list of its pixel. `pass/composite.wgsl` sorts them.
 //
 // A list begins at `heads` and goes on from note to note. A note has three words and, where the picture has them, a normal per
-// vertex and a colour of a texture. Notes that find no room are counted all the same: the host sees it, and draws what
-// did not fit in narrower bands.
+// vertex and a colour of a texture.
+//
+// Where there is much room, it is shared out between pools, one for each tile of the picture in turn, and what a pool has no
+// room for spills into the rest: processors that draw different tiles neither count with the same counter nor write
+// side by side. Notes that find no room are counted all the same: the host sees it, and draws what did not fit in narrower bands.
 
 override TEXTURED: bool = false;    // whether the picture has textures
 
 // What is in the first words of `heads`; those of the pixels follow.
-const NOTED: u32 = 0u;              // how many notes there are, those without room included
-const FIRST_HEAD: u32 = 3u;
+const SPILLED: u32 = 0u;            // how many notes their pool had no room for
+const FIRST_POOL: u32 = 16u;        // how many notes a pool was to take, those that spilled included; each in a line of its own
+const FIRST_HEAD: u32 = 272u;
+
+// As the host counts (`render::layers`).
+const POOLS: u32 = 16u;
+const MANY: u32 = 65536u;           // notes that there is room for: with less there is one pool
+const TILE_SHIFT: u32 = 6u;         // tiles of 64 pixels, as software adapters draw them
 // The bits of a noted number that are that of the surface. Above them is how many layers of a plane may be over this one.
 const NOTED_CODE: u32 = 0x07ffffffu;
 const PLANE_SHIFT: u32 = 27u;
@@ -28,12 +37,22 @@ fn note(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) {
     if !is_layer(fragment_at(at, depth, code)) {
         return;
     }
-    let number = atomicAdd(&heads[NOTED], 1u);
-    let place = number * note_words();
-    if place + note_words() > arrayLength(&notes) {
+    let pixel = vec2u(at);
+    let tile = pixel >> vec2u(TILE_SHIFT);
+    let room = arrayLength(&notes) / note_words();
+    let has_pools = room >= MANY;
+    let pool = select(0u, (tile.x + 5u * tile.y) % POOLS, has_pools);
+    let each = select(room, room / 64u * 3u, has_pools);
+    var number = atomicAdd(&heads[FIRST_POOL + 16u * pool], 1u);
+    if number < each {
+        number += pool * each;
+    } else {
+        number = select(1u, POOLS, has_pools) * each + atomicAdd(&heads[SPILLED], 1u);
+    }
+    if number >= room {
         return;
     }
-    let pixel = vec2u(at);
+    let place = number * note_words();
     notes[place] = atomicExchange(&heads[FIRST_HEAD + pixel.y * u32(view.size.x) + pixel.x], number + 1u);
     notes[place + 1u] = bitcast<u32>(depth);
     notes[place + 2u] = code | plane;

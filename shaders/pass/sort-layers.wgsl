@@ -5,7 +5,7 @@
 @group(0) @binding(1) var<storage, read_write> notes: array<u32>;
 
 const LONGEST: u32 = 2u;
-const FIRST_HEAD: u32 = 3u;
+const FIRST_HEAD: u32 = 272u;
 override WORDS: u32 = 3u;           // of a note
 override WIDTH: u32 = 1u;
 

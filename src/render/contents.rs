@@ -13,7 +13,7 @@ use crate::{
     geom::Aabb,
     gpu::GpuError,
     render::{
-        city::{Chunk, CityBuffers, Section, Shown},
+        city::{Chunk, CityBuffers, Section, SectionKind, Shown},
         cut::Cut,
         eye::{padded, relative, split_eye},
         frame::{FrameInput, strided},
@@ -165,6 +165,8 @@ pub(super) struct DrawnSection<'a> {
     pub offset: u32,
     /// Whether it throws shadows.
     pub has_shadow: bool,
+    /// Which layer of their planes its faces are in, where they overlap others; the lowest is 0.
+    pub layer: u32,
 }
 
 impl DrawnSection<'_> {
@@ -358,14 +360,14 @@ fn add_sections<'a>(
     chunks: &'a [Vec<Chunk>],
 ) {
     let sections = city.buffers.sections.iter().zip(&city.images).enumerate();
-    drawn.extend(sections.map(|(i, (section, image))| DrawnSection {
-        city,
-        section,
-        image: image.as_ref(),
-        chunks: chunks.get(i).unwrap_or(&section.chunks),
-        content,
-        offset,
-        has_shadow,
+    // Sections of coplanar faces follow each other from the lowest layer of a city up.
+    let mut layers = 0;
+    drawn.extend(sections.map(|(i, (section, image))| {
+        let is_coplanar = section.kind == SectionKind::Coplanar;
+        let layer = if is_coplanar { layers } else { 0 };
+        layers += u32::from(is_coplanar);
+        let chunks = chunks.get(i).unwrap_or(&section.chunks);
+        DrawnSection { city, section, image: image.as_ref(), chunks, content, offset, has_shadow, layer }
     }));
 }
 

@@ -11,12 +11,12 @@
 //! How much memory the lists take is bounded: what does not fit is drawn in bands, halved until each fits. How many notes there
 //! are is read back before they are sorted, so nothing is ever left out in silence: what a single pixel has too much is counted.
 
-use std::ops::Range;
+use std::{hash::BuildHasher as _, ops::Range};
 
 use crate::{
     gpu::{Gpu, GpuError},
     render::{
-        city::{Chunk, CityBuffers, SectionKind, draws_of},
+        city::{Chunk, CityBuffers, draws_of},
         contents::DrawnSection,
         cut::Cut,
         eye::PictureTile,
@@ -34,9 +34,12 @@ pub const LAYER_BYTES: u64 = 96 << 20;
 const FIRST_GUESS: [u64; 2] = [2, 1 << 16];
 /// Bands of a picture at most; of what is left over, the excess is counted.
 const MOST_BANDS: usize = 4096;
-/// Words of the lists before those of the pixels: how many notes there are, how many layers at most, the longest list that was not
-/// done.
-const HEADER: u64 = 3;
+/// Pools that much room is shared out between, and notes that there is room for from which on it is (`pass/layers.wgsl`).
+const POOLS: u64 = 16;
+const MANY: u64 = 1 << 16;
+/// Words of the lists before those of the pixels: how many notes spilled, how many layers at most, the longest list that was not
+/// done; and, in lines of their own, how many notes each pool was to take.
+const HEADER: usize = 16 * (1 + POOLS as usize);
 /// Storage buffers that a shader of layers binds: two of lists, and what lens tests read.
 const BUFFERS: u32 = 8;
 /// What to do where the card has no such buffer.
@@ -58,7 +61,7 @@ pub struct LayerFigures {
 pub(super) struct LayersOnGpu {
     heads: Room,
     notes: Room,
-    /// How many notes there are, and the longest list known of, to be read.
+    /// The header, to be read.
     counted: wgpu::Buffer,
 }
 
@@ -132,6 +135,37 @@ fn common(a: PictureTile, b: PictureTile) -> PictureTile {
     PictureTile { origin: low, size: [0, 1].map(|i| high[i].saturating_sub(low[i])) }
 }
 
+/// What the header of lists tells.
+#[derive(Clone, Copy, Debug)]
+struct Noted {
+    /// How many notes there are, those without room included.
+    notes: u64,
+    /// How many their pools had no room for.
+    spilled: u64,
+    /// The longest list that the lists before told of.
+    longest: u32,
+}
+
+impl Noted {
+    /// How many found no room, where there is some for so many.
+    fn excess(&self, room: u64) -> u64 {
+        let pooled = if room >= MANY { POOLS * (room / 64 * 3) } else { room };
+        self.spilled.saturating_sub(room - pooled)
+    }
+
+    /// Room that would do, unless pools fill unevenly; more than there was.
+    fn wanted(&self, room: u64) -> u64 {
+        (self.notes + self.notes / 2).max(2 * room)
+    }
+}
+
+impl LayersOnGpu {
+    /// How many notes there is room for, of so many words, `most` at most.
+    fn room(&self, words: u64, most: u64) -> u64 {
+        most.min(self.notes.buffer().size() / (4 * words))
+    }
+}
+
 /// What lists are drawn from.
 pub(super) struct LayerDraw<'a> {
     pub cut: &'a Cut,
@@ -174,11 +208,11 @@ impl Renderer {
                 LayersOnGpu {
                     heads: Room::new(&self.gpu, "lists of layers", lists, SMALLER)?,
                     notes: Room::new(&self.gpu, "layers", usage, SMALLER)?,
-                    counted: self.gpu.empty_buffer("number of layers", read, 4 * HEADER)?,
+                    counted: self.gpu.empty_buffer("number of layers", read, 4 * HEADER as u64)?,
                 }
             }
         };
-        own.heads.fit(&self.gpu, 4 * (HEADER + u64::from(size[0]) * u64::from(size[1])))?;
+        own.heads.fit(&self.gpu, 4 * (HEADER as u64 + u64::from(size[0]) * u64::from(size[1])))?;
         let most = self.most_layers.unwrap_or(LAYER_BYTES / (4 * words));
         let pixels = u64::from(region.size[0]) * u64::from(region.size[1]);
         own.notes.fit(&self.gpu, 4 * words * most.min((FIRST_GUESS[0] * pixels).max(FIRST_GUESS[1])))?;
@@ -188,27 +222,27 @@ impl Renderer {
         // How many layers there are at most is known after the last band.
         let counts_first = draw.keys.count.is_some();
         while let Some(band) = bands.pop() {
-            let mut room = most.min(own.notes.buffer().size() / (4 * words));
-            let [mut notes, longest] =
-                self.note_layers(&mut encoder, recorder, input, draw, &own, (band, room * words))?;
+            let mut room = own.room(words, most);
+            let mut found = self.note_layers(&mut encoder, recorder, input, draw, &own, (band, room * words))?;
             // The last frame says how long its lists were: nobody may have asked since.
-            self.longest_list = self.longest_list.max(if fitting.is_empty() { longest as u32 } else { 0 });
-            if notes > room && room < most {
-                own.notes.fit(&self.gpu, 4 * words * notes.min(most))?;
-                room = most.min(own.notes.buffer().size() / (4 * words));
-                [notes, _] = self.note_layers(&mut encoder, recorder, input, draw, &own, (band, room * words))?;
+            self.longest_list = self.longest_list.max(if fitting.is_empty() { found.longest } else { 0 });
+            while found.excess(room) > 0 && room < most {
+                own.notes.fit(&self.gpu, 4 * words * found.wanted(room).min(most))?;
+                room = own.room(words, most);
+                found = self.note_layers(&mut encoder, recorder, input, draw, &own, (band, room * words))?;
             }
+            let excess = found.excess(room);
             let is_last = fitting.len() + bands.len() + 1 >= MOST_BANDS || most == 0;
-            if let Some(parts) = halves(band).filter(|_| notes > room && !is_last) {
+            if let Some(parts) = halves(band).filter(|_| excess > 0 && !is_last) {
                 bands.extend(parts);
                 continue;
             }
             if fitting.is_empty() {
                 encoder.clear_buffer(own.heads.buffer(), 4, Some(8));
             }
-            figures.notes += notes;
+            figures.notes += found.notes;
             figures.bands += 1;
-            figures.excess += notes.saturating_sub(room);
+            figures.excess += excess;
             fitting.push((band, room * words));
             if let Some(count) = &draw.keys.count {
                 self.order_layers(&mut encoder, recorder, ("count layers", count), &own, size);
@@ -243,8 +277,7 @@ impl Renderer {
         });
     }
 
-    /// Notes the layers of a band, and reads how many there are, and the longest list that the lists before told of. `encoder` is
-    /// submitted and begun anew.
+    /// Notes the layers of a band, and reads how many there are. `encoder` is submitted and begun anew.
     fn note_layers(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -253,11 +286,14 @@ impl Renderer {
         draw: &LayerDraw,
         own: &LayersOnGpu,
         (band, words): (PictureTile, u64),
-    ) -> Result<[u64; 2], GpuError> {
-        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return Ok([0; 2]) };
+    ) -> Result<Noted, GpuError> {
+        let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else {
+            return Ok(Noted { notes: 0, spilled: 0, longest: 0 });
+        };
         let layouts = &self.pipelines.layouts;
+        // What the header tells of lists before stays.
         encoder.clear_buffer(own.heads.buffer(), 0, Some(4));
-        encoder.clear_buffer(own.heads.buffer(), 4 * HEADER, None);
+        encoder.clear_buffer(own.heads.buffer(), 4 * 16, None);
         let entries = [
             (0, whole(self.buffers.view.buffer())),
             (1, whole(own.heads.buffer())),
@@ -281,18 +317,15 @@ impl Renderer {
         let frustum = input.view.frustum(1.0);
         let early = self.gpu.tests_depth_early();
         let mut counted = (0, 0);
-        let mut layer = (None, 0);
-        for drawn in self.drawn_sections(Some(draw.cut)) {
-            // Sections of coplanar faces follow each other from the lowest layer of a city up.
-            layer = if drawn.section.kind != SectionKind::Coplanar || layer.0 != Some(drawn.content) {
-                (Some(drawn.content), 0)
-            } else {
-                (layer.0, layer.1 + 1)
-            };
+        let mut sections = self.drawn_sections(Some(draw.cut));
+        if self.shuffled.is_some_and(|by| by % 2 == 1) {
+            sections.reverse();
+        }
+        for drawn in sections {
             let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, Some(draw.cut), &input.view));
             let seen = CityBuffers::visible(shown, &frustum, input.view.camera.eye);
             let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
-            let DrawnSection { city, section, image, content, offset, .. } = drawn;
+            let DrawnSection { city, section, image, content, offset, layer, .. } = drawn;
             let parts = Cut::parts(Some(draw.cut), &input.view, &chunks, content.is_some());
             let Some((mut reached, _)) = parts.into_iter().find(|(_, is_reached)| *is_reached) else { continue };
             // What is opaque is there already, so the order is free: neighbours become one draw.
@@ -307,9 +340,13 @@ impl Renderer {
             if let Some(extra) = &section.extra {
                 pass.set_vertex_buffer(1, extra.slice(..));
             }
-            let (draws, triangles) = draws_of(reached.into_iter());
+            let (mut draws, triangles) = draws_of(reached.into_iter());
+            if let Some(by) = self.shuffled {
+                draws = draws.into_iter().flatten().step_by(3).map(|first| first..first + 3).collect();
+                draws.sort_by_key(|draw| rustc_hash::FxBuildHasher.hash_one([draw.start, by]));
+            }
             pass.set_index_buffer(section.indices.slice(..), wgpu::IndexFormat::Uint32);
-            draws.iter().for_each(|range| pass.draw_indexed(range.clone(), 0, layer.1..layer.1 + 1));
+            draws.iter().for_each(|range| pass.draw_indexed(range.clone(), 0, layer..layer + 1));
             counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
         }
         if let Some(timer) = &recorder.timer {
@@ -317,13 +354,14 @@ impl Renderer {
         }
         drop(pass);
         recorder.count(counted.0, counted.1);
-        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER);
+        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER as u64);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let done = std::mem::replace(encoder, self.gpu.device.create_command_encoder(&descriptor));
         self.gpu.queue.submit([done.finish()]);
         self.gpu.mapped(&own.counted, |bytes| {
-            let [notes, _, longest] = bytemuck::pod_read_unaligned::<[u32; HEADER as usize]>(&bytes[..12]);
-            [notes, longest].map(u64::from)
+            let header: [u32; HEADER] = bytemuck::pod_read_unaligned(&bytes[..4 * HEADER]);
+            let notes = header[16..].iter().step_by(16).map(|pool| u64::from(*pool)).sum();
+            Noted { notes, spilled: header[0].into(), longest: header[2] }
         })
     }
 
@@ -443,7 +481,7 @@ impl Renderer {
         let Some(own) = self.layers.as_ref().filter(|_| self.layer_figures.notes > 0) else { return Ok(false) };
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("longest list") };
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
-        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER);
+        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER as u64);
         self.gpu.queue.submit([encoder.finish()]);
         let longest = self.gpu.mapped(&own.counted, |bytes| bytemuck::pod_read_unaligned::<u32>(&bytes[8..12]))?;
         let is_longer = longest > self.longest_list;

@@ -84,6 +84,9 @@ pub struct Renderer {
     /// How many notes of translucent layers have room at a time; `None`: as many as [`crate::render::layers::LAYER_BYTES`]
     /// hold. What does not fit is drawn in bands.
     pub most_layers: Option<u64>,
+    /// Triangles of translucent layers are drawn one by one, in an order shuffled by this number; `None`: as they lie in the city.
+    /// The picture is the same.
+    pub shuffled: Option<u32>,
     /// Counts cities, so that the shadow of an old one is not taken for the new one's.
     generation: u32,
 }
@@ -244,6 +247,7 @@ impl Renderer {
             layer_figures: LayerFigures::default(),
             longest_list: 0,
             most_layers: None,
+            shuffled: None,
             kept_sprites: Vec::new(),
             list_target: None,
             lists_crossings: false,
