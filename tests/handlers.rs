@@ -189,4 +189,13 @@ fn the_text_of_a_scene_is_readable_and_says_whose_it_is() {
     let wanted = "if is_inside(classes_of_lens_0(sight_of(fragment))) && wireframe(fragment, wireframe_parameters(";
     assert!(part(ShaderPart::Geometry).contains(wanted) && part(ShaderPart::Shadow).contains(wanted));
     assert!(part(ShaderPart::Lines).contains("color = wireframe_parameters("));
+    assert_eq!([ShaderPart::Layers, ShaderPart::Composite].map(part), ["// Nothing is translucent.\n"; 2]);
+    scene.lenses[0].effects.push(used("x-ray"));
+    for backend in [Backend::Specialised, Backend::Uber] {
+        let text = |part| studio.shader(&scene, SIZE, backend, part).expect("a text");
+        assert!(
+            text(ShaderPart::Layers).contains("fn note_plain")
+                && text(ShaderPart::Composite).contains("x_ray(opacity, point, ")
+        );
+    }
 }

@@ -58,6 +58,10 @@ pub enum Part {
     Shadow,
     /// Edges as lines: wireframe, hidden-line
     Lines,
+    /// What is translucent: opacity rules such as transparent and x-ray
+    Layers,
+    /// Translucent layers, one over the other
+    Composite,
 }
 
 impl From<Part> for ShaderPart {
@@ -67,6 +71,8 @@ impl From<Part> for ShaderPart {
             Part::Geometry => Self::Geometry,
             Part::Shadow => Self::Shadow,
             Part::Lines => Self::Lines,
+            Part::Layers => Self::Layers,
+            Part::Composite => Self::Composite,
         }
     }
 }

@@ -116,6 +116,10 @@ pub enum ShaderPart {
     Shadow,
     /// Edges as lines.
     Lines,
+    /// What is translucent.
+    Layers,
+    /// How translucent layers look, and are laid over each other.
+    Composite,
 }
 
 /// How shaders are made of what a scene asks for (H3). The picture is the same.

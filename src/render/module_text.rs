@@ -11,6 +11,8 @@ use crate::{
     shader::{Module, Plan, Program, Uber, handlers},
 };
 
+const NOTHING_TRANSLUCENT: &str = "// Nothing is translucent.\n";
+
 impl Renderer {
     /// The text of a module as it runs where the lenses are in the picture; without lenses in view everywhere.
     pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
@@ -19,6 +21,7 @@ impl Renderer {
         let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
         let is_written_out = input.backend == Backend::Specialised && !plans.is_long();
         let (plan, operations) = (if seen.is_empty() { plans.context } else { plans.lenses }, input.operations);
+        let (haze, masks) = (plan.haze, plan.masks);
         let shade = match is_written_out {
             true => Program::Specialised(plan),
             false => Program::Uber(operations.uber(plan.haze, plan.masks)),
@@ -40,6 +43,10 @@ impl Renderer {
                 return module.source_for_people(handlers(), &names, room);
             }
         }
+        let layering = match is_written_out {
+            true => plans.layering.map(Program::Specialised),
+            false => operations.uber_layering(haze, masks).filter(|_| plans.layering.is_some()).map(Program::Uber),
+        };
         let [picture, sun] = operations.uber_hiding();
         let by_shapes = |mut plan: Plan| {
             let shapes = seen.iter().map(|v| input.volumes[v.index].test_from_sun());
@@ -50,6 +57,14 @@ impl Renderer {
             ShaderPart::Shade => Module::Shade(shade),
             ShaderPart::Geometry => Module::Geometry(of(plans.hiding, picture)),
             ShaderPart::Shadow => Module::Shadow(of(plans.hiding.map(by_shapes), sun)),
+            ShaderPart::Layers => match of(plans.hiding, picture).filter(|_| layering.is_some()) {
+                Some(program) => Module::Layers(program, self.gpu.tests_depth_early()),
+                None => return NOTHING_TRANSLUCENT.to_owned(),
+            },
+            ShaderPart::Composite => match layering {
+                Some(program) => Module::Composite(program),
+                None => return NOTHING_TRANSLUCENT.to_owned(),
+            },
             ShaderPart::Lines => match of(plans.lining, operations.uber_lining()) {
                 Some(program) => Module::Lines(program),
                 None => return "// Nothing draws lines.\n".to_owned(),
