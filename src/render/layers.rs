@@ -24,6 +24,7 @@ use crate::{
         key::{GeometryKind, Key},
         renderer::{Renderer, all_of, group, whole},
         synced::Room,
+        transparency::{ForwardKeys, SlotKeys},
     },
     shader::{EffectKind, Plan, Program, handlers},
 };
@@ -36,7 +37,7 @@ const FIRST_GUESS: [u64; 2] = [2, 1 << 16];
 const MOST_BANDS: usize = 4096;
 /// Words of the lists before those of the pixels: how many notes there are, how many layers at most, the longest list that was not
 /// done.
-const HEADER: u64 = 3;
+pub(super) const HEADER: u64 = 3;
 /// Storage buffers that a shader of layers binds: two of lists, and what lens tests read.
 const BUFFERS: u32 = 8;
 /// What to do where the card has no such buffer.
@@ -56,10 +57,28 @@ pub struct LayerFigures {
 /// What the card has of layers between frames.
 #[derive(Debug)]
 pub(super) struct LayersOnGpu {
-    heads: Room,
-    notes: Room,
+    pub heads: Room,
+    pub notes: Room,
     /// How many notes there are, and the longest list known of, to be read.
-    counted: wgpu::Buffer,
+    pub counted: wgpu::Buffer,
+}
+
+impl LayersOnGpu {
+    /// Without room for anything.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+        Ok(Self {
+            heads: Room::new(gpu, "lists of layers", usage | wgpu::BufferUsages::COPY_SRC, SMALLER)?,
+            notes: Room::new(gpu, "layers", usage, SMALLER)?,
+            counted: gpu.empty_buffer("number of layers", read, 4 * HEADER)?,
+        })
+    }
+
+    /// What they take on the card.
+    pub fn bytes(&self) -> u64 {
+        self.heads.buffer().size() + self.notes.buffer().size()
+    }
 }
 
 /// The pipelines of layers.
@@ -69,11 +88,17 @@ pub(super) struct LayerKeys {
     pub noting: Program,
     pub composite: Key,
     pub count: Option<Key>,
+    /// Whether opacity rules ask how many layers the picture has.
+    pub asks_most: bool,
     /// Steps of sorting, where lists are long.
     pub sort: Vec<Key>,
     pub shown: Option<Key>,
     pub textured: bool,
     pub smooth: bool,
+    /// Of methods that keep a fixed number of layers.
+    pub slots: Option<SlotKeys>,
+    /// Of those that shade fragments where they are drawn.
+    pub forward: Option<ForwardKeys>,
 }
 
 impl LayerKeys {
@@ -91,7 +116,13 @@ impl LayerKeys {
 
     /// All but those of sections.
     pub fn all(&self) -> impl Iterator<Item = &Key> {
-        [&self.composite].into_iter().chain(&self.count).chain(&self.sort).chain(&self.shown)
+        let composite = [&self.composite].into_iter().filter(|_| !self.is_stochastic());
+        composite.chain(&self.count).chain(&self.sort).chain(&self.shown)
+    }
+
+    /// Whether layers are there by chance, and nothing is laid over.
+    pub fn is_stochastic(&self) -> bool {
+        self.slots.is_none() && self.forward.is_some()
     }
 
     /// Steps that sort lists of so many notes.
@@ -126,7 +157,7 @@ fn halves(band: PictureTile) -> Option<[PictureTile; 2]> {
 }
 
 /// What two parts of a picture have in common.
-fn common(a: PictureTile, b: PictureTile) -> PictureTile {
+pub(super) fn common(a: PictureTile, b: PictureTile) -> PictureTile {
     let low = [0, 1].map(|i| a.origin[i].max(b.origin[i]));
     let high = [0, 1].map(|i| (a.origin[i] + a.size[i]).min(b.origin[i] + b.size[i]));
     PictureTile { origin: low, size: [0, 1].map(|i| high[i].saturating_sub(low[i])) }
@@ -164,19 +195,18 @@ impl Renderer {
         else {
             return Ok(encoder);
         };
+        if draw.keys.is_stochastic() {
+            self.chance_pass(&mut encoder, recorder, input, draw);
+            self.layer_figures.bands = 1;
+            return Ok(encoder);
+        }
+        if let Some(slots) = draw.keys.slots {
+            return self.slot_passes(encoder, recorder, input, (draw, slots), region);
+        }
         let words = u64::from(LayerKeys::words(draw.keys.smooth, draw.keys.textured));
         let mut own = match self.layers.take() {
             Some(own) => own,
-            None => {
-                let usage = wgpu::BufferUsages::STORAGE;
-                let lists = usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-                let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-                LayersOnGpu {
-                    heads: Room::new(&self.gpu, "lists of layers", lists, SMALLER)?,
-                    notes: Room::new(&self.gpu, "layers", usage, SMALLER)?,
-                    counted: self.gpu.empty_buffer("number of layers", read, 4 * HEADER)?,
-                }
-            }
+            None => LayersOnGpu::new(&self.gpu)?,
         };
         own.heads.fit(&self.gpu, 4 * (HEADER + u64::from(size[0]) * u64::from(size[1])))?;
         let most = self.most_layers.unwrap_or(LAYER_BYTES / (4 * words));
@@ -225,6 +255,7 @@ impl Renderer {
                 self.composite_layers(&mut encoder, recorder, draw, &own, *band, size);
             }
         }
+        self.method_figures.bytes = own.bytes();
         self.layer_figures = figures;
         self.layers = Some(own);
         Ok(encoder)
@@ -354,7 +385,7 @@ impl Renderer {
     }
 
     /// Sorts what was noted in a band, and lays it one over the other.
-    fn composite_layers(
+    pub(super) fn composite_layers(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
@@ -368,7 +399,8 @@ impl Renderer {
             self.order_layers(encoder, recorder, ("sort layers", key), own, size);
         }
         let layouts = &self.pipelines.layouts;
-        let entries = [(0, whole(own.heads.buffer())), (1, notes_of(own, words))];
+        let [sums, through] = [&targets.tail_sums, &targets.tail_through].map(all_of);
+        let entries = [(0, whole(own.heads.buffer())), (1, notes_of(own, words)), (2, sums), (3, through)];
         let lists = group(&self.gpu, "lists of layers", &layouts.layer_lists, &entries);
         let slot = recorder.begin("composite", "main", &draw.cut.hiding.lenses, true);
         let attachments = [&targets.veil, &targets.shown_code, &targets.shown_depth].map(|target| {

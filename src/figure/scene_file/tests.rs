@@ -13,6 +13,7 @@ use crate::{
     },
     scene::{
         Animation, Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique,
+        Transparency,
         animation::{Change, ChangeKey, Numbers},
     },
     shader::{Blend, Clip},
@@ -752,12 +753,20 @@ prop_compose! {
     }
 }
 
+fn transparencies() -> impl Strategy<Value = Transparency> {
+    prop_oneof![
+        prop::sample::select(&Transparency::WORDS[..]).prop_map(|word| Transparency::of(word, None).unwrap().unwrap()),
+        (0..=MOST_PEELED).prop_map(|layers| Transparency::Peel { layers }),
+        prop::sample::select(&SLOTS[..]).prop_map(|layers| Transparency::KBuffer { layers }),
+    ]
+}
+
 prop_compose! {
     fn scenes()(eye in point(), target in point(), ortho in any::<bool>(), tenths in 1..1790u32, with_camera in any::<bool>(),
         near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
-        figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
+        figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
         animation in prop::option::of(animations())) -> Scene {
         let projection_of = |tenths: u32, ortho: bool| match ortho {
             true => Projection::Orthographic { height_m: f64::from(tenths) },
@@ -777,7 +786,7 @@ prop_compose! {
         let mut scene = Scene {
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
             sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2 },
-            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique },
+            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).collect(),
             lenses,
             figure: Figure { size, samples, ..figure },
