@@ -71,8 +71,7 @@ pub struct Layouts {
     pub layers: wgpu::BindGroupLayout,
     /// Slots, group 0: the view, lists and records, slots, the depth of what is opaque, the band at a dynamic offset.
     pub slots: wgpu::BindGroupLayout,
-    /// Fragments shaded where they are drawn, group 0: the view, slots, the depth of what is opaque, the band and the city, both at
-    /// dynamic offsets.
+    /// Fragments shaded where they are drawn, group 0: the view, slots, the band and the city, both at dynamic offsets.
     pub forward: wgpu::BindGroupLayout,
     /// Link slots, group 0: lists and records, slots, the band at a dynamic offset.
     pub link_slots: wgpu::BindGroupLayout,
@@ -268,13 +267,7 @@ impl Layouts {
             forward: layout(
                 gpu,
                 "fragments",
-                &[
-                    (0, all, uniform()),
-                    (2, S::FRAGMENT, storage()),
-                    (3, S::FRAGMENT, depth),
-                    (4, S::FRAGMENT, dynamic),
-                    (5, all, dynamic),
-                ],
+                &[(0, all, uniform()), (2, S::FRAGMENT, storage()), (4, S::FRAGMENT, dynamic), (5, all, dynamic)],
             ),
             link_slots: layout(
                 gpu,

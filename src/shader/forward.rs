@@ -2,8 +2,8 @@
 //! what shades a pixel, what tells which fragments are translucent, and what draws the city.
 
 use crate::shader::{
-    BEHIND, CHANCE, EARLY, FORWARD, FRAGMENT, GEOMETRY, Module, NOTHING_CUT, TAIL, TRANSLUCENT, carried,
-    effect::EffectDefinition, hiding, lens_files, names_of, plan::Program, specialised, uber, wgsl,
+    CHANCE, FORWARD, FRAGMENT, GEOMETRY, Module, NOTHING_CUT, TAIL, TRANSLUCENT, carried, effect::EffectDefinition,
+    hiding, lens_files, names_of, plan::Program, specialised, uber, wgsl,
 };
 
 /// What becomes of a fragment.
@@ -24,8 +24,6 @@ pub struct Forward {
     pub hidden: Program,
     /// What the lenses make of it.
     pub shading: Program,
-    /// Whether the adapter can test depth before the shader runs.
-    pub early: bool,
 }
 
 /// Its depth test comes after the shader, and writes.
@@ -86,12 +84,13 @@ impl Forward {
                 "@group(0) @binding(5) var<uniform> city: City;",
             );
         let is_tail = self.kind == ForwardKind::Tail;
-        let (early, behind) = match (is_tail, self.early) {
-            (true, true) => (EARLY, ""),
-            (true, false) => ("", BEHIND),
-            (false, _) => ("", ""),
-        };
-        other = other.replace(" //@early", early).replace("    //@behind\n", &behind.replace("return;", "discard;"));
+        // Nothing is stored, so it does not matter when depth is tested. What is opaque is read where shading reads it: with a
+        // texture in the first group beside the shadow map's sampler Mesa 22.3 crashes.
+        other = other
+            .replace(" //@early", "")
+            .replace("    //@behind\n", "")
+            .replace("@group(0) @binding(3) var opaque_depth: texture_depth_2d;\n", "")
+            .replace("opaque_depth", "scene_depth");
         if let (false, Some(start), Some(end)) = (is_tail, other.find(WHAT_IS_BEHIND), other.find(END)) {
             other.replace_range(start..end, "");
         }

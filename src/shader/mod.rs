@@ -608,7 +608,7 @@ mod tests {
             let kinds = [ForwardKind::Tail, ForwardKind::Chance(false), ForwardKind::Chance(true)];
             modules.extend(kinds.map(|kind| {
                 let (hidden, shading) = (hidden.clone(), shading.clone());
-                Module::Forward(Forward { kind, hidden, shading, early: seed % 2 == 0 })
+                Module::Forward(Forward { kind, hidden, shading })
             }));
         }
         modules.extend(hiding.filter(has_lenses).map(Module::Sections));

@@ -297,7 +297,7 @@ pub const STYLE: Table = Table {
             Kind::WordOrTable(&Transparency::WORDS, &TRANSPARENCY),
             "\"exact\"",
             "",
-            "How translucent layers are laid one over the other: a method, or a table of [style] transparency; see Transparency.",
+            "How translucent layers are laid one over the other: a method, or a method and how far it goes; see Transparency.",
             "{ method = \"k-buffer\", layers = 8 }",
         ),
     ],

@@ -15,6 +15,7 @@ use crate::{
         Animation, Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique,
         Transparency,
         animation::{Change, ChangeKey, Numbers},
+        transparency::{MOST_PEELED, SLOTS},
     },
     shader::{Blend, Clip},
     view::{
@@ -123,6 +124,23 @@ fn every_mistake_names_its_line_place_and_remedy() {
             "veduta = 1\n[style]\nbase = \"cley\"",
             "[style] base: must be \"natural\" or \"clay\", is \"cley\"; did you mean \"clay\"?",
         ),
+        (
+            "veduta = 1\n[style]\ntransparency = \"weihted\"",
+            "s.toml:3: [style] transparency: must be \"exact\" or \"peel\" or \"k-buffer\" or \"weighted\" or \"stochastic\", or a table { method = ..., layers = ... }, is \"weihted\"; did you mean \"weighted\"?",
+        ),
+        (
+            "veduta = 1\n[style]\ntransparency = { method = \"k-buffer\", layers = 5 }",
+            "s.toml:3: [style] transparency.layers: must be 4, 8 or 16 for \"k-buffer\", is 5",
+        ),
+        (
+            "veduta = 1\n[style]\ntransparency = { method = \"weighted\", layers = 4 }",
+            "[style] transparency.layers: \"weighted\" takes none; \"peel\" and \"k-buffer\" do",
+        ),
+        (
+            "veduta = 1\n[style]\ntransparency = { method = \"peel\", layers = 4097 }",
+            "[style] transparency.layers: must be a whole number 0 to 4096, is 4097",
+        ),
+        ("veduta = 1\n[style]\ntransparency = { layers = 4 }", "[style] transparency.method: is missing"),
         (
             "veduta = 1\n[style]\neffects = [{ effect = \"sepia\", class = \"front\" }]",
             "[style] effects.0.class: has a meaning only in a lens",

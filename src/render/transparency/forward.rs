@@ -24,7 +24,6 @@ impl Renderer {
         let entries = [
             (0, whole(self.buffers.view.buffer())),
             (2, whole(slots)),
-            (3, all_of(&targets.depth)),
             (4, bands),
             (5, one_of::<layout::City>(&self.buffers.cities)),
         ];
@@ -85,7 +84,6 @@ impl Renderer {
         let entries = [
             (0, whole(self.buffers.view.buffer())),
             (2, whole(self.buffers.object_values.buffer())),
-            (3, all_of(&targets.shadow)),
             (4, no_band),
             (5, one_of::<layout::City>(&self.buffers.cities)),
         ];

@@ -165,7 +165,7 @@ impl LayerKeys {
             flat: self.smooth && !is_smooth_city,
             textured: self.textured,
             program: self.noting.clone(),
-            early: early && section != GeometryKind::Coplanar,
+            early: early && section != GeometryKind::Coplanar && !is_forward,
             pass,
             slots,
             forward: self.forward.clone().filter(|_| is_forward),
@@ -181,8 +181,7 @@ impl TranslucentKey {
             _ => return Module::Slots(self.program.clone(), self.early),
         };
         let shading = self.forward.as_ref().map_or_else(|| self.program.clone(), |own| own.program.clone());
-        let early = self.early && self.pass == FragmentPass::Tail;
-        Module::Forward(Forward { kind, hidden: self.program.clone(), shading, early })
+        Module::Forward(Forward { kind, hidden: self.program.clone(), shading })
     }
 
     pub(in crate::render) fn name(&self) -> String {
