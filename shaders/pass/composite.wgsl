@@ -12,6 +12,18 @@
 const FIRST_HEAD: u32 = 272u;
 const NOTED_CODE: u32 = 0x07ffffffu;
 override SORTED: bool = false;  // whether lists are in order
+// Words of a record that methods keep of each pixel behind the heads, as `lib/slots.wgsl` has it; 0: none. One says how many layers
+// there are; with more of them lists go on where others ended.
+override RECORD: u32 = 0u;
+// Whether what found no place in the lists is one layer behind them, as `lib/tail.wgsl` makes it.
+override TAIL: bool = false;
+@group(3) @binding(2) var tail_sums: texture_2d<f32>;
+@group(3) @binding(3) var tail_through: texture_2d<f32>;
+const RECORD_COLOR: u32 = 3u;
+const RECORD_THROUGH: u32 = 6u;
+const RECORD_LAID: u32 = 7u;
+const RECORD_SHOWN: u32 = 8u;
+const RECORD_SHOWN_DEPTH: u32 = 10u;
 // Mesa's software driver ends the loops of a shader after 65535 rounds in all.
 const MOST_ROUNDS: u32 = 50000u;
 const LONGEST: u32 = 2u;        // the word of `heads` that has the length of the longest list that was not done
@@ -75,6 +87,11 @@ fn veil_and_shown(in: Corner) -> Composite {
     return composite(in);
 }
 
+// A number of a record.
+fn recorded(word: u32) -> f32 {
+    return bitcast<f32>(atomicLoad(&heads[word]));
+}
+
 fn composite(in: Corner) -> Composite {
     take(in);
     let pixel = vec2i(in.clip.xy);
@@ -95,6 +112,20 @@ fn composite(in: Corner) -> Composite {
         for (var next = head; next != 0u; next = notes[(next - 1u) * words]) {
             count += 1u;
         }
+    }
+    let size = vec2u(view.size);
+    let record = FIRST_HEAD + size.x * size.y + (u32(pixel.y) * size.x + u32(pixel.x)) * RECORD;
+    if RECORD > 0u {
+        count = atomicLoad(&heads[record]);
+    }
+    if RECORD > 1u {
+        laid = atomicLoad(&heads[record + RECORD_LAID]);
+    }
+    if RECORD > 1u && laid > 0u {
+        color = vec3f(recorded(record + RECORD_COLOR), recorded(record + RECORD_COLOR + 1u), recorded(record + RECORD_COLOR + 2u));
+        through = recorded(record + RECORD_THROUGH);
+        shown = vec2u(atomicLoad(&heads[record + RECORD_SHOWN]), atomicLoad(&heads[record + RECORD_SHOWN + 1u]));
+        shown_depth = recorded(record + RECORD_SHOWN_DEPTH);
     }
     while is_left {
         //@found
@@ -156,7 +187,7 @@ fn composite(in: Corner) -> Composite {
                 break;
             }
         }
-        is_left = laid < count && through >= NOTHING_SEEN;
+        is_left = select(laid < count, listed != 0u, SORTED) && through >= NOTHING_SEEN;
         if is_left && !SORTED && rounds + count > MOST_ROUNDS {
             atomicMax(&heads[LONGEST], count);
             is_left = false;
@@ -164,6 +195,32 @@ fn composite(in: Corner) -> Composite {
         if !is_left {
             break;
         }
+    }
+    if TAIL {
+        let sum = textureLoad(tail_sums, pixel, 0);
+        let rest = textureLoad(tail_through, pixel, 0).x;
+        if sum.a > 0.0 {
+            color += (through * (1.0 - rest)) * (sum.rgb / sum.a);
+        }
+        through *= rest;
+        // Which of the layers is the shown surface is not known: it is what is opaque.
+        if through <= 0.5 && shown.x == 0u {
+            let point = point_at(pixel, ray, textureLoad(scene_depth, pixel, 0));
+            write_classes(pixel, point, classes_at(sight_at(pixel, ray, point.depth, point.object), in.part.x));
+        }
+    }
+    if RECORD > 1u && laid > 0u {
+        for (var i = 0u; i < 3u; i++) {
+            atomicStore(&heads[record + RECORD_COLOR + i], bitcast<u32>(color[i]));
+            if i == 2u {
+                break;
+            }
+        }
+        atomicStore(&heads[record + RECORD_THROUGH], bitcast<u32>(through));
+        atomicStore(&heads[record + RECORD_LAID], laid);
+        atomicStore(&heads[record + RECORD_SHOWN], shown.x);
+        atomicStore(&heads[record + RECORD_SHOWN + 1u], shown.y);
+        atomicStore(&heads[record + RECORD_SHOWN_DEPTH], bitcast<u32>(shown_depth));
     }
     return Composite(vec4f(color, through), shown, shown_depth);
 }

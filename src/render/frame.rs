@@ -51,9 +51,10 @@ use crate::{
         sprites::Pages,
         stored::{self, Making},
         targets::Needs,
+        transparency::MethodFigures,
         volume::LensVolume,
     },
-    scene::{Background, BaseStyle, Sun, Technique},
+    scene::{Background, BaseStyle, Sun, Technique, Transparency},
     shader::{MOST_SLOTS, MOST_VOLUMES, Plan, TILE_PX, VolumeTest, handlers},
     view::{Frustum, View},
 };
@@ -76,6 +77,8 @@ pub struct FrameInput<'a> {
     pub background: Background,
     /// How lenses are evaluated.
     pub technique: Technique,
+    /// How translucent layers are laid one over the other.
+    pub transparency: Transparency,
     /// Nothing is behind the city.
     pub transparent: bool,
     /// How far the air begins to show, as a share of the scene's radius; 0 = never.
@@ -196,6 +199,7 @@ impl Renderer {
         }
         let mut recorder = Recorder { timer, passes: Vec::new() };
         self.layer_figures = LayerFigures::default();
+        self.method_figures = MethodFigures::default();
         let city = self.drawn_box();
         self.own_sprites.plan(input, &city);
         let all_seen = seen_volumes(input, &city, self.own_sprites.room());
@@ -217,6 +221,8 @@ impl Renderer {
         let shows_layers = plans.layering.is_some() && (input.shown || input.measured || wants_masks(input));
         self.fit_targets(Needs {
             veils: plans.layering.is_some(),
+            tails: plans.layering.is_some()
+                && matches!(input.transparency, Transparency::KBuffer { .. } | Transparency::Weighted),
             shown_layers: shows_layers,
             filters,
             filter_images: if filters > 0 { behind(input).images() as u32 } else { 0 },
@@ -665,6 +671,7 @@ fn needs(input: &FrameInput, has_lenses: bool, pages: &Pages, colors: bool, smoo
         filter_images: 0,
         lines: false,
         veils: false,
+        tails: false,
         shown_layers: false,
         shadow: if shadows { light::SHADOW_SIZE } else { 0 },
     }

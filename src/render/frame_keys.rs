@@ -15,8 +15,9 @@ use crate::{
         seen::{Kept, SeenVolume},
         sprite_passes,
         stored::{self, Making},
+        transparency::{ForwardKeys, FragmentPass, SlotKeys},
     },
-    scene::{BaseStyle, Technique},
+    scene::{BaseStyle, Technique, Transparency},
     shader::{Plan, Program},
 };
 
@@ -107,10 +108,20 @@ impl Renderer {
             .then_some(Key::ShownLayers { smooth, measured: input.measured });
         let layer_keys = |noting: Option<Program>, composite: Option<Program>| {
             let (noting, program) = noting.zip(composite)?;
+            let forward = ForwardKeys {
+                program: program.clone(),
+                clay,
+                shadows,
+                part: u32::from(!seen.is_empty()),
+                colored,
+                measured: input.measured,
+            };
+            let is_forward = !matches!(input.transparency, Transparency::Exact | Transparency::Peel { .. });
             let textured = colored && !clay;
             let count = plans.layering.as_ref().filter(|plan| layers::asks_most(plan));
             let words = LayerKeys::words(smooth, textured);
-            let sort = LayerKeys::sorting(words, self.longest_list);
+            let slots = SlotKeys::of(input.transparency, words);
+            let sort = if slots.is_some() { Vec::new() } else { LayerKeys::sorting(words, self.longest_list) };
             Some(LayerKeys {
                 noting,
                 composite: Key::Composite {
@@ -120,13 +131,18 @@ impl Renderer {
                     shadows,
                     smooth,
                     shown: shown.is_some(),
-                    sorted: !sort.is_empty(),
+                    sorted: slots.is_some() || !sort.is_empty(),
+                    record: slots.map_or(0, |slots| slots.record),
+                    tail: slots.is_some_and(|slots| slots.has_tail()),
                 },
-                count: count.map(|_| Key::CountLayers(words)),
+                asks_most: count.is_some(),
+                count: count.filter(|_| slots.is_none() && !is_forward).map(|_| Key::CountLayers(words)),
                 sort,
-                shown: shown.clone(),
+                shown: shown.clone().filter(|_| input.transparency != Transparency::Stochastic),
                 textured,
                 smooth,
+                slots,
+                forward: is_forward.then_some(forward),
             })
         };
         let parts = |context: Program,
@@ -185,7 +201,16 @@ impl Renderer {
         keys.extend(shade_keys.all().cloned());
         if let Some(layers) = &shade_keys.layers {
             let early = self.gpu.tests_depth_early();
-            keys.extend(sections.iter().map(|&(kind, own)| layers.noting_key(kind.into(), own, early)));
+            match layers.slots {
+                None if layers.is_stochastic() => {
+                    let key = |&(kind, own): &(SectionKind, bool)| {
+                        layers.translucent_key(SlotKeys::NONE, (kind.into(), own), FragmentPass::Chance, false)
+                    };
+                    keys.extend(sections.iter().map(key));
+                }
+                None => keys.extend(sections.iter().map(|&(kind, own)| layers.noting_key(kind.into(), own, early))),
+                Some(slots) => keys.extend(slots.all(layers, &sections, early)),
+            }
         }
         keys.extend(plans.filters.iter().map(|f| Key::Filter(f.effect)));
         if input.samples > 1 {

@@ -11,6 +11,7 @@ use crate::{
         },
         sprite_passes::SolidStage,
         stored::LIST_TARGET,
+        transparency::{SlotKeys, TranslucentKey},
     },
     shader::{Module, Plan, Program, VolumeTest},
 };
@@ -104,7 +105,15 @@ pub enum Key {
         shown: bool,
         /// Lists are in order.
         sorted: bool,
+        /// Words of the record that the method keeps of each pixel, 0 for none.
+        record: u32,
+        /// What found no place is one layer behind the others.
+        tail: bool,
     },
+    /// Translucent fragments one by one, by methods that keep no list of all.
+    Translucent(TranslucentKey),
+    /// Slots as lists.
+    LinkSlots(SlotKeys),
     /// How many layers the pixel has that has most, of notes of so many words.
     CountLayers(u32),
     /// A step of sorting long lists.
@@ -261,6 +270,8 @@ impl Key {
             Self::CountLayers(_) => Module::CountLayers,
             Self::SortLayers { .. } => Module::SortLayers,
             Self::ShownLayers { .. } => Module::ShownLayers,
+            Self::Translucent(own) => own.module(),
+            Self::LinkSlots(_) => Module::LinkSlots,
             Self::Regions(plan) => Module::Regions(plan.clone()),
             Self::Section { program, .. } => Module::Sections(program.clone()),
             Self::Filter(effect) => Module::Filter(*effect),
@@ -327,9 +338,12 @@ impl Key {
                 let flags = flags(&[(*textured, "textured"), (*smooth, "smooth"), (*flat, "flat")]);
                 format!("{}{kind}{flags}", self.module().name())
             }
-            Self::Composite { textured, clay, shadows, smooth, shown, sorted, .. } => {
+            Self::Composite { textured, clay, shadows, smooth, shown, sorted, record, tail, .. } => {
                 let list = [
-                    (*sorted, "sorted"),
+                    (*record == 1, "of slots"),
+                    (*record > 1, "of peeling"),
+                    (*tail, "and a tail"),
+                    (*sorted && *record == 0 && !*tail, "sorted"),
                     (*textured, "textured"),
                     (*clay, "clay"),
                     (*shadows, "shadows"),
@@ -340,6 +354,8 @@ impl Key {
             }
             Self::SortLayers { width, .. } => format!("{} by {width}", self.module().name()),
             Self::CountLayers(_) | Self::ShownLayers { .. } => self.module().name(),
+            Self::Translucent(own) => own.name(),
+            Self::LinkSlots(keys) => format!("{} ({})", self.module().name(), keys.slots),
             Self::Filter(_) | Self::Lines { .. } | Self::Regions(_) => self.module().name(),
             Self::Section { draw, .. } => {
                 let draw = match draw {
@@ -385,8 +401,12 @@ impl Key {
                 }
                 list
             }
-            Self::Composite { textured, clay, shadows, smooth, sorted, .. } => vec![
+            Self::Translucent(own) => own.constants(),
+            Self::LinkSlots(keys) => keys.constants().to_vec(),
+            Self::Composite { textured, clay, shadows, smooth, sorted, record, tail, .. } => vec![
                 ("SORTED", flag(*sorted)),
+                ("RECORD", f64::from(*record)),
+                ("TAIL", flag(*tail)),
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
                 ("SHADOWS", flag(*shadows)),
@@ -405,6 +425,7 @@ impl Key {
             Self::StoredForm(_) | Self::StoredLayers(_) => Some("store"),
             Self::CountLayers(_) => Some("count"),
             Self::SortLayers { .. } => Some("sort"),
+            Self::LinkSlots(_) => Some("link"),
             _ => None,
         }
     }
@@ -430,6 +451,7 @@ impl Key {
                 (GeometryKind::Textured(_), _) => ("vertex_textured", Some("note_textured")),
                 (GeometryKind::Coplanar, _) => ("vertex_coplanar_layer", Some("note_coplanar")),
             },
+            Self::Translucent(own) => own.entry_points(),
             Self::Composite { shown, .. } => ("vertex", Some(if *shown { "veil_and_shown" } else { "veil" })),
             Self::Shadow(None) => ("vertex", None),
             Self::Shade { shown, .. } => {
@@ -461,13 +483,18 @@ impl Key {
         let vertex = per_vertex(size_of::<layout::CityVertex>() as u64, VERTEX);
         match self {
             Self::Geometry { section: GeometryKind::Textured(_), .. }
-            | Self::Layers { section: GeometryKind::Textured(_), .. } => vec![vertex, per_vertex(8, TEXCOORD)],
+            | Self::Layers { section: GeometryKind::Textured(_), .. }
+            | Self::Translucent(TranslucentKey { section: GeometryKind::Textured(_), .. }) => {
+                vec![vertex, per_vertex(8, TEXCOORD)]
+            }
             Self::Geometry { section: GeometryKind::Coplanar, .. }
-            | Self::Layers { section: GeometryKind::Coplanar, .. } => {
+            | Self::Layers { section: GeometryKind::Coplanar, .. }
+            | Self::Translucent(TranslucentKey { section: GeometryKind::Coplanar, .. }) => {
                 vec![vertex, per_vertex(size_of::<layout::Plane>() as u64, PLANE)]
             }
             Self::Geometry { .. }
             | Self::Layers { .. }
+            | Self::Translucent(_)
             | Self::Shadow(_)
             | Self::Bare
             | Self::Section { draw: SectionDraw::Count, .. } => vec![vertex],
@@ -530,6 +557,7 @@ impl Key {
                 let codes = if *smooth { SMOOTH_CODES } else { CODES };
                 [Some(codes.into())].into_iter().chain(measured.then(|| Some(OWN_DEPTH.into()))).collect()
             }
+            Self::Translucent(own) => own.targets(sums),
             Self::SpriteList => vec![Some(wgpu::ColorTargetState {
                 format: LIST_TARGET,
                 blend: None,
@@ -570,6 +598,7 @@ impl Key {
             Self::Geometry { section: GeometryKind::Coplanar, .. } => C::GreaterEqual,
             // Its own depth is not the interpolated one.
             Self::Layers { section: GeometryKind::Coplanar, .. } => C::Always,
+            Self::Translucent(own) => own.depth_compare(),
             Self::Geometry { .. } | Self::Layers { .. } | Self::Shadow(_) | Self::Bare | Self::Lines { .. } => {
                 C::Greater
             }
@@ -592,6 +621,7 @@ impl Key {
             | Self::Composite { .. }
             | Self::CountLayers(_)
             | Self::SortLayers { .. }
+            | Self::LinkSlots(_)
             | Self::ShownLayers { .. }
             | Self::Filter(_)
             | Self::Resolve
@@ -604,6 +634,7 @@ impl Key {
             format: DEPTH,
             depth_write_enabled: Some(match self {
                 Self::Section { draw, .. } => matches!(draw, SectionDraw::Fill { .. }),
+                Self::Translucent(own) => own.writes_depth(),
                 _ => !matches!(self, Self::Shade { .. } | Self::Layers { .. } | Self::Lines { .. }),
             }),
             depth_compare: Some(compare),

@@ -24,6 +24,7 @@ use crate::{
         key::{GeometryKind, Key},
         renderer::{Renderer, all_of, group, whole},
         synced::Room,
+        transparency::{ForwardKeys, SlotKeys},
     },
     shader::{EffectKind, Plan, Program, handlers},
 };
@@ -39,7 +40,7 @@ const POOLS: u64 = 16;
 const MANY: u64 = 1 << 16;
 /// Words of the lists before those of the pixels: how many notes spilled, how many layers at most, the longest list that was not
 /// done; and, in lines of their own, how many notes each pool was to take.
-const HEADER: usize = 16 * (1 + POOLS as usize);
+pub(super) const HEADER: u64 = 16 * (1 + POOLS);
 /// Storage buffers that a shader of layers binds: two of lists, and what lens tests read.
 const BUFFERS: u32 = 8;
 /// What to do where the card has no such buffer.
@@ -59,10 +60,28 @@ pub struct LayerFigures {
 /// What the card has of layers between frames.
 #[derive(Debug)]
 pub(super) struct LayersOnGpu {
-    heads: Room,
-    notes: Room,
+    pub heads: Room,
+    pub notes: Room,
     /// The header, to be read.
-    counted: wgpu::Buffer,
+    pub counted: wgpu::Buffer,
+}
+
+impl LayersOnGpu {
+    /// Without room for anything.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+        Ok(Self {
+            heads: Room::new(gpu, "lists of layers", usage | wgpu::BufferUsages::COPY_SRC, SMALLER)?,
+            notes: Room::new(gpu, "layers", usage, SMALLER)?,
+            counted: gpu.empty_buffer("number of layers", read, 4 * HEADER)?,
+        })
+    }
+
+    /// What they take on the card.
+    pub fn bytes(&self) -> u64 {
+        self.heads.buffer().size() + self.notes.buffer().size()
+    }
 }
 
 /// The pipelines of layers.
@@ -72,11 +91,17 @@ pub(super) struct LayerKeys {
     pub noting: Program,
     pub composite: Key,
     pub count: Option<Key>,
+    /// Whether opacity rules ask how many layers the picture has.
+    pub asks_most: bool,
     /// Steps of sorting, where lists are long.
     pub sort: Vec<Key>,
     pub shown: Option<Key>,
     pub textured: bool,
     pub smooth: bool,
+    /// Of methods that keep a fixed number of layers.
+    pub slots: Option<SlotKeys>,
+    /// Of those that shade fragments where they are drawn.
+    pub forward: Option<ForwardKeys>,
 }
 
 impl LayerKeys {
@@ -94,7 +119,13 @@ impl LayerKeys {
 
     /// All but those of sections.
     pub fn all(&self) -> impl Iterator<Item = &Key> {
-        [&self.composite].into_iter().chain(&self.count).chain(&self.sort).chain(&self.shown)
+        let composite = [&self.composite].into_iter().filter(|_| !self.is_stochastic());
+        composite.chain(&self.count).chain(&self.sort).chain(&self.shown)
+    }
+
+    /// Whether layers are there by chance, and nothing is laid over.
+    pub fn is_stochastic(&self) -> bool {
+        self.slots.is_none() && self.forward.is_some()
     }
 
     /// Steps that sort lists of so many notes.
@@ -129,7 +160,7 @@ fn halves(band: PictureTile) -> Option<[PictureTile; 2]> {
 }
 
 /// What two parts of a picture have in common.
-fn common(a: PictureTile, b: PictureTile) -> PictureTile {
+pub(super) fn common(a: PictureTile, b: PictureTile) -> PictureTile {
     let low = [0, 1].map(|i| a.origin[i].max(b.origin[i]));
     let high = [0, 1].map(|i| (a.origin[i] + a.size[i]).min(b.origin[i] + b.size[i]));
     PictureTile { origin: low, size: [0, 1].map(|i| high[i].saturating_sub(low[i])) }
@@ -198,21 +229,20 @@ impl Renderer {
         else {
             return Ok(encoder);
         };
+        if draw.keys.is_stochastic() {
+            self.chance_pass(&mut encoder, recorder, input, draw);
+            self.layer_figures.bands = 1;
+            return Ok(encoder);
+        }
+        if let Some(slots) = draw.keys.slots {
+            return self.slot_passes(encoder, recorder, input, (draw, slots), region);
+        }
         let words = u64::from(LayerKeys::words(draw.keys.smooth, draw.keys.textured));
         let mut own = match self.layers.take() {
             Some(own) => own,
-            None => {
-                let usage = wgpu::BufferUsages::STORAGE;
-                let lists = usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-                let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-                LayersOnGpu {
-                    heads: Room::new(&self.gpu, "lists of layers", lists, SMALLER)?,
-                    notes: Room::new(&self.gpu, "layers", usage, SMALLER)?,
-                    counted: self.gpu.empty_buffer("number of layers", read, 4 * HEADER as u64)?,
-                }
-            }
+            None => LayersOnGpu::new(&self.gpu)?,
         };
-        own.heads.fit(&self.gpu, 4 * (HEADER as u64 + u64::from(size[0]) * u64::from(size[1])))?;
+        own.heads.fit(&self.gpu, 4 * (HEADER + u64::from(size[0]) * u64::from(size[1])))?;
         let most = self.most_layers.unwrap_or(LAYER_BYTES / (4 * words));
         let pixels = u64::from(region.size[0]) * u64::from(region.size[1]);
         own.notes.fit(&self.gpu, 4 * words * most.min((FIRST_GUESS[0] * pixels).max(FIRST_GUESS[1])))?;
@@ -259,6 +289,7 @@ impl Renderer {
                 self.composite_layers(&mut encoder, recorder, draw, &own, *band, size);
             }
         }
+        self.method_figures.bytes = own.bytes();
         self.layer_figures = figures;
         self.layers = Some(own);
         Ok(encoder)
@@ -354,12 +385,12 @@ impl Renderer {
         }
         drop(pass);
         recorder.count(counted.0, counted.1);
-        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER as u64);
+        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let done = std::mem::replace(encoder, self.gpu.device.create_command_encoder(&descriptor));
         self.gpu.queue.submit([done.finish()]);
         self.gpu.mapped(&own.counted, |bytes| {
-            let header: [u32; HEADER] = bytemuck::pod_read_unaligned(&bytes[..4 * HEADER]);
+            let header: [u32; HEADER as usize] = bytemuck::pod_read_unaligned(&bytes[..4 * HEADER as usize]);
             let notes = header[16..].iter().step_by(16).map(|pool| u64::from(*pool)).sum();
             Noted { notes, spilled: header[0].into(), longest: header[2] }
         })
@@ -392,7 +423,7 @@ impl Renderer {
     }
 
     /// Sorts what was noted in a band, and lays it one over the other.
-    fn composite_layers(
+    pub(super) fn composite_layers(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
@@ -406,7 +437,8 @@ impl Renderer {
             self.order_layers(encoder, recorder, ("sort layers", key), own, size);
         }
         let layouts = &self.pipelines.layouts;
-        let entries = [(0, whole(own.heads.buffer())), (1, notes_of(own, words))];
+        let [sums, through] = [&targets.tail_sums, &targets.tail_through].map(all_of);
+        let entries = [(0, whole(own.heads.buffer())), (1, notes_of(own, words)), (2, sums), (3, through)];
         let lists = group(&self.gpu, "lists of layers", &layouts.layer_lists, &entries);
         let slot = recorder.begin("composite", "main", &draw.cut.hiding.lenses, true);
         let attachments = [&targets.veil, &targets.shown_code, &targets.shown_depth].map(|target| {
@@ -481,7 +513,7 @@ impl Renderer {
         let Some(own) = self.layers.as_ref().filter(|_| self.layer_figures.notes > 0) else { return Ok(false) };
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("longest list") };
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
-        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER as u64);
+        encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER);
         self.gpu.queue.submit([encoder.finish()]);
         let longest = self.gpu.mapped(&own.counted, |bytes| bytemuck::pod_read_unaligned::<u32>(&bytes[8..12]))?;
         let is_longer = longest > self.longest_list;

@@ -60,6 +60,7 @@ pub mod text;
 mod textures;
 pub mod told;
 pub mod transmittance;
+pub mod transparency;
 pub mod volume;
 mod weld;
 mod worker;

@@ -42,6 +42,7 @@ use crate::{
         stats::{self, Statistics},
         stored::SpriteTexels,
         told,
+        transparency::MethodFigures,
         volume::LensVolume,
     },
     scene::{CitySpec, Scene},
@@ -119,6 +120,8 @@ pub struct Picture {
     pub(super) open: BTreeMap<u32, u32>,
     /// Translucent layers.
     pub(super) layers: LayerFigures,
+    /// What their method took.
+    pub(super) method: MethodFigures,
     /// Objects by lens that have no form that its content derives: shown as they are, and left out.
     pub(super) not_derived: [BTreeMap<u32, u32>; 2],
     /// GPU allocations and uploads while drawing (reading back not counted).
@@ -489,6 +492,7 @@ impl Studio {
             picture.layers.notes += layers.notes;
             picture.layers.bands += layers.bands;
             picture.layers.excess += layers.excess;
+            picture.method.add(&self.renderer.method_figures());
             picture.made.0 += self.renderer.gpu.allocations() - before.0;
             picture.made.1 += self.renderer.gpu.uploads() - before.1;
             if sample == 0 {
@@ -617,6 +621,11 @@ impl Studio {
                     fragments: picture.layers.notes,
                     bands: picture.layers.bands,
                     missing: picture.layers.excess,
+                    method: scene.style.transparency.word(),
+                    gpu_bytes: picture.method.bytes,
+                    rounds: picture.method.rounds,
+                    merged: picture.method.merged,
+                    dropped: picture.method.dropped,
                 }),
                 ..Default::default()
             },
@@ -655,6 +664,7 @@ fn input<'a>(
         base: scene.style.base,
         background: scene.style.background,
         technique: scene.style.technique,
+        transparency: scene.style.transparency,
         transparent: request.transparent,
         haze: HAZE,
         volumes: &prepared.volumes,
@@ -733,6 +743,7 @@ impl Picture {
             excess: BTreeMap::new(),
             open: BTreeMap::new(),
             layers: LayerFigures::default(),
+            method: MethodFigures::default(),
             not_derived: Default::default(),
             made: (0, 0),
             statistics: Statistics::default(),

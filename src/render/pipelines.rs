@@ -69,7 +69,13 @@ pub struct Layouts {
     pub lines: wgpu::BindGroupLayout,
     /// Layers, group 0: the view, lists, notes, the depth of what is opaque.
     pub layers: wgpu::BindGroupLayout,
-    /// Composite, group 3: lists, notes.
+    /// Slots, group 0: the view, lists and records, slots, the depth of what is opaque, the band at a dynamic offset.
+    pub slots: wgpu::BindGroupLayout,
+    /// Fragments shaded where they are drawn, group 0: the view, slots, the band and the city, both at dynamic offsets.
+    pub forward: wgpu::BindGroupLayout,
+    /// Link slots, group 0: lists and records, slots, the band at a dynamic offset.
+    pub link_slots: wgpu::BindGroupLayout,
+    /// Composite, group 3: lists, notes, the tail of slots.
     pub layer_lists: wgpu::BindGroupLayout,
     /// Count and sort layers, group 0: lists, notes.
     pub layer_order: wgpu::BindGroupLayout,
@@ -247,7 +253,37 @@ impl Layouts {
                 "layers",
                 &[(0, all, uniform()), (1, S::FRAGMENT, written), (2, S::FRAGMENT, written), (3, S::FRAGMENT, depth)],
             ),
-            layer_lists: layout(gpu, "lists of layers", &[(0, S::FRAGMENT, written), (1, S::FRAGMENT, storage())]),
+            slots: layout(
+                gpu,
+                "slots of layers",
+                &[
+                    (0, all, uniform()),
+                    (1, S::FRAGMENT, written),
+                    (2, S::FRAGMENT, written),
+                    (3, S::FRAGMENT, depth),
+                    (4, S::FRAGMENT, dynamic),
+                ],
+            ),
+            forward: layout(
+                gpu,
+                "fragments",
+                &[(0, all, uniform()), (2, S::FRAGMENT, storage()), (4, S::FRAGMENT, dynamic), (5, all, dynamic)],
+            ),
+            link_slots: layout(
+                gpu,
+                "slots as lists",
+                &[(0, S::COMPUTE, written), (1, S::COMPUTE, written), (2, S::COMPUTE, dynamic)],
+            ),
+            layer_lists: layout(
+                gpu,
+                "lists of layers",
+                &[
+                    (0, S::FRAGMENT, written),
+                    (1, S::FRAGMENT, storage()),
+                    (2, S::FRAGMENT, float),
+                    (3, S::FRAGMENT, float),
+                ],
+            ),
             layer_order: layout(gpu, "order of layers", &[(0, S::COMPUTE, written), (1, S::COMPUTE, written)]),
             shown_layers: layout(
                 gpu,
@@ -308,6 +344,8 @@ impl Layouts {
             Key::Composite { .. } => {
                 vec![Some(&self.view), Some(&self.shade), Some(&self.lenses), Some(&self.layer_lists)]
             }
+            Key::Translucent(own) => own.groups(self),
+            Key::LinkSlots(_) => vec![Some(&self.link_slots)],
             Key::CountLayers(_) | Key::SortLayers { .. } => vec![Some(&self.layer_order)],
             Key::ShownLayers { .. } => vec![Some(&self.shown_layers)],
             Key::Lines { .. } => {

@@ -24,6 +24,7 @@ use crate::{
         stored::KeptSprite,
         synced::{Room, Synced},
         targets::{Needs, Target, Targets},
+        transparency::{MethodFigures, SlotsOnGpu},
     },
     shader::{Program, handlers},
 };
@@ -79,6 +80,10 @@ pub struct Renderer {
     /// Lists of translucent layers, once there were some, and what the last frame had of them.
     pub(super) layers: Option<LayersOnGpu>,
     pub(super) layer_figures: LayerFigures,
+    /// Slots of the nearest of them, once a method took some.
+    pub(super) slots: Option<SlotsOnGpu>,
+    /// What the method of the last frame took and left out.
+    pub(super) method_figures: MethodFigures,
     /// The longest list that frames sort; 0: none is long.
     pub(super) longest_list: u32,
     /// How many notes of translucent layers have room at a time; `None`: as many as [`crate::render::layers::LAYER_BYTES`]
@@ -244,6 +249,8 @@ impl Renderer {
             solids_of: None,
             own_sprites: OwnSprites::default(),
             layers: None,
+            slots: None,
+            method_figures: MethodFigures::default(),
             layer_figures: LayerFigures::default(),
             longest_list: 0,
             most_layers: None,
@@ -261,6 +268,7 @@ impl Renderer {
     pub fn set_city(&mut self, shown: &Shown) -> Result<(), GpuError> {
         self.city = None;
         (self.layers, self.longest_list) = (None, 0);
+        self.slots = None;
         self.contents = Contents::default();
         self.city = Some(self.city_on_gpu(shown)?);
         self.groups = None;
@@ -466,7 +474,7 @@ pub(super) fn all_of(target: &Target) -> wgpu::BindingResource<'_> {
 }
 
 /// One of several in a uniform buffer, at a dynamic offset.
-fn one_of<T>(buffer: &Synced) -> wgpu::BindingResource<'_> {
+pub(super) fn one_of<T>(buffer: &Synced) -> wgpu::BindingResource<'_> {
     let size = wgpu::BufferSize::new(size_of::<T>() as u64);
     wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size })
 }

@@ -99,12 +99,23 @@ pub struct Frame {
 /// Translucent layers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Layers {
-    /// Fragments that are seen through and not behind what is opaque.
+    /// Fragments that are seen through and not behind what is opaque; 0 where the method does not count them (`weighted`,
+    /// `stochastic`).
     pub fragments: u64,
     /// Bands that the picture was drawn in, for want of room.
     pub bands: u32,
     /// Fragments that are missing, for want of room.
     pub missing: u64,
+    /// The method, as scene files call it.
+    pub method: &'static str,
+    /// What it holds on the card, bytes, beside the targets that every method has.
+    pub gpu_bytes: u64,
+    /// Rounds of peeling.
+    pub rounds: u32,
+    /// Fragments that are seen as one layer behind the others, for want of slots; `null` where all are (`weighted`).
+    pub merged: Option<u64>,
+    /// Fragments that are not shown, beyond the number of layers that are peeled.
+    pub dropped: u64,
 }
 
 /// One pass.

@@ -2,8 +2,9 @@
 
 use crate::{
     gpu::Gpu,
-    render::pipelines::{
-        CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, VEIL,
+    render::{
+        pipelines::{CODES, COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, VEIL},
+        transparency::through_format,
     },
 };
 
@@ -34,6 +35,8 @@ pub struct Needs {
     pub lines: bool,
     /// Translucent layers.
     pub veils: bool,
+    /// One layer of many of them.
+    pub tails: bool,
     /// Which of them is the shown surface.
     pub shown_layers: bool,
     /// Side of the shadow map, 0 for none.
@@ -60,6 +63,7 @@ impl Needs {
             filter_images: self.filter_images.max(before.filter_images),
             lines: self.lines || before.lines,
             veils: self.veils || before.veils,
+            tails: self.tails || before.tails,
             shown_layers: self.shown_layers || before.shown_layers,
             shadow: self.shadow.max(before.shadow),
         }
@@ -119,6 +123,10 @@ pub struct Targets {
     pub lines: Target,
     /// Translucent layers over what is shaded, linear colours times opacity; alpha: what is let through (1×1 where not needed).
     pub veil: Target,
+    /// Translucent layers whose order is not known: sums of colours and opacities, weighted (1×1 where not needed).
+    pub tail_sums: Target,
+    /// What they let through (1×1 where not needed).
+    pub tail_through: Target,
     /// The layer that is the shown surface, as `codes`, always with its normal (1×1 where not needed).
     pub shown_code: Target,
     /// Its depth (1×1 where not needed).
@@ -150,6 +158,8 @@ impl Targets {
             self.filtered,
             self.lines,
             self.veil,
+            self.tail_sums,
+            self.tail_through,
             self.shown_code,
             self.shown_depth,
             self.shadow,
@@ -218,6 +228,8 @@ impl Targets {
             ),
             lines: make_any("lines", full(needs.lines), LINES, drawn, false),
             veil: make_any("translucent layers", full(needs.veils), VEIL, drawn, false),
+            tail_sums: make_any("sums of layers", full(needs.tails), sums, drawn, false),
+            tail_through: make_any("through layers", full(needs.tails), through_format(sums), drawn, false),
             shown_code: make_any("shown layer", full(needs.shown_layers), SMOOTH_CODES, drawn, false),
             shown_depth: make_any("depth of the shown layer", full(needs.shown_layers), OWN_DEPTH, drawn, false),
             shadow: make_any("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn, false),

@@ -2,7 +2,7 @@
 
 use crate::{
     render::picture::{RenderError, Studio},
-    scene::Scene,
+    scene::{Scene, Transparency},
 };
 
 /// Per pixel, row 0 at the top.
@@ -21,6 +21,10 @@ impl Studio {
     /// # Errors
     /// What drawing cannot do.
     pub fn transmittance(&mut self, scene: &Scene, size: [u32; 2]) -> Result<Transmittance, RenderError> {
+        // Whatever the picture is drawn by: this is what it would be at best.
+        let mut exact = scene.clone();
+        exact.style.transparency = Transparency::Exact;
+        let scene = &exact;
         self.redraw(scene, size)?;
         while self.renderer.makes_room()? | self.renderer.sorts_longer()? {
             self.redraw(scene, size)?;

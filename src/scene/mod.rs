@@ -7,6 +7,7 @@ pub mod animation;
 pub mod check;
 pub mod command;
 pub mod technique;
+pub mod transparency;
 
 use std::path::PathBuf;
 
@@ -21,6 +22,7 @@ pub use animation::Animation;
 pub use check::{SceneProblem, check_against};
 pub use command::{Command, History};
 pub use technique::Technique;
+pub use transparency::Transparency;
 
 /// All of a scene.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -88,6 +90,8 @@ pub struct Style {
     pub background: Background,
     /// How lenses that meet are evaluated; the picture is the same.
     pub technique: Technique,
+    /// How translucent layers are laid one over the other.
+    pub transparency: Transparency,
 }
 
 /// The colours surfaces start from.

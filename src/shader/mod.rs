@@ -7,6 +7,7 @@ mod carried;
 mod contents;
 pub mod effect;
 pub mod effect_file;
+mod forward;
 mod hiding;
 mod lens_test;
 mod lining;
@@ -19,6 +20,7 @@ pub mod wgsl;
 
 pub use carried::LEAST_CARRIED;
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
+pub use forward::{Forward, ForwardKind};
 pub use plan::{
     Blend, BodyKind, ClassTest, Clip, MOST_CITIES, Plan, PlanBody, PlanBorder, PlanContent, PlanLens, Program, Scope,
     Step, Uber, VolumeTest,
@@ -95,6 +97,12 @@ files! {
     COUNT_LAYERS = "pass/count-layers.wgsl";
     SORT_LAYERS = "pass/sort-layers.wgsl";
     SHOWN = "pass/shown.wgsl";
+    SLOTS = "lib/slots.wgsl";
+    FORWARD = "lib/forward.wgsl";
+    TAIL = "lib/tail.wgsl";
+    CHANCE = "lib/chance.wgsl";
+    TRANSLUCENT = "pass/translucent.wgsl";
+    LINK_SLOTS = "pass/link-slots.wgsl";
     FILTER = "pass/filter.wgsl";
     RESOLVE = "pass/resolve.wgsl";
     NARROW = "pass/narrow.wgsl";
@@ -136,6 +144,12 @@ pub enum Module {
     SortLayers,
     /// Layers that are the shown surface, in the targets of what is opaque.
     ShownLayers,
+    /// The nearest layers in slots, and what is translucent; whether the adapter can test depth before the shader runs.
+    Slots(Program, bool),
+    /// Slots as lists.
+    LinkSlots,
+    /// Translucent fragments shaded where they are drawn.
+    Forward(Forward),
     /// Regions as depths, and how they are told apart.
     Regions(Plan),
     /// Sections through closed shells, and what is hidden.
@@ -186,6 +200,9 @@ impl Module {
             Self::CountLayers => "count layers".to_owned(),
             Self::SortLayers => "sort layers".to_owned(),
             Self::ShownLayers => "shown layers".to_owned(),
+            Self::Slots(program, _) => format!("slots{}", hidden_name(&Some(program.clone()))),
+            Self::LinkSlots => "link slots".to_owned(),
+            Self::Forward(own) => own.name(),
             Self::Regions(_) => "regions".to_owned(),
             Self::Sections(program) => format!("sections{}", hidden_name(&Some(program.clone()))),
             Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
@@ -260,6 +277,14 @@ impl Module {
             Self::CountLayers => &[COUNT_LAYERS],
             Self::SortLayers => &[SORT_LAYERS],
             Self::ShownLayers => &[SHOWN],
+            Self::Slots(program, _) => &[
+                &[VIEW, VIEW_UNIFORM, SURFACE, PACKED, SIGHT],
+                &lens_files(program)[..],
+                &[OBJECTS, FRAGMENT, city_file(program), GEOMETRY, SLOTS, TRANSLUCENT],
+            ]
+            .concat(),
+            Self::LinkSlots => &[LINK_SLOTS],
+            Self::Forward(own) => return own.source(handlers, lenses),
             Self::Filter(_) => &[PACKED, FILTER],
             Self::Resolve => &[RESOLVE],
             Self::Narrow => &[VIEW, VIEW_UNIFORM, NARROW],
@@ -278,7 +303,7 @@ impl Module {
             Self::Shade(program) | Self::Composite(program) => {
                 let (own, of_scene) = match program {
                     Program::Specialised(plan) => {
-                        (carried::of_plan(plan, handlers, room), specialised::source(plan, handlers, lenses))
+                        (carried::of_plan(plan, handlers, room), specialised::source(plan, handlers, lenses, true))
                     }
                     Program::Uber(uber) => (carried::nothing(), uber::source(uber, handlers)),
                 };
@@ -306,10 +331,13 @@ impl Module {
                 // Its pixels are no other shader's, whatever is opaque behind them.
                 text.replace("//@opacity\n", &opacity).replace(specialised::ONLY_SHOWN, "")
             }
-            Self::Layers(program, is_early) => {
+            Self::Layers(program, is_early) | Self::Slots(program, is_early) => {
                 let own = hiding::source(program, handlers, lenses, hiding::Eye::Layers) + NOTHING_CUT;
                 let (early, behind) = if *is_early { (EARLY, "") } else { ("", BEHIND) };
-                text.replace("//@handlers\n", &own).replace(" //@early", early).replace("    //@behind\n", behind)
+                // Slots are of a pass that has something to return.
+                let leave = if matches!(self, Self::Slots(..)) { "discard;" } else { "return;" };
+                let behind = behind.replace("return;", leave);
+                text.replace("//@handlers\n", &own).replace(" //@early", early).replace("    //@behind\n", &behind)
             }
             Self::Lines(program) => text.replace("//@handlers\n", &lining::source(program, handlers, lenses)),
             Self::Geometry(None) => text.replace("//@handlers\n", NOTHING_CUT),
@@ -564,12 +592,25 @@ mod tests {
         let mut modules: Vec<Module> = hiding
             .clone()
             .flat_map(|p| {
-                let layers = [false, true].map(|early| Module::Layers(p.clone(), early));
-                [Module::Geometry(Some(p.clone())), Module::Shadow(Some(by_shapes(p)))].into_iter().chain(layers)
+                let layers =
+                    [false, true].map(|early| [Module::Layers(p.clone(), early), Module::Slots(p.clone(), early)]);
+                [Module::Geometry(Some(p.clone())), Module::Shadow(Some(by_shapes(p)))]
+                    .into_iter()
+                    .chain(layers.into_iter().flatten())
             })
             .collect();
-        modules.extend(plan.layering(handlers()).map(|plan| Module::Composite(Program::Specialised(plan))));
-        modules.extend(uber.layering(handlers()).map(|uber| Module::Composite(Program::Uber(uber))));
+        let layering = [
+            plan.layering(handlers()).map(Program::Specialised).zip(plan.hiding(handlers()).map(Program::Specialised)),
+            uber.layering(handlers()).map(Program::Uber).zip(uber.hiding(handlers()).map(Program::Uber)),
+        ];
+        for (shading, hidden) in layering.into_iter().flatten() {
+            modules.push(Module::Composite(shading.clone()));
+            let kinds = [ForwardKind::Tail, ForwardKind::Chance(false), ForwardKind::Chance(true)];
+            modules.extend(kinds.map(|kind| {
+                let (hidden, shading) = (hidden.clone(), shading.clone());
+                Module::Forward(Forward { kind, hidden, shading })
+            }));
+        }
         modules.extend(hiding.filter(has_lenses).map(Module::Sections));
         modules.extend(lining.map(Module::Lines));
         modules.push(Module::Shade(Program::Specialised(plan.shading(handlers()))));
@@ -597,7 +638,7 @@ mod tests {
         let is_filter = |e: &u32| handlers()[*e as usize].kind == EffectKind::Filter;
         modules.extend(numbers().into_iter().filter(is_filter).map(Module::Filter));
         modules.extend([Module::Furniture, Module::FurnitureOver]);
-        modules.extend([Module::CountLayers, Module::SortLayers, Module::ShownLayers]);
+        modules.extend([Module::CountLayers, Module::SortLayers, Module::ShownLayers, Module::LinkSlots]);
         modules
     }
 

@@ -11,10 +11,10 @@ use crate::shader::{
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`. `names` of the plan's lenses
-/// become comments.
-pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str]) -> String {
+/// become comments. `is_carried`: whether uniforms are carried to fragments.
+pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str], is_carried: bool) -> String {
     let writer = Writer { plan, handlers, names };
-    let mut text = writer.bindings(true);
+    let mut text = writer.bindings(is_carried);
     for effect in writer.used() {
         let _ = write!(text, "// ==== effect {}\n\n{}\n", effect.name, effect.source.trim_end());
         text.push('\n');

@@ -225,6 +225,10 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         Kind::Test => matches!(node.data, Data::Table(_)),
         Kind::Tests => node.list().is_some_and(|l| !l.is_empty()),
         Kind::Rendering => return wrong_rendering(kind, node),
+        Kind::WordOrTable(words, _) => match &node.data {
+            Data::Table(_) => true,
+            _ => return wrong_word(kind, words, &[], node),
+        },
         Kind::Tables(_) | Kind::Effects => node.list().is_some(),
     };
     let is_far = |n: f64| n.is_finite() && n.abs() > FAR_M;

@@ -232,6 +232,7 @@ fn of_kind(kind: &Kind) -> Value {
             let words: Vec<&str> = ROWS.iter().map(|row| row.word).collect();
             json!({ "anyOf": [{ "enum": words }, of_kind(&Kind::Effects)] })
         }
+        Kind::WordOrTable(words, table) => json!({ "anyOf": [{ "enum": words }, object(table)] }),
     }
 }
 

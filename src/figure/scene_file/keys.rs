@@ -8,6 +8,7 @@ use crate::{
         test_keys::CHOICE,
     },
     lens::{Rendering, ramp},
+    scene::{Transparency, transparency::MOST_PEELED},
 };
 
 /// What a key takes.
@@ -88,6 +89,8 @@ pub enum Kind {
     Tests,
     /// A word of [`crate::lens::rendering::ROWS`], or effects.
     Rendering,
+    /// One of the first words, or a table that says more.
+    WordOrTable(&'static [&'static str], &'static Table),
 }
 
 /// Farthest a coordinate may lie from the origin, metres; beyond it f64 is coarser than a micrometre.
@@ -288,6 +291,38 @@ pub const STYLE: Table = Table {
             "",
             "How lenses are evaluated: effects one after the other where their lens is (`accumulate`), or as the literature has it, for comparison; the picture is the same, see Techniques.",
             "\"regions\"",
+        ),
+        key(
+            "transparency",
+            Kind::WordOrTable(&Transparency::WORDS, &TRANSPARENCY),
+            "\"exact\"",
+            "",
+            "How translucent layers are laid one over the other: a method, or a method and how far it goes; see Transparency.",
+            "{ method = \"k-buffer\", layers = 8 }",
+        ),
+    ],
+};
+
+/// `transparency` of `[style]`.
+pub const TRANSPARENCY: Table = Table {
+    name: "transparency",
+    doc: "A method of laying translucent layers one over the other, and how far it goes; see Transparency.",
+    keys: &[
+        key(
+            "method",
+            Kind::Word { now: &Transparency::WORDS, later: &[] },
+            "",
+            "",
+            "The method: all layers, exactly (`exact`), or one of the literature.",
+            "\"k-buffer\"",
+        ),
+        key(
+            "layers",
+            Kind::Integer { min: 0, max: MOST_PEELED as i64 },
+            "of `peel` 0, of `k-buffer` 8",
+            "",
+            "How many layers of a pixel, from the eye: of `peel` all that are shown, 0 = until nothing is left; of `k-buffer` those that are exact, 4, 8 or 16.",
+            "16",
         ),
     ],
 };
@@ -635,6 +670,11 @@ impl Kind {
                 let words: Vec<String> = Rendering::words().map(|word| format!("\"{word}\"")).collect();
                 format!("{}, or a list of effects", words.join(" or "))
             }
+            Self::WordOrTable(words, table) => {
+                let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+                let keys: Vec<String> = names(table).map(|name| format!("{name} = ...")).collect();
+                format!("{}, or a table {{ {} }}", words.join(" or "), keys.join(", "))
+            }
         }
     }
 }
@@ -646,6 +686,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("[camera]", &CAMERA),
     ("[sun]", &SUN),
     ("[style]", &STYLE),
+    ("transparency of [style]", &TRANSPARENCY),
     ("[[poi]]", &POI),
     ("[[lens]]", &LENS),
     ("attached_to of a lens", &ATTACHED_TO),

@@ -24,7 +24,9 @@ use crate::{
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
-    scene::{Background, BaseStyle, CitySpec, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun, Technique},
+    scene::{
+        Background, BaseStyle, CitySpec, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency,
+    },
     shader::{
         Blend, Clip,
         effect::{EffectKind, find as find_effect},
@@ -148,7 +150,23 @@ impl<'o> SceneReader<'o> {
         let base = if fields.text("base") == Some("clay") { BaseStyle::Clay } else { BaseStyle::Natural };
         let background = fields.color("background").map_or(Background::Sky, Background::Color);
         let technique = fields.text("technique").and_then(Technique::of_word).unwrap_or_default();
-        Style { base, effects, background, technique }
+        let transparency = self.transparency(fields).unwrap_or_default();
+        Style { base, effects, background, technique, transparency }
+    }
+
+    fn transparency(&mut self, fields: &Fields) -> Option<Transparency> {
+        let node = fields.node("transparency")?;
+        if let Some(word) = node.text() {
+            return Transparency::of(word, None).ok()?;
+        }
+        let own = self.checker.fields(node, &keys::TRANSPARENCY, &[], fields.place.within("transparency", node.line));
+        match Transparency::of(own.text("method")?, own.integer("layers")) {
+            Ok(method) => method,
+            Err(message) => {
+                self.checker.note(&own.place, "layers", own.line("layers"), message);
+                None
+            }
+        }
     }
 
     fn poi(&mut self, fields: &Fields, index: usize) -> Option<Poi> {

@@ -13,7 +13,9 @@ use crate::{
     },
     scene::{
         Animation, Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique,
+        Transparency,
         animation::{Change, ChangeKey, Numbers},
+        transparency::{MOST_PEELED, SLOTS},
     },
     shader::{Blend, Clip},
     view::{
@@ -122,6 +124,23 @@ fn every_mistake_names_its_line_place_and_remedy() {
             "veduta = 1\n[style]\nbase = \"cley\"",
             "[style] base: must be \"natural\" or \"clay\", is \"cley\"; did you mean \"clay\"?",
         ),
+        (
+            "veduta = 1\n[style]\ntransparency = \"weihted\"",
+            "s.toml:3: [style] transparency: must be \"exact\" or \"peel\" or \"k-buffer\" or \"weighted\" or \"stochastic\", or a table { method = ..., layers = ... }, is \"weihted\"; did you mean \"weighted\"?",
+        ),
+        (
+            "veduta = 1\n[style]\ntransparency = { method = \"k-buffer\", layers = 5 }",
+            "s.toml:3: [style] transparency.layers: must be 4, 8 or 16 for \"k-buffer\", is 5",
+        ),
+        (
+            "veduta = 1\n[style]\ntransparency = { method = \"weighted\", layers = 4 }",
+            "[style] transparency.layers: \"weighted\" takes none; \"peel\" and \"k-buffer\" do",
+        ),
+        (
+            "veduta = 1\n[style]\ntransparency = { method = \"peel\", layers = 4097 }",
+            "[style] transparency.layers: must be a whole number 0 to 4096, is 4097",
+        ),
+        ("veduta = 1\n[style]\ntransparency = { layers = 4 }", "[style] transparency.method: is missing"),
         (
             "veduta = 1\n[style]\neffects = [{ effect = \"sepia\", class = \"front\" }]",
             "[style] effects.0.class: has a meaning only in a lens",
@@ -752,12 +771,20 @@ prop_compose! {
     }
 }
 
+fn transparencies() -> impl Strategy<Value = Transparency> {
+    prop_oneof![
+        prop::sample::select(&Transparency::WORDS[..]).prop_map(|word| Transparency::of(word, None).unwrap().unwrap()),
+        (0..=MOST_PEELED).prop_map(|layers| Transparency::Peel { layers }),
+        prop::sample::select(&SLOTS[..]).prop_map(|layers| Transparency::KBuffer { layers }),
+    ]
+}
+
 prop_compose! {
     fn scenes()(eye in point(), target in point(), ortho in any::<bool>(), tenths in 1..1790u32, with_camera in any::<bool>(),
         near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
-        figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
+        figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
         animation in prop::option::of(animations())) -> Scene {
         let projection_of = |tenths: u32, ortho: bool| match ortho {
             true => Projection::Orthographic { height_m: f64::from(tenths) },
@@ -777,7 +804,7 @@ prop_compose! {
         let mut scene = Scene {
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
             sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2 },
-            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique },
+            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).collect(),
             lenses,
             figure: Figure { size, samples, ..figure },

@@ -18,7 +18,7 @@ use crate::{
         BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement, Rendering,
         color::{parse_hex, to_hex},
     },
-    scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun, Technique},
+    scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency},
     shader::Clip,
     view::{Camera, Projection, default_near_m},
 };
@@ -106,6 +106,12 @@ impl Toml {
             self.key("background", &color(c));
         }
         self.key_if(style.technique != Technique::default(), "technique", &quoted(style.technique.word()));
+        let (method, word) = (style.transparency, quoted(style.transparency.word()));
+        let is_plain = Transparency::of(method.word(), None) == Ok(Some(method));
+        match method.layers().filter(|_| !is_plain) {
+            None => self.key_if(method != Transparency::default(), "transparency", &word),
+            Some(layers) => self.key("transparency", &format!("{{ method = {word}, layers = {layers} }}")),
+        }
     }
 
     fn poi(&mut self, poi: &Poi) {

@@ -4,11 +4,12 @@ mod handlers;
 mod lens_tests;
 mod samples;
 mod sprites;
+mod transparency;
 
 use crate::measure::topic::Topic;
 
 /// All topics, as they are listed.
-pub const TOPICS: &[Topic] = &[handlers::TOPIC, lens_tests::TOPIC, samples::TOPIC, sprites::TOPIC];
+pub const TOPICS: &[Topic] = &[handlers::TOPIC, lens_tests::TOPIC, samples::TOPIC, sprites::TOPIC, transparency::TOPIC];
 
 #[cfg(test)]
 mod tests {

@@ -1,0 +1,116 @@
+//! Methods of laying translucent layers one over the other (O7): what each costs and leaves out.
+
+use glam::DVec3;
+
+use crate::{
+    geom::Aabb,
+    lens::{Class, EffectUse, Lens, Parameter},
+    measure::{
+        Knob, Quantity, Topic, Trial, Value, Variant,
+        stage::{Stage, lens},
+    },
+    render::picture::RenderError,
+    scene::{Scene, Transparency, transparency::SLOTS},
+    view::Camera,
+};
+
+/// Share of the picture that the lens covers.
+const SHARE: f64 = 0.1;
+/// Samples per pixel at which layers by chance are compared.
+const SAMPLES: [u32; 3] = [1, 8, 64];
+
+/// See the module.
+pub const TOPIC: Topic = Topic {
+    name: "transparency",
+    title: "How translucent layers are laid one over the other",
+    about: "What the methods for translucent layers cost and leave out, by how many layers or samples they take, in five views.",
+    specs: &["U1", "O1", "O7"],
+    reference: "all layers in their order (`exact`), with as many samples",
+    knobs: &[
+        Knob { name: "scene", unit: "" },
+        Knob { name: "method", unit: "" },
+        Knob { name: "layers or samples", unit: "" },
+    ],
+    x: Quantity::MeanSteps,
+    y: &[Quantity::Ratio, Quantity::Memory],
+    front: [Quantity::MeanSteps, Quantity::Ratio],
+    alike: &[0],
+    series: &[0],
+    make,
+};
+
+/// A rule with a number.
+fn rule(effect: &str, number: Option<(&str, f64)>) -> EffectUse {
+    EffectUse {
+        effect: effect.to_owned(),
+        class: Class::Inside,
+        blend: None,
+        weight: None,
+        parameters: number.into_iter().map(|(name, value)| (name.to_owned(), Parameter::Number(value))).collect(),
+    }
+}
+
+/// What is drawn: the whole city from above, translucent and nearly opaque, from a street, along the ground through all of it, and a
+/// lens.
+fn scenes(stage: &mut Stage<'_>) -> Result<Vec<(&'static str, Scene)>, RenderError> {
+    let plain = stage.plain_scene();
+    let of_context = |camera: Option<Camera>, used: EffectUse| -> Scene {
+        let mut scene = plain.clone();
+        scene.camera = camera.or(scene.camera);
+        scene.style.effects = vec![used];
+        scene
+    };
+    let extent = stage.studio.extent();
+    let mut of_lens = plain.clone();
+    let sphere = stage.sphere_covering(SHARE)?;
+    of_lens.lenses = vec![Lens { effects: vec![rule("x-ray", None)], ..lens("lens", sphere, &[]) }];
+    Ok(vec![
+        ("whole city", of_context(None, rule("transparent", Some(("opacity", 0.25))))),
+        ("dense", of_context(None, rule("transparent", Some(("opacity", 0.7))))),
+        ("street", of_context(Some(low(&extent, 0.25, 1.7)), rule("x-ray", None))),
+        ("many layers", of_context(Some(low(&extent, 0.75, 4.0)), rule("transparent", Some(("opacity", 0.05))))),
+        ("lens", of_lens),
+    ])
+}
+
+/// From so far from the middle, in diagonals of the plan, and so high above the ground, towards the middle.
+fn low(extent: &Aabb, away: f64, height_m: f64) -> Camera {
+    let middle = extent.center().with_z(extent.min.z + height_m);
+    let eye = middle + away * extent.size().truncate().length() * DVec3::new(-0.6, -0.8, 0.0);
+    Camera::looking(eye, middle, 45_f64.to_radians())
+}
+
+/// What is compared: methods, how many layers or samples stand in the table, and samples.
+fn methods() -> Vec<(Transparency, Option<u32>, u32)> {
+    let peel = |layers| (Transparency::Peel { layers }, Some(layers), 1);
+    let slots = |layers| (Transparency::KBuffer { layers }, Some(layers), 1);
+    let mut all = vec![(Transparency::Exact, None, 1), peel(0), peel(4), peel(16)];
+    all.extend(SLOTS.map(slots));
+    all.push((Transparency::Weighted, None, 1));
+    all.extend(SAMPLES.map(|samples| (Transparency::Stochastic, Some(samples), samples)));
+    all
+}
+
+fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
+    let mut variants = Vec::new();
+    for (name, scene) in scenes(stage)? {
+        for (method, number, samples) in methods() {
+            let mut own = scene.clone();
+            own.style.transparency = method;
+            let said = number.map_or_else(String::new, |number| format!(" {number}"));
+            variants.push(Variant {
+                label: format!("{name}, {}{said}", method.word()),
+                knobs: vec![
+                    Value::Text(name.to_owned()),
+                    Value::Text(method.word().to_owned()),
+                    number.map_or_else(|| Value::Text("all".to_owned()), |number| Value::Number(f64::from(number))),
+                ],
+                shot: stage.shot(own, samples),
+                reference: Some(stage.shot(scene.clone(), samples)),
+                mask: None,
+            });
+        }
+    }
+    let plain = stage.shot(stage.plain_scene(), 1);
+    Ok(Trial { reference: plain.clone(), plain, variants })
+}

@@ -1,0 +1,60 @@
+//! The draws of what may be translucent.
+
+use crate::{
+    render::{
+        city::{Chunk, CityBuffers, SectionKind, draws_of},
+        contents::DrawnSection,
+        cut::Cut,
+        frame::FrameInput,
+        key::Key,
+        renderer::Renderer,
+    },
+    view::Frustum,
+};
+
+impl Renderer {
+    /// Draws the chunks that a cut reaches, each kind of section by the pipeline that `key_of` names (its second argument: whether
+    /// its city has normals per vertex); `bind` binds group 1. Returns draws and triangles.
+    pub(in crate::render) fn draw_reached(
+        &self,
+        pass: &mut wgpu::RenderPass,
+        input: &FrameInput,
+        cut: &Cut,
+        key_of: impl Fn(SectionKind, bool) -> Key,
+        bind: impl Fn(&mut wgpu::RenderPass, u32),
+    ) -> (u32, u64) {
+        let frustum: Frustum = input.view.frustum(1.0);
+        let mut counted = (0, 0);
+        let mut layer = (None, 0);
+        for drawn in self.drawn_sections(Some(cut)) {
+            // Sections of coplanar faces follow each other from the lowest layer of a city up.
+            layer = if drawn.section.kind != SectionKind::Coplanar || layer.0 != Some(drawn.content) {
+                (Some(drawn.content), 0)
+            } else {
+                (layer.0, layer.1 + 1)
+            };
+            let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, Some(cut), &input.view));
+            let seen = CityBuffers::visible(shown, &frustum, input.view.camera.eye);
+            let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
+            let DrawnSection { city, section, image, content, offset, .. } = drawn;
+            let parts = Cut::parts(Some(cut), &input.view, &chunks, content.is_some());
+            let Some((mut reached, _)) = parts.into_iter().find(|(_, is_reached)| *is_reached) else { continue };
+            // What is opaque is there already, so the order is free: neighbours become one draw.
+            reached.sort_unstable_by_key(|chunk| chunk.range.start);
+            pass.set_pipeline(self.pipelines.get(&key_of(section.kind, city.buffers.smooth)));
+            bind(pass, offset);
+            if let Some(image) = image {
+                pass.set_bind_group(3, image, &[]);
+            }
+            pass.set_vertex_buffer(0, section.vertices.slice(..));
+            if let Some(extra) = &section.extra {
+                pass.set_vertex_buffer(1, extra.slice(..));
+            }
+            let (draws, triangles) = draws_of(reached.into_iter());
+            pass.set_index_buffer(section.indices.slice(..), wgpu::IndexFormat::Uint32);
+            draws.iter().for_each(|range| pass.draw_indexed(range.clone(), 0, layer.1..layer.1 + 1));
+            counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
+        }
+        counted
+    }
+}
