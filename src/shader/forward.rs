@@ -84,8 +84,7 @@ impl Forward {
                 "@group(0) @binding(5) var<uniform> city: City;",
             );
         let is_tail = self.kind == ForwardKind::Tail;
-        // Nothing is stored, so it does not matter when depth is tested. What is opaque is read where shading reads it: with a
-        // texture in the first group beside the shadow map's sampler Mesa 22.3 crashes.
+        // Nothing is stored, so it does not matter when depth is tested. What is opaque is read where shading reads it.
         other = other
             .replace(" //@early", "")
             .replace("    //@behind\n", "")
