@@ -129,10 +129,16 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let count = u64::from(last - first) + 1;
     log::info!("{count} frames, {} per second", film.fps());
     let progress = terminal::Progress::counting(count, "drawing", "frames", global);
-    for frame in first..=last {
+    for frame in 0..=last {
         let scene = film.scene(frame).map_err(failed)?;
-        let drawn = figure::draw(&mut studio, &scene, &request(&scene))
-            .map_err(|error| Failure::failed(format!("{}: frame {frame}: {error}", file.display())))?;
+        // From the first frame on, whichever are drawn: a frame does not depend on that.
+        let at_frame =
+            |error: &dyn std::fmt::Display| Failure::failed(format!("{}: frame {frame}: {error}", file.display()));
+        studio.pass(&scene, scene.figure.size, 1.0 / film.fps()).map_err(|error| at_frame(&error))?;
+        if frame < first {
+            continue;
+        }
+        let drawn = figure::draw(&mut studio, &scene, &request(&scene)).map_err(|error| at_frame(&error))?;
         let notes = render::notes(&scene, &options);
         picture::save_picture(&folder.file(frame), drawn.size, &drawn.rgba, true, &notes).map_err(output::unwritten)?;
         progress.at(u64::from(frame - first) + 1);

@@ -59,6 +59,8 @@ pub struct Lens {
     pub sprite: Option<LensSprite>,
     /// How it ends (L9); `None`: at once.
     pub border: Option<Border>,
+    /// Whether what it takes away, sees through or replaces still casts the shadow that it has without the lens.
+    pub keeps_shadows: bool,
     /// The colour, sRGB 0..1, of the sections through closed shells where it ends; `None`: what is cut is hollow.
     pub section: Option<[f32; 3]>,
 }

@@ -14,11 +14,11 @@ use crate::{
     },
     geom::combination::Operation,
     lens::{Focus, Lens, Occluders, chosen::Choice, nearest::did_you_mean},
-    visibility::{Reference, Test},
+    visibility::{Margin, Pace, Reference, Test},
 };
 
 /// The keys that only occlusion lenses have.
-pub(super) const OWN: [&str; 5] = ["poi", "test", "force", "forbid", "render"];
+pub(super) const OWN: [&str; 7] = ["poi", "test", "force", "forbid", "margin", "fade", "render"];
 
 /// Whom a lens looks for.
 pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
@@ -38,7 +38,9 @@ pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
         reader.choice(&own)
     };
     let (force, forbid) = (choice("force"), choice("forbid"));
-    Occluders { pois, test: test.unwrap_or_default(), force, forbid }
+    let margin = fields.number("margin").map_or_else(Margin::default, |metres| Margin { metres });
+    let pace = fields.number("fade").map_or_else(Pace::default, |fade_s| Pace { fade_s });
+    Occluders { pois, test: test.unwrap_or_default(), force, forbid, margin, pace }
 }
 
 /// The focus areas of an occlusion lens of these shapes: its occluders, or what of them is in the shapes.
@@ -145,6 +147,8 @@ pub(super) fn written(lens: &Lens) -> Vec<(&'static str, String)> {
     let choice = |choice: &Choice| focus::choice_written("", choice);
     keys.extend(of.force.as_ref().map(|c| ("force", choice(c))));
     keys.extend(of.forbid.as_ref().map(|c| ("forbid", choice(c))));
+    keys.extend((of.margin != Margin::default()).then(|| ("margin", number(of.margin.metres))));
+    keys.extend((of.pace != Pace::default()).then(|| ("fade", number(of.pace.fade_s))));
     keys
 }
 
