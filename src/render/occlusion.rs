@@ -113,6 +113,13 @@ impl Occlusion {
         }
     }
 
+    /// Per object of the city, how far it is drawn as an occluder of a lens, by its name, 0 to 1; `None` where no time passed for it.
+    pub fn weights(&self, lens: &str) -> Option<Vec<f32>> {
+        let ShownOccluders { objects, weights } = &self.remembered.get(lens)?.shown;
+        let settled = || objects.iter().map(|is| f32::from(u8::from(*is))).collect();
+        Some(weights.as_ref().map_or_else(settled, |weights| weights.to_vec()))
+    }
+
     fn memory_of(&self, lens: &str, of: &Occluders, pois: &[Poi], viewer: Viewer) -> Option<&Remembered> {
         self.remembered.get(lens).filter(|remembered| remembered.asked == Asked::new(of, pois, viewer))
     }

@@ -389,6 +389,12 @@ impl Studio {
         Ok(())
     }
 
+    /// Per object of the city, how far it is drawn as an occluder of a lens, by its name, 0 to 1, since time last passed
+    /// ([`Self::pass`]); `None` of a lens that was not there then.
+    pub fn occluder_weights(&self, lens: &str) -> Option<Vec<f32>> {
+        self.occlusion.lock().unwrap_or_else(PoisonError::into_inner).weights(lens)
+    }
+
     /// How often the city was asked for occluders so far.
     pub fn occlusion_tests(&self) -> u64 {
         self.occlusion.lock().unwrap_or_else(PoisonError::into_inner).asked()

@@ -221,6 +221,21 @@ mod tests {
     }
 
     #[test]
+    fn what_they_have_over_time_is_read_and_written() {
+        let plain = lens("poi = \"a\"").unwrap();
+        let of = plain.occluders().unwrap();
+        assert_eq!((of.margin, of.pace), (Margin { metres: 1.0 }, Pace { fade_s: 0.3 }));
+        let other = lens("poi = \"a\"\nmargin = 0\nfade = 2.5\nshadows = true").unwrap();
+        let of = other.occluders().unwrap();
+        assert_eq!((of.margin, of.pace, other.keeps_shadows), (Margin { metres: 0.0 }, Pace { fade_s: 2.5 }, true));
+        let keys =
+            |lens: &Lens| written(lens).into_iter().filter(|(key, _)| ["margin", "fade"].contains(key)).collect();
+        let [none, both]: [Vec<_>; 2] = [&plain, &other].map(keys);
+        assert_eq!(none, []);
+        assert_eq!(both, [("margin", "0.0".to_owned()), ("fade", "2.5".to_owned())]);
+    }
+
+    #[test]
     fn mistakes_are_named_with_what_would_be_right() {
         for (lines, expected) in [
             ("", "[lens.0] poi: is missing: the test asks what hides a point of interest"),
@@ -241,6 +256,10 @@ mod tests {
                 "poi = \"a\"\ntest = { not = { kind = \"ground\", radius = -1 } }",
                 "[lens.0] test.not.radius: must be a number ≥ 0, is -1",
             ),
+            ("poi = \"a\"\nmargin = -1", "[lens.0] margin: must be a number 0 to 1000, is -1"),
+            ("poi = \"a\"\nfade = 61", "[lens.0] fade: must be a number 0 to 60, is 61"),
+            ("poi = \"a\"\nfade = \"slow\"", "[lens.0] fade: must be a number 0 to 60, is \"slow\""),
+            ("poi = \"a\"\nshadows = 1", "[lens.0] shadows: must be true or false, is 1"),
             ("poi = \"a\"\nrender = \"discrad\"", "[lens.0] render: must be \"discard\""),
             ("poi = \"a\"\nrender = \"discrad\"", "did you mean \"discard\"?"),
             (
