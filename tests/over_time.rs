@@ -16,7 +16,7 @@ use veduta::{
     visibility::{Pace, Test},
 };
 
-const SIZE: [u32; 2] = [160, 100];
+const SIZE: [u32; 2] = [96, 60];
 
 /// The market square from the south, a place in it looked for; nobody hides it but those of `forced`.
 fn square(render: &str, forced: &[String], is_lit: bool) -> Scene {
@@ -44,9 +44,9 @@ fn of_square() -> Studio {
 }
 
 /// Buildings of the city: what is forced to hide something.
-fn some_ids(studio: &Studio) -> Vec<String> {
+fn some_ids(studio: &Studio, count: usize) -> Vec<String> {
     let objects = studio.model.objects.iter().filter(|o| o.parents.is_empty() && !o.class.is_ground());
-    objects.map(|o| o.id.to_string()).step_by(3).take(8).collect()
+    objects.map(|o| o.id.to_string()).step_by(3).take(count).collect()
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend, samples: u32) -> Picture {
@@ -63,7 +63,7 @@ fn with_fade(mut scene: Scene, fade_s: f64) -> Scene {
 #[test]
 fn a_fade_is_at_each_pixel_one_of_two_pictures_whatever_is_drawn() {
     let mut studio = of_square();
-    let ids = some_ids(&studio);
+    let ids = some_ids(&studio, 8);
     for render in Rendering::words() {
         for backend in [Backend::Specialised, Backend::Uber] {
             let before = with_fade(square(render, &[], false), 0.5);
@@ -72,7 +72,7 @@ fn a_fade_is_at_each_pixel_one_of_two_pictures_whatever_is_drawn() {
             assert!(plain.rgba != wholly.rgba, "{render}: nothing is done");
             // Long enough for what faded before to have ended.
             studio.pass(&before, SIZE, 10.0).expect("a moment");
-            for (dt, weight) in [(0.125, 0.25), (0.125, 0.5), (0.2, 0.9_f32), (0.5, 1.0)] {
+            for (dt, weight) in [(0.125, 0.25), (0.325, 0.9_f32), (0.5, 1.0)] {
                 studio.pass(&after, SIZE, dt).expect("a moment");
                 let now = drawn(&mut studio, &after, backend, 1);
                 let mut changed = [0; 2];
@@ -88,7 +88,7 @@ fn a_fade_is_at_each_pixel_one_of_two_pictures_whatever_is_drawn() {
                     );
                     changed[usize::from(is_there)] += usize::from(plain.rgba[i] != wholly.rgba[i]);
                 }
-                assert!(changed[1] > 40 && (weight == 1.0) == (changed[0] == 0), "{render}: {changed:?} at {weight}");
+                assert!(changed[1] > 20 && (weight == 1.0) == (changed[0] == 0), "{render}: {changed:?} at {weight}");
             }
         }
     }
@@ -97,29 +97,29 @@ fn a_fade_is_at_each_pixel_one_of_two_pictures_whatever_is_drawn() {
 #[test]
 fn many_samples_make_a_fade_smooth() {
     let mut studio = of_square();
-    let ids = some_ids(&studio);
+    let ids = some_ids(&studio, 8);
     let (before, after) = (square("discard", &[], false), square("discard", &ids, false));
     let [plain, wholly] = [&before, &after].map(|scene| drawn(&mut studio, scene, Backend::default(), 16));
     studio.pass(&before, SIZE, 0.0).expect("a moment");
     studio.pass(&after, SIZE, 0.15).expect("a moment");
     let half = drawn(&mut studio, &after, Backend::default(), 16);
     let linear = |byte: u8| (f64::from(byte) / 255.0).powf(2.2);
-    let (mut checked, mut worst) = (0, 0.0_f64);
-    for i in 0..half.rgba.len() {
-        let [a, b, now] = [&plain, &wholly, &half].map(|p| linear(p.rgba[i][0]));
-        if (a - b).abs() > 0.1 {
-            checked += 1;
-            worst = worst.max(((now - a) / (b - a) - 0.5).abs());
-        }
-    }
-    // Of 16 samples 7 to 9 are there; sRGB is no power of 2.2, and silhouettes are in some samples alone.
-    assert!(checked > 200 && worst < 0.16, "{worst} at {checked} pixels");
+    let shares: Vec<f64> = (0..half.rgba.len())
+        .map(|i| [&plain, &wholly, &half].map(|p| linear(p.rgba[i][0])))
+        .filter(|[a, b, _]| (a - b).abs() > 0.1)
+        .map(|[a, b, now]| (now - a) / (b - a))
+        .collect();
+    let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+    let near = shares.iter().filter(|share| (*share - 0.5).abs() < 0.13).count();
+    // Of 16 samples 7 to 9 are there; where one of both pictures has a silhouette, its samples are not alike.
+    assert!(shares.len() > 60 && (mean - 0.5).abs() < 0.02, "{mean} of {}", shares.len());
+    assert!(near * 10 > shares.len() * 9, "{near} of {}", shares.len());
 }
 
 #[test]
 fn without_time_there_is_no_history_and_settled_pictures_are_those_without_it() {
     let mut studio = of_square();
-    let ids = some_ids(&studio);
+    let ids = some_ids(&studio, 8);
     let (before, after) = (square("flatten", &[], true), square("flatten", &ids, true));
     let settled = drawn(&mut studio, &after, Backend::default(), 2);
     studio.pass(&after, SIZE, 0.1).expect("a moment");
@@ -147,7 +147,7 @@ fn without_time_there_is_no_history_and_settled_pictures_are_those_without_it() 
 #[test]
 fn statistics_say_how_far_each_has_come() {
     let mut studio = of_square();
-    let ids = some_ids(&studio);
+    let ids = some_ids(&studio, 8);
     let (before, after) = (square("discard", &[], false), square("discard", &ids[..2], false));
     let listed = |studio: &mut Studio, scene: &Scene| {
         let drawn = picture(studio, scene, SIZE);
@@ -168,7 +168,7 @@ fn statistics_say_how_far_each_has_come() {
 #[test]
 fn shadows_of_what_is_taken_away_go_or_stay() {
     let mut studio = of_square();
-    let ids = some_ids(&studio);
+    let ids = some_ids(&studio, 40);
     for render in ["discard", "flatten", "transparent", "box", "low"] {
         for backend in [Backend::Specialised, Backend::Uber] {
             let plain = drawn(&mut studio, &square(render, &[], true), backend, 1);
@@ -191,9 +191,9 @@ fn shadows_of_what_is_taken_away_go_or_stay() {
             let changed = |p: &Picture| outside.iter().filter(|&&i| plain.rgba[i] != p.rgba[i]).count();
             // Lines and layers lie over what stays.
             let over = if ["transparent", "box"].contains(&render) { outside.len() / 2 } else { 0 };
-            assert!(outside.len() > 2_000, "{render}: {}", outside.len());
+            assert!(outside.len() > 700, "{render}: {}", outside.len());
             assert!(changed(&kept) <= over, "{render}, {backend:?}: {} of {}", changed(&kept), outside.len());
-            assert!(changed(&gone) > changed(&kept) + 50, "{render}, {backend:?}: {}", changed(&gone));
+            assert!(changed(&gone) > changed(&kept) + 20, "{render}, {backend:?}: {}", changed(&gone));
         }
     }
 }

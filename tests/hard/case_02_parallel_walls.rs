@@ -12,16 +12,16 @@ use crate::{panes::*, studio};
 
 const PIXELS: [u32; 2] = [40, 32];
 
-/// Two walls of 10 by 10 metres, the second `gap_mm` behind the first where one looks along x.
+/// Two walls of 100 by 100 metres, the second `gap_mm` behind the first where one looks along x.
 fn walls(gap_mm: i64) -> [Pane; 2] {
-    let wall = |name: usize, x| Pane { name, x, low: [0, 0], high: [10_000, 10_000], material: name };
+    let wall = |name: usize, x| Pane { name, x, low: [0, 0], high: [100_000, 100_000], material: name };
     [wall(0, 0), wall(1, gap_mm)]
 }
 
 /// Looks at the middle of the walls from `z_m` metres, `side` −1 before the first and +1 behind the second, turned by `off` from the
 /// perpendicular; the walls fill the picture.
 fn view(z_m: f64, side: f64, off: [f64; 2]) -> Camera {
-    let middle = DVec3::new(0.0, 5.0, 5.0);
+    let middle = DVec3::new(0.0, 50.0, 50.0);
     let eye = middle + DVec3::new(side * z_m, off[0] * z_m, off[1] * z_m);
     let mut camera = Camera::looking(eye, middle, (4.0 / z_m).max(2e-4));
     camera.near_m = default_near_m(z_m);
