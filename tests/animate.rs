@@ -166,6 +166,52 @@ fn a_part_is_drawn_and_what_is_there_stays_or_is_told() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
+/// What is near the eye gives way, over more than one frame.
+const GIVES_WAY: &str = r#"
+[[lens]]
+name = "near"
+kind = "occlusion"
+test = { kind = "spherical", radius = 100.0, reference = "nearest" }
+fade = 0.5
+"#;
+
+#[test]
+fn a_frame_with_a_history_does_not_depend_on_which_frames_are_drawn() {
+    let folder = folder("history");
+    let (file, all, part) = (folder.join("s.toml"), folder.join("all"), folder.join("part"));
+    let text_of_scene = SCENE.replace("[figure]", &format!("{GIVES_WAY}[figure]"));
+    std::fs::write(&file, &text_of_scene).unwrap();
+    for (to, frames) in [(&all, ".."), (&part, "3..4")] {
+        let output = run(&["animate", text(&file), "-o", text(to), "--frames", frames]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    assert_eq!(names(&part), ["0003.png", "0004.png"]);
+    for name in names(&part) {
+        assert!(std::fs::read(all.join(&name)).unwrap() == std::fs::read(part.join(&name)).unwrap(), "{name}");
+    }
+    // Some frames are not what their moment is by itself; the first is.
+    let film = Film::new(&scene_file::parse(&text_of_scene, "s", &Options::for_command_line()).unwrap()).unwrap();
+    let mut studio = of_scene(&scene());
+    let fading: Vec<u32> = (0..film.frames())
+        .filter(|frame| {
+            let scene = film.scene(*frame).unwrap();
+            let request = Request {
+                size: scene.figure.size,
+                samples: scene.figure.samples,
+                transparent: false,
+                aovs: Default::default(),
+                statistics: false,
+                backend: Default::default(),
+            };
+            let alone = figure::draw(&mut studio, &scene, &request).unwrap().rgba;
+            let drawn = image::open(all.join(format!("{frame:04}.png"))).unwrap().into_rgba8();
+            drawn.pixels().map(|p| p.0).ne(alone)
+        })
+        .collect();
+    assert!(!fading.contains(&0) && !fading.is_empty(), "{fading:?}");
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
 #[test]
 fn what_cannot_be_drawn_is_said_in_one_line_before_anything_is() {
     let folder = folder("wrong");

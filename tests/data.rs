@@ -19,6 +19,8 @@ mod pictures;
 #[path = "data/scenes.rs"]
 mod scenes;
 mod studio;
+#[path = "data/walks.rs"]
+mod walks;
 
 use std::path::PathBuf;
 
@@ -47,6 +49,7 @@ fn main() {
         occluders::trials(),
         pictures::trials(),
         scenes::trials(),
+        walks::trials(),
     ];
     let trials = rooms.into_iter().flatten().collect();
     libtest_mimic::run(&arguments, trials).exit();

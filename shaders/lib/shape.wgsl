@@ -37,6 +37,8 @@ const FLAT: u32 = 12u;
 const LAYERED_SPRITE: u32 = 13u;
 // One that is tested by a sprite that has its own eye; size_x = number of the first of its rows among the planes.
 const OWN_SPRITE: u32 = 14u;
+// As MEMBERS, of which some come or go.
+const FADING_MEMBERS: u32 = 15u;
 
 // Where a ray is inside: [enter, exit] in D, may start behind the eye; empty when enter > exit.
 struct Span {

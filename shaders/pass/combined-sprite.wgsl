@@ -6,6 +6,10 @@ fn is_chosen(first: u32, object: u32) -> bool {
     return true;
 }
 
+fn is_fading_member(first: u32, object: u32, pixel: vec2i) -> bool {
+    return true;
+}
+
 fn combination() -> Shape {
     let first = f32(stage.leaves.x);
     return Shape(vec3f(0.0), COMBINED, vec3f(0.0), first, vec3f(0.0), f32(stage.leaves.y), vec3f(0.0), 0.0);

@@ -34,7 +34,8 @@ Examples:
   ffmpeg -framerate 30 -i frames/%04d.png -pix_fmt yuv420p walk.mp4
 
 The scene has a table [animation] (docs/scene.md). DIR gets 0000.png, 0001.png, ...; each frame is the picture that
-`veduta render` makes of the scene at its moment. Frames that are there already are replaced, one by one.";
+`veduta render` makes of the scene at its moment, but that occluders come and go gradually (`margin` and `fade` of
+occlusion lenses). Frames that are there already are replaced, one by one.";
 
 /// Arguments of `veduta animate`.
 #[derive(Args, Clone, Debug, Default)]
@@ -123,16 +124,23 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let [first, last] = arguments.frames.unwrap_or(all).of(film.frames()).map_err(Failure::usage)?;
     // Before anything is drawn: a frame without a scene may be the last.
     let first_scene = film.scene(first).map_err(failed)?;
-    (first..=last).try_for_each(|frame| film.scene(frame).map(|_| ())).map_err(failed)?;
+    // Occluders have a history, which begins with frame 0 whichever frames are drawn.
+    let has_history = first_scene.lenses.iter().any(|lens| lens.enabled && lens.occluders().is_some());
+    let begin = if has_history { 0 } else { first };
+    (begin..=last).try_for_each(|frame| film.scene(frame).map(|_| ())).map_err(failed)?;
     let folder = Folder::new(&arguments.output, film.frames())?;
     let (mut studio, _) = render::open(&first_scene, &options, global)?;
     let count = u64::from(last - first) + 1;
     log::info!("{count} frames, {} per second", film.fps());
     let progress = terminal::Progress::counting(count, "drawing", "frames", global);
-    for frame in first..=last {
+    for frame in begin..=last {
         let scene = film.scene(frame).map_err(failed)?;
-        let drawn = figure::draw(&mut studio, &scene, &request(&scene))
-            .map_err(|error| Failure::failed(format!("{}: frame {frame}: {error}", file.display())))?;
+        let at_frame = |error: String| Failure::failed(format!("{}: frame {frame}: {error}", file.display()));
+        studio.pass(&scene, scene.figure.size, 1.0 / film.fps()).map_err(|error| at_frame(error.to_string()))?;
+        if frame < first {
+            continue;
+        }
+        let drawn = figure::draw(&mut studio, &scene, &request(&scene)).map_err(|error| at_frame(error.to_string()))?;
         let notes = render::notes(&scene, &options);
         picture::save_picture(&folder.file(frame), drawn.size, &drawn.rgba, true, &notes).map_err(output::unwritten)?;
         progress.at(u64::from(frame - first) + 1);

@@ -140,6 +140,7 @@ mod tests {
             body: Default::default(),
             sprite: None,
             border: None,
+            keeps_shadows: false,
             section: None,
         }
     }

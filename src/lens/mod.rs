@@ -5,6 +5,7 @@ pub mod chosen;
 pub mod classify;
 pub mod color;
 pub mod content;
+pub mod dither;
 pub mod effect;
 pub mod focus;
 pub mod intersection;
@@ -58,6 +59,8 @@ pub struct Lens {
     pub sprite: Option<LensSprite>,
     /// How it ends (L9); `None`: at once.
     pub border: Option<Border>,
+    /// Whether what it takes away, sees through or replaces still casts the shadow that it has without the lens.
+    pub keeps_shadows: bool,
     /// The colour, sRGB 0..1, of the sections through closed shells where it ends; `None`: what is cut is hollow.
     pub section: Option<[f32; 3]>,
 }

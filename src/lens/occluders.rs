@@ -1,6 +1,9 @@
 //! Who hides what shall be seen: the focus area of occlusion lenses (O2).
 
-use crate::{lens::chosen::Choice, visibility::Test};
+use crate::{
+    lens::chosen::Choice,
+    visibility::{Margin, Pace, Test},
+};
 
 /// The city objects, whole, that a test takes for occluders; worked out for each eye.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,4 +16,8 @@ pub struct Occluders {
     pub force: Option<Choice>,
     /// Those that never are one, forced or not.
     pub forbid: Option<Choice>,
+    /// Over time (O6), how far one may leave the test before it ceases to be one.
+    pub margin: Margin,
+    /// Over time, how fast they come and go.
+    pub pace: Pace,
 }

@@ -129,6 +129,7 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
         body: LensBody::None,
         sprite: None,
         border: None,
+        keeps_shadows: false,
         section: None,
     }
 }

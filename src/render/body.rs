@@ -39,8 +39,10 @@ pub enum Leaf {
 /// City objects, with all that belongs to them wherever it is.
 #[derive(Clone, Debug)]
 pub struct Members {
-    /// One per object of the city.
+    /// One per object of the city: whether it is one, be it in part.
     pub objects: Arc<[bool]>,
+    /// Where some come or go (O6), how far each object has come, 0 to 1; `None`: members are wholly in.
+    pub weights: Option<Arc<[f32]>>,
     /// Box around what is shown of them, metres.
     pub bounds: Aabb,
 }
@@ -181,8 +183,8 @@ impl Body {
 
     /// Whether its ends along a ray have a closed form.
     pub fn is_form(&self) -> bool {
-        let has_none = |test| matches!(test, VolumeTest::Solid | VolumeTest::Members | VolumeTest::OwnSprite);
-        matches!(self, Self::One(leaf) if !has_none(leaf.leaf.test()))
+        let has_none = |test| matches!(test, VolumeTest::Solid | VolumeTest::OwnSprite);
+        matches!(self, Self::One(leaf) if !has_none(leaf.leaf.test())) && !self.has_members()
     }
 
     /// Intervals that a ray may be in it, at most, if its leaves say so: solids may be gone through any number of times.
@@ -307,7 +309,7 @@ impl Body {
                 let half = 0.5 * members.bounds.size();
                 let around = Volume::Box { center: members.bounds.center(), half, rotation: glam::DQuat::IDENTITY };
                 let figures = PlacedLeaf::from(Leaf::Volume(around)).figures(view, &mut Vec::new());
-                let kind = VolumeTest::Members.number();
+                let kind = leaf.leaf.test().number();
                 (layout::Shape { kind, ..figures }, leaf.place.first as f32, then.clone())
             }
             Leaf::Volume(_) | Leaf::Sprite(_) => (leaf.figures(view, planes), 0.0, then.clone()),
@@ -340,7 +342,8 @@ impl Leaf {
     /// How it is tested from its own figures.
     pub fn test(&self) -> VolumeTest {
         let volume = match self {
-            Self::Members(_) => return VolumeTest::Members,
+            Self::Members(Members { weights: None, .. }) => return VolumeTest::Members,
+            Self::Members(_) => return VolumeTest::FadingMembers,
             Self::Sprite(_) => return VolumeTest::OwnSprite,
             Self::Volume(volume) => volume,
         };

@@ -131,7 +131,8 @@ impl Cuts {
             let frustum = sun.frustum(1.0);
             let hiding = hiding(&|lens| {
                 let is_anywhere = |v: &LensVolume| v.everywhere || (v.has_own_eye() && v.asks_sides);
-                input.volumes.iter().any(|v| v.lens == lens && (is_anywhere(v) || frustum.meets(&v.bounds)))
+                let is_met = |v: &LensVolume| is_anywhere(v) || frustum.meets(&v.bounds);
+                input.volumes.iter().any(|v| v.lens == lens && !v.keeps_shadows && is_met(v))
             });
             let own = input.volumes.iter().filter(|v| hiding.lenses.contains(&v.lens));
             // What the picture's sprites hold says nothing of what only the sun sees.

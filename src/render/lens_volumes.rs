@@ -48,15 +48,22 @@ pub(super) struct Tools<'a> {
     pub pois: &'a [Poi],
     /// From where.
     pub viewer: Viewer,
-    /// Whether the lens acts: of one that does not nobody is looked for.
+    /// The name of the lens.
+    pub lens: &'a str,
+    /// Whether it acts: of one that does not nobody is looked for.
     pub is_enabled: bool,
 }
 
 /// Resolves the focus areas of a scene. An error names the key of the scene file.
-pub(super) fn volumes_of(scene: &Scene, city: ShownCity, eye: &Eye, tools: &mut Tools) -> Result<LensVolumes, String> {
+pub(super) fn volumes_of<'a>(
+    scene: &'a Scene,
+    city: ShownCity,
+    eye: &Eye,
+    tools: &mut Tools<'a>,
+) -> Result<LensVolumes, String> {
     let mut all = LensVolumes::default();
     for (i, lens) in scene.lenses.iter().enumerate() {
-        tools.is_enabled = lens.enabled;
+        (tools.lens, tools.is_enabled) = (&lens.name, lens.enabled);
         // Attached to what is not there, it acts nowhere.
         let motion = eye.motion(lens, scene, city.model);
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
@@ -130,6 +137,7 @@ fn volume_of(number: u32, lens: &Lens, body: Body, motion: &Motion) -> Result<Le
         sprite,
         asks_sides: lens.classes().any(|class| class != Class::Inside) || ends_along_rays(lens),
         border: lens.soft_border(),
+        keeps_shadows: lens.keeps_shadows,
         section: lens.section,
     };
     volume.bounds = own_sprites::bounds(&volume)?;
@@ -210,17 +218,22 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> 
 
 /// The leaves whose union a focus area is that is no combination.
 fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, FocusError> {
+    let mut weights = None;
     let objects: Arc<[bool]> = match focus {
         Focus::Thematic(choice) => members(city.model, choice).into(),
         Focus::Occluders(_) if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
-        Focus::Occluders(of) => tools.occlusion.objects(of, tools.pois, city, tools.viewer),
+        Focus::Occluders(of) => {
+            let shown = tools.occlusion.objects(tools.lens, of, tools.pois, city, tools.viewer);
+            weights = shown.weights;
+            shown.objects
+        }
         Focus::Enclosed { parts, whole, types } => objects_in(parts, (*whole, types), city, place, tools)?.into(),
         Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(tools.solids.sprite(file, city, &place.motion)?)]),
         _ => return Ok(tools.solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),
     };
     let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);
     let bounds = shown.filter(|g| objects[g.object as usize]).fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
-    Ok(vec![Leaf::Members(Members { objects, bounds })])
+    Ok(vec![Leaf::Members(Members { objects, weights, bounds })])
 }
 
 /// The objects that some shapes hold, one per object of the city.

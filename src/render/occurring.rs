@@ -135,6 +135,7 @@ mod tests {
                 sprite: None,
                 asks_sides: false,
                 border: None,
+                keeps_shadows: false,
                 section: None,
             }
         };

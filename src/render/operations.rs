@@ -8,7 +8,7 @@ use crate::{
         effect::{default_of, in_floats},
         thematic::ThematicScale,
     },
-    render::palette,
+    render::{body::Members, palette},
     shader::{
         self, Blend, BodyKind, ClassTest, Clip, EffectKind, PerObject, Plan, PlanBody, PlanBorder, PlanContent,
         PlanLens, Scope, Step, Uber, VolumeTest,
@@ -292,12 +292,15 @@ impl Operations {
         filters
     }
 
-    /// Marks objects for a lens test by object, of `count` in all; where the marks begin.
-    pub fn add_members(&mut self, objects: &[bool], count: usize) -> u32 {
+    /// Marks objects for a lens test by object, of `count` in all, or notes their weights; where that begins.
+    pub fn add_members(&mut self, members: &Members, count: usize) -> u32 {
         let first = self.object_values.len();
         // That of no object first.
         self.object_values.push(0);
-        self.object_values.extend(objects.iter().map(|&is_chosen| u32::from(is_chosen)));
+        match &members.weights {
+            None => self.object_values.extend(members.objects.iter().map(|&is_chosen| u32::from(is_chosen))),
+            Some(weights) => self.object_values.extend(weights.iter().map(|weight| weight.to_bits())),
+        }
         self.object_values.resize(first + 1 + count, 0);
         first as u32
     }

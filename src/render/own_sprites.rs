@@ -106,6 +106,7 @@ fn part_of(volume: &LensVolume, view: &View) -> PictureTile {
         sprite: None,
         asks_sides: false,
         border: None,
+        keeps_shadows: false,
         section: None,
         ..*volume
     };

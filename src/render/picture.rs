@@ -375,9 +375,27 @@ impl Studio {
             occlusion: &mut occlusion,
             pois: &scene.pois,
             viewer: eye.viewer(),
+            lens: "",
             is_enabled: true,
         };
         volumes_of(scene, city, &eye, &mut tools).map_err(RenderError::Scene)
+    }
+
+    /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually (O6). The first time everything
+    /// begins settled. A picture of that scene then has its history; one of another moment has none.
+    pub fn pass(&mut self, scene: &Scene, size: [u32; 2], dt: f64) -> Result<(), RenderError> {
+        let enabled = scene.lenses.iter().filter(|lens| lens.enabled);
+        let lenses: Vec<_> = enabled.filter_map(|lens| Some((lens.name.as_str(), lens.occluders()?))).collect();
+        let eye = Eye::new(&self.camera(scene, size))?;
+        let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
+        occlusion.pass(&lenses, &scene.pois, self.shown(), eye.viewer(), dt);
+        Ok(())
+    }
+
+    /// Per object of the city, how far it is drawn as an occluder of a lens, by its name, 0 to 1, since time last passed
+    /// ([`Self::pass`]); `None` of a lens that was not there then.
+    pub fn occluder_weights(&self, lens: &str) -> Option<Vec<f32>> {
+        self.occlusion.lock().unwrap_or_else(PoisonError::into_inner).weights(lens)
     }
 
     /// How often the city was asked for occluders so far.
@@ -390,7 +408,7 @@ impl Studio {
         let of = lens.occluders()?;
         let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };
         let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
-        Some(occlusion.explained(of, &scene.pois, self.shown(), eye.viewer()))
+        Some(occlusion.explained(&lens.name, of, &scene.pois, self.shown(), eye.viewer()))
     }
 
     fn prepare(&self, scene: &Scene, size: [u32; 2]) -> Result<Prepared, RenderError> {
@@ -419,7 +437,7 @@ impl Studio {
         for volume in &mut volumes {
             for leaf in volume.body.leaves_mut() {
                 if let Leaf::Members(members) = &leaf.leaf {
-                    leaf.place.first = operations.add_members(&members.objects, objects);
+                    leaf.place.first = operations.add_members(members, objects);
                 }
             }
         }

@@ -182,6 +182,10 @@ pub struct Occluder {
     pub why: Vec<String>,
     /// How much of a point of interest it covers, at most; `null` where no test measures it.
     pub coverage: Option<Coverage>,
+    /// In a frame of an animation, how far it has come or gone, 0 to 1 (O6); one that no test holds for is `kept` by its margin, or
+    /// fades.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub weight: Option<f64>,
 }
 
 /// A share of what is seen of a point of interest, were it alone.

@@ -40,6 +40,8 @@ pub struct LensVolume {
     pub asks_sides: bool,
     /// How its lens ends, if not at once: it acts around the volume, too.
     pub border: Option<Border>,
+    /// Whether its lens leaves shadows as they are without it.
+    pub keeps_shadows: bool,
     /// The colour of its sections, sRGB.
     pub section: Option<[f32; 3]>,
 }
@@ -271,6 +273,7 @@ mod tests {
                 sprite: None,
                 asks_sides: false,
                 border: None,
+                keeps_shadows: false,
                 section: None,
             };
             let (low, high) = lens.projected(&view).expect("it is in front of the eye");

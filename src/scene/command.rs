@@ -185,6 +185,7 @@ mod tests {
             body: Default::default(),
             sprite: None,
             border: None,
+            keeps_shadows: false,
             section: None,
         };
         let mut history = History::default();

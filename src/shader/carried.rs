@@ -84,7 +84,7 @@ fn members(test: VolumeTest) -> &'static [(&'static str, usize)] {
             &[("center", 3), ("size_x", 1), ("axis_x", 3), ("size_z", 1), ("axis_y", 3), ("size_y", 1), ("axis_z", 3)]
         }
         VolumeTest::Combined | VolumeTest::CombinedSprite => &[("size_x", 1), ("size_y", 1), ("size_z", 1)],
-        VolumeTest::Members | VolumeTest::OwnSprite => &[("size_x", 1)],
+        VolumeTest::Members | VolumeTest::FadingMembers | VolumeTest::OwnSprite => &[("size_x", 1)],
         VolumeTest::Flat => {
             &[("center", 3), ("size_x", 1), ("axis_x", 3), ("size_y", 1), ("axis_y", 3), ("size_z", 1), ("axis_z", 3)]
         }

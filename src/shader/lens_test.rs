@@ -58,6 +58,8 @@ fn call(question: Question, test: VolumeTest, volume: &str, place: &str) -> Stri
     match (question, test) {
         (Q::Covers, T::Members) => format!("covers_members({shape}, {place})"),
         (_, T::Members) => format!("inside_members({shape}, {place})"),
+        (Q::Covers, T::FadingMembers) => format!("covers_fading_members({shape}, {place})"),
+        (_, T::FadingMembers) => format!("inside_fading_members({shape}, {place})"),
         (Q::Covers, T::Sprite) => format!("covers_sprite({sprite}, {place})"),
         (_, T::Sprite) => format!("class_in_sprite({sprite}, {place})"),
         (Q::Covers, T::LayeredSprite) => format!("covers_layers({sprite}, {place})"),
@@ -138,7 +140,9 @@ fn along_ray(test: VolumeTest, volume: &str) -> String {
 
 fn span_of(test: VolumeTest, volume: &str, pixel: &str, ray: &str) -> String {
     match test {
-        VolumeTest::Members | VolumeTest::Solid | VolumeTest::Combined => "EMPTY_SPAN".to_owned(),
+        VolumeTest::Members | VolumeTest::FadingMembers | VolumeTest::Solid | VolumeTest::Combined => {
+            "EMPTY_SPAN".to_owned()
+        }
         VolumeTest::SolidSprite | VolumeTest::CombinedSprite => {
             format!("span_in_sides(sprite_places[{volume}], {pixel})")
         }
@@ -164,7 +168,7 @@ pub(super) fn ends_of_volume(tests: &[VolumeTest]) -> String {
 fn distance(test: VolumeTest, volume: &str, border: &str) -> String {
     let shape = format!("shapes[{volume}]");
     match test {
-        VolumeTest::Members | VolumeTest::Sprite | VolumeTest::LayeredSprite => {
+        VolumeTest::Members | VolumeTest::FadingMembers | VolumeTest::Sprite | VolumeTest::LayeredSprite => {
             let inside = call(Question::Inside, test, volume, "sight");
             format!("select(FAR_AWAY, -FAR_AWAY, is_inside({inside}))")
         }
@@ -214,13 +218,14 @@ pub(super) fn leaves(kinds: &[VolumeTest]) -> String {
     let holds = |kind: VolumeTest| match kind {
         VolumeTest::Solid => "solid_holds(leaf.shape, place.position, place.distance)".to_owned(),
         VolumeTest::Members => "is_chosen(u32(leaf.first), place.object)".to_owned(),
+        VolumeTest::FadingMembers => "is_fading_member(u32(leaf.first), place.object, place.pixel)".to_owned(),
         VolumeTest::Flat => "flat_holds(leaf.shape, place.ray, place.distance, place.is_parallel)".to_owned(),
         _ => format!("holds(leaf.shape, {}, place.position, place.distance)", kind.constant()),
     };
     // A solid's ends are not asked for here; a choice of objects is the box around them.
     let span = |kind: VolumeTest| match kind {
         VolumeTest::Solid => "EMPTY_SPAN".to_owned(),
-        VolumeTest::Members => "span_of_shape(ray, s, BOX)".to_owned(),
+        VolumeTest::Members | VolumeTest::FadingMembers => "span_of_shape(ray, s, BOX)".to_owned(),
         _ => format!("span_of_shape(ray, s, {})", kind.constant()),
     };
     let holds = of("leaf_holds(leaf: Leaf, place: Sight) -> bool", "false", &holds);
@@ -236,6 +241,9 @@ fn leaf_distances(kinds: &[VolumeTest]) -> String {
         let answer = match kind {
             VolumeTest::Solid => "distance_to_solid(leaf.shape, sight)".to_owned(),
             VolumeTest::Members => "select(FAR_AWAY, -FAR_AWAY, is_chosen(u32(leaf.first), sight.object))".to_owned(),
+            VolumeTest::FadingMembers => {
+                "select(FAR_AWAY, -FAR_AWAY, is_fading_member(u32(leaf.first), sight.object, sight.pixel))".to_owned()
+            }
             _ => format!("distance_to_shape(leaf.shape, {}, sight, border)", kind.constant()),
         };
         let _ = writeln!(text, "        case {}: {{ return {answer}; }}", kind.constant());

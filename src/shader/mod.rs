@@ -46,6 +46,7 @@ files! {
     BLEND = "lib/blend.wgsl";
     MATERIAL = "lib/material.wgsl";
     CLASS = "lib/class.wgsl";
+    DITHER = "lib/dither.wgsl";
     BORDER = "lib/border.wgsl";
     DISTANCE = "lib/distance.wgsl";
     SOLID_DISTANCE = "lib/solid-distance.wgsl";
@@ -63,6 +64,8 @@ files! {
     CROSSING = "lib/crossing.wgsl";
     SOLID = "lib/solid.wgsl";
     MEMBERS = "lib/members.wgsl";
+    FADING_MEMBERS = "lib/fading-members.wgsl";
+    FADING_OUTLINE = "lib/fading-outline.wgsl";
     MEMBER_OUTLINE = "lib/member-outline.wgsl";
     SOLID_SPRITE = "lib/solid-sprite.wgsl";
     COMBINED = "lib/combined.wgsl";
@@ -387,6 +390,7 @@ impl Module {
             (materials, MATERIAL),
             (parts.bodies, OUTLINE),
             (parts.bodies && parts.members, MEMBER_OUTLINE),
+            (parts.bodies && parts.fading_members, FADING_OUTLINE),
             (parts.shells, GLASS),
             (filters, FILTERED),
             (parts.lines, LINE),
@@ -416,6 +420,8 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.sprites || parts.own_sprites, STORED_SPRITE),
         (parts.own_sprites, OWN_SPRITE),
         (parts.members, MEMBERS),
+        (parts.borders || parts.fading, DITHER),
+        (parts.fading, FADING_MEMBERS),
         (parts.solids, SOLID),
         (parts.side_sprites, SOLID_SPRITE),
         (parts.combinations, COMBINED),
@@ -478,7 +484,7 @@ mod tests {
     }
 
     /// All that a combination may be made of.
-    const LEAVES: [VolumeTest; 8] = [
+    const LEAVES: [VolumeTest; 9] = [
         VolumeTest::Sphere,
         VolumeTest::Box,
         VolumeTest::Cylinder,
@@ -487,6 +493,7 @@ mod tests {
         VolumeTest::Frustum,
         VolumeTest::Solid,
         VolumeTest::Members,
+        VolumeTest::FadingMembers,
     ];
 
     /// As the sun asks: no sprite tells it anything.

@@ -172,11 +172,13 @@ pub enum VolumeTest {
     LayeredSprite,
     /// By a volumetric depth sprite that has its own eye.
     OwnSprite,
+    /// By the object that a place belongs to, where objects come or go.
+    FadingMembers,
 }
 
 impl VolumeTest {
     /// All of them, in the order of their numbers in `lib/shape.wgsl`.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Sphere,
         Self::Box,
         Self::Cylinder,
@@ -192,6 +194,7 @@ impl VolumeTest {
         Self::Flat,
         Self::LayeredSprite,
         Self::OwnSprite,
+        Self::FadingMembers,
     ];
 
     /// Its number, as `lib/shape.wgsl` knows it.
@@ -242,6 +245,7 @@ impl VolumeTest {
             Self::Flat => "FLAT",
             Self::LayeredSprite => "LAYERED_SPRITE",
             Self::OwnSprite => "OWN_SPRITE",
+            Self::FadingMembers => "FADING_MEMBERS",
         }
     }
 }
@@ -477,6 +481,8 @@ impl Program {
             // The uber back end reads there which test it is.
             shapes: tests.iter().any(|t| !t.is_sprite()) || (matches!(self, Self::Uber(_)) && has_lenses),
             members: tests.contains(&VolumeTest::Members),
+            fading_members: tests.contains(&VolumeTest::FadingMembers),
+            fading: tests.iter().chain(&self.leaves()).any(|test| *test == VolumeTest::FadingMembers),
             sprites: tests.iter().any(|t| t.is_sprite()),
             own_sprites: tests.contains(&VolumeTest::OwnSprite),
             solids: tests.iter().any(|t| t.has_faces()),
@@ -532,6 +538,10 @@ pub struct Parts {
     pub own_sprites: bool,
     /// Membership by object.
     pub members: bool,
+    /// Membership by object where objects come or go.
+    pub fading_members: bool,
+    /// The same, also of leaves of combinations.
+    pub fading: bool,
     /// The lens test from the faces of solids.
     pub solids: bool,
     /// The sides of solids and combinations by depth sprites.

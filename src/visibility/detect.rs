@@ -54,6 +54,13 @@ pub struct Margin {
     pub metres: f64,
 }
 
+impl Default for Margin {
+    /// A step: more than an eye that walks moves up and down.
+    fn default() -> Self {
+        Self { metres: 1.0 }
+    }
+}
+
 impl Margin {
     /// By how much less of the share that a test asks for an occluder stays one.
     const SHARE: f64 = 0.25;

@@ -5,7 +5,7 @@ use crate::visibility::Detected;
 /// How fast things come and go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pace {
-    /// Seconds from not at all to wholly, and back; 0: at once. 0.3 is quick and does not pop.
+    /// Seconds from not at all to wholly, and back, ≥ 0; 0: at once. 0.3 is quick and does not pop.
     pub fade_s: f64,
 }
 
@@ -18,27 +18,26 @@ impl Default for Pace {
 /// Which units are occluders, and how far they have come to be drawn as such.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Memory {
-    pace: Pace,
     is_occluder: Vec<bool>,
     weights: Vec<f64>,
 }
 
 impl Memory {
     /// What is known where there is no history: everything is as it is detected, and fades are over.
-    pub fn settled(now: &Detected, pace: Pace) -> Self {
+    pub fn settled(now: &Detected) -> Self {
         let units = now.occluders.universe() as u32;
         let is_occluder: Vec<bool> = (0..units).map(|unit| now.occluders.has(unit)).collect();
         let weights = is_occluder.iter().map(|&is| f64::from(u8::from(is))).collect();
-        Self { pace, is_occluder, weights }
+        Self { is_occluder, weights }
     }
 
     /// Goes on by `dt` seconds, ≥ 0; returns the weights. Units of another city than before begin settled.
-    pub fn step(&mut self, now: &Detected, dt: f64) -> &[f64] {
+    pub fn step(&mut self, now: &Detected, pace: Pace, dt: f64) -> &[f64] {
         if now.occluders.universe() != self.weights.len() {
-            *self = Self::settled(now, self.pace);
+            *self = Self::settled(now);
             return &self.weights;
         }
-        let by = if self.pace.fade_s > 0.0 { (dt / self.pace.fade_s).max(0.0) } else { 1.0 };
+        let by = if pace.fade_s > 0.0 { (dt / pace.fade_s).max(0.0) } else { 1.0 };
         let each = self.is_occluder.iter_mut().zip(&mut self.weights).enumerate();
         for (unit, (is_occluder, weight)) in each {
             let unit = unit as u32;
@@ -87,11 +86,11 @@ mod tests {
         ) {
             let pace = Pace { fade_s: 0.3 };
             let mut signal = start;
-            let mut memory = Memory::settled(&detected(&[signal]), pace);
+            let mut memory = Memory::settled(&detected(&[signal]));
             let (mut was, mut weight) = (memory.is_occluder(0), memory.weights()[0]);
             for (move_by, dt) in steps {
                 signal += move_by;
-                let now = memory.step(&detected(&[signal]), dt)[0];
+                let now = memory.step(&detected(&[signal]), pace, dt)[0];
                 prop_assert!((now - weight).abs() <= dt / pace.fade_s + 1e-12, "a jump from {weight} to {now}");
                 prop_assert!((0.0..=1.0).contains(&now));
                 weight = now;
@@ -110,11 +109,11 @@ mod tests {
         /// Jitter within the margin changes a class at most once.
         #[test]
         fn jitter_within_the_margin_does_not_flicker(start in any::<bool>(), jitter in prop::collection::vec(0.05..1.5f64, 1..100)) {
-            let mut memory = Memory::settled(&detected(&[if start { 1.0 } else { 0.5 }]), Pace::default());
+            let mut memory = Memory::settled(&detected(&[if start { 1.0 } else { 0.5 }]));
             let mut changes = 0;
             let mut was = memory.is_occluder(0);
             for signal in jitter {
-                memory.step(&detected(&[signal]), 0.04);
+                memory.step(&detected(&[signal]), Pace::default(), 0.04);
                 changes += u32::from(memory.is_occluder(0) != was);
                 was = memory.is_occluder(0);
             }
@@ -124,14 +123,16 @@ mod tests {
 
     #[test]
     fn fades_end_and_a_fade_of_no_time_is_over_at_once() {
-        let mut memory = Memory::settled(&detected(&[0.0, 2.0]), Pace { fade_s: 0.5 });
+        let pace = Pace { fade_s: 0.5 };
+        let mut memory = Memory::settled(&detected(&[0.0, 2.0]));
         assert!(memory.is_settled() && memory.weights() == [0.0, 1.0]);
-        memory.step(&detected(&[2.0, -1.0]), 0.25);
+        memory.step(&detected(&[2.0, -1.0]), pace, 0.25);
         assert!(!memory.is_settled() && memory.weights() == [0.5, 0.5]);
-        memory.step(&detected(&[2.0, -1.0]), 0.25);
+        memory.step(&detected(&[2.0, -1.0]), pace, 0.25);
         assert!(memory.is_settled() && memory.weights() == [1.0, 0.0]);
-        let mut at_once = Memory::settled(&detected(&[0.0]), Pace { fade_s: 0.0 });
-        assert_eq!(at_once.step(&detected(&[2.0]), 0.0), [1.0]);
-        assert_eq!(at_once.step(&detected(&[2.0, 0.0]), 0.0), [1.0, 0.0], "another city");
+        let pace = Pace { fade_s: 0.0 };
+        let mut at_once = Memory::settled(&detected(&[0.0]));
+        assert_eq!(at_once.step(&detected(&[2.0]), pace, 0.0), [1.0]);
+        assert_eq!(at_once.step(&detected(&[2.0, 0.0]), pace, 0.0), [1.0, 0.0], "another city");
     }
 }

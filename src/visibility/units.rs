@@ -133,9 +133,11 @@ impl Units {
         &self.geometries[start..end]
     }
 
-    /// The box around a point of interest, metres; empty where nothing of it is shown.
+    /// The box around a point of interest, metres; empty where nothing of it is shown, and of a place that is not finite (hard case
+    /// 22): nothing lies before it.
     pub fn box_of(&self, poi: Poi) -> Aabb {
         match poi {
+            Poi::At(at) if !at.is_finite() => Aabb::EMPTY,
             Poi::At(at) => Aabb { min: at, max: at },
             Poi::Object(object) => self.shown[self.of_object[object as usize] as usize],
         }

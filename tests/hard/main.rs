@@ -2,6 +2,7 @@
 //! code under test.
 
 mod case_01_national_coordinates;
+mod case_02_parallel_walls;
 mod case_03_coplanar_faces;
 mod case_03_jitter;
 mod case_04_flat_lenses;
@@ -20,6 +21,7 @@ mod case_15_layer_room;
 mod case_16_translucency;
 mod case_20_identity_lens;
 mod case_21_extreme_views;
+mod case_22_points_of_interest;
 mod case_23_jitter;
 mod lenses;
 mod oracle;

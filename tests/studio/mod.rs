@@ -105,6 +105,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         body: LensBody::None,
         sprite: None,
         border: None,
+        keeps_shadows: false,
         section: None,
     }
 }

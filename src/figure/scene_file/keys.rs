@@ -457,6 +457,22 @@ pub const LENS: Table = Table {
             "{ ids = [\"town-hall\"] }",
         ),
         key(
+            "margin",
+            Kind::Number { min: 0.0, max: 1000.0 },
+            "1.0",
+            "metres",
+            "Of an occlusion lens, in animations: how far an occluder must leave the test before it ceases to be one; 0: at once. See Animations.",
+            "5.0",
+        ),
+        key(
+            "fade",
+            Kind::Number { min: 0.0, max: 60.0 },
+            "0.3",
+            "seconds",
+            "Of an occlusion lens, in animations: how long what becomes an occluder, or ceases to be one, takes to change; 0: at once.",
+            "0.5",
+        ),
+        key(
             "render",
             Kind::Rendering,
             "\"discard\"",
@@ -511,6 +527,14 @@ pub const LENS: Table = Table {
             "",
             "Has what the lens does end gradually.",
             "{ width = 20.0 }",
+        ),
+        key(
+            "shadows",
+            Kind::Boolean,
+            "false",
+            "",
+            "Whether what the lens takes away, sees through or replaces still casts the shadow that it has without the lens. Otherwise shadows are those of what is there: an erased or translucent building casts none, one that is flattened or shown as something else that of its new form.",
+            "true",
         ),
         key(
             "section",

@@ -14,11 +14,11 @@ use crate::{
     },
     geom::combination::Operation,
     lens::{Focus, Lens, Occluders, chosen::Choice, nearest::did_you_mean},
-    visibility::{Reference, Test},
+    visibility::{Margin, Pace, Reference, Test},
 };
 
 /// The keys that only occlusion lenses have.
-pub(super) const OWN: [&str; 5] = ["poi", "test", "force", "forbid", "render"];
+pub(super) const OWN: [&str; 7] = ["poi", "test", "force", "forbid", "margin", "fade", "render"];
 
 /// Whom a lens looks for.
 pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
@@ -38,7 +38,9 @@ pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
         reader.choice(&own)
     };
     let (force, forbid) = (choice("force"), choice("forbid"));
-    Occluders { pois, test: test.unwrap_or_default(), force, forbid }
+    let margin = fields.number("margin").map_or_else(Margin::default, |metres| Margin { metres });
+    let pace = fields.number("fade").map_or_else(Pace::default, |fade_s| Pace { fade_s });
+    Occluders { pois, test: test.unwrap_or_default(), force, forbid, margin, pace }
 }
 
 /// The focus areas of an occlusion lens of these shapes: its occluders, or what of them is in the shapes.
@@ -145,6 +147,8 @@ pub(super) fn written(lens: &Lens) -> Vec<(&'static str, String)> {
     let choice = |choice: &Choice| focus::choice_written("", choice);
     keys.extend(of.force.as_ref().map(|c| ("force", choice(c))));
     keys.extend(of.forbid.as_ref().map(|c| ("forbid", choice(c))));
+    keys.extend((of.margin != Margin::default()).then(|| ("margin", number(of.margin.metres))));
+    keys.extend((of.pace != Pace::default()).then(|| ("fade", number(of.pace.fade_s))));
     keys
 }
 
@@ -217,6 +221,21 @@ mod tests {
     }
 
     #[test]
+    fn what_they_have_over_time_is_read_and_written() {
+        let plain = lens("poi = \"a\"").unwrap();
+        let of = plain.occluders().unwrap();
+        assert_eq!((of.margin, of.pace), (Margin { metres: 1.0 }, Pace { fade_s: 0.3 }));
+        let other = lens("poi = \"a\"\nmargin = 0\nfade = 2.5\nshadows = true").unwrap();
+        let of = other.occluders().unwrap();
+        assert_eq!((of.margin, of.pace, other.keeps_shadows), (Margin { metres: 0.0 }, Pace { fade_s: 2.5 }, true));
+        let keys =
+            |lens: &Lens| written(lens).into_iter().filter(|(key, _)| ["margin", "fade"].contains(key)).collect();
+        let [none, both]: [Vec<_>; 2] = [&plain, &other].map(keys);
+        assert_eq!(none, []);
+        assert_eq!(both, [("margin", "0.0".to_owned()), ("fade", "2.5".to_owned())]);
+    }
+
+    #[test]
     fn mistakes_are_named_with_what_would_be_right() {
         for (lines, expected) in [
             ("", "[lens.0] poi: is missing: the test asks what hides a point of interest"),
@@ -237,6 +256,10 @@ mod tests {
                 "poi = \"a\"\ntest = { not = { kind = \"ground\", radius = -1 } }",
                 "[lens.0] test.not.radius: must be a number ≥ 0, is -1",
             ),
+            ("poi = \"a\"\nmargin = -1", "[lens.0] margin: must be a number 0 to 1000, is -1"),
+            ("poi = \"a\"\nfade = 61", "[lens.0] fade: must be a number 0 to 60, is 61"),
+            ("poi = \"a\"\nfade = \"slow\"", "[lens.0] fade: must be a number 0 to 60, is \"slow\""),
+            ("poi = \"a\"\nshadows = 1", "[lens.0] shadows: must be true or false, is 1"),
             ("poi = \"a\"\nrender = \"discrad\"", "[lens.0] render: must be \"discard\""),
             ("poi = \"a\"\nrender = \"discrad\"", "did you mean \"discard\"?"),
             (

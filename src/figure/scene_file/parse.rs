@@ -250,6 +250,7 @@ impl<'o> SceneReader<'o> {
                 },
                 discrete: if b.text("discrete") == Some("dither") { Discrete::Dither } else { Discrete::Threshold },
             }),
+            keeps_shadows: fields.boolean("shadows").unwrap_or(false),
             section: fields.color("section"),
         }
     }

@@ -22,7 +22,7 @@ use crate::{
         Camera, Projection,
         path::{CameraKey, Speed},
     },
-    visibility::{Reference, Test},
+    visibility::{Margin, Pace, Reference, Test},
 };
 
 const MINIMAL: &str = "veduta = 1\n";
@@ -706,8 +706,12 @@ fn occluded() -> impl Strategy<Value = (Occluders, Rendering, bool)> {
         }),
     ];
     let names = prop::collection::vec("[a-z\"]{1,5}", 1..3);
-    (names, detections(), choice.clone(), choice, render, any::<bool>()).prop_map(
-        |(pois, test, force, forbid, render, has_shape)| (Occluders { pois, test, force, forbid }, render, has_shape),
+    let over_time = (0.0..=1000.0f64, 0.0..=60.0f64).prop_map(|(metres, fade_s)| (Margin { metres }, Pace { fade_s }));
+    let over_time = prop_oneof![Just(Default::default()), over_time];
+    (names, detections(), choice.clone(), choice, over_time, render, any::<bool>()).prop_map(
+        |(pois, test, force, forbid, (margin, pace), render, has_shape)| {
+            (Occluders { pois, test, force, forbid, margin, pace }, render, has_shape)
+        },
     )
 }
 
@@ -716,7 +720,7 @@ prop_compose! {
         shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
-        section in prop::option::of(prop::array::uniform3(0.0..=1.0f32))) -> Lens {
+        section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>()) -> Lens {
         // A soft border needs shapes that have a distance; what shapes of files have, `sprite` does not give.
         let is_saved = |s: &Focus| matches!(s, Focus::Sprite { .. });
         let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
@@ -728,7 +732,7 @@ prop_compose! {
             (kind, render) = (LensKind::Occlusion, Some(drawn));
             shapes = occlusion::areas(of, if has_shape { shapes } else { vec![] });
         }
-        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, content, body, sprite, border, section }
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, content, body, sprite, border, keeps_shadows, section }
     }
 }
 

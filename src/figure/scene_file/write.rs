@@ -167,6 +167,7 @@ impl Toml {
             let discrete = if border.discrete == Discrete::Dither { ", discrete = \"dither\"" } else { "" };
             self.key("border", &format!("{{ width = {}{unit}{discrete} }}", number(border.width)));
         }
+        self.key_if(lens.keeps_shadows, "shadows", "true");
         if let Some(section) = lens.section {
             self.key("section", &color(section));
         }

@@ -50,6 +50,7 @@ pub fn alone(scene: &Scene, model: &CityModel, id: &str) -> Scene {
         body: LensBody::None,
         sprite: None,
         border: None,
+        keeps_shadows: false,
         section: None,
         render: None,
     }];

@@ -1,0 +1,9 @@
+// The same of members that come or go: an outline has no pattern, it is there while an object is more in than out.
+
+fn covers_fading_members(s: Shape, pixel: vec2i) -> bool {
+    let code = textureLoad(codes, pixel, 0).x;
+    if code == 0u {
+        return false;
+    }
+    return bitcast<f32>(object_values[u32(s.size_x) + (surface_shown(code - 1u).object + 1u)]) > 0.5;
+}
