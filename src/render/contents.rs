@@ -44,8 +44,8 @@ pub struct ContentCity {
     pub is_own: bool,
     /// Whether it throws shadows: what is pressed flat to the ground does not.
     pub has_shadow: bool,
-    /// Objects that were to be derived and are shown as they are, and such of which nothing is left.
-    pub not_derived: [u32; 2],
+    /// Objects that were to be derived and are shown as they are, such of which nothing is left, and such that something else stands for.
+    pub not_derived: [u32; 3],
 }
 
 impl ContentCity {

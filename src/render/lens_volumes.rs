@@ -23,7 +23,7 @@ use crate::{
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
     },
-    scene::{Poi, Scene},
+    scene::{Drawn, Poi},
     shader::VolumeTest,
     view::CameraError,
     visibility::Viewer,
@@ -53,8 +53,8 @@ pub(super) struct Tools<'a> {
 }
 
 /// Resolves the focus areas of a scene. An error names the key of the scene file.
-pub(super) fn volumes_of(scene: &Scene, city: ShownCity, eye: &Eye, tools: &mut Tools) -> Result<LensVolumes, String> {
-    let mut all = LensVolumes::default();
+pub(super) fn volumes_of(drawn: &Drawn, city: ShownCity, eye: &Eye, tools: &mut Tools) -> Result<LensVolumes, String> {
+    let (mut all, scene) = (LensVolumes::default(), &*drawn.scene);
     for (i, lens) in scene.lenses.iter().enumerate() {
         tools.is_enabled = lens.enabled;
         // Attached to what is not there, it acts nowhere.
@@ -77,7 +77,7 @@ pub(super) fn volumes_of(scene: &Scene, city: ShownCity, eye: &Eye, tools: &mut 
                     let key = if focus.occluders().is_some() { key.trim_start_matches("shapes.1.") } else { &key };
                     let place = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
                     let dot = if key.is_empty() { "" } else { "." };
-                    return Err(format!("[lens.{i}] {place}{dot}{key}: {message}"));
+                    return Err(format!("[lens.{}] {place}{dot}{key}: {message}", drawn.owner(i as u32)));
                 }
             }
         }
@@ -93,7 +93,7 @@ pub(super) fn volumes_of(scene: &Scene, city: ShownCity, eye: &Eye, tools: &mut 
                 body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city, content.derive.as_ref()));
             }
             let volume = volume_of(i as u32, lens, body, &place.motion)
-                .map_err(|message| format!("[lens.{i}] sprite.camera: {message}"))?;
+                .map_err(|message| format!("[lens.{}] sprite.camera: {message}", drawn.owner(i as u32)))?;
             let [picture, sun] = volume.tests();
             all.tests[0].extend(picture);
             all.tests[1].extend(sun);
@@ -212,8 +212,9 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> 
 fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, FocusError> {
     let objects: Arc<[bool]> = match focus {
         Focus::Thematic(choice) => members(city.model, choice).into(),
-        Focus::Occluders(_) if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
+        Focus::Occluders(_) | Focus::Case { .. } if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
         Focus::Occluders(of) => tools.occlusion.objects(of, tools.pois, city, tools.viewer),
+        Focus::Case { of, when } => tools.occlusion.objects_of_case(of, when, tools.pois, city, tools.viewer),
         Focus::Enclosed { parts, whole, types } => objects_in(parts, (*whole, types), city, place, tools)?.into(),
         Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(tools.solids.sprite(file, city, &place.motion)?)]),
         _ => return Ok(tools.solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),

@@ -48,6 +48,7 @@ mod saved_sprites;
 mod sections;
 mod seen;
 mod shells;
+mod sights;
 pub mod solids;
 pub mod sprite_passes;
 mod sprites;

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::{
-    lens::{Occluders, chosen::members, solids::ShownCity},
+    geom::Aabb,
+    lens::{Occluders, chosen::members, rendering::When, solids::ShownCity},
     render::stats,
     scene::{Poi, PoiPlace},
     visibility::{self, Detected, Query, Scope, Set, Units, Viewer},
@@ -47,6 +48,26 @@ impl Occlusion {
         self.found(of, pois, city, viewer, false).objects
     }
 
+    /// Those of the occluders that the last of some cases holds of, and none before it.
+    pub fn objects_of_case(
+        &mut self,
+        of: &Occluders,
+        when: &[When],
+        pois: &[Poi],
+        city: ShownCity,
+        viewer: Viewer,
+    ) -> Arc<[bool]> {
+        let detected = self.found(of, pois, city, viewer, false).detected;
+        let units = self.units_of(city);
+        let mut left = detected.occluders.clone();
+        let mut of_case = Set::new(units.len());
+        for case in when {
+            of_case = held(case, &left, &units, city, viewer);
+            left = left.without(&of_case);
+        }
+        units.objects_of(city.model, &of_case).into()
+    }
+
     /// The occluders with their reasons and the shares that they cover.
     pub fn explained(&mut self, of: &Occluders, pois: &[Poi], city: ShownCity, viewer: Viewer) -> Vec<stats::Occluder> {
         let detected = self.found(of, pois, city, viewer, true).detected;
@@ -69,8 +90,17 @@ impl Occlusion {
         self.known.iter_mut().for_each(|known| known.is_wanted = false);
     }
 
+    /// The box around what is shown of a place, metres; empty where the city has no such object.
+    pub fn box_of(&mut self, place: &PoiPlace, city: ShownCity) -> Aabb {
+        poi_of(place, city).map_or(Aabb::EMPTY, |poi| self.units_of(city).box_of(poi))
+    }
+
+    fn units_of(&mut self, city: ShownCity) -> Arc<Units> {
+        self.units.get_or_insert_with(|| Arc::new(Units::new(city.model, city.geometries))).clone()
+    }
+
     fn found(&mut self, of: &Occluders, pois: &[Poi], city: ShownCity, viewer: Viewer, measured: bool) -> Found {
-        let units = self.units.get_or_insert_with(|| Arc::new(Units::new(city.model, city.geometries))).clone();
+        let units = self.units_of(city);
         let place_of = |name: &String| pois.iter().find(|poi| poi.name == *name).map(|poi| &poi.place);
         let is_same = |known: &Known| known.of == *of && known.places.iter().eq(of.pois.iter().filter_map(place_of));
         let at = self.known.iter().position(is_same).unwrap_or_else(|| {
@@ -101,20 +131,40 @@ impl Occlusion {
     }
 }
 
+/// What a place means in the city.
+fn poi_of(place: &PoiPlace, city: ShownCity) -> Option<visibility::Poi> {
+    match place {
+        PoiPlace::At(at) => Some(visibility::Poi::At(*at)),
+        PoiPlace::Object(id) => city.model.find_object(id).map(visibility::Poi::Object),
+    }
+}
+
+/// The units among some that a case holds of.
+fn held(when: &When, among: &Set, units: &Units, city: ShownCity, viewer: Viewer) -> Set {
+    let mut held = Set::new(units.len());
+    let chosen = when.of.as_ref().map(|choice| units.flagged(city.model, &members(city.model, choice)));
+    let kind = |unit: u32| city.model.strings.get(city.model.objects[units.roots[unit as usize] as usize].kind);
+    for unit in among.iter() {
+        let distance = || units.boxes[unit as usize].distance_to(viewer.eye);
+        let is_near = when.nearer_m.is_none_or(|nearer| distance() < nearer);
+        let is_of_type = when.types.is_empty() || when.types.iter().any(|name| name == kind(unit));
+        if is_near && is_of_type && chosen.as_ref().is_none_or(|chosen| chosen.has(unit)) {
+            held.insert(unit);
+        }
+    }
+    held
+}
+
 impl Known {
     /// Names that the city does not have mean nobody ([`crate::scene::check_against`] says so).
     fn new(of: &Occluders, places: Vec<PoiPlace>, city: ShownCity, units: &Units) -> Self {
-        let poi = |place: &PoiPlace| match place {
-            PoiPlace::At(at) => Some(visibility::Poi::At(*at)),
-            PoiPlace::Object(id) => city.model.find_object(id).map(visibility::Poi::Object),
-        };
         let set = |choice: &Option<_>| match choice {
             None => Set::new(units.len()),
             Some(choice) => units.flagged(city.model, &members(city.model, choice)),
         };
         Self {
             of: of.clone(),
-            pois: places.iter().filter_map(poi).collect(),
+            pois: places.iter().filter_map(|place| poi_of(place, city)).collect(),
             places,
             forced: set(&of.force),
             forbidden: set(&of.forbid),

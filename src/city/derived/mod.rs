@@ -14,6 +14,7 @@ mod flat;
 mod ground;
 mod height;
 mod hull;
+mod lod1;
 mod moved;
 mod prism;
 mod source;
@@ -46,6 +47,8 @@ pub enum Form {
     Prism,
     /// Its convex hull.
     Hull,
+    /// Its block model, of level of detail 1; where it has none, its prism.
+    Lod1,
     /// Its faces that are seen from above, on the ground below it; where that has none, at its lowest point.
     Flat {
         /// How far above these, metres, ≥ 0.
@@ -68,6 +71,11 @@ pub enum Height {
 /// from it then.
 pub const LIFT_M: f64 = 0.05;
 
+/// What of it may be asked for, metres.
+pub const LIFT_RANGE_M: [f64; 2] = [0.0, 1000.0];
+/// What heights may be asked for, metres.
+pub const HEIGHT_RANGE_M: [f64; 2] = [0.001, 100_000.0];
+
 /// A form as scene files have it.
 #[derive(Clone, Copy, Debug)]
 pub struct FormRow {
@@ -82,19 +90,21 @@ pub struct FormRow {
 enum Make {
     Body(bodies::Make),
     Moved(moved::Make),
+    Other(fn(&CityModel, &[u32], &Derive) -> Derived),
 }
 
 /// All forms.
-pub const FORMS: [FormRow; 5] = [
+pub const FORMS: [FormRow; 6] = [
     FormRow { word: "box", options: &["oriented"], make: Make::Body(boxes::body) },
     FormRow { word: "prism", options: &[], make: Make::Body(prism::body) },
     FormRow { word: "hull", options: &[], make: Make::Body(hull::body) },
     FormRow { word: "flat", options: &["lift"], make: Make::Moved(flat::change) },
+    FormRow { word: "lod1", options: &[], make: Make::Other(lod1::derived) },
     FormRow { word: "height", options: &["height", "factor"], make: Make::Moved(height::change) },
 ];
 
 /// The words of [`FORMS`], in their order.
-pub const WORDS: &[&str] = &[FORMS[0].word, FORMS[1].word, FORMS[2].word, FORMS[3].word, FORMS[4].word];
+pub const WORDS: &[&str] = &[FORMS[0].word, FORMS[1].word, FORMS[2].word, FORMS[3].word, FORMS[4].word, FORMS[5].word];
 
 impl Form {
     /// Its row.
@@ -104,7 +114,8 @@ impl Form {
             Self::Prism => 1,
             Self::Hull => 2,
             Self::Flat { .. } => 3,
-            Self::Height(_) => 4,
+            Self::Lod1 => 4,
+            Self::Height(_) => 5,
         }]
     }
 }
@@ -132,7 +143,7 @@ impl Form {
                 let slope = size.truncate().length();
                 (reach.min.z, reach.max.z) = (bounds.min.z - slope, bounds.max.z + slope + lift_m);
             }
-            Self::Box { .. } | Self::Prism | Self::Hull => {}
+            Self::Box { .. } | Self::Prism | Self::Hull | Self::Lod1 => {}
         }
         reach
     }
@@ -150,6 +161,8 @@ pub struct Derived {
     pub unchanged: u32,
     /// Objects of which the form leaves nothing.
     pub left_out: u32,
+    /// Objects that have no such geometry of their own, and stand as something else instead.
+    pub instead: u32,
 }
 
 /// Derives a city from what is `shown` of one (indices of geometries).
@@ -159,7 +172,8 @@ pub fn derive(model: &CityModel, shown: &[u32], how: &Derive) -> Derived {
         source.ground = GroundFaces::new(model, shown);
     }
     match how.form.row().make {
-        Make::Body(make) => bodies::derived(&source, &how.form, make),
+        Make::Body(make) => bodies::derived(&source, &how.form, make, None),
+        Make::Other(derived) => derived(model, shown, how),
         Make::Moved(make) => moved::derived(&source, &how.form, make),
     }
 }

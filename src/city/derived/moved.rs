@@ -119,7 +119,7 @@ pub(super) fn derived(source: &Source, form: &Form, make: Make) -> Derived {
     let (unchanged, left_out) = (sum(|c| c.unchanged), sum(|c| c.left_out));
     let mut target = Target::new(source.model);
     let heights = append(&mut target, source, chunks);
-    Derived { model: target.finish(), heights, unchanged, left_out }
+    Derived { model: target.finish(), heights, unchanged, left_out, instead: 0 }
 }
 
 impl Chunk {

@@ -1,7 +1,7 @@
 //! `content` of a lens in scene files: its keys, and what it derives, read and written.
 
 use crate::{
-    city::derived::{Derive, FORMS, Form, Height, LIFT_M, WORDS},
+    city::derived::{Derive, FORMS, Form, HEIGHT_RANGE_M, Height, LIFT_M, LIFT_RANGE_M, WORDS},
     figure::scene_file::{
         check::{Checker, Fields},
         keys::{CLASSES, Kind, Table, key},
@@ -35,7 +35,7 @@ pub const CONTENT: Table = Table {
             Kind::Word { now: WORDS, later: &[] },
             "as they are",
             "",
-            "What objects are shown as: their bounding `box`, the `prism` over their footprint, their convex `hull`, themselves pressed `flat` to the ground, themselves at another `height`. Terrain, roads, water and land use stay as they are below. See Contents.",
+            "What objects are shown as: their bounding `box`, the `prism` over their footprint, their convex `hull`, their block model of level of detail 1 (`lod1`; where there is none the prism), themselves pressed `flat` to the ground, themselves at another `height`. Terrain, roads, water and land use stay as they are below. See Contents.",
             "\"box\"",
         ),
         key(
@@ -56,7 +56,7 @@ pub const CONTENT: Table = Table {
         ),
         key(
             "lift",
-            Kind::Number { min: 0.0, max: 1000.0 },
+            Kind::Number { min: LIFT_RANGE_M[0], max: LIFT_RANGE_M[1] },
             "0.05",
             "m",
             "For `derive = \"flat\"`: how far above the lowest point of an object it lies.",
@@ -64,7 +64,7 @@ pub const CONTENT: Table = Table {
         ),
         key(
             "height",
-            Kind::Number { min: 0.001, max: 100_000.0 },
+            Kind::Number { min: HEIGHT_RANGE_M[0], max: HEIGHT_RANGE_M[1] },
             "what `factor` says",
             "m",
             "For `derive = \"height\"`: from the lowest point of an object to its highest. Either this or `factor`.",
@@ -167,7 +167,7 @@ pub(super) fn derive_keys(how: &Derive) -> Vec<String> {
         Form::Flat { lift_m } if lift_m != LIFT_M => keys.push(format!("lift = {}", number(lift_m))),
         Form::Height(Height::Metres(metres)) => keys.push(format!("height = {}", number(metres))),
         Form::Height(Height::Factor(factor)) => keys.push(format!("factor = {}", number(factor))),
-        Form::Box { .. } | Form::Prism | Form::Hull | Form::Flat { .. } => {}
+        Form::Box { .. } | Form::Prism | Form::Hull | Form::Lod1 | Form::Flat { .. } => {}
     }
     if how.parts {
         keys.push("parts = true".to_owned());

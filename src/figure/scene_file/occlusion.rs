@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// The keys that only occlusion lenses have.
-pub(super) const OWN: [&str; 5] = ["poi", "test", "force", "forbid", "render"];
+pub(super) const OWN: [&str; 6] = ["poi", "test", "force", "forbid", "render", "poi_effects"];
 
 /// Whom a lens looks for.
 pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
