@@ -44,9 +44,7 @@ fn share_rest(classes: u32, interest: f32) -> f32 {
     return select(0.0, 1.0 - interest, sides == 0u || sides == (FRONT | BEHIND));
 }
 
-// Whether something that is there or not is there, of a share: interleaved gradient noise (Jimenez 2014), moved on by the golden
-// ratio from sample to sample.
+// Whether something that is there or not is there, of a share.
 fn is_dithered(share: f32, pixel: vec2i) -> bool {
-    let noise = fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
-    return share > fract(noise + 0.618034 * f32(view.sample_index));
+    return share > dither(pixel, view.sample_index);
 }

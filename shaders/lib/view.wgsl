@@ -13,6 +13,7 @@ struct View {
     orthographic: u32,          // 0 perspective, 1 orthographic
     sample_index: u32,          // which sample of the picture this is, from 0
     eye_whole: vec3i,           // metres
+    first_pixel: u32,           // of the picture, that is the target's first: x, and y in the upper 16 bits
     eye_fraction: vec3f,        // metres, -0.5..0.5
     size: vec2f,                // of the target, pixels
     haze: f32,                  // 1 / metres; 0 = none

@@ -42,7 +42,7 @@ fn vertex(@location(0) at: vec2f, @builtin(instance_index) part: u32) -> Corner 
     let shadow = transpose(l.shadow_from_relative);
     var corner: Corner;
     corner.clip = vec4f(at, 0.0, 1.0);
-    corner.part = vec4u(part, v.orthographic, v.sample_index, 0u);
+    corner.part = vec4u(part, v.orthographic, v.sample_index, v.first_pixel);
     corner.view_x = vec4f(v.view_from_world[0], v.near);
     corner.view_y = vec4f(v.view_from_world[1], v.far);
     corner.view_z = vec4f(v.view_from_world[2], v.haze);
@@ -69,6 +69,7 @@ fn take(in: Corner) {
     view.far = in.view_y.w;
     view.orthographic = in.part.y;
     view.sample_index = in.part.z;
+    view.first_pixel = in.part.w;
     view.eye_whole = view_uniform.eye_whole;
     view.eye_fraction = view_uniform.eye_fraction;
     view.size = vec2f(in.ground.w, in.zenith.w);

@@ -5,6 +5,7 @@ pub mod chosen;
 pub mod classify;
 pub mod color;
 pub mod content;
+pub mod dither;
 pub mod effect;
 pub mod focus;
 pub mod intersection;

@@ -55,12 +55,12 @@ pub fn view_uniform(view: &View, tile: PictureTile, jitter_px: DVec2, sample_ind
         orthographic: u32::from(view.is_orthographic()),
         sample_index,
         eye_whole,
-        pad_0: 0,
+        first_pixel: tile.origin[0] & 0xffff | tile.origin[1] << 16,
         eye_fraction,
-        pad_1: 0,
+        pad_0: 0,
         size: [tile.size[0] as f32, tile.size[1] as f32],
         haze: haze as f32,
-        pad_2: 0,
+        pad_1: 0,
     }
 }
 

@@ -21,12 +21,12 @@ pub struct View {
     pub orthographic: u32,
     pub sample_index: u32,
     pub eye_whole: [i32; 3],
-    pub pad_0: u32,
+    pub first_pixel: u32,
     pub eye_fraction: [f32; 3],
-    pub pad_1: u32,
+    pub pad_0: u32,
     pub size: [f32; 2],
     pub haze: f32,
-    pub pad_2: u32,
+    pub pad_1: u32,
 }
 
 /// A vertex of the city as the card reads it; `relative_to_eye` in `lib/view.wgsl` takes it from here.
@@ -427,12 +427,12 @@ mod tests {
                     orthographic,
                     sample_index,
                     eye_whole,
-                    pad_0,
+                    first_pixel,
                     eye_fraction,
-                    pad_1,
+                    pad_0,
                     size,
                     haze,
-                    pad_2
+                    pad_1
                 }),
             ),
             (&Module::Sprite, host!(Shape { center, kind, axis_x, size_x, axis_y, size_y, axis_z, size_z })),

@@ -44,6 +44,7 @@ files! {
     BLEND = "lib/blend.wgsl";
     MATERIAL = "lib/material.wgsl";
     CLASS = "lib/class.wgsl";
+    DITHER = "lib/dither.wgsl";
     BORDER = "lib/border.wgsl";
     DISTANCE = "lib/distance.wgsl";
     SOLID_DISTANCE = "lib/solid-distance.wgsl";
@@ -392,6 +393,7 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.side_sprites, SOLID_SPRITE),
         (parts.combinations, COMBINED),
         (parts.combined_sprites, COMBINED_SPRITE),
+        (parts.borders, DITHER),
         (parts.borders, BORDER),
         (parts.by_ray && parts.side_sprites, SHELL_SIDES),
         (parts.by_ray && parts.sprites, SHELL_SPRITE),
