@@ -83,6 +83,8 @@ const BOX: Option<FormRow> = Some(FormRow {
     make: |given| Form::Box { oriented: given.get(ORIENTED.name) == Some(&Parameter::Boolean(true)) },
 });
 const PRISM: Option<FormRow> = Some(FormRow { parameters: &[], make: |_| Form::Prism });
+const TOP: Option<FormRow> =
+    Some(FormRow { parameters: &[LIFT], make: |given| Form::Top { lift_m: LIFT.number(given) } });
 const LOD1: Option<FormRow> = Some(FormRow { parameters: &[], make: |_| Form::Lod1 });
 const HULL: Option<FormRow> = Some(FormRow { parameters: &[], make: |_| Form::Hull });
 const FLAT: Option<FormRow> =
@@ -160,6 +162,13 @@ pub const ROWS: &[Row] = &[
         form: FLAT,
     },
     Row {
+        word: "dither",
+        spec: "O3",
+        doc: "Thinned out by a pattern of pixels.",
+        effects: &[("screen-door", &[])],
+        form: None,
+    },
+    Row {
         word: "x-ray-ramp",
         spec: "O3, O4",
         doc: "The same in colours of a ramp, from faces that look at the eye to those seen edge on; opacity has one too.",
@@ -179,6 +188,20 @@ pub const ROWS: &[Row] = &[
         doc: "Their blocks of level of detail 1, translucent; of what has none the prism over its footprint.",
         effects: &[("transparent", &[("opacity", Preset::Number(0.12))]), ("clay", &[])],
         form: LOD1,
+    },
+    Row {
+        word: "flatten-top",
+        spec: "O3, O5",
+        doc: "The same in the light in which they stood, as a picture from straight above.",
+        effects: &[],
+        form: TOP,
+    },
+    Row {
+        word: "flatten-film",
+        spec: "O3, O5",
+        doc: "The same as a translucent film on the ground.",
+        effects: &[("film", &[])],
+        form: TOP,
     },
     Row {
         word: "hull",

@@ -159,6 +159,7 @@ impl ContentCities {
                     ground,
                     is_own,
                     has_shadow: true,
+                    is_lit_as_before: false,
                     not_derived: [0; 3],
                 }
             }
@@ -252,7 +253,8 @@ fn derived(id: u64, source: Arc<CityModel>, geometries: &[u32], how: &Derive, is
         heights: made.heights,
         ground: None,
         is_own,
-        has_shadow: !matches!(how.form, Form::Flat { .. }),
+        has_shadow: !how.form.is_pressed(),
+        is_lit_as_before: matches!(how.form, Form::Top { .. }),
         not_derived: [made.unchanged, made.left_out, made.instead],
     }
 }

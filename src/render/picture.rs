@@ -181,7 +181,13 @@ impl Studio {
         let ground = spec.ground.then(|| plain_ground(&model, &geometries)).flatten();
         let coplanar = coplanar_triangles(&model, &geometries);
         let mut renderer = Renderer::new(gpu)?;
-        let shown = Shown { model: &model, geometries: &geometries, coplanar: &coplanar, ground: ground.as_ref() };
+        let shown = Shown {
+            model: &model,
+            geometries: &geometries,
+            coplanar: &coplanar,
+            ground: ground.as_ref(),
+            is_lit_as_before: false,
+        };
         renderer.set_city(&shown)?;
         let mut objects: Vec<u32> = geometries.iter().map(|&g| model.geometries[g as usize].object).collect();
         objects.sort_unstable();
@@ -326,7 +332,7 @@ impl Studio {
             return Ok(());
         }
         let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_ref());
-        Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground })?)
+        Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false })?)
     }
 
     /// The WGSL of a module that runs where the scene's lenses are in the picture, or everywhere where none is (H4).

@@ -269,7 +269,9 @@ impl Module {
             Self::Bare => &[VIEW, VIEW_UNIFORM, SURFACE, BARE],
         };
         let mut text = String::new();
-        for (path, source) in files {
+        // A fragment knows the threshold of its pixel.
+        let threshold = (files.contains(&FRAGMENT) && !files.contains(&DITHER)).then_some(&DITHER);
+        for (path, source) in files.iter().chain(threshold) {
             text.push_str(&format!("// ==== {path}\n\n{source}\n"));
         }
         if let Self::CombinedSprite(kinds) | Self::StoredLayers(kinds) = self {

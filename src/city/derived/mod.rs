@@ -54,6 +54,11 @@ pub enum Form {
         /// How far above these, metres, ≥ 0.
         lift_m: f64,
     },
+    /// The same, each face in the light that it had where it stood.
+    Top {
+        /// As that of [`Self::Flat`].
+        lift_m: f64,
+    },
     /// Itself, as high as this: walls stretched or shortened, roofs moved.
     Height(Height),
 }
@@ -94,17 +99,25 @@ enum Make {
 }
 
 /// All forms.
-pub const FORMS: [FormRow; 6] = [
+pub const FORMS: [FormRow; 7] = [
     FormRow { word: "box", options: &["oriented"], make: Make::Body(boxes::body) },
     FormRow { word: "prism", options: &[], make: Make::Body(prism::body) },
     FormRow { word: "hull", options: &[], make: Make::Body(hull::body) },
     FormRow { word: "flat", options: &["lift"], make: Make::Moved(flat::change) },
+    FormRow { word: "top", options: &["lift"], make: Make::Moved(flat::change) },
     FormRow { word: "lod1", options: &[], make: Make::Other(lod1::derived) },
     FormRow { word: "height", options: &["height", "factor"], make: Make::Moved(height::change) },
 ];
 
 /// The words of [`FORMS`], in their order.
-pub const WORDS: &[&str] = &[FORMS[0].word, FORMS[1].word, FORMS[2].word, FORMS[3].word, FORMS[4].word, FORMS[5].word];
+pub const WORDS: &[&str] = &{
+    let (mut words, mut i) = ([""; FORMS.len()], 0);
+    while i < FORMS.len() {
+        words[i] = FORMS[i].word;
+        i += 1;
+    }
+    words
+};
 
 impl Form {
     /// Its row.
@@ -114,13 +127,19 @@ impl Form {
             Self::Prism => 1,
             Self::Hull => 2,
             Self::Flat { .. } => 3,
-            Self::Lod1 => 4,
-            Self::Height(_) => 5,
+            Self::Top { .. } => 4,
+            Self::Lod1 => 5,
+            Self::Height(_) => 6,
         }]
     }
 }
 
 impl Form {
+    /// Whether it lies on the ground, and throws no shadow.
+    pub fn is_pressed(&self) -> bool {
+        matches!(self, Self::Flat { .. } | Self::Top { .. })
+    }
+
     /// A box that holds what the form makes of an object, whatever of that is shown; `bounds`: of all its geometries.
     pub fn reach(&self, bounds: &Aabb) -> Aabb {
         if bounds.is_empty() {
@@ -139,7 +158,7 @@ impl Form {
             Self::Height(Height::Metres(metres)) => reach.max.z += metres,
             Self::Height(Height::Factor(factor)) => reach.max.z += size.z * (factor - 1.0).max(0.0),
             // On ground that rises and falls by no more than it is wide.
-            Self::Flat { lift_m } => {
+            Self::Flat { lift_m } | Self::Top { lift_m } => {
                 let slope = size.truncate().length();
                 (reach.min.z, reach.max.z) = (bounds.min.z - slope, bounds.max.z + slope + lift_m);
             }
@@ -168,7 +187,7 @@ pub struct Derived {
 /// Derives a city from what is `shown` of one (indices of geometries).
 pub fn derive(model: &CityModel, shown: &[u32], how: &Derive) -> Derived {
     let mut source = Source::new(model, shown, how.parts);
-    if matches!(how.form, Form::Flat { .. }) {
+    if how.form.is_pressed() {
         source.ground = GroundFaces::new(model, shown);
     }
     match how.form.row().make {

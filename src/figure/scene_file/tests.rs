@@ -617,6 +617,8 @@ fn derives() -> impl Strategy<Value = Derive> {
         Just(Form::Prism),
         Just(Form::Hull),
         prop_oneof![Just(0.05), 0.0..1000.0f64].prop_map(|lift_m| Form::Flat { lift_m }),
+        (0.0..1000.0f64).prop_map(|lift_m| Form::Top { lift_m }),
+        Just(Form::Lod1),
         (1e-3..1e5f64).prop_map(|metres| Form::Height(Height::Metres(metres))),
         (1e-3..1e3f64).prop_map(|factor| Form::Height(Height::Factor(factor))),
     ];
