@@ -25,6 +25,7 @@ pub mod invokers;
 pub mod key;
 pub mod layers;
 pub mod layout;
+mod lens_figures;
 mod lens_volumes;
 pub mod light;
 mod lines;

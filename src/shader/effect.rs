@@ -279,7 +279,7 @@ pub enum PerObject {
     Colors,
     /// Whether an attribute chooses it ([`crate::lens::chosen`]).
     Chosen,
-    /// Nothing of objects: where in the picture the points of interest of its lens are ([`crate::render::sights`]).
+    /// Nothing of objects: where in the picture the points of interest of its lens are (`render::sights`).
     Sights,
 }
 

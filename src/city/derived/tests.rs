@@ -398,7 +398,9 @@ fn reaches_hold_what_is_made() {
     add_upright(&mut b, "turned", &[[0, 30_000], [16_000, 42_000], [10_000, 50_000], [-6000, 38_000]], [0, 9000]);
     let model = b.finish();
     let heights = [Height::Metres(30.0), Height::Factor(3.0), Height::Factor(0.5)].map(Form::Height);
-    for form in [BOX, Form::Box { oriented: true }, Form::Prism, Form::Hull, FLAT, TOP, Form::Lod1].into_iter().chain(heights) {
+    for form in
+        [BOX, Form::Box { oriented: true }, Form::Prism, Form::Hull, FLAT, TOP, Form::Lod1].into_iter().chain(heights)
+    {
         for geometry in &made(&model, form).model.geometries {
             let reach = form.reach(&model.family_bounds(geometry.object));
             let is_in = geometry.bounds.min.cmpge(reach.min) & geometry.bounds.max.cmple(reach.max);

@@ -9,13 +9,17 @@ use crate::{
         Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
         Occluders, OwnEye, Parameter, Placement, Rendering,
         chosen::Choice,
+        rendering::{Case, ROWS, When},
         sprite::{Format, Mapping},
     },
     scene::{
         Animation, Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique,
         animation::{Change, ChangeKey, Numbers},
     },
-    shader::{Blend, Clip},
+    shader::{
+        Blend, Clip, EffectKind,
+        effect::{ParameterDefinition, ParameterKind, find},
+    },
     view::{
         Camera, Projection,
         path::{CameraKey, Speed},
@@ -321,7 +325,7 @@ fn every_mistake_in_a_lens_is_named() {
         ("content = { files = [\"builtin:moon\"] }", "content.files.0: there is no \"builtin:moon\""),
         (
             "content = { derive = \"cube\" }",
-            "content.derive: must be \"box\" or \"prism\" or \"hull\" or \"flat\" or \"height\", is \"cube\"",
+            "content.derive: must be \"box\" or \"prism\" or \"hull\" or \"flat\" or \"top\" or \"lod1\" or \"height\", is \"cube\"",
         ),
         (
             "content = { derive = \"prism\", oriented = true }",
@@ -688,6 +692,26 @@ fn occluded() -> impl Strategy<Value = (Occluders, Rendering, bool)> {
             (used.effect == "sepia").then(|| Rendering::of_effects(vec![used]))
         }),
     ];
+    let row = prop::sample::select(ROWS.iter().collect::<Vec<_>>());
+    let types = prop::collection::vec("[a-z\"]{1,5}", 0..3);
+    let case = (row, 0.0..1e6f64, types, prop::option::of("[a-z\"]{1,5}")).prop_map(move |(row, nearer, types, id)| {
+        let of = id.map(|id| Choice { ids: vec![id], ..Choice::default() });
+        // Each number that the word takes, somewhere in its range.
+        let number = |p: ParameterDefinition| match p.kind {
+            ParameterKind::Number { min, max } => Some((p.name, Parameter::Number(min + (max - min) * (nearer / 1e6)))),
+            _ => None,
+        };
+        let given = row.parameters().into_iter().filter_map(number).collect();
+        Case { when: When { nearer_m: Some(nearer), types, of }, ..Case::of_row(row, given) }
+    });
+    let cases = prop::collection::vec(case, 1..4).prop_map(|mut cases| {
+        // Scene styles of cases would meet those of `effects`.
+        cases.retain(|case| {
+            case.effects.iter().all(|used| find(&used.effect).is_some_and(|e| e.kind != EffectKind::Scene))
+        });
+        if cases.is_empty() { Rendering::default() } else { Rendering::of_cases(cases) }
+    });
+    let render = prop_oneof![2 => render, 1 => cases];
     let names = prop::collection::vec("[a-z\"]{1,5}", 1..3);
     (names, detections(), choice.clone(), choice, render, any::<bool>()).prop_map(
         |(pois, test, force, forbid, render, has_shape)| (Occluders { pois, test, force, forbid }, render, has_shape),
