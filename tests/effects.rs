@@ -11,7 +11,7 @@ use veduta::{
     lens::{EffectUse, Lens, Parameter, color},
     render::picture::{Aovs, Picture, Request, Studio},
     scene::Scene,
-    shader::{EffectDefinition, EffectKind, effect::find, effects},
+    shader::{EffectDefinition, EffectKind, PerObject, effect::find, effects},
     view::Camera,
 };
 
@@ -71,9 +71,9 @@ impl Stage {
     }
 }
 
-/// Effects that need no parameter.
+/// Effects that need no parameter, and no point of interest.
 fn ready() -> impl Iterator<Item = &'static EffectDefinition> {
-    effects().filter(|e| !e.parameters.iter().any(|p| p.is_required()))
+    effects().filter(|e| e.objects != Some(PerObject::Sights) && !e.parameters.iter().any(|p| p.is_required()))
 }
 
 #[test]

@@ -8,6 +8,7 @@ use std::{collections::BTreeSet, path::PathBuf};
 
 use studio::*;
 use veduta::{
+    city::ObjectClass,
     figure::{
         scene_file::{self, Options},
         sheet::share::share_in,
@@ -15,9 +16,9 @@ use veduta::{
     lens::{Focus, Rendering, rendering::ROWS},
     render::{
         frame::Backend,
-        picture::{Aovs, Request},
+        picture::{Aovs, Request, Studio},
     },
-    scene::Scene,
+    scene::{PoiPlace, Scene},
     visibility::Test,
 };
 
@@ -37,18 +38,44 @@ fn request(backend: Backend, statistics: bool) -> Request {
     Request { size: [400, 225], samples: 1, transparent: false, aovs, statistics, backend }
 }
 
+/// A view of the synthetic town on the tallest of its buildings, over the roofs of others, from a street.
+fn tower() -> Scene {
+    let text = "veduta = 1\n[city]\nfiles = [\"builtin:town\"]\n[camera]\neye = [-34.0, -214.0, 14.0]\ntarget = [60.0, 36.0, 16.0]\nfov_deg = 32.0\n\
+                [[poi]]\nname = \"tower\"\nat = [0, 0, 0]\n[[lens]]\nname = \"occluders\"\nkind = \"occlusion\"\npoi = \"tower\"\n";
+    let mut scene = scene_file::parse(text, "tower", &Options::for_command_line()).expect("a scene");
+    scene.figure.size = [400, 225];
+    let model = of_scene(&scene).model;
+    let is_building = |object: &u32| model.objects[*object as usize].class == ObjectClass::Building;
+    let top = |object: &u32| model.family_bounds(*object).max.z;
+    let tallest = (0..model.objects.len() as u32).filter(is_building).max_by(|a, b| top(a).total_cmp(&top(b)));
+    scene.pois[0].place = PoiPlace::Object(model.objects[tallest.expect("a building") as usize].id.to_string());
+    scene
+}
+
 #[test]
-fn every_rendering_shows_the_point_of_interest_and_takes_nothing_else_away() {
-    let scene = church();
-    let mut studio = of_scene(&scene);
+fn every_rendering_shows_the_church_and_takes_nothing_else_away() {
+    check_shares(&church(), "church", 5);
+}
+
+#[test]
+fn every_rendering_shows_the_tower_of_a_town_and_takes_nothing_else_away() {
+    let scene = tower();
+    let PoiPlace::Object(id) = scene.pois[0].place.clone() else { panic!("an object") };
+    check_shares(&scene, &id, 3);
+}
+
+/// Accept 3 of the issue, for all words at their defaults.
+fn check_shares(scene: &Scene, poi: &str, least_occluders: usize) {
+    let mut studio = of_scene(scene);
     let mut plain = scene.clone();
     plain.lenses[0].enabled = false;
-    let before = share_in(&mut studio, &plain, "church").expect("a picture").expect("it is in the picture");
-    assert!(before < 0.6, "it is hidden: {before}");
-    let told = studio.render(&scene, &request(Backend::Specialised, true)).expect("a picture");
+    let before = share_in(&mut studio, &plain, poi).expect("a picture").expect("it is in the picture");
+    println!("before: {:.1} %", 100.0 * before);
+    assert!(before < 0.75, "it is hidden: {before}");
+    let told = studio.render(scene, &request(Backend::Specialised, true)).expect("a picture");
     let occluders: BTreeSet<String> =
         told.statistics.lenses[0].occluders.iter().flatten().map(|o| o.id.clone()).collect();
-    assert!(occluders.len() > 5, "{occluders:?}");
+    assert!(occluders.len() > least_occluders, "{occluders:?}");
     let seen = studio.render(&plain, &request(Backend::Specialised, true)).expect("a picture").object_id.expect("ids");
     let ids: BTreeSet<u32> = seen.into_iter().filter(|id| *id > 0).collect();
     let root = |mut object: usize| {
@@ -59,20 +86,150 @@ fn every_rendering_shows_the_point_of_interest_and_takes_nothing_else_away() {
     };
     let others = ids.into_iter().filter(|id| !occluders.contains(&*studio.model.objects[root(*id as usize - 1)].id));
     let others: Vec<u32> = others.collect();
-    assert!(others.len() > 20, "{}", others.len());
+    assert!(others.len() > 10, "{}", others.len());
     for row in ROWS {
         let mut drawn = scene.clone();
         drawn.lenses[0].render = Rendering::of_word(row.word);
-        let share = share_in(&mut studio, &drawn, "church").expect("a picture").expect("it is in the picture");
+        let share = share_in(&mut studio, &drawn, poi).expect("a picture").expect("it is in the picture");
         println!("{}: {:.1} %", row.word, 100.0 * share);
-        let least = if ["discard", "box", "edges"].contains(&row.word) { 1.0 } else { 0.7 };
+        let least = match row.word {
+            "discard" | "box" | "edges" | "cut-away" => 1.0,
+            // A pattern of pixels lets through what it says, to a few of them.
+            "dither" => 0.68,
+            _ => 0.7,
+        };
         assert!(share >= least, "{}: {share}", row.word);
         let left: BTreeSet<u32> =
             studio.transmittance(&drawn, [400, 225]).expect("a frame").object_id.into_iter().collect();
         let gone: Vec<u32> = others.iter().copied().filter(|id| !left.contains(id)).collect();
-        // What is pressed flat lies on what was seen of the ground before it.
-        let most = if ["flatten", "low"].contains(&row.word) { 1 } else { 0 };
+        // What is pressed flat lies on what was seen of the ground before it; a pattern covers what is as small as itself.
+        let most = if ["flatten", "flatten-top", "low", "dither"].contains(&row.word) { 2 } else { 0 };
         assert!(gone.len() <= most, "{}: {gone:?} of {}", row.word, others.len());
+    }
+}
+
+/// With this change.
+fn changed(scene: &Scene, assignment: &str) -> Scene {
+    let mut after = scene.clone();
+    scene_file::set(scene, assignment).expect("a change").redo(&mut after);
+    after
+}
+
+/// With these cases.
+fn with_cases(scene: &Scene, cases: &str) -> Scene {
+    changed(scene, &format!("lens.0.render={cases}"))
+}
+
+#[test]
+fn cases_share_the_occluders_out() {
+    let scene = church();
+    let mut studio = of_scene(&scene);
+    let mut draw = |scene: &Scene| {
+        let mut asked = request(Backend::Specialised, true);
+        asked.aovs.lens_mask = true;
+        studio.render(scene, &asked).expect("a picture")
+    };
+    let all = "{ as = 'x-ray' }";
+    let [near, far] = ["flatten", "x-ray"].map(|word| {
+        let mut drawn = scene.clone();
+        drawn.lenses[0].render = Rendering::of_word(word);
+        draw(&drawn)
+    });
+    // All of them, none of them: as if there were one case.
+    for (reach, wanted) in [("1e6", &near), ("0", &far)] {
+        let cases = format!("[{{ as = 'flatten', nearer = {reach} }}, {all}]");
+        let drawn = draw(&with_cases(&scene, &cases));
+        assert!(drawn.rgba == wanted.rgba && drawn.object_id == wanted.object_id, "{reach}");
+        assert!(drawn.lens_mask == wanted.lens_mask, "{reach}: whoever hides it is in the lens, in whichever way");
+        let [of, wanted] = [&drawn, wanted].map(|picture| &picture.statistics.lenses);
+        assert_eq!((of.len(), of[0].occluders.as_ref().map(Vec::len)), (1, wanted[0].occluders.as_ref().map(Vec::len)));
+        assert_eq!((of[0].covered, &of[0].name), (wanted[0].covered, &wanted[0].name), "{reach}");
+    }
+    let mixed = with_cases(&scene, &format!("[{{ as = 'flatten', nearer = 45 }}, {all}]"));
+    let of_specialised = draw(&mixed);
+    assert!(of_specialised.rgba != near.rgba && of_specialised.rgba != far.rgba);
+    let of_uber = studio.render(&mixed, &request(Backend::Uber, true)).expect("a picture");
+    assert!(of_uber.rgba == of_specialised.rgba);
+    // The types of the city, and one that it does not have: as they are where no case holds.
+    let mut draw = |scene: &Scene| studio.render(scene, &request(Backend::Specialised, true)).expect("a picture").rgba;
+    assert!(draw(&with_cases(&scene, &format!("[{{ as = 'flatten', types = ['Tower'] }}, {all}]"))) == far.rgba);
+    let mut plain = scene.clone();
+    plain.lenses[0].render = Some(Rendering::of_effects(vec![]));
+    assert!(draw(&with_cases(&scene, "[{ as = 'flatten', nearer = 0 }]")) == draw(&plain), "none holds");
+}
+
+#[test]
+fn what_is_hidden_may_be_drawn_in_its_own_way() {
+    let mut scene = church();
+    let mut studio = of_scene(&scene);
+    let before = studio.render(&scene, &request(Backend::Specialised, true)).expect("a picture");
+    scene = changed(&scene, "lens.0.poi_effects=['invert']");
+    let after = studio.render(&scene, &request(Backend::Specialised, true)).expect("a picture");
+    let church = studio.model.find_object("church").expect("it") + 1;
+    let ids = before.object_id.as_ref().expect("ids");
+    let mut changed = 0;
+    for (i, id) in ids.iter().enumerate() {
+        let is_church = *id == church
+            || id.checked_sub(1).is_some_and(|o| studio.model.objects[o as usize].parents.contains(&(church - 1)));
+        match is_church {
+            false => assert_eq!(before.rgba[i], after.rgba[i], "pixel {i}"),
+            true => changed += usize::from(before.rgba[i] != after.rgba[i]),
+        }
+    }
+    assert!(changed > 2000, "{changed}");
+    let uber = studio.render(&scene, &request(Backend::Uber, true)).expect("a picture");
+    assert!(uber.rgba == after.rgba);
+}
+
+#[test]
+fn a_hole_is_where_the_point_of_interest_is_and_nowhere_else() {
+    let scene = church();
+    let mut studio = of_scene(&scene);
+    let shown = |studio: &mut Studio, render: &str| {
+        studio
+            .render(&with_cases(&scene, render), &request(Backend::Specialised, true))
+            .expect("a picture")
+            .object_id
+            .expect("ids")
+    };
+    let kept = shown(&mut studio, "[{ as = 'hull', nearer = 0 }]");
+    let gone = shown(&mut studio, "{ as = 'discard' }");
+    let holes: Vec<usize> = [0.0, 6.0, 60.0]
+        .into_iter()
+        .map(|rim| {
+            let cut = shown(&mut studio, &format!("{{ as = 'cut-away', margin = 0, rim = {rim} }}"));
+            // Each pixel shows an occluder, or what is seen without them.
+            for i in 0..cut.len() {
+                assert!(cut[i] == kept[i] || cut[i] == gone[i], "pixel {i}");
+            }
+            cut.iter().zip(&kept).filter(|(a, b)| a != b).count()
+        })
+        .collect();
+    let all = gone.iter().zip(&kept).filter(|(a, b)| a != b).count();
+    println!("{holes:?} of {all}");
+    assert!(holes[0] > 500 && holes.is_sorted() && holes[1] > holes[0] && holes[2] <= all, "{holes:?} of {all}");
+}
+
+#[test]
+fn a_pattern_lets_through_the_share_that_it_says() {
+    let scene = church();
+    let mut studio = of_scene(&scene);
+    let ids = |studio: &mut Studio, render: &str| {
+        studio
+            .render(&with_cases(&scene, render), &request(Backend::Specialised, true))
+            .expect("a picture")
+            .object_id
+            .expect("ids")
+    };
+    let kept = ids(&mut studio, "[{ as = 'hull', nearer = 0 }]");
+    let gone = ids(&mut studio, "{ as = 'discard' }");
+    let differ = |a: &[u32]| a.iter().zip(&kept).filter(|(a, b)| a != b).count() as f64;
+    let all = differ(&gone);
+    for opacity in [0.0, 0.25, 0.5, 0.75, 1.0] {
+        let through = differ(&ids(&mut studio, &format!("{{ as = 'dither', opacity = {opacity} }}"))) / all;
+        println!("{opacity}: {through:.3}");
+        // Two faces behind each other hide by the same pattern.
+        assert!((through - (1.0 - opacity)).abs() < 0.02, "{opacity}: {through}");
     }
 }
 

@@ -16,38 +16,6 @@
 //! type = "boolean"
 //! default = true
 //! doc = "Terrain, roads, water, land use and the plain ground stay."
-//!
-//! [[parameter]]
-//! name = "attribute"
-//! type = "text"
-//! without = "all objects"
-//! doc = "Only objects that have this attribute; an object without it takes its parent's."
-//!
-//! [[parameter]]
-//! name = "values"
-//! type = "texts"
-//! without = "any"
-//! doc = "Only where the attribute is one of these."
-//!
-//! [[parameter]]
-//! name = "min"
-//! type = "number"
-//! without = "none"
-//! unit = "the attribute's"
-//! doc = "Only where the attribute is at least this."
-//!
-//! [[parameter]]
-//! name = "max"
-//! type = "number"
-//! without = "none"
-//! unit = "the attribute's"
-//! doc = "Only where the attribute is at most this."
-//!
-//! [[parameter]]
-//! name = "except"
-//! type = "boolean"
-//! default = false
-//! doc = "The objects that the attribute chooses stay, and the others go."
 
 fn effect(fragment: Fragment, p: Parameters) -> bool {
     let is_terrain = fragment.part == PART_TERRAIN;

@@ -26,46 +26,20 @@
 //! doc = "Opacity of a face seen edge on."
 //!
 //! [[parameter]]
+//! name = "curve"
+//! type = "shares"
+//! default = [0, 1]
+//! doc = "Ramp of the opacity: how much of the way from `least` to `most`, at equal steps from faces that look at the eye to those seen edge on."
+//!
+//! [[parameter]]
 //! name = "keep_terrain"
 //! type = "boolean"
 //! default = true
 //! doc = "Terrain, roads, water, land use and the plain ground stay opaque."
-//!
-//! [[parameter]]
-//! name = "attribute"
-//! type = "text"
-//! without = "all objects"
-//! doc = "Only objects that have this attribute; an object without it takes its parent's."
-//!
-//! [[parameter]]
-//! name = "values"
-//! type = "texts"
-//! without = "any"
-//! doc = "Only where the attribute is one of these."
-//!
-//! [[parameter]]
-//! name = "min"
-//! type = "number"
-//! without = "none"
-//! unit = "the attribute's"
-//! doc = "Only where the attribute is at least this."
-//!
-//! [[parameter]]
-//! name = "max"
-//! type = "number"
-//! without = "none"
-//! unit = "the attribute's"
-//! doc = "Only where the attribute is at most this."
-//!
-//! [[parameter]]
-//! name = "except"
-//! type = "boolean"
-//! default = false
-//! doc = "The objects that the attribute chooses stay opaque, and the others do not."
 
 fn effect(opacity: f32, point: Point, p: Parameters) -> f32 {
     let facing = min(abs(dot(point.normal, towards_eye(point))), 1.0);
-    return mix(p.least, p.most, density(facing, p.exponent));
+    return mix(p.least, p.most, share_on_ramp(p.curve, density(facing, p.exponent)));
 }
 
 // 0 where the exponent is, 1 where the face is edge on (below 2^-60), else 1 - facing^exponent.

@@ -12,6 +12,7 @@ struct Fragment {
     ray: Ray,                   // of the main view, through it
     is_parallel: bool,          // whether the main view's rays are: it is orthographic
     city: u32,                  // which of the cities that are drawn: 0 the scene's own, else a content of lenses
+    threshold: f32,             // what a share must be above to be there, 0..1; of what only the sun sees the half
 }
 
 fn sight_of(fragment: Fragment) -> Sight {
@@ -27,5 +28,6 @@ fn fragment_at(at: vec2f, depth: f32, code: u32) -> Fragment {
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + dot(up, position);
     let surface = surface_at(code - 1u);
     return Fragment(vec2i(at), depth, position, height, code - 1u, surface.object, part_of(surface),
-                    decode_normal(surface.normal), ray, view.orthographic == 1u, city_number());
+                    decode_normal(surface.normal), ray, view.orthographic == 1u, city_number(),
+                    dither(vec2i(at), view.sample_index));
 }

@@ -17,6 +17,7 @@ struct Point {
     part: u32,                  // PART_*
     layer: u32,                 // of a translucent one: how many are nearer; of what is opaque 0
     last_layer: u32,            // how many lie behind the nearest in all
+    is_covered: bool,           // of a translucent one: whether the one before it lies in its plane, over it
     natural: vec3f,             // its own colour, linear; where it has a texture, that of the material
     base: vec3f,                // its colour before light, linear: clay, texture or natural
     lit: bool,                  // whether light acts on it
@@ -78,7 +79,8 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u) -> Point {
     point.surface = code.x - 1u;
     let surface = surface_shown(point.surface);
     point.normal = decode_normal(select(surface.normal, code.y, SMOOTH));
-    if dot(point.normal, ray.direction * view.view_from_world) > 0.0 {
+    let is_turned = (surface.flags & SURFACE_LIT_AS_BEFORE) == 0u;
+    if is_turned && dot(point.normal, ray.direction * view.view_from_world) > 0.0 {
         point.normal = -point.normal;
     }
     point.object = surface.object;
@@ -92,7 +94,7 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u) -> Point {
 }
 
 fn nowhere(pixel: vec2i) -> Point {
-    return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, PART_OTHER, 0u, 0u,
+    return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, PART_OTHER, 0u, 0u, false,
                  vec3f(0.0), vec3f(0.0), false, 1.0, vec3f(1.0), 1.0, vec3f(0.0));
 }
 

@@ -12,6 +12,7 @@ const PART_TERRAIN: u32 = 3u;   // terrain, roads, water, land use, the plain gr
 const PART_SECTION: u32 = 4u;   // the inside of a closed shell, where it is laid open: of no surface
 const SURFACE_CLOSED: u32 = 8u;     // its object is a closed shell
 const SURFACE_INWARD: u32 = 16u;    // whose faces look inwards
+const SURFACE_LIT_AS_BEFORE: u32 = 32u;     // by a normal that it does not have where it lies
 // Numbers in the geometry target that are none of a surface: sections, and the bits that say of which object.
 const SECTION: u32 = 0x80000000u;
 const SECTION_OBJECT: u32 = 0x03ffffffu;    // all: of several

@@ -170,6 +170,7 @@ fn composite(in: Corner) -> Composite {
             }
             point.layer = laid;
             point.last_layer = count - 1u;
+            point.is_covered = note.depth == last.depth;
             let classes = classes_at(sight_at(pixel, ray, depth, point.object), in.part.x);
             let opacity = opacity_at(point, classes);
             let paint = shade(&point, classes);

@@ -33,7 +33,8 @@ fn fragment(in: Varying) {
         ray = Ray(vec3f(0.0), vec3f(in.position.xy / distance, -1.0));
     }
     let fragment = Fragment(vec2i(in.clip.xy), in.clip.z, in.position, in.height, in.surface, surface.object,
-                            part_of(surface), decode_normal(surface.normal), ray, is_parallel, in.flags >> 1u);
+                            part_of(surface), decode_normal(surface.normal), ray, is_parallel, in.flags >> 1u,
+                            0.5);
     if !visible(fragment) {
         discard;
     }

@@ -35,9 +35,11 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "den-haag-sphere"
     "den-haag-x-ray"
     "first-lens"
+    "flattened"
     "houses-on-the-way"
     "in-the-way"
     "market-square"
+    "near-and-far"
     "out-of-sight"
     "planned-quarter"
     "rooms"
@@ -86,6 +88,10 @@ pub const SCENES: &[(&str, &str)] = scenes! {
 pub const SHEETS: &[(&str, &str)] = &[
     ("colour-styles", include_str!("../../scenes/colour-styles.sheet.toml")),
     ("occlusion-styles", include_str!("../../scenes/occlusion-styles.sheet.toml")),
+    ("trapp-3-3-3", include_str!("../../scenes/trapp-3-3-3.sheet.toml")),
+    ("trapp-3-3-4", include_str!("../../scenes/trapp-3-3-4.sheet.toml")),
+    ("trapp-3-3-5", include_str!("../../scenes/trapp-3-3-5.sheet.toml")),
+    ("trapp-3-3-6", include_str!("../../scenes/trapp-3-3-6.sheet.toml")),
 ];
 
 /// Arguments of `veduta gallery`.

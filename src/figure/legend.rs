@@ -43,7 +43,9 @@ pub struct Row {
 /// says so.
 pub fn legends(scene: &Scene, model: &CityModel, seen: &[bool]) -> Vec<Legend> {
     let context = scene.style.effects.iter().map(|used| (used, None));
-    let lenses = scene.lenses.iter().enumerate().rev().filter(|(i, lens)| lens.enabled && seen.get(*i) == Some(&true));
+    let drawn = scene.drawn();
+    let is_seen = |i: usize| seen.get(drawn.owner(i as u32) as usize) == Some(&true);
+    let lenses = drawn.scene.lenses.iter().enumerate().rev().filter(|(i, lens)| lens.enabled && is_seen(*i));
     let of_lenses = lenses.flat_map(|(_, lens)| lens.uses().map(move |used| (used, Some(lens))));
     let mut legends: Vec<Legend> = Vec::new();
     for (used, lens) in context.chain(of_lenses).filter(|(used, _)| is_thematic(used)) {

@@ -27,6 +27,11 @@ impl Aabb {
         points.into_iter().fold(Self::EMPTY, Self::grown)
     }
 
+    /// How far its nearest point is from a point; 0 inside.
+    pub fn distance_to(&self, point: DVec3) -> f64 {
+        point.distance(point.max(self.min).min(self.max))
+    }
+
     /// Whether the box holds no point at all.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()

@@ -10,7 +10,9 @@ use crate::{
         nearest::did_you_mean,
     },
     shader::{
-        effect::{DefaultValue, EffectKind, Fallback, MAX_LIST, ParameterDefinition, ParameterKind, effects, find},
+        effect::{
+            DefaultValue, EffectKind, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition, ParameterKind, effects, find,
+        },
         effect_file::RESERVED,
     },
 };
@@ -102,6 +104,16 @@ pub fn problem_with(kind: &ParameterKind, value: &Parameter) -> Option<String> {
             if fits { None } else { expected(&kind.describe()) }
         }
         (ParameterKind::Texts, Parameter::Texts(t)) if (1..=MAX_LIST).contains(&t.len()) => None,
+        (ParameterKind::Shares, Parameter::Numbers(n))
+            if (1..=MAX_RAMP).contains(&n.len()) && n.iter().all(|n| (0.0..=1.0).contains(n)) =>
+        {
+            None
+        }
+        (ParameterKind::Colors, Parameter::Texts(t))
+            if (1..=MAX_RAMP).contains(&t.len()) && t.iter().all(|t| parse_hex(t).is_some()) =>
+        {
+            None
+        }
         _ => expected(&kind.describe()),
     }
 }
@@ -112,8 +124,20 @@ pub fn default_of(parameter: &ParameterDefinition) -> Option<Parameter> {
         Fallback::Value(DefaultValue::Boolean(b)) => Some(Parameter::Boolean(*b)),
         Fallback::Value(DefaultValue::Number(n)) => Some(Parameter::Number(*n)),
         Fallback::Value(DefaultValue::Text(t)) => Some(Parameter::Text(t.clone())),
+        Fallback::Value(DefaultValue::Numbers(n)) => Some(Parameter::Numbers(n.clone())),
+        Fallback::Value(DefaultValue::Texts(t)) => Some(Parameter::Texts(t.clone())),
         Fallback::Required | Fallback::Words(_) => None,
     }
+}
+
+/// A ramp as shaders read it: how many steps, then the number, or the three of a linear colour, of each.
+pub fn ramp(value: &Parameter) -> Vec<u32> {
+    let steps: Vec<Vec<f32>> = match value {
+        Parameter::Numbers(n) => n.iter().map(|n| vec![*n as f32]).collect(),
+        Parameter::Texts(t) => t.iter().map(|t| linear_from_srgb(parse_hex(t).unwrap_or_default()).to_vec()).collect(),
+        _ => Vec::new(),
+    };
+    std::iter::once(steps.len() as u32).chain(steps.concat().into_iter().map(f32::to_bits)).collect()
 }
 
 /// A value as the shader reads it: as many floats as [`ParameterKind::in_shader`] says, colours linear.

@@ -14,6 +14,7 @@ use crate::{
     lens::{
         chosen::Choice,
         occluders::Occluders,
+        rendering::When,
         solids::{Place, ShownCity, Solids},
     },
 };
@@ -87,6 +88,13 @@ pub enum Focus {
     },
     /// Everything that belongs to the city objects that hide something, wherever it is (O2).
     Occluders(Occluders),
+    /// Of those the ones that the last of these holds of, and none before it; scenes draw with it, files have none.
+    Case {
+        /// Of whom.
+        of: Occluders,
+        /// At least one.
+        when: Vec<When>,
+    },
     /// A boolean combination: the first part with the second, that with the third, and so on.
     Combined {
         /// How.
@@ -117,13 +125,13 @@ impl Focus {
 
     /// Whether it means objects as such, not places.
     pub fn is_by_object(&self) -> bool {
-        matches!(self, Self::Thematic(_) | Self::Enclosed { .. } | Self::Occluders(_))
+        matches!(self, Self::Thematic(_) | Self::Enclosed { .. } | Self::Occluders(_) | Self::Case { .. })
     }
 
     /// What of it scene files give as a shape: of what is intersected with occluders the rest, of occluders nothing.
     pub fn own_shape(&self) -> Option<&Self> {
         match self {
-            Self::Occluders(_) => None,
+            Self::Occluders(_) | Self::Case { .. } => None,
             Self::Combined { parts, .. } if self.occluders().is_some() => parts.get(1),
             other => Some(other),
         }
@@ -132,7 +140,7 @@ impl Focus {
     /// The occluders that it is, or that its first part is.
     pub fn occluders(&self) -> Option<&Occluders> {
         match self {
-            Self::Occluders(occluders) => Some(occluders),
+            Self::Occluders(occluders) | Self::Case { of: occluders, .. } => Some(occluders),
             Self::Combined { parts, .. } => parts.first().and_then(Self::occluders),
             _ => None,
         }

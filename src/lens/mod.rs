@@ -136,14 +136,16 @@ impl Lens {
         self.uses().map(|e| e.class).chain(self.shown().map(|c| c.class))
     }
 
-    /// What it shows in itself: its own content, or what it shows occluders as.
+    /// What it shows in itself: its own content, or what it shows occluders as; of several cases the first that shows something.
     pub fn shown(&self) -> Option<&Content> {
-        self.content.as_ref().or_else(|| self.render.as_ref()?.content.as_ref())
+        let cases = || self.render.iter().flat_map(|render| &render.cases);
+        self.content.as_ref().or_else(|| cases().find_map(|case| case.content.as_ref()))
     }
 
     /// What it does, in order: how it draws occluders, then its effects.
     pub fn uses(&self) -> impl Iterator<Item = &EffectUse> {
-        self.render.iter().flat_map(|render| &render.effects).chain(&self.effects)
+        let cases = self.render.iter().flat_map(|render| &render.cases);
+        cases.flat_map(|case| &case.effects).chain(&self.effects)
     }
 
     /// Whom it looks for, if it is an occlusion lens.

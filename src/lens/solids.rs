@@ -117,6 +117,7 @@ impl Solids {
             Focus::Thematic(_)
             | Focus::Enclosed { .. }
             | Focus::Occluders(_)
+            | Focus::Case { .. }
             | Focus::Sprite { .. }
             | Focus::Combined { .. } => {
                 return Ok(Vec::new());
@@ -276,6 +277,7 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
         Focus::Shape(_)
         | Focus::Thematic(_)
         | Focus::Occluders(_)
+        | Focus::Case { .. }
         | Focus::Enclosed { .. }
         | Focus::Sprite { .. }
         | Focus::Combined { .. } => Ok((None, DVec3::ZERO)),

@@ -110,6 +110,8 @@ pub struct Shown<'a> {
     pub coplanar: &'a [CoplanarTriangle],
     /// The plain ground, where the city has none.
     pub ground: Option<&'a Ground>,
+    /// Whether faces are lit by normals that they do not have where they lie: then these are not turned to the eye.
+    pub is_lit_as_before: bool,
 }
 
 /// Triangles gathered for one section.
@@ -202,7 +204,12 @@ impl CityBuffers {
         let bytes_before = gpu.allocated_bytes();
         let extent = extent_of(shown);
         let tiles = ordered_tiles(shown, &extent);
-        let shells = closed_shells(shown, &tiles, extent.center());
+        let mut shells = closed_shells(shown, &tiles, extent.center());
+        if shown.is_lit_as_before {
+            let objects =
+                tiles.iter().map(|&t| shown.model.geometries[shown.model.tiles[t as usize].geometry as usize].object);
+            objects.for_each(|object| *shells.entry(object).or_default() |= layout::SURFACE_LIT_AS_BEFORE);
+        }
         let mut table = SurfaceTable::new(shown.model, &textures, &shells);
         let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
         let smooth = is_smooth(shown, &apart);

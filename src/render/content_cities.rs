@@ -21,7 +21,7 @@ use crate::{
         stats,
         volume::LensVolume,
     },
-    scene::Scene,
+    scene::Drawn,
     shader::MOST_CITIES,
 };
 
@@ -48,7 +48,7 @@ pub struct SceneContents {
 /// What contents are worked out from.
 pub struct Stage<'a> {
     /// The scene.
-    pub scene: &'a Scene,
+    pub drawn: &'a Drawn<'a>,
     /// Its city, and what is shown of it.
     pub model: &'a Arc<CityModel>,
     /// Its geometries that are shown.
@@ -73,7 +73,7 @@ impl ContentCities {
     /// The contents that a frame may show. An error names the key of the scene file.
     pub fn of_scene(&mut self, stage: &Stage) -> Result<SceneContents, String> {
         let mut found = SceneContents::default();
-        let lenses = stage.scene.lenses.iter().enumerate();
+        let lenses = stage.drawn.scene.lenses.iter().enumerate();
         let with_content = || lenses.clone().filter_map(|(i, lens)| Some((i, lens, lens.shown()?)));
         // Numbers are those of all lenses, so that one that comes and goes changes no other.
         let mut numbers: Vec<&Content> = Vec::new();
@@ -88,6 +88,7 @@ impl ContentCities {
             }
             if number >= MOST_CITIES {
                 let most = MOST_CITIES - 1;
+                let i = stage.drawn.owner(i as u32);
                 return Err(format!("[lens.{i}] content: the scene has more contents than one picture takes: {most}"));
             }
             if lens.enabled {
@@ -98,7 +99,8 @@ impl ContentCities {
             if volumes.is_empty() || !(is_loaded || volumes.iter().any(|v| (stage.is_seen)(v))) {
                 continue;
             }
-            let wrong = |(key, message): (&str, String)| format!("[lens.{i}] content.{key}: {message}");
+            let owner = stage.drawn.owner(i as u32);
+            let wrong = |(key, message): (&str, String)| format!("[lens.{owner}] content.{key}: {message}");
             let city = self.city(content, stage).map_err(wrong)?;
             let placement = placement(content, lens, &volumes, stage).map_err(wrong)?;
             let class = content.class;
@@ -145,7 +147,7 @@ impl ContentCities {
         let city = match &content.derive {
             Some(how) => derived(self.given, model, &geometries, how, is_own),
             None => {
-                let wants_ground = !is_own && stage.scene.city.ground;
+                let wants_ground = !is_own && stage.drawn.scene.city.ground;
                 let ground = wants_ground.then(|| plain_ground(&model, &geometries)).flatten();
                 let (source, heights) = (model.clone(), Vec::new());
                 ContentCity {
@@ -157,7 +159,8 @@ impl ContentCities {
                     ground,
                     is_own,
                     has_shadow: true,
-                    not_derived: [0; 2],
+                    is_lit_as_before: false,
+                    not_derived: [0; 3],
                 }
             }
         };
@@ -206,7 +209,7 @@ impl SceneContents {
     }
 
     /// What statistics say of it.
-    pub fn figures(&self, own: ShownCity, renderer: &Renderer) -> Vec<stats::Content> {
+    pub fn figures(&self, drawn: &Drawn, own: ShownCity, renderer: &Renderer) -> Vec<stats::Content> {
         let mut counted: Vec<u64> = Vec::new();
         let figure = |w: &WantedContent| {
             let (model, shown) = w.shown(own);
@@ -215,8 +218,11 @@ impl SceneContents {
             let on_gpu = renderer.content_city(city.map_or(0, |city| city.id));
             let is_new = city.is_some_and(|city| !counted.contains(&city.id));
             counted.extend(city.map(|city| city.id));
+            let mut lenses: Vec<u32> =
+                self.uses.iter().filter(|u| u.city == w.number).map(|u| drawn.owner(u.lens)).collect();
+            lenses.dedup();
             stats::Content {
-                lenses: self.uses.iter().filter(|u| u.city == w.number).map(|u| u.lens).collect(),
+                lenses,
                 objects: objects.collect::<FxHashSet<_>>().len() as u64,
                 first_object: city.filter(|city| !city.is_own).map(|_| w.first_object),
                 triangles: on_gpu.map_or(0, |city| city.triangles),
@@ -247,8 +253,9 @@ fn derived(id: u64, source: Arc<CityModel>, geometries: &[u32], how: &Derive, is
         heights: made.heights,
         ground: None,
         is_own,
-        has_shadow: !matches!(how.form, Form::Flat { .. }),
-        not_derived: [made.unchanged, made.left_out],
+        has_shadow: !how.form.is_pressed(),
+        is_lit_as_before: matches!(how.form, Form::Top { .. }),
+        not_derived: [made.unchanged, made.left_out, made.instead],
     }
 }
 

@@ -44,8 +44,10 @@ pub struct ContentCity {
     pub is_own: bool,
     /// Whether it throws shadows: what is pressed flat to the ground does not.
     pub has_shadow: bool,
-    /// Objects that were to be derived and are shown as they are, and such of which nothing is left.
-    pub not_derived: [u32; 2],
+    /// Whether its faces are lit by normals that they do not have where they lie.
+    pub is_lit_as_before: bool,
+    /// Objects that were to be derived and are shown as they are, such of which nothing is left, and such that something else stands for.
+    pub not_derived: [u32; 3],
 }
 
 impl ContentCity {
@@ -194,6 +196,7 @@ impl Renderer {
                 model: &city.model,
                 geometries: &city.geometries,
                 coplanar: &[],
+                is_lit_as_before: city.is_lit_as_before,
                 ground: if city.is_own && !city.is_derived() { ground } else { city.ground.as_ref() },
             };
             if !self.contents.cities.iter().any(|(id, _)| *id == city.id) {

@@ -75,6 +75,8 @@ pub const SURFACE_PART_SHIFT: u32 = 1;
 pub const SURFACE_CLOSED: u32 = 8;
 /// `lib/surface.wgsl`: a closed shell whose faces look inwards.
 pub const SURFACE_INWARD: u32 = 16;
+/// A face is lit by a normal that it does not have where it lies.
+pub const SURFACE_LIT_AS_BEFORE: u32 = 32;
 /// `lib/surface.wgsl`: of a number in the geometry target, that it is a section, and the bits that hold whose.
 pub const SECTION: u32 = 1 << 31;
 /// `lib/surface.wgsl`: the object of a section; all of these bits: of several.

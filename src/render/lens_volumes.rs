@@ -23,7 +23,7 @@ use crate::{
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
     },
-    scene::{Poi, Scene},
+    scene::{Drawn, Poi},
     shader::VolumeTest,
     view::CameraError,
     visibility::Viewer,
@@ -56,12 +56,12 @@ pub(super) struct Tools<'a> {
 
 /// Resolves the focus areas of a scene. An error names the key of the scene file.
 pub(super) fn volumes_of<'a>(
-    scene: &'a Scene,
+    drawn: &'a Drawn,
     city: ShownCity,
     eye: &Eye,
     tools: &mut Tools<'a>,
 ) -> Result<LensVolumes, String> {
-    let mut all = LensVolumes::default();
+    let (mut all, scene) = (LensVolumes::default(), &*drawn.scene);
     for (i, lens) in scene.lenses.iter().enumerate() {
         (tools.lens, tools.is_enabled) = (&lens.name, lens.enabled);
         // Attached to what is not there, it acts nowhere.
@@ -84,7 +84,7 @@ pub(super) fn volumes_of<'a>(
                     let key = if focus.occluders().is_some() { key.trim_start_matches("shapes.1.") } else { &key };
                     let place = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
                     let dot = if key.is_empty() { "" } else { "." };
-                    return Err(format!("[lens.{i}] {place}{dot}{key}: {message}"));
+                    return Err(format!("[lens.{}] {place}{dot}{key}: {message}", drawn.owner(i as u32)));
                 }
             }
         }
@@ -100,7 +100,7 @@ pub(super) fn volumes_of<'a>(
                 body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city, content.derive.as_ref()));
             }
             let volume = volume_of(i as u32, lens, body, &place.motion)
-                .map_err(|message| format!("[lens.{i}] sprite.camera: {message}"))?;
+                .map_err(|message| format!("[lens.{}] sprite.camera: {message}", drawn.owner(i as u32)))?;
             let [picture, sun] = volume.tests();
             all.tests[0].extend(picture);
             all.tests[1].extend(sun);
@@ -221,9 +221,14 @@ fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -
     let mut weights = None;
     let objects: Arc<[bool]> = match focus {
         Focus::Thematic(choice) => members(city.model, choice).into(),
-        Focus::Occluders(_) if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
+        Focus::Occluders(_) | Focus::Case { .. } if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
         Focus::Occluders(of) => {
-            let shown = tools.occlusion.objects(tools.lens, of, tools.pois, city, tools.viewer);
+            let shown = tools.occlusion.objects(tools.lens, (of, &[]), tools.pois, city, tools.viewer);
+            weights = shown.weights;
+            shown.objects
+        }
+        Focus::Case { of, when } => {
+            let shown = tools.occlusion.objects(tools.lens, (of, when), tools.pois, city, tools.viewer);
             weights = shown.weights;
             shown.objects
         }

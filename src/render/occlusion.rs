@@ -5,7 +5,8 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use crate::{
-    lens::{Occluders, chosen::members, solids::ShownCity},
+    geom::Aabb,
+    lens::{Occluders, chosen::members, rendering::When, solids::ShownCity},
     render::stats,
     scene::{Poi, PoiPlace},
     visibility::{self, Detected, Memory, Query, Scope, Set, Units, Viewer},
@@ -95,22 +96,38 @@ struct Found {
 }
 
 impl Occlusion {
-    /// The occluders of a lens, by its name: as remembered, if time was made to pass up to here, else as they are found.
+    /// The occluders of a lens, by its name: as remembered, if time was made to pass up to here, else as they are found. Of
+    /// some cases those that the last one holds of, and none before it; without a case all.
     pub fn objects(
         &mut self,
         lens: &str,
-        of: &Occluders,
+        (of, when): (&Occluders, &[When]),
         pois: &[Poi],
         city: ShownCity,
         viewer: Viewer,
     ) -> ShownOccluders {
-        match self.memory_of(lens, of, pois, viewer) {
-            Some(remembered) => remembered.shown.clone(),
+        let (shown, occluders) = match self.memory_of(lens, of, pois, viewer) {
+            Some(remembered) => (remembered.shown.clone(), remembered.memory.shown()),
             None => {
-                let objects = self.found(of, pois, city, viewer, How::default()).objects;
-                ShownOccluders { objects, weights: None }
+                let Found { objects, detected, .. } = self.found(of, pois, city, viewer, How::default());
+                (ShownOccluders { objects, weights: None }, detected.occluders.clone())
             }
+        };
+        if when.is_empty() {
+            return shown;
         }
+        let units = self.units_of(city);
+        let (mut left, mut of_case) = (occluders, Set::new(units.len()));
+        for case in when {
+            of_case = held(case, &left, &units, city, viewer);
+            left = left.without(&of_case);
+        }
+        let objects: Arc<[bool]> = units.objects_of(city.model, &of_case).into();
+        let of_these = |weights: Arc<[f32]>| -> Arc<[f32]> {
+            objects.iter().zip(&weights[..]).map(|(is, weight)| if *is { *weight } else { 0.0 }).collect()
+        };
+        let weights = shown.weights.map(of_these);
+        ShownOccluders { objects, weights }
     }
 
     /// Per object of the city, how far it is drawn as an occluder of a lens, by its name, 0 to 1; `None` where no time passed for it.
@@ -138,7 +155,7 @@ impl Occlusion {
                     memory
                 }
             };
-            let units = self.units.get_or_insert_with(|| Arc::new(Units::new(city.model, city.geometries)));
+            let units = self.units_of(city);
             let of_object = units.of_object.iter().zip(&city.model.objects);
             let weights: Vec<f32> = of_object
                 .map(
@@ -202,8 +219,17 @@ impl Occlusion {
         self.known.iter_mut().for_each(|known| known.is_wanted = false);
     }
 
+    /// The box around what is shown of a place, metres; empty where the city has no such object.
+    pub fn box_of(&mut self, place: &PoiPlace, city: ShownCity) -> Aabb {
+        poi_of(place, city).map_or(Aabb::EMPTY, |poi| self.units_of(city).box_of(poi))
+    }
+
+    fn units_of(&mut self, city: ShownCity) -> Arc<Units> {
+        self.units.get_or_insert_with(|| Arc::new(Units::new(city.model, city.geometries))).clone()
+    }
+
     fn found(&mut self, of: &Occluders, pois: &[Poi], city: ShownCity, viewer: Viewer, how: How) -> Found {
-        let units = self.units.get_or_insert_with(|| Arc::new(Units::new(city.model, city.geometries))).clone();
+        let units = self.units_of(city);
         let Asked { places, .. } = Asked::new(of, pois, viewer);
         let is_same = |known: &Known| known.of == *of && known.places == places;
         let at = self.known.iter().position(is_same).unwrap_or_else(|| {
@@ -232,20 +258,40 @@ impl Occlusion {
     }
 }
 
+/// What a place means in the city.
+fn poi_of(place: &PoiPlace, city: ShownCity) -> Option<visibility::Poi> {
+    match place {
+        PoiPlace::At(at) => Some(visibility::Poi::At(*at)),
+        PoiPlace::Object(id) => city.model.find_object(id).map(visibility::Poi::Object),
+    }
+}
+
+/// The units among some that a case holds of.
+fn held(when: &When, among: &Set, units: &Units, city: ShownCity, viewer: Viewer) -> Set {
+    let mut held = Set::new(units.len());
+    let chosen = when.of.as_ref().map(|choice| units.flagged(city.model, &members(city.model, choice)));
+    let kind = |unit: u32| city.model.strings.get(city.model.objects[units.roots[unit as usize] as usize].kind);
+    for unit in among.iter() {
+        let distance = || units.boxes[unit as usize].distance_to(viewer.eye);
+        let is_near = when.nearer_m.is_none_or(|nearer| distance() < nearer);
+        let is_of_type = when.types.is_empty() || when.types.iter().any(|name| name == kind(unit));
+        if is_near && is_of_type && chosen.as_ref().is_none_or(|chosen| chosen.has(unit)) {
+            held.insert(unit);
+        }
+    }
+    held
+}
+
 impl Known {
     /// Names that the city does not have mean nobody ([`crate::scene::check_against`] says so).
     fn new(of: &Occluders, places: Vec<PoiPlace>, city: ShownCity, units: &Units) -> Self {
-        let poi = |place: &PoiPlace| match place {
-            PoiPlace::At(at) => Some(visibility::Poi::At(*at)),
-            PoiPlace::Object(id) => city.model.find_object(id).map(visibility::Poi::Object),
-        };
         let set = |choice: &Option<_>| match choice {
             None => Set::new(units.len()),
             Some(choice) => units.flagged(city.model, &members(city.model, choice)),
         };
         Self {
             of: of.clone(),
-            pois: places.iter().filter_map(poi).collect(),
+            pois: places.iter().filter_map(|place| poi_of(place, city)).collect(),
             places,
             forced: set(&of.force),
             forbidden: set(&of.forbid),

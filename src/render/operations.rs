@@ -5,7 +5,7 @@ use crate::{
     lens::{
         BorderUnit, Class, Discrete, EffectUse, Lens, LensBody,
         chosen::{Choice, ChoiceError, chosen, members},
-        effect::{default_of, in_floats},
+        effect::{default_of, in_floats, ramp},
         thematic::ThematicScale,
     },
     render::{body::Members, palette},
@@ -99,13 +99,15 @@ pub struct Operations {
 impl Operations {
     /// The operations of the context's effects and of the enabled lenses that have a volume; `visible[i]` says
     /// whether lens i has one. `tests`: of the volumes of all lenses, in the picture and from the sun, and what leaves their combinations have. Thematic colours are
-    /// those of the objects of `models`, the scene's own city first, by the first one's scale.
+    /// those of the objects of `models`, the scene's own city first, by the first one's scale. `sights`: where in the picture the points
+    /// of interest of each lens are, as effects read it.
     pub fn new(
         context: &[EffectUse],
         lenses: &[Lens],
         visible: &[bool],
         [tests, shape_tests, leaves]: [Vec<VolumeTest>; 3],
         models: &[&CityModel],
+        sights: &[Vec<u32>],
     ) -> Result<Self, ChoiceError> {
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(shape_tests), ..Self::default() };
@@ -116,12 +118,12 @@ impl Operations {
             out.uber.bodies.clear();
         }
         for effect in context {
-            out.add(effect, None, models)?;
+            out.add(effect, None, models, sights)?;
         }
         let active = || lenses.iter().enumerate().filter(|(i, _)| visible.get(*i) == Some(&true));
         for (i, lens) in active() {
             for effect in lens.uses() {
-                out.add(effect, Some(i as u32), models)?;
+                out.add(effect, Some(i as u32), models, sights)?;
             }
         }
         for (i, lens) in active() {
@@ -305,13 +307,24 @@ impl Operations {
         first as u32
     }
 
-    fn add(&mut self, effect: &EffectUse, lens: Option<u32>, models: &[&CityModel]) -> Result<(), ChoiceError> {
+    fn add(
+        &mut self,
+        effect: &EffectUse,
+        lens: Option<u32>,
+        models: &[&CityModel],
+        sights: &[Vec<u32>],
+    ) -> Result<(), ChoiceError> {
         let Some(number) = shader::effect::number_of(&effect.effect) else { return Ok(()) };
         let definition = &shader::handlers()[number as usize];
         let first = self.parameters.len() as u32;
         let mut floats = Vec::new();
         for (parameter, ..) in definition.shader_parameters() {
             let value = effect.parameters.get(&parameter.name).cloned().or_else(|| default_of(parameter));
+            if parameter.kind.is_ramp() {
+                floats.push(self.object_values.len() as f32);
+                self.object_values.extend(value.iter().flat_map(ramp));
+                continue;
+            }
             floats.extend(value.map_or_else(Vec::new, |value| in_floats(parameter, &value)));
         }
         let first_value = self.object_values.len() as f32;
@@ -324,6 +337,11 @@ impl Operations {
                     let [r, g, b] = c.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8);
                     u32::from_le_bytes([r, g, b, 255])
                 }));
+                floats.push(first_value);
+            }
+            Some(PerObject::Sights) => {
+                let of_lens = lens.and_then(|lens| sights.get(lens as usize));
+                self.object_values.extend(of_lens.map_or(&[0][..], Vec::as_slice));
                 floats.push(first_value);
             }
             Some(PerObject::Chosen) => {

@@ -19,7 +19,7 @@ use crate::{
     geom::Aabb,
     gpu::{Gpu, GpuError, Timer},
     lens::{
-        Class, Lens,
+        Lens,
         solids::{ShownCity, Solids},
     },
     render::{
@@ -27,17 +27,18 @@ use crate::{
         body::Leaf,
         city::Shown,
         content_cities::{self, ContentCities, SceneContents},
-        enclosed::{areas, objects_meeting},
         eye::PictureTile,
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
         layers::LayerFigures,
+        lens_figures::lens_figures,
         lens_volumes::{LensVolumes, Tools, volumes_of},
         occlusion::Occlusion,
         operations::{MOST_FILTERS, Operations},
         parts::{Part, parts, put, whole},
         placement::Eye,
         regions,
+        sights::sights,
         solids::SolidTable,
         stats::{self, Statistics},
         stored::SpriteTexels,
@@ -45,7 +46,7 @@ use crate::{
         transparency::MethodFigures,
         volume::LensVolume,
     },
-    scene::{CitySpec, Scene},
+    scene::{CitySpec, Drawn, Scene},
     shader::{MOST_SLOTS, MOST_VOLUMES},
     view::{Camera, CameraError, View, first_view},
 };
@@ -113,7 +114,7 @@ pub struct Picture {
     /// One bit per lens, 32 lenses per plane.
     pub lens_mask: Option<Vec<Vec<u32>>>,
     /// Class bits as the card holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
-    classes: Vec<Vec<u32>>,
+    pub(super) classes: Vec<Vec<u32>>,
     /// Rays that have more intervals than the sprite of their lens has layers, by lens.
     pub(super) excess: BTreeMap<u32, u32>,
     /// Objects by lens that have no section since they are open.
@@ -122,8 +123,8 @@ pub struct Picture {
     pub(super) layers: LayerFigures,
     /// What their method took.
     pub(super) method: MethodFigures,
-    /// Objects by lens that have no form that its content derives: shown as they are, and left out.
-    pub(super) not_derived: [BTreeMap<u32, u32>; 2],
+    /// Objects by lens that have no form that its content derives: shown as they are, left out, shown as something else.
+    pub(super) not_derived: [BTreeMap<u32, u32>; 3],
     /// GPU allocations and uploads while drawing (reading back not counted).
     made: (u64, u64),
     /// What it cost.
@@ -183,7 +184,13 @@ impl Studio {
         let ground = spec.ground.then(|| plain_ground(&model, &geometries)).flatten();
         let coplanar = coplanar_triangles(&model, &geometries);
         let mut renderer = Renderer::new(gpu)?;
-        let shown = Shown { model: &model, geometries: &geometries, coplanar: &coplanar, ground: ground.as_ref() };
+        let shown = Shown {
+            model: &model,
+            geometries: &geometries,
+            coplanar: &coplanar,
+            ground: ground.as_ref(),
+            is_lit_as_before: false,
+        };
         renderer.set_city(&shown)?;
         let mut objects: Vec<u32> = geometries.iter().map(|&g| model.geometries[g as usize].object).collect();
         objects.sort_unstable();
@@ -247,20 +254,22 @@ impl Studio {
         furniture: &Furniture,
     ) -> Result<Picture, RenderError> {
         let started = Instant::now();
-        let prepared = self.prepare(scene, request.size)?;
+        let drawn = scene.drawn();
+        let prepared = self.prepare(&drawn, request.size)?;
         let view = self.view(scene, request.size, &prepared)?;
-        let mut picture = Picture::empty(request, scene.lenses.len());
+        let mut picture = Picture::empty(request, drawn.scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
         self.find_cities(&prepared)?;
         for part in parts(request.size) {
-            self.render_part(scene, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
+            self.render_part(&drawn, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
         }
         picture.open = told::open_shells(self, &prepared.volumes, &prepared.operations);
         picture.not_derived = told::not_derived(&prepared.contents);
+        picture.fold(&drawn, scene.lenses.len());
         told::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
         if request.statistics {
-            picture.statistics = self.statistics(scene, request, &prepared, &view, &picture, passes);
+            picture.statistics = self.statistics(scene, &drawn, request, &prepared, &view, &picture, passes);
             let frame = &mut picture.statistics.frame;
             frame.cpu_ms = started.elapsed().as_secs_f64() * 1e3;
             (frame.allocations, frame.uploads) = picture.made;
@@ -295,11 +304,12 @@ impl Studio {
     }
 
     fn draw_with(&mut self, scene: &Scene, request: &Request, furniture: &Furniture) -> Result<(), RenderError> {
-        let prepared = self.prepare(scene, request.size)?;
+        let drawn = scene.drawn();
+        let prepared = self.prepare(&drawn, request.size)?;
         let view = self.view(scene, request.size, &prepared)?;
         let whole = PictureTile::whole(request.size);
         self.find_cities(&prepared)?;
-        let mut input = FrameInput { furniture, ..input(scene, request, &prepared, view, whole) };
+        let mut input = FrameInput { furniture, ..input(&drawn.scene, request, &prepared, view, whole) };
         for sample in 0..input.samples {
             input.sample = sample;
             self.renderer.draw(&input, None)?;
@@ -313,7 +323,8 @@ impl Studio {
         if self.renderer.makes_room()? {
             self.redraw(scene, size)?;
         }
-        Ok(self.renderer.read_sprites(lens as u32)?)
+        let drawn = scene.drawn();
+        Ok(self.renderer.read_sprites(drawn.whole(lens as u32))?)
     }
 
     /// Puts contents of lenses on the card, and edges the first time that something draws lines.
@@ -324,7 +335,7 @@ impl Studio {
             return Ok(());
         }
         let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_ref());
-        Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground })?)
+        Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false })?)
     }
 
     /// The WGSL of a module that runs where the scene's lenses are in the picture, or everywhere where none is (H4).
@@ -335,12 +346,13 @@ impl Studio {
         backend: Backend,
         part: ShaderPart,
     ) -> Result<String, RenderError> {
-        let prepared = self.prepare(scene, size)?;
+        let drawn = scene.drawn();
+        let prepared = self.prepare(&drawn, size)?;
         let view = self.view(scene, size, &prepared)?;
         let request =
             Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false, backend };
-        let input = input(scene, &request, &prepared, view, whole(size));
-        Ok(self.renderer.shader(&input, &scene.lenses, part))
+        let input = input(&drawn.scene, &request, &prepared, view, whole(size));
+        Ok(self.renderer.shader(&input, &drawn.scene.lenses, part))
     }
 
     fn view(&self, scene: &Scene, size: [u32; 2], prepared: &Prepared) -> Result<View, CameraError> {
@@ -362,11 +374,14 @@ impl Studio {
 
     /// The volumes of the scene's enabled lenses where they stand in a picture of this size.
     pub fn lens_volumes(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<LensVolume>, RenderError> {
-        Ok(self.volumes_of(scene, size)?.volumes)
+        let drawn = scene.drawn();
+        let mut volumes = self.volumes_of(&drawn, size)?.volumes;
+        volumes.iter_mut().for_each(|volume| volume.lens = drawn.owner(volume.lens));
+        Ok(volumes)
     }
 
-    fn volumes_of(&self, scene: &Scene, size: [u32; 2]) -> Result<LensVolumes, RenderError> {
-        let city = self.shown();
+    fn volumes_of(&self, drawn: &Drawn, size: [u32; 2]) -> Result<LensVolumes, RenderError> {
+        let (city, scene) = (self.shown(), &*drawn.scene);
         let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
         let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
         let eye = Eye::new(&self.camera(scene, size))?;
@@ -378,7 +393,7 @@ impl Studio {
             lens: "",
             is_enabled: true,
         };
-        volumes_of(scene, city, &eye, &mut tools).map_err(RenderError::Scene)
+        volumes_of(drawn, city, &eye, &mut tools).map_err(RenderError::Scene)
     }
 
     /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually (O6). The first time everything
@@ -411,8 +426,9 @@ impl Studio {
         Some(occlusion.explained(&lens.name, of, &scene.pois, self.shown(), eye.viewer()))
     }
 
-    fn prepare(&self, scene: &Scene, size: [u32; 2]) -> Result<Prepared, RenderError> {
-        let mut found = self.volumes_of(scene, size)?;
+    fn prepare(&self, drawn: &Drawn, size: [u32; 2]) -> Result<Prepared, RenderError> {
+        let mut found = self.volumes_of(drawn, size)?;
+        let scene = &*drawn.scene;
         let technique = scene.style.technique;
         if let Some(problem) = technique.refuses(scene).or_else(|| regions::refused(scene, &found.volumes)) {
             return Err(RenderError::Scene(problem.to_string()));
@@ -424,14 +440,18 @@ impl Studio {
             kept.clone()
         };
         let LensVolumes { mut volumes, tests } = found;
-        let contents = self.contents(scene, size, &volumes)?;
+        let contents = self.contents(drawn, size, &volumes)?;
         let models: Vec<&CityModel> = std::iter::once(&self.model).chain(&contents.models).map(|m| &**m).collect();
         let objects = models.iter().map(|model| model.objects.len()).sum();
         let mut present = vec![false; scene.lenses.len()];
         for volume in &volumes {
             present[volume.lens as usize] = true;
         }
-        let mut operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &models)
+        let sights = {
+            let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
+            sights(scene, self.shown(), &Eye::new(&self.camera(scene, size))?, &mut occlusion)
+        };
+        let mut operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &models, &sights)
             .map_err(|error| RenderError::Scene(error.to_string()))?;
         operations.contents.clone_from(&contents.uses);
         for volume in &mut volumes {
@@ -457,17 +477,18 @@ impl Studio {
     }
 
     /// What lenses show in themselves, in a picture of this size.
-    fn contents(&self, scene: &Scene, size: [u32; 2], volumes: &[LensVolume]) -> Result<SceneContents, RenderError> {
+    fn contents(&self, drawn: &Drawn, size: [u32; 2], volumes: &[LensVolume]) -> Result<SceneContents, RenderError> {
+        let scene = &*drawn.scene;
         if scene.lenses.iter().all(|lens| lens.shown().is_none()) {
             self.content_cities.lock().unwrap_or_else(PoisonError::into_inner).clear();
             return Ok(SceneContents::default());
         }
         let camera = self.camera(scene, size);
-        let drawn = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let (view, eye) = (View::new(camera, size, &drawn)?, Eye::new(&camera)?);
+        let bounds = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
+        let (view, eye) = (View::new(camera, size, &bounds)?, Eye::new(&camera)?);
         let sun = self.renderer.sun_view(&view, &scene.sun, |_| [Aabb::EMPTY; 2]).map(|sun| sun.frustum(1.0));
         let stage = content_cities::Stage {
-            scene,
+            drawn,
             model: &self.model,
             geometries: &self.geometries,
             volumes,
@@ -485,7 +506,7 @@ impl Studio {
     #[allow(clippy::too_many_arguments, reason = "one part of a picture; the arguments are the picture's own")]
     fn render_part(
         &mut self,
-        scene: &Scene,
+        drawn: &Drawn,
         request: &Request,
         prepared: &Prepared,
         view: &View,
@@ -494,7 +515,7 @@ impl Studio {
         picture: &mut Picture,
         passes: &mut Vec<stats::Pass>,
     ) -> Result<(), RenderError> {
-        let mut input = FrameInput { furniture, ..input(scene, request, prepared, *view, part.drawn) };
+        let mut input = FrameInput { furniture, ..input(&drawn.scene, request, prepared, *view, part.drawn) };
         for sample in 0..input.samples {
             input.sample = sample;
             let mut timer =
@@ -516,7 +537,7 @@ impl Studio {
             if sample == 0 {
                 self.read_aovs(request, view, part, picture)?;
                 if records.iter().any(|r| r.name == CLEAR_MASKS) {
-                    self.read_masks(scene.lenses.len(), part, picture)?;
+                    self.read_masks(drawn.scene.lenses.len(), part, picture)?;
                 }
                 for (lens, rays) in self.renderer.read_excess(part.drawn.origin == [0, 0])? {
                     *picture.excess.entry(lens).or_default() += rays;
@@ -524,7 +545,7 @@ impl Studio {
             }
             if request.statistics {
                 let measures = timer.map(|t| t.read(&self.renderer.gpu)).transpose()?.unwrap_or_default();
-                collect(passes, &records, &measures);
+                collect(passes, &records, &measures, drawn);
             }
         }
         let Some(targets) = self.renderer.targets() else { return Ok(()) };
@@ -599,9 +620,11 @@ impl Studio {
         Ok(())
     }
 
+    #[allow(clippy::too_many_arguments, reason = "all that a picture was made of")]
     fn statistics(
         &self,
         scene: &Scene,
+        drawn: &Drawn,
         request: &Request,
         prepared: &Prepared,
         view: &View,
@@ -612,7 +635,10 @@ impl Studio {
         let pipelines = self.renderer.pipelines();
         let city = self.renderer.city();
         let lens_seen = |i: usize| {
-            prepared.volumes.iter().any(|v| v.lens as usize == i && v.seen_part(view, whole(request.size)).is_some())
+            prepared
+                .volumes
+                .iter()
+                .any(|v| drawn.owner(v.lens) as usize == i && v.seen_part(view, whole(request.size)).is_some())
         };
         let narrowing = pipelines.narrowing;
         let compiled = pipelines.compiled + u32::from(narrowing == Some(true));
@@ -652,10 +678,17 @@ impl Studio {
             lenses: (0..scene.lenses.len())
                 .map(|i| stats::LensFigures {
                     occluders: self.occluders(scene, &scene.lenses[i], view),
-                    ..lens_figures(self, scene, prepared, picture, i, lens_seen(i))
+                    ..lens_figures(
+                        self,
+                        (scene, drawn),
+                        (&prepared.volumes, &prepared.contents),
+                        picture,
+                        i,
+                        lens_seen(i),
+                    )
                 })
                 .collect(),
-            contents: prepared.contents.figures(self.shown(), &self.renderer),
+            contents: prepared.contents.figures(drawn, self.shown(), &self.renderer),
             overlays: Vec::new(),
             warnings: self.warnings().into_iter().chain(told::warnings(scene, picture)).collect(),
             passes,
@@ -699,51 +732,6 @@ fn input<'a>(
     }
 }
 
-fn lens_figures(
-    studio: &Studio,
-    scene: &Scene,
-    prepared: &Prepared,
-    picture: &Picture,
-    index: usize,
-    visible: bool,
-) -> stats::LensFigures {
-    let lens = &scene.lenses[index];
-    let volumes: Vec<&LensVolume> = prepared.volumes.iter().filter(|v| v.lens as usize == index).collect();
-    let planes = &picture.classes[3 * (index / 32)..3 * (index / 32) + 3];
-    let bit = |plane: &[u32], i: usize| plane[i] >> (index % 32) & 1 == 1;
-    let (mut front, mut inside, mut behind, mut rest) = (0, 0, 0, 0);
-    for i in 0..planes[0].len() {
-        match (bit(&planes[0], i), bit(&planes[1], i), bit(&planes[2], i)) {
-            (true, ..) => inside += 1,
-            (_, true, false) => front += 1,
-            (_, false, true) => behind += 1,
-            _ => rest += 1,
-        }
-    }
-    let acts_inside = lens.classes().any(|class| class == Class::Inside);
-    stats::LensFigures {
-        id: index as u32,
-        name: lens.name.clone(),
-        kind: lens.kind.word().to_owned(),
-        visible,
-        objects: match prepared.contents.of_lens(index as u32) {
-            Some(content) => content.objects_meeting(studio.shown(), &volumes),
-            None => objects_meeting(studio.shown(), &areas(&volumes)).len() as u64,
-        },
-        covered: inside,
-        pixels: if acts_inside { inside } else { 0 },
-        classified: if volumes.is_empty() {
-            stats::Classified::default()
-        } else {
-            // By object nothing is in front or behind.
-            let has_sides = volumes.iter().any(|v| v.body.has_sides());
-            let side = |count| has_sides.then_some(count);
-            stats::Classified { front: side(front), inside: Some(inside), behind: side(behind), rest: Some(rest) }
-        },
-        occluders: None,
-    }
-}
-
 impl Picture {
     fn empty(request: &Request, lens_count: usize) -> Self {
         let pixels = request.size[0] as usize * request.size[1] as usize;
@@ -769,7 +757,7 @@ impl Picture {
     }
 }
 
-fn collect(passes: &mut Vec<stats::Pass>, records: &[PassRecord], measures: &[crate::gpu::PassMeasure]) {
+fn collect(passes: &mut Vec<stats::Pass>, records: &[PassRecord], measures: &[crate::gpu::PassMeasure], drawn: &Drawn) {
     for record in records {
         let measure = record.slot.and_then(|slot| measures.get(slot)).copied().unwrap_or_default();
         passes.push(stats::Pass {
@@ -777,7 +765,11 @@ fn collect(passes: &mut Vec<stats::Pass>, records: &[PassRecord], measures: &[cr
             view: record.view.to_owned(),
             serves: match &record.lenses[..] {
                 [] => serde_json::json!("scene"),
-                lenses => serde_json::json!(lenses),
+                lenses => {
+                    let mut owners: Vec<u32> = lenses.iter().map(|lens| drawn.owner(*lens)).collect();
+                    owners.dedup();
+                    serde_json::json!(owners)
+                }
             },
             draws: record.draws,
             triangles: record.triangles,

@@ -1,10 +1,13 @@
 //! Where the shapes of lenses stand in a frame (L2): in the world, at what they are attached to, or before the camera.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use crate::{
     city::CityModel,
-    geom::shape::{Motion, Sightlines},
+    geom::{
+        Aabb,
+        shape::{Motion, Sightlines},
+    },
     lens::Lens,
     scene::{Scene, anchor::anchor},
     view::{Basis, Camera, CameraError, Projection},
@@ -33,6 +36,24 @@ impl Eye {
     /// From where occluders are looked for.
     pub(super) fn viewer(&self) -> Viewer {
         Viewer { eye: self.at, along: self.is_orthographic.then_some(self.basis.forward) }
+    }
+
+    /// Where a box is in the picture: the rectangle around it (low x, low y, high x, high y), in tangents of the view, or in metres
+    /// where rays are parallel; the distance of its farthest corner along the view axis, metres; and how many metres one unit of the
+    /// rectangle is at its middle. Corners behind the eye are taken as a millimetre before it.
+    pub(super) fn rectangle(&self, bounds: &Aabb) -> [f32; 6] {
+        let to_view = self.basis.view_from_world();
+        let seen = |p: DVec3| {
+            let view = to_view * (p - self.at);
+            let distance = (-view.z).max(1e-3);
+            (view.truncate() / if self.is_orthographic { 1.0 } else { distance }, distance)
+        };
+        let corners = bounds.corners().map(seen);
+        let low = corners.iter().fold(DVec2::INFINITY, |low, (p, _)| low.min(*p));
+        let high = corners.iter().fold(DVec2::NEG_INFINITY, |high, (p, _)| high.max(*p));
+        let far = corners.iter().fold(0.0, |far: f64, (_, distance)| far.max(*distance));
+        let metres = if self.is_orthographic { 1.0 } else { seen(bounds.center()).1 };
+        [low.x, low.y, high.x, high.y, far, metres].map(|x| x as f32)
     }
 
     /// From a lens' own coordinates to the model's; `None` where what it is attached to is not there:

@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// The codes.
-pub const CODES: [&str; 5] = [SPRITE_LAYERS, OPEN_SHELLS, NOT_DERIVED, NOTHING_DERIVED, LAYER_ROOM];
+pub const CODES: [&str; 6] = [SPRITE_LAYERS, OPEN_SHELLS, NOT_DERIVED, NOTHING_DERIVED, DERIVED_INSTEAD, LAYER_ROOM];
 
 /// Rays have more intervals than a sprite has layers.
 const SPRITE_LAYERS: &str = "sprite-layers";
@@ -25,10 +25,13 @@ const OPEN_SHELLS: &str = "open-shells";
 const NOT_DERIVED: &str = "not-derived";
 /// Of what a content derives nothing is left.
 const NOTHING_DERIVED: &str = "nothing-derived";
+/// What a content was to show has no such geometry, and something else stands for it.
+const DERIVED_INSTEAD: &str = "derived-instead";
 
-/// City objects by lens that its content shows as they are, and such that it leaves out, since they have no form that it derives.
-pub(super) fn not_derived(contents: &SceneContents) -> [BTreeMap<u32, u32>; 2] {
-    [0, 1].map(|which| {
+/// City objects by lens that its content shows as they are, such that it leaves out, and such that it shows as something else, since
+/// they have no form that it derives.
+pub(super) fn not_derived(contents: &SceneContents) -> [BTreeMap<u32, u32>; 3] {
+    [0, 1, 2].map(|which| {
         let of = |lens: u32| Some(contents.of_lens(lens)?.city.as_ref()?.not_derived[which]);
         let counts = contents.uses.iter().filter_map(|used| Some((used.lens, of(used.lens)?)));
         counts.filter(|(_, count)| *count > 0).collect()
@@ -69,7 +72,7 @@ pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &
 
 type Told = (&'static str, fn(&Picture) -> &BTreeMap<u32, u32>, fn(&str, u32) -> String);
 
-const TOLD: [Told; 4] = [
+const TOLD: [Told; 5] = [
     (
         SPRITE_LAYERS,
         |picture| &picture.excess,
@@ -103,6 +106,16 @@ const TOLD: [Told; 4] = [
         |lens, objects| {
             let are = if objects == 1 { "object" } else { "objects" };
             format!("{objects} {are} of which lens \"{lens}\" leaves nothing (upright faces only)")
+        },
+    ),
+    (
+        DERIVED_INSTEAD,
+        |picture| &picture.not_derived[2],
+        |lens, objects| {
+            let (have, prisms) = if objects == 1 { ("object has", "a prism") } else { ("objects have", "prisms") };
+            format!(
+                "{objects} {have} no level of detail 1, as lens \"{lens}\" asks for; shown as {prisms} over the footprint"
+            )
         },
     ),
 ];

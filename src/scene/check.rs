@@ -4,7 +4,10 @@ use std::collections::BTreeSet;
 
 use crate::{
     city::CityModel,
-    lens::{Focus, Occluders, Placement, chosen::absent, nearest::did_you_mean, thematic::attribute_names},
+    lens::{
+        EffectUse, Focus, Occluders, Placement, Rendering, chosen::absent, nearest::did_you_mean, rendering::Case,
+        thematic::attribute_names,
+    },
     scene::{
         PoiPlace, Scene,
         anchor::{AnchorProblem, anchor},
@@ -29,8 +32,11 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
     let mut names: Option<Vec<&str>> = None;
     let places = [("style".to_owned(), "effects", &scene.style.effects)].into_iter();
     let numbered = || scene.lenses.iter().enumerate().map(|(i, lens)| (format!("lens.{i}"), lens));
-    let drawn = numbered().filter_map(|(table, lens)| Some((table, "render", &lens.render.as_ref()?.effects)));
-    let lenses = numbered().map(|(table, lens)| (table, "effects", &lens.effects));
+    let places = places.map(|(table, list, effects)| (table, list.to_owned(), effects));
+    let drawn = numbered().flat_map(|(table, lens)| {
+        lens.render.iter().flat_map(effects_of).map(move |(key, effects)| (table.clone(), key, effects))
+    });
+    let lenses = numbered().map(|(table, lens)| (table, "effects".to_owned(), &lens.effects));
     for (table, list, effects) in places.chain(drawn).chain(lenses) {
         for (i, used) in effects.iter().enumerate() {
             let Some(attribute) = used.text("attribute") else { continue };
@@ -69,6 +75,17 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
         if let Some(occluders) = lens.occluders() {
             check_occluders(occluders, &format!("lens.{i}"), scene, model, &mut problems);
         }
+        for (key, case) in lens.render.iter().flat_map(cases_of) {
+            let chosen = case.when.of.iter().flat_map(|choice| absent(model, choice));
+            let named = chosen.map(|(at, message)| (format!("where.{at}"), format!("chooses nothing: {message}")));
+            let types = absent_types(model, &case.when.types);
+            let types = types.into_iter().map(|(at, message)| (format!("types.{at}"), message));
+            problems.extend(named.chain(types).map(|(at, message)| SceneProblem {
+                table: format!("lens.{i}"),
+                key: format!("{key}.{at}"),
+                message,
+            }));
+        }
     }
     for (i, poi) in scene.pois.iter().enumerate() {
         let PoiPlace::Object(id) = &poi.place else { continue };
@@ -82,6 +99,22 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
         }
     }
     problems
+}
+
+/// The cases of a rendering, each with its key in scene files.
+fn cases_of(render: &Rendering) -> impl Iterator<Item = (String, &Case)> {
+    let several = render.cases.len() > 1;
+    let key = move |i: usize| if several { format!("render.{i}") } else { "render".to_owned() };
+    render.cases.iter().enumerate().map(move |(i, case)| (key(i), case))
+}
+
+/// The lists of effects of a rendering that files give, with their keys.
+fn effects_of(render: &Rendering) -> impl Iterator<Item = (String, &Vec<EffectUse>)> {
+    let is_list = matches!(&render.cases[..], [one] if one.when.is_always());
+    let key_of = move |key: String| if is_list { key } else { format!("{key}.effects") };
+    let by_effects = cases_of(render).filter(|(_, case)| case.word.is_none());
+    let cases = by_effects.map(move |(key, case)| (key_of(key), &case.effects));
+    cases.chain([("poi_effects".to_owned(), &render.poi_effects)])
 }
 
 /// The names of an occlusion lens.

@@ -6,6 +6,7 @@ pub mod anchor;
 pub mod animation;
 pub mod check;
 pub mod command;
+pub mod drawn;
 pub mod technique;
 pub mod transparency;
 
@@ -21,6 +22,7 @@ use crate::{
 pub use animation::Animation;
 pub use check::{SceneProblem, check_against};
 pub use command::{Command, History};
+pub use drawn::Drawn;
 pub use technique::Technique;
 pub use transparency::Transparency;
 

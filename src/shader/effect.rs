@@ -19,6 +19,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("cel"),
     built_in!("gooch"),
     built_in!("clay"),
+    built_in!("x-ray-tint"),
     built_in!("hidden-line"),
     built_in!("wireframe"),
     built_in!("greyscale"),
@@ -35,8 +36,11 @@ const FILES: &[(&str, &str)] = &[
     built_in!("edges"),
     built_in!("iso-lines"),
     built_in!("eraser"),
+    built_in!("cut-away"),
+    built_in!("screen-door"),
     built_in!("transparent"),
     built_in!("x-ray"),
+    built_in!("film"),
     built_in!("peel"),
     built_in!("brick"),
     built_in!("gloss"),
@@ -160,10 +164,16 @@ pub enum ParameterKind {
     Numbers,
     /// Texts, at most [`MAX_LIST`]; not for WGSL.
     Texts,
+    /// Shares, 0 to 1, at equal steps of a ramp, at most [`MAX_RAMP`]; in WGSL a `u32` for `share_on_ramp`.
+    Shares,
+    /// Colours, as [`Self::Color`], at equal steps of a ramp, at most [`MAX_RAMP`]; in WGSL a `u32` for `color_on_ramp`.
+    Colors,
 }
 
 /// Longest list a parameter takes.
 pub const MAX_LIST: usize = 256;
+/// Steps of a ramp.
+pub const MAX_RAMP: usize = 64;
 
 impl ParameterKind {
     /// Its type in WGSL and how many floats it takes there; `None` for what only the host reads.
@@ -171,7 +181,7 @@ impl ParameterKind {
         match self {
             Self::Boolean => Some(("bool", 1)),
             Self::Number { .. } => Some(("f32", 1)),
-            Self::Word(_) => Some(("u32", 1)),
+            Self::Word(_) | Self::Shares | Self::Colors => Some(("u32", 1)),
             Self::Color => Some(("vec3f", 3)),
             Self::Text | Self::Numbers | Self::Texts => None,
         }
@@ -188,7 +198,14 @@ impl ParameterKind {
             Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Numbers => format!("1 to {MAX_LIST} ascending numbers"),
             Self::Texts => format!("1 to {MAX_LIST} texts"),
+            Self::Shares => format!("1 to {MAX_RAMP} numbers of 0 to 1"),
+            Self::Colors => format!("1 to {MAX_RAMP} colours \"#rrggbb\""),
         }
+    }
+
+    /// Whether WGSL reads it as a ramp.
+    pub fn is_ramp(&self) -> bool {
+        matches!(self, Self::Shares | Self::Colors)
     }
 }
 
@@ -213,6 +230,10 @@ pub enum DefaultValue {
     Number(f64),
     /// A word, or a colour as `"#rrggbb"`.
     Text(String),
+    /// Shares.
+    Numbers(Vec<f64>),
+    /// Colours.
+    Texts(Vec<String>),
 }
 
 /// One parameter of an effect.
@@ -244,6 +265,8 @@ impl ParameterDefinition {
             Fallback::Value(DefaultValue::Boolean(b)) => b.to_string(),
             Fallback::Value(DefaultValue::Number(n)) => n.to_string(),
             Fallback::Value(DefaultValue::Text(t)) => format!("\"{t}\""),
+            Fallback::Value(DefaultValue::Numbers(n)) => format!("{n:?}"),
+            Fallback::Value(DefaultValue::Texts(t)) => format!("{t:?}"),
         }
     }
 }
@@ -256,6 +279,8 @@ pub enum PerObject {
     Colors,
     /// Whether an attribute chooses it ([`crate::lens::chosen`]).
     Chosen,
+    /// Nothing of objects: where in the picture the points of interest of its lens are (`render::sights`).
+    Sights,
 }
 
 /// One effect.

@@ -28,7 +28,8 @@ use toml::Spanned;
 use crate::shader::{
     Module, Plan, Program, Scope, Step,
     effect::{
-        DefaultValue, EffectDefinition, EffectKind, Fallback, Mode, ParameterDefinition, ParameterKind, PerObject,
+        DefaultValue, EffectDefinition, EffectKind, Fallback, MAX_RAMP, Mode, ParameterDefinition, ParameterKind,
+        PerObject,
     },
     wgsl::{self, Declaration, Renamed, Token, TokenKind},
 };
@@ -106,7 +107,20 @@ enum TypeName {
     Color,
     Numbers,
     Texts,
+    Shares,
+    Colors,
 }
+
+/// Parameters that more than one effect has.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SharedParameters {
+    #[serde(rename = "parameter")]
+    parameters: Vec<ParameterHeader>,
+}
+
+/// Those by which effects choose objects ([`PerObject::Chosen`]).
+const CHOICE: &str = include_str!("../../shaders/effect/choice.toml");
 
 /// A file while it is read.
 struct File<'a> {
@@ -183,6 +197,13 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
         effect
             .parameters
             .push(parameter.definition().map_err(|(place, message)| file.error(place.map_or(at(span), &at), message))?);
+    }
+    if effect.objects == Some(PerObject::Chosen) {
+        let shared: SharedParameters =
+            toml::from_str(CHOICE).map_err(|error| file.error(0, format!("choice.toml: {}", error.message())))?;
+        for parameter in shared.parameters {
+            effect.parameters.push(parameter.definition().map_err(|(_, message)| file.error(0, message))?);
+        }
     }
     let reaches = |p: &ParameterDefinition| {
         p.name == "radius" && matches!(p.kind, ParameterKind::Number { max, .. } if max <= f64::from(MOST_REACH))
@@ -344,6 +365,8 @@ impl ParameterHeader {
             (TypeName::Color, None) => ParameterKind::Color,
             (TypeName::Numbers, None) => ParameterKind::Numbers,
             (TypeName::Texts, None) => ParameterKind::Texts,
+            (TypeName::Shares, None) => ParameterKind::Shares,
+            (TypeName::Colors, None) => ParameterKind::Colors,
             (TypeName::Number, None) => match self.range.map(Spanned::into_inner) {
                 None => ParameterKind::Number { min: f64::MIN, max: f64::MAX },
                 Some([min, max]) if min < max => ParameterKind::Number { min, max },
@@ -372,11 +395,21 @@ fn takes(kind: &ParameterKind, value: &DefaultValue) -> bool {
         (ParameterKind::Boolean, DefaultValue::Boolean(_)) | (ParameterKind::Text, DefaultValue::Text(_)) => true,
         (ParameterKind::Number { min, max }, DefaultValue::Number(n)) => (*min..=*max).contains(n),
         (ParameterKind::Word(words), DefaultValue::Text(text)) => words.contains(text),
-        (ParameterKind::Color, DefaultValue::Text(text)) => {
-            text.len() == 7 && text.starts_with('#') && text[1..].bytes().all(|b| b.is_ascii_hexdigit())
+        (ParameterKind::Color, DefaultValue::Text(text)) => is_color(text),
+        (ParameterKind::Colors, DefaultValue::Texts(list)) => is_ramp(list.len()) && list.iter().all(|t| is_color(t)),
+        (ParameterKind::Shares, DefaultValue::Numbers(list)) => {
+            is_ramp(list.len()) && list.iter().all(|n| (0.0..=1.0).contains(n))
         }
         _ => false,
     }
+}
+
+fn is_ramp(count: usize) -> bool {
+    (1..=MAX_RAMP).contains(&count)
+}
+
+fn is_color(text: &str) -> bool {
+    text.len() == 7 && text.starts_with('#') && text[1..].bytes().all(|b| b.is_ascii_hexdigit())
 }
 
 fn is_effect_name(name: &str) -> bool {
@@ -402,8 +435,9 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         return Err(file.error(0, message));
     }
     let (effect, renamed) = read_with_names(path, text, true)?;
-    if effect.objects.is_some() {
-        return Err(file.error(0, "objects is for effects of the program"));
+    if effect.objects.is_some() || effect.parameters.iter().any(|p| p.kind.is_ramp()) {
+        let message = "objects, and parameters of type shares and colors, are for effects of the program";
+        return Err(file.error(0, message));
     }
     check_control_flow(&file)?;
     check_cost(&file)?;

@@ -296,7 +296,9 @@ impl Module {
             Self::Bare => &[VIEW, VIEW_UNIFORM, SURFACE, BARE],
         };
         let mut text = String::new();
-        for (path, source) in files {
+        // A fragment knows the threshold of its pixel.
+        let threshold = (files.contains(&FRAGMENT) && !files.contains(&DITHER)).then_some(&DITHER);
+        for (path, source) in files.iter().chain(threshold) {
             text.push_str(&format!("// ==== {path}\n\n{source}\n"));
         }
         if let Self::CombinedSprite(kinds) | Self::StoredLayers(kinds) = self {
@@ -426,6 +428,7 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.side_sprites, SOLID_SPRITE),
         (parts.combinations, COMBINED),
         (parts.combined_sprites, COMBINED_SPRITE),
+        (parts.borders, DITHER),
         (parts.borders, BORDER),
         (parts.by_ray && parts.side_sprites, SHELL_SIDES),
         (parts.by_ray && parts.sprites, SHELL_SPRITE),

@@ -1,6 +1,6 @@
 //! Classes over time (O6): what is an occluder stays one until it has left its test by a margin, and comes and goes gradually.
 
-use crate::visibility::Detected;
+use crate::visibility::{Detected, Set};
 
 /// How fast things come and go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +53,11 @@ impl Memory {
         &self.weights
     }
 
+    /// The units that are drawn as occluders, be it in part.
+    pub fn shown(&self) -> Set {
+        Set::of(&self.weights.iter().map(|weight| *weight > 0.0).collect::<Vec<_>>())
+    }
+
     /// Whether a unit is an occluder.
     pub fn is_occluder(&self, unit: u32) -> bool {
         self.is_occluder.get(unit as usize) == Some(&true)
@@ -69,7 +74,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::visibility::Set;
 
     /// Units that are occluders where their signal is at least 1, and stay so while it is at least 0.
     fn detected(signals: &[f64]) -> Detected {

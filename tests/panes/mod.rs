@@ -110,7 +110,8 @@ pub fn set_city(studio: &mut Studio, panes: &[Pane]) {
     std::fs::remove_file(path).expect("the temporary file");
     let geometries = shown_geometries(&model, None);
     let coplanar = coplanar_triangles(&model, &geometries);
-    let shown = Shown { model: &model, geometries: &geometries, coplanar: &coplanar, ground: None };
+    let shown =
+        Shown { model: &model, geometries: &geometries, coplanar: &coplanar, ground: None, is_lit_as_before: false };
     studio.renderer.set_city(&shown).expect("the city fits");
     (studio.model, studio.geometries) = (Arc::new(model), geometries);
 }

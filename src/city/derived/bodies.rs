@@ -85,7 +85,8 @@ struct Looks {
     wall: u32,
 }
 
-pub(super) fn derived(source: &Source, form: &Form, make: Make) -> Derived {
+/// The bodies of all units of a source, and beside them the units of another one of the same model as they are.
+pub(super) fn derived(source: &Source, form: &Form, make: Make, beside: Option<&Source>) -> Derived {
     let mut target = Target::new(source.model);
     let origin = source.units.iter().map(|unit| unit.bounds.min).reduce(DVec3::min).unwrap_or_default().floor();
     let on_lattice = |p: DVec3| ((p - origin) * PER_M).round().to_array().map(|x| x as i64);
@@ -118,7 +119,14 @@ pub(super) fn derived(source: &Source, form: &Form, make: Make) -> Derived {
         chunk
     });
     moved::append(&mut target, source, [chunk]);
-    Derived { model: target.finish(), heights: Vec::new(), unchanged: unchanged.len() as u32, left_out: 0 }
+    if let Some(beside) = beside {
+        let chunk = beside.units.iter().fold(moved::Chunk::default(), |mut chunk, unit| {
+            chunk.add(beside, unit, &moved::Change::None);
+            chunk
+        });
+        moved::append(&mut target, beside, [chunk]);
+    }
+    Derived { model: target.finish(), unchanged: unchanged.len() as u32, ..Derived::default() }
 }
 
 /// The surfaces of a unit, one per [`Part`]. What is no building has none of its semantics.

@@ -14,6 +14,7 @@ mod flat;
 mod ground;
 mod height;
 mod hull;
+mod lod1;
 mod moved;
 mod prism;
 mod source;
@@ -46,9 +47,16 @@ pub enum Form {
     Prism,
     /// Its convex hull.
     Hull,
+    /// Its block model, of level of detail 1; where it has none, its prism.
+    Lod1,
     /// Its faces that are seen from above, on the ground below it; where that has none, at its lowest point.
     Flat {
         /// How far above these, metres, ≥ 0.
+        lift_m: f64,
+    },
+    /// The same, each face in the light that it had where it stood.
+    Top {
+        /// As that of [`Self::Flat`].
         lift_m: f64,
     },
     /// Itself, as high as this: walls stretched or shortened, roofs moved.
@@ -68,6 +76,11 @@ pub enum Height {
 /// from it then.
 pub const LIFT_M: f64 = 0.05;
 
+/// What of it may be asked for, metres.
+pub const LIFT_RANGE_M: [f64; 2] = [0.0, 1000.0];
+/// What heights may be asked for, metres.
+pub const HEIGHT_RANGE_M: [f64; 2] = [0.001, 100_000.0];
+
 /// A form as scene files have it.
 #[derive(Clone, Copy, Debug)]
 pub struct FormRow {
@@ -82,19 +95,29 @@ pub struct FormRow {
 enum Make {
     Body(bodies::Make),
     Moved(moved::Make),
+    Other(fn(&CityModel, &[u32], &Derive) -> Derived),
 }
 
 /// All forms.
-pub const FORMS: [FormRow; 5] = [
+pub const FORMS: [FormRow; 7] = [
     FormRow { word: "box", options: &["oriented"], make: Make::Body(boxes::body) },
     FormRow { word: "prism", options: &[], make: Make::Body(prism::body) },
     FormRow { word: "hull", options: &[], make: Make::Body(hull::body) },
     FormRow { word: "flat", options: &["lift"], make: Make::Moved(flat::change) },
+    FormRow { word: "top", options: &["lift"], make: Make::Moved(flat::change) },
+    FormRow { word: "lod1", options: &[], make: Make::Other(lod1::derived) },
     FormRow { word: "height", options: &["height", "factor"], make: Make::Moved(height::change) },
 ];
 
 /// The words of [`FORMS`], in their order.
-pub const WORDS: &[&str] = &[FORMS[0].word, FORMS[1].word, FORMS[2].word, FORMS[3].word, FORMS[4].word];
+pub const WORDS: &[&str] = &{
+    let (mut words, mut i) = ([""; FORMS.len()], 0);
+    while i < FORMS.len() {
+        words[i] = FORMS[i].word;
+        i += 1;
+    }
+    words
+};
 
 impl Form {
     /// Its row.
@@ -104,12 +127,19 @@ impl Form {
             Self::Prism => 1,
             Self::Hull => 2,
             Self::Flat { .. } => 3,
-            Self::Height(_) => 4,
+            Self::Top { .. } => 4,
+            Self::Lod1 => 5,
+            Self::Height(_) => 6,
         }]
     }
 }
 
 impl Form {
+    /// Whether it lies on the ground, and throws no shadow.
+    pub fn is_pressed(&self) -> bool {
+        matches!(self, Self::Flat { .. } | Self::Top { .. })
+    }
+
     /// A box that holds what the form makes of an object, whatever of that is shown; `bounds`: of all its geometries.
     pub fn reach(&self, bounds: &Aabb) -> Aabb {
         if bounds.is_empty() {
@@ -128,11 +158,11 @@ impl Form {
             Self::Height(Height::Metres(metres)) => reach.max.z += metres,
             Self::Height(Height::Factor(factor)) => reach.max.z += size.z * (factor - 1.0).max(0.0),
             // On ground that rises and falls by no more than it is wide.
-            Self::Flat { lift_m } => {
+            Self::Flat { lift_m } | Self::Top { lift_m } => {
                 let slope = size.truncate().length();
                 (reach.min.z, reach.max.z) = (bounds.min.z - slope, bounds.max.z + slope + lift_m);
             }
-            Self::Box { .. } | Self::Prism | Self::Hull => {}
+            Self::Box { .. } | Self::Prism | Self::Hull | Self::Lod1 => {}
         }
         reach
     }
@@ -150,16 +180,19 @@ pub struct Derived {
     pub unchanged: u32,
     /// Objects of which the form leaves nothing.
     pub left_out: u32,
+    /// Objects that have no such geometry of their own, and stand as something else instead.
+    pub instead: u32,
 }
 
 /// Derives a city from what is `shown` of one (indices of geometries).
 pub fn derive(model: &CityModel, shown: &[u32], how: &Derive) -> Derived {
     let mut source = Source::new(model, shown, how.parts);
-    if matches!(how.form, Form::Flat { .. }) {
+    if how.form.is_pressed() {
         source.ground = GroundFaces::new(model, shown);
     }
     match how.form.row().make {
-        Make::Body(make) => bodies::derived(&source, &how.form, make),
+        Make::Body(make) => bodies::derived(&source, &how.form, make, None),
+        Make::Other(derived) => derived(model, shown, how),
         Make::Moved(make) => moved::derived(&source, &how.form, make),
     }
 }

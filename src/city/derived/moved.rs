@@ -34,6 +34,8 @@ pub(super) enum Change {
         lift: f64,
         /// Whether it has none that look up.
         from_below: bool,
+        /// Whether they look where they looked before.
+        is_lit: bool,
     },
     /// They stand at other heights.
     Steps(Steps),
@@ -119,7 +121,7 @@ pub(super) fn derived(source: &Source, form: &Form, make: Make) -> Derived {
     let (unchanged, left_out) = (sum(|c| c.unchanged), sum(|c| c.left_out));
     let mut target = Target::new(source.model);
     let heights = append(&mut target, source, chunks);
-    Derived { model: target.finish(), heights, unchanged, left_out }
+    Derived { model: target.finish(), heights, unchanged, left_out, instead: 0 }
 }
 
 impl Chunk {
@@ -156,9 +158,10 @@ impl Chunk {
             let old = order.map(|k| model.indices[3 * triangle as usize + k]);
             let vertices = old.map(|i| &model.vertices[(tile.vertices.start + i) as usize]);
             let corners = order.map(|k| face.corners[k]);
-            if let (Change::Level { base, lift, .. }, Some(ground)) = (change, &source.ground) {
+            if let (Change::Level { base, lift, is_lit, .. }, Some(ground)) = (change, &source.ground) {
                 let texcoords = is_textured.then(|| old.map(|i| model.texcoords[(tile.texcoords + i) as usize]));
-                let sheet = Sheet { tile, surface: face.surface, corners, texcoords, first_vertex };
+                let normal = if *is_lit { upward(&face) } else { encode_normal(DVec3::Z) };
+                let sheet = Sheet { tile, surface: face.surface, corners, texcoords, first_vertex, normal };
                 let covered = sheet.lay(self, ground, *base, *lift);
                 if covered {
                     continue;
@@ -211,6 +214,8 @@ struct Sheet<'a> {
     corners: [DVec3; 3],
     texcoords: Option<[[f32; 2]; 3]>,
     first_vertex: u32,
+    /// Packed.
+    normal: u32,
 }
 
 /// A face over more triangles of the ground than this is not laid on them.
@@ -258,14 +263,13 @@ impl Sheet<'_> {
         };
         let origin = self.tile.origin.as_dvec3();
         let first = chunk.vertices.len() as u32 - self.first_vertex;
-        let normal = encode_normal(DVec3::Z);
         let was = |p: DVec2| {
             let z = shares(p).into_iter().zip(self.corners).map(|(share, corner)| share * corner.z).sum::<f64>();
             (z - base).max(0.0) as f32
         };
         for &p in piece {
             let position = (p.extend(height(p)) - origin).as_vec3().to_array();
-            chunk.vertices.push(Vertex { position, normal, surface: self.surface });
+            chunk.vertices.push(Vertex { position, normal: self.normal, surface: self.surface });
             chunk.texcoords.extend(self.texcoords.map(|at| {
                 let share = shares(p).map(|share| share as f32);
                 [0, 1].map(|k| (0..3).map(|corner| share[corner] * at[corner][k]).sum())
@@ -303,6 +307,7 @@ fn moved([x, y, z]: [f32; 3], tile: &Tile, change: &Change) -> [f32; 3] {
 fn normals(old: [u32; 3], corners: &[DVec3; 3], change: &Change) -> [u32; 3] {
     let steps = match change {
         Change::None | Change::Gone => return old,
+        Change::Level { is_lit: true, .. } => return [upward(&Face { corners: *corners, surface: 0 }); 3],
         Change::Level { .. } => return [encode_normal(DVec3::Z); 3],
         Change::Steps(steps) => steps,
     };
@@ -322,6 +327,13 @@ fn normals(old: [u32; 3], corners: &[DVec3; 3], change: &Change) -> [u32; 3] {
     }
     let [a, b, c] = corners.map(|p| DVec3::new(p.x, p.y, steps.at(p.z)));
     [(b - a).cross(c - a).try_normalize().map_or(old[0], encode_normal); 3]
+}
+
+/// The normal of a face, upwards whichever way it was turned, packed.
+fn upward(face: &Face) -> u32 {
+    let normal = face.normal();
+    let up = if normal.z < 0.0 { -normal } else { normal };
+    encode_normal(up.try_normalize().unwrap_or(DVec3::Z))
 }
 
 /// The plane of a triangle that was in the plane `group` of the source.

@@ -12,6 +12,7 @@ use crate::city::{
 
 const BOX: Form = Form::Box { oriented: false };
 const FLAT: Form = Form::Flat { lift_m: LIFT_M };
+const TOP: Form = Form::Top { lift_m: LIFT_M };
 
 fn made(model: &CityModel, form: Form) -> Derived {
     derived_by(model, Derive { form, parts: false })
@@ -334,9 +335,59 @@ fn what_has_no_such_form_stays_or_goes_and_is_counted() {
 }
 
 #[test]
+fn a_picture_from_above_keeps_the_light_of_slopes() {
+    let mut b = builder();
+    add_house(&mut b, "house", [0, 0, 2000]);
+    // Half of it on a slope.
+    let slope = [[5000, -10_000, 1000], [60_000, -10_000, 1500], [60_000, 60_000, 1500], [5000, 60_000, 1000]];
+    add(&mut b, "slope", ObjectClass::Terrain, None, slope.to_vec(), &[vec![0, 1, 2, 3]]);
+    let model = b.finish();
+    let (flat, top) = (made(&model, FLAT), made(&model, TOP));
+    let places = |derived: &Derived| triangles(&derived.model).into_iter().map(|t| t.0).collect::<Vec<_>>();
+    assert_eq!((places(&flat), &flat.heights), (places(&top), &top.heights), "the same faces in the same order");
+    // 3 m up over 4 m across, to the south and to the north.
+    let south = DVec3::new(0.0, -0.6, 0.8);
+    for (corners, _, normal) in triangles(&top.model) {
+        let side = if corners.iter().map(|c| c.y - LATTICE.origin.y).sum::<f64>() < 12.0 { 1.0 } else { -1.0 };
+        let wanted = south * DVec3::new(1.0, side, 1.0);
+        assert!(crate::city::decode_normal(normal).distance(wanted) < 1e-3, "{corners:?}");
+    }
+}
+
+#[test]
+fn block_models_are_the_objects_own_and_prisms_stand_for_those_that_have_none() {
+    let mut b = builder();
+    let rich = add_house(&mut b, "rich", [0, 0, 0]);
+    let poor = add_house(&mut b, "poor", [30_000, 0, 0]);
+    // A block of 10 m × 8 m × 6 m beside the finer house.
+    let surface = b.add_surface(Surface { object: rich, material: NONE, kind: StringId(NONE), detail: NONE });
+    let ring = [[0, 0], [10_000, 0], [10_000, 8000], [0, 8000]];
+    let points: Vec<[i64; 3]> = [0, 6000].iter().flat_map(|z| ring.map(|p| [p[0], p[1], *z])).collect();
+    let mut polygons = Polygons::default();
+    for face in [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]] {
+        polygons.indices.extend(face);
+        polygons.ring_ends.push(polygons.indices.len() as u32);
+        polygons.polygon_ends.push(polygons.ring_ends.len() as u32);
+        polygons.surfaces.push(surface);
+    }
+    let pool = std::sync::Arc::new(Pool { lattice: LATTICE, points: points.into() });
+    b.add_geometry(RawGeometry { object: rich, lod: Lod { tenths: 12 }, solid: true, pool, polygons });
+    let model = b.finish();
+    let shown = crate::city::shown::shown_geometries(&model, None);
+    let made = derive(&model, &shown, &Derive { form: Form::Lod1, parts: false });
+    made.model.validate().expect("a sound model");
+    assert_eq!((made.instead, made.unchanged, made.left_out), (1, 0, 0));
+    let mut all = owners(&made.model);
+    all.sort_unstable();
+    assert_eq!(all, [rich, poor]);
+    assert!(near(volume(&made.model), 80.0 * 6.0 + 80.0 * 8.0), "{}", volume(&made.model));
+}
+
+#[test]
 fn every_word_has_its_row() {
     let height = Form::Height(Height::Factor(2.0));
-    let words: Vec<&str> = [BOX, Form::Prism, Form::Hull, FLAT, height].iter().map(|form| form.row().word).collect();
+    let all = [BOX, Form::Prism, Form::Hull, FLAT, TOP, Form::Lod1, height];
+    let words: Vec<&str> = all.iter().map(|form| form.row().word).collect();
     assert_eq!(words, WORDS);
 }
 
@@ -347,7 +398,9 @@ fn reaches_hold_what_is_made() {
     add_upright(&mut b, "turned", &[[0, 30_000], [16_000, 42_000], [10_000, 50_000], [-6000, 38_000]], [0, 9000]);
     let model = b.finish();
     let heights = [Height::Metres(30.0), Height::Factor(3.0), Height::Factor(0.5)].map(Form::Height);
-    for form in [BOX, Form::Box { oriented: true }, Form::Prism, Form::Hull, FLAT].into_iter().chain(heights) {
+    for form in
+        [BOX, Form::Box { oriented: true }, Form::Prism, Form::Hull, FLAT, TOP, Form::Lod1].into_iter().chain(heights)
+    {
         for geometry in &made(&model, form).model.geometries {
             let reach = form.reach(&model.family_bounds(geometry.object));
             let is_in = geometry.bounds.min.cmpge(reach.min) & geometry.bounds.max.cmple(reach.max);

@@ -10,8 +10,10 @@ use crate::{
         animation,
         keys::{FAR_M, Key, Kind, Table},
         node::{Data, Node},
+        parse::parameter,
     },
-    lens::{Rendering, color::parse_hex, nearest::did_you_mean},
+    lens::{Rendering, color::parse_hex, effect::problem_with, nearest::did_you_mean},
+    shader::effect::ParameterKind,
 };
 
 /// One thing that is wrong: `[lens.0] shape.radius: must be ...`.
@@ -223,6 +225,10 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
             None => node.text().is_some_and(|t| !t.is_empty()),
         },
         Kind::Test => matches!(node.data, Data::Table(_)),
+        Kind::Shares | Kind::Colors => {
+            let of = if matches!(kind, Kind::Shares) { ParameterKind::Shares } else { ParameterKind::Colors };
+            parameter(node).is_some_and(|value| problem_with(&of, &value).is_none())
+        }
         Kind::Tests => node.list().is_some_and(|l| !l.is_empty()),
         Kind::Rendering => return wrong_rendering(kind, node),
         Kind::WordOrTable(words, _) => match &node.data {
@@ -243,6 +249,7 @@ fn wrong_rendering(kind: &Kind, node: &Node) -> Option<String> {
     match (node.text(), node.list()) {
         (Some(word), _) if Rendering::of_word(word).is_some() => None,
         (None, Some(_)) => None,
+        _ if matches!(node.data, Data::Table(_)) => None,
         (text, _) => {
             let hint = text.map_or_else(String::new, |word| did_you_mean(word, Rendering::words()));
             Some(format!("must be {}, is {}{hint}", kind.describe(), node.quoted()))

@@ -1,7 +1,7 @@
 //! `content` of a lens in scene files: its keys, and what it derives, read and written.
 
 use crate::{
-    city::derived::{Derive, FORMS, Form, Height, LIFT_M, WORDS},
+    city::derived::{Derive, FORMS, Form, HEIGHT_RANGE_M, Height, LIFT_M, LIFT_RANGE_M, WORDS},
     figure::scene_file::{
         check::{Checker, Fields},
         keys::{CLASSES, Kind, Table, key},
@@ -35,7 +35,7 @@ pub const CONTENT: Table = Table {
             Kind::Word { now: WORDS, later: &[] },
             "as they are",
             "",
-            "What objects are shown as: their bounding `box`, the `prism` over their footprint, their convex `hull`, themselves pressed `flat` to the ground, themselves at another `height`. Terrain, roads, water and land use stay as they are below. See Contents.",
+            "What objects are shown as: their bounding `box`, the `prism` over their footprint, their convex `hull`, their block model of level of detail 1 (`lod1`; where there is none the prism), themselves pressed `flat` to the ground, the same lit as they stood (`top`), themselves at another `height`. Terrain, roads, water and land use stay as they are below. See Contents.",
             "\"box\"",
         ),
         key(
@@ -56,15 +56,15 @@ pub const CONTENT: Table = Table {
         ),
         key(
             "lift",
-            Kind::Number { min: 0.0, max: 1000.0 },
+            Kind::Number { min: LIFT_RANGE_M[0], max: LIFT_RANGE_M[1] },
             "0.05",
             "m",
-            "For `derive = \"flat\"`: how far above the lowest point of an object it lies.",
+            "For `derive = \"flat\"` and `\"top\"`: how far above the lowest point of an object it lies.",
             "0.2",
         ),
         key(
             "height",
-            Kind::Number { min: 0.001, max: 100_000.0 },
+            Kind::Number { min: HEIGHT_RANGE_M[0], max: HEIGHT_RANGE_M[1] },
             "what `factor` says",
             "m",
             "For `derive = \"height\"`: from the lowest point of an object to its highest. Either this or `factor`.",
@@ -130,10 +130,15 @@ pub(super) fn derived(own: &Fields, checker: &mut Checker) -> Option<Derive> {
         let message = "has a meaning only with derive; for example derive = \"box\"";
         checker.note(&own.place, "parts", own.line("parts"), message);
     }
-    for (option, of) in FORMS.iter().flat_map(|of| of.options.iter().map(move |option| (*option, of.word))) {
+    let mut options: Vec<&str> = FORMS.iter().flat_map(|of| of.options).copied().collect();
+    options.dedup();
+    for option in options {
+        let of: Vec<String> =
+            FORMS.iter().filter(|of| of.options.contains(&option)).map(|of| format!("\"{}\"", of.word)).collect();
+        let has = row.is_some_and(|row| row.options.contains(&option));
         // A word that is none has its own message.
-        if own.given(option) && word != Some(of) && (row.is_some() || word.is_none()) {
-            let message = format!("has a meaning only with derive = \"{of}\"");
+        if own.given(option) && !has && (row.is_some() || word.is_none()) {
+            let message = format!("has a meaning only with derive = {}", of.join(" or "));
             checker.note(&own.place, option, own.line(option), message);
         }
     }
@@ -146,6 +151,7 @@ pub(super) fn derived(own: &Fields, checker: &mut Checker) -> Option<Derive> {
         "prism" => Form::Prism,
         "hull" => Form::Hull,
         "flat" => Form::Flat { lift_m: own.number("lift").unwrap_or(LIFT_M) },
+        "top" => Form::Top { lift_m: own.number("lift").unwrap_or(LIFT_M) },
         _ => {
             let message = match (own.given("height"), own.given("factor")) {
                 (true, true) => Some("height and factor are both given; either says how high"),
@@ -164,10 +170,12 @@ pub(super) fn derive_keys(how: &Derive) -> Vec<String> {
     let mut keys = vec![format!("derive = {}", quoted(how.form.row().word))];
     match how.form {
         Form::Box { oriented: true } => keys.push("oriented = true".to_owned()),
-        Form::Flat { lift_m } if lift_m != LIFT_M => keys.push(format!("lift = {}", number(lift_m))),
+        Form::Flat { lift_m } | Form::Top { lift_m } if lift_m != LIFT_M => {
+            keys.push(format!("lift = {}", number(lift_m)))
+        }
         Form::Height(Height::Metres(metres)) => keys.push(format!("height = {}", number(metres))),
         Form::Height(Height::Factor(factor)) => keys.push(format!("factor = {}", number(factor))),
-        Form::Box { .. } | Form::Prism | Form::Hull | Form::Flat { .. } => {}
+        Form::Box { .. } | Form::Prism | Form::Hull | Form::Lod1 | Form::Flat { .. } | Form::Top { .. } => {}
     }
     if how.parts {
         keys.push("parts = true".to_owned());

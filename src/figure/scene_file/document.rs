@@ -7,13 +7,14 @@ use serde_json::{Map, Value, json};
 use crate::{
     figure::scene_file::{
         keys::{self, CLASSES, Key, Kind, LATER_TABLES, TABLES, Table},
+        rendering::{AS, BY_EFFECTS, WORDS},
         shape_keys::SHAPES,
         test_keys::TESTS,
     },
     lens::{effect::LOD, rendering::ROWS},
     shader::{
         Blend,
-        effect::{EffectKind, ParameterKind, effects as all_effects},
+        effect::{EffectKind, MAX_RAMP, ParameterDefinition, ParameterKind, effects as all_effects},
     },
 };
 
@@ -34,14 +35,7 @@ pub fn reference() -> String {
         let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
         rows(&mut out, table.keys);
     }
-    out += "## Renderings\n\nWords for `render` of an occlusion lens.\n\n| word | what one sees | made of |\n| --- | --- | --- |\n";
-    for row in ROWS {
-        let form = row.form.map(|form| format!("`content.derive = \"{}\"`", form.row().word));
-        let effects = (row.effects)().into_iter().map(|used| format!("`{}`", used.effect));
-        let made: Vec<String> = form.into_iter().chain(effects).collect();
-        let _ = writeln!(out, "| `{}` | {} ({}) | {} |", row.word, row.doc, row.spec, made.join(", "));
-    }
-    out.push('\n');
+    renderings(&mut out);
     out += "## Effects\n\n`effects` is a list; each element is a name (`\"sepia\"`) or a table of `effect` (the name), `class` and parameters.\n\
             `class` says which part of the sight line it acts on: `\"inside\"` the lens (default), in `\"front\"` of it, `\"behind\"` it,\n\
             or the `\"rest\"`, where the sight line misses the lens. It has a meaning only in a lens.\n\n";
@@ -56,6 +50,28 @@ pub fn reference() -> String {
     out += "`lod` may stand among them too: `{ effect = \"lod\", lod = \"1.2\" }`, with a `class`, is `content = { lod = \"1.2\" }` of its\nlens, and written as that.\n\n";
     let _ = writeln!(out, "Tables of later versions: {}.", words(LATER_TABLES));
     out
+}
+
+fn renderings(out: &mut String) {
+    *out += "## Renderings\n\nWords for `render` of an occlusion lens: `render = \"x-ray\"`, or with parameters \
+             `render = { as = \"x-ray\", exponent = 0.8 }`.\n\n\
+             | word | what one sees | made of | parameters, with what they take and are without being given |\n| --- | --- | --- | --- |\n";
+    for row in ROWS {
+        let form = row.form.map(|form| (form.make)(&Default::default()));
+        let form = form.map(|form| format!("`content.derive = \"{}\"`", form.row().word));
+        let effects = row.effects.iter().map(|(effect, _)| format!("`{effect}`"));
+        let made: Vec<String> = form.into_iter().chain(effects).collect();
+        let of = |p: ParameterDefinition| {
+            let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
+            format!("`{}`: {}{unit}, {}", p.name, p.kind.describe(), p.default_text())
+        };
+        let parameters: Vec<String> = row.parameters().into_iter().map(of).collect();
+        let (made, parameters) = (made.join(", "), cell(&parameters.join("; ")));
+        let _ = writeln!(out, "| `{}` | {} ({}) | {made} | {parameters} |", row.word, row.doc, row.spec);
+    }
+    *out += "\n`render` may be a list of cases, tables of a word and its parameters, or of `effects`, and of which occluders it holds. \
+             Each occluder is drawn by the first case that holds; one of which none holds stays as it is.\n\n";
+    rows(out, BY_EFFECTS.keys);
 }
 
 /// The effects and their parameters, for `docs/effects.md`.
@@ -129,7 +145,7 @@ pub fn schema() -> Value {
     schema.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
     schema.insert("title".into(), "Veduta scene".into());
     // Shapes may hold shapes.
-    schema.insert("$defs".into(), json!({ "shape": shapes(), "test": tests() }));
+    schema.insert("$defs".into(), json!({ "shape": shapes(), "test": tests(), "case": cases() }));
     Value::Object(schema)
 }
 
@@ -137,6 +153,8 @@ pub fn schema() -> Value {
 const SHAPE: &str = "#/$defs/shape";
 /// Where it describes detection tests.
 const TEST: &str = "#/$defs/test";
+/// Where it describes cases of renderings.
+const CASE: &str = "#/$defs/case";
 
 /// The schema as the file `docs/scene.schema.json` holds it.
 pub fn schema_text() -> String {
@@ -226,11 +244,21 @@ fn of_kind(kind: &Kind) -> Value {
             let name = json!({ "type": "string", "minLength": 1 });
             json!({ "anyOf": [name, { "type": "array", "items": name, "minItems": 1 }] })
         }
+        Kind::Shares => {
+            let share = json!({ "type": "number", "minimum": 0, "maximum": 1 });
+            json!({ "type": "array", "items": share, "minItems": 1, "maxItems": MAX_RAMP })
+        }
+        Kind::Colors => {
+            let color = json!({ "type": "string", "pattern": "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$" });
+            json!({ "type": "array", "items": color, "minItems": 1, "maxItems": MAX_RAMP })
+        }
         Kind::Test => json!({ "$ref": TEST }),
         Kind::Tests => json!({ "type": "array", "items": { "$ref": TEST }, "minItems": 1 }),
         Kind::Rendering => {
             let words: Vec<&str> = ROWS.iter().map(|row| row.word).collect();
-            json!({ "anyOf": [{ "enum": words }, of_kind(&Kind::Effects)] })
+            let one = json!({ "$ref": CASE });
+            let cases = json!({ "type": "array", "items": one, "minItems": 1 });
+            json!({ "anyOf": [{ "enum": words }, one, cases, of_kind(&Kind::Effects)] })
         }
         Kind::WordOrTable(words, table) => json!({ "anyOf": [{ "enum": words }, object(table)] }),
     }
@@ -244,20 +272,28 @@ fn color() -> Value {
 }
 
 fn shapes() -> Value {
-    by_kind(SHAPES)
+    by(SHAPES, "kind")
+}
+
+fn cases() -> Value {
+    let mut all = by(&WORDS, AS);
+    if let Some(list) = all["oneOf"].as_array_mut() {
+        list.push(Value::Object(object(&BY_EFFECTS)));
+    }
+    all
 }
 
 fn tests() -> Value {
-    by_kind(TESTS)
+    by(TESTS, "kind")
 }
 
-/// One of some tables, by their key `kind` where they have one.
-fn by_kind(tables: &[Table]) -> Value {
+/// One of some tables, by this key where they have it.
+fn by(tables: &[Table], key: &str) -> Value {
     let each: Vec<Value> = tables
         .iter()
         .map(|table| {
             let mut map = object(table);
-            if let Some(kind) = map.get_mut("properties").and_then(|p| p.get_mut("kind")) {
+            if let Some(kind) = map.get_mut("properties").and_then(|p| p.get_mut(key)) {
                 *kind = json!({ "const": table.name });
             }
             Value::Object(map)
@@ -324,6 +360,8 @@ fn of_parameter(kind: &ParameterKind) -> Value {
         ParameterKind::Texts => {
             json!({ "type": "array", "items": { "type": "string" }, "minItems": 1, "maxItems": 256 })
         }
+        ParameterKind::Shares => of_kind(&Kind::Shares),
+        ParameterKind::Colors => of_kind(&Kind::Colors),
     }
 }
 

@@ -214,7 +214,7 @@ pub(super) fn written(focus: &Focus, options: &Options) -> Option<String> {
         Focus::Thematic(choice) => choice_written("thematic", choice),
         Focus::Combined { how, parts } => format!("{{ kind = \"{}\", shapes = {} }}", how.word(), all(parts)),
         // A lens writes them as keys of its own.
-        Focus::Occluders(_) => return None,
+        Focus::Occluders(_) | Focus::Case { .. } => return None,
         Focus::Enclosed { parts, whole, types } => {
             let mut out = format!("{{ kind = \"enclosed\", shapes = {}", all(parts));
             if *whole {

@@ -9,6 +9,7 @@ use crate::{
     },
     lens::{Rendering, ramp},
     scene::{Transparency, transparency::MOST_PEELED},
+    shader::effect::ParameterKind,
 };
 
 /// What a key takes.
@@ -83,6 +84,10 @@ pub enum Kind {
     Numbers,
     /// A text, or texts.
     Names,
+    /// Shares, 0 to 1, at equal steps of a ramp.
+    Shares,
+    /// Colours `"#rrggbb"` at equal steps of a ramp.
+    Colors,
     /// A detection test: a table of [`super::test_keys::TESTS`].
     Test,
     /// Detection tests.
@@ -477,8 +482,16 @@ pub const LENS: Table = Table {
             Kind::Rendering,
             "\"discard\"",
             "",
-            "Of an occlusion lens: how occluders are drawn; see Renderings. Or a list of effects, as `effects` takes them. `effects` come after.",
-            "\"discard\"",
+            "Of an occlusion lens: how occluders are drawn, by a word, a word with parameters, or by cases; see Renderings. Or a list of effects, as `effects` takes them. `effects` come after.",
+            "{ as = \"x-ray\", exponent = 0.8 }",
+        ),
+        key(
+            "poi_effects",
+            Kind::Effects,
+            "none",
+            "",
+            "Of an occlusion lens: effects on the points of interest that are city objects, parts included, after all else.",
+            "[{ effect = \"overlay\", color = \"#e08a3c\", opacity = 0.4 }]",
         ),
         key(
             "content",
@@ -689,10 +702,15 @@ impl Kind {
             Self::Effects => "a list of effects: names or tables { effect = NAME, ... }".into(),
             Self::Names => "a text that is not empty, or a list of at least one".into(),
             Self::Test => "a table { kind = ..., ... }, { any = [...] }, { all = [...] } or { not = ... }".into(),
+            Self::Shares => ParameterKind::Shares.describe(),
+            Self::Colors => ParameterKind::Colors.describe(),
             Self::Tests => "a list of at least one test".into(),
             Self::Rendering => {
                 let words: Vec<String> = Rendering::words().map(|word| format!("\"{word}\"")).collect();
-                format!("{}, or a list of effects", words.join(" or "))
+                format!(
+                    "{}, a table {{ as = ..., ... }}, a list of such cases, or a list of effects",
+                    words.join(" or ")
+                )
             }
             Self::WordOrTable(words, table) => {
                 let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();

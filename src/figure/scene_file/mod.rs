@@ -13,6 +13,7 @@ pub(in crate::figure) mod node;
 mod occlusion;
 mod parse;
 mod paths;
+mod rendering;
 mod set;
 pub mod shape_keys;
 pub mod sprite;

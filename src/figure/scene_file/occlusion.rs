@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// The keys that only occlusion lenses have.
-pub(super) const OWN: [&str; 7] = ["poi", "test", "force", "forbid", "margin", "fade", "render"];
+pub(super) const OWN: [&str; 8] = ["poi", "test", "force", "forbid", "margin", "fade", "render", "poi_effects"];
 
 /// Whom a lens looks for.
 pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Occluders {

@@ -20,7 +20,7 @@ use crate::{
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
         Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, Parameter,
-        Placement, Rendering, effect,
+        Placement, effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
@@ -147,6 +147,7 @@ impl<'o> SceneReader<'o> {
 
     fn style(&mut self, fields: &Fields) -> Style {
         let (effects, _) = self.effects(fields, "effects", false);
+        self.without_sights(fields, "effects", &effects);
         let base = if fields.text("base") == Some("clay") { BaseStyle::Clay } else { BaseStyle::Natural };
         let background = fields.color("background").map_or(Background::Sky, Background::Color);
         let technique = fields.text("technique").and_then(Technique::of_word).unwrap_or_default();
@@ -194,6 +195,9 @@ impl<'o> SceneReader<'o> {
         let mut shapes = self.shapes(fields, !is_occlusion);
         let (effects, of_effects) = self.effects(fields, "effects", true);
         let render = is_occlusion.then(|| self.rendering(fields, &effects));
+        if !is_occlusion {
+            self.without_sights(fields, "effects", &effects);
+        }
         if is_occlusion {
             shapes = self.occluded(fields, shapes);
         } else {
@@ -266,34 +270,6 @@ impl<'o> SceneReader<'o> {
         let (checker, options, lacks_data) = (&mut self.checker, self.options, &mut self.lacks_data);
         let of = occlusion::read(&mut Reader { checker, options, lacks_data }, fields);
         occlusion::areas(of, shapes)
-    }
-
-    /// How an occlusion lens with these effects draws occluders.
-    fn rendering(&mut self, fields: &Fields, effects: &[EffectUse]) -> Rendering {
-        let render = match fields.node("render") {
-            None => Rendering::default(),
-            Some(node) => match node.text().and_then(Rendering::of_word) {
-                Some(render) => render,
-                None => {
-                    let (own, lod) = self.effects(fields, "render", true);
-                    if let Some((_, line)) = lod {
-                        let message = "\"lod\" shows something else in a lens; it stands in effects";
-                        self.checker.note(&fields.place, "render", line, message);
-                    }
-                    Rendering::of_effects(own)
-                }
-            },
-        };
-        let scene_style = |used: &&EffectUse| find_effect(&used.effect).is_some_and(|e| e.kind == EffectKind::Scene);
-        if let (Some(first), Some(second)) = (render.effects.iter().find(scene_style), effects.iter().find(scene_style))
-        {
-            let message = format!(
-                "\"{}\" is a second scene style beside \"{}\" of render; only one is possible",
-                second.effect, first.effect
-            );
-            self.checker.note(&fields.place, "effects", fields.line("effects"), message);
-        }
-        render
     }
 
     /// The content of a lens; `of_effects`: that of its effect `lod`, and the line of it.
@@ -453,8 +429,18 @@ impl<'o> SceneReader<'o> {
         Some(shape.into())
     }
 
+    /// What other readers work with.
+    pub(super) fn parts(&mut self) -> (&mut Checker, &'o Options, &mut bool) {
+        (&mut self.checker, self.options, &mut self.lacks_data)
+    }
+
     /// The effects of a lens or of the context that a key lists, and what its effect `lod` shows, with the line of that.
-    fn effects(&mut self, fields: &Fields, key: &str, in_lens: bool) -> (Vec<EffectUse>, Option<(Content, u32)>) {
+    pub(super) fn effects(
+        &mut self,
+        fields: &Fields,
+        key: &str,
+        in_lens: bool,
+    ) -> (Vec<EffectUse>, Option<(Content, u32)>) {
         let mut effects = Vec::new();
         let mut content: Option<(Content, u32)> = None;
         let mut scene_style: Option<String> = None;
@@ -686,7 +672,7 @@ fn built_shape(kind: &str, fields: &Fields) -> Option<Shape> {
     })
 }
 
-fn parameter(node: &Node) -> Option<Parameter> {
+pub(super) fn parameter(node: &Node) -> Option<Parameter> {
     match &node.data {
         Data::Boolean(b) => Some(Parameter::Boolean(*b)),
         Data::Integer(_) | Data::Number(_) => node.number().map(Parameter::Number),

@@ -9,6 +9,7 @@ use crate::{
         Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
         Occluders, OwnEye, Parameter, Placement, Rendering,
         chosen::Choice,
+        rendering::{Case, ROWS, When},
         sprite::{Format, Mapping},
     },
     scene::{
@@ -17,7 +18,10 @@ use crate::{
         animation::{Change, ChangeKey, Numbers},
         transparency::{MOST_PEELED, SLOTS},
     },
-    shader::{Blend, Clip},
+    shader::{
+        Blend, Clip, EffectKind,
+        effect::{ParameterDefinition, ParameterKind, find},
+    },
     view::{
         Camera, Projection,
         path::{CameraKey, Speed},
@@ -340,7 +344,7 @@ fn every_mistake_in_a_lens_is_named() {
         ("content = { files = [\"builtin:moon\"] }", "content.files.0: there is no \"builtin:moon\""),
         (
             "content = { derive = \"cube\" }",
-            "content.derive: must be \"box\" or \"prism\" or \"hull\" or \"flat\" or \"height\", is \"cube\"",
+            "content.derive: must be \"box\" or \"prism\" or \"hull\" or \"flat\" or \"top\" or \"lod1\" or \"height\", is \"cube\"",
         ),
         (
             "content = { derive = \"prism\", oriented = true }",
@@ -636,6 +640,8 @@ fn derives() -> impl Strategy<Value = Derive> {
         Just(Form::Prism),
         Just(Form::Hull),
         prop_oneof![Just(0.05), 0.0..1000.0f64].prop_map(|lift_m| Form::Flat { lift_m }),
+        (0.0..1000.0f64).prop_map(|lift_m| Form::Top { lift_m }),
+        Just(Form::Lod1),
         (1e-3..1e5f64).prop_map(|metres| Form::Height(Height::Metres(metres))),
         (1e-3..1e3f64).prop_map(|factor| Form::Height(Height::Factor(factor))),
     ];
@@ -705,6 +711,26 @@ fn occluded() -> impl Strategy<Value = (Occluders, Rendering, bool)> {
             (used.effect == "sepia").then(|| Rendering::of_effects(vec![used]))
         }),
     ];
+    let row = prop::sample::select(ROWS.iter().collect::<Vec<_>>());
+    let types = prop::collection::vec("[a-z\"]{1,5}", 0..3);
+    let case = (row, 0.0..1e6f64, types, prop::option::of("[a-z\"]{1,5}")).prop_map(move |(row, nearer, types, id)| {
+        let of = id.map(|id| Choice { ids: vec![id], ..Choice::default() });
+        // Each number that the word takes, somewhere in its range.
+        let number = |p: ParameterDefinition| match p.kind {
+            ParameterKind::Number { min, max } => Some((p.name, Parameter::Number(min + (max - min) * (nearer / 1e6)))),
+            _ => None,
+        };
+        let given = row.parameters().into_iter().filter_map(number).collect();
+        Case { when: When { nearer_m: Some(nearer), types, of }, ..Case::of_row(row, given) }
+    });
+    let cases = prop::collection::vec(case, 1..4).prop_map(|mut cases| {
+        // Scene styles of cases would meet those of `effects`.
+        cases.retain(|case| {
+            case.effects.iter().all(|used| find(&used.effect).is_some_and(|e| e.kind != EffectKind::Scene))
+        });
+        if cases.is_empty() { Rendering::default() } else { Rendering::of_cases(cases) }
+    });
+    let render = prop_oneof![2 => render, 1 => cases];
     let names = prop::collection::vec("[a-z\"]{1,5}", 1..3);
     let over_time = (0.0..=1000.0f64, 0.0..=60.0f64).prop_map(|(metres, fade_s)| (Margin { metres }, Pace { fade_s }));
     let over_time = prop_oneof![Just(Default::default()), over_time];

@@ -11,11 +11,11 @@ use crate::{
         occlusion,
         parse::{lens_color, rotation},
         paths::Options,
-        sprite,
+        rendering, sprite,
     },
     geom::{Shape, shape::FlatFigure},
     lens::{
-        BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement, Rendering,
+        BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
         color::{parse_hex, to_hex},
     },
     scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency},
@@ -142,13 +142,8 @@ impl Toml {
             [one] => self.key("shape", &focus(one, options)),
             many => self.key("shapes", &list(many.iter().map(|one| focus(one, options)))),
         }
-        if let Some(render) = lens.render.as_ref().filter(|render| **render != Rendering::default()) {
-            let written = match render.word {
-                Some(word) => quoted(word),
-                None => list(render.effects.iter().map(effect)),
-            };
-            self.key("render", &written);
-        }
+        let drawn = lens.render.iter().flat_map(rendering::written);
+        drawn.for_each(|(key, value)| self.key(key, &value));
         self.key_if(!lens.effects.is_empty(), "effects", &list(lens.effects.iter().map(effect)));
         if let Some(own) = &lens.content {
             self.key("content", &content(own, options));
@@ -376,7 +371,7 @@ fn content(content: &Content, options: &Options) -> String {
     if keys.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", keys.join(", ")) }
 }
 
-fn effect(used: &EffectUse) -> String {
+pub(super) fn effect(used: &EffectUse) -> String {
     let class = class_word(used.class);
     if class.is_none() && used.blend.is_none() && used.weight.is_none() && used.parameters.is_empty() {
         return quoted(&used.effect);
@@ -394,14 +389,18 @@ fn effect(used: &EffectUse) -> String {
     for (key, value) in &used.parameters {
         let bare = !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-');
         let key = if bare { key.clone() } else { quoted(key) };
-        let value = match value {
-            Parameter::Boolean(b) => b.to_string(),
-            Parameter::Number(n) => number(*n),
-            Parameter::Text(t) => quoted(t),
-            Parameter::Numbers(n) => list(n.iter().map(|n| number(*n))),
-            Parameter::Texts(t) => list(t.iter().map(|t| quoted(t))),
-        };
-        let _ = write!(out, ", {key} = {value}");
+        let _ = write!(out, ", {key} = {}", parameter_written(value));
     }
     out + " }"
+}
+
+/// The value of a parameter.
+pub(super) fn parameter_written(value: &Parameter) -> String {
+    match value {
+        Parameter::Boolean(b) => b.to_string(),
+        Parameter::Number(n) => number(*n),
+        Parameter::Text(t) => quoted(t),
+        Parameter::Numbers(n) => list(n.iter().map(|n| number(*n))),
+        Parameter::Texts(t) => list(t.iter().map(|t| quoted(t))),
+    }
 }

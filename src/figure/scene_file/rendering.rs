@@ -1,0 +1,376 @@
+//! `render` and `poi_effects` of an occlusion lens in scene files: words with parameters, effects, and cases; read and written.
+
+use std::sync::LazyLock;
+
+use crate::{
+    figure::scene_file::{
+        check::{Fields, Place},
+        focus::{self, Reader},
+        keys::{FAR_M, Key, Kind, Table, key},
+        node::{Data, Node},
+        parse::{SceneReader, parameter},
+        test_keys::CHOICE,
+        write::{effect, list, number, parameter_written, quoted},
+    },
+    lens::{
+        EffectUse, Rendering,
+        nearest::did_you_mean,
+        rendering::{Case, Given, ROWS, Row, When},
+    },
+    shader::effect::{EffectKind, ParameterDefinition, ParameterKind, PerObject, find as find_effect},
+};
+
+/// The key that says which word it is.
+pub(super) const AS: &str = "as";
+
+const NEARER: Key = key(
+    "nearer",
+    Kind::Number { min: 0.0, max: FAR_M },
+    "at any distance",
+    "m",
+    "Only occluders whose box (edges along x, y, z, parts included) comes nearer to the eye than this.",
+    "150.0",
+);
+const TYPES: Key = key(
+    "types",
+    Kind::Texts,
+    "any",
+    "",
+    "Only occluders of these types, as their files call them.",
+    "[\"SolitaryVegetationObject\"]",
+);
+const WHERE: Key = key(
+    "where",
+    Kind::Table(&CHOICE),
+    "all",
+    "",
+    "Only occluders that are chosen, or parts of them.",
+    "{ attribute = \"measuredHeight\", min = 20.0 }",
+);
+
+/// A case by effects.
+pub(super) const BY_EFFECTS: Table = Table {
+    name: "effects",
+    doc: "Effects of your choice, in place of a word.",
+    keys: &[
+        key("effects", Kind::Effects, "", "", "As `effects` of a lens. At most one scene style.", "[\"sepia\"]"),
+        NEARER,
+        TYPES,
+        WHERE,
+    ],
+};
+
+/// The words, each with `as`, its parameters and its conditions.
+pub(super) static WORDS: LazyLock<Vec<Table>> = LazyLock::new(|| ROWS.iter().map(table_of).collect());
+
+// Tables of keys are static, as all others are; there are as many as words, made once.
+fn table_of(row: &'static Row) -> Table {
+    let quoted_word: &'static str = Box::leak(quoted(row.word).into());
+    let mut keys = vec![key(AS, Kind::Text, "", "", "Which word.", quoted_word)];
+    keys.extend(row.parameters().into_iter().map(key_of));
+    keys.extend([NEARER, TYPES, WHERE]);
+    Table { name: row.word, doc: row.doc, keys: Vec::leak(keys) }
+}
+
+fn key_of(of: ParameterDefinition) -> Key {
+    let leak = |text: String| -> &'static str { Box::leak(text.into()) };
+    let kind = match &of.kind {
+        ParameterKind::Boolean => Kind::Boolean,
+        ParameterKind::Number { min, max } => Kind::Number { min: *min, max: *max },
+        ParameterKind::Word(words) => {
+            let words: Vec<&'static str> = words.iter().map(|word| leak(word.clone())).collect();
+            Kind::Word { now: Vec::leak(words), later: &[] }
+        }
+        ParameterKind::Color => Kind::Color,
+        ParameterKind::Text | ParameterKind::Texts => Kind::Names,
+        ParameterKind::Numbers => Kind::Numbers,
+        ParameterKind::Shares => Kind::Shares,
+        ParameterKind::Colors => Kind::Colors,
+    };
+    let default = leak(of.default_text());
+    let (name, unit, doc) = (leak(of.name), leak(of.unit), leak(of.doc));
+    Key { name, kind, default, unit, doc, example: default }
+}
+
+/// Whether the elements of `render` are cases, not effects.
+fn has_cases(nodes: &[Node]) -> bool {
+    let is_case = |node: &Node| {
+        let Data::Table(entries) = &node.data else { return false };
+        let has = |name: &str| entries.iter().any(|(key, ..)| key == name);
+        !has("effect") && [AS, "effects", NEARER.name, TYPES.name, WHERE.name].into_iter().any(has)
+    };
+    nodes.iter().any(is_case)
+}
+
+impl SceneReader<'_> {
+    /// How an occlusion lens with these effects draws occluders and points of interest.
+    pub(super) fn rendering(&mut self, fields: &Fields, effects: &[EffectUse]) -> Rendering {
+        let cases = match fields.node("render") {
+            None => Rendering::default().cases,
+            Some(node) => match (&node.data, node.text().and_then(Row::of_word)) {
+                (_, Some(row)) => vec![Case::of_row(row, Given::new())],
+                (Data::Table(_), _) => self.case(node, &fields.place.within("render", node.line)).into_iter().collect(),
+                (Data::List(nodes), _) if has_cases(nodes) => {
+                    let mut cases = Vec::new();
+                    for (i, node) in nodes.iter().enumerate() {
+                        cases.extend(self.case(node, &fields.place.within(&format!("render.{i}"), node.line)));
+                    }
+                    cases
+                }
+                _ => vec![Case::of_effects(self.own_effects(fields, "render"))],
+            },
+        };
+        let always = cases.iter().position(|case| case.when.is_always());
+        if let Some(first) = always.filter(|first| first + 1 < cases.len()) {
+            let message = "holds of all occluders: none is left for the cases after it; it would be right as the last";
+            self.checker.note(&fields.place, &format!("render.{first}"), fields.line("render"), message);
+        }
+        let scene_style = |used: &&EffectUse| find_effect(&used.effect).is_some_and(|e| e.kind == EffectKind::Scene);
+        let first = cases.iter().find_map(|case| case.effects.iter().find(scene_style));
+        if let (Some(first), Some(second)) = (first, effects.iter().find(scene_style)) {
+            let message = format!(
+                "\"{}\" is a second scene style beside \"{}\" of render; only one is possible",
+                second.effect, first.effect
+            );
+            self.checker.note(&fields.place, "effects", fields.line("effects"), message);
+        }
+        let poi_effects = self.own_effects(fields, "poi_effects");
+        self.without_sights(fields, "poi_effects", &poi_effects);
+        if !fields.given("poi") {
+            for case in &cases {
+                self.without_sights(fields, "render", &case.effects);
+            }
+            self.without_sights(fields, "effects", effects);
+            if !poi_effects.is_empty() {
+                let message = "has a meaning only with poi: they are drawn so";
+                self.checker.note(&fields.place, "poi_effects", fields.line("poi_effects"), message);
+            }
+        }
+        Rendering { cases, poi_effects }
+    }
+
+    /// Notes effects that need points of interest where there are none.
+    pub(super) fn without_sights(&mut self, fields: &Fields, key: &str, effects: &[EffectUse]) {
+        let needs = |used: &&EffectUse| find_effect(&used.effect).is_some_and(|e| e.objects == Some(PerObject::Sights));
+        if let Some(used) = effects.iter().find(needs) {
+            let message = format!(
+                "\"{}\" cuts what stands before a point of interest; a lens of kind = \"occlusion\" with poi would be right",
+                used.effect
+            );
+            self.checker.note(&fields.place, key, fields.line(key), message);
+        }
+    }
+
+    /// Effects that stand for themselves: what a lens shows stands in its `effects`.
+    fn own_effects(&mut self, fields: &Fields, key: &str) -> Vec<EffectUse> {
+        let (effects, lod) = self.effects(fields, key, true);
+        if let Some((_, line)) = lod {
+            let message = "\"lod\" shows something else in a lens; it stands in effects";
+            self.checker.note(&fields.place, key, line, message);
+        }
+        effects
+    }
+
+    /// A case; `None` where it says nothing (and that is noted).
+    fn case(&mut self, node: &Node, place: &Place) -> Option<Case> {
+        let Data::Table(entries) = &node.data else {
+            let message = format!(
+                "must be a case, a table {{ as = ..., ... }} or {{ effects = [...], ... }}, is {}",
+                node.quoted()
+            );
+            self.checker.note(place, "", node.line, message);
+            return None;
+        };
+        let find = |name: &str| entries.iter().find(|(key, ..)| key == name).map(|(.., node)| node);
+        let row = match (find(AS), find("effects")) {
+            (None, Some(_)) => None,
+            (None, None) => {
+                let hint = entries.iter().map(|(name, ..)| did_you_mean(name, [AS, "effects"].into_iter()));
+                let hint = hint.into_iter().find(|hint| !hint.is_empty()).unwrap_or_default();
+                let message = format!("is missing: a word, one of {}; or effects = [...]{hint}", words());
+                self.checker.note(place, AS, node.line, message);
+                return None;
+            }
+            (Some(word), _) => match word.text().and_then(Row::of_word) {
+                Some(row) => Some(row),
+                None => {
+                    let hint = did_you_mean(word.text().unwrap_or_default(), Rendering::words());
+                    let message = format!("must be one of {}, is {}{hint}", words(), word.quoted());
+                    self.checker.note(place, AS, word.line, message);
+                    return None;
+                }
+            },
+        };
+        let table = row.and_then(|row| WORDS.iter().find(|table| table.name == row.word)).unwrap_or(&BY_EFFECTS);
+        let fields = self.checker.fields(node, table, &[], place.clone());
+        let mut case = match row {
+            None => Case::of_effects(self.own_effects(&fields, "effects")),
+            Some(row) => {
+                let names = row.parameters().into_iter().map(|parameter| parameter.name);
+                let given = names.filter_map(|name| Some((parameter(fields.node(&name)?)?, name)));
+                Case::of_row(row, given.map(|(value, name)| (name, value)).collect())
+            }
+        };
+        let chosen = fields.node(WHERE.name).map(|node| {
+            let place = fields.place.within(WHERE.name, node.line);
+            self.checker.fields(node, &CHOICE, &[], place)
+        });
+        let (checker, options, lacks_data) = self.parts();
+        let mut reader = Reader { checker, options, lacks_data };
+        let texts =
+            |node: &Node| node.list().into_iter().flatten().filter_map(|n| n.text().map(str::to_owned)).collect();
+        case.when = When {
+            nearer_m: fields.number(NEARER.name),
+            types: fields.node(TYPES.name).map(texts).unwrap_or_default(),
+            of: chosen.and_then(|own| reader.choice(&own)),
+        };
+        if fields.given(TYPES.name) && case.when.types.is_empty() {
+            self.checker.note(&fields.place, TYPES.name, fields.line(TYPES.name), "must name at least one type");
+        }
+        Some(case)
+    }
+}
+
+fn words() -> String {
+    Rendering::words().collect::<Vec<_>>().join(", ")
+}
+
+/// The keys of a rendering that is not the default.
+pub(super) fn written(render: &Rendering) -> Vec<(&'static str, String)> {
+    let mut keys = Vec::new();
+    if render.cases != Rendering::default().cases {
+        let value = match &render.cases[..] {
+            [one] => case_written(one),
+            several => list(several.iter().map(case_table)),
+        };
+        keys.push(("render", value));
+    }
+    if !render.poi_effects.is_empty() {
+        keys.push(("poi_effects", list(render.poi_effects.iter().map(effect))));
+    }
+    keys
+}
+
+/// A case alone, as short as it may be.
+fn case_written(case: &Case) -> String {
+    match case.word {
+        Some(word) if case.when.is_always() && case.given.is_empty() => quoted(word),
+        None if case.when.is_always() => list(case.effects.iter().map(effect)),
+        _ => case_table(case),
+    }
+}
+
+fn case_table(case: &Case) -> String {
+    let mut keys = match case.word {
+        Some(word) => vec![format!("{AS} = {}", quoted(word))],
+        None => vec![format!("effects = {}", list(case.effects.iter().map(effect)))],
+    };
+    keys.extend(case.given.iter().map(|(name, value)| format!("{name} = {}", parameter_written(value))));
+    let When { nearer_m, types, of } = &case.when;
+    keys.extend(nearer_m.map(|nearer| format!("{} = {}", NEARER.name, number(nearer))));
+    if !types.is_empty() {
+        keys.push(format!("{} = {}", TYPES.name, list(types.iter().map(|name| quoted(name)))));
+    }
+    keys.extend(of.iter().map(|choice| format!("{} = {}", WHERE.name, focus::choice_written("", choice))));
+    format!("{{ {} }}", keys.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        city::derived::{Form, Height},
+        figure::scene_file::{Options, parse, to_toml},
+        lens::{Parameter, chosen::Choice},
+        scene::Scene,
+    };
+
+    fn scene(lines: &str) -> Result<Scene, String> {
+        let text = format!(
+            "veduta = 1\n[[poi]]\nname = \"a\"\nobject = \"a\"\n[[lens]]\nkind = \"occlusion\"\npoi = \"a\"\n{lines}\n"
+        );
+        parse(&text, "s", &Options::for_command_line()).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn words_take_parameters() {
+        let of = |lines: &str| scene(lines).unwrap().lenses.remove(0).render.unwrap();
+        let render = of("render = { as = \"transparent-box\", opacity = 0.3, oriented = true }");
+        let [case] = &render.cases[..] else { panic!("{render:?}") };
+        assert_eq!((case.word, case.effects[0].number("opacity")), (Some("transparent-box"), Some(0.3)));
+        let form = |case: &Case| case.content.as_ref().and_then(|c| c.derive).map(|d| d.form);
+        assert_eq!(form(case), Some(Form::Box { oriented: true }));
+        assert_eq!(
+            form(&of("render = { as = \"low\", height = 7 }").cases[0]),
+            Some(Form::Height(Height::Metres(7.0)))
+        );
+        let plain = of("render = { as = \"flatten\" }");
+        assert!(plain.is_plain() && plain == Rendering::of_word("flatten").unwrap());
+        let colored = of("render = { as = \"x-ray-color\", color = \"#ff0000\", exponent = 2 }");
+        let [ray, clay] = &colored.cases[0].effects[..] else { panic!("two effects") };
+        assert_eq!((ray.number("exponent"), clay.color("color")), (Some(2.0), Some([1.0, 0.0, 0.0])));
+        assert_eq!((ray.color("color"), clay.number("exponent")), (None, None), "each has its own");
+    }
+
+    #[test]
+    fn cases_are_read_and_written() {
+        let lines = "render = [{ as = \"flatten\", nearer = 150, lift = 0.1 }, { effects = [\"sepia\"], types = [\"Bridge\"], where = { attribute = \"h\", min = 3 } }, { as = \"x-ray\" }]\npoi_effects = [\"gooch\"]";
+        let read = scene(lines).unwrap();
+        let render = read.lenses[0].render.as_ref().unwrap();
+        let [near, chosen, rest] = &render.cases[..] else { panic!("three cases") };
+        assert_eq!(
+            (near.when.nearer_m, rest.when.is_always(), near.given.get("lift")),
+            (Some(150.0), true, Some(&Parameter::Number(0.1)))
+        );
+        let choice = Choice { attribute: Some("h".into()), min: Some(3.0), ..Choice::default() };
+        assert_eq!(chosen.when, When { nearer_m: None, types: vec!["Bridge".into()], of: Some(choice) });
+        assert_eq!((chosen.word, &*chosen.effects[0].effect, &*render.poi_effects[0].effect), (None, "sepia", "gooch"));
+        for lines in [
+            lines,
+            "render = { as = \"low\", height = 4.5, nearer = 9 }",
+            "render = { effects = [\"sepia\", \"invert\"], nearer = 9 }",
+            "render = [\"sepia\"]",
+            "render = \"x-ray\"\npoi_effects = [{ effect = \"overlay\", opacity = 0.5 }]",
+        ] {
+            let read = scene(lines).unwrap();
+            let text = to_toml(&read);
+            let again = parse(&text, "s", &Options::for_command_line()).unwrap();
+            assert_eq!(again, read, "{text}");
+        }
+    }
+
+    #[test]
+    fn mistakes_are_named_with_what_would_be_right() {
+        for (lines, expected) in [
+            ("render = { as = \"flaten\" }", "[lens.0] render.as: must be one of discard, "),
+            ("render = { as = \"flaten\" }", "did you mean \"flatten\"?"),
+            ("render = { nearer = 3 }", "[lens.0] render.as: is missing: a word, one of discard, "),
+            ("render = { as = \"x-ray\", opacity = 0.3 }", "[lens.0] render.opacity: unknown key"),
+            (
+                "render = { as = \"transparent\", opacity = 1.5 }",
+                "[lens.0] render.opacity: must be a number 0 to 1, is 1.5",
+            ),
+            ("render = { as = \"low\", height = 0 }", "[lens.0] render.height: must be a number 0.001 to 100000, is 0"),
+            ("render = { as = \"hull\", color = \"red\" }", "[lens.0] render.color: must be "),
+            (
+                "render = [{ as = \"low\", nearer = 9 }, \"hull\"]",
+                "[lens.0] render.1: must be a case, a table { as = ..., ... } or { effects = [...], ... }, is \"hull\"",
+            ),
+            ("render = [{ as = \"low\" }, { as = \"hull\" }]", "[lens.0] render.0: holds of all occluders"),
+            ("render = [{ as = \"low\", nearer = -1 }]", "[lens.0] render.0.nearer: must be "),
+            ("render = [{ as = \"low\", types = [] }]", "[lens.0] render.0.types: must name at least one type"),
+            ("render = [{ as = \"low\", where = {} }]", "[lens.0] render.0.where.ids: is missing"),
+            (
+                "render = [{ effects = [\"sepai\"], nearer = 1 }]",
+                "[lens.0] render.0.effects.0: there is no effect \"sepai\"; did you mean \"sepia\"?",
+            ),
+            (
+                "poi_effects = [{ effect = \"lod\", lod = 1 }]",
+                "[lens.0] poi_effects: \"lod\" shows something else in a lens",
+            ),
+        ] {
+            let message = scene(lines).unwrap_err();
+            assert!(message.contains(expected), "{lines}: {message}");
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The lenses that a picture is made with: an occlusion lens that draws its occluders in several ways, or what they hide, stands for
+//! several lenses with one way each.
+
+use std::borrow::Cow;
+
+use crate::{
+    lens::{Class, Focus, Lens, LensBody, Rendering, chosen::Choice, rendering::When},
+    scene::{PoiPlace, Scene},
+};
+
+/// A scene whose lenses draw in one way each.
+#[derive(Clone, Debug)]
+pub struct Drawn<'a> {
+    /// With such lenses.
+    pub scene: Cow<'a, Scene>,
+    /// Of each of them the lens of the scene that it stands for, ascending; `None`: each for itself.
+    pub owners: Option<Vec<u32>>,
+    wholes: Vec<u32>,
+}
+
+impl Drawn<'_> {
+    /// The drawn lens that has all of the area of a lens of the scene.
+    pub fn whole(&self, lens: u32) -> u32 {
+        self.wholes.get(lens as usize).copied().unwrap_or(lens)
+    }
+
+    /// The lens of the scene that one of the drawn lenses stands for.
+    pub fn owner(&self, lens: u32) -> u32 {
+        self.owners.as_ref().map_or(lens, |owners| owners[lens as usize])
+    }
+}
+
+impl Scene {
+    /// The scene as it is drawn. Of an occlusion lens with several cases there is a lens for each of them, of the occluders that it
+    /// holds of, then one of all occluders, with what acts beside them, then one of the points of interest.
+    pub fn drawn(&self) -> Drawn<'_> {
+        let is_plain = |lens: &Lens| lens.render.as_ref().is_none_or(Rendering::is_plain);
+        if self.lenses.iter().all(is_plain) {
+            return Drawn { scene: Cow::Borrowed(self), owners: None, wholes: Vec::new() };
+        }
+        let (mut lenses, mut owners, mut wholes) = (Vec::new(), Vec::new(), Vec::new());
+        for (lens, owner) in self.lenses.iter().zip(0..) {
+            match &lens.render {
+                Some(render) if !render.is_plain() => {
+                    let parts = self.parts(lens, render);
+                    let whole = parts.iter().position(|part| part.shapes == lens.shapes).unwrap_or(0);
+                    wholes.push((lenses.len() + whole) as u32);
+                    lenses.extend(parts);
+                }
+                _ => {
+                    wholes.push(lenses.len() as u32);
+                    lenses.push(lens.clone());
+                }
+            }
+            owners.resize(lenses.len(), owner);
+        }
+        Drawn { scene: Cow::Owned(Self { lenses, ..self.clone() }), owners: Some(owners), wholes }
+    }
+
+    fn parts(&self, lens: &Lens, render: &Rendering) -> Vec<Lens> {
+        let mut parts = Vec::new();
+        let mut rest = lens.clone();
+        rest.render = None;
+        match &render.cases[..] {
+            [one] if one.when.is_always() => rest.render = Some(Rendering::of_cases(vec![one.clone()])),
+            cases => {
+                let (inside, beside) = lens.effects.iter().cloned().partition(|used| used.class == Class::Inside);
+                rest.effects = beside;
+                let when: Vec<When> = cases.iter().map(|case| case.when.clone()).collect();
+                for (i, case) in cases.iter().enumerate() {
+                    let mut part = lens.clone();
+                    part.render = Some(Rendering::of_cases(vec![case.clone()]));
+                    part.shapes.iter_mut().for_each(|shape| narrow(shape, &when[..=i]));
+                    part.effects = Vec::clone(&inside);
+                    (part.content, part.body, part.section) = (None, LensBody::None, None);
+                    parts.push(part);
+                }
+            }
+        }
+        parts.push(rest);
+        let pois = lens.occluders().map_or(&[][..], |of| &of.pois);
+        let shown = pois.iter().filter_map(|name| self.pois.iter().find(|poi| poi.name == *name));
+        let ids: Vec<String> = shown
+            .filter_map(|poi| match &poi.place {
+                PoiPlace::Object(id) => Some(id.clone()),
+                PoiPlace::At(_) => None,
+            })
+            .collect();
+        if !render.poi_effects.is_empty() && !ids.is_empty() {
+            let choice = Choice { ids, ..Choice::default() };
+            parts.push(Lens {
+                shapes: vec![Focus::Thematic(choice)],
+                render: None,
+                effects: render.poi_effects.clone(),
+                content: None,
+                body: LensBody::None,
+                sprite: None,
+                border: None,
+                section: None,
+                ..lens.clone()
+            });
+        }
+        parts
+    }
+}
+
+/// Leaves of the occluders of a focus area those that the last case holds of, and none before.
+fn narrow(shape: &mut Focus, when: &[When]) {
+    match shape {
+        Focus::Occluders(of) => *shape = Focus::Case { of: of.clone(), when: when.to_vec() },
+        Focus::Combined { parts, .. } => parts.first_mut().into_iter().for_each(|part| narrow(part, when)),
+        _ => {}
+    }
+}
