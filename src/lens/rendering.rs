@@ -171,7 +171,7 @@ pub const ROWS: &[Row] = &[
     Row {
         word: "x-ray-ramp",
         spec: "O3, O4",
-        doc: "The same in colours of a ramp, from faces that look at the eye to those seen edge on; opacity has one too.",
+        doc: "As `x-ray`, in colours of a ramp, from faces that look at the eye to those seen edge on; opacity has one too.",
         effects: &[("x-ray", &[]), ("x-ray-tint", &[])],
         form: None,
     },
@@ -192,7 +192,7 @@ pub const ROWS: &[Row] = &[
     Row {
         word: "flatten-top",
         spec: "O3, O5",
-        doc: "The same in the light in which they stood, as a picture from straight above.",
+        doc: "As `flatten`, in the light in which they stood: a picture from straight above.",
         effects: &[],
         form: TOP,
     },

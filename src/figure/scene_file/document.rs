@@ -145,7 +145,10 @@ pub fn schema() -> Value {
     schema.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
     schema.insert("title".into(), "Veduta scene".into());
     // Shapes may hold shapes.
-    schema.insert("$defs".into(), json!({ "shape": shapes(), "test": tests(), "case": cases() }));
+    schema.insert(
+        "$defs".into(),
+        json!({ "shape": shapes(), "test": tests(), "case": cases(), "effect": { "anyOf": effects() } }),
+    );
     Value::Object(schema)
 }
 
@@ -153,6 +156,8 @@ pub fn schema() -> Value {
 const SHAPE: &str = "#/$defs/shape";
 /// Where it describes detection tests.
 const TEST: &str = "#/$defs/test";
+/// Where it describes uses of effects.
+const EFFECT: &str = "#/$defs/effect";
 /// Where it describes cases of renderings.
 const CASE: &str = "#/$defs/case";
 
@@ -239,7 +244,7 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Shape => json!({ "$ref": SHAPE }),
         Kind::Shapes => json!({ "type": "array", "items": { "$ref": SHAPE }, "minItems": 1 }),
         Kind::Numbers => json!({ "type": ["number", "array"] }),
-        Kind::Effects => json!({ "type": "array", "items": { "anyOf": effects() } }),
+        Kind::Effects => json!({ "type": "array", "items": { "$ref": EFFECT } }),
         Kind::Names => {
             let name = json!({ "type": "string", "minLength": 1 });
             json!({ "anyOf": [name, { "type": "array", "items": name, "minItems": 1 }] })
