@@ -185,7 +185,7 @@ impl SceneReader<'_> {
         let row = match (find(AS), find("effects")) {
             (None, Some(_)) => None,
             (None, None) => {
-                let hint = entries.iter().map(|(name, ..)| did_you_mean(name, [AS, "effects"].into_iter()));
+                let hint = entries.iter().map(|(name, ..)| did_you_mean(name, [AS, "effects"]));
                 let hint = hint.into_iter().find(|hint| !hint.is_empty()).unwrap_or_default();
                 let message = format!("is missing: a word, one of {}; or effects = [...]{hint}", words());
                 self.checker.note(place, AS, node.line, message);
