@@ -265,8 +265,7 @@ fn chance_is_right_in_the_mean() {
     const SAMPLES: u32 = 64;
     for backend in BOTH {
         let mut mean = |method, samples: u32| {
-            let drawn =
-                studio.render(&by(method, &scene), &Request { samples, backend, ..base.clone() }).expect("a picture");
+            let drawn = studio.render(&by(method, &scene), &Request { samples, backend, ..base }).expect("a picture");
             drawn.rgba
         };
         let exact = mean(Transparency::Exact, SAMPLES);

@@ -80,8 +80,8 @@ impl Classes {
     fn step(&mut self, weights: Vec<f32>, raw: impl Fn(u32) -> bool, frame: u32) -> Result<usize, Failed> {
         let most = (1.0 / FPS / FADE_S) as f32 + 1e-5;
         let is_first = self.weights.is_empty();
-        for unit in 0..weights.len() {
-            let (now, raw) = (weights[unit], raw(unit as u32));
+        for (unit, &now) in weights.iter().enumerate() {
+            let raw = raw(unit as u32);
             if is_first {
                 (self.is_in[unit], self.was_raw[unit]) = (now == 1.0, raw);
                 if now != f32::from(u8::from(raw)) {

@@ -150,6 +150,7 @@ pub(super) fn derived(own: &Fields, checker: &mut Checker) -> Option<Derive> {
         "box" => Form::Box { oriented: own.boolean("oriented").unwrap_or(false) },
         "prism" => Form::Prism,
         "hull" => Form::Hull,
+        "lod1" => Form::Lod1,
         "flat" => Form::Flat { lift_m: own.number("lift").unwrap_or(LIFT_M) },
         "top" => Form::Top { lift_m: own.number("lift").unwrap_or(LIFT_M) },
         _ => {
