@@ -9,7 +9,7 @@ use veduta::{
     lens::{Class, EffectUse, Lens, Parameter},
     render::{
         frame::Backend,
-        picture::{Picture, Request, Studio},
+        picture::{Aovs, Picture, Request, Studio},
     },
     scene::Scene,
     view::{Camera, View},
@@ -281,4 +281,23 @@ fn who_draws_no_lines_has_no_edges() {
     draw(&mut studio, vec![with("l", around(30.0), vec![drawing("wireframe")])]);
     let moved = draw(&mut studio, vec![with("l", around(25.0), vec![drawing("wireframe")])]);
     assert_eq!(moved.statistics.pipelines.compiled, 0);
+}
+
+#[test]
+fn a_lens_out_of_view_leaves_no_lines_behind() {
+    let mut studio = cube();
+    let at = |x: f64| {
+        let shape = Shape::Sphere { center: AT + DVec3::new(x, 0.0, 0.0), radius: 6.0 };
+        scene(camera(), vec![Lens { effects: vec![drawing("wireframe")], ..lens("l", vec![shape], "eraser") }])
+    };
+    for backend in [Backend::Uber, Backend::Specialised] {
+        let aovs = Aovs::default();
+        let request = Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: false, backend };
+        let mut drawn = |scene: &Scene| studio.render(scene, &request).expect("a picture").rgba;
+        let plain = drawn(&scene(camera(), vec![]));
+        // Never in view before, then in view, and gone again.
+        assert_eq!(drawn(&at(-900.0)), plain, "{backend:?}");
+        assert_ne!(drawn(&at(0.0)), plain, "{backend:?}");
+        assert_eq!(drawn(&at(-900.0)), plain, "{backend:?}");
+    }
 }

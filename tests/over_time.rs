@@ -90,12 +90,7 @@ fn a_fade_is_at_each_pixel_one_of_two_pictures_whatever_is_drawn() {
                     others += usize::from(now.rgba[i] != expected.rgba[i]);
                     changed[usize::from(is_there)] += usize::from(plain.rgba[i] != wholly.rgba[i]);
                 }
-                // A known bug: on the uber back end lines of what fades are not yet as on the specialised one.
-                let is_known = backend == Backend::Uber && ["box", "edges"].contains(&render);
-                assert!(
-                    is_known || others == 0,
-                    "{render}, {backend:?}: {others} pixels of another colour at {weight}"
-                );
+                assert_eq!(others, 0, "{render}, {backend:?}: pixels of another colour at {weight}");
                 assert!(changed[1] > 20 && (weight == 1.0) == (changed[0] == 0), "{render}: {changed:?} at {weight}");
             }
         }

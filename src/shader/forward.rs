@@ -2,8 +2,8 @@
 //! what shades a pixel, what tells which fragments are translucent, and what draws the city.
 
 use crate::shader::{
-    CHANCE, FORWARD, FRAGMENT, GEOMETRY, Module, NOTHING_CUT, TAIL, TRANSLUCENT, carried, effect::EffectDefinition,
-    hiding, lens_files, names_of, plan::Program, specialised, uber, wgsl,
+    CHANCE, DITHER, FORWARD, FRAGMENT, GEOMETRY, Module, NOTHING_CUT, TAIL, TRANSLUCENT, carried,
+    effect::EffectDefinition, hiding, lens_files, names_of, plan::Program, specialised, uber, wgsl,
 };
 
 /// What becomes of a fragment.
@@ -69,8 +69,12 @@ impl Forward {
         let parameters = |count: u32| format!("parameters: array<vec4f, {count}>;");
         let first = first.replace(&parameters(few), &parameters(most));
         let of_hiding = lens_files(&self.hidden).into_iter().filter(|file| !shading.contains(file));
-        let files: Vec<_> =
+        let mut files: Vec<_> =
             of_hiding.chain([FRAGMENT, super::city_file(&self.hidden), GEOMETRY, TRANSLUCENT]).collect();
+        // A fragment knows the threshold of its pixel.
+        if !shading.contains(&DITHER) && !files.contains(&DITHER) {
+            files.push(DITHER);
+        }
         let hidden = hiding::source(&self.hidden, handlers, lenses, hiding::Eye::Layers) + NOTHING_CUT;
         let mut other = of_files(&files)
             .replace("//@handlers\n", &hidden)

@@ -175,7 +175,8 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     text.push_str(LINE_KINDS);
 }
 
-/// `by.kind` says what an invoker is to lines: as `render::operations` writes it.
+/// `by.kind` says what an invoker is to lines: as `render::operations` writes it. No round ends early: what pixels that go different
+/// ways leave behind then, Mesa 22.3 gets wrong.
 const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, other: Fragment, classes: Classes) -> vec4f {
     var color = vec3f(0.0);
     var opacity = 0.0;
@@ -185,22 +186,21 @@ const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, o
     for (var i = range.x; i < range.y; i++) {
         let by = invoker(i);
         let share = line_share(by, fragment, classes);
-        if share <= 0.0 {
-            continue;
-        }
-        if by.kind == POST {
+        let is_meant = share > 0.0;
+        if is_meant && by.kind == POST {
             STYLED
         }
-        if (by.kind == SCENE || by.kind == SCENE_WITH_LINES) && drawing.kind == SCENE_WITH_LINES {
+        if is_meant && (by.kind == SCENE || by.kind == SCENE_WITH_LINES) && drawing.kind == SCENE_WITH_LINES {
             opacity = select(opacity * (1.0 - share), 0.0, by.border == 0u);
         }
-        if by.kind == HIDE && hides(fragment, by) && hides(other, by) {
-            is_hidden = true;
-        }
+        is_hidden |= is_meant && by.kind == HIDE && hides(fragment, by) && hides(other, by);
         let draws = by.kind == SCENE_WITH_LINES || (by.kind == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
-        if draws && i == range.x + step {
+        if is_meant && draws && i == range.x + step {
             color = line_color(by);
             opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u) * share;
+        }
+        if i + 1u == range.y {
+            break;
         }
     }
     GONE

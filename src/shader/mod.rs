@@ -428,7 +428,6 @@ fn lens_files(program: &Program) -> Vec<(&'static str, &'static str)> {
         (parts.side_sprites, SOLID_SPRITE),
         (parts.combinations, COMBINED),
         (parts.combined_sprites, COMBINED_SPRITE),
-        (parts.borders, DITHER),
         (parts.borders, BORDER),
         (parts.by_ray && parts.side_sprites, SHELL_SIDES),
         (parts.by_ray && parts.sprites, SHELL_SPRITE),

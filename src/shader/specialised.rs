@@ -296,7 +296,9 @@ impl Writer<'_> {
             text.push_str("    return start;\n}\n\n");
             return text;
         }
-        text.push_str(&laid_over(self.plan.lines, if self.plan.veils { WITH_VEIL } else { "" }));
+        text.push_str("    var paint = start;\n");
+        let over = [(self.plan.lines, WITH_LINES), (self.plan.veils, WITH_VEIL)];
+        over.iter().filter(|(is_drawn, _)| *is_drawn).for_each(|(_, laid)| text.push_str(laid));
         for (i, PlanBody { kind, parameters }) in bodies {
             let (color, width) = (format!("parameters[{parameters}]"), format!("parameters[{}].x", parameters + 1));
             match kind {
@@ -358,12 +360,6 @@ pub(super) fn kernel(filter: &EffectDefinition) -> String {
     )
 }
 
-/// What stands over the shaded picture and below the bodies of lenses: lines of the city, and translucent layers over these.
-pub(super) fn laid_over(lines: bool, veiled: &str) -> String {
-    let start = if lines { "with_lines(start, pixel)" } else { "start" };
-    format!("    var paint = {start};\n{veiled}")
-}
-
 /// Where masks are written.
 pub(super) const MASKS: &str = "// Layers, per 32 lenses: inside, in front, behind.\n\
     @group(2) @binding(4) var class_masks: texture_storage_2d_array<r32uint, write>;\n";
@@ -372,6 +368,8 @@ pub(super) const MASKS: &str = "// Layers, per 32 lenses: inside, in front, behi
 pub(super) const ONLY_SHOWN: &str = "    // This may run before the depth test that chooses between surface and background.\n    \
     if (textureLoad(scene_depth, pixel, 0) > 0.0) != (point.surface != NO_SURFACE) {\n        return;\n    }\n";
 
+/// What stands over the shaded picture and below the bodies of lenses: lines of the city, and translucent layers over these.
+const WITH_LINES: &str = "    paint = with_lines(paint, pixel);\n";
 const WITH_VEIL: &str = "    paint = with_veil(paint, pixel);\n";
 
 /// What shows a layer has that one's classes.

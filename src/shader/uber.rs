@@ -8,7 +8,7 @@ use crate::shader::{
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
     plan::{BodyKind, Program, Uber},
-    specialised::{MASKS, NOT_THROUGH_LAYERS, ONLY_SHOWN, laid_over},
+    specialised::{MASKS, NOT_THROUGH_LAYERS, ONLY_SHOWN},
 };
 
 /// Side of the tiles that have lists of invokers, pixels.
@@ -57,7 +57,9 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     }
     let outlines = if parts.bodies { outlines_of(&uber.bodies) } else { NO_OUTLINES.to_owned() };
     let plain = "    var paint = start;\n";
-    text.push_str(&outlines.replace(plain, &laid_over(uber.lines, if uber.veils { WITH_VEIL } else { "" })));
+    let over = [(uber.lines, WITH_LINES), (uber.veils, WITH_VEIL)];
+    let over: String = over.iter().filter(|(is_drawn, _)| *is_drawn).map(|(_, laid)| *laid).collect();
+    text.push_str(&outlines.replace(plain, &(plain.to_owned() + &over)));
     text.push_str("fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n");
     if uber.masks && !uber.tests.is_empty() {
         text.push_str(ONLY_SHOWN);
@@ -78,7 +80,8 @@ pub(super) fn opacity(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     text + "    return opacity;\n}\n"
 }
 
-/// Where nothing is seen through in a frame, the layers are those of another.
+/// Where nothing is drawn in lines or seen through in a frame, lines and layers are those of another.
+const WITH_LINES: &str = "    if table.ranges.z < table.ranges.w {\n        paint = with_lines(paint, pixel);\n    }\n";
 const WITH_VEIL: &str = "    if table.tiles.w != 0u {\n        paint = with_veil(paint, pixel);\n    }\n";
 
 /// Which classes a place has, and which invokers run there.
