@@ -91,7 +91,9 @@ fn a_fade_is_at_each_pixel_one_of_two_pictures_whatever_is_drawn() {
                     changed[usize::from(is_there)] += usize::from(plain.rgba[i] != wholly.rgba[i]);
                 }
                 assert_eq!(others, 0, "{render}, {backend:?}: pixels of another colour at {weight}");
-                assert!(changed[1] > 20 && (weight == 1.0) == (changed[0] == 0), "{render}: {changed:?} at {weight}");
+                // What a screen door takes away are the pixels that come first.
+                let is_done = weight == 1.0 || (render == "dither" && weight > 0.7);
+                assert!(changed[1] > 20 && is_done == (changed[0] == 0), "{render}: {changed:?} at {weight}");
             }
         }
     }

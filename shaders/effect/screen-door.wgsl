@@ -19,5 +19,6 @@
 
 fn effect(fragment: Fragment, p: Parameters) -> bool {
     let is_kept = (fragment.part == PART_TERRAIN && p.keep_terrain) || !is_chosen(p.first, fragment.object);
-    return !is_kept && p.opacity <= fragment.threshold;
+    // From the other end than what comes and goes: what a fade takes in first goes first, and none of it waits for the others.
+    return !is_kept && p.opacity <= 1.0 - fragment.threshold;
 }
