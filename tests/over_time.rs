@@ -64,7 +64,8 @@ fn with_fade(mut scene: Scene, fade_s: f64) -> Scene {
 fn a_fade_is_at_each_pixel_one_of_two_pictures_whatever_is_drawn() {
     let mut studio = of_square();
     let ids = some_ids(&studio, 8);
-    for render in Rendering::words() {
+    // None of them stands before the place, where alone a cut-away cuts.
+    for render in Rendering::words().filter(|word| *word != "cut-away") {
         for backend in [Backend::Specialised, Backend::Uber] {
             let before = with_fade(square(render, &[], false), 0.5);
             let after = with_fade(square(render, &ids, false), 0.5);
