@@ -121,16 +121,23 @@ fn the_order_in_which_the_city_is_drawn_does_not_matter_to_slots() {
     let mut all = panes(14, &mut random);
     all[6].x = all[5].x;
     let mut studio = studio_of(&all);
-    let scenes = [by(k_buffer(4), &unlike(14)), by(peel(6), &unlike(14))];
+    let scenes = [k_buffer(4), k_buffer(16), peel(6)].map(|method| by(method, &unlike(14)));
     let first = scenes.each_ref().map(|scene| veil(&mut studio, scene, Backend::Specialised, SIZE));
-    for _ in 0..20 {
+    // In the file, and on the card.
+    for order in 0..20 {
+        studio.renderer.shuffled = Some(order);
         for i in (1..all.len()).rev() {
             all.swap(i, random.below(i as u64 + 1) as usize);
         }
         set_city(&mut studio, &all);
         for (scene, first) in scenes.iter().zip(&first) {
             let found = veil(&mut studio, scene, Backend::Specialised, SIZE);
-            assert_eq!(*first, found, "{:?}: {all:?}", scene.style.transparency);
+            // Which layers the last one of a k-buffer merges is the same too, but their sum is rounded after each of ten.
+            let merges = scene.style.transparency == k_buffer(4);
+            let allowed = if merges { 3.0 * 10.0 * 2_f64.powi(-24) } else { 0.0 };
+            let first: Vec<[f64; 4]> = first.iter().map(|v| v.map(f64::from)).collect();
+            let error = largest_difference(&found, &first);
+            assert!(error <= allowed, "{:?}: {error:e} {all:?}", scene.style.transparency);
         }
     }
 }

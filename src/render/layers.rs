@@ -11,13 +11,11 @@
 //! How much memory the lists take is bounded: what does not fit is drawn in bands, halved until each fits. How many notes there
 //! are is read back before they are sorted, so nothing is ever left out in silence: what a single pixel has too much is counted.
 
-use std::{hash::BuildHasher as _, ops::Range};
+use std::ops::Range;
 
 use crate::{
     gpu::{Gpu, GpuError},
     render::{
-        city::{Chunk, CityBuffers, draws_of},
-        contents::DrawnSection,
         cut::Cut,
         eye::PictureTile,
         frame::{FrameInput, Recorder, color_attachment, read_depth, scissor},
@@ -345,46 +343,19 @@ impl Renderer {
         scissor(&mut pass, band);
         pass.set_bind_group(0, &view, &[]);
         pass.set_bind_group(2, &groups.lenses, &[]);
-        let frustum = input.view.frustum(1.0);
         let early = self.gpu.tests_depth_early();
-        let mut counted = (0, 0);
-        let mut sections = self.drawn_sections(Some(draw.cut));
-        if self.shuffled.is_some_and(|by| by % 2 == 1) {
-            sections.reverse();
-        }
-        for drawn in sections {
-            let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, Some(draw.cut), &input.view));
-            let seen = CityBuffers::visible(shown, &frustum, input.view.camera.eye);
-            let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
-            let DrawnSection { city, section, image, content, offset, layer, .. } = drawn;
-            let parts = Cut::parts(Some(draw.cut), &input.view, &chunks, content.is_some());
-            let Some((mut reached, _)) = parts.into_iter().find(|(_, is_reached)| *is_reached) else { continue };
-            // What is opaque is there already, so the order is free: neighbours become one draw.
-            reached.sort_unstable_by_key(|chunk| chunk.range.start);
-            let key = draw.keys.noting_key(section.kind.into(), city.buffers.smooth, early);
-            pass.set_pipeline(self.pipelines.get(&key));
-            pass.set_bind_group(1, &groups.cut_city, &[offset; 2]);
-            if let Some(image) = image {
-                pass.set_bind_group(3, image, &[]);
-            }
-            pass.set_vertex_buffer(0, section.vertices.slice(..));
-            if let Some(extra) = &section.extra {
-                pass.set_vertex_buffer(1, extra.slice(..));
-            }
-            let (mut draws, triangles) = draws_of(reached.into_iter());
-            if let Some(by) = self.shuffled {
-                draws = draws.into_iter().flatten().step_by(3).map(|first| first..first + 3).collect();
-                draws.sort_by_key(|draw| rustc_hash::FxBuildHasher.hash_one([draw.start, by]));
-            }
-            pass.set_index_buffer(section.indices.slice(..), wgpu::IndexFormat::Uint32);
-            draws.iter().for_each(|range| pass.draw_indexed(range.clone(), 0, layer..layer + 1));
-            counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
-        }
+        let (draws, triangles) = self.draw_reached(
+            &mut pass,
+            input,
+            draw.cut,
+            |kind, is_smooth| draw.keys.noting_key(kind.into(), is_smooth, early),
+            |pass, offset| pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
+        );
         if let Some(timer) = &recorder.timer {
             timer.end_count(&mut pass, slot);
         }
         drop(pass);
-        recorder.count(counted.0, counted.1);
+        recorder.count(draws, triangles);
         encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let done = std::mem::replace(encoder, self.gpu.device.create_command_encoder(&descriptor));

@@ -141,9 +141,8 @@ pub(super) fn written(lens: &Lens) -> Vec<(&'static str, String)> {
         [one] => keys.push(("poi", quoted(one))),
         many => keys.push(("poi", list(many.iter().map(|name| quoted(name))))),
     }
-    if of.test != Test::default() {
-        keys.push(("test", test_written(&of.test)));
-    }
+    // The default too: `--set` changes a part of it.
+    keys.push(("test", test_written(&of.test)));
     let choice = |choice: &Choice| focus::choice_written("", choice);
     keys.extend(of.force.as_ref().map(|c| ("force", choice(c))));
     keys.extend(of.forbid.as_ref().map(|c| ("forbid", choice(c))));

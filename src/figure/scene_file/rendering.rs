@@ -237,14 +237,12 @@ fn words() -> String {
 
 /// The keys of a rendering that is not the default.
 pub(super) fn written(render: &Rendering) -> Vec<(&'static str, String)> {
-    let mut keys = Vec::new();
-    if render.cases != Rendering::default().cases {
-        let value = match &render.cases[..] {
-            [one] => case_written(one),
-            several => list(several.iter().map(case_table)),
-        };
-        keys.push(("render", value));
-    }
+    // The default too: `--set` changes a part of it.
+    let value = match &render.cases[..] {
+        [one] => case_written(one),
+        several => list(several.iter().map(case_table)),
+    };
+    let mut keys = vec![("render", value)];
     if !render.poi_effects.is_empty() {
         keys.push(("poi_effects", list(render.poi_effects.iter().map(effect))));
     }

@@ -153,14 +153,23 @@ fn within(parent: &mut Value, name: &str, key: &str, rest: &[String], value: Opt
     match parent {
         Value::Table(table) => in_table(table, key, rest, value),
         Value::Array(list) => in_list(list, name, key, rest, value),
-        // An effect without parameters is written as its name.
-        Value::String(effect) if key == "effect" || name == "effects" => {
-            let mut table = Table::from_iter([("effect".to_owned(), Value::String(effect.clone()))]);
+        // What has no parameters is written as its word.
+        Value::String(word) if let Some(own) = key_of_word(name, key) => {
+            let mut table = Table::from_iter([(own.to_owned(), Value::String(word.clone()))]);
             in_table(&mut table, key, rest, value)?;
             *parent = Value::Table(table);
             Ok(())
         }
         other => Err(format!("\"{name}\" is {other}: there is no \"{key}\" in it")),
+    }
+}
+
+/// The key that a word means, where it may stand for a table.
+fn key_of_word(name: &str, key: &str) -> Option<&'static str> {
+    match name {
+        "render" => Some("as"),
+        "transparency" => Some("method"),
+        _ => (key == "effect" || name == "effects").then_some("effect"),
     }
 }
 
@@ -212,6 +221,8 @@ name = "b"
 shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
 "#;
 
+    const PEEL: &str = "style.transparency={method=\"peel\"}";
+
     fn after(assignment: &str) -> Result<Scene, String> {
         let mut scene = parse(SCENE, "s", &Options::for_command_line()).unwrap();
         let command = set(&scene, assignment).map_err(|e| e.to_string())?;
@@ -241,9 +252,37 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
         );
         assert_eq!(after("lens.0.effects.0.amount=0.5").unwrap().lenses[0].effects[0].number("amount"), Some(0.5));
         assert_eq!(after("lens.1.effects.0=sepia").unwrap().lenses[1].effects[0].effect, "sepia");
+        assert_eq!(
+            after("style.transparency=peel").unwrap().style.transparency,
+            after(PEEL).unwrap().style.transparency
+        );
         assert!((after("sun.azimuth_deg=90").unwrap().sun.azimuth - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
         let camera = after("camera.projection=orthographic").unwrap().camera.unwrap();
         assert!(matches!(camera.projection, Projection::Orthographic { height_m } if height_m > 10.0));
+    }
+
+    /// Parts of what the file leaves to its default, and of what it writes as a word alone.
+    #[test]
+    fn parts_of_an_occlusion_lens_are_set_by_themselves() {
+        let scene = |render: &str| {
+            let text = format!(
+                "veduta = 1\n[[poi]]\nname = \"p\"\nat = [1, 2, 3]\n[[lens]]\nname = \"o\"\nkind = \"occlusion\"\npoi = \"p\"\n{render}"
+            );
+            parse(&text, "s", &Options::for_command_line()).unwrap()
+        };
+        for (render, assignment, whole) in [
+            ("", "lens.o.test.coverage=0.05", "test = { kind = \"exact\", coverage = 0.05 }"),
+            ("", "lens.o.render.as=x-ray", "render = { as = \"x-ray\" }"),
+            (
+                "render = \"transparent\"",
+                "lens.o.render.opacity=0.25",
+                "render = { as = \"transparent\", opacity = 0.25 }",
+            ),
+        ] {
+            let mut set_so = scene(render);
+            set(&set_so, assignment).unwrap_or_else(|e| panic!("{assignment}: {e}")).redo(&mut set_so);
+            assert_eq!(set_so.lenses[0], scene(whole).lenses[0], "{assignment}");
+        }
     }
 
     #[test]

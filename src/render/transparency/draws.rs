@@ -1,5 +1,7 @@
 //! The draws of what may be translucent.
 
+use std::hash::BuildHasher as _;
+
 use crate::{
     render::{
         city::{Chunk, CityBuffers, SectionKind, draws_of},
@@ -25,18 +27,15 @@ impl Renderer {
     ) -> (u32, u64) {
         let frustum: Frustum = input.view.frustum(1.0);
         let mut counted = (0, 0);
-        let mut layer = (None, 0);
-        for drawn in self.drawn_sections(Some(cut)) {
-            // Sections of coplanar faces follow each other from the lowest layer of a city up.
-            layer = if drawn.section.kind != SectionKind::Coplanar || layer.0 != Some(drawn.content) {
-                (Some(drawn.content), 0)
-            } else {
-                (layer.0, layer.1 + 1)
-            };
+        let mut sections = self.drawn_sections(Some(cut));
+        if self.shuffled.is_some_and(|by| by % 2 == 1) {
+            sections.reverse();
+        }
+        for drawn in sections {
             let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, Some(cut), &input.view));
             let seen = CityBuffers::visible(shown, &frustum, input.view.camera.eye);
             let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
-            let DrawnSection { city, section, image, content, offset, .. } = drawn;
+            let DrawnSection { city, section, image, content, offset, layer, .. } = drawn;
             let parts = Cut::parts(Some(cut), &input.view, &chunks, content.is_some());
             let Some((mut reached, _)) = parts.into_iter().find(|(_, is_reached)| *is_reached) else { continue };
             // What is opaque is there already, so the order is free: neighbours become one draw.
@@ -50,9 +49,13 @@ impl Renderer {
             if let Some(extra) = &section.extra {
                 pass.set_vertex_buffer(1, extra.slice(..));
             }
-            let (draws, triangles) = draws_of(reached.into_iter());
+            let (mut draws, triangles) = draws_of(reached.into_iter());
+            if let Some(by) = self.shuffled {
+                draws = draws.into_iter().flatten().step_by(3).map(|first| first..first + 3).collect();
+                draws.sort_by_key(|draw| rustc_hash::FxBuildHasher.hash_one([draw.start, by]));
+            }
             pass.set_index_buffer(section.indices.slice(..), wgpu::IndexFormat::Uint32);
-            draws.iter().for_each(|range| pass.draw_indexed(range.clone(), 0, layer.1..layer.1 + 1));
+            draws.iter().for_each(|range| pass.draw_indexed(range.clone(), 0, layer..layer + 1));
             counted = (counted.0 + draws.len() as u32, counted.1 + triangles);
         }
         counted
