@@ -8,6 +8,7 @@
 // side by side. Notes that find no room are counted all the same: the host sees it, and draws what did not fit in narrower bands.
 
 override TEXTURED: bool = false;    // whether the picture has textures
+override ALL: bool = false;         // whether all that is drawn is translucent
 
 // What is in the first words of `heads`; those of the pixels follow.
 const SPILLED: u32 = 0u;            // how many notes their pool had no room for
@@ -34,7 +35,7 @@ fn note_words() -> u32 {
 
 // `plane`: what is noted with the number, of its layer in a plane.
 fn note(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) {
-    if !is_layer(fragment_at(at, depth, code)) {
+    if !ALL && !is_layer(fragment_at(at, depth, code)) {
         return;
     }
     let pixel = vec2u(at);

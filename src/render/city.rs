@@ -38,6 +38,8 @@ pub struct Chunk {
     pub range: Range<u32>,
     /// Box around it, metres.
     pub bounds: Aabb,
+    /// Whether terrain, or what lies flat on it, is among it: with nothing else then.
+    pub has_terrain: bool,
 }
 
 /// One draw: part of a section.
@@ -119,8 +121,15 @@ struct Gathered {
     weld: Weld,
     /// One per vertex, where the section has a texture; its vertices are not shared then.
     texcoords: Vec<[f32; 2]>,
-    /// Box of every tile's run of indices.
-    runs: Vec<(usize, Aabb)>,
+    runs: Vec<Run>,
+}
+
+/// What one tile has among the indices.
+struct Run {
+    /// Where it ends.
+    end: usize,
+    bounds: Aabb,
+    is_terrain: bool,
 }
 
 impl Gathered {
@@ -128,43 +137,52 @@ impl Gathered {
         Self { weld: Weld::new(smooth, provoking), texcoords: Vec::new(), runs: Vec::new() }
     }
 
-    fn close_run(&mut self, bounds: Aabb) {
-        if self.weld.indices.len() > self.runs.last().map_or(0, |r| r.0) {
-            self.runs.push((self.weld.indices.len(), bounds));
+    fn close_run(&mut self, bounds: Aabb, is_terrain: bool) {
+        let end = self.weld.indices.len();
+        if end > self.runs.last().map_or(0, |run| run.end) {
+            self.runs.push(Run { end, bounds, is_terrain });
         }
     }
 
-    /// Cuts the runs into chunks; a run longer than a chunk is cut by triangles.
+    /// Cuts the runs into chunks; a run longer than a chunk is cut by triangles. Terrain shares none with anything else.
     fn chunks(&self) -> Vec<Chunk> {
         let position = |i: u32| {
             let vertex = &self.weld.vertices[i as usize];
             IVec3::from(vertex.origin).as_dvec3() + Vec3::from(vertex.position).as_dvec3()
         };
         let step = CHUNK_TRIANGLES * 3;
+        let chunk = |from: usize, to: usize, bounds: Aabb, has_terrain: bool| Chunk {
+            range: from as u32..to as u32,
+            bounds,
+            has_terrain,
+        };
         let mut chunks: Vec<Chunk> = Vec::new();
-        let (mut start, mut bounds, mut done) = (0, Aabb::EMPTY, 0);
-        for &(end, run_bounds) in &self.runs {
-            if end - done > 2 * step {
-                if done > start {
-                    chunks.push(Chunk { range: start as u32..done as u32, bounds });
-                }
-                for from in (done..end).step_by(step) {
-                    let to = (from + step).min(end);
+        let (mut start, mut bounds, mut done, mut has_terrain) = (0, Aabb::EMPTY, 0, false);
+        for run in &self.runs {
+            let is_long = run.end - done > 2 * step;
+            if done > start && (is_long || run.is_terrain != has_terrain) {
+                chunks.push(chunk(start, done, bounds, has_terrain));
+                (start, bounds) = (done, Aabb::EMPTY);
+            }
+            has_terrain = run.is_terrain;
+            if is_long {
+                for from in (done..run.end).step_by(step) {
+                    let to = (from + step).min(run.end);
                     let bounds = Aabb::from_points(self.weld.indices[from..to].iter().map(|&i| position(i)));
-                    chunks.push(Chunk { range: from as u32..to as u32, bounds });
+                    chunks.push(chunk(from, to, bounds, has_terrain));
                 }
-                (start, bounds) = (end, Aabb::EMPTY);
+                start = run.end;
             } else {
-                bounds = bounds.union(run_bounds);
-                if end - start >= step {
-                    chunks.push(Chunk { range: start as u32..end as u32, bounds });
-                    (start, bounds) = (end, Aabb::EMPTY);
+                bounds = bounds.union(run.bounds);
+                if run.end - start >= step {
+                    chunks.push(chunk(start, run.end, bounds, has_terrain));
+                    (start, bounds) = (run.end, Aabb::EMPTY);
                 }
             }
-            done = end;
+            done = run.end;
         }
         if done > start {
-            chunks.push(Chunk { range: start as u32..done as u32, bounds });
+            chunks.push(chunk(start, done, bounds, has_terrain));
         }
         chunks
     }
@@ -180,21 +198,26 @@ pub(super) fn extent_of(shown: &Shown) -> Aabb {
     shown.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(shown.model.geometries[g as usize].bounds))
 }
 
-/// The shown tiles in Morton order of their centres.
+/// The shown tiles, those of terrain last, in Morton order of their centres.
 pub(super) fn ordered_tiles(shown: &Shown, extent: &Aabb) -> Vec<u32> {
     let model = shown.model;
     let scale = f64::from((1 << 21) - 1) / extent.size().x.max(extent.size().y).max(1.0);
-    let mut tiles: Vec<(u64, u32)> = shown
+    let mut tiles: Vec<(bool, u64, u32)> = shown
         .geometries
         .iter()
         .flat_map(|&g| model.geometries[g as usize].tiles.clone())
         .map(|t| {
             let at = (model.tiles[t as usize].bounds.center() - extent.min) * scale;
-            (morton(at.x.max(0.0) as u32, at.y.max(0.0) as u32), t)
+            (is_terrain(model, t), morton(at.x.max(0.0) as u32, at.y.max(0.0) as u32), t)
         })
         .collect();
     tiles.sort_unstable();
-    tiles.into_iter().map(|(_, t)| t).collect()
+    tiles.into_iter().map(|(.., t)| t).collect()
+}
+
+fn is_terrain(model: &CityModel, tile: u32) -> bool {
+    let geometry = &model.geometries[model.tiles[tile as usize].geometry as usize];
+    model.objects[geometry.object as usize].class.is_ground()
 }
 
 impl CityBuffers {
@@ -221,6 +244,10 @@ impl CityBuffers {
             let tile = &shown.model.tiles[t as usize];
             table.begin_tile();
             gather_tile(shown.model, tile, &apart, &mut table, &mut plain, &mut textured);
+            plain.close_run(tile.bounds, is_terrain(shown.model, t));
+            for gathered in textured.values_mut() {
+                gathered.close_run(tile.bounds, is_terrain(shown.model, t));
+            }
         }
         let mut sections = Vec::new();
         let mut bounds = extent;
@@ -348,10 +375,6 @@ fn gather_tile(
         }
     }
     plain.weld.end_tile();
-    plain.close_run(tile.bounds);
-    for gathered in textured.values_mut() {
-        gathered.close_run(tile.bounds);
-    }
 }
 
 fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered) -> Aabb {
@@ -367,7 +390,7 @@ fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered
             plain.weld.triangle(table.number(NONE, up), corners.map(|position| Corner { position, normal: up }));
         }
         plain.weld.end_tile();
-        plain.close_run(tile.bounds);
+        plain.close_run(tile.bounds, true);
         all = all.union(tile.bounds);
     }
     all
@@ -404,7 +427,7 @@ impl Layer {
         self.gathered.weld.triangle(owner, corners);
     }
 
-    fn end_tile(&mut self, bounds: Aabb) {
+    fn end_tile(&mut self, bounds: Aabb, is_terrain: bool) {
         let Self { gathered, planes, owners, .. } = self;
         gathered.weld.end_tile();
         gathered.weld.rename_tile(|vertex| {
@@ -412,7 +435,7 @@ impl Layer {
             vertex.surface = surface;
             planes.push(plane);
         });
-        gathered.close_run(bounds);
+        gathered.close_run(bounds, is_terrain);
     }
 }
 
@@ -439,7 +462,7 @@ fn gather_layers(shown: &Shown, tiles: &[u32], table: &mut SurfaceTable, kind: (
             let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
             layers[c.layer as usize].triangle(number, (c.group, plane), corners);
         }
-        layers.iter_mut().for_each(|layer| layer.end_tile(tile.bounds));
+        layers.iter_mut().for_each(|layer| layer.end_tile(tile.bounds, is_terrain(model, t)));
     }
     layers
 }

@@ -259,7 +259,7 @@ impl Renderer {
             let chunks = same.map_or_else(
                 || {
                     let city = self.contents.city(own, id).filter(|_| !placement.is_none());
-                    let placed = |c: &Chunk| Chunk { range: c.range.clone(), bounds: placement.boxed(&c.bounds) };
+                    let placed = |c: &Chunk| Chunk { bounds: placement.boxed(&c.bounds), ..c.clone() };
                     let sections = city.into_iter().flat_map(|city| &city.buffers.sections);
                     sections.map(|s| s.chunks.iter().map(placed).collect()).collect()
                 },

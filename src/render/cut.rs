@@ -83,16 +83,18 @@ impl Cuts {
 }
 
 impl Cut {
-    /// Chunks it leaves alone, and those it may reach (`true`): all of a content. Empty parts are left out.
+    /// Chunks it leaves alone, and those it may reach (`true`): all of a content. Those of which it leaves nothing opaque are left
+    /// out, and empty parts.
     pub fn parts<'a>(
         cut: Option<&Self>,
         view: &View,
         chunks: &[&'a Chunk],
         is_content: bool,
     ) -> Vec<(Vec<&'a Chunk>, bool)> {
-        let touches = |chunk: &Chunk| cut.is_some_and(|cut| cut.hiding.touches(&chunk.bounds, view));
+        let touches = |chunk: &Chunk| cut.is_some_and(|cut| cut.hiding.touches(chunk, view));
         let is_reached = |chunk: &&&Chunk| is_content || touches(chunk);
-        let (reached, whole): (Vec<&Chunk>, Vec<&Chunk>) = chunks.iter().partition(is_reached);
+        let (mut reached, whole): (Vec<&Chunk>, Vec<&Chunk>) = chunks.iter().partition(is_reached);
+        reached.retain(|chunk| !cut.is_some_and(|cut| cut.hiding.clears(chunk, view)));
         [(whole, false), (reached, true)].into_iter().filter(|(part, _)| !part.is_empty()).collect()
     }
 

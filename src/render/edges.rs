@@ -13,7 +13,7 @@ use crate::{
     geom::Aabb,
     gpu::{Gpu, GpuError},
     render::{
-        city::{Chunk, CityBuffers, Draw, Shown, corners_of, extent_of, ordered_tiles},
+        city::{CityBuffers, Draw, Shown, corners_of, extent_of, ordered_tiles},
         layout, surfaces,
     },
     view::Frustum,
@@ -94,7 +94,7 @@ pub struct EdgeBuffers {
     /// [`Edge`]s.
     pub instances: wgpu::Buffer,
     /// Runs of instances that are drawn or left out as one.
-    pub chunks: Vec<Chunk>,
+    pub chunks: Vec<(Draw, Aabb)>,
     /// How many edges there are.
     pub count: u32,
     /// Bytes on the card.
@@ -119,7 +119,7 @@ impl EdgeBuffers {
     /// Instances to draw: those of chunks whose box `is_wanted`, neighbours as one.
     pub fn draws(&self, is_wanted: impl Fn(&Aabb) -> bool) -> Vec<Draw> {
         let mut draws: Vec<Draw> = Vec::new();
-        for Chunk { range, bounds } in &self.chunks {
+        for (range, bounds) in &self.chunks {
             if !is_wanted(bounds) {
                 continue;
             }
@@ -177,12 +177,12 @@ impl SurfaceNumbers {
     }
 }
 
-fn chunks(edges: &[Edge]) -> Vec<Chunk> {
+fn chunks(edges: &[Edge]) -> Vec<(Draw, Aabb)> {
     let mut start = 0;
     let chunk = |run: &[Edge]| {
         let range = start..start + run.len() as u32;
         start = range.end;
-        Chunk { range, bounds: run.iter().fold(Aabb::EMPTY, |all, edge| all.union(edge.bounds())) }
+        (range, run.iter().fold(Aabb::EMPTY, |all, edge| all.union(edge.bounds())))
     };
     edges.chunks(CHUNK_EDGES).map(chunk).collect()
 }

@@ -209,7 +209,9 @@ impl Renderer {
                     };
                     keys.extend(sections.iter().map(key));
                 }
-                None => keys.extend(sections.iter().map(|&(kind, own)| layers.noting_key(kind.into(), own, early))),
+                None => keys.extend(sections.iter().flat_map(|&(kind, own)| {
+                    [false, true].map(|all| layers.noting_key(kind.into(), [own, all], early))
+                })),
                 Some(slots) => keys.extend(slots.all(layers, &sections, early)),
             }
         }

@@ -86,6 +86,8 @@ pub enum Key {
         textured: bool,
         /// What is translucent.
         program: Program,
+        /// All is.
+        all: bool,
         /// Whether the depth test can come first.
         early: bool,
     },
@@ -328,14 +330,15 @@ impl Key {
                 ];
                 format!("{}{}", self.module().name(), flags(&list))
             }
-            Self::Layers { section, smooth, flat, textured, .. } => {
+            Self::Layers { section, smooth, flat, textured, all, .. } => {
                 let kind = match section {
                     GeometryKind::Plain => "",
                     GeometryKind::Textured(0) => " of textures",
                     GeometryKind::Textured(_) => " of textures with holes",
                     GeometryKind::Coplanar => " coplanar",
                 };
-                let flags = flags(&[(*textured, "textured"), (*smooth, "smooth"), (*flat, "flat")]);
+                let list = [(*all, "of all"), (*textured, "textured"), (*smooth, "smooth"), (*flat, "flat")];
+                let flags = flags(&list);
                 format!("{}{kind}{flags}", self.module().name())
             }
             Self::Composite { textured, clay, shadows, smooth, shown, sorted, record, tail, .. } => {
@@ -393,9 +396,13 @@ impl Key {
                 ("SECTIONS", flag(*sections)),
                 ("BACKGROUND", f64::from(*behind as u32)),
             ],
-            Self::Layers { section, smooth, flat, textured, .. } => {
-                let mut list =
-                    vec![("SMOOTH", flag(*smooth)), ("FLAT_CITY", flag(*flat)), ("TEXTURED", flag(*textured))];
+            Self::Layers { section, smooth, flat, textured, all, .. } => {
+                let mut list = vec![
+                    ("SMOOTH", flag(*smooth)),
+                    ("FLAT_CITY", flag(*flat)),
+                    ("TEXTURED", flag(*textured)),
+                    ("ALL", flag(*all)),
+                ];
                 if let GeometryKind::Textured(cutoff) = section {
                     list.push(("ALPHA_CUTOFF", f64::from(f32::from_bits(*cutoff))));
                 }

@@ -104,13 +104,14 @@ pub(super) struct LayerKeys {
 
 impl LayerKeys {
     /// The pipeline that notes a section.
-    pub fn noting_key(&self, kind: GeometryKind, is_smooth_city: bool, early: bool) -> Key {
+    pub fn noting_key(&self, kind: GeometryKind, [is_smooth_city, all]: [bool; 2], early: bool) -> Key {
         Key::Layers {
             section: kind,
             smooth: self.smooth,
             flat: self.smooth && !is_smooth_city,
             textured: self.textured,
             program: self.noting.clone(),
+            all,
             early,
         }
     }
@@ -348,7 +349,7 @@ impl Renderer {
             &mut pass,
             input,
             draw.cut,
-            |kind, is_smooth| draw.keys.noting_key(kind.into(), is_smooth, early),
+            |kind, of| draw.keys.noting_key(kind.into(), of, early),
             |pass, offset| pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
         );
         if let Some(timer) = &recorder.timer {

@@ -3,15 +3,15 @@
 use crate::{
     city::CityModel,
     lens::{
-        BorderUnit, Class, Discrete, EffectUse, Lens, LensBody,
+        BorderUnit, Class, Discrete, EffectUse, Lens, LensBody, Parameter,
         chosen::{Choice, ChoiceError, chosen, members},
         effect::{default_of, in_floats, ramp},
         thematic::ThematicScale,
     },
     render::{body::Members, palette},
     shader::{
-        self, Blend, BodyKind, ClassTest, Clip, EffectKind, PerObject, Plan, PlanBody, PlanBorder, PlanContent,
-        PlanLens, Scope, Step, Uber, VolumeTest,
+        self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, PerObject, Plan, PlanBody, PlanBorder,
+        PlanContent, PlanLens, Scope, Step, Uber, VolumeTest,
     },
 };
 
@@ -36,6 +36,17 @@ pub struct Operation {
     pub class: Class,
     /// How it is laid over what is below.
     pub blend: Option<Blend>,
+    /// Of an opacity rule, what it makes translucent where its class is.
+    pub translucent: Option<Translucent>,
+}
+
+/// What an opacity rule acts on, as [`EffectDefinition::acts_on`] asks it of fragments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Translucent {
+    /// Whatever object it is.
+    pub all_objects: bool,
+    /// Terrain too.
+    pub terrain: bool,
 }
 
 impl Operation {
@@ -363,9 +374,21 @@ impl Operations {
         if blend.is_some() {
             self.parameters.push([effect.weight.unwrap_or(1.0) as f32, 0.0, 0.0, 0.0]);
         }
-        self.list.push(Operation { effect: number, parameters: first, lens, class: effect.class, blend });
+        let translucent = translucent(definition, effect);
+        self.list.push(Operation { effect: number, parameters: first, lens, class: effect.class, blend, translucent });
         Ok(())
     }
+}
+
+/// What a use of an effect makes translucent; `None`: it is no opacity rule.
+fn translucent(definition: &EffectDefinition, effect: &EffectUse) -> Option<Translucent> {
+    let chooses = definition.objects == Some(PerObject::Chosen) && Choice::of_effect(effect).attribute.is_some();
+    let keeps_terrain = definition.terrain_parameter().is_some_and(|parameter| {
+        let value = effect.parameters.get(&parameter.name).cloned().or_else(|| default_of(parameter));
+        value != Some(Parameter::Boolean(false))
+    });
+    let found = Translucent { all_objects: !chooses, terrain: !keeps_terrain };
+    (definition.kind == EffectKind::Opacity).then_some(found)
 }
 
 /// Of the first city that has what is asked for; else what is wrong with the scene's own.

@@ -94,7 +94,7 @@ pub(super) fn entry(
 /// What a surface is part of: by its semantics; where a building has none, by which way it faces.
 fn part_of(model: &CityModel, surface: &Surface, normal: u32) -> u32 {
     let class = model.objects[surface.object as usize].class;
-    if matches!(class, ObjectClass::Terrain | ObjectClass::Water | ObjectClass::Road | ObjectClass::Land) {
+    if class.is_ground() {
         return layout::PART_TERRAIN;
     }
     let kind = (surface.kind != StringId(NONE)).then(|| model.strings.get(surface.kind));

@@ -90,7 +90,7 @@ impl LensVolume {
     }
 
     /// How far around it its lens acts, metres; 0 where that ends at once.
-    fn reach_m(&self, view: &View) -> f64 {
+    pub fn reach_m(&self, view: &View) -> f64 {
         let Some(border) = self.border else { return 0.0 };
         let farthest = self.bounds.corners().into_iter().map(|c| view.depth(c)).fold(0.0, f64::max);
         border.reach_m(view, farthest)

@@ -340,13 +340,18 @@ impl EffectDefinition {
     pub fn acts_on(&self, place: &str, first: &str) -> Option<String> {
         let own = format!("{}({first})", self.own("parameters"));
         let mut conditions = Vec::new();
-        if self.parameters.iter().any(|p| p.name == KEEP_TERRAIN && p.kind == ParameterKind::Boolean) {
+        if self.terrain_parameter().is_some() {
             conditions.push(format!("!({place}.part == PART_TERRAIN && {own}.{KEEP_TERRAIN})"));
         }
         if self.objects == Some(PerObject::Chosen) {
             conditions.push(format!("is_chosen({own}.first, {place}.object)"));
         }
         (!conditions.is_empty()).then(|| conditions.join(" && "))
+    }
+
+    /// Of an opacity rule: by which of its parameters terrain stays opaque, if by any.
+    pub fn terrain_parameter(&self) -> Option<&ParameterDefinition> {
+        self.parameters.iter().find(|p| p.name == KEEP_TERRAIN && p.kind == ParameterKind::Boolean)
     }
 
     /// The WGSL of its parameters alone.

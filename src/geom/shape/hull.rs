@@ -16,7 +16,7 @@ pub const MAX_POINTS: usize = 4096;
 pub(super) const THIN_M: f64 = 1e-6;
 
 /// A convex polytope.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     /// Near the middle of the points; everything else is relative to it, which keeps the digits.
     pub(super) center: DVec3,

@@ -174,7 +174,7 @@ pub enum ShapeError {
 }
 
 /// A checked shape with what its tests need worked out once.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Volume {
     /// A ball.
     Sphere {

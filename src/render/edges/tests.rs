@@ -150,10 +150,10 @@ fn instances_say_whose_they_are_and_chunks_hold_them() {
     }
     let chunks = &bench.edges.chunks;
     assert!(chunks.len() > 5);
-    assert_eq!(chunks.iter().map(|c| c.range.len()).sum::<usize>(), 2400);
-    for chunk in chunks {
-        let inside = &bench.all[chunk.range.start as usize..chunk.range.end as usize];
-        assert!(inside.iter().all(|e| world_ends(e).iter().all(|p| chunk.bounds.meets(&Aabb::from_points([*p])))));
+    assert_eq!(chunks.iter().map(|c| c.0.len()).sum::<usize>(), 2400);
+    for (range, bounds) in chunks {
+        let inside = &bench.all[range.start as usize..range.end as usize];
+        assert!(inside.iter().all(|e| world_ends(e).iter().all(|p| bounds.meets(&Aabb::from_points([*p])))));
     }
 }
 

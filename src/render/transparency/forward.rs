@@ -53,7 +53,7 @@ impl Renderer {
             &mut pass,
             input,
             draw.cut,
-            |kind, is_smooth| draw.keys.translucent_key(keys, (kind.into(), is_smooth), FragmentPass::Tail, early),
+            |kind, [is_smooth, _]| draw.keys.translucent_key(keys, (kind.into(), is_smooth), FragmentPass::Tail, early),
             |pass, offset| pass.set_bind_group(0, &view, &[(at as u64 * STAGE_STRIDE) as u32, offset]),
         );
         if let Some(timer) = &recorder.timer {
@@ -122,7 +122,9 @@ impl Renderer {
             &mut pass,
             input,
             draw.cut,
-            |kind, is_smooth| draw.keys.translucent_key(keys, (kind.into(), is_smooth), FragmentPass::Chance, false),
+            |kind, [is_smooth, _]| {
+                draw.keys.translucent_key(keys, (kind.into(), is_smooth), FragmentPass::Chance, false)
+            },
             |pass, offset| pass.set_bind_group(0, &view, &[0, offset]),
         );
         if let Some(timer) = &recorder.timer {

@@ -181,7 +181,7 @@ impl Renderer {
                 &mut pass,
                 input,
                 draw.cut,
-                |kind, is_smooth| draw.keys.translucent_key(*keys, (kind.into(), is_smooth), of, early),
+                |kind, [is_smooth, _]| draw.keys.translucent_key(*keys, (kind.into(), is_smooth), of, early),
                 |pass, offset| pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
             );
             if let Some(timer) = &recorder.timer {
