@@ -24,6 +24,7 @@ const RECORD_THROUGH: u32 = 6u;
 const RECORD_LAID: u32 = 7u;
 const RECORD_SHOWN: u32 = 8u;
 const RECORD_SHOWN_DEPTH: u32 = 10u;
+const RECORD_BEFORE: u32 = 11u;     // bits of the depth of the last layer
 // Mesa's software driver ends the loops of a shader after 65535 rounds in all.
 const MOST_ROUNDS: u32 = 50000u;
 const LONGEST: u32 = 2u;        // the word of `heads` that has the length of the longest list that was not done
@@ -126,6 +127,8 @@ fn composite(in: Corner) -> Composite {
         through = recorded(record + RECORD_THROUGH);
         shown = vec2u(atomicLoad(&heads[record + RECORD_SHOWN]), atomicLoad(&heads[record + RECORD_SHOWN + 1u]));
         shown_depth = recorded(record + RECORD_SHOWN_DEPTH);
+        // What is in the list comes after it.
+        last.depth = atomicLoad(&heads[record + RECORD_BEFORE]);
     }
     while is_left {
         //@found
@@ -222,6 +225,7 @@ fn composite(in: Corner) -> Composite {
         atomicStore(&heads[record + RECORD_SHOWN], shown.x);
         atomicStore(&heads[record + RECORD_SHOWN + 1u], shown.y);
         atomicStore(&heads[record + RECORD_SHOWN_DEPTH], bitcast<u32>(shown_depth));
+        atomicStore(&heads[record + RECORD_BEFORE], last.depth);
     }
     return Composite(vec4f(color, through), shown, shown_depth);
 }
