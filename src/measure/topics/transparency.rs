@@ -1,5 +1,7 @@
 //! Methods of laying translucent layers one over the other (O7): what each costs and leaves out.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::{
@@ -17,7 +19,7 @@ use crate::{
 /// Share of the picture that the lens covers.
 const SHARE: f64 = 0.1;
 /// Samples per pixel at which layers by chance are compared.
-const SAMPLES: [u32; 3] = [1, 8, 64];
+const SAMPLES: [u32; 3] = [1, 4, 16];
 
 /// See the module.
 pub const TOPIC: Topic = Topic {
@@ -25,17 +27,20 @@ pub const TOPIC: Topic = Topic {
     title: "How translucent layers are laid one over the other",
     about: "What the methods for translucent layers cost and leave out, by how many layers or samples they take, in five views.",
     specs: &["U1", "O1", "O7"],
-    reference: "all layers in their order (`exact`), with as many samples",
+    reference: "all layers in their order (`exact`), with as many samples; errors against f64: each layer's colour and opacity, in f64",
     knobs: &[
         Knob { name: "scene", unit: "" },
         Knob { name: "method", unit: "" },
         Knob { name: "layers or samples", unit: "" },
     ],
-    x: Quantity::MeanSteps,
-    y: &[Quantity::Ratio, Quantity::Memory],
-    front: [Quantity::MeanSteps, Quantity::Ratio],
+    x: Quantity::MeanError,
+    y: &[Quantity::Ratio],
+    front: [Quantity::MeanError, Quantity::Ratio],
     alike: &[0],
-    series: &[0],
+    series: &[1],
+    panels: Some(0),
+    notes: Some(2),
+    restarts: false,
     make,
 };
 
@@ -94,6 +99,7 @@ fn methods() -> Vec<(Transparency, Option<u32>, u32)> {
 fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
     let mut variants = Vec::new();
     for (name, scene) in scenes(stage)? {
+        let veil = Arc::new(stage.studio.composited_in_f64(&scene, stage.size)?);
         for (method, number, samples) in methods() {
             let mut own = scene.clone();
             own.style.transparency = method;
@@ -108,6 +114,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot: stage.shot(own, samples),
                 reference: Some(stage.shot(scene.clone(), samples)),
                 mask: None,
+                veil: Some(Arc::clone(&veil)),
             });
         }
     }
