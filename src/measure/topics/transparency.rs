@@ -27,7 +27,7 @@ pub const TOPIC: Topic = Topic {
     title: "How translucent layers are laid one over the other",
     about: "What the methods for translucent layers cost and leave out, by how many layers or samples they take, in five views.",
     specs: &["U1", "O1", "O7"],
-    reference: "all layers in their order (`exact`), with as many samples; errors against f64: each layer's colour and opacity, in f64",
+    reference: "all layers in their order (`exact`), with as many samples",
     knobs: &[
         Knob { name: "scene", unit: "" },
         Knob { name: "method", unit: "" },
@@ -87,7 +87,7 @@ fn low(extent: &Aabb, away: f64, height_m: f64) -> Camera {
 
 /// What is compared: methods, how many layers or samples stand in the table, and samples.
 fn methods() -> Vec<(Transparency, Option<u32>, u32)> {
-    let peel = |layers| (Transparency::Peel { layers }, Some(layers), 1);
+    let peel = |layers: u32| (Transparency::Peel { layers }, Some(layers).filter(|layers| *layers > 0), 1);
     let slots = |layers| (Transparency::KBuffer { layers }, Some(layers), 1);
     let mut all = vec![(Transparency::Exact, None, 1), peel(0), peel(4), peel(16)];
     all.extend(SLOTS.map(slots));
