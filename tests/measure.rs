@@ -10,9 +10,13 @@ use serde_json::Value;
 use veduta::{
     city::load::{LoadOptions, Quiet, load},
     gpu::Gpu,
-    measure::{self, TOPICS, Variant, difference::Difference, stage::Stage},
+    measure::{
+        self, TOPICS, Variant,
+        difference::{Against, Difference},
+        stage::Stage,
+    },
     render::picture::Studio,
-    scene::CitySpec,
+    scene::{CitySpec, Transparency},
 };
 
 fn run(arguments: &[&str]) -> Output {
@@ -221,6 +225,49 @@ fn topics_make_whole_trials() {
         assert!(trial.variants.iter().all(|v| v.knobs.len() == topic.knobs.len()), "{}", topic.name);
         assert!(trial.plain.scene.lenses.is_empty() && trial.plain.request.samples == 1, "{}", topic.name);
     }
+}
+
+#[test]
+fn transparency_is_measured_against_f64() {
+    let model = load(&["builtin:square".into()], &LoadOptions::default(), &Quiet).unwrap();
+    let mut studio = Studio::new(Gpu::open().unwrap(), Arc::new(model), &CitySpec::default()).unwrap();
+    let topic = TOPICS.iter().find(|topic| topic.name == "transparency").unwrap();
+    let size = [64, 36];
+    let trial = (topic.make)(&mut Stage { studio: &mut studio, size }).unwrap();
+    let mut deepest = 0;
+    for variant in trial.variants.iter().filter(|v| v.shot.request.samples == 1) {
+        let right = variant.veil.as_ref().unwrap();
+        deepest = deepest.max(right.most_layers);
+        let found = studio.veil(&variant.shot.scene, size).unwrap();
+        let Against { max, mean } = Against::veil(&found, &right.veil);
+        assert!(mean <= max && max <= 2.0, "{}: {mean} {max}", variant.label);
+        let method = variant.shot.scene.style.transparency;
+        match method {
+            // What the issue allows is 2^-16 + n 2^-23; f32 does better.
+            Transparency::Exact | Transparency::Peel { layers: 0 } => {
+                let allowed = f64::from(3 * right.most_layers + 1) * 2_f64.powi(-24);
+                assert!(max > 0.0 && max <= 2.0 * allowed, "{}: {max:e} of {allowed:e}", variant.label);
+            }
+            Transparency::Weighted => assert!(max > 0.01, "{}: {max}", variant.label),
+            Transparency::Peel { layers } | Transparency::KBuffer { layers } if layers < right.most_layers => {
+                assert!(max > 1e-6, "{}: {max:e} of {} layers", variant.label, right.most_layers);
+            }
+            _ => {}
+        }
+    }
+    assert!(deepest > 10, "{deepest}");
+    // By chance: pictures, with noise that falls with samples.
+    let noise = |label: &str| {
+        let v = trial.variants.iter().find(|v| v.label == format!("dense, stochastic {label}")).unwrap();
+        let [found, right] = [&v.shot, v.reference.as_ref().unwrap()].map(|shot| {
+            let mut studio =
+                Studio::new(Gpu::open().unwrap(), Arc::clone(&studio.model), &CitySpec::default()).unwrap();
+            studio.render(&shot.scene, &shot.request).unwrap()
+        });
+        Against::pictures(&found, &right).mean
+    };
+    let (one, many) = (noise("1"), noise("16"));
+    assert!(many > 1e-4 && one > 2.0 * many, "{one} {many}");
 }
 
 #[test]

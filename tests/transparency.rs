@@ -3,6 +3,7 @@
 mod panes;
 mod studio;
 
+use glam::DVec3;
 use panes::*;
 use studio::*;
 use veduta::{
@@ -11,6 +12,7 @@ use veduta::{
         picture::{Aovs, Request, Studio},
     },
     scene::{Scene, Transparency},
+    view::Camera,
 };
 
 /// The same scene by another method.
@@ -46,7 +48,13 @@ fn peeling_until_nothing_is_left_is_exact_to_the_bit() {
     all[6].x = all[5].x;
     all[9].x = all[8].x;
     let mut studio = studio_of(&all);
-    for scene in [unlike(23), of_context(vec![used("peel")]), of_context(vec![used("x-ray")])] {
+    // A film counts once in a plane, wherever one round ends and the next begins.
+    all[12].x = all[11].x;
+    all[13].x = all[11].x;
+    set_city(&mut studio, &all);
+    for scene in
+        [unlike(23), of_context(vec![used("peel")]), of_context(vec![used("x-ray")]), of_context(vec![used("film")])]
+    {
         for backend in BOTH {
             let exact = veil(&mut studio, &scene, backend, SIZE);
             let fragments = studio.renderer.layer_figures().notes;
@@ -61,6 +69,35 @@ fn peeling_until_nothing_is_left_is_exact_to_the_bit() {
             assert_eq!(exact, found, "{backend:?} in bands");
             assert_eq!(studio.renderer.layer_figures().bands, 6);
             studio.renderer.most_layers = None;
+        }
+    }
+}
+
+/// From eight random places of the town towards others, from a street or a little above it.
+#[test]
+fn peeling_until_nothing_is_left_is_exact_in_a_town() {
+    let mut studio = studio(&["builtin:town".into()]);
+    let extent = studio.extent();
+    let mut random = Random(77);
+    let mut place = || extent.min + extent.size() * DVec3::new(random.share(), random.share(), 0.3 * random.share());
+    let size = [320, 180];
+    for view in 0..8 {
+        let camera = Camera::looking(place() + DVec3::Z * 1.7, place(), 0.8);
+        for used in [with_numbers("transparent", &[("opacity", 0.05)]), used("film")] {
+            let mut scene = scene(camera, vec![]);
+            scene.style.effects = vec![used];
+            let exact = veil(&mut studio, &scene, Backend::Specialised, size);
+            let fragments = studio.renderer.layer_figures().notes;
+            let found = veil(&mut studio, &by(PEEL, &scene), Backend::Specialised, size);
+            let off = exact.iter().zip(&found).filter(|(a, b)| a != b).count();
+            assert_eq!(off, 0, "pixels of view {view}");
+            assert_eq!(studio.renderer.layer_figures().notes, fragments);
+            // What a figure makes of it, too: of four samples, in the order of all passes.
+            if view < 2 {
+                let asked = Request { size, samples: 4, aovs: Aovs::default(), ..request(Backend::Specialised) };
+                let exact = studio.render(&scene, &asked).expect("a picture").rgba;
+                assert_eq!(studio.render(&by(PEEL, &scene), &asked).expect("a picture").rgba, exact);
+            }
         }
     }
 }
@@ -94,7 +131,7 @@ fn a_k_buffer_is_exact_where_no_pixel_has_more_layers_than_slots() {
     all[4].x = all[3].x;
     let mut studio = studio_of(&all);
     let stacks = stacks(&mut studio, &all);
-    for scene in [unlike(9), of_context(vec![used("peel")])] {
+    for scene in [unlike(9), of_context(vec![used("peel")]), of_context(vec![used("film")])] {
         for backend in BOTH {
             let exact = veil(&mut studio, &scene, backend, SIZE);
             for slots in [4, 8, 16] {
@@ -302,8 +339,8 @@ fn chance_is_right_in_the_mean() {
 fn methods_and_lenses_with_contents_borders_and_shadows_draw_what_is_opaque_alike() {
     let mut studio = synthetic(60);
     let center = studio.extent().center();
-    let camera = veduta::view::Camera {
-        eye: center + glam::DVec3::new(-70.0, -110.0, 60.0),
+    let camera = Camera {
+        eye: center + DVec3::new(-70.0, -110.0, 60.0),
         target: center,
         ..studio.camera(&Scene::default(), SIZE)
     };

@@ -24,8 +24,12 @@ const RECORD_THROUGH: u32 = 6u;
 const RECORD_LAID: u32 = 7u;
 const RECORD_SHOWN: u32 = 8u;
 const RECORD_SHOWN_DEPTH: u32 = 10u;
+const RECORD_BEFORE: u32 = 11u;     // bits of the depth of the last layer
 // Mesa's software driver ends the loops of a shader after 65535 rounds in all.
 const MOST_ROUNDS: u32 = 50000u;
+// Whether one layer is told, with its opacity below 0, in place of all: what is composited elsewhere.
+override PICKS: bool = false;
+const PICKED: u32 = 3u;         // the word of `heads` that has its number
 const LONGEST: u32 = 2u;        // the word of `heads` that has the length of the longest list that was not done
 const MOST_LAYERS: u32 = 1u;    // the word of `heads` that has the largest number of layers of a pixel
 // What is let through below this is not seen, whatever its colour.
@@ -106,6 +110,7 @@ fn composite(in: Corner) -> Composite {
     var last = Note(0xffffffffu, 0u, 0u);
     var count = 0u;
     var rounds = 0u;            // of walks
+    var picked = vec4f(0.0, 0.0, 0.0, 1.0);
     var listed = head;          // of a list in order: the next note
     var is_left = head != 0u;
     if SORTED {
@@ -126,6 +131,8 @@ fn composite(in: Corner) -> Composite {
         through = recorded(record + RECORD_THROUGH);
         shown = vec2u(atomicLoad(&heads[record + RECORD_SHOWN]), atomicLoad(&heads[record + RECORD_SHOWN + 1u]));
         shown_depth = recorded(record + RECORD_SHOWN_DEPTH);
+        // What is in the list comes after it.
+        last.depth = atomicLoad(&heads[record + RECORD_BEFORE]);
     }
     while is_left {
         //@found
@@ -176,6 +183,9 @@ fn composite(in: Corner) -> Composite {
             let paint = shade(&point, classes);
             color += (through * opacity) * paint;
             through *= 1.0 - opacity;
+            if PICKS && laid == atomicLoad(&heads[PICKED]) {
+                picked = vec4f(paint, -opacity);
+            }
             if through <= 0.5 && shown.x == 0u {
                 shown = vec2u(code, normal);
                 shown_depth = depth;
@@ -184,11 +194,11 @@ fn composite(in: Corner) -> Composite {
             laid += 1u;
             last = note;
             //@shift
-            if found_0.depth == 0u || through < NOTHING_SEEN {
+            if found_0.depth == 0u || (through < NOTHING_SEEN && !PICKS) {
                 break;
             }
         }
-        is_left = select(laid < count, listed != 0u, SORTED) && through >= NOTHING_SEEN;
+        is_left = select(laid < count, listed != 0u, SORTED) && (through >= NOTHING_SEEN || PICKS);
         if is_left && !SORTED && rounds + count > MOST_ROUNDS {
             atomicMax(&heads[LONGEST], count);
             is_left = false;
@@ -222,6 +232,10 @@ fn composite(in: Corner) -> Composite {
         atomicStore(&heads[record + RECORD_SHOWN], shown.x);
         atomicStore(&heads[record + RECORD_SHOWN + 1u], shown.y);
         atomicStore(&heads[record + RECORD_SHOWN_DEPTH], bitcast<u32>(shown_depth));
+        atomicStore(&heads[record + RECORD_BEFORE], last.depth);
+    }
+    if PICKS {
+        return Composite(picked, shown, shown_depth);
     }
     return Composite(vec4f(color, through), shown, shown_depth);
 }

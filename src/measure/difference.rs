@@ -2,7 +2,11 @@
 
 use serde::Serialize;
 
-use crate::{measure::flip, render::picture::Picture};
+use crate::{
+    lens::color::linear_from_srgb,
+    measure::flip,
+    render::{composited::error, picture::Picture},
+};
 
 /// A pixel is wrong when one of its channels is off by more than so many of 255 steps: fewer are hard to see, and other
 /// drivers round by one.
@@ -23,6 +27,42 @@ pub struct Difference {
     pub flip: f64,
     /// Pixels that are in a lens in one picture and not in the other; `None` without lens masks.
     pub wrong_mask_pixels: Option<u64>,
+    /// Largest and mean error of a channel against layers composited in f64, linear light, 0..1 ([`Against`]).
+    pub against_f64: Option<Against>,
+}
+
+/// How far translucent layers are from f64, over any background from black to white.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Against {
+    /// Of all pixels and channels.
+    pub max: f64,
+    /// Over all of them.
+    pub mean: f64,
+}
+
+impl Against {
+    /// Of the errors of pixels.
+    fn of(errors: impl Iterator<Item = [f64; 3]>) -> Self {
+        let (mut sum, mut max, mut count) = (0.0, 0.0_f64, 0_u64);
+        for error in errors.flatten() {
+            (sum, max, count) = (sum + error, max.max(error), count + 1);
+        }
+        Self { max, mean: sum / count.max(1) as f64 }
+    }
+
+    /// Of what a method laid over its picture.
+    pub fn veil(found: &[[f32; 4]], right: &[[f64; 4]]) -> Self {
+        Self::of(found.iter().zip(right).map(|(found, right)| error(found.map(f64::from), *right)))
+    }
+
+    /// Of pictures, where a method lays nothing over: colours in 8 bits, whose steps are at most 0.009 of linear light.
+    pub fn pictures(found: &Picture, right: &Picture) -> Self {
+        let linear = |[r, g, b, _]: [u8; 4]| linear_from_srgb([r, g, b].map(|c| f32::from(c) / 255.0)).map(f64::from);
+        Self::of(found.rgba.iter().zip(&right.rgba).map(|(found, right)| {
+            let (found, right) = (linear(*found), linear(*right));
+            [0, 1, 2].map(|i| (found[i] - right[i]).abs())
+        }))
+    }
 }
 
 impl Difference {

@@ -21,6 +21,10 @@ pub enum Quantity {
     MeanSteps,
     /// Mean FLIP, 0..1.
     Flip,
+    /// Largest error of a channel against f64, linear light.
+    MaxError,
+    /// Mean of it.
+    MeanError,
     /// Time against the plain frame.
     Ratio,
     /// Time, milliseconds.
@@ -45,6 +49,8 @@ impl Quantity {
             Self::MaxSteps => "largest colour difference (8-bit steps)".into(),
             Self::MeanSteps => "mean colour difference (8-bit steps)".into(),
             Self::Flip => "mean FLIP (0: looks the same)".into(),
+            Self::MaxError => "largest error against f64 (linear light)".into(),
+            Self::MeanError => "mean error against f64 (linear light)".into(),
             Self::Ratio => "time (ratio to the plain frame)".into(),
             Self::Ms => "time (ms)".into(),
             Self::StartMs => "start-up (ms)".into(),
@@ -65,6 +71,8 @@ impl Quantity {
             Self::MaxSteps => f64::from(row.difference.max_steps),
             Self::MeanSteps => row.difference.mean_steps,
             Self::Flip => row.difference.flip,
+            Self::MaxError => row.difference.against_f64.map_or(f64::NAN, |against| against.max),
+            Self::MeanError => row.difference.against_f64.map_or(f64::NAN, |against| against.mean),
             Self::Ratio | Self::Ms | Self::StartMs => self.estimate(row).map_or(f64::NAN, |e| e.median),
             Self::Memory => row.gpu_bytes as f64 / f64::from(1 << 20),
         }
@@ -75,7 +83,7 @@ impl Quantity {
         match self {
             Self::Ratio => Some(row.ratio),
             Self::Ms => Some(row.ms),
-            Self::StartMs => Some(row.start_ms),
+            Self::StartMs => row.start_ms,
             _ => None,
         }
     }

@@ -73,14 +73,27 @@ pub fn markdown(measured: &Measurement, origin: &Origin) -> String {
         text += &line(&columns.iter().map(|c| (c.1)(row)).collect::<Vec<_>>());
     }
     let front = topic.front.map(|q| q.title(topic.knobs)).join(" and ");
+    let start = match topic.restarts {
+        true => format!(
+            "Start-up is what the first frame on a fresh device takes longer than a later one (median of {}); memory is what that \
+             frame allocates on the graphics card beside the city.",
+            measured.starts
+        ),
+        false => "Memory is what the targets and lists of a frame take on the graphics card.".to_owned(),
+    };
+    let against = match measured.rows.iter().any(|row| row.difference.against_f64.is_some()) {
+        true => {
+            " Errors against f64 are of what lies over the opaque picture, over any background from black to white, linear light."
+        }
+        false => "",
+    };
     let _ = write!(
         text,
         "\n**●** Pareto front: no other variant is at least as good in {front} and better in one of them.\n\n\
          Times are medians of {} rounds in which all variants were drawn in turn, with 95 % intervals; the ratio is taken \
          round by round against the plain frame. A pixel is wrong when a channel is off by more than {RIGHT_STEPS} of 255 \
-         steps. Start-up is what the first frame on a fresh device takes longer than a later one (median of {}); memory is \
-         what that frame allocates on the graphics card beside the city. `docs/measure.md` says more.\n",
-        measured.pairs, measured.starts,
+         steps. {start}{against} `docs/measure.md` says more.\n",
+        measured.pairs,
     );
     text
 }
@@ -114,9 +127,16 @@ fn columns(measured: &Measurement) -> Vec<Column> {
     columns.push(("max, steps".into(), Box::new(|row: &Row| row.difference.max_steps.to_string()), false));
     columns.push(figure("mean, steps", Quantity::MeanSteps));
     columns.push(figure("FLIP", Quantity::Flip));
+    if measured.rows.iter().any(|row| row.difference.against_f64.is_some()) {
+        for (heading, quantity) in [("max, f64", Quantity::MaxError), ("mean, f64", Quantity::MeanError)] {
+            columns.push((heading.to_owned(), Box::new(move |row: &Row| small(quantity.of(row))), false));
+        }
+    }
     columns.push(estimate("time, ms", Quantity::Ms));
     columns.push(estimate("time / plain frame", Quantity::Ratio));
-    columns.push(figure("start-up, ms", Quantity::StartMs));
+    if measured.topic.restarts {
+        columns.push(figure("start-up, ms", Quantity::StartMs));
+    }
     columns.push(figure("memory, MiB", Quantity::Memory));
     columns
 }
@@ -133,6 +153,11 @@ pub fn number(value: f64) -> String {
     let text = format!("{value:.digits$}");
     // 10.0 stays: its zero was measured. 0.000000 was not.
     if text.trim_start_matches('-').bytes().all(|b| b == b'0' || b == b'.') { "< 0.000001".to_owned() } else { text }
+}
+
+/// Two significant digits, whatever the size.
+fn small(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() { number(value) } else { format!("{value:.1e}") }
 }
 
 fn interval(estimate: Estimate) -> String {

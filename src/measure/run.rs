@@ -5,7 +5,7 @@ use std::{sync::Arc, time::Instant};
 use crate::{
     gpu::Gpu,
     measure::{
-        difference::{self, Difference},
+        difference::{self, Against, Difference},
         pareto,
         ratio::{Estimate, in_turn, ratios},
         stage::Stage,
@@ -16,7 +16,7 @@ use crate::{
         picture::{Aovs, Picture, RenderError, Request, Studio},
         stats,
     },
-    scene::{CitySpec, Scene},
+    scene::{CitySpec, Scene, Transparency},
 };
 
 /// What is measured on.
@@ -81,8 +81,8 @@ pub struct Row {
     pub ms: Estimate,
     /// Time against the plain frame of the same round.
     pub ratio: Estimate,
-    /// What its first frame on a fresh device takes longer than a later one, milliseconds.
-    pub start_ms: Estimate,
+    /// What its first frame on a fresh device takes longer than a later one, milliseconds; where the topic starts them afresh.
+    pub start_ms: Option<Estimate>,
     /// What its first frame allocated on the graphics card, bytes; all of it is held at once.
     pub gpu_bytes: u64,
     /// Whether nothing it may be compared with beats it.
@@ -102,7 +102,8 @@ pub fn measure(
     let differences = compare(setup.studio, &trial, watch)?;
     // A start takes as long as dozens of frames.
     let starts = (6 * setup.pairs / (5 * trial.variants.len().max(1))).clamp(1, 9);
-    let cold = start(setup, &trial, starts, watch)?;
+    let cold =
+        if topic.restarts { start(setup, &trial, starts, watch)? } else { allocate(setup.studio, &trial, watch)? };
     // The plain frame is the first of those that are timed.
     let shots: Vec<&Shot> = std::iter::once(&trial.plain).chain(trial.variants.iter().map(|v| &v.shot)).collect();
     let total = setup.pairs * shots.len();
@@ -123,7 +124,7 @@ pub fn measure(
             difference: differences[i],
             ms,
             ratio: estimate(&ratios(&times[i + 1], &times[0]))?,
-            start_ms: estimate(&start_ms)?,
+            start_ms: Some(estimate(&start_ms)?).filter(|_| topic.restarts),
             gpu_bytes: cold[i].iter().map(|c| c.bytes).max().unwrap_or(0),
             is_pareto: false,
         });
@@ -138,7 +139,7 @@ pub fn measure(
         city_bytes: city.map_or(0, |c| c.bytes),
         size: setup.size,
         pairs: setup.pairs,
-        starts,
+        starts: if topic.restarts { starts } else { 0 },
         plain_ms: estimate(&times[0])?,
         rows,
     })
@@ -220,6 +221,13 @@ fn compare(
         if let (Some(mask), Some(bits)) = (&variant.mask, &picture.lens_mask) {
             difference.wrong_mask_pixels = Some(difference::wrong_bits(mask, &bits[0]));
         }
+        if let Some(veil) = &variant.veil {
+            let Shot { scene, request, .. } = &variant.shot;
+            difference.against_f64 = Some(match scene.style.transparency {
+                Transparency::Stochastic => Against::pictures(&picture, &right),
+                _ => Against::veil(&studio.veil(scene, request.size)?, &veil.veil),
+            });
+        }
         differences.push(difference);
         reference = Some((wanted, right));
     }
@@ -261,6 +269,23 @@ fn start(
     Ok(cold)
 }
 
+/// What each variant takes on a card that has the city and the pipelines: its first frame after all targets and lists were dropped.
+fn allocate(
+    studio: &mut Studio,
+    trial: &Trial,
+    watch: &mut dyn FnMut(Step, usize, usize),
+) -> Result<Vec<Vec<Cold>>, RenderError> {
+    let mut cold = Vec::new();
+    for (i, variant) in trial.variants.iter().enumerate() {
+        watch(Step::Starting, i, trial.variants.len());
+        studio.renderer.drop_targets();
+        let before = studio.renderer.gpu.allocated_bytes();
+        let first_ms = timed(studio, &variant.shot)?;
+        cold.push(vec![Cold { first_ms, later_ms: first_ms, bytes: studio.renderer.gpu.allocated_bytes() - before }]);
+    }
+    Ok(cold)
+}
+
 /// Marks who is on the Pareto front of those that may be compared.
 pub fn mark_front(topic: &Topic, rows: &mut [Row]) {
     let group = |row: &Row| -> Vec<Value> { topic.alike.iter().filter_map(|&k| row.knobs.get(k).cloned()).collect() };
@@ -287,7 +312,7 @@ mod tests {
             difference: Difference { flip, ..Difference::default() },
             ms: at(1.0),
             ratio: at(ratio),
-            start_ms: at(1.0),
+            start_ms: Some(at(1.0)),
             gpu_bytes: 1,
             is_pareto: false,
         }
@@ -307,6 +332,9 @@ mod tests {
             front: [Quantity::Flip, Quantity::Ratio],
             alike: &[],
             series: &[],
+            panels: None,
+            notes: None,
+            restarts: true,
             make: |_| Err(RenderError::Scene(String::new())),
         };
         let rows = [row(0.0, 0.0, 2.0), row(0.0, 0.1, 3.0), row(1.0, 0.5, 5.0), row(1.0, 0.2, 6.0)];

@@ -6,7 +6,10 @@ use serde::Serialize;
 
 use crate::{
     measure::{Quantity, stage::Stage},
-    render::picture::{RenderError, Request},
+    render::{
+        composited::Composited,
+        picture::{RenderError, Request},
+    },
     scene::Scene,
 };
 
@@ -35,6 +38,13 @@ pub struct Topic {
     pub alike: &'static [usize],
     /// The knobs that tell lines of the plot apart; without any, points stand alone.
     pub series: &'static [usize],
+    /// A knob each of whose values has a panel of its own, with the first of `y`.
+    pub panels: Option<usize>,
+    /// A knob whose values stand beside the points of lines.
+    pub notes: Option<usize>,
+    /// Whether every variant is started on a device of its own. Else nothing is known of its start-up, and its memory is what its
+    /// targets and lists take.
+    pub restarts: bool,
     /// Makes what is drawn.
     pub make: fn(&mut Stage<'_>) -> Result<Trial, RenderError>,
 }
@@ -89,6 +99,8 @@ pub struct Variant {
     pub shot: Shot,
     /// What it is compared with; `None`: the trial's reference.
     pub reference: Option<Shot>,
+    /// Of translucent layers: what they are in f64.
+    pub veil: Option<Arc<Composited>>,
     /// Of a picture with one lens: whether each pixel is in it, where something better than the reference says so.
     pub mask: Option<Arc<Vec<bool>>>,
 }

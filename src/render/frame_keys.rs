@@ -135,6 +135,7 @@ impl Renderer {
                     sorted: slots.is_some() || !sort.is_empty(),
                     record: slots.map_or(0, |slots| slots.record),
                     tail: slots.is_some_and(|slots| slots.has_tail()),
+                    picks: self.picked_layer.is_some() && slots.is_none(),
                 },
                 asks_most: count.is_some(),
                 count: count.filter(|_| slots.is_none() && !is_forward).map(|_| Key::CountLayers(words)),

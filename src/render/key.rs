@@ -111,6 +111,8 @@ pub enum Key {
         record: u32,
         /// What found no place is one layer behind the others.
         tail: bool,
+        /// One layer is told in place of all.
+        picks: bool,
     },
     /// Translucent fragments one by one, by methods that keep no list of all.
     Translucent(TranslucentKey),
@@ -341,8 +343,9 @@ impl Key {
                 let flags = flags(&list);
                 format!("{}{kind}{flags}", self.module().name())
             }
-            Self::Composite { textured, clay, shadows, smooth, shown, sorted, record, tail, .. } => {
+            Self::Composite { textured, clay, shadows, smooth, shown, sorted, record, tail, picks, .. } => {
                 let list = [
+                    (*picks, "of one layer"),
                     (*record == 1, "of slots"),
                     (*record > 1, "of peeling"),
                     (*tail, "and a tail"),
@@ -410,10 +413,11 @@ impl Key {
             }
             Self::Translucent(own) => own.constants(),
             Self::LinkSlots(keys) => keys.constants().to_vec(),
-            Self::Composite { textured, clay, shadows, smooth, sorted, record, tail, .. } => vec![
+            Self::Composite { textured, clay, shadows, smooth, sorted, record, tail, picks, .. } => vec![
                 ("SORTED", flag(*sorted)),
                 ("RECORD", f64::from(*record)),
                 ("TAIL", flag(*tail)),
+                ("PICKS", flag(*picks)),
                 ("TEXTURED", flag(*textured)),
                 ("CLAY", flag(*clay)),
                 ("SHADOWS", flag(*shadows)),

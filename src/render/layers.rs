@@ -39,6 +39,8 @@ const MANY: u64 = 1 << 16;
 /// Words of the lists before those of the pixels: how many notes spilled, how many layers at most, the longest list that was not
 /// done; and, in lines of their own, how many notes each pool was to take.
 pub(super) const HEADER: u64 = 16 * (1 + POOLS);
+/// The word of the lists that has the number of a picked layer, as `pass/composite.wgsl` reads it.
+const PICKED: u64 = 3;
 /// Storage buffers that a shader of layers binds: two of lists, and what lens tests read.
 const BUFFERS: u32 = 8;
 /// What to do where the card has no such buffer.
@@ -242,6 +244,9 @@ impl Renderer {
             None => LayersOnGpu::new(&self.gpu)?,
         };
         own.heads.fit(&self.gpu, 4 * (HEADER + u64::from(size[0]) * u64::from(size[1])))?;
+        if let Some(picked) = self.picked_layer {
+            self.gpu.queue.write_buffer(own.heads.buffer(), 4 * PICKED, &picked.to_le_bytes());
+        }
         let most = self.most_layers.unwrap_or(LAYER_BYTES / (4 * words));
         let pixels = u64::from(region.size[0]) * u64::from(region.size[1]);
         own.notes.fit(&self.gpu, 4 * words * most.min((FIRST_GUESS[0] * pixels).max(FIRST_GUESS[1])))?;

@@ -7,6 +7,7 @@
 pub mod body;
 pub mod city;
 mod city_passes;
+pub mod composited;
 pub mod content_cities;
 pub mod contents;
 mod curtain;

@@ -89,6 +89,8 @@ pub struct Renderer {
     /// How many notes of translucent layers have room at a time; `None`: as many as [`crate::render::layers::LAYER_BYTES`]
     /// hold. What does not fit is drawn in bands.
     pub most_layers: Option<u64>,
+    /// The number of the only layer that the exact method tells ([`crate::render::composited`]), nearest first; `None`: all are laid.
+    pub(super) picked_layer: Option<u32>,
     /// Triangles of translucent layers are drawn one by one, in an order shuffled by this number; `None`: as they lie in the city.
     /// The picture is the same.
     pub shuffled: Option<u32>,
@@ -254,6 +256,7 @@ impl Renderer {
             layer_figures: LayerFigures::default(),
             longest_list: 0,
             most_layers: None,
+            picked_layer: None,
             shuffled: None,
             kept_sprites: Vec::new(),
             list_target: None,
@@ -298,6 +301,11 @@ impl Renderer {
     /// The city's buffers.
     pub fn city(&self) -> Option<&CityBuffers> {
         self.city.as_ref().map(|c| &c.buffers)
+    }
+
+    /// Gives back the targets and the lists of translucent layers; the next frame makes its own. City and pipelines stay.
+    pub fn drop_targets(&mut self) {
+        (self.targets, self.groups, self.layers, self.slots) = (None, None, None, None);
     }
 
     /// The targets of the last frame.

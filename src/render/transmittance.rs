@@ -25,10 +25,7 @@ impl Studio {
         let mut exact = scene.clone();
         exact.style.transparency = Transparency::Exact;
         let scene = &exact;
-        self.redraw(scene, size)?;
-        while self.renderer.makes_room()? | self.renderer.sorts_longer()? {
-            self.redraw(scene, size)?;
-        }
+        let veil = self.veil(scene, size)?;
         let pixels = size[0] as usize * size[1] as usize;
         let Some(targets) = self.renderer.targets() else {
             return Ok(Transmittance { object_id: vec![0; pixels], through: vec![1.0; pixels] });
@@ -37,13 +34,7 @@ impl Studio {
         let codes = gpu.read_texture(&targets.codes.texture, 0, wgpu::TextureAspect::All)?;
         let words = if targets.needs.smooth { 2 } else { 1 };
         let codes = bytemuck::cast_slice::<u8, u32>(&codes).iter().step_by(words);
-        let through = match self.renderer.layer_figures().bands {
-            0 => vec![1.0; pixels],
-            _ => {
-                let veil = gpu.read_texture(&targets.veil.texture, 0, wgpu::TextureAspect::All)?;
-                bytemuck::cast_slice::<u8, [f32; 4]>(&veil).iter().map(|veil| veil[3]).collect()
-            }
-        };
+        let through = veil.iter().map(|veil| veil[3]).collect();
         Ok(Transmittance { object_id: codes.map(|&code| self.renderer.object_id(code)).collect(), through })
     }
 }

@@ -1,6 +1,7 @@
 //! The hard cases (docs/hard-cases.md): one module per case, each a property with an oracle that does not share the
 //! code under test.
 
+mod bodies;
 mod case_01_national_coordinates;
 mod case_02_parallel_walls;
 mod case_03_coplanar_faces;
@@ -13,7 +14,10 @@ mod case_07_concave_solids;
 mod case_08_grazing_rays;
 mod case_09_coplanar_lens_faces;
 mod case_10_axis_parallel_rays;
+mod case_10_layers;
+mod case_11_layers;
 mod case_11_rays_through_edges;
+mod case_12_layers;
 mod case_12_slivers;
 mod case_13_dirty_rings;
 mod case_14_non_planar_faces;
@@ -21,6 +25,7 @@ mod case_15_layer_room;
 mod case_16_translucency;
 mod case_20_identity_lens;
 mod case_21_extreme_views;
+mod case_21_layers;
 mod case_22_points_of_interest;
 mod case_23_jitter;
 mod lenses;

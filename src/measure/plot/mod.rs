@@ -60,6 +60,8 @@ struct Point<'a> {
 /// One pair of axes.
 struct Panel {
     figure: Quantity,
+    /// What stands above it.
+    title: String,
     x: Scale,
     y: Scale,
     inside: Frame,
@@ -76,28 +78,49 @@ impl Panel {
     }
 }
 
+/// What each panel shows: its title, its figure up, its rows.
+fn panels(measured: &Measurement) -> Vec<(String, Quantity, Vec<&Row>)> {
+    let topic = measured.topic;
+    let Some(knob) = topic.panels else {
+        let all = || measured.rows.iter().collect();
+        return topic.y.iter().map(|&figure| (figure.title(topic.knobs), figure, all())).collect();
+    };
+    let mut panels: Vec<(String, Quantity, Vec<&Row>)> = Vec::new();
+    for row in &measured.rows {
+        let title = format!("{}: {}", row.knobs[knob], topic.y[0].title(topic.knobs));
+        match panels.iter_mut().find(|(known, ..)| *known == title) {
+            Some((.., rows)) => rows.push(row),
+            None => panels.push((title, topic.y[0], vec![row])),
+        }
+    }
+    panels
+}
+
 /// The drawing, as SVG.
 pub fn svg(measured: &Measurement, origin: &Origin) -> String {
     let topic = measured.topic;
-    let panel_height = if topic.y.len() == 1 { ONE_PANEL } else { PANEL };
-    let height = HEAD + topic.y.len() as f64 * (panel_height + GAP) - GAP + FOOT;
+    let panels = panels(measured);
+    let panel_height = if panels.len() == 1 { ONE_PANEL } else { PANEL };
+    let height = HEAD + panels.len() as f64 * (panel_height + GAP) - GAP + FOOT;
     let about = format!("{} The reference is {}.", topic.about, topic.reference);
     let mut out = Svg::new([WIDTH, height], topic.title, &about);
     head(&mut out, measured, origin);
-    let lines = series(measured);
+    let lines = series(measured, &measured.rows.iter().collect::<Vec<_>>());
     let widest = lines.iter().map(|(name, _)| text_width(name, LABEL.size)).fold(0.0, f64::max);
     let right = if lines.is_empty() { WIDTH - 40.0 } else { (WIDTH - 28.0 - widest).max(0.5 * WIDTH) };
-    for (i, figure) in topic.y.iter().enumerate() {
+    let last = panels.len() - 1;
+    for (i, (title, figure, rows)) in panels.into_iter().enumerate() {
         let top = HEAD + i as f64 * (panel_height + GAP);
         let inside: Frame = [64.0, top, right, top + panel_height];
         let panel = Panel {
-            figure: *figure,
+            figure,
+            title,
             x: x_scale(measured, [inside[0], inside[2]]),
-            y: y_scale(measured, *figure, [inside[3], inside[1]]),
+            y: y_scale(&rows, figure, [inside[3], inside[1]]),
             inside,
-            is_last: i + 1 == topic.y.len(),
+            is_last: i == last,
         };
-        draw(&mut out, measured, &panel, &lines);
+        draw(&mut out, measured, &panel, &series(measured, &rows));
     }
     foot(&mut out, measured, height - 18.0);
     out.finish()
@@ -122,7 +145,7 @@ fn draw(out: &mut Svg, measured: &Measurement, panel: &Panel, lines: &[(String, 
             let of_line = rows.iter().filter_map(|row| panel.point(measured, row, shift)).collect();
             points.push((name.as_str(), of_line));
         }
-        several(out, &points, panel.inside)
+        several(out, &points, panel.inside, measured.topic.notes)
     };
     if let Some(y) = plain {
         let name = "plain frame";
@@ -133,12 +156,12 @@ fn draw(out: &mut Svg, measured: &Measurement, panel: &Panel, lines: &[(String, 
 }
 
 /// Rows that one line joins, with the line's name; none where points stand alone.
-fn series(measured: &Measurement) -> Vec<(String, Vec<&Row>)> {
+fn series<'a>(measured: &Measurement, of: &[&'a Row]) -> Vec<(String, Vec<&'a Row>)> {
     let mut lines: Vec<(String, Vec<&Row>)> = Vec::new();
     if measured.topic.series.is_empty() {
         return lines;
     }
-    for row in &measured.rows {
+    for &row in of {
         let values = measured.topic.series.iter().filter_map(|&k| row.knobs.get(k));
         let name = values.map(ToString::to_string).collect::<Vec<_>>().join(", ");
         match lines.iter_mut().find(|(known, _)| *known == name) {
@@ -160,8 +183,8 @@ fn x_scale(measured: &Measurement, span: [f64; 2]) -> Scale {
     }
 }
 
-fn y_scale(measured: &Measurement, figure: Quantity, span: [f64; 2]) -> Scale {
-    let ends = measured.rows.iter().flat_map(|row| match figure.estimate(row) {
+fn y_scale(rows: &[&Row], figure: Quantity, span: [f64; 2]) -> Scale {
+    let ends = rows.iter().flat_map(|row| match figure.estimate(row) {
         Some(estimate) => [estimate.low, estimate.high],
         None => [figure.of(row); 2],
     });
@@ -200,7 +223,7 @@ fn foot(out: &mut Svg, measured: &Measurement, y: f64) {
 fn axes(out: &mut Svg, measured: &Measurement, panel: &Panel) {
     let (x, y, [left, top, right, bottom]) = (&panel.x, &panel.y, panel.inside);
     let knobs = measured.topic.knobs;
-    out.text([24.0, top - 18.0], Anchor::Start, AXIS, &panel.figure.title(knobs));
+    out.text([24.0, top - 18.0], Anchor::Start, AXIS, &panel.title);
     let thin = |color| Stroke { color, width: 1.0, dashes: "" };
     for (value, text) in &y.ticks {
         let Some(at) = y.at(*value) else { continue };
@@ -284,7 +307,8 @@ fn taken_by(point: &Point<'_>) -> [Frame; 2] {
 }
 
 /// One line per series, named at its right end; gives the boxes they take.
-fn several(out: &mut Svg, lines: &[(&str, Vec<Point<'_>>)], inside: Frame) -> Vec<Frame> {
+/// Knob `notes` stands beside the points.
+fn several(out: &mut Svg, lines: &[(&str, Vec<Point<'_>>)], inside: Frame, notes: Option<usize>) -> Vec<Frame> {
     let mut taken = Vec::new();
     for (i, (_, points)) in lines.iter().enumerate() {
         let color = COLORS[i % COLORS.len()];
@@ -298,6 +322,18 @@ fn several(out: &mut Svg, lines: &[(&str, Vec<Point<'_>>)], inside: Frame) -> Ve
             bar(out, point, COLORS[i % COLORS.len()]);
             out.marker(point.at, MARKERS[i % MARKERS.len()], COLORS[i % COLORS.len()], point.row.is_pareto);
         }
+    }
+    let all: Vec<(usize, &Point<'_>)> =
+        lines.iter().enumerate().flat_map(|(i, (_, points))| points.iter().map(move |point| (i, point))).collect();
+    let text =
+        |(_, point): &(usize, &Point<'_>)| notes.and_then(|knob| point.row.knobs.get(knob)).map(ToString::to_string);
+    let texts: Vec<String> = all.iter().filter_map(text).collect();
+    let at: Vec<[f64; 2]> = all.iter().map(|(_, point)| point.at).filter(|_| notes.is_some()).collect();
+    let page = [inside[0] + 2.0, inside[1] - 10.0, inside[2] + 6.0, inside[3] - 2.0];
+    let places = labels::places(&at, &texts, NOTE.size, &taken, page);
+    for ((place, text), (i, _)) in places.iter().zip(&texts).zip(&all) {
+        out.text(place.at, place.anchor, Font { color: COLORS[i % COLORS.len()], ..NOTE }, text);
+        taken.push(labels::frame(place, text, NOTE.size));
     }
     let ends: Vec<f64> = lines.iter().filter_map(|(_, points)| points.last()).map(|p| p.at[1]).collect();
     let named = lines.iter().enumerate().filter(|(_, line)| !line.1.is_empty());

@@ -89,7 +89,8 @@ impl Scale {
                 let value = step * 10_f64.powi(power);
                 if (low..=high).contains(&value) {
                     let digits = (-power).max(0) as usize;
-                    ticks.push((value, format!("{value:.digits$}")));
+                    let text = if digits > 4 { format!("{value:e}") } else { format!("{value:.digits$}") };
+                    ticks.push((value, text));
                 }
             }
         }

@@ -36,6 +36,9 @@ pub const TOPIC: Topic = Topic {
     front: [Quantity::StartMs, Quantity::Ratio],
     alike: &[0, 1],
     series: &[1, 2],
+    panels: None,
+    notes: None,
+    restarts: true,
     make,
 };
 
@@ -91,6 +94,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                     shot,
                     reference: Some(specialised.clone()),
                     mask: None,
+                    veil: None,
                 });
             }
         }

@@ -46,6 +46,9 @@ pub const TOPIC: Topic = Topic {
     front: [Quantity::WrongMask, Quantity::Ratio],
     alike: &[0, 2, 3, 4],
     series: &[1, 3, 4],
+    panels: None,
+    notes: None,
+    restarts: true,
     make,
 };
 
@@ -143,6 +146,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot,
                 reference: Some(reference.clone()),
                 mask: None,
+                veil: None,
             });
         }
     }

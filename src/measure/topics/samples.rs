@@ -18,6 +18,9 @@ pub const TOPIC: Topic = Topic {
     front: [Quantity::Flip, Quantity::Ratio],
     alike: &[],
     series: &[],
+    panels: None,
+    notes: None,
+    restarts: true,
     make,
 };
 
@@ -30,6 +33,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
         shot: shot(samples),
         reference: None,
         mask: None,
+        veil: None,
     };
     Ok(Trial { plain: shot(1), reference: shot(64), variants: [1, 2, 4, 8, 16, 32].map(variant).into() })
 }

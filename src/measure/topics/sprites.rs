@@ -43,6 +43,9 @@ pub const TOPIC: Topic = Topic {
     front: [Quantity::WrongMask, Quantity::Memory],
     alike: &[0],
     series: &[0],
+    panels: None,
+    notes: None,
+    restarts: true,
     make,
 };
 
@@ -91,6 +94,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot: stage.shot(scene.clone(), 1),
                 reference: Some(analytic.clone()),
                 mask: Some(mask.clone()),
+                veil: None,
             });
         }
     }

@@ -1,5 +1,7 @@
 //! Methods of laying translucent layers one over the other (O7): what each costs and leaves out.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::{
@@ -17,7 +19,7 @@ use crate::{
 /// Share of the picture that the lens covers.
 const SHARE: f64 = 0.1;
 /// Samples per pixel at which layers by chance are compared.
-const SAMPLES: [u32; 3] = [1, 8, 64];
+const SAMPLES: [u32; 3] = [1, 4, 16];
 
 /// See the module.
 pub const TOPIC: Topic = Topic {
@@ -31,11 +33,14 @@ pub const TOPIC: Topic = Topic {
         Knob { name: "method", unit: "" },
         Knob { name: "layers or samples", unit: "" },
     ],
-    x: Quantity::MeanSteps,
-    y: &[Quantity::Ratio, Quantity::Memory],
-    front: [Quantity::MeanSteps, Quantity::Ratio],
+    x: Quantity::MeanError,
+    y: &[Quantity::Ratio],
+    front: [Quantity::MeanError, Quantity::Ratio],
     alike: &[0],
-    series: &[0],
+    series: &[1],
+    panels: Some(0),
+    notes: Some(2),
+    restarts: false,
     make,
 };
 
@@ -82,7 +87,7 @@ fn low(extent: &Aabb, away: f64, height_m: f64) -> Camera {
 
 /// What is compared: methods, how many layers or samples stand in the table, and samples.
 fn methods() -> Vec<(Transparency, Option<u32>, u32)> {
-    let peel = |layers| (Transparency::Peel { layers }, Some(layers), 1);
+    let peel = |layers: u32| (Transparency::Peel { layers }, Some(layers).filter(|layers| *layers > 0), 1);
     let slots = |layers| (Transparency::KBuffer { layers }, Some(layers), 1);
     let mut all = vec![(Transparency::Exact, None, 1), peel(0), peel(4), peel(16)];
     all.extend(SLOTS.map(slots));
@@ -94,6 +99,7 @@ fn methods() -> Vec<(Transparency, Option<u32>, u32)> {
 fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
     let mut variants = Vec::new();
     for (name, scene) in scenes(stage)? {
+        let veil = Arc::new(stage.studio.composited_in_f64(&scene, stage.size)?);
         for (method, number, samples) in methods() {
             let mut own = scene.clone();
             own.style.transparency = method;
@@ -108,6 +114,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot: stage.shot(own, samples),
                 reference: Some(stage.shot(scene.clone(), samples)),
                 mask: None,
+                veil: Some(Arc::clone(&veil)),
             });
         }
     }

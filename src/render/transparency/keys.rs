@@ -14,7 +14,7 @@ use crate::{
 /// Layers that a round of peeling takes off. One would be what the literature has; two passes that find several are cheaper.
 const PEELED_AT_ONCE: u32 = 4;
 /// Words of the record of a pixel that is peeled, as `lib/slots.wgsl` and `pass/composite.wgsl` have it.
-const PEELING_RECORD: u32 = 11;
+const PEELING_RECORD: u32 = 12;
 
 /// A pass over the translucent fragments of the city.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
