@@ -15,7 +15,7 @@
 //! name = "soft"
 //! type = "number"
 //! range = [0, 1]
-//! default = 0.5
+//! default = 0.7
 //! doc = "How wide the rim is, as a share of the footprint's area divided by the length of its outline, but two pixels at least; 0 = no rim."
 //!
 //! [[parameter]]
