@@ -213,6 +213,45 @@ fn a_frame_with_a_history_does_not_depend_on_which_frames_are_drawn() {
 }
 
 #[test]
+fn statistics_tell_of_each_frame_and_few_samples_are_warned_of() {
+    let folder = folder("stats");
+    let (file, frames, stats) = (folder.join("s.toml"), folder.join("frames"), folder.join("walk.jsonl"));
+    std::fs::write(&file, SCENE.replace("[figure]", &format!("{GIVES_WAY}[figure]"))).unwrap();
+    let draw = |samples: &str| {
+        let arguments = ["animate", text(&file), "-o", text(&frames), "--frames", "1..", "--stats", text(&stats)];
+        let output = run(&[&arguments[..], &["--samples", samples]].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        said
+    };
+    let said = draw("2");
+    assert!(
+        said.contains("occluders fade") && said.contains("2 samples") && said.contains("figure.samples = 8"),
+        "{said}"
+    );
+    let lines: Vec<serde_json::Value> =
+        std::fs::read_to_string(&stats).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(lines.len(), 5);
+    let mut fading = 0;
+    for (line, number) in lines.iter().zip(1..) {
+        assert_eq!((&line["number"], &line["frame"]["samples"]), (&number.into(), &2.into()));
+        assert!((line["at_s"].as_f64().unwrap() - 0.2 * f64::from(number)).abs() < 1e-9);
+        assert_eq!(line["lenses"][0]["name"], "a");
+        let near = &line["lenses"][1];
+        let weights: Vec<f64> =
+            near["occluders"].as_array().unwrap().iter().map(|o| o["weight"].as_f64().unwrap()).collect();
+        let count = |key: &str| near["over_time"][key].as_u64().unwrap() as usize;
+        assert_eq!(count("whole"), weights.iter().filter(|w| **w == 1.0).count(), "{near}");
+        let between = weights.iter().filter(|w| **w > 0.0 && **w < 1.0).count();
+        assert!(count("entering") + count("leaving") >= between, "{near}");
+        fading += between;
+    }
+    assert!(fading > 0);
+    assert!(!draw("8").contains("occluders fade"));
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn what_cannot_be_drawn_is_said_in_one_line_before_anything_is() {
     let folder = folder("wrong");
     let (file, frames) = (folder.join("s.toml"), folder.join("frames"));

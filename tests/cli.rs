@@ -141,8 +141,11 @@ fn info_as_json_is_the_object_of_the_contract() {
     assert_eq!(facts["crs"], "EPSG:7415");
     assert_eq!(facts["extent"], json!({"min": [100.0, 200.0, 0.0], "max": [110.0, 220.0, 3.0]}));
     assert_eq!(facts["objects"]["by_type"], json!({"Building": 2, "BuildingPart": 1}));
-    let part = json!({"id": "a1", "type": "BuildingPart", "parents": ["a"], "lods": ["2"]});
+    let extent = json!({"min": [100.0, 200.0, 0.0], "max": [110.0, 220.0, 3.0]});
+    let part = json!({"id": "a1", "type": "BuildingPart", "parents": ["a"], "lods": ["2"], "extent": extent});
     assert_eq!(facts["objects"]["list"][1], part);
+    assert_eq!(facts["objects"]["list"][0]["extent"], extent, "that of its part");
+    assert_eq!(facts["objects"]["list"][2]["extent"], Value::Null, "no geometry");
     assert_eq!(facts["lods"], json!({"2": {"objects": 1, "polygons": 2, "triangles": 3}}));
     let year =
         json!({"count": 2, "nulls": 0, "type": "integer", "min": 1900, "max": 2000, "values": [[1900, 1], [2000, 1]]});
@@ -160,9 +163,10 @@ fn info_as_text_fits_and_names_what_is_there() {
     }
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     assert!(!text.contains('\u{1b}'), "no colours in a pipe");
-    assert!(
-        out(&run(&["info", "--list", &file])).lines().any(|line| line.contains("a1") && line.contains("BuildingPart"))
-    );
+    assert!(out(&run(&["info", "--list", &file])).lines().any(|line| line.contains("a1")
+        && line.contains("BuildingPart")
+        && line.contains("[105.00, 210.00, 1.50]")
+        && line.contains("10.00 × 20.00 × 3.00 m")));
 }
 
 #[test]

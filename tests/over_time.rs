@@ -101,6 +101,76 @@ fn a_fade_is_at_each_pixel_one_of_two_pictures_whatever_is_drawn() {
 }
 
 #[test]
+fn a_change_of_case_is_at_each_pixel_one_of_two_renderings() {
+    let mut studio = of_square();
+    let ids = some_ids(&studio, 8);
+    let cases = |nearer_m: f64| {
+        let case = |word| Rendering::of_word(word).expect("a word").cases.remove(0);
+        let mut near = case("flatten");
+        near.when.nearer_m = Some(nearer_m);
+        let mut scene = with_fade(square("discard", &ids, false), 0.5);
+        scene.lenses[0].render = Some(Rendering::of_cases(vec![near, case("x-ray-color")]));
+        scene
+    };
+    let (far, near) = (cases(0.0), cases(1e4));
+    for backend in [Backend::Specialised, Backend::Uber] {
+        let [before, after] = [&far, &near].map(|scene| drawn(&mut studio, scene, backend, 1));
+        studio.pass(&far, SIZE, 10.0).expect("a moment");
+        assert!(drawn(&mut studio, &far, backend, 1).rgba == before.rgba, "settled");
+        for (scene, dt, share) in [(&near, 0.125, 0.25_f32), (&near, 0.25, 0.75), (&far, 0.125, 0.5), (&near, 0.5, 1.0)]
+        {
+            studio.pass(scene, SIZE, dt).expect("a moment");
+            let now = drawn(&mut studio, scene, backend, 1);
+            let mut changed = [0; 2];
+            for (i, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
+                let is_after = share > dither([x, y], 0);
+                let expected = if is_after { &after } else { &before };
+                let told = |p: &Picture| (p.rgba[i], p.object_id.as_ref().expect("ids")[i], bits(p, 0)[i]);
+                if before.rgba[i] != after.rgba[i] {
+                    assert_eq!(told(&now), told(expected), "{backend:?}: pixel {x} {y} at {share}");
+                    changed[usize::from(is_after)] += 1;
+                }
+            }
+            assert!(changed[1] > 20 && (changed[0] == 0) == (share == 1.0), "{changed:?} at {share}");
+        }
+        studio.pass(&square("discard", &[], false), SIZE, 10.0).expect("a moment");
+    }
+}
+
+#[test]
+fn a_case_is_left_beyond_the_margin_only() {
+    let mut studio = of_square();
+    let with = |studio: &Studio, id: &String, beyond: f64| {
+        let ids = std::slice::from_ref(id);
+        let mut scene = with_fade(square("flatten", ids, false), 0.0);
+        let eye = scene.camera.expect("a camera").eye;
+        let object = studio.model.find_object(id).expect("it");
+        let mut cases = vec![Rendering::of_word("flatten").expect("a word").cases.remove(0)];
+        cases[0].when.nearer_m = Some(studio.model.family_bounds(object).distance_to(eye) + beyond);
+        cases.extend(Rendering::of_word("box").expect("a word").cases);
+        scene.lenses[0].render = Some(Rendering::of_cases(cases));
+        scene
+    };
+    // One that is seen.
+    let found = some_ids(&studio, 40).into_iter().find_map(|id| {
+        let [near, far] = [0.5, -0.5].map(|beyond| {
+            let scene = with(&studio, &id, beyond);
+            drawn(&mut studio, &scene, Backend::default(), 1).rgba
+        });
+        (near != far).then_some((id, near, far))
+    });
+    let (id, near, far) = found.expect("a house in the picture");
+    let with = |studio: &Studio, beyond: f64| with(studio, &id, beyond);
+    // The margin is a metre: it takes effect once the place of the case was left by it, and again where it holds.
+    for (beyond, is_near) in [(0.5, true), (-0.5, true), (-0.99, true), (-1.01, false), (-0.5, false), (0.01, true)] {
+        let scene = with(&studio, beyond);
+        studio.pass(&scene, SIZE, 0.1).expect("a moment");
+        let now = drawn(&mut studio, &scene, Backend::default(), 1).rgba;
+        assert!(now == if is_near { near.clone() } else { far.clone() }, "at {beyond}");
+    }
+}
+
+#[test]
 fn many_samples_make_a_fade_smooth() {
     let mut studio = of_square();
     let ids = some_ids(&studio, 8);

@@ -6,14 +6,18 @@ mod studio;
 
 use std::{collections::BTreeSet, path::PathBuf};
 
+use glam::DVec2;
 use studio::*;
 use veduta::{
-    city::ObjectClass,
+    city::{
+        ObjectClass,
+        derived::{Footprint, footprints},
+    },
     figure::{
         scene_file::{self, Options},
         sheet::share::share_in,
     },
-    lens::{Focus, Rendering, rendering::ROWS},
+    lens::{Focus, Rendering, chosen::Choice, rendering::ROWS},
     render::{
         frame::Backend,
         picture::{Aovs, Request, Studio},
@@ -103,7 +107,7 @@ fn check_shares(scene: &Scene, poi: &str, least_occluders: usize) {
             studio.transmittance(&drawn, [400, 225]).expect("a frame").object_id.into_iter().collect();
         let gone: Vec<u32> = others.iter().copied().filter(|id| !left.contains(id)).collect();
         // What is pressed flat lies on what was seen of the ground before it; a pattern covers what is as small as itself.
-        let most = if ["flatten", "flatten-top", "low", "dither"].contains(&row.word) { 2 } else { 0 };
+        let most = if ["flatten", "flatten-top", "flatten-soft", "low", "dither"].contains(&row.word) { 2 } else { 0 };
         assert!(gone.len() <= most, "{}: {gone:?} of {}", row.word, others.len());
     }
 }
@@ -231,6 +235,66 @@ fn a_pattern_lets_through_the_share_that_it_says() {
         // Two faces behind each other hide by the same pattern.
         assert!((through - (1.0 - opacity)).abs() < 0.02, "{opacity}: {through}");
     }
+}
+
+/// From straight above each pixel is a place, and its opacity follows from how far the outline is.
+#[test]
+fn a_soft_rim_is_as_dense_as_its_place_is_deep() {
+    const HEIGHT_M: f64 = 30.0;
+    const SIZE: [u32; 2] = [120, 120];
+    let mut scene = church();
+    let mut studio = of_scene(&scene);
+    let covers = footprints(&studio.model, &studio.geometries, false);
+    let is_house = |f: &&Footprint| {
+        let object = &studio.model.objects[f.objects[0] as usize];
+        let [rings] = &f.parts[..] else { return false };
+        object.class == ObjectClass::Building && matches!(&rings[..], [ring] if ring.len() == 4)
+    };
+    let house = covers.iter().find(is_house).expect("a house of four corners").clone();
+    let ring = house.parts[0][0].clone();
+    let edges: Vec<[DVec2; 2]> = (0..4).map(|i| [ring[i], ring[(i + 1) % 4]]).collect();
+    let area: f64 = edges.iter().map(|[a, b]| 0.5 * (*a - ring[0]).perp_dot(*b - ring[0])).sum();
+    let length: f64 = edges.iter().map(|[a, b]| a.distance(*b)).sum();
+    let middle = (ring[0] + ring[1] + ring[2] + ring[3]) / 4.0;
+    scene.camera = Some(orthographic(middle.extend(200.0), middle.extend(0.0), HEIGHT_M));
+    scene.sun.shadows = false;
+    let Some(Focus::Occluders(of)) = scene.lenses[0].shapes.first_mut() else { panic!("an occlusion lens") };
+    of.test = Test::Spherical { radius: 0.0, reference: Default::default() };
+    let root = studio.model.root(house.objects[0]);
+    of.force = Some(Choice { ids: vec![studio.model.objects[root as usize].id.to_string()], ..Choice::default() });
+    let mut draw = |render: &str| {
+        let asked = Request { size: SIZE, ..request(Backend::Specialised, false) };
+        studio.render(&with_cases(&scene, render), &asked).expect("a picture").rgba
+    };
+    let [ground, wholly] = ["{ as = 'discard' }", "{ as = 'flatten-top' }"].map(&mut draw);
+    for soft in [0.4, 1.0] {
+        let film = draw(&format!("{{ as = 'flatten-soft', opacity = 1, soft = {soft} }}"));
+        let width = (soft * area / length).max(2.0 * HEIGHT_M / f64::from(SIZE[1]));
+        let linear = |byte: u8| (f64::from(byte) / 255.0).powf(2.2);
+        let (mut inside, mut dense) = (0, 0);
+        for (i, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
+            let at = DVec2::new(f64::from(x) + 0.5 - 60.0, 60.0 - f64::from(y) - 0.5) * HEIGHT_M / f64::from(SIZE[1]);
+            let away = edges.iter().map(|[a, b]| {
+                // The outline is convex, and counter-clockwise.
+                (*b - *a).normalize().perp_dot(middle + at - *a)
+            });
+            let depth = away.fold(f64::INFINITY, f64::min);
+            let [a, b, now] = [&ground, &wholly, &film].map(|p| p[i].map(linear));
+            let channel = (0..3).max_by(|&j, &k| (a[j] - b[j]).abs().total_cmp(&(a[k] - b[k]).abs())).expect("three");
+            if depth < 0.1 || (a[channel] - b[channel]).abs() < 0.1 {
+                continue;
+            }
+            let share = (now[channel] - a[channel]) / (b[channel] - a[channel]);
+            let t = (depth / width).min(1.0);
+            let expected = t * t * (3.0 - 2.0 * t);
+            assert!((share - expected).abs() < 0.04, "pixel {x} {y}, {depth:.2} m deep: {share:.3}, not {expected:.3}");
+            inside += 1;
+            dense += usize::from(expected == 1.0);
+        }
+        println!("soft {soft}: {inside} pixels inside, {dense} of them wholly dense; width {width:.2} m");
+        assert!(inside > 400 && dense > 50 && dense < inside, "{inside} {dense}");
+    }
+    assert!(draw("{ as = 'flatten-soft', opacity = 0.7, soft = 0 }") == draw("{ as = 'flatten-film' }"));
 }
 
 #[test]

@@ -5,5 +5,6 @@ fn covers_fading_members(s: Shape, pixel: vec2i) -> bool {
     if code == 0u {
         return false;
     }
-    return bitcast<f32>(object_values[u32(s.size_x) + (surface_shown(code - 1u).object + 1u)]) > 0.5;
+    let at = u32(s.size_x) + 2u * (surface_shown(code - 1u).object + 1u);
+    return bitcast<f32>(object_values[at + 1u]) - bitcast<f32>(object_values[at]) > 0.5;
 }

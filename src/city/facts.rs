@@ -5,7 +5,10 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
-use crate::city::{Attribute, CityModel, NONE, StringId, TextureImage, Value};
+use crate::{
+    city::{Attribute, CityModel, NONE, StringId, TextureImage, Value},
+    geom::Aabb,
+};
 
 /// How many distinct values of an attribute are listed at most.
 const LISTED_VALUES: usize = 64;
@@ -60,6 +63,13 @@ pub struct Extent {
     pub max: [f64; 3],
 }
 
+impl Extent {
+    /// `None` of what is empty.
+    fn of(bounds: Aabb) -> Option<Self> {
+        (!bounds.is_empty()).then(|| Self { min: bounds.min.into(), max: bounds.max.into() })
+    }
+}
+
 /// City objects, counted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ObjectFacts {
@@ -85,6 +95,8 @@ pub struct ListedObject {
     pub parents: Vec<String>,
     /// Levels of detail it has geometry of, coarse to fine.
     pub lods: Vec<String>,
+    /// Box around its geometry and that of all below it, of every level of detail; `null` without any.
+    pub extent: Option<Extent>,
 }
 
 /// One level of detail.
@@ -182,7 +194,7 @@ pub fn facts(city: &CityModel, list: bool) -> Facts {
         version: (!version.is_empty()).then_some(version),
         crs: city.crs.clone(),
         crs_raw: city.crs_raw.clone(),
-        extent: (!extent.is_empty()).then(|| Extent { min: extent.min.into(), max: extent.max.into() }),
+        extent: Extent::of(extent),
         objects: object_facts(city, list),
         lods: lod_facts(city),
         attributes: attribute_facts(city),
@@ -210,7 +222,7 @@ fn object_facts(city: &CityModel, list: bool) -> ObjectFacts {
     for object in &city.objects {
         *counts.entry(object.kind).or_insert(0) += 1;
     }
-    let listed = |object: &crate::city::CityObject| {
+    let listed = |(object, number): (&crate::city::CityObject, u32)| {
         let range = object.geometries.start as usize..object.geometries.end as usize;
         let mut lods: Vec<_> = city.geometries[range].iter().map(|g| g.lod).collect();
         lods.sort();
@@ -220,12 +232,13 @@ fn object_facts(city: &CityModel, list: bool) -> ObjectFacts {
             kind: city.strings.get(object.kind).to_owned(),
             parents: object.parents.iter().map(|&p| city.objects[p as usize].id.to_string()).collect(),
             lods: lods.iter().map(ToString::to_string).collect(),
+            extent: Extent::of(city.family_bounds(number)),
         }
     };
     ObjectFacts {
         total: city.objects.len() as u64,
         by_type: by_count(counts, |kind| city.strings.get(kind).to_owned()),
-        list: list.then(|| city.objects.iter().map(listed).collect()),
+        list: list.then(|| city.objects.iter().zip(0..).map(listed).collect()),
     }
 }
 

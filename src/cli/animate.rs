@@ -6,6 +6,7 @@ use std::{
 };
 
 use clap::Args;
+use serde::Serialize;
 
 use crate::{
     cli::{
@@ -21,7 +22,7 @@ use crate::{
         animation::{Film, FilmError},
         picture,
     },
-    render::picture::Request,
+    render::{picture::Request, stats::Statistics},
     scene::Scene,
 };
 
@@ -31,6 +32,7 @@ Examples:
   veduta animate scene.toml -o frames --size 1920x1080 --samples 16
   veduta animate scene.toml -o frames --frames 0..49      frames 0 to 49, both included
   veduta animate scene.toml -o frames --set animation.fps=60
+  veduta animate scene.toml -o frames --stats walk.jsonl  what each frame cost and did, a line of JSON each
   ffmpeg -framerate 30 -i frames/%04d.png -pix_fmt yuv420p walk.mp4
 
 The scene has a table [animation] (docs/scene.md). DIR gets 0000.png, 0001.png, ...; each frame is the picture that
@@ -56,6 +58,9 @@ pub struct Arguments {
     /// Samples per pixel [default: the scene's, else 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_SAMPLES))]
     pub samples: Option<u32>,
+    /// Write statistics: of each frame a line, the JSON object of `veduta render --stats` with its `number` and `at_s`
+    #[arg(long, value_name = "FILE")]
+    pub stats: Option<PathBuf>,
     /// Change the scene: lens.0.shape.radius=80, animation.frames=30; repeatable, in order
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub settings: Vec<String>,
@@ -129,10 +134,11 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let begin = if has_history { 0 } else { first };
     (begin..=last).try_for_each(|frame| film.scene(frame).map(|_| ())).map_err(failed)?;
     let folder = Folder::new(&arguments.output, film.frames())?;
-    let (mut studio, _) = render::open(&first_scene, &options, global)?;
+    let (mut studio, warnings) = render::open(&first_scene, &options, global)?;
     let count = u64::from(last - first) + 1;
     log::info!("{count} frames, {} per second", film.fps());
     let progress = terminal::Progress::counting(count, "drawing", "frames", global);
+    let (mut lines, mut is_warned) = (Vec::new(), false);
     for frame in begin..=last {
         let scene = film.scene(frame).map_err(failed)?;
         let at_frame = |error: String| Failure::failed(format!("{}: frame {frame}: {error}", file.display()));
@@ -140,21 +146,55 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         if frame < first {
             continue;
         }
-        let drawn = figure::draw(&mut studio, &scene, &request(&scene)).map_err(|error| at_frame(error.to_string()))?;
+        if !is_warned && studio.is_fading() && scene.figure.samples < SMOOTH {
+            is_warned = true;
+            log::warn!(
+                "frame {frame}: occluders fade by a pattern of pixels, which is seen with {} per pixel; figure.samples = {SMOOTH} \
+                 (--samples {SMOOTH}) smooths it",
+                if scene.figure.samples == 1 {
+                    "1 sample".to_owned()
+                } else {
+                    format!("{} samples", scene.figure.samples)
+                }
+            );
+        }
+        let asked = request(&scene, arguments.stats.is_some());
+        let mut drawn = figure::draw(&mut studio, &scene, &asked).map_err(|error| at_frame(error.to_string()))?;
+        if arguments.stats.is_some() {
+            render::with_warnings(&mut drawn.statistics, &warnings);
+            let told = Told { number: frame, at_s: f64::from(frame) / film.fps(), statistics: &drawn.statistics };
+            serde_json::to_writer(&mut lines, &told).map_err(|error| at_frame(error.to_string()))?;
+            lines.push(b'\n');
+        }
         let notes = render::notes(&scene, &options);
         picture::save_picture(&folder.file(frame), drawn.size, &drawn.rgba, true, &notes).map_err(output::unwritten)?;
         progress.at(u64::from(frame - first) + 1);
     }
-    Ok(())
+    match &arguments.stats {
+        Some(file) => output::write(file, |out| out.write_all(&lines)),
+        None => Ok(()),
+    }
 }
 
-fn request(scene: &Scene) -> Request {
+/// Samples from which on a fade looks smooth: with fewer its pattern stands out on large faces.
+const SMOOTH: u32 = 8;
+
+/// A line of statistics.
+#[derive(Serialize)]
+struct Told<'a> {
+    number: u32,
+    at_s: f64,
+    #[serde(flatten)]
+    statistics: &'a Statistics,
+}
+
+fn request(scene: &Scene, statistics: bool) -> Request {
     Request {
         size: scene.figure.size,
         samples: scene.figure.samples,
         transparent: false,
         aovs: Default::default(),
-        statistics: false,
+        statistics,
         backend: Default::default(),
     }
 }

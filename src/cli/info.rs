@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Write one JSON object instead of text
     #[arg(long)]
     pub json: bool,
-    /// Name every object, with type, parents and levels of detail
+    /// Name every object, with type, parents, levels of detail, and where it is
     #[arg(long)]
     pub list: bool,
 }

@@ -10,7 +10,7 @@ use std::fmt::Write;
 use crate::{
     city::{
         Source,
-        facts::{AttributeFacts, Facts, TreeLine},
+        facts::{AttributeFacts, Extent, Facts, TreeLine},
     },
     cli::{
         report::cells::{Align, Table, bytes, clean, count, cut, length, percent},
@@ -214,14 +214,18 @@ impl Report {
     fn list(&mut self, facts: &Facts) {
         let Some(list) = &facts.objects.list else { return };
         self.gap();
-        let columns = [("index", Align::Right), ("id", Align::Left), ("type", Align::Left)];
-        let mut table = Table::new(&[&columns[..], &[("LoD", Align::Left), ("parents", Align::Left)]].concat());
+        let columns = [("index", Align::Right), ("id", Align::Left), ("type", Align::Left), ("LoD", Align::Left)];
+        let place = [("middle", Align::Left), ("size", Align::Left)];
+        let mut table = Table::new(&[&columns[..], &place, &[("parents", Align::Left)]].concat());
         for (index, object) in list.iter().enumerate() {
+            let [middle, size] = object.extent.map_or_else(Default::default, |extent| place_and_size(&extent));
             table.row([
                 index.to_string(),
                 clean(&object.id),
                 clean(&object.kind),
                 object.lods.join(" "),
+                middle,
+                size,
                 clean(&object.parents.join(" ")),
             ]);
         }
@@ -236,6 +240,13 @@ impl Report {
 fn number(value: f64) -> String {
     let text = format!("{value:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The middle of a box, as scene files have places, and its size along the axes; to the centimetre.
+fn place_and_size(Extent { min, max }: &Extent) -> [String; 2] {
+    let all = |of: fn(f64, f64) -> f64| [0, 1, 2].map(|i| format!("{:.2}", of(min[i], max[i])));
+    let size = all(|low, high| high - low).join(" × ");
+    [format!("[{}]", all(|low, high| low + 0.5 * (high - low)).join(", ")), format!("{size} m")]
 }
 
 /// A type with the branch that leads to it from the type of its parents.

@@ -169,6 +169,12 @@ pub enum LensBody {
 }
 
 impl LensBody {
+    /// How lenses of a kind are drawn that say nothing of it. What is done to occluders is what tells of them; a line around what is opaque of
+    /// it, and none around the rest, tells less.
+    pub fn of_kind(kind: LensKind) -> Self {
+        if kind == LensKind::Occlusion { Self::None } else { Self::Outline }
+    }
+
     /// All, with their words in scene files.
     pub const WORDS: [(&str, Self); 4] =
         [("outline", Self::Outline), ("shell", Self::Shell), ("halo", Self::Halo), ("none", Self::None)];

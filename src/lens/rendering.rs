@@ -204,6 +204,13 @@ pub const ROWS: &[Row] = &[
         form: TOP,
     },
     Row {
+        word: "flatten-soft",
+        spec: "O3, O5",
+        doc: "The same, clear at its rim and dense inside, by how far the outline of what they cover is.",
+        effects: &[("soft-film", &[])],
+        form: TOP,
+    },
+    Row {
         word: "hull",
         spec: "O3",
         doc: "Their convex hulls, translucent.",

@@ -41,8 +41,9 @@ pub enum Leaf {
 pub struct Members {
     /// One per object of the city: whether it is one, be it in part.
     pub objects: Arc<[bool]>,
-    /// Where some come or go (O6), how far each object has come, 0 to 1; `None`: members are wholly in.
-    pub weights: Option<Arc<[f32]>>,
+    /// Where some come or go (O6), from which threshold of a pixel on and below which each object is in, 0 to 1; `None`: members are
+    /// wholly in.
+    pub thresholds: Option<Arc<[[f32; 2]]>>,
     /// Box around what is shown of them, metres.
     pub bounds: Aabb,
 }
@@ -342,7 +343,7 @@ impl Leaf {
     /// How it is tested from its own figures.
     pub fn test(&self) -> VolumeTest {
         let volume = match self {
-            Self::Members(Members { weights: None, .. }) => return VolumeTest::Members,
+            Self::Members(Members { thresholds: None, .. }) => return VolumeTest::Members,
             Self::Members(_) => return VolumeTest::FadingMembers,
             Self::Sprite(_) => return VolumeTest::OwnSprite,
             Self::Volume(volume) => volume,

@@ -1,6 +1,10 @@
 //! The contents of a scene's lenses: loaded when their lenses are first seen, kept as long as these are enabled.
 
-use std::{path::PathBuf, sync::Arc, time::Instant};
+use std::{
+    path::PathBuf,
+    sync::{Arc, OnceLock},
+    time::Instant,
+};
 
 use rustc_hash::FxHashSet;
 
@@ -156,6 +160,8 @@ impl ContentCities {
                     source,
                     geometries,
                     heights,
+                    made_of: (Vec::new(), false),
+                    footprints: OnceLock::new(),
                     ground,
                     is_own,
                     has_shadow: true,
@@ -251,6 +257,8 @@ fn derived(id: u64, source: Arc<CityModel>, geometries: &[u32], how: &Derive, is
         model: Arc::new(made.model),
         source,
         heights: made.heights,
+        made_of: (geometries.to_vec(), how.parts),
+        footprints: OnceLock::new(),
         ground: None,
         is_own,
         has_shadow: !how.form.is_pressed(),

@@ -4,7 +4,7 @@
 //! the uniform `City` differs. The surfaces of all stand in one table, the scene's own first, so that a pixel's code says
 //! all there is to know; directions in it are those after turning.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -16,6 +16,7 @@ use crate::{
         city::{Chunk, CityBuffers, Section, SectionKind, Shown},
         cut::Cut,
         eye::{padded, relative, split_eye},
+        footprints::Footprints,
         frame::{FrameInput, strided},
         hiding::reaches_of,
         layout,
@@ -38,6 +39,10 @@ pub struct ContentCity {
     pub geometries: Vec<u32>,
     /// Heights that tell faces in one plane apart, as [`crate::city::derived::Derived::heights`].
     pub heights: Vec<[f32; 3]>,
+    /// Of a derived one, the geometries of the source that it was made of, and whether each object of these stands for itself.
+    pub made_of: (Vec<u32>, bool),
+    /// What its objects cover of the ground, once an effect asks for it.
+    pub footprints: OnceLock<Footprints>,
     /// Its plain ground; `None` where there is none, or where it is the one of the scene's city.
     pub ground: Option<Ground>,
     /// Whether its objects are those of the scene's own model.

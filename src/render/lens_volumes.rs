@@ -218,18 +218,18 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> 
 
 /// The leaves whose union a focus area is that is no combination.
 fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, FocusError> {
-    let mut weights = None;
+    let mut thresholds = None;
     let objects: Arc<[bool]> = match focus {
         Focus::Thematic(choice) => members(city.model, choice).into(),
         Focus::Occluders(_) | Focus::Case { .. } if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
         Focus::Occluders(of) => {
             let shown = tools.occlusion.objects(tools.lens, (of, &[]), tools.pois, city, tools.viewer);
-            weights = shown.weights;
+            thresholds = shown.thresholds;
             shown.objects
         }
         Focus::Case { of, when } => {
             let shown = tools.occlusion.objects(tools.lens, (of, when), tools.pois, city, tools.viewer);
-            weights = shown.weights;
+            thresholds = shown.thresholds;
             shown.objects
         }
         Focus::Enclosed { parts, whole, types } => objects_in(parts, (*whole, types), city, place, tools)?.into(),
@@ -238,7 +238,7 @@ fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -
     };
     let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);
     let bounds = shown.filter(|g| objects[g.object as usize]).fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
-    Ok(vec![Leaf::Members(Members { objects, weights, bounds })])
+    Ok(vec![Leaf::Members(Members { objects, thresholds, bounds })])
 }
 
 /// The objects that some shapes hold, one per object of the city.

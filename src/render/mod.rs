@@ -17,6 +17,7 @@ mod enclosed;
 pub mod eye;
 mod filters;
 mod flat;
+pub mod footprints;
 pub mod frame;
 mod frame_keys;
 pub mod furniture;

@@ -4,12 +4,14 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
+use glam::DVec3;
+
 use crate::{
     geom::Aabb,
     lens::{Occluders, chosen::members, rendering::When, solids::ShownCity},
     render::stats,
     scene::{Poi, PoiPlace},
-    visibility::{self, Detected, Memory, Query, Scope, Set, Units, Viewer},
+    visibility::{self, CaseMemory, Detected, Memory, Query, Scope, Set, Units, Viewer},
 };
 
 /// What is known of the occluders that lenses look for.
@@ -30,6 +32,9 @@ struct Remembered {
     /// For whom and from where the last step was made: pictures of other moments have no history.
     asked: Asked,
     shown: ShownOccluders,
+    /// The cases that it draws them in, and of each unit that is drawn which one; one more means none.
+    when: Vec<When>,
+    cases: BTreeMap<u32, CaseMemory>,
 }
 
 /// Whom a lens looks for, and from where.
@@ -47,13 +52,41 @@ impl Asked {
     }
 }
 
+/// A lens whose occluders come and go over time.
+#[derive(Clone, Debug)]
+pub struct Passing<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Whom it looks for.
+    pub of: &'a Occluders,
+    /// The cases that it draws them in; none: all in one way.
+    pub when: Vec<When>,
+}
+
 /// What is drawn as an occluder.
 #[derive(Clone, Debug)]
 pub struct ShownOccluders {
     /// One flag per object of the city: whether it is one, be it in part.
     pub objects: Arc<[bool]>,
-    /// Where some come or go, how far each object has come, 0 to 1.
-    pub weights: Option<Arc<[f32]>>,
+    /// Where some come or go, from which threshold of a pixel on and below which each object is drawn as one, 0 to 1.
+    pub thresholds: Option<Arc<[[f32; 2]]>>,
+}
+
+impl ShownOccluders {
+    /// Between these thresholds each.
+    fn between(thresholds: Vec<[f32; 2]>) -> Self {
+        let fades = |[from, to]: &[f32; 2]| from < to && (*from > 0.0 || *to < 1.0);
+        Self {
+            objects: thresholds.iter().map(|[from, to]| from < to).collect(),
+            thresholds: thresholds.iter().any(fades).then(|| thresholds.into()),
+        }
+    }
+}
+
+/// Of each object of a city what its unit has; the default of what others stand on.
+fn by_object<T: Copy + Default>(units: &Units, city: ShownCity, of_unit: impl Fn(u32) -> T) -> Vec<T> {
+    let objects = units.of_object.iter().zip(&city.model.objects);
+    objects.map(|(&unit, object)| if object.class.is_ground() { T::default() } else { of_unit(unit) }).collect()
 }
 
 /// The occluders of one lens, or of several that look for the same.
@@ -106,70 +139,68 @@ impl Occlusion {
         city: ShownCity,
         viewer: Viewer,
     ) -> ShownOccluders {
-        let (shown, occluders) = match self.memory_of(lens, of, pois, viewer) {
-            Some(remembered) => (remembered.shown.clone(), remembered.memory.shown()),
-            None => {
-                let Found { objects, detected, .. } = self.found(of, pois, city, viewer, How::default());
-                (ShownOccluders { objects, weights: None }, detected.occluders.clone())
-            }
-        };
-        if when.is_empty() {
-            return shown;
-        }
         let units = self.units_of(city);
-        let (mut left, mut of_case) = (occluders, Set::new(units.len()));
-        for case in when {
-            of_case = held(case, &left, &units, city, viewer);
-            left = left.without(&of_case);
-        }
-        let objects: Arc<[bool]> = units.objects_of(city.model, &of_case).into();
-        let of_these = |weights: Arc<[f32]>| -> Arc<[f32]> {
-            objects.iter().zip(&weights[..]).map(|(is, weight)| if *is { *weight } else { 0.0 }).collect()
+        let remembered = self.memory_of(lens, of, pois, viewer).filter(|known| known.when.starts_with(when));
+        let Some(Remembered { memory, cases, shown, .. }) = remembered else {
+            let Found { objects, detected, .. } = self.found(of, pois, city, viewer, How::default());
+            let Some(last) = when.len().checked_sub(1) else { return ShownOccluders { objects, thresholds: None } };
+            let cases = Cases::new(when, &units, city, viewer);
+            let is_of_case = |unit| detected.occluders.has(unit) && cases.first(unit) == last;
+            let of_case: Vec<bool> = (0..units.len() as u32).map(is_of_case).collect();
+            let objects = units.objects_of(city.model, &Set::of(&of_case)).into();
+            return ShownOccluders { objects, thresholds: None };
         };
-        let weights = shown.weights.map(of_these);
-        ShownOccluders { objects, weights }
+        let Some(last) = when.len().checked_sub(1) else { return shown.clone() };
+        let of_unit = |unit: u32| {
+            let weight = memory.weights()[unit as usize];
+            cases.get(&unit).map_or([0.0; 2], |of_unit| of_unit.thresholds(last, weight))
+        };
+        ShownOccluders::between(by_object(&units, city, of_unit))
     }
 
     /// Per object of the city, how far it is drawn as an occluder of a lens, by its name, 0 to 1; `None` where no time passed for it.
     pub fn weights(&self, lens: &str) -> Option<Vec<f32>> {
-        let ShownOccluders { objects, weights } = &self.remembered.get(lens)?.shown;
+        let ShownOccluders { objects, thresholds } = &self.remembered.get(lens)?.shown;
         let settled = || objects.iter().map(|is| f32::from(u8::from(*is))).collect();
-        Some(weights.as_ref().map_or_else(settled, |weights| weights.to_vec()))
+        let fading = |all: &Arc<[[f32; 2]]>| all.iter().map(|[from, to]| to - from).collect();
+        Some(thresholds.as_ref().map_or_else(settled, fading))
     }
 
     fn memory_of(&self, lens: &str, of: &Occluders, pois: &[Poi], viewer: Viewer) -> Option<&Remembered> {
         self.remembered.get(lens).filter(|remembered| remembered.asked == Asked::new(of, pois, viewer))
     }
 
-    /// Time goes on by `dt` seconds, ≥ 0, to a moment when lenses look for these occluders; those that were not there before
-    /// begin settled (O6).
-    pub fn pass(&mut self, lenses: &[(&str, &Occluders)], pois: &[Poi], city: ShownCity, viewer: Viewer, dt: f64) {
-        self.remembered.retain(|name, _| lenses.iter().any(|(lens, _)| lens == name));
-        for (lens, of) in lenses {
+    /// Time goes on by `dt` seconds, ≥ 0, to a moment when lenses look for these occluders and draw them in these cases; those that were
+    /// not there before begin settled (O6).
+    pub fn pass(&mut self, lenses: &[Passing], pois: &[Poi], city: ShownCity, viewer: Viewer, dt: f64) {
+        self.remembered.retain(|name, _| lenses.iter().any(|lens| lens.name == name));
+        for Passing { name, of, when } in lenses {
             let how = How { has_margin: true, ..How::default() };
             let detected = self.found(of, pois, city, viewer, how).detected;
-            let memory = match self.remembered.remove(*lens) {
-                None => Memory::settled(&detected),
-                Some(Remembered { mut memory, .. }) => {
+            let units = self.units_of(city);
+            let before = self.remembered.remove(*name);
+            let (memory, cases_before) = match before {
+                None => (Memory::settled(&detected), None),
+                Some(Remembered { mut memory, cases, when: known, .. }) => {
                     memory.step(&detected, of.pace, dt);
-                    memory
+                    (memory, (known.len() == when.len()).then_some(cases))
                 }
             };
-            let units = self.units_of(city);
-            let of_object = units.of_object.iter().zip(&city.model.objects);
-            let weights: Vec<f32> = of_object
-                .map(
-                    |(&unit, object)| {
-                        if object.class.is_ground() { 0.0 } else { memory.weights()[unit as usize] as f32 }
-                    },
-                )
-                .collect();
-            let shown = ShownOccluders {
-                objects: weights.iter().map(|weight| *weight > 0.0).collect(),
-                weights: weights.iter().any(|weight| *weight > 0.0 && *weight < 1.0).then(|| weights.into()),
+            let asked_of = Cases::new(when, &units, city, viewer);
+            let over_time = |unit: u32| {
+                let now = asked_of.first(unit);
+                let known = cases_before.as_ref().and_then(|cases| cases.get(&unit)).cloned();
+                let mut case = known.unwrap_or_else(|| CaseMemory::settled(now, when.len() + 1));
+                case.step(now, asked_of.holds(case.case(), unit, of.margin.metres), of.pace, dt);
+                (unit, case)
             };
+            let shown = memory.shown();
+            let cases = if when.is_empty() { BTreeMap::new() } else { shown.iter().map(over_time).collect() };
+            let of_unit = |unit: u32| [0.0, memory.weights()[unit as usize] as f32];
+            let shown = ShownOccluders::between(by_object(&units, city, of_unit));
             let asked = Asked::new(of, pois, viewer);
-            self.remembered.insert((*lens).to_owned(), Remembered { memory, asked, shown });
+            let when = when.clone();
+            self.remembered.insert((*name).to_owned(), Remembered { memory, asked, shown, when, cases });
         }
         self.forget_others();
     }
@@ -206,6 +237,28 @@ impl Occlusion {
         all.into_values()
             .map(|occluder| stats::Occluder { weight: occluder.weight.or(Some(0.0)), ..occluder })
             .collect()
+    }
+
+    /// How many occluders of a lens come and go; `None` where no time was made to pass up to here.
+    pub fn over_time(&self, lens: &str, of: &Occluders, pois: &[Poi], viewer: Viewer) -> Option<stats::OverTime> {
+        let Remembered { memory, cases, .. } = self.memory_of(lens, of, pois, viewer)?;
+        let mut counts = stats::OverTime::default();
+        for (unit, &weight) in (0..).zip(memory.weights()).filter(|(_, weight)| **weight > 0.0) {
+            match memory.is_occluder(unit) {
+                true if weight == 1.0 => counts.whole += 1,
+                true => counts.entering += 1,
+                false => counts.leaving += 1,
+            }
+            counts.changing += u64::from(cases.get(&unit).is_some_and(|case| !case.is_settled()));
+        }
+        Some(counts)
+    }
+
+    /// Whether what was last made to pass left something between two states.
+    pub fn is_fading(&self) -> bool {
+        let fades =
+            |known: &Remembered| !known.memory.is_settled() || !known.cases.values().all(CaseMemory::is_settled);
+        self.remembered.values().any(fades)
     }
 
     /// How many tests were asked of the city so far; what is known already is not asked again.
@@ -266,20 +319,43 @@ fn poi_of(place: &PoiPlace, city: ShownCity) -> Option<visibility::Poi> {
     }
 }
 
-/// The units among some that a case holds of.
-fn held(when: &When, among: &Set, units: &Units, city: ShownCity, viewer: Viewer) -> Set {
-    let mut held = Set::new(units.len());
-    let chosen = when.of.as_ref().map(|choice| units.flagged(city.model, &members(city.model, choice)));
-    let kind = |unit: u32| city.model.strings.get(city.model.objects[units.roots[unit as usize] as usize].kind);
-    for unit in among.iter() {
-        let distance = || units.boxes[unit as usize].distance_to(viewer.eye);
-        let is_near = when.nearer_m.is_none_or(|nearer| distance() < nearer);
-        let is_of_type = when.types.is_empty() || when.types.iter().any(|name| name == kind(unit));
-        if is_near && is_of_type && chosen.as_ref().is_none_or(|chosen| chosen.has(unit)) {
-            held.insert(unit);
+/// Of which units some cases hold.
+struct Cases<'a> {
+    when: &'a [When],
+    /// The units that each chooses; `None`: it asks for nothing of the kind.
+    chosen: Vec<Option<Set>>,
+    units: &'a Units,
+    city: ShownCity<'a>,
+    eye: DVec3,
+}
+
+impl<'a> Cases<'a> {
+    fn new(when: &'a [When], units: &'a Units, city: ShownCity<'a>, viewer: Viewer) -> Self {
+        let chosen_by = |choice| units.flagged(city.model, &members(city.model, choice));
+        Self {
+            when,
+            chosen: when.iter().map(|when| when.of.as_ref().map(chosen_by)).collect(),
+            units,
+            city,
+            eye: viewer.eye,
         }
     }
-    held
+
+    /// The first that holds of a unit; where none does, how many there are.
+    fn first(&self, unit: u32) -> usize {
+        (0..self.when.len()).find(|&case| self.holds(case, unit, 0.0)).unwrap_or(self.when.len())
+    }
+
+    /// Whether a case holds of a unit; distances may be larger by a margin, metres.
+    fn holds(&self, case: usize, unit: u32, margin: f64) -> bool {
+        let Some(When { nearer_m, types, .. }) = self.when.get(case) else { return true };
+        let objects = &self.city.model.objects;
+        let kind = || self.city.model.strings.get(objects[self.units.roots[unit as usize] as usize].kind);
+        let distance = || self.units.boxes[unit as usize].distance_to(self.eye);
+        nearer_m.is_none_or(|nearer| distance() < nearer + margin)
+            && (types.is_empty() || types.iter().any(|name| name == kind()))
+            && self.chosen[case].as_ref().is_none_or(|chosen| chosen.has(unit))
+    }
 }
 
 impl Known {

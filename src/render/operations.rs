@@ -85,6 +85,15 @@ pub struct Filter {
     pub plan: Plan,
 }
 
+/// What effects read of the lens that has them, one table per lens.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LensTables {
+    /// Where in the picture its points of interest are ([`crate::render::sights`]).
+    pub sights: Vec<Vec<u32>>,
+    /// What objects cover of the ground ([`crate::render::footprints`]).
+    pub footprints: Vec<Vec<u32>>,
+}
+
 /// The operations of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Operations {
@@ -110,15 +119,15 @@ pub struct Operations {
 impl Operations {
     /// The operations of the context's effects and of the enabled lenses that have a volume; `visible[i]` says
     /// whether lens i has one. `tests`: of the volumes of all lenses, in the picture and from the sun, and what leaves their combinations have. Thematic colours are
-    /// those of the objects of `models`, the scene's own city first, by the first one's scale. `sights`: where in the picture the points
-    /// of interest of each lens are, as effects read it.
+    /// those of the objects of `models`, the scene's own city first, by the first one's scale. `tables`:
+    /// what effects read of each lens.
     pub fn new(
         context: &[EffectUse],
         lenses: &[Lens],
         visible: &[bool],
         [tests, shape_tests, leaves]: [Vec<VolumeTest>; 3],
         models: &[&CityModel],
-        sights: &[Vec<u32>],
+        tables: &LensTables,
     ) -> Result<Self, ChoiceError> {
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(shape_tests), ..Self::default() };
@@ -129,12 +138,12 @@ impl Operations {
             out.uber.bodies.clear();
         }
         for effect in context {
-            out.add(effect, None, models, sights)?;
+            out.add(effect, None, models, tables)?;
         }
         let active = || lenses.iter().enumerate().filter(|(i, _)| visible.get(*i) == Some(&true));
         for (i, lens) in active() {
             for effect in lens.uses() {
-                out.add(effect, Some(i as u32), models, sights)?;
+                out.add(effect, Some(i as u32), models, tables)?;
             }
         }
         for (i, lens) in active() {
@@ -305,16 +314,22 @@ impl Operations {
         filters
     }
 
-    /// Marks objects for a lens test by object, of `count` in all, or notes their weights; where that begins.
+    /// Marks objects for a lens test by object, of `count` in all, or notes their thresholds; where that begins.
     pub fn add_members(&mut self, members: &Members, count: usize) -> u32 {
         let first = self.object_values.len();
         // That of no object first.
-        self.object_values.push(0);
-        match &members.weights {
-            None => self.object_values.extend(members.objects.iter().map(|&is_chosen| u32::from(is_chosen))),
-            Some(weights) => self.object_values.extend(weights.iter().map(|weight| weight.to_bits())),
+        match &members.thresholds {
+            None => {
+                self.object_values.push(0);
+                self.object_values.extend(members.objects.iter().map(|&is_chosen| u32::from(is_chosen)));
+                self.object_values.resize(first + 1 + count, 0);
+            }
+            Some(thresholds) => {
+                self.object_values.extend([0, 0]);
+                self.object_values.extend(thresholds.iter().flatten().map(|threshold| threshold.to_bits()));
+                self.object_values.resize(first + 2 * (1 + count), 0);
+            }
         }
-        self.object_values.resize(first + 1 + count, 0);
         first as u32
     }
 
@@ -323,7 +338,7 @@ impl Operations {
         effect: &EffectUse,
         lens: Option<u32>,
         models: &[&CityModel],
-        sights: &[Vec<u32>],
+        tables: &LensTables,
     ) -> Result<(), ChoiceError> {
         let Some(number) = shader::effect::number_of(&effect.effect) else { return Ok(()) };
         let definition = &shader::handlers()[number as usize];
@@ -350,9 +365,11 @@ impl Operations {
                 }));
                 floats.push(first_value);
             }
-            Some(PerObject::Sights) => {
-                let of_lens = lens.and_then(|lens| sights.get(lens as usize));
-                self.object_values.extend(of_lens.map_or(&[0][..], Vec::as_slice));
+            Some(what @ (PerObject::Sights | PerObject::Footprints)) => {
+                let tables = if what == PerObject::Sights { &tables.sights } else { &tables.footprints };
+                let of_lens = lens.and_then(|lens| tables.get(lens as usize));
+                // Empty ones begin with 0, and none has more than two numbers in front.
+                self.object_values.extend(of_lens.map_or(&[0, 0][..], Vec::as_slice));
                 floats.push(first_value);
             }
             Some(PerObject::Chosen) => {

@@ -28,13 +28,14 @@ use crate::{
         city::Shown,
         content_cities::{self, ContentCities, SceneContents},
         eye::PictureTile,
+        footprints::{self, OwnFootprints},
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
         layers::LayerFigures,
         lens_figures::lens_figures,
         lens_volumes::{LensVolumes, Tools, volumes_of},
-        occlusion::Occlusion,
-        operations::{MOST_FILTERS, Operations},
+        occlusion::{Occlusion, Passing},
+        operations::{LensTables, MOST_FILTERS, Operations},
         parts::{Part, parts, put, whole},
         placement::Eye,
         regions,
@@ -159,6 +160,8 @@ pub struct Studio {
     content_cities: Mutex<ContentCities>,
     /// Where the shown triangles are, made for the first picture whose lenses are counted.
     index: OnceLock<SpatialIndex>,
+    /// What its objects cover of the ground, once an effect asks for it.
+    footprints: OwnFootprints,
 }
 
 /// Everything of a scene that does not depend on the eye.
@@ -209,6 +212,7 @@ impl Studio {
             reading: LoadOptions::default(),
             content_cities: Mutex::default(),
             index: OnceLock::new(),
+            footprints: OnceLock::new(),
         })
     }
 
@@ -399,8 +403,15 @@ impl Studio {
     /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually (O6). The first time everything
     /// begins settled. A picture of that scene then has its history; one of another moment has none.
     pub fn pass(&mut self, scene: &Scene, size: [u32; 2], dt: f64) -> Result<(), RenderError> {
-        let enabled = scene.lenses.iter().filter(|lens| lens.enabled);
-        let lenses: Vec<_> = enabled.filter_map(|lens| Some((lens.name.as_str(), lens.occluders()?))).collect();
+        let cases = |lens: &Lens| match lens.render.as_ref().map_or(&[][..], |render| &render.cases[..]) {
+            [one] if one.when.is_always() => Vec::new(),
+            several => several.iter().map(|case| case.when.clone()).collect(),
+        };
+        let mut lenses = Vec::new();
+        for lens in scene.lenses.iter().filter(|lens| lens.enabled) {
+            let Some(of) = lens.occluders() else { continue };
+            lenses.push(Passing { name: &lens.name, of, when: cases(lens) });
+        }
         let eye = Eye::new(&self.camera(scene, size))?;
         let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
         occlusion.pass(&lenses, &scene.pois, self.shown(), eye.viewer(), dt);
@@ -424,6 +435,18 @@ impl Studio {
         let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };
         let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
         Some(occlusion.explained(&lens.name, of, &scene.pois, self.shown(), eye.viewer()))
+    }
+
+    /// How many of them come and go; `None` where no time passed up to here.
+    fn over_time(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<stats::OverTime> {
+        let (of, eye) = (lens.occluders().filter(|_| lens.enabled)?, Eye::new(&view.camera).ok()?);
+        let occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
+        occlusion.over_time(&lens.name, of, &scene.pois, eye.viewer())
+    }
+
+    /// Whether occluders come, go or change at the moment up to which time passed ([`Self::pass`]).
+    pub fn is_fading(&self) -> bool {
+        self.occlusion.lock().unwrap_or_else(PoisonError::into_inner).is_fading()
     }
 
     fn prepare(&self, drawn: &Drawn, size: [u32; 2]) -> Result<Prepared, RenderError> {
@@ -451,7 +474,9 @@ impl Studio {
             let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
             sights(scene, self.shown(), &Eye::new(&self.camera(scene, size))?, &mut occlusion)
         };
-        let mut operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &models, &sights)
+        let footprints = footprints::tables(scene, self.shown(), &self.footprints, &contents, &volumes);
+        let tables = LensTables { sights, footprints };
+        let mut operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &models, &tables)
             .map_err(|error| RenderError::Scene(error.to_string()))?;
         operations.contents.clone_from(&contents.uses);
         for volume in &mut volumes {
@@ -678,6 +703,7 @@ impl Studio {
             lenses: (0..scene.lenses.len())
                 .map(|i| stats::LensFigures {
                     occluders: self.occluders(scene, &scene.lenses[i], view),
+                    over_time: self.over_time(scene, &scene.lenses[i], view),
                     ..lens_figures(
                         self,
                         (scene, drawn),

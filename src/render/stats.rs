@@ -171,6 +171,22 @@ pub struct LensFigures {
     /// Of an occlusion lens, whom it found (O2).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub occluders: Option<Vec<Occluder>>,
+    /// Of an occlusion lens in a frame of an animation, how many come and go (O6).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub over_time: Option<OverTime>,
+}
+
+/// Occluders over time, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct OverTime {
+    /// Such that are wholly drawn as occluders.
+    pub whole: u64,
+    /// Such that are to be, and fade in.
+    pub entering: u64,
+    /// Such that are none any more, and fade out.
+    pub leaving: u64,
+    /// Of all of them, such that change from one case of `render` to another.
+    pub changing: u64,
 }
 
 /// A city object that hides something, with its parts.

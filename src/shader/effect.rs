@@ -41,6 +41,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("transparent"),
     built_in!("x-ray"),
     built_in!("film"),
+    built_in!("soft-film"),
     built_in!("peel"),
     built_in!("brick"),
     built_in!("gloss"),
@@ -281,6 +282,8 @@ pub enum PerObject {
     Chosen,
     /// Nothing of objects: where in the picture the points of interest of its lens are (`render::sights`).
     Sights,
+    /// What they cover of the ground, by its outline (`render::footprints`).
+    Footprints,
 }
 
 /// One effect.

@@ -2,9 +2,10 @@
 //!
 //! The unit is the root city object with all its parts ([`Units`]). A [`Test`] says when one is an occluder; [`Scope::detect`]
 //! asks it of a whole city and says of each occluder which parts of the test held ([`Detected`]). [`Memory`] keeps classes from
-//! flickering over time (O6).
+//! flickering over time (O6), [`CaseMemory`] the ways in which they are drawn.
 
 mod bounds;
+mod cases;
 mod coverage;
 mod detect;
 mod memory;
@@ -12,6 +13,7 @@ mod set;
 mod test;
 mod units;
 
+pub use cases::CaseMemory;
 pub use coverage::Coverage;
 pub use detect::{Detected, Margin, Occluder, Query, Scope};
 pub use memory::{Memory, Pace};

@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! shown geometries ─> units: a root with its parts (`source`) ─┬─> a closed body of each (`bodies`: box, prism, hull) ─> builder
-//!                                                               └─> its own faces, moved (`moved`: flat, height)
+//!                                                               ├─> its own faces, moved (`moved`: flat, height)
+//!                                                               └─> what it covers of the ground (`footprint`), for what fades at its rim
 //! ```
 //!
 //! Terrain, water, roads and land use are never derived. One file per form, one row per form in [`FORMS`].
@@ -11,6 +12,7 @@
 mod bodies;
 mod boxes;
 mod flat;
+mod footprint;
 mod ground;
 mod height;
 mod hull;
@@ -24,6 +26,7 @@ mod tests;
 
 use crate::{city::CityModel, geom::Aabb};
 
+pub use self::footprint::{Footprint, footprints};
 use self::{ground::GroundFaces, source::Source};
 
 /// What a city is derived by.

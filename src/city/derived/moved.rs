@@ -284,7 +284,7 @@ impl Sheet<'_> {
 }
 
 /// The corners of a face in their new order; `None` where it is not seen.
-fn kept(source: &Source, face: &Face, change: &Change) -> Option<[usize; 3]> {
+pub(super) fn kept(source: &Source, face: &Face, change: &Change) -> Option<[usize; 3]> {
     let Change::Level { from_below, .. } = change else { return Some([0, 1, 2]) };
     let side = 0.5 * face.normal().z;
     let is_seen = side > 0.0 || *from_below || source.part(face) == Part::Roof;

@@ -74,10 +74,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         sprites::write(&mut studio, &scene, sprite)?;
     }
     if let Some(file) = &arguments.stats {
-        // Those of the files are worded for the command line; the rest is about this picture.
-        let is_of_picture = |w: &serde_json::Value| w["code"].as_str().is_some_and(|code| told::CODES.contains(&code));
-        let of_picture: Vec<_> = picture.statistics.warnings.into_iter().filter(is_of_picture).collect();
-        picture.statistics.warnings = warnings.into_iter().chain(of_picture).collect();
+        with_warnings(&mut picture.statistics, &warnings);
         output::write(file, |out| {
             serde_json::to_writer_pretty(&mut *out, &picture.statistics)?;
             writeln!(out)
@@ -86,6 +83,13 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     // Last, so that a picture that is there means that everything is there.
     picture::save_picture(&arguments.output, picture.size, &picture.rgba, !arguments.transparent, &notes)
         .map_err(output::unwritten)
+}
+
+/// Puts what is to be warned of into statistics: of the files as it is worded for the command line, the rest about this picture.
+pub fn with_warnings(statistics: &mut stats::Statistics, warnings: &[serde_json::Value]) {
+    let is_of_picture = |w: &serde_json::Value| w["code"].as_str().is_some_and(|code| told::CODES.contains(&code));
+    let of_picture = std::mem::take(&mut statistics.warnings).into_iter().filter(is_of_picture);
+    statistics.warnings = warnings.iter().cloned().chain(of_picture).collect();
 }
 
 /// What a picture says about itself: the program's version and a hash of the scene, paths relative to its file. An animation is no

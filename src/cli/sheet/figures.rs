@@ -14,10 +14,19 @@ use crate::{
 pub struct Figures {
     /// The share of the point of interest that is seen; `None` within: it is not in the picture.
     share: Option<Option<f64>>,
-    /// City objects that enabled lenses meet.
-    occluders: Option<u64>,
+    /// Whom its lenses mean.
+    touched: Option<Touched>,
     /// Time of the frame against that of the plain one.
     ratio: Option<Estimate>,
+}
+
+/// City objects that lenses act on.
+#[derive(Clone, Copy, Debug)]
+enum Touched {
+    /// Of a scene with occlusion lenses: roots that these found.
+    Occluders(u64),
+    /// Of another: such of which a triangle meets a volume, parts by themselves.
+    Objects(u64),
 }
 
 /// Finds what a sheet asks for of a cell.
@@ -30,7 +39,12 @@ pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, Re
     if wants(CellFigure::Occluders) {
         let asked = Request { statistics: true, ..one_sample(&cell.scene) };
         let statistics = studio.render(&cell.scene, &asked)?.statistics;
-        found.occluders = Some(statistics.lenses.iter().map(|lens| lens.objects).sum());
+        let occluders = statistics.lenses.iter().filter_map(|lens| lens.occluders.as_ref());
+        let found_by_each: Vec<u64> = occluders.map(|list| list.len() as u64).collect();
+        found.touched = Some(match &found_by_each[..] {
+            [] => Touched::Objects(statistics.lenses.iter().map(|lens| lens.objects).sum()),
+            each => Touched::Occluders(each.iter().sum()),
+        });
     }
     if wants(CellFigure::FrameRatio) {
         let plain = Scene { lenses: Vec::new(), ..cell.scene.clone() };
@@ -58,9 +72,11 @@ impl Figures {
                 Some(share) => format!("visible share {}", percent(share)),
                 None => "out of the picture".to_owned(),
             },
-            CellFigure::Occluders => match self.occluders.unwrap_or(0) {
-                1 => "1 object touched".to_owned(),
-                count => format!("{count} objects touched"),
+            CellFigure::Occluders => match self.touched.unwrap_or(Touched::Objects(0)) {
+                Touched::Occluders(1) => "1 occluder".to_owned(),
+                Touched::Occluders(count) => format!("{count} occluders"),
+                Touched::Objects(1) => "1 object touched".to_owned(),
+                Touched::Objects(count) => format!("{count} objects touched"),
             },
             CellFigure::FrameRatio => match self.ratio {
                 Some(ratio) => format!("frame × {:.2} ({:.2}–{:.2})", ratio.median, ratio.low, ratio.high),
@@ -75,7 +91,7 @@ impl Figures {
         if let Some(share) = self.share {
             all[CellFigure::VisibleShare.word()] = json!(share);
         }
-        if let Some(count) = self.occluders {
+        if let Some(Touched::Occluders(count) | Touched::Objects(count)) = self.touched {
             all[CellFigure::Occluders.word()] = json!(count);
         }
         if let Some(ratio) = self.ratio {

@@ -520,9 +520,9 @@ pub const LENS: Table = Table {
         key(
             "body",
             Kind::Word { now: &["outline", "shell", "halo", "none"], later: &[] },
-            "\"outline\"",
+            "\"outline\"; of an occlusion lens \"none\"",
             "",
-            "How the lens body itself is drawn, in its colour: a line around it, tinted glass, a glow around it. Thematic lenses show a line for all, and so do flat ones and those tested by a sprite for `halo`.",
+            "How the lens body itself is drawn, in its colour: a line around it, tinted glass, a glow around it. Thematic and occlusion lenses show a line for all, and so do flat ones and those tested by a sprite for `halo`.",
             "\"none\"",
         ),
         key(

@@ -226,13 +226,14 @@ impl<'o> SceneReader<'o> {
             };
             self.checker.note(&fields.place, "border", fields.line("border"), message);
         }
+        let kind = match fields.text("kind") {
+            Some("content") => LensKind::Content,
+            Some("occlusion") => LensKind::Occlusion,
+            _ => LensKind::Color,
+        };
         Lens {
             name: fields.text("name").map_or_else(|| format!("lens-{index}"), str::to_owned),
-            kind: match fields.text("kind") {
-                Some("content") => LensKind::Content,
-                Some("occlusion") => LensKind::Occlusion,
-                _ => LensKind::Color,
-            },
+            kind,
             enabled: fields.boolean("enabled").unwrap_or(true),
             color: fields.color("color").unwrap_or_else(|| lens_color(index)),
             placement,
@@ -243,7 +244,7 @@ impl<'o> SceneReader<'o> {
             body: LensBody::WORDS
                 .iter()
                 .find(|(word, _)| fields.text("body") == Some(*word))
-                .map_or_else(LensBody::default, |(_, body)| *body),
+                .map_or_else(|| LensBody::of_kind(kind), |(_, body)| *body),
             sprite,
             border: border.map(|b| Border {
                 width: b.number("width").unwrap_or(0.0),

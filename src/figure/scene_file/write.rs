@@ -149,7 +149,7 @@ impl Toml {
             self.key("content", &content(own, options));
             self.key_if(own.clip != Clip::default(), "clip", &quoted(own.clip.word()));
         }
-        self.key_if(lens.body != LensBody::default(), "body", &format!("\"{}\"", lens.body.word()));
+        self.key_if(lens.body != LensBody::of_kind(lens.kind), "body", &format!("\"{}\"", lens.body.word()));
         if let Some(sprite) = &lens.sprite {
             self.key("sprite", &sprite::written(sprite));
         }
