@@ -248,7 +248,7 @@ fn transparency_is_measured_against_f64() {
                 let allowed = f64::from(3 * right.most_layers + 1) * 2_f64.powi(-24);
                 assert!(max > 0.0 && max <= 2.0 * allowed, "{}: {max:e} of {allowed:e}", variant.label);
             }
-            Transparency::Weighted => assert!(max > 0.01, "{}: {max}", variant.label),
+            Transparency::Weighted => assert!(max > 1e-3, "{}: {max}", variant.label),
             Transparency::Peel { layers } | Transparency::KBuffer { layers } if layers < right.most_layers => {
                 assert!(max > 1e-6, "{}: {max:e} of {} layers", variant.label, right.most_layers);
             }
