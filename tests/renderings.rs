@@ -276,7 +276,7 @@ fn a_soft_rim_is_as_dense_as_its_place_is_deep() {
             let at = DVec2::new(f64::from(x) + 0.5 - 60.0, 60.0 - f64::from(y) - 0.5) * HEIGHT_M / f64::from(SIZE[1]);
             let away = edges.iter().map(|[a, b]| {
                 // The outline is convex, and counter-clockwise.
-                (*b - *a).normalize().perp_dot(middle + at - *a)
+                (*b - *a).normalize_or(glam::DVec2::X).perp_dot(middle + at - *a)
             });
             let depth = away.fold(f64::INFINITY, f64::min);
             let [a, b, now] = [&ground, &wholly, &film].map(|p| p[i].map(linear));

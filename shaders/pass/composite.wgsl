@@ -111,6 +111,7 @@ fn composite(in: Corner) -> Composite {
     var count = 0u;
     var rounds = 0u;            // of walks
     var picked = vec4f(0.0, 0.0, 0.0, 1.0);
+    let least_seen = select(NOTHING_SEEN, 0.0, PICKS);
     var listed = head;          // of a list in order: the next note
     var is_left = head != 0u;
     if SORTED {
@@ -183,8 +184,8 @@ fn composite(in: Corner) -> Composite {
             let paint = shade(&point, classes);
             color += (through * opacity) * paint;
             through *= 1.0 - opacity;
-            if PICKS && laid == atomicLoad(&heads[PICKED]) {
-                picked = vec4f(paint, -opacity);
+            if PICKS {
+                picked = select(picked, vec4f(paint, -opacity), laid == atomicLoad(&heads[PICKED]));
             }
             if through <= 0.5 && shown.x == 0u {
                 shown = vec2u(code, normal);
@@ -194,11 +195,11 @@ fn composite(in: Corner) -> Composite {
             laid += 1u;
             last = note;
             //@shift
-            if found_0.depth == 0u || (through < NOTHING_SEEN && !PICKS) {
+            if found_0.depth == 0u || through < least_seen {
                 break;
             }
         }
-        is_left = select(laid < count, listed != 0u, SORTED) && (through >= NOTHING_SEEN || PICKS);
+        is_left = select(laid < count, listed != 0u, SORTED) && through >= least_seen;
         if is_left && !SORTED && rounds + count > MOST_ROUNDS {
             atomicMax(&heads[LONGEST], count);
             is_left = false;
@@ -234,8 +235,5 @@ fn composite(in: Corner) -> Composite {
         atomicStore(&heads[record + RECORD_SHOWN_DEPTH], bitcast<u32>(shown_depth));
         atomicStore(&heads[record + RECORD_BEFORE], last.depth);
     }
-    if PICKS {
-        return Composite(picked, shown, shown_depth);
-    }
-    return Composite(vec4f(color, through), shown, shown_depth);
+    return Composite(select(vec4f(color, through), picked, PICKS), shown, shown_depth);
 }

@@ -115,7 +115,7 @@ fn rays_through_corners_and_edges_pass_each_surface_once_in_perspective() {
         let eye = if is_inside {
             ORIGIN + 1.5 * aside
         } else {
-            let outwards = (target - ORIGIN + 3.0 * aside).normalize();
+            let outwards = (target - ORIGIN + 3.0 * aside).normalize_or(DVec3::Z);
             target + outwards * (4.0 + numbers.below(36) as f64)
         };
         if eye.distance(target) < 0.5 {
@@ -150,7 +150,8 @@ fn bodies_that_share_walls_edges_and_corners_are_passed_one_after_the_other() {
     for round in 0..24 {
         // Onto a corner in the middle; from outside.
         let corner = [0; 3].map(|_: i64| cut[numbers.below(4) as usize]);
-        let aside = DVec3::from([0; 3].map(|_: i64| (numbers.below(2001) - 1000) as f64 / 1000.0)).normalize();
+        let aside =
+            DVec3::from([0; 3].map(|_: i64| (numbers.below(2001) - 1000) as f64 / 1000.0)).normalize_or(DVec3::Z);
         let camera = Camera::looking(place(corner) + 22.0 * aside, place(corner), 0.9);
         let view = View::new(camera, size, &Aabb::EMPTY).expect("a view");
         let found = layers(&mut studio, camera, size, Transparency::Exact);

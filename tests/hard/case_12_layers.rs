@@ -79,8 +79,8 @@ fn looks(numbers: &mut Numbers, bodies_middle: DVec3, along: DVec3, reach: f64) 
         let aside = DVec3::new(share(), share(), share());
         let on = bodies_middle + along * (480.0 * share());
         let eye = match i % 3 {
-            0 => on + (aside - along * along.dot(aside)).normalize() * 300.0 * share().abs().max(0.1),
-            1 => on + (aside - along * along.dot(aside)).normalize() * reach * (2.0 + 4.0 * share().abs()),
+            0 => on + (aside - along * along.dot(aside)).normalize_or(DVec3::Z) * 300.0 * share().abs().max(0.1),
+            1 => on + (aside - along * along.dot(aside)).normalize_or(DVec3::Z) * reach * (2.0 + 4.0 * share().abs()),
             _ => on,
         };
         let towards = match i % 4 {
