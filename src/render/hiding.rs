@@ -218,7 +218,6 @@ mod tests {
     use super::*;
     use crate::{
         geom::Shape,
-        lens::LensBody,
         render::{
             body::{Body, Leaf},
             operations::Operation,
@@ -231,24 +230,9 @@ mod tests {
         View::new(camera, [640, 480], &Aabb::EMPTY).expect("a view")
     }
 
-    fn volume(shape: &Shape) -> LensVolume {
-        let volume = shape.volume().expect("a volume");
-        LensVolume {
-            lens: 0,
-            bounds: volume.bounds(),
-            body: Body::One(Leaf::Volume(volume).into()),
-            everywhere: false,
-            drawn: LensBody::None,
-            sprite: None,
-            asks_sides: false,
-            border: None,
-            keeps_shadows: false,
-            section: None,
-        }
-    }
-
     /// A lens in which all but terrain is translucent, or terrain too.
     fn hiding(shape: &Shape, terrain: bool, view: &View) -> Hiding {
+        let body = Body::One(Leaf::Volume(shape.volume().expect("a volume")).into());
         let mut operations = Operations::default();
         operations.list.push(Operation {
             effect: crate::shader::effect::number_of("transparent").expect("an effect"),
@@ -258,7 +242,7 @@ mod tests {
             blend: None,
             translucent: Some(Translucent { all_objects: true, terrain }),
         });
-        Hiding::new(&operations, &[volume(shape)], view, |_| true)
+        Hiding::new(&operations, &[LensVolume::plain(0, body)], view, |_| true)
     }
 
     fn point(reach: f64) -> impl Strategy<Value = DVec3> {

@@ -33,6 +33,7 @@ pub mod light;
 mod lines;
 mod module_text;
 mod narrow;
+mod occluding;
 mod occlusion;
 mod occurring;
 pub mod octagon;

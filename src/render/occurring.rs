@@ -119,25 +119,13 @@ mod tests {
     use super::*;
     use crate::{
         geom::Shape,
-        lens::LensBody,
         render::body::{Body, Leaf},
     };
 
     fn volumes(shapes: &[Shape]) -> Vec<LensVolume> {
         let volume = |(lens, shape): (usize, &Shape)| {
             let volume = shape.volume().expect("a volume");
-            LensVolume {
-                lens: lens as u32,
-                bounds: volume.bounds(),
-                body: Body::One(Leaf::Volume(volume).into()),
-                everywhere: false,
-                drawn: LensBody::None,
-                sprite: None,
-                asks_sides: false,
-                border: None,
-                keeps_shadows: false,
-                section: None,
-            }
+            LensVolume::plain(lens as u32, Body::One(Leaf::Volume(volume).into()))
         };
         shapes.iter().enumerate().map(volume).collect()
     }

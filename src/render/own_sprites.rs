@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::{
     geom::Aabb,
     lens::{
-        LensBody, LensSprite, SpriteSpace, SpriteVolume,
+        LensSprite, SpriteSpace, SpriteVolume,
         sprite::{DepthCode, Mapping},
     },
     render::{
@@ -98,18 +98,7 @@ fn own_view(volume: &LensVolume, sprite: &LensSprite, city: &Aabb) -> Result<Opt
 /// The part of the frame that the shapes of a lens may be seen in, texels.
 fn part_of(volume: &LensVolume, view: &View) -> PictureTile {
     let whole = PictureTile::whole(view.size);
-    let alone = LensVolume {
-        bounds: volume.body.bounds(),
-        body: volume.body.clone(),
-        everywhere: false,
-        drawn: LensBody::None,
-        sprite: None,
-        asks_sides: false,
-        border: None,
-        keeps_shadows: false,
-        section: None,
-        ..*volume
-    };
+    let alone = LensVolume::plain(volume.lens, volume.body.clone());
     let part = alone.seen_part(view, whole).map(|part| part.rectangle());
     part.unwrap_or(PictureTile { origin: [0; 2], size: [0; 2] })
 }

@@ -18,10 +18,7 @@ use crate::{
     },
     geom::Aabb,
     gpu::{Gpu, GpuError, Timer},
-    lens::{
-        Lens,
-        solids::{ShownCity, Solids},
-    },
+    lens::solids::{ShownCity, Solids},
     render::{
         Renderer,
         body::Leaf,
@@ -34,7 +31,7 @@ use crate::{
         layers::LayerFigures,
         lens_figures::lens_figures,
         lens_volumes::{LensVolumes, Tools, volumes_of},
-        occlusion::{Occlusion, Passing},
+        occlusion::Occlusion,
         operations::{LensTables, MOST_FILTERS, Operations},
         parts::{Part, parts, put, whole},
         placement::Eye,
@@ -153,7 +150,7 @@ pub struct Studio {
     solids: Mutex<Solids>,
     solid_table: Mutex<Arc<SolidTable>>,
     /// Whom occlusion lenses found last.
-    occlusion: Mutex<Occlusion>,
+    pub(super) occlusion: Mutex<Occlusion>,
     /// How contents of lenses are loaded.
     pub reading: LoadOptions,
     /// Those loaded so far.
@@ -387,7 +384,7 @@ impl Studio {
     fn volumes_of(&self, drawn: &Drawn, size: [u32; 2]) -> Result<LensVolumes, RenderError> {
         let (city, scene) = (self.shown(), &*drawn.scene);
         let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut occlusion = self.occlusion();
         let eye = Eye::new(&self.camera(scene, size))?;
         let mut tools = Tools {
             solids: &mut solids,
@@ -398,55 +395,6 @@ impl Studio {
             is_enabled: true,
         };
         volumes_of(drawn, city, &eye, &mut tools).map_err(RenderError::Scene)
-    }
-
-    /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually (O6). The first time everything
-    /// begins settled. A picture of that scene then has its history; one of another moment has none.
-    pub fn pass(&mut self, scene: &Scene, size: [u32; 2], dt: f64) -> Result<(), RenderError> {
-        let cases = |lens: &Lens| match lens.render.as_ref().map_or(&[][..], |render| &render.cases[..]) {
-            [one] if one.when.is_always() => Vec::new(),
-            several => several.iter().map(|case| case.when.clone()).collect(),
-        };
-        let mut lenses = Vec::new();
-        for lens in scene.lenses.iter().filter(|lens| lens.enabled) {
-            let Some(of) = lens.occluders() else { continue };
-            lenses.push(Passing { name: &lens.name, of, when: cases(lens) });
-        }
-        let eye = Eye::new(&self.camera(scene, size))?;
-        let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
-        occlusion.pass(&lenses, &scene.pois, self.shown(), eye.viewer(), dt);
-        Ok(())
-    }
-
-    /// Per object of the city, how far it is drawn as an occluder of a lens, by its name, 0 to 1, since time last passed
-    /// ([`Self::pass`]); `None` of a lens that was not there then.
-    pub fn occluder_weights(&self, lens: &str) -> Option<Vec<f32>> {
-        self.occlusion.lock().unwrap_or_else(PoisonError::into_inner).weights(lens)
-    }
-
-    /// How often the city was asked for occluders so far.
-    pub fn occlusion_tests(&self) -> u64 {
-        self.occlusion.lock().unwrap_or_else(PoisonError::into_inner).asked()
-    }
-
-    /// Whom an occlusion lens finds, with reasons; `None` for other lenses.
-    fn occluders(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<Vec<stats::Occluder>> {
-        let of = lens.occluders()?;
-        let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };
-        let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
-        Some(occlusion.explained(&lens.name, of, &scene.pois, self.shown(), eye.viewer()))
-    }
-
-    /// How many of them come and go; `None` where no time passed up to here.
-    fn over_time(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<stats::OverTime> {
-        let (of, eye) = (lens.occluders().filter(|_| lens.enabled)?, Eye::new(&view.camera).ok()?);
-        let occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
-        occlusion.over_time(&lens.name, of, &scene.pois, eye.viewer())
-    }
-
-    /// Whether occluders come, go or change at the moment up to which time passed ([`Self::pass`]).
-    pub fn is_fading(&self) -> bool {
-        self.occlusion.lock().unwrap_or_else(PoisonError::into_inner).is_fading()
     }
 
     fn prepare(&self, drawn: &Drawn, size: [u32; 2]) -> Result<Prepared, RenderError> {
@@ -471,7 +419,7 @@ impl Studio {
             present[volume.lens as usize] = true;
         }
         let sights = {
-            let mut occlusion = self.occlusion.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut occlusion = self.occlusion();
             sights(scene, self.shown(), &Eye::new(&self.camera(scene, size))?, &mut occlusion)
         };
         let footprints = footprints::tables(scene, self.shown(), &self.footprints, &contents, &volumes);

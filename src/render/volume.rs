@@ -47,6 +47,22 @@ pub struct LensVolume {
 }
 
 impl LensVolume {
+    /// A body by itself, tested from its figures: its lens acts on what is inside, up to its end.
+    pub fn plain(lens: u32, body: Body) -> Self {
+        Self {
+            lens,
+            bounds: body.bounds(),
+            body,
+            everywhere: false,
+            drawn: LensBody::None,
+            sprite: None,
+            asks_sides: false,
+            border: None,
+            keeps_shadows: false,
+            section: None,
+        }
+    }
+
     /// Whether it is tested by a sprite that has its own eye.
     pub fn has_own_eye(&self) -> bool {
         let is_asked = self.sprite.is_some_and(|sprite| sprite.own.is_some()) && !self.body.has_members();
@@ -263,19 +279,7 @@ mod tests {
         ];
         for shape in shapes {
             let volume = shape.volume().expect("a volume");
-            let bounds = volume.bounds();
-            let lens = LensVolume {
-                lens: 0,
-                bounds,
-                body: Body::One(Leaf::Volume(volume.clone()).into()),
-                everywhere: false,
-                drawn: LensBody::None,
-                sprite: None,
-                asks_sides: false,
-                border: None,
-                keeps_shadows: false,
-                section: None,
-            };
+            let lens = LensVolume::plain(0, Body::One(Leaf::Volume(volume.clone()).into()));
             let (low, high) = lens.projected(&view).expect("it is in front of the eye");
             let (mut least, mut most) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
             for (x, y) in (0..480).flat_map(|y| (0..640).map(move |x| (x, y))) {
