@@ -6,7 +6,8 @@
 //   rest     normals and colours of textures, where the picture has them
 //
 // `pass/link-slots.wgsl` makes lists of them as `pass/layers.wgsl` does, in order. Peeling does this again and again, with what
-// is behind all that was laid before.
+// is behind all that was laid before. A slot is a note as `lib/notes.wgsl` has them; while slots are filled the bits of the number
+// are inverted: the smaller the number the nearer.
 
 override STAGE: u32 = 0u;
 override SLOTS: u32 = 8u;           // of a pixel
@@ -63,14 +64,14 @@ fn is_behind_laid(record: u32, depth: u32, code: u32) -> bool {
 fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) -> Laid {
     let pixel = vec2u(at);
     let inside = pixel - band.origin;
-    let words = slot_words();
-    let first = (inside.y * band.size.x + inside.x) * SLOTS * words;
+    let room = arrayLength(&slots) / slot_words();
+    let first = (inside.y * band.size.x + inside.x) * SLOTS;
     let record = record_of(pixel);
     let bits = bitcast<u32>(depth);
     // The smaller the number the nearer, and the larger the key.
     var key = ~(code | plane);
     // What is farther than the last slot has no place; while depths are found, only where some were laid before is that all.
-    var is_wanted = STAGE == DEPTHS || atomicLoad(&slots[first + (SLOTS - 1u) * words + 1u]) <= bits;
+    var is_wanted = STAGE == DEPTHS || atomicLoad(&slots[key_place(first + SLOTS - 1u)]) <= bits;
     if RECORD > 1u {
         is_wanted = is_wanted && is_behind_laid(record, bits, code | plane);
     }
@@ -87,7 +88,7 @@ fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) ->
         }
         var rest = bits;
         for (var i = 0u; i < SLOTS; i++) {
-            let before = atomicMax(&slots[first + i * words + 1u], rest);
+            let before = atomicMax(&slots[key_place(first + i)], rest);
             rest = min(before, rest);
             if rest == 0u || i + 1u == SLOTS {
                 break;
@@ -95,17 +96,17 @@ fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) ->
         }
     } else {
         for (var i = 0u; i < SLOTS; i++) {
-            let place = first + i * words;
-            let kept = atomicLoad(&slots[place + 1u]);
+            let place = key_place(first + i);
+            let kept = atomicLoad(&slots[place]);
             if kept == bits && STAGE == CODES {
-                let before = atomicMax(&slots[place + 2u], key);
+                let before = atomicMax(&slots[place + 1u], key);
                 key = min(before, key);
-            } else if kept == bits && atomicLoad(&slots[place + 2u]) == key {
+            } else if kept == bits && atomicLoad(&slots[place + 1u]) == key {
                 if SMOOTH {
-                    atomicStore(&slots[place + 3u], normal);
+                    atomicStore(&slots[normal_place(room, first + i)], normal);
                 }
                 if TEXTURED {
-                    atomicStore(&slots[place + words - 1u], color);
+                    atomicStore(&slots[color_place(room, first + i, slot_words())], color);
                 }
             }
             if kept < bits || key == 0u || i + 1u == SLOTS {

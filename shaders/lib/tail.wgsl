@@ -28,12 +28,11 @@ fn has_slot(pixel: vec2u, depth: f32, code: u32) -> bool {
     if SLOTS == 0u {
         return false;
     }
-    let words = 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
     let inside = pixel - band.origin;
-    let last = ((inside.y * band.size.x + inside.x) * SLOTS + SLOTS - 1u) * words;
-    let kept = slots[last + 1u];
+    let last = key_place((inside.y * band.size.x + inside.x) * SLOTS + SLOTS - 1u);
+    let kept = slots[last];
     let bits = bitcast<u32>(depth);
-    return kept == 0u || bits > kept || (bits == kept && code <= slots[last + 2u]);
+    return kept == 0u || bits > kept || (bits == kept && code <= slots[last + 1u]);
 }
 
 fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) -> Laid {

@@ -2,12 +2,13 @@
 // is, with its own place in the lenses, and laid one over the other in f32, nearest first.
 //
 // The nearest notes are found several at a time, in one walk through the list; that goes on from the last of them until all are
-// laid or nothing more would be seen. What is not done after MOST_ROUNDS is told; the host has lists sorted then
-// (`pass/sort-layers.wgsl`). Equal depths are told apart by the number of the surface, so the order in which the city is
-// drawn does not matter.
+// laid or nothing more would be seen. A walk takes a few notes at a time, puts them in order by a sorting network and merges them
+// into the nearest so far, with no more branches than the walk itself. What is not done after MOST_ROUNDS is told; the host has
+// lists sorted then (`pass/sort-layers.wgsl`). Equal depths are told apart by the number of the surface, and by what else a note
+// has, so the order in which the city is drawn does not matter.
 
 @group(3) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
-@group(3) @binding(1) var<storage, read> notes: array<u32>;
+@group(3) @binding(1) var<storage, read> notes: array<vec2u>;
 
 const FIRST_HEAD: u32 = 272u;
 const NOTED_CODE: u32 = 0x07ffffffu;
@@ -35,14 +36,10 @@ const MOST_LAYERS: u32 = 1u;    // the word of `heads` that has the largest numb
 // What is let through below this is not seen, whatever its colour.
 const NOTHING_SEEN: f32 = 5.9604645e-8;     // 2^-24
 
-// A note, and what it is sorted by.
-struct Note {
-    depth: u32,                 // bits of the stored depth: the larger, the nearer; 0: none
-    code: u32,                  // surface + 1, below how many layers of its plane may be over it
-    number: u32,
-}
-
-const NO_NOTE = Note(0u, 0u, 0u);
+//@kept
+const NO_NOTE = Note(0u);
+// Where lists begin: before all notes, and no note.
+const BEFORE_ALL = Note(0xffffffffu, 0u, 0u, 0u);
 
 fn note_words() -> u32 {
     return 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
@@ -62,17 +59,74 @@ fn contained_opacity(opacity: f32) -> f32 {
 
 // Whether a note comes before another: it is nearer, or stands in the plane of the other and is put before it.
 fn precedes(a: Note, b: Note) -> bool {
-    let is_before = a.code < b.code || (a.code == b.code && a.number < b.number);
-    return a.depth > b.depth || (a.depth == b.depth && is_before);
+    var is_before = a.x > b.x || (a.x == b.x && a.y < b.y);
+    if SMOOTH || TEXTURED {
+        let is_alike = all(a.xy == b.xy);
+        is_before = is_before || (is_alike && (a.z < b.z || (a.z == b.z && a.w < b.w)));
+    }
+    return is_before;
 }
 
-// Keeps the nearer one; `other` is the farther one then.
-fn keep_nearer(kept: ptr<function, Note>, other: ptr<function, Note>) {
-    if precedes(*other, *kept) {
-        let farther = *kept;
-        *kept = *other;
-        *other = farther;
+// What a note of this picture has.
+fn note_of(key: vec2u, normal: u32, color: u32) -> Note {
+    return Note(key, select(0u, normal, SMOOTH), select(0u, color, TEXTURED));
+}
+
+// How many notes there is room for.
+fn room() -> u32 {
+    return 2u * arrayLength(&notes) / note_words();
+}
+
+fn word_at(place: u32) -> u32 {
+    return notes[place >> 1u][place & 1u];
+}
+
+fn link_of(number: u32) -> u32 {
+    return word_at(link_place(room(), number - 1u));
+}
+
+fn note_at(number: u32) -> Note {
+    var normal = 0u;
+    var color = 0u;
+    if SMOOTH {
+        normal = word_at(normal_place(room(), number - 1u));
     }
+    if TEXTURED {
+        color = word_at(color_place(room(), number - 1u, note_words()));
+    }
+    return note_of(notes[number - 1u], normal, color);
+}
+
+// Puts the nearer one first.
+fn order(first: ptr<function, Note>, second: ptr<function, Note>) {
+    let is_wrong = precedes(*second, *first);
+    let nearer = select(*first, *second, is_wrong);
+    *second = select(*second, *first, is_wrong);
+    *first = nearer;
+}
+
+fn nearer_of(a: Note, b: Note) -> Note {
+    return select(a, b, precedes(b, a));
+}
+
+// A walk through a list.
+struct Walk {
+    next: u32,
+    count: u32,                 // notes so far
+    twins: u32,                 // of them that are alike with the last that was laid
+}
+
+// The next note of a list, if it comes after `last`, of which `laid` that are alike were laid; otherwise, and at the end, none.
+fn take_note(walk: ptr<function, Walk>, last: Note, laid: u32) -> Note {
+    let is_there = (*walk).next != 0u;
+    // A software adapter goes through both sides of a branch: the end of a list reads its first note again.
+    let number = max((*walk).next, 1u);
+    let note = note_at(number);
+    let is_twin = is_there && all(note == last);
+    (*walk).twins += select(0u, 1u, is_twin);
+    (*walk).count += select(0u, 1u, is_there);
+    (*walk).next = select(0u, link_of(number), is_there);
+    return select(NO_NOTE, note, is_there && (precedes(last, note) || (is_twin && (*walk).twins > laid)));
 }
 
 struct Composite {
@@ -100,14 +154,14 @@ fn composite(in: Corner) -> Composite {
     take(in);
     let pixel = vec2i(in.clip.xy);
     let ray = ray_of_pixel(in.clip.xy);
-    let words = note_words();
     let head = atomicLoad(&heads[FIRST_HEAD + u32(pixel.y) * u32(view.size.x) + u32(pixel.x)]);
     var color = vec3f(0.0);
     var through = 1.0;
     var shown = vec2u(0u);
     var shown_depth = 0.0;
     var laid = 0u;
-    var last = Note(0xffffffffu, 0u, 0u);
+    var last = BEFORE_ALL;
+    var twins = 0u;             // layers that were laid alike with the last
     var count = 0u;
     var rounds = 0u;            // of walks
     var picked = vec4f(0.0, 0.0, 0.0, 1.0);
@@ -115,7 +169,7 @@ fn composite(in: Corner) -> Composite {
     var listed = head;          // of a list in order: the next note
     var is_left = head != 0u;
     if SORTED {
-        for (var next = head; next != 0u; next = notes[(next - 1u) * words]) {
+        for (var next = head; next != 0u; next = link_of(next)) {
             count += 1u;
         }
     }
@@ -133,52 +187,43 @@ fn composite(in: Corner) -> Composite {
         shown = vec2u(atomicLoad(&heads[record + RECORD_SHOWN]), atomicLoad(&heads[record + RECORD_SHOWN + 1u]));
         shown_depth = recorded(record + RECORD_SHOWN_DEPTH);
         // What is in the list comes after it.
-        last.depth = atomicLoad(&heads[record + RECORD_BEFORE]);
+        last.x = atomicLoad(&heads[record + RECORD_BEFORE]);
     }
     while is_left {
-        //@found
-        var next = select(head, 0u, SORTED);
-        count = select(0u, count, SORTED);
+        var walk = Walk(select(head, 0u, SORTED), 0u, 0u);
+        //@first
         if SORTED {
-            let place = (listed - 1u) * words;
-            found_0 = Note(notes[place + 1u], notes[place + 2u], listed);
-            listed = notes[place];
+            kept_0 = note_at(listed);
+            listed = link_of(listed);
         }
-        while next != 0u {
-            let place = (next - 1u) * words;
-            var note = Note(notes[place + 1u], notes[place + 2u], next);
-            if !precedes(last, note) {
-                note = NO_NOTE;
-            }
-            //@keep
-            count += 1u;
-            next = notes[place];
+        while walk.next != 0u {
+            //@more
             // Here, not at the beginning: a software adapter goes through a whole round to find that there is none.
-            if next == 0u {
+            if walk.next == 0u {
                 break;
             }
         }
+        count = select(walk.count, count, SORTED);
         rounds += count;
-        while found_0.depth != 0u {
-            let note = found_0;
-            let place = (note.number - 1u) * words;
-            let depth = bitcast<f32>(note.depth);
-            var normal = 0u;
-            if SMOOTH {
-                normal = notes[place + 3u];
-            }
-            let code = note.code & NOTED_CODE;
+        let most = select(min(KEPT, count - laid), 1u, SORTED);
+        var place = 0u;
+        var is_kept = kept_0.x != 0u;
+        while is_kept {
+            //@pick
+            let depth = bitcast<f32>(note.x);
+            let normal = note.z;
+            let code = note.y & NOTED_CODE;
             var point = point_of(pixel, ray, depth, vec2u(code, normal));
             point.base = point.natural;
             if TEXTURED {
-                point.base = unpacked(notes[place + words - 1u]);
+                point.base = unpacked(note.w);
             }
             if CLAY {
                 point.base = CLAY_COLOR;
             }
             point.layer = laid;
             point.last_layer = count - 1u;
-            point.is_covered = note.depth == last.depth;
+            point.is_covered = note.x == last.x;
             let classes = classes_at(sight_at(pixel, ray, depth, point.object), in.part.x);
             let opacity = opacity_at(point, classes);
             let paint = shade(&point, classes);
@@ -193,9 +238,11 @@ fn composite(in: Corner) -> Composite {
                 write_classes(pixel, point, classes);
             }
             laid += 1u;
+            twins = select(1u, twins + 1u, all(note == last));
             last = note;
-            //@shift
-            if found_0.depth == 0u || through < least_seen {
+            place += 1u;
+            is_kept = place < most && through >= least_seen;
+            if !is_kept {
                 break;
             }
         }
@@ -233,7 +280,7 @@ fn composite(in: Corner) -> Composite {
         atomicStore(&heads[record + RECORD_SHOWN], shown.x);
         atomicStore(&heads[record + RECORD_SHOWN + 1u], shown.y);
         atomicStore(&heads[record + RECORD_SHOWN_DEPTH], bitcast<u32>(shown_depth));
-        atomicStore(&heads[record + RECORD_BEFORE], last.depth);
+        atomicStore(&heads[record + RECORD_BEFORE], last.x);
     }
     return Composite(select(vec4f(color, through), picked, PICKS), shown, shown_depth);
 }

@@ -17,7 +17,7 @@ fn count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     var next = atomicLoad(&heads[i]);
     while next != 0u {
         layers += 1u;
-        next = notes[(next - 1u) * WORDS];
+        next = notes[link_place(arrayLength(&notes) / WORDS, next - 1u)];
         if next == 0u {
             break;
         }

@@ -1,7 +1,7 @@
 // Translucent layers (O7): every fragment that is seen through is noted in a list of its pixel. `pass/composite.wgsl` sorts them.
 //
 // A list begins at `heads` and goes on from note to note. A note has three words and, where the picture has them, a normal per
-// vertex and a colour of a texture.
+// vertex and a colour of a texture, in places that `lib/notes.wgsl` tells.
 //
 // Where there is much room, it is shared out between pools, one for each tile of the picture in turn, and what a pool has no
 // room for spills into the rest: processors that draw different tiles neither count with the same counter nor write
@@ -26,11 +26,15 @@ const MOST_IN_PLANE: u32 = 31u;
 const ALONE: u32 = 0xf8000000u;     // in its plane: as the lowest
 
 @group(0) @binding(1) var<storage, read_write> heads: array<atomic<u32>>;   // number of the note + 1; 0: none
-@group(0) @binding(2) var<storage, read_write> notes: array<u32>;
+@group(0) @binding(2) var<storage, read_write> notes: array<vec2u>;
 @group(0) @binding(3) var opaque_depth: texture_depth_2d;
 
 fn note_words() -> u32 {
     return 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
+}
+
+fn write_word(place: u32, word: u32) {
+    notes[place >> 1u][place & 1u] = word;
 }
 
 // `plane`: what is noted with the number, of its layer in a plane.
@@ -40,7 +44,7 @@ fn note(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) {
     }
     let pixel = vec2u(at);
     let tile = pixel >> vec2u(TILE_SHIFT);
-    let room = arrayLength(&notes) / note_words();
+    let room = 2u * arrayLength(&notes) / note_words();
     let has_pools = room >= MANY;
     let pool = select(0u, (tile.x + 5u * tile.y) % POOLS, has_pools);
     let each = select(room, room / 64u * 3u, has_pools);
@@ -53,15 +57,14 @@ fn note(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) {
     if number >= room {
         return;
     }
-    let place = number * note_words();
-    notes[place] = atomicExchange(&heads[FIRST_HEAD + pixel.y * u32(view.size.x) + pixel.x], number + 1u);
-    notes[place + 1u] = bitcast<u32>(depth);
-    notes[place + 2u] = code | plane;
+    notes[number] = vec2u(bitcast<u32>(depth), code | plane);
+    let before = atomicExchange(&heads[FIRST_HEAD + pixel.y * u32(view.size.x) + pixel.x], number + 1u);
+    write_word(link_place(room, number), before);
     if SMOOTH {
-        notes[place + 3u] = normal;
+        write_word(normal_place(room, number), normal);
     }
     if TEXTURED {
-        notes[place + note_words() - 1u] = color;
+        write_word(color_place(room, number, note_words()), color);
     }
 }
 

@@ -46,16 +46,18 @@ fn link(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
         laid = atomicLoad(&heads[record + LAID]);
         is_done = laid > 0u && bitcast<f32>(atomicLoad(&heads[record + LET_THROUGH])) < NOTHING_SEEN;
     }
+    let room = arrayLength(&slots) / WORDS;
     var found = 0u;
     var last = 0u;
     for (var i = 0u; i < SLOTS; i++) {
-        let place = (number * SLOTS + i) * WORDS;
-        let is_there = slots[place + 1u] != 0u && (LIMIT == 0u || laid + i < LIMIT);
+        let slot = number * SLOTS + i;
+        let place = key_place(slot);
+        let is_there = slots[place] != 0u && (LIMIT == 0u || laid + i < LIMIT);
         if is_there {
-            slots[place + 2u] = ~slots[place + 2u];
-            slots[place] = 0u;
+            slots[place + 1u] = ~slots[place + 1u];
+            slots[link_place(room, slot)] = 0u;
             if i > 0u {
-                slots[place - WORDS] = number * SLOTS + i + 1u;
+                slots[link_place(room, slot - 1u)] = slot + 1u;
             }
             found = i + 1u;
             last = place;
@@ -66,8 +68,8 @@ fn link(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     }
     atomicStore(&heads[FIRST_HEAD + index], select(0u, number * SLOTS + 1u, found > 0u));
     if found > 0u && RECORD > 1u {
-        atomicStore(&heads[record + LAST_DEPTH], slots[last + 1u]);
-        atomicStore(&heads[record + LAST_CODE], slots[last + 2u]);
+        atomicStore(&heads[record + LAST_DEPTH], slots[last]);
+        atomicStore(&heads[record + LAST_CODE], slots[last + 1u]);
     }
     if band.round == 0u && all > 0u {
         atomicAdd(&heads[NOTED], all);

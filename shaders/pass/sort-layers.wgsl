@@ -9,17 +9,29 @@ const FIRST_HEAD: u32 = 272u;
 override WORDS: u32 = 3u;           // of a note
 override WIDTH: u32 = 1u;
 
+fn room() -> u32 {
+    return arrayLength(&notes) / WORDS;
+}
+
 fn next_of(number: u32) -> u32 {
-    return notes[(number - 1u) * WORDS];
+    return notes[link_place(room(), number - 1u)];
 }
 
 // As in `pass/composite.wgsl`, of the numbers of two notes.
-fn precedes(a: u32, b: u32) -> bool {
-    let place = (vec2u(a, b) - 1u) * WORDS;
-    let depth = vec2u(notes[place.x + 1u], notes[place.y + 1u]);
-    let code = vec2u(notes[place.x + 2u], notes[place.y + 2u]);
-    return depth.x > depth.y
-        || (depth.x == depth.y && (code.x < code.y || (code.x == code.y && a < b)));
+fn comes_before(a: u32, b: u32) -> bool {
+    let place = vec2u(key_place(a - 1u), key_place(b - 1u));
+    let depth = vec2u(notes[place.x], notes[place.y]);
+    let code = vec2u(notes[place.x + 1u], notes[place.y + 1u]);
+    var is_before = depth.x > depth.y || (depth.x == depth.y && code.x < code.y);
+    var is_alike = all(vec2u(depth.x, code.x) == vec2u(depth.y, code.y));
+    // A normal and a colour, as many as there are.
+    for (var word = 3u; word < WORDS; word += 1u) {
+        let first = notes[word * room() + a - 1u];
+        let second = notes[word * room() + b - 1u];
+        is_before = is_before || (is_alike && first < second);
+        is_alike = is_alike && first == second;
+    }
+    return is_before;
 }
 
 @compute @workgroup_size(64)
@@ -45,7 +57,7 @@ fn sort(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
             let has_right = rights > 0u && right != 0u;
             var takes_left = has_left;
             if has_left && has_right {
-                takes_left = !precedes(right, left);
+                takes_left = !comes_before(right, left);
             }
             let taken = select(right, left, takes_left);
             if takes_left {
@@ -58,7 +70,7 @@ fn sort(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
             if last == 0u {
                 atomicStore(&heads[place], taken);
             } else {
-                notes[(last - 1u) * WORDS] = taken;
+                notes[link_place(room(), last - 1u)] = taken;
             }
             last = taken;
             count += 1u;
@@ -66,7 +78,7 @@ fn sort(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
         rest = right;
     }
     if last != 0u {
-        notes[(last - 1u) * WORDS] = 0u;
+        notes[link_place(room(), last - 1u)] = 0u;
     }
     atomicMax(&heads[LONGEST], count);
 }

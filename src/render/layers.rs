@@ -196,6 +196,13 @@ impl LayersOnGpu {
     fn room(&self, words: u64, most: u64) -> u64 {
         most.min(self.notes.buffer().size() / (4 * words))
     }
+
+    /// As many words of the notes, for shaders to tell from how many there is room for. They are bound two by two: of one more there
+    /// is no further note.
+    pub fn notes(&self, words: u64) -> wgpu::BindingResource<'_> {
+        let size = wgpu::BufferSize::new(4 * words.max(1).next_multiple_of(2));
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: self.notes.buffer(), offset: 0, size })
+    }
 }
 
 /// What lists are drawn from.
@@ -279,7 +286,7 @@ impl Renderer {
             figures.excess += excess;
             fitting.push((band, room * words));
             if let Some(count) = &draw.keys.count {
-                self.order_layers(&mut encoder, recorder, ("count layers", count), &own, size);
+                self.order_layers(&mut encoder, recorder, ("count layers", count), (&own, room * words), size);
             } else {
                 self.composite_layers(&mut encoder, recorder, draw, &own, (band, room * words), size);
             }
@@ -332,7 +339,7 @@ impl Renderer {
         let entries = [
             (0, whole(self.buffers.view.buffer())),
             (1, whole(own.heads.buffer())),
-            (2, notes_of(own, words)),
+            (2, own.notes(words)),
             (3, all_of(&targets.depth)),
         ];
         let view = group(&self.gpu, "layers", &layouts.layers, &entries);
@@ -379,11 +386,11 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
         (name, key): (&'static str, &Key),
-        own: &LayersOnGpu,
+        (own, words): (&LayersOnGpu, u64),
         size: [u32; 2],
     ) {
         let layouts = &self.pipelines.layouts;
-        let entries = [(0, whole(own.heads.buffer())), (1, whole(own.notes.buffer()))];
+        let entries = [(0, whole(own.heads.buffer())), (1, own.notes(words))];
         let lists = group(&self.gpu, "order of layers", &layouts.layer_order, &entries);
         let slot = recorder.begin(name, "main", &[], false);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -411,11 +418,11 @@ impl Renderer {
     ) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
         for key in &draw.keys.sort {
-            self.order_layers(encoder, recorder, ("sort layers", key), own, size);
+            self.order_layers(encoder, recorder, ("sort layers", key), (own, words), size);
         }
         let layouts = &self.pipelines.layouts;
         let [sums, through] = [&targets.tail_sums, &targets.tail_through].map(all_of);
-        let entries = [(0, whole(own.heads.buffer())), (1, notes_of(own, words)), (2, sums), (3, through)];
+        let entries = [(0, whole(own.heads.buffer())), (1, own.notes(words)), (2, sums), (3, through)];
         let lists = group(&self.gpu, "lists of layers", &layouts.layer_lists, &entries);
         let slot = recorder.begin("composite", "main", &draw.cut.hiding.lenses, true);
         let attachments = [&targets.veil, &targets.shown_code, &targets.shown_depth].map(|target| {
@@ -504,12 +511,6 @@ impl Renderer {
     pub fn layer_figures(&self) -> LayerFigures {
         self.layer_figures
     }
-}
-
-/// As many words of the notes.
-fn notes_of(own: &LayersOnGpu, words: u64) -> wgpu::BindingResource<'_> {
-    let size = wgpu::BufferSize::new(4 * words.max(1));
-    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: own.notes.buffer(), offset: 0, size })
 }
 
 /// Refuses a device that binds fewer buffers than lists of layers take.

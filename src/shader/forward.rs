@@ -2,7 +2,7 @@
 //! what shades a pixel, what tells which fragments are translucent, and what draws the city.
 
 use crate::shader::{
-    CHANCE, DITHER, FORWARD, FRAGMENT, GEOMETRY, Module, NOTHING_CUT, TAIL, TRANSLUCENT, carried,
+    CHANCE, DITHER, FORWARD, FRAGMENT, GEOMETRY, Module, NOTES, NOTHING_CUT, TAIL, TRANSLUCENT, carried,
     effect::EffectDefinition, hiding, lens_files, names_of, plan::Program, specialised, uber, wgsl,
 };
 
@@ -39,7 +39,7 @@ impl Forward {
     }
 
     pub(super) fn source(&self, handlers: &[EffectDefinition], lenses: &[&str]) -> String {
-        let kind = if self.kind == ForwardKind::Tail { TAIL } else { CHANCE };
+        let kind: &[_] = if self.kind == ForwardKind::Tail { &[NOTES, TAIL] } else { &[CHANCE] };
         let of_files = |files: &[(&str, &str)]| -> String {
             files.iter().map(|(path, source)| format!("// ==== {path}\n\n{source}\n")).collect()
         };
@@ -51,7 +51,7 @@ impl Forward {
             }
             Program::Uber(uber) => (uber::source(uber, handlers), uber::opacity(uber, handlers)),
         };
-        let first = of_files(&[&shading[..], &[FORWARD, kind]].concat())
+        let first = of_files(&[&shading[..], &[FORWARD], kind].concat())
             .replace("//@carried\n", &own.members)
             .replace("//@handlers\n", &(own.functions + &of_scene + &opacity))
             // What the triangle carries is made where it is read.

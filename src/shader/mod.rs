@@ -14,6 +14,7 @@ mod lining;
 mod plan;
 mod regions;
 mod sections;
+mod sorting;
 mod specialised;
 mod uber;
 pub mod wgsl;
@@ -95,6 +96,7 @@ files! {
     SPRITE = "pass/sprite.wgsl";
     SHADE = "pass/shade.wgsl";
     LINES = "pass/lines.wgsl";
+    NOTES = "lib/notes.wgsl";
     LAYERS = "pass/layers.wgsl";
     COMPOSITE = "pass/composite.wgsl";
     COUNT_LAYERS = "pass/count-layers.wgsl";
@@ -273,20 +275,20 @@ impl Module {
             Self::Layers(program, _) => &[
                 &[VIEW, VIEW_UNIFORM, SURFACE, PACKED, SIGHT],
                 &lens_files(program)[..],
-                &[OBJECTS, FRAGMENT, city_file(program), GEOMETRY, LAYERS],
+                &[OBJECTS, FRAGMENT, city_file(program), GEOMETRY, NOTES, LAYERS],
             ]
             .concat(),
-            Self::Composite(program) => &[&Self::files_of_shade(program, handlers)[..], &[COMPOSITE]].concat(),
-            Self::CountLayers => &[COUNT_LAYERS],
-            Self::SortLayers => &[SORT_LAYERS],
+            Self::Composite(program) => &[&Self::files_of_shade(program, handlers)[..], &[NOTES, COMPOSITE]].concat(),
+            Self::CountLayers => &[NOTES, COUNT_LAYERS],
+            Self::SortLayers => &[NOTES, SORT_LAYERS],
             Self::ShownLayers => &[SHOWN],
             Self::Slots(program, _) => &[
                 &[VIEW, VIEW_UNIFORM, SURFACE, PACKED, SIGHT],
                 &lens_files(program)[..],
-                &[OBJECTS, FRAGMENT, city_file(program), GEOMETRY, SLOTS, TRANSLUCENT],
+                &[OBJECTS, FRAGMENT, city_file(program), GEOMETRY, NOTES, SLOTS, TRANSLUCENT],
             ]
             .concat(),
-            Self::LinkSlots => &[LINK_SLOTS],
+            Self::LinkSlots => &[NOTES, LINK_SLOTS],
             Self::Forward(own) => return own.source(handlers, lenses),
             Self::Filter(_) => &[PACKED, FILTER],
             Self::Resolve => &[RESOLVE],
@@ -317,18 +319,7 @@ impl Module {
                 if matches!(self, Self::Shade(_)) {
                     return text;
                 }
-                let each = |count: u32, line: &dyn Fn(u32) -> String| (0..count).map(line).collect::<String>();
-                let text = text
-                    .replace("        //@found\n", &each(FOUND, &|i| format!("        var found_{i} = NO_NOTE;\n")))
-                    .replace(
-                        "            //@keep\n",
-                        &each(FOUND, &|i| format!("            keep_nearer(&found_{i}, &note);\n")),
-                    )
-                    .replace(
-                        "            //@shift\n",
-                        &(each(FOUND - 1, &|i| format!("            found_{i} = found_{};\n", i + 1))
-                            + &format!("            found_{} = NO_NOTE;\n", FOUND - 1)),
-                    );
+                let text = sorting::written_out(&text);
                 let opacity = match program {
                     Program::Specialised(plan) => specialised::opacity(plan, handlers),
                     Program::Uber(uber) => uber::opacity(uber, handlers),
@@ -449,9 +440,6 @@ fn span_files(program: &Program) -> Vec<(&'static str, &'static str)> {
 
 /// Where nothing is hidden.
 const NOTHING_CUT: &str = "fn cut(at: vec2f, depth: f32, code: u32) {}\n";
-
-/// How many notes of a list `pass/composite.wgsl` finds at a time.
-const FOUND: u32 = 16;
 
 /// Where the depth test comes before the shader.
 const EARLY: &str = " @early_depth_test(force)";

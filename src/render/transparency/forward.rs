@@ -17,13 +17,13 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         recorder: &mut Recorder,
         input: &FrameInput,
-        (draw, keys, (slots, bands)): (&LayerDraw, SlotKeys, (&wgpu::Buffer, wgpu::BindingResource)),
+        (draw, keys, [slots, bands]): (&LayerDraw, SlotKeys, [wgpu::BindingResource; 2]),
         (at, band): (usize, PictureTile),
     ) {
         let (Some(targets), Some(groups)) = (&self.targets, &self.groups) else { return };
         let entries = [
             (0, whole(self.buffers.view.buffer())),
-            (2, whole(slots)),
+            (2, slots),
             (4, bands),
             (5, one_of::<layout::City>(&self.buffers.cities)),
         ];

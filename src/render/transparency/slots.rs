@@ -19,6 +19,8 @@ use crate::{
 pub(in crate::render) struct SlotsOnGpu {
     /// Heads and records of pixels, slots, and what is read of them.
     lists: LayersOnGpu,
+    /// Words of the slots of the largest band.
+    words: u64,
     /// The bands, each at its offset, once for the first round of peeling and once for the others.
     bands: Synced,
 }
@@ -67,6 +69,7 @@ impl Renderer {
             Some(own) => own,
             None => SlotsOnGpu {
                 lists: LayersOnGpu::new(&self.gpu)?,
+                words: 0,
                 bands: Synced::new(&self.gpu, "bands of layers", wgpu::BufferUsages::UNIFORM)?,
             },
         };
@@ -77,6 +80,7 @@ impl Renderer {
         let bands = bands_of(region, most.checked_div(of_pixel).unwrap_or(u64::MAX));
         let room = of_pixel * u64::from(region.size[0]) * u64::from(bands.first().map_or(0, |band| band.size[1]));
         own.lists.notes.fit(&self.gpu, room)?;
+        own.words = room / 4;
         let rounds = |round| {
             let stage = move |band: &PictureTile| Band {
                 origin: band.origin,
@@ -111,10 +115,10 @@ impl Renderer {
                     self.link_slots(&mut encoder, recorder, (&keys, &own), (at, *band));
                 }
                 if keys.has_tail() {
-                    let slots = (own.lists.notes.buffer(), own.band());
+                    let slots = [own.slots(), own.band()];
                     self.tail_pass(&mut encoder, recorder, input, (draw, keys, slots), (at, *band));
                 }
-                self.composite_layers(&mut encoder, recorder, draw, &own.lists, (*band, room / 4), size);
+                self.composite_layers(&mut encoder, recorder, draw, &own.lists, (*band, own.words), size);
                 round += 1;
                 if !keys.is_peeling() && i + 1 < bands.len() {
                     break;
@@ -156,7 +160,7 @@ impl Renderer {
         let entries = [
             (0, whole(self.buffers.view.buffer())),
             (1, whole(own.lists.heads.buffer())),
-            (2, whole(own.lists.notes.buffer())),
+            (2, own.slots()),
             (3, all_of(&targets.depth)),
             (4, own.band()),
         ];
@@ -200,7 +204,7 @@ impl Renderer {
         (keys, own): (&SlotKeys, &SlotsOnGpu),
         (at, band): (usize, PictureTile),
     ) {
-        let entries = [(0, whole(own.lists.heads.buffer())), (1, whole(own.lists.notes.buffer())), (2, own.band())];
+        let entries = [(0, whole(own.lists.heads.buffer())), (1, own.slots()), (2, own.band())];
         let lists = group(&self.gpu, "slots as lists", &self.pipelines.layouts.link_slots, &entries);
         let slot = recorder.begin("link slots", "main", &[], false);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -235,6 +239,10 @@ impl Renderer {
 }
 
 impl SlotsOnGpu {
+    fn slots(&self) -> wgpu::BindingResource<'_> {
+        self.lists.notes(self.words)
+    }
+
     fn band(&self) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: self.bands.buffer(), offset: 0, size: Band::SIZE })
     }
