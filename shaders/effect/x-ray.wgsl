@@ -32,14 +32,26 @@
 //! doc = "Ramp of the opacity: how much of the way from `least` to `most`, at equal steps from faces that look at the eye to those seen edge on."
 //!
 //! [[parameter]]
+//! name = "floors"
+//! type = "number"
+//! range = [0, 1]
+//! default = 0.25
+//! doc = "How dense floors are beside other faces (horizontal ones that are neither roof nor terrain): seen edge on from a street, they lie like water at the foot of a house and tell nothing of its form."
+//!
+//! [[parameter]]
 //! name = "keep_terrain"
 //! type = "boolean"
 //! default = true
 //! doc = "Terrain, roads, water, land use and the plain ground stay opaque."
 
+// Cosine of how far a floor slopes at most: 8 degrees.
+const LEAST_FLOOR: f32 = 0.99;
+
 fn effect(opacity: f32, point: Point, p: Parameters) -> f32 {
     let facing = min(abs(dot(point.normal, towards_eye(point))), 1.0);
-    return mix(p.least, p.most, share_on_ramp(p.curve, density(facing, p.exponent)));
+    let opacity_of_face = mix(p.least, p.most, share_on_ramp(p.curve, density(facing, p.exponent)));
+    let is_floor = point.part == PART_OTHER && abs(point.normal.z) > LEAST_FLOOR;
+    return select(opacity_of_face, p.floors * opacity_of_face, is_floor);
 }
 
 // 0 where the exponent is, 1 where the face is edge on (below 2^-60), else 1 - facing^exponent.
