@@ -289,7 +289,10 @@ fn what_cannot_be_drawn_is_said_in_one_line_before_anything_is() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("-o DIR"));
     std::fs::write(&frames, "a file").unwrap();
     let output = run(&["animate", text(&file), "-o", text(&frames)]);
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
+    let expected =
+        format!("error: -o {}: is a file, and frames go to a folder; -o DIR would be right\n", text(&frames));
+    assert_eq!(String::from_utf8_lossy(&output.stderr), expected);
     std::fs::remove_dir_all(folder).unwrap();
 }
 

@@ -362,6 +362,66 @@ fn what_render_cannot_do_is_said_before_it_draws() {
 }
 
 #[test]
+fn what_is_not_there_is_named_with_who_asks_for_it() {
+    let folder = Folder::new("absent");
+    folder.file("a.city.json", CITY);
+    let scene = folder.file("s.toml", "veduta = 1\n[city]\nfiles = [\n\"a.city.json\",\n\"nope.json\"]\n");
+    let (picture, none) = (folder.path("a.png"), folder.path("nope.json"));
+    let refused = |arguments: &[&str], expected: &str| {
+        let output = run(arguments);
+        assert_eq!(code(&output), 1, "{}", err(&output));
+        assert_eq!(err(&output), format!("error: {expected}\n"), "{arguments:?}");
+    };
+    let expected = format!("{scene}:5: [city] files.1: there is no file or folder \"nope.json\" ({none})");
+    refused(&["render", &scene, "-o", &picture], &expected);
+    refused(&["animate", &scene, "-o", &folder.path("frames")], &expected);
+    refused(&["shader", &scene], &expected);
+    let sheet = folder.file("s.sheet.toml", "veduta_sheet = 1\nscene = \"s.toml\"\n[[row]]\nname = \"a\"\n");
+    refused(&["sheet", &sheet, "-o", &picture], &format!("{sheet}: scene: {expected}"));
+    let effects = folder.path("effects");
+    let expected = format!("--effects {effects}: cannot be read: No such file or directory (os error 2)");
+    refused(&["effects", "--effects", &effects], &expected);
+}
+
+#[test]
+fn where_results_go_is_looked_at_before_the_city_is() {
+    let folder = Folder::new("before");
+    let city = folder.file("a.city.json", "this is no city");
+    let scene = folder.file("s.toml", &format!("veduta = 1\ncity.files = [\"a.city.json\"]\n{ANIMATION}"));
+    let sheet = folder.file("s.sheet.toml", "veduta_sheet = 1\nscene = \"s.toml\"\n[[row]]\nname = \"a\"\n");
+    let (good, none) = (folder.path("a.png"), folder.path("none"));
+    let refused = |arguments: &[&str], file: &str| {
+        let output = run(arguments);
+        assert_eq!(code(&output), 1, "{}", err(&output));
+        assert_eq!(err(&output), format!("error: {file}: the folder {none} does not exist; make it first\n"));
+    };
+    let inside = |name: &str| folder.path(&format!("none/{name}"));
+    let (png, exr, json) = (inside("x.png"), inside("x.exr"), inside("x.json"));
+    refused(&["render", &city, "-o", &png], &png);
+    refused(&["render", &scene, "-o", &png], &png);
+    refused(&["render", &city, "-o", &good, "--stats", &json], &json);
+    refused(&["render", &city, "-o", &good, "--aov", &format!("depth={exr}")], &exr);
+    refused(&["render", &scene, "-o", &good, "--sprite", &format!("a={exr}")], &exr);
+    refused(&["sheet", &sheet, "-o", &png], &png);
+    refused(&["sheet", &sheet, "-o", &good, "--figures", &json], &json);
+    refused(&["animate", &scene, "-o", &folder.path("frames"), "--stats", &json], &json);
+    // A folder is no file; and what is right goes on to the city.
+    let output = run(&["render", &city, "-o", &good, "--stats", folder.0.to_str().unwrap()]);
+    assert_eq!(code(&output), 2, "{}", err(&output));
+    let output = run(&["render", &city, "-o", &good]);
+    assert!(err(&output).contains("a.city.json"), "{}", err(&output));
+}
+
+/// A lens, and two pictures of its scene.
+const ANIMATION: &str = "[[lens]]
+name = \"a\"
+shape = { kind = \"sphere\", center = [0, 0, 0], radius = 9 }
+[animation]
+frames = 2
+camera = [{ at = 0, eye = [0, -9, 9], target = [0, 0, 0] }, { at = 1, eye = [9, -9, 9], target = [0, 0, 0] }]
+";
+
+#[test]
 fn a_picture_goes_to_stdout_too() {
     let folder = Folder::new("stdout");
     let output = run(&["render", &folder.file("a.city.json", CITY), "-o", "-", "--size", "8x8"]);

@@ -114,6 +114,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if arguments.output.as_os_str() == "-" {
         return Err(Failure::usage("animate: frames are files, and cannot go to stdout; -o DIR would be right"));
     }
+    output::check(&arguments.stats)?;
     let options = render::options_of(Some(file), global);
     let scene = figure::scene_file::read(file, &options).map_err(Failure::failed)?;
     let mut scene = render::changed(scene, &arguments.settings)?;
@@ -209,7 +210,13 @@ impl Folder {
     /// Makes it where it is missing, and warns of what looks like frames of a longer animation: a film made of the folder
     /// would have them at its end.
     fn new(path: &Path, frames: u32) -> Outcome<Self> {
-        std::fs::create_dir_all(path).map_err(|error| Failure::io(&path.display().to_string(), &error))?;
+        let named = format!("-o {}", path.display());
+        if path.is_file() {
+            let message = format!("{named}: is a file, and frames go to a folder; -o DIR would be right");
+            return Err(Failure::usage(message));
+        }
+        std::fs::create_dir_all(path)
+            .map_err(|error| Failure::io(&format!("{named}: the folder cannot be made"), &error))?;
         let digits = (frames - 1).max(1).ilog10() as usize + 1;
         let folder = Self { path: path.to_owned(), digits: digits.max(4) };
         let entries = std::fs::read_dir(path).map_err(|error| Failure::io(&path.display().to_string(), &error))?;

@@ -40,12 +40,14 @@ pub struct Arguments {
 /// Adds the effects in a user's folders. A broken file is reported and left out; the rest works.
 pub fn add_folders(folders: &[PathBuf], global: &GlobalArguments) -> Outcome {
     for folder in folders {
-        let entries = std::fs::read_dir(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
+        let name = format!("--effects {}", folder.display());
+        let unread = |error| Failure::io(&format!("{name}: cannot be read"), &error);
+        let entries = std::fs::read_dir(folder).map_err(unread)?;
         let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         files.retain(|path| path.extension().is_some_and(|e| e == "wgsl"));
         files.sort();
         if files.is_empty() {
-            return Err(Failure::failed(format!("{}: there is no effect (*.wgsl) in this folder", folder.display())));
+            return Err(Failure::failed(format!("{name}: there is no effect (*.wgsl) in this folder")));
         }
         for file in files {
             let name = file.display().to_string();

@@ -1,15 +1,23 @@
 //! What commands put out: files that appear whole or not at all, and standard output.
 
-use std::{io::Write, path::Path};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 use crate::{
     cli::{Failure, Outcome},
-    figure::file::{WriteError, write_whole},
+    figure::file::{WriteError, check_target, write_whole},
 };
 
 /// Writes to `path`, or to stdout for `-`, what `write` puts out; see [`write_whole`].
 pub fn write(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Outcome {
     write_whole(path, write).map_err(unwritten)
+}
+
+/// Refuses, before anything is drawn, files that could not be written afterwards; see [`check_target`].
+pub fn check<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Outcome {
+    files.into_iter().try_for_each(|file| check_target(file)).map_err(unwritten)
 }
 
 /// Writes text to stdout.

@@ -50,6 +50,26 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result
     beside.into_place(path).map_err(failed)
 }
 
+/// Whether a file can be written to `path` as far as that is known before it is: its folder is there, and it names no
+/// folder itself. Standard output, `-`, always can.
+///
+/// # Errors
+/// Those of [`write_whole`].
+pub fn check_target(path: &Path) -> Result<(), WriteError> {
+    if path.as_os_str() == "-" {
+        return Ok(());
+    }
+    if path.file_name().is_none() || path.is_dir() {
+        return Err(WriteError::NoFile(path.to_owned()));
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    if !folder.as_os_str().is_empty() && !folder.is_dir() {
+        let message = format!("the folder {} does not exist; make it first", folder.display());
+        return Err(WriteError::Io { path: path.to_owned(), error: io::Error::other(message) });
+    }
+    Ok(())
+}
+
 /// A file beside the one it will become; removed unless it does.
 struct Beside {
     path: PathBuf,
@@ -58,19 +78,13 @@ struct Beside {
 
 impl Beside {
     fn new(target: &Path) -> Result<Self, WriteError> {
-        let Some(name) = target.file_name().filter(|_| !target.is_dir()) else {
-            return Err(WriteError::NoFile(target.to_owned()));
-        };
-        let folder = target.parent().unwrap_or(Path::new(""));
-        if !folder.as_os_str().is_empty() && !folder.is_dir() {
-            let message = format!("the folder {} does not exist; make it first", folder.display());
-            return Err(WriteError::Io { path: target.to_owned(), error: io::Error::other(message) });
-        }
+        check_target(target)?;
+        let Some(name) = target.file_name() else { return Err(WriteError::NoFile(target.to_owned())) };
         // The process id keeps two programs that write one file apart.
         let mut hidden = std::ffi::OsString::from(".");
         hidden.push(name);
         hidden.push(format!(".{}.part", std::process::id()));
-        Ok(Self { path: folder.join(hidden), done: false })
+        Ok(Self { path: target.with_file_name(hidden), done: false })
     }
 
     fn into_place(mut self, target: &Path) -> io::Result<()> {

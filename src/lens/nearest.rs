@@ -29,6 +29,22 @@ mod tests {
         assert_eq!(nearest("colour", known), Some("color"));
         assert_eq!(nearest("fov", known), Some("fov_deg"));
         assert_eq!(nearest("xyzzy", known), None);
+        let words =
+            ["x-ray", "x-ray-color", "cut-away", "k-buffer", "transparent-box", "discard", "flatten-soft", "edges"];
+        for (wrong, right) in [
+            ("xray", "x-ray"),
+            ("XRay", "x-ray"),
+            ("x_ray", "x-ray"),
+            ("cutaway", "cut-away"),
+            ("cut away", "cut-away"),
+            ("kbuffer", "k-buffer"),
+            ("edg-es", "edges"),
+            ("transparentbox", "transparent-box"),
+            ("flattensoft", "flatten-soft"),
+            ("xraycolor", "x-ray-color"),
+        ] {
+            assert_eq!(nearest(wrong, words), Some(right), "{wrong}");
+        }
         assert_eq!(did_you_mean("colr", known), "; did you mean \"color\"?");
     }
 }

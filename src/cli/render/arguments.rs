@@ -5,7 +5,7 @@ use std::{path::PathBuf, str::FromStr};
 use clap::Args;
 
 use crate::{
-    cli::{Failure, Outcome, render::sprites::SpriteRequest},
+    cli::{Failure, Outcome, output, render::sprites::SpriteRequest},
     render::frame::Backend,
 };
 
@@ -82,7 +82,7 @@ impl From<Shaders> for Backend {
 }
 
 impl Arguments {
-    /// Whether what is asked fits together; clap has checked each value by itself.
+    /// Whether what is asked fits together and can be written; clap has checked each value by itself.
     pub fn check(&self) -> Outcome {
         let is_scene = |path: &PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         if self.files.iter().any(is_scene) && self.files.len() > 1 {
@@ -94,14 +94,19 @@ impl Arguments {
         if self.output.as_os_str() != "-" && extension.as_deref() != Some("png") {
             return Err(Failure::usage(format!("{}: pictures are PNG; OUT.png would be right", self.output.display())));
         }
-        let mut outputs: Vec<&PathBuf> = self.aovs.iter().map(|aov| &aov.file).collect();
-        outputs.extend(self.sprites.iter().map(|sprite| &sprite.file));
-        outputs.extend(self.stats.iter().chain([&self.output]));
+        let mut outputs: Vec<&PathBuf> = self.outputs().collect();
         outputs.sort();
         match outputs.windows(2).find(|pair| pair[0] == pair[1]) {
             Some(twice) => Err(Failure::usage(format!("{}: two results cannot go to one file", twice[0].display()))),
-            None => Ok(()),
+            None => output::check(self.outputs()),
         }
+    }
+
+    /// All files to write, the picture first.
+    fn outputs(&self) -> impl Iterator<Item = &PathBuf> {
+        let aovs = self.aovs.iter().map(|aov| &aov.file);
+        let sprites = self.sprites.iter().map(|sprite| &sprite.file);
+        std::iter::once(&self.output).chain(&self.stats).chain(aovs).chain(sprites)
     }
 
     /// The scene file, when one is named; else `files` are city files.

@@ -102,7 +102,7 @@ pub fn notes(scene: &Scene, options: &Options) -> Vec<Note> {
 /// How paths of a scene file, or of the command line, are read.
 pub fn options_of(scene: Option<&PathBuf>, global: &GlobalArguments) -> Options {
     match scene {
-        Some(file) => Options { allow_outside: global.allow_outside, ..Options::for_file(file) },
+        Some(file) => Options { allow_outside: global.allow_outside, must_exist: true, ..Options::for_file(file) },
         None => Options::for_command_line(),
     }
 }

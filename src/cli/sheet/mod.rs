@@ -83,6 +83,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if output.as_os_str() != "-" && extension.as_deref() != Some("png") {
         return Err(Failure::usage(format!("{}: sheets are PNG; OUT.png would be right", output.display())));
     }
+    output::check(std::iter::once(output).chain(&arguments.figures))?;
     let name = arguments.sheet.display().to_string();
     let sheet = sheet::file::read(&arguments.sheet).map_err(Failure::failed)?;
     let of_sheet = render::options_of(Some(&arguments.sheet), global);

@@ -81,6 +81,12 @@ impl Checker {
         self.problems.push(Problem { line, table: place.table.clone(), key, message: message.into() });
     }
 
+    /// Of what was noted after the first `count` problems, keeps what is said of this key.
+    pub fn keep_after(&mut self, count: usize, key: &str) {
+        let later = self.problems.split_off(count);
+        self.problems.extend(later.into_iter().filter(|problem| problem.key == key));
+    }
+
     /// Checks all keys of a table; `later` are keys of later versions.
     pub fn fields<'a>(&mut self, node: &'a Node, table: &Table, later: &[&str], place: Place) -> Fields<'a> {
         let mut fields = Fields { place, good: BTreeMap::new(), bad: Vec::new() };
@@ -126,6 +132,11 @@ impl<'a> Fields<'a> {
     /// Whether the key stands in the file, good or bad.
     pub fn given(&self, key: &str) -> bool {
         self.good.contains_key(key) || self.bad.contains(&key)
+    }
+
+    /// Whether the key stands in the file with a value that it does not take.
+    pub fn is_bad(&self, key: &str) -> bool {
+        self.bad.contains(&key)
     }
 
     /// The value of a key, if good.
@@ -200,17 +211,23 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
             each(-FAR_M..=FAR_M) && node.numbers::<3>().and_then(|v| DVec3::from(v).try_normalize()).is_some()
         }
         Kind::Angles => each(-360.0..=360.0),
-        Kind::Points(_) => return wrong_rows::<3>(kind, node, "point", "[x, y, z], three", FAR_M),
+        Kind::Points(least) => return wrong_rows::<3>(kind, node, *least, "point", &Kind::Point.describe(), FAR_M),
         Kind::PlanPoint => node.numbers::<2>().is_some_and(|v| v.iter().all(|c| c.abs() <= FAR_M)),
         Kind::PlanLengths => node.numbers::<2>().is_some_and(|v| v.iter().all(|c| (0.0..=FAR_M).contains(c))),
-        Kind::PlanPoints(_) => return wrong_rows::<2>(kind, node, "point", "[x, y], two", FAR_M),
+        Kind::PlanPoints(least) => {
+            return wrong_rows::<2>(kind, node, *least, "point", &Kind::PlanPoint.describe(), FAR_M);
+        }
         Kind::Rings => match node.list() {
             Some(rings) => {
-                return rings.iter().find_map(|ring| wrong_rows::<2>(kind, ring, "point", "[x, y], two", FAR_M));
+                return rings
+                    .iter()
+                    .find_map(|ring| wrong_rows::<2>(kind, ring, 0, "point", &Kind::PlanPoint.describe(), FAR_M));
             }
             None => false,
         },
-        Kind::Planes(_) => return wrong_rows::<4>(kind, node, "plane", "[x, y, z, d], four", f64::MAX),
+        Kind::Planes(least) => {
+            return wrong_rows::<4>(kind, node, *least, "plane", "[x, y, z, d], four finite numbers", f64::MAX);
+        }
         Kind::Color => color(node).is_some(),
         Kind::Background => node.text() == Some("sky") || color(node).is_some(),
         Kind::Lod => lod(node).is_some(),
@@ -271,11 +288,21 @@ fn wrong_word(kind: &Kind, now: &[&str], later: &[&str], node: &Node) -> Option<
     }
 }
 
-fn wrong_rows<const N: usize>(kind: &Kind, node: &Node, name: &str, right: &str, most: f64) -> Option<String> {
+fn wrong_rows<const N: usize>(
+    kind: &Kind,
+    node: &Node,
+    least: usize,
+    name: &str,
+    right: &str,
+    most: f64,
+) -> Option<String> {
     let Some(list) = node.list() else { return Some(format!("must be {}, is {}", kind.describe(), node.quoted())) };
     let bad = |n: &Node| !n.numbers::<N>().is_some_and(|v| v.iter().all(|c| c.abs() <= most));
-    let at = list.iter().position(bad)?;
-    Some(format!("{name} {at} must be {right} finite numbers, is {}", list[at].quoted()))
+    if let Some(at) = list.iter().position(bad) {
+        return Some(format!("{name} {at} must be {right}, is {}", list[at].quoted()));
+    }
+    let has = if list.is_empty() { "none".to_owned() } else { list.len().to_string() };
+    (list.len() < least).then(|| format!("must be {}, has {has}", kind.describe()))
 }
 
 /// A level of detail, as a text or a number.

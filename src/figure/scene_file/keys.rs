@@ -46,7 +46,7 @@ pub enum Kind {
     Point,
     /// `[x, y, z]`, each 0 to [`FAR_M`].
     Lengths,
-    /// `[x, y, z]` of which one is not 0.
+    /// `[x, y, z]`, each within ± [`FAR_M`], of which one is not 0.
     Direction,
     /// `[yaw, pitch, roll]` in degrees, each within ±360.
     Angles,
@@ -680,13 +680,13 @@ impl Kind {
             Self::Text => "a text that is not empty".into(),
             Self::Texts => "a list of texts that are not empty".into(),
             Self::Word { now, .. } => now.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(" or "),
-            Self::Point => "[x, y, z], three finite numbers".into(),
-            Self::Lengths => "[x, y, z], three numbers ≥ 0".into(),
-            Self::Direction => "[x, y, z], not all 0".into(),
+            Self::Point => format!("[x, y, z], three numbers from {:e} to {FAR_M:e}", -FAR_M),
+            Self::Lengths => format!("[x, y, z], three numbers from 0 to {FAR_M:e}"),
+            Self::Direction => format!("{}, not all 0", Self::Point.describe()),
             Self::Angles => "[yaw, pitch, roll], three numbers -360 to 360".into(),
             Self::Points(least) => format!("a list of at least {least} points [x, y, z]"),
-            Self::PlanPoint => "[x, y], two finite numbers".into(),
-            Self::PlanLengths => "[width, height], two numbers ≥ 0".into(),
+            Self::PlanPoint => format!("[x, y], two numbers from {:e} to {FAR_M:e}", -FAR_M),
+            Self::PlanLengths => format!("[width, height], two numbers from 0 to {FAR_M:e}"),
             Self::PlanPoints(least) => format!("a list of at least {least} points [x, y]"),
             Self::Rings => "a list of rings, each a list of at least 3 points [x, y]".into(),
             Self::Planes(least) => format!("a list of at least {least} planes [x, y, z, d]"),
@@ -700,7 +700,7 @@ impl Kind {
             Self::Shapes => "a list of at least one shape".into(),
             Self::Numbers => "a number, or a list of numbers".into(),
             Self::Effects => "a list of effects: names or tables { effect = NAME, ... }".into(),
-            Self::Names => "a text that is not empty, or a list of at least one".into(),
+            Self::Names => "a text that is not empty, or a list of at least one such text".into(),
             Self::Test => "a table { kind = ..., ... }, { any = [...] }, { all = [...] } or { not = ... }".into(),
             Self::Shares => ParameterKind::Shares.describe(),
             Self::Colors => ParameterKind::Colors.describe(),

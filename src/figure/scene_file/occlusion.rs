@@ -23,6 +23,13 @@ pub(super) const OWN: [&str; 8] = ["poi", "test", "force", "forbid", "margin", "
 /// Whom a lens looks for.
 pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
     let pois = fields.node("poi").map(texts).unwrap_or_default();
+    let listed = fields.node("poi").and_then(Node::list).unwrap_or_default();
+    for (i, node) in listed.iter().enumerate() {
+        if let Some(first) = listed[..i].iter().position(|earlier| earlier.text() == node.text()) {
+            let message = format!("{} stands in the list already, as poi.{first}; once is enough", node.quoted());
+            reader.checker.note(&fields.place, &format!("poi.{i}"), node.line, message);
+        }
+    }
     let test = match fields.node("test") {
         None => Some(Test::default()),
         Some(node) => read_test(reader.checker, node, &fields.place.within("test", node.line)),
@@ -235,10 +242,33 @@ mod tests {
     }
 
     #[test]
+    fn an_empty_rendering_is_right_where_the_lens_does_something_else() {
+        for other in [
+            "effects = [\"sepia\"]",
+            "poi_effects = [\"gooch\"]",
+            "body = \"outline\"",
+            "content = { derive = \"box\" }",
+        ] {
+            let read = lens(&format!("poi = \"a\"\nrender = []\n{other}"));
+            assert!(read.is_ok(), "{other}: {read:?}");
+        }
+    }
+
+    #[test]
     fn mistakes_are_named_with_what_would_be_right() {
         for (lines, expected) in [
             ("", "[lens.0] poi: is missing: the test asks what hides a point of interest"),
-            ("poi = []", "[lens.0] poi: must be a text that is not empty, or a list of at least one, is []"),
+            ("poi = []", "[lens.0] poi: must be a text that is not empty, or a list of at least one such text, is []"),
+            (
+                "poi = [\"b\", \"a\", \"b\"]",
+                "s:4: [lens.0] poi.2: \"b\" stands in the list already, as poi.0; once is enough",
+            ),
+            (
+                "poi = \"a\"\nrender = []",
+                "s:5: [lens.0] render: is empty, and so nothing is drawn in another way; a word like \"x-ray\" or a list of effects like [\"sepia\"] would be right",
+            ),
+            ("poi = \"a\"\nrender = { effects = [] }", "s:5: [lens.0] render: is empty"),
+            ("poi = \"a\"\nrender = []\nbody = \"none\"", "[lens.0] render: is empty"),
             (
                 "poi = \"a\"\ntest = { kind = \"exakt\" }",
                 "[lens.0] test.kind: must be one of exact, view-axis, spherical, cylindrical, viewer-height, ground, route, is \"exakt\"; did you mean \"exact\"?",
@@ -255,11 +285,22 @@ mod tests {
                 "poi = \"a\"\ntest = { not = { kind = \"ground\", radius = -1 } }",
                 "[lens.0] test.not.radius: must be a number ≥ 0, is -1",
             ),
+            (
+                "test = { kind = \"route\", points = [] }",
+                "s:4: [lens.0] test.points: must be a list of at least 2 points [x, y, z], has none",
+            ),
+            (
+                "test = { kind = \"route\", points = [[0, 0, 0]] }",
+                "s:4: [lens.0] test.points: must be a list of at least 2 points [x, y, z], has 1",
+            ),
             ("poi = \"a\"\nmargin = -1", "[lens.0] margin: must be a number 0 to 1000, is -1"),
             ("poi = \"a\"\nfade = 61", "[lens.0] fade: must be a number 0 to 60, is 61"),
             ("poi = \"a\"\nfade = \"slow\"", "[lens.0] fade: must be a number 0 to 60, is \"slow\""),
             ("poi = \"a\"\nshadows = 1", "[lens.0] shadows: must be true or false, is 1"),
             ("poi = \"a\"\nrender = \"discrad\"", "[lens.0] render: must be \"discard\""),
+            ("poi = \"a\"\nrender = \"xray\"", "; did you mean \"x-ray\"?"),
+            ("poi = \"a\"\nrender = \"cutaway\"", "; did you mean \"cut-away\"?"),
+            ("poi = \"a\"\nrender = { as = \"xray\" }", "; did you mean \"x-ray\"?"),
             ("poi = \"a\"\nrender = \"discrad\"", "did you mean \"discard\"?"),
             (
                 "poi = \"a\"\nrender = [\"sepai\"]",

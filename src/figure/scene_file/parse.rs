@@ -1,11 +1,17 @@
 //! From a checked tree to a [`Scene`].
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::BTreeMap,
+    ffi::OsStr,
+    fmt::Write as _,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+};
 
 use glam::{DQuat, DVec2, DVec3};
 
 use crate::{
-    city::Lod,
+    city::{Lod, builtin},
     figure::scene_file::{
         animation,
         check::{Checker, Fields, Place, lod},
@@ -81,10 +87,16 @@ impl<'o> SceneReader<'o> {
                     for (i, element) in node.list().unwrap_or_default().iter().enumerate() {
                         let place =
                             Place { table: format!("{}.{i}", key.name), prefix: String::new(), line: element.line };
+                        let noted = self.checker.problems.len();
                         let fields = self.checker.fields(element, table, &[], place);
-                        match key.name {
-                            "poi" => scene.pois.extend(self.poi(&fields, i)),
-                            _ => scene.lenses.push(self.lens(&fields, i)),
+                        if key.name == "poi" {
+                            scene.pois.extend(self.poi(&fields, i));
+                            continue;
+                        }
+                        scene.lenses.push(self.lens(&fields, i));
+                        // What else a lens of an unknown kind may have is not known.
+                        if fields.is_bad("kind") {
+                            self.checker.keep_after(noted, "kind");
                         }
                     }
                 }
@@ -123,13 +135,24 @@ impl<'o> SceneReader<'o> {
 
     fn city(&mut self, fields: &Fields) -> CitySpec {
         let lod = fields.node("lod").and_then(lod).map(|l| l.to_string());
-        CitySpec { files: self.files(fields), lod, ground: fields.boolean("ground").unwrap_or(true) }
+        CitySpec {
+            files: self.files(fields, self.options.must_exist),
+            lod,
+            ground: fields.boolean("ground").unwrap_or(true),
+        }
     }
 
-    fn files(&mut self, fields: &Fields) -> Vec<PathBuf> {
+    fn files(&mut self, fields: &Fields, must_exist: bool) -> Vec<PathBuf> {
         let mut files = Vec::new();
         for (i, node) in fields.node("files").and_then(Node::list).unwrap_or_default().iter().enumerate() {
             match self.options.resolve(node.text().unwrap_or_default()) {
+                Ok(path) if must_exist && is_absent(&path) => {
+                    let mut message = format!("there is no file or folder {}", node.quoted());
+                    if Some(path.as_os_str()) != node.text().map(OsStr::new) {
+                        let _ = write!(message, " ({})", path.display());
+                    }
+                    self.checker.note(&fields.place, &format!("files.{i}"), node.line, message);
+                }
                 Ok(path) => files.push(path),
                 Err(PathProblem::NoData) => {
                     self.lacks_data = true;
@@ -301,7 +324,15 @@ impl<'o> SceneReader<'o> {
                     self.checker.note(&own.place, "files", own.line("files"), message);
                 }
                 let derive = content::derived(&own, &mut self.checker);
-                Some(Content { files: self.files(&own), lod, derive, class, clip: Clip::Order, keep_terrain, copied })
+                Some(Content {
+                    files: self.files(&own, false),
+                    lod,
+                    derive,
+                    class,
+                    clip: Clip::Order,
+                    keep_terrain,
+                    copied,
+                })
             }
         };
         if content.is_none() && fields.given("clip") {
@@ -579,6 +610,12 @@ impl<'o> SceneReader<'o> {
         }
         Some(used)
     }
+}
+
+/// Whether nothing is there. What is there and cannot be read, loading tells.
+fn is_absent(path: &Path) -> bool {
+    let is_builtin = path.to_string_lossy().starts_with(builtin::PREFIX);
+    !is_builtin && std::fs::metadata(path).is_err_and(|error| error.kind() == ErrorKind::NotFound)
 }
 
 /// A camera, of `[camera]` or of a table with its keys.

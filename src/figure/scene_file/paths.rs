@@ -18,6 +18,8 @@ pub struct Options {
     pub roots: Vec<PathBuf>,
     /// Whether paths may leave `base`, `data` and `roots`.
     pub allow_outside: bool,
+    /// Whether the files of `[city]` must be there: for who is about to load them.
+    pub must_exist: bool,
 }
 
 impl Options {
@@ -92,7 +94,7 @@ mod tests {
             base: "a/scenes".into(),
             data: Some("/data".into()),
             roots: vec!["named".into()],
-            allow_outside: false,
+            ..Options::default()
         }
     }
 

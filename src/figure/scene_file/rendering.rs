@@ -102,6 +102,24 @@ fn has_cases(nodes: &[Node]) -> bool {
     nodes.iter().any(is_case)
 }
 
+/// Whether `render` has no effects at all: an empty list, or cases that have none.
+fn is_empty(node: &Node) -> bool {
+    let is_empty_case = |node: &Node| {
+        let Data::Table(entries) = &node.data else { return false };
+        let find = |name: &str| entries.iter().find(|(key, ..)| key == name).map(|(.., node)| node);
+        find(AS).is_none() && find("effects").and_then(Node::list).is_some_and(<[Node]>::is_empty)
+    };
+    node.list().map_or_else(|| is_empty_case(node), |nodes| nodes.iter().all(is_empty_case))
+}
+
+/// Whether an occlusion lens does something besides its `render`.
+fn does_more(fields: &Fields) -> bool {
+    let is_filled =
+        |key: &&str| fields.given(key) && !fields.node(key).and_then(Node::list).is_some_and(<[Node]>::is_empty);
+    let has_body = fields.given("body") && fields.text("body") != Some("none");
+    has_body || ["effects", "poi_effects", "content"].iter().any(is_filled)
+}
+
 impl SceneReader<'_> {
     /// How an occlusion lens with these effects draws occluders and points of interest.
     pub(super) fn rendering(&mut self, fields: &Fields, effects: &[EffectUse]) -> Rendering {
@@ -112,18 +130,28 @@ impl SceneReader<'_> {
                 (Data::Table(_), _) => self.case(node, &fields.place.within("render", node.line)).into_iter().collect(),
                 (Data::List(nodes), _) if has_cases(nodes) => {
                     let mut cases = Vec::new();
+                    let mut is_all = false;
                     for (i, node) in nodes.iter().enumerate() {
-                        cases.extend(self.case(node, &fields.place.within(&format!("render.{i}"), node.line)));
+                        let (key, noted) = (format!("render.{i}"), self.checker.problems.len());
+                        let case = self.case(node, &fields.place.within(&key, node.line));
+                        // Where something is wrong in a case, whom it is for is not known.
+                        let is_known = self.checker.problems.len() == noted;
+                        let holds = is_known && case.as_ref().is_some_and(|case| case.when.is_always());
+                        if holds && !is_all && i + 1 < nodes.len() {
+                            is_all = true;
+                            let message = "holds of all occluders: none is left for the cases after it; it would be right as the last";
+                            self.checker.note(&fields.place, &key, node.line, message);
+                        }
+                        cases.extend(case);
                     }
                     cases
                 }
                 _ => vec![Case::of_effects(self.own_effects(fields, "render"))],
             },
         };
-        let always = cases.iter().position(|case| case.when.is_always());
-        if let Some(first) = always.filter(|first| first + 1 < cases.len()) {
-            let message = "holds of all occluders: none is left for the cases after it; it would be right as the last";
-            self.checker.note(&fields.place, &format!("render.{first}"), fields.line("render"), message);
+        if let Some(node) = fields.node("render").filter(|node| is_empty(node) && !does_more(fields)) {
+            let message = "is empty, and so nothing is drawn in another way; a word like \"x-ray\" or a list of effects like [\"sepia\"] would be right";
+            self.checker.note(&fields.place, "render", node.line, message);
         }
         let scene_style = |used: &&EffectUse| find_effect(&used.effect).is_some_and(|e| e.kind == EffectKind::Scene);
         let first = cases.iter().find_map(|case| case.effects.iter().find(scene_style));
@@ -335,6 +363,32 @@ mod tests {
             let again = parse(&text, "s", &Options::for_command_line()).unwrap();
             assert_eq!(again, read, "{text}");
         }
+    }
+
+    #[test]
+    fn a_case_that_is_wrong_does_not_hold_of_all() {
+        for (lines, expected) in [
+            (
+                "render = [{ as = \"flatten\", nearer = -4 }, { as = \"x-ray\" }]",
+                "s:8: [lens.0] render.0.nearer: must be a number ≥ 0, is -4",
+            ),
+            (
+                "render = [{ as = \"flatten\", nearr = 4 }, { as = \"x-ray\" }]",
+                "s:8: [lens.0] render.0.nearr: unknown key; did you mean \"nearer\"?",
+            ),
+            (
+                "render = [{ as = \"hull\", nearer = 4 }, { as = \"low\", where = { ids = [] } }, { as = \"x-ray\" }]",
+                "s:8: [lens.0] render.1.where.ids: must name at least one object",
+            ),
+        ] {
+            assert_eq!(scene(lines).unwrap_err(), expected, "{lines}");
+        }
+        // One that holds of all is named by its own place, whatever is wrong before it.
+        let message =
+            scene("render = [{ as = \"low\", types = [] }, { nearer = 3 }, { as = \"hull\" }, { as = \"x-ray\" }]");
+        let message = message.unwrap_err();
+        assert!(message.contains("[lens.0] render.2: holds of all occluders"), "{message}");
+        assert_eq!(message.matches("holds of all").count(), 1, "{message}");
     }
 
     #[test]

@@ -99,7 +99,15 @@ fn every_mistake_names_its_line_place_and_remedy() {
         ("veduta = 1\n[camera]\neye = [0, 0, 0]", "s.toml:2: [camera] target: is missing"),
         (
             "veduta = 1\n[camera]\neye = [nan, 0, 0]\ntarget = [0, 0, 1]",
-            "s.toml:3: [camera] eye: must be [x, y, z], three finite numbers, is [NaN, 0, 0]",
+            "s.toml:3: [camera] eye: must be [x, y, z], three numbers from -1e9 to 1e9, is [NaN, 0, 0]",
+        ),
+        (
+            "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nup = [0, 0, 2e9]",
+            "[camera] up: must be [x, y, z], three numbers from -1e9 to 1e9, not all 0, is [0, 0, 2000000000]",
+        ),
+        (
+            "veduta = 1\n[[poi]]\nat = [1e10, 0, 0]",
+            "s.toml:3: [poi.0] at: must be [x, y, z], three numbers from -1e9 to 1e9, is [10000000000, 0, 0]",
         ),
         (
             "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nfov_deg = 180",
@@ -107,7 +115,7 @@ fn every_mistake_names_its_line_place_and_remedy() {
         ),
         (
             "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nup = [0, 0, 0]",
-            "[camera] up: must be [x, y, z], not all 0",
+            "[camera] up: must be [x, y, z], three numbers from -1e9 to 1e9, not all 0",
         ),
         (
             "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nheight_m = 9",
@@ -207,7 +215,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"mask\", points = [[0,0],[1,0],[0,1,2]], base = 0, height = 3 }",
-            "shape.points: point 2 must be [x, y], two finite numbers, is [0, 1, 2]",
+            "shape.points: point 2 must be [x, y], two numbers from -1e9 to 1e9, is [0, 1, 2]",
         ),
         (
             "shape = { kind = \"mask\", points = [[0,0],[9,9],[9,0],[0,9]], base = 0, height = 3 }",
@@ -230,7 +238,7 @@ fn every_mistake_in_a_lens_is_named() {
         ("shape = { kind = \"thematic\", ids = [\"a\"], min = 3 }", "shape.min: has a meaning only with attribute"),
         (
             "shape = { kind = \"corridor\", points = [[0, 0, 0]], width = 3, height = 2 }",
-            "shape.points: a line needs at least 2 points, has 1",
+            "shape.points: must be a list of at least 2 points [x, y, z], has 1",
         ),
         ("shape = { kind = \"enclosed\", shapes = [] }", "shape.shapes: must be a list of at least one shape, is []"),
         (
@@ -262,11 +270,27 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"cylinder\", center = [0,0,0], radius = 1, height = 1, axis = [0,0,0] }",
-            "shape.axis: must be [x, y, z], not all 0",
+            "shape.axis: must be [x, y, z], three numbers from -1e9 to 1e9, not all 0",
         ),
         (
             "shape = { kind = \"ellipsoid\", center = [0,0,0], radii = 3 }",
-            "shape.radii: must be [x, y, z], three numbers ≥ 0, is 3",
+            "shape.radii: must be [x, y, z], three numbers from 0 to 1e9, is 3",
+        ),
+        (
+            "shape = { kind = \"polytope\", planes = [] }",
+            "shape.planes: must be a list of at least 4 planes [x, y, z, d], has none",
+        ),
+        (
+            "shape = { kind = \"box\", center = [0,0,0], size = [1, 1, 2e9] }",
+            "shape.size: must be [x, y, z], three numbers from 0 to 1e9, is [1, 1, 2000000000]",
+        ),
+        (
+            "shape = { kind = \"corridor\", points = [[0, 0, 0], [0, -2e9, 0]], width = 3, height = 2 }",
+            "shape.points: point 1 must be [x, y, z], three numbers from -1e9 to 1e9, is [0, -2000000000, 0]",
+        ),
+        (
+            "shape = { kind = \"flat\", center = [0,0,0], size = [2e9, 1] }",
+            "shape.size: must be [width, height], two numbers from 0 to 1e9, is [2000000000, 1]",
         ),
         ("shape = { kind = \"frustum\", center = [0,0,0], radius = 3, height = 2 }", "shape.top_radius: is missing"),
         (
@@ -275,7 +299,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"box\", center = [0,0,0], size = [1, -1, 1] }",
-            "shape.size: must be [x, y, z], three numbers ≥ 0, is [1, -1, 1]",
+            "shape.size: must be [x, y, z], three numbers from 0 to 1e9, is [1, -1, 1]",
         ),
         (
             "shape = { kind = \"flat\", center = [0,0,0] }",
@@ -287,15 +311,15 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"flat\", center = [0,0,0], size = [1, -2] }",
-            "shape.size: must be [width, height], two numbers ≥ 0, is [1, -2]",
+            "shape.size: must be [width, height], two numbers from 0 to 1e9, is [1, -2]",
         ),
         (
             "shape = { kind = \"flat\", center = [0,0,0], points = [[0, 0], [1, 0, 0], [0, 1]] }",
-            "shape.points: point 1 must be [x, y], two finite numbers, is [1, 0, 0]",
+            "shape.points: point 1 must be [x, y], two numbers from -1e9 to 1e9, is [1, 0, 0]",
         ),
         (
             "shape = { kind = \"flat\", center = [0,0,0], points = [[0, 0], [1, 0]] }",
-            "shape.points: a polygon needs at least 3 points, has 2",
+            "shape.points: must be a list of at least 3 points [x, y], has 2",
         ),
         (
             "shape = { kind = \"sphere\", center = [0, 0, 0], radius = 3 }\nshapes = []",
@@ -421,6 +445,30 @@ fn every_mistake_in_a_lens_is_named() {
         let message = read_text(&lens_text(&format!("{BALL}{lines}"))).unwrap_err();
         assert!(message.contains(expected), "{lines}\n  gave     {message}\n  expected {expected}");
     }
+}
+
+#[test]
+fn of_a_lens_of_a_wrong_kind_only_that_is_told() {
+    let rest = "poi = \"hall\"\ntest = { kind = \"spherical\", radius = 9 }\nrender = \"x-ray\"\npoi_effects = [\"gooch\"]\nmagnification = 3\nmargin = -1";
+    for (kind, expected) in [
+        (
+            "occlusionn",
+            "must be \"color\" or \"content\" or \"occlusion\", is \"occlusionn\"; did you mean \"occlusion\"?",
+        ),
+        ("see-through", "\"see-through\" is not available yet; available: color, content, occlusion"),
+    ] {
+        let message = read_text(&lens_text(&format!("{rest}\nkind = \"{kind}\""))).unwrap_err();
+        assert_eq!(message, format!("s.toml:9: [lens.0] kind: {expected}"));
+    }
+    // Other lenses keep theirs.
+    let two = format!("[[lens]]\nkind = \"colour\"\n[[lens]]\n{BALL}effects = [\"sepai\"]\n[sun]\nshadows = 1");
+    let message = read_text(&format!("veduta = 1\n{two}")).unwrap_err();
+    let lines: Vec<&str> = message.lines().collect();
+    assert_eq!(lines.len(), 3, "{message}");
+    assert!(
+        lines[0].starts_with("s.toml:3: [lens.0] kind: ") && lines[1].contains("[lens.1] effects.0: "),
+        "{message}"
+    );
 }
 
 #[test]
@@ -705,7 +753,6 @@ fn occluded() -> impl Strategy<Value = (Occluders, Rendering, bool)> {
     let choice = prop::option::of("[a-z\"]{1,5}".prop_map(choice));
     let render = prop_oneof![
         Just(Rendering::default()),
-        Just(Rendering::of_effects(vec![])),
         // A second scene style beside those of `effects` is refused.
         effects().prop_filter_map("no scene style", |used| {
             (used.effect == "sepia").then(|| Rendering::of_effects(vec![used]))
@@ -731,7 +778,7 @@ fn occluded() -> impl Strategy<Value = (Occluders, Rendering, bool)> {
         if cases.is_empty() { Rendering::default() } else { Rendering::of_cases(cases) }
     });
     let render = prop_oneof![2 => render, 1 => cases];
-    let names = prop::collection::vec("[a-z\"]{1,5}", 1..3);
+    let names = prop::collection::btree_set("[a-z\"]{1,5}", 1..3).prop_map(|names| names.into_iter().collect());
     let over_time = (0.0..=1000.0f64, 0.0..=60.0f64).prop_map(|(metres, fade_s)| (Margin { metres }, Pace { fade_s }));
     let over_time = prop_oneof![Just(Default::default()), over_time];
     (names, detections(), choice.clone(), choice, over_time, render, any::<bool>()).prop_map(
