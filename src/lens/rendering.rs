@@ -430,7 +430,7 @@ mod tests {
         }
         let names = |word| Row::of_word(word).unwrap().parameters().into_iter().map(|p| p.name).collect::<Vec<_>>();
         assert_eq!(names("discard"), ["part"]);
-        assert_eq!(names("x-ray-shape"), ["exponent", "least", "most", "curve", "color"]);
+        assert_eq!(names("x-ray-shape"), ["exponent", "least", "most", "curve", "floors", "color"]);
         assert_eq!(
             (names("transparent-box"), names("low")),
             (vec!["opacity".into(), "color".into(), "oriented".into()], vec!["height".into()])

@@ -143,12 +143,13 @@ fn a_lens_of_zero_size_holds_nothing_and_a_negative_one_is_refused() {
         }
         assert!(volume.bounding_mesh().triangles.is_empty());
     }
-    for shape in [
-        format!("kind = \"sphere\", {center}, radius = -1e-9"),
-        format!("kind = \"box\", {center}, size = [1, -1, 1]"),
-        format!("kind = \"cylinder\", {center}, radius = 1, height = -1"),
+    for (shape, right) in [
+        (format!("kind = \"sphere\", {center}, radius = -1e-9"), "≥ 0"),
+        (format!("kind = \"box\", {center}, size = [1, -1, 1]"), "from 0 to 1e9"),
+        (format!("kind = \"cylinder\", {center}, radius = 1, height = -1"), "≥ 0"),
     ] {
-        assert!(lens(&shape).unwrap_err().to_string().contains('≥'), "{shape}");
+        let error = lens(&shape).unwrap_err().to_string();
+        assert!(error.contains(right), "{shape}: {error}");
     }
     assert!(Shape::Sphere { center: DVec3::ZERO, radius: -1.0 }.volume().is_err());
 }
