@@ -51,6 +51,33 @@ fn layers_of_a_number_along_the_ray_grow_denser() {
     }
 }
 
+#[test]
+fn layers_that_are_alike_in_everything_are_all_laid() {
+    // More faces of one surface in one plane than are told apart, and than one walk through a list finds.
+    let (count, a) = (60, 0.1);
+    let corners = |i: usize| format!("[0,0,0],[0,10000,0],[0,10000,{0}],[0,0,{0}]", 10_000 - i);
+    let faces: Vec<String> =
+        (0..count).map(|i| format!("[[{}, {}, {}, {}]]", 4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3)).collect();
+    let text = format!(
+        r#"{{"type": "CityJSON", "version": "2.0", "transform": {{"scale": [0.001, 0.001, 0.001], "translate": [0, 0, 0]}},
+            "CityObjects": {{"p": {{"type": "Building",
+                "geometry": [{{"type": "MultiSurface", "lod": "2", "boundaries": [{}]}}]}}}}, "vertices": [{}]}}"#,
+        faces.join(","),
+        (0..count).map(corners).collect::<Vec<_>>().join(",")
+    );
+    let path = std::env::temp_dir().join(format!("veduta-alike-{}.city.json", std::process::id()));
+    std::fs::write(&path, text).expect("a temporary file");
+    let mut studio = studio(std::slice::from_ref(&path));
+    std::fs::remove_file(path).expect("the temporary file");
+    let scene = of_context(vec![with_numbers("transparent", &[("opacity", a)])]);
+    let middle = (SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize;
+    for backend in [Backend::Specialised, Backend::Uber] {
+        let found = veil(&mut studio, &scene, backend, SIZE)[middle];
+        let through = (1.0 - f64::from(a as f32)).powi(count as i32);
+        assert!((f64::from(found[3]) - through).abs() <= 60.0 * 2.0_f64.powi(-24), "{backend:?}: {found:?}, {through}");
+    }
+}
+
 /// A lens over the synthetic town that does this to one of its classes.
 fn town_lens(effect: EffectUse, border: Option<Border>) -> Lens {
     let shape = Shape::Sphere { center: DVec3::new(0.0, 0.0, 5.0), radius: 30.0 };
