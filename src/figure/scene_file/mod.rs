@@ -129,4 +129,6 @@ pub fn to_toml_for(scene: &Scene, options: &Options) -> String {
 }
 
 #[cfg(test)]
+mod round_trip;
+#[cfg(test)]
 mod tests;

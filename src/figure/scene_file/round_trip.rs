@@ -1,0 +1,462 @@
+//! What is written is read back, for scenes of all kinds.
+
+use glam::{DVec2, DVec3};
+use proptest::prelude::*;
+
+use super::{tests::read_text, *};
+use crate::{
+    city::derived::{Derive, Form, Height},
+    geom::{Shape, combination::Operation, shape::FlatFigure},
+    lens::{
+        Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
+        Occluders, OwnEye, Parameter, Placement, Rendering,
+        chosen::Choice,
+        rendering::{Case, ROWS, When},
+        sprite::{Format, Mapping},
+    },
+    scene::{
+        Animation, Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique,
+        Transparency,
+        animation::{Change, ChangeKey, Numbers},
+        transparency::{MOST_PEELED, SLOTS},
+    },
+    shader::{
+        Blend, Clip, EffectKind,
+        effect::{ParameterDefinition, ParameterKind, find},
+    },
+    view::{
+        Camera, Projection,
+        path::{CameraKey, Speed},
+    },
+    visibility::{Margin, Pace, Reference, Test},
+};
+
+fn point() -> impl Strategy<Value = DVec3> {
+    prop::array::uniform3(-1e6..1e6f64).prop_map(DVec3::from)
+}
+
+fn shapes() -> impl Strategy<Value = Shape> {
+    let angles = || prop::array::uniform3(-1800..1800i32).prop_map(|a| a.map(|a| f64::from(a) / 10.0));
+    prop_oneof![
+        (point(), 0.0..1e4f64).prop_map(|(center, radius)| Shape::Sphere { center, radius }),
+        (point(), prop::array::uniform3(0.0..1e3f64), angles()).prop_map(|(center, s, a)| Shape::Box {
+            center,
+            size: s.into(),
+            rotation: rotation(a)
+        }),
+        (point(), 0.0..1e3f64, 0.0..1e3f64, point()).prop_filter_map("an axis", |(center, radius, height, a)| {
+            Some(Shape::Cylinder { center, radius, height, axis: a.try_normalize()? })
+        }),
+        (point(), prop::array::uniform3(0.0..1e3f64), angles()).prop_map(|(center, r, a)| Shape::Ellipsoid {
+            center,
+            radii: r.into(),
+            rotation: rotation(a)
+        }),
+        (point(), 0.0..1e3f64, prop_oneof![Just(0.0), 0.0..1e3f64], 0.0..1e3f64, point()).prop_filter_map(
+            "an axis",
+            |(center, radius, top_radius, height, a)| {
+                Some(Shape::Frustum { center, radius, top_radius, height, axis: a.try_normalize()? })
+            }
+        ),
+        prop::collection::vec(point(), 5..9).prop_map(|points| Shape::Convex { points }),
+        (point(), prop::array::uniform6(0.1..1e3f64)).prop_map(|(at, ends)| {
+            let sides = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z].into_iter().zip(ends);
+            Shape::Polytope { planes: sides.map(|(n, d)| [n.x, n.y, n.z, d + n.dot(at)]).collect() }
+        }),
+        (prop::collection::vec(point(), 2..9), 0.0..1e3f64, 0.0..1e3f64)
+            .prop_map(|(points, width, height)| Shape::Corridor { points, width, height }),
+        (point(), angles(), figures_of_flats()).prop_map(|(center, a, figure)| Shape::Flat {
+            center,
+            rotation: rotation(a),
+            figure
+        }),
+    ]
+}
+
+fn figures_of_flats() -> impl Strategy<Value = FlatFigure> {
+    let pair = || prop::array::uniform2(-1e3..1e3f64).prop_map(DVec2::from);
+    prop_oneof![
+        (0.0..1e3f64).prop_map(|radius| FlatFigure::Disc { radius }),
+        pair().prop_map(|size| FlatFigure::Rectangle { size: size.abs() }),
+        prop::collection::vec(pair(), 3..9).prop_map(|points| FlatFigure::Polygon { points }),
+    ]
+}
+
+fn placements() -> impl Strategy<Value = Placement> {
+    prop_oneof![
+        Just(Placement::World),
+        Just(Placement::Camera),
+        ".{1,6}".prop_map(Placement::Object),
+        ".{1,6}".prop_map(Placement::Poi),
+    ]
+}
+
+fn plan() -> impl Strategy<Value = DVec2> {
+    prop::array::uniform2(-1e6..1e6f64).prop_map(DVec2::from)
+}
+
+fn choices() -> impl Strategy<Value = Choice> {
+    let ids = prop::collection::vec("[a-z\"]{1,5}", 1..3).prop_map(|ids| (ids, None));
+    let attribute = (".{1,5}", prop::option::of(prop::collection::vec(".{1,4}", 1..3)))
+        .prop_map(|(name, values)| (Vec::new(), Some((name, values))));
+    (prop_oneof![ids, attribute], prop::option::of(-1e3..1e3f64), any::<bool>()).prop_map(|((ids, of), min, except)| {
+        let (attribute, values) = of.map_or((None, None), |(name, values)| (Some(name), values));
+        let min = min.filter(|_| attribute.is_some());
+        Choice { ids, attribute, values, min, max: min.map(|m| m + 1.0), except }
+    })
+}
+
+fn focuses() -> impl Strategy<Value = Focus> {
+    plain_focuses().prop_recursive(2, 6, 3, |inner| {
+        let how = prop::option::of(prop::sample::select(Operation::ALL.to_vec()));
+        let types = prop::collection::vec("[A-Z\"]{1,5}", 0..3);
+        (how, any::<bool>(), types, prop::collection::vec(inner, 1..3)).prop_map(|(how, whole, types, parts)| match how
+        {
+            Some(how) => Focus::Combined { how, parts },
+            None => Focus::Enclosed { parts, whole, types },
+        })
+    })
+}
+
+fn plain_focuses() -> impl Strategy<Value = Focus> {
+    let angles = prop::array::uniform3(-1800..1800i32).prop_map(|a| a.map(|a| f64::from(a) / 10.0));
+    // With area, and a smaller one in it.
+    let ring = (plan(), 1.0..1e3f64).prop_map(|(at, size)| {
+        let corners =
+            move |size: f64| [[0.0, 0.0], [3.0, 0.4], [1.0, 2.0]].map(|c| at + size * (DVec2::from(c) - 1.0)).to_vec();
+        (corners(size), corners(0.3 * size))
+    });
+    let size = || prop::array::uniform2(0.0..1e3f64).prop_map(DVec2::from);
+    prop_oneof![
+        4 => shapes().prop_map(Focus::from),
+        1 => (point(), angles, 0.1..1e3f64).prop_map(|(at, a, scale)| Focus::Mesh {
+            file: "b.obj".into(),
+            at,
+            rotation: rotation(a),
+            scale
+        }),
+        1 => (ring, any::<bool>(), -1e3..1e3f64, 0.0..1e3f64).prop_map(|((points, hole), holed, base, height)| {
+            Focus::Prism { points, holes: if holed { vec![hole] } else { vec![] }, base, height }
+        }),
+        1 => (plan(), size(), -1e3..1e3f64, 0.0..1e3f64).prop_map(|(corner, size, base, height)| Focus::Mask {
+            image: "m.png".into(),
+            corner,
+            size,
+            base,
+            height
+        }),
+        1 => (point(), prop::array::uniform3(0.0..1e3f64)).prop_map(|(corner, size)| Focus::Mask3d {
+            images: vec!["0.png".into(), "1.png".into()],
+            corner,
+            size: size.into()
+        }),
+        1 => Just(Focus::Sprite { file: "s.exr".into() }),
+        1 => choices().prop_map(Focus::Objects),
+        1 => choices().prop_map(Focus::Thematic),
+    ]
+}
+
+fn effects() -> impl Strategy<Value = EffectUse> {
+    let class = prop_oneof![Just(Class::Inside), Just(Class::Front), Just(Class::Behind), Just(Class::Rest)];
+    let used = |effect: &str, class, parameters: Vec<(&str, Parameter)>| EffectUse {
+        effect: effect.into(),
+        class,
+        blend: None,
+        weight: None,
+        parameters: parameters.into_iter().map(|(k, v)| (k.to_owned(), v)).collect(),
+    };
+    let laid = (prop::option::of(prop::sample::select(Blend::ALL.to_vec())), prop::option::of(0.0..=1.0f64));
+    let lay = |(used, (blend, weight))| EffectUse { blend, weight, ..used };
+    let used = (class, 0.0..=1.0f64, ".{1,8}", any::<bool>(), any::<bool>()).prop_map(
+        move |(class, amount, text, plain, flag)| {
+            if plain {
+                let parameters = if flag { vec![("amount", Parameter::Number(amount))] } else { vec![] };
+                used("sepia", class, parameters)
+            } else {
+                let list = vec![
+                    ("attribute", Parameter::Text(text.clone())),
+                    ("reverse", Parameter::Boolean(flag)),
+                    ("breaks", Parameter::Numbers(vec![amount, amount + 1.0])),
+                    ("categories", Parameter::Texts(vec![text])),
+                    ("no_data", Parameter::Text("#123456".into())),
+                ];
+                used("thematic", class, list)
+            }
+        },
+    );
+    (used, laid).prop_map(lay)
+}
+
+/// A sprite or a border, or neither.
+fn ends() -> impl Strategy<Value = (Option<LensSprite>, Option<Border>)> {
+    let sprite = sprites().prop_map(|sprite| (Some(sprite), None));
+    let units = prop::sample::select(vec![BorderUnit::Metres, BorderUnit::Pixels, BorderUnit::Ray]);
+    let border = (0.0..1e5, units, any::<bool>()).prop_map(|(width, unit, dithers)| {
+        let discrete = if dithers { Discrete::Dither } else { Discrete::Threshold };
+        (None, Some(Border { width, unit, discrete }))
+    });
+    prop_oneof![Just((None, None)), sprite, border]
+}
+
+fn derives() -> impl Strategy<Value = Derive> {
+    let form = prop_oneof![
+        any::<bool>().prop_map(|oriented| Form::Box { oriented }),
+        Just(Form::Prism),
+        Just(Form::Hull),
+        prop_oneof![Just(0.05), 0.0..1000.0f64].prop_map(|lift_m| Form::Flat { lift_m }),
+        (0.0..1000.0f64).prop_map(|lift_m| Form::Top { lift_m }),
+        Just(Form::Lod1),
+        (1e-3..1e5f64).prop_map(|metres| Form::Height(Height::Metres(metres))),
+        (1e-3..1e3f64).prop_map(|factor| Form::Height(Height::Factor(factor))),
+    ];
+    (form, any::<bool>()).prop_map(|(form, parts)| Derive { form, parts })
+}
+
+prop_compose! {
+    fn contents()(files in prop::collection::vec("[ -~äß]{1,9}", 0..3), tenths in prop::option::of(0..99u8),
+        derive in prop::option::of(derives()),
+        class in prop::sample::select(vec![Class::Inside, Class::Front, Class::Behind, Class::Rest]),
+        clip in prop::sample::select(Clip::ALL.to_vec()), keep_terrain in any::<bool>(),
+        copied in prop::option::of((prop::option::of(point()), prop::option::of(point()), 1e-3..1e3f64, any::<bool>(), prop::array::uniform3(-1800..1800i32)))) -> Content {
+        let copied = copied.map(|(from, to, scale, plain, angles)| match plain {
+            true => Copied { from, to, ..Copied::default() },
+            false => Copied { from, to, rotation: rotation(angles.map(|a| f64::from(a) / 10.0)), scale },
+        });
+        let files = files.into_iter().filter(|f| !f.contains("${") && !f.starts_with("builtin:")).map(Into::into).collect();
+        Content { files, lod: tenths.map(|tenths| crate::city::Lod { tenths }), derive, class, clip, keep_terrain, copied }
+    }
+}
+
+prop_compose! {
+    fn sprites()(resolution in prop::option::of(16..16_384u32), format in 0..5usize, mapping in 0..4usize,
+        near_m in prop::option::of(1e-3..10.0f64), far_m in prop::option::of(11.0..1e4f64), layers in 1..17u32,
+        aggregate in any::<bool>(), own in prop::option::of((point(), point(), 1..1790u32, any::<bool>(), 0.01..100.0f64))) -> LensSprite {
+        let (format, mapping) = (Format::WORDS[format].1, Mapping::WORDS[mapping].1);
+        let own = own.map(|(eye, target, tenths, is_flat, aspect)| {
+            let fov_y = (f64::from(tenths) / 10.0).to_radians();
+            let projection = if is_flat { Projection::Orthographic { height_m: f64::from(tenths) } } else { Projection::Perspective { fov_y } };
+            OwnEye { camera: Camera { projection, ..Camera::looking(eye, target, fov_y) }, aspect }
+        });
+        LensSprite { own, resolution, format, mapping, near_m, far_m, layers, aggregate }
+    }
+}
+
+fn detections() -> impl Strategy<Value = Test> {
+    let reference = prop::sample::select(Reference::WORDS.map(|(_, reference)| reference).to_vec());
+    let up = || prop_oneof![Just(DVec3::Z), point().prop_filter_map("a direction", |v| v.try_normalize())];
+    let radius = || 0.0..1e3f64;
+    let one = prop_oneof![
+        (radius(), reference.clone()).prop_map(|(radius, reference)| Test::Spherical { radius, reference }),
+        (radius(), up()).prop_map(|(radius, up)| Test::Cylindrical { radius, up }),
+        (radius(), reference, up()).prop_map(|(radius, reference, up)| Test::ViewerHeight { radius, reference, up }),
+        Just(Test::ViewAxis),
+        radius().prop_map(|radius| Test::Ground { radius }),
+        (0.0..=1.0f64, 1..=65_536u32).prop_map(|(coverage, rays)| Test::Exact { coverage, rays }),
+        prop::collection::vec(point(), 2..4).prop_map(|points| Test::Route { points }),
+    ];
+    one.prop_recursive(2, 6, 3, |inner| {
+        (0..3, prop::collection::vec(inner, 1..3)).prop_map(|(how, mut parts)| match how {
+            0 => Test::Any(parts),
+            1 => Test::All(parts),
+            _ => Test::Not(Box::new(parts.remove(0))),
+        })
+    })
+}
+
+/// An occlusion lens's part of a lens: whom it looks for, and how it draws them.
+fn occluded() -> impl Strategy<Value = (Occluders, Rendering, bool)> {
+    let choice = |id: String| Choice { ids: vec![id], ..Choice::default() };
+    let choice = prop::option::of("[a-z\"]{1,5}".prop_map(choice));
+    let render = prop_oneof![
+        Just(Rendering::default()),
+        // A second scene style beside those of `effects` is refused.
+        effects().prop_filter_map("no scene style", |used| {
+            (used.effect == "sepia").then(|| Rendering::of_effects(vec![used]))
+        }),
+    ];
+    let row = prop::sample::select(ROWS.iter().collect::<Vec<_>>());
+    let types = prop::collection::vec("[a-z\"]{1,5}", 0..3);
+    let case = (row, 0.0..1e6f64, types, prop::option::of("[a-z\"]{1,5}")).prop_map(move |(row, nearer, types, id)| {
+        let of = id.map(|id| Choice { ids: vec![id], ..Choice::default() });
+        // Each number that the word takes, somewhere in its range.
+        let number = |p: ParameterDefinition| match p.kind {
+            ParameterKind::Number { min, max } => Some((p.name, Parameter::Number(min + (max - min) * (nearer / 1e6)))),
+            _ => None,
+        };
+        let given = row.parameters().into_iter().filter_map(number).collect();
+        Case { when: When { nearer_m: Some(nearer), types, of }, ..Case::of_row(row, given) }
+    });
+    let cases = prop::collection::vec(case, 1..4).prop_map(|mut cases| {
+        // Scene styles of cases would meet those of `effects`.
+        cases.retain(|case| {
+            case.effects.iter().all(|used| find(&used.effect).is_some_and(|e| e.kind != EffectKind::Scene))
+        });
+        if cases.is_empty() { Rendering::default() } else { Rendering::of_cases(cases) }
+    });
+    let render = prop_oneof![2 => render, 1 => cases];
+    let names = prop::collection::btree_set("[a-z\"]{1,5}", 1..3).prop_map(|names| names.into_iter().collect());
+    let over_time = (0.0..=1000.0f64, 0.0..=60.0f64).prop_map(|(metres, fade_s)| (Margin { metres }, Pace { fade_s }));
+    let over_time = prop_oneof![Just(Default::default()), over_time];
+    (names, detections(), choice.clone(), choice, over_time, render, any::<bool>()).prop_map(
+        |(pois, test, force, forbid, (margin, pace), render, has_shape)| {
+            (Occluders { pois, test, force, forbid, margin, pace }, render, has_shape)
+        },
+    )
+}
+
+prop_compose! {
+    fn lenses()(occluded in prop::option::weighted(0.3, occluded()),
+        shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
+        enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
+        ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
+        section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>()) -> Lens {
+        // A soft border needs shapes that have a distance; what shapes of files have, `sprite` does not give.
+        let is_saved = |s: &Focus| matches!(s, Focus::Sprite { .. });
+        let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
+        let body = LensBody::WORDS[body].1;
+        let mut kind = if content.is_some() && is_content { LensKind::Content } else { LensKind::Color };
+        let (mut shapes, mut render) = (shapes, None);
+        // Depth sprites are not combined.
+        if let Some((of, drawn, has_shape)) = occluded && !shapes.iter().any(|s| s.any(&is_saved)) {
+            (kind, render) = (LensKind::Occlusion, Some(drawn));
+            shapes = occlusion::areas(of, if has_shape { shapes } else { vec![] });
+        }
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, content, body, sprite, border, keeps_shadows, section }
+    }
+}
+
+prop_compose! {
+    fn figures()(place in 0..6usize, title in prop::option::of(".{1,8}"), caption in prop::option::of("[a-z\n\"]{1,8}"),
+        text_px in prop::option::of(6.0..=400.0f64)) -> Figure {
+        let corner = |i: usize| LegendPlace::Corner(Corner::WORDS[i].1);
+        let legend = if place < 2 { [LegendPlace::None, LegendPlace::Auto][place] } else { corner(place - 2) };
+        Figure { legend, title, caption, text_px, ..Figure::default() }
+    }
+}
+
+prop_compose! {
+    fn changes()(path in "[a-z.\"]{1,9}", is_place in any::<bool>(), constant in any::<bool>(), steps in prop::collection::vec((0.01..9.0f64, point()), 1..4)) -> Change {
+        let mut at = 0.0;
+        let key = |(step, p): (f64, DVec3)| {
+            at += step;
+            let place = Numbers::List(p.to_array().map(Numbers::One).to_vec());
+            ChangeKey { at, value: if is_place { place } else { Numbers::List(vec![place, Numbers::One(p.x)]) } }
+        };
+        let keys = steps.into_iter().map(key).collect();
+        let speed = if constant && is_place { Speed::Constant } else { Speed::Keys };
+        Change { path: format!("lens.{path}.{}", if is_place { "center" } else { "points" }), speed, is_place, keys }
+    }
+}
+
+prop_compose! {
+    /// Its camera's keys are of the projection of `camera`.
+    fn animations()(frames in 1..1_000_000u32, fps in 0.01..1000.0f64, constant in any::<bool>(),
+        changes in prop::collection::vec(changes(), 0..3), keys in prop::collection::vec((0.01..9.0f64, point(), point(), 1..1790u32), 0..4)) -> (Animation, Vec<u32>) {
+        let (mut at, mut tenths) = (0.0, Vec::new());
+        let mut camera: Vec<CameraKey> = Vec::new();
+        for (step, eye, target, tenth) in keys {
+            at += step;
+            camera.push(CameraKey { at, eye, target, up: DVec3::new(0.0, 0.5, 2.0), projection: Projection::Orthographic { height_m: 1.0 } });
+            tenths.push(tenth);
+        }
+        let speed = if constant { Speed::Constant } else { Speed::Keys };
+        (Animation { frames, fps, speed, camera, changes }, tenths)
+    }
+}
+
+fn transparencies() -> impl Strategy<Value = Transparency> {
+    prop_oneof![
+        prop::sample::select(&Transparency::WORDS[..]).prop_map(|word| Transparency::of(word, None).unwrap().unwrap()),
+        (0..=MOST_PEELED).prop_map(|layers| Transparency::Peel { layers }),
+        prop::sample::select(&SLOTS[..]).prop_map(|layers| Transparency::KBuffer { layers }),
+    ]
+}
+
+prop_compose! {
+    fn scenes()(eye in point(), target in point(), ortho in any::<bool>(), tenths in 1..1790u32, with_camera in any::<bool>(),
+        near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
+        background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
+        mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
+        figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
+        animation in prop::option::of(animations())) -> Scene {
+        let projection_of = |tenths: u32, ortho: bool| match ortho {
+            true => Projection::Orthographic { height_m: f64::from(tenths) },
+            false => Projection::Perspective { fov_y: (f64::from(tenths) / 10.0).to_radians() },
+        };
+        let projection = projection_of(tenths, ortho);
+        let animation = animation.map(|(mut animation, tenths)| {
+            for (key, tenths) in animation.camera.iter_mut().zip(tenths) {
+                key.projection = projection_of(tenths, ortho && with_camera);
+            }
+            animation
+        });
+        let up = if clay { DVec3::Z } else { target };
+        for (i, lens) in lenses.iter_mut().enumerate() {
+            lens.name = format!("n\"{i}\\ü");
+        }
+        let mut scene = Scene {
+            camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
+            sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2 },
+            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency },
+            pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).collect(),
+            lenses,
+            figure: Figure { size, samples, ..figure },
+            animation,
+            ..Scene::default()
+        };
+        scene.city.files = files.into_iter().filter(|f| !f.contains("${")).map(Into::into).collect();
+        scene.city.lod = lod.map(|tenths| crate::city::Lod { tenths }.to_string());
+        scene.city.ground = ground;
+        scene
+    }
+}
+
+/// Rotations agree within a rounding, all else to the bit.
+fn same(a: &Scene, b: &Scene) -> bool {
+    let mut b = b.clone();
+    for (la, lb) in a.lenses.iter().zip(&mut b.lenses) {
+        la.shapes.iter().zip(&mut lb.shapes).for_each(|(sa, sb)| turn_alike(sa, sb));
+        let copied = |lens: &Lens| lens.content.as_ref().and_then(|c| c.copied);
+        if let (Some(a), Some(b)) = (copied(la), lb.content.as_mut().and_then(|c| c.copied.as_mut()))
+            && a.rotation.dot(b.rotation).abs() > 1.0 - 1e-12
+        {
+            b.rotation = a.rotation;
+        }
+    }
+    *a == b
+}
+
+/// Gives `b` the rotations of `a` where they agree within a rounding.
+fn turn_alike(a: &Focus, b: &mut Focus) {
+    let turns = match (a, b) {
+        (Focus::Combined { parts: a, .. }, Focus::Combined { parts: b, .. })
+        | (Focus::Enclosed { parts: a, .. }, Focus::Enclosed { parts: b, .. }) => {
+            a.iter().zip(b).for_each(|(a, b)| turn_alike(a, b));
+            None
+        }
+        (Focus::Shape(Shape::Box { rotation: ra, .. }), Focus::Shape(Shape::Box { rotation: rb, .. }))
+        | (Focus::Shape(Shape::Ellipsoid { rotation: ra, .. }), Focus::Shape(Shape::Ellipsoid { rotation: rb, .. }))
+        | (Focus::Shape(Shape::Flat { rotation: ra, .. }), Focus::Shape(Shape::Flat { rotation: rb, .. }))
+        | (Focus::Mesh { rotation: ra, .. }, Focus::Mesh { rotation: rb, .. }) => Some((ra, rb)),
+        _ => None,
+    };
+    if let Some((ra, rb)) = turns.filter(|(ra, rb)| ra.dot(**rb).abs() > 1.0 - 1e-12) {
+        *rb = *ra;
+    }
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_is_read_back(scene in scenes()) {
+        let text = to_toml(&scene);
+        let back = read_text(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        prop_assert!(same(&scene, &back), "{text}\n{scene:?}\n{back:?}");
+        prop_assert_eq!(to_toml(&back), text, "writing again changes nothing");
+    }
+
+    #[test]
+    fn no_text_makes_it_crash(text in "[a-z\\[\\]{}=\", .0-9\n]{0,200}") {
+        let _ = read_text(&text);
+        let _ = read_text(&format!("veduta = 1\n[[lens]]\n{text}"));
+    }
+}

@@ -1,0 +1,337 @@
+use super::*;
+
+fn step(effect: u32, scope: Scope, blend: Option<Blend>) -> Step {
+    Step { effect, scope, parameters: 0, blend }
+}
+
+/// All that a combination may be made of.
+const LEAVES: [VolumeTest; 9] = [
+    VolumeTest::Sphere,
+    VolumeTest::Box,
+    VolumeTest::Cylinder,
+    VolumeTest::Convex,
+    VolumeTest::Ellipsoid,
+    VolumeTest::Frustum,
+    VolumeTest::Solid,
+    VolumeTest::Members,
+    VolumeTest::FadingMembers,
+];
+
+/// As the sun asks: no sprite tells it anything.
+fn by_shapes(mut program: Program) -> Program {
+    let by_shape = |test: &mut VolumeTest| match test {
+        VolumeTest::Sprite | VolumeTest::LayeredSprite => *test = VolumeTest::Sphere,
+        VolumeTest::SolidSprite => *test = VolumeTest::Solid,
+        VolumeTest::CombinedSprite => *test = VolumeTest::Combined,
+        _ => {}
+    };
+    match &mut program {
+        Program::Specialised(plan) => {
+            plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).for_each(by_shape);
+            *plan = plan.clone().without_borders();
+        }
+        Program::Uber(uber) => {
+            uber.borders = false;
+            uber.by_ray = false;
+            uber.tests.iter_mut().for_each(by_shape);
+            uber.tests.sort_unstable();
+            uber.tests.dedup();
+        }
+    }
+    program
+}
+
+/// The numbers of all effects.
+fn numbers() -> Vec<u32> {
+    let is_effect = |(_, h): &(usize, &EffectDefinition)| h.mode == Mode::Local;
+    handlers().iter().enumerate().filter(is_effect).map(|(i, _)| i as u32).collect()
+}
+
+/// What the two lenses show: nothing, or all ways to clip.
+fn contents_of(seed: usize) -> Vec<PlanContent> {
+    let content = |i: usize| PlanContent {
+        lens: i as u32,
+        class: ClassTest::ALL[(seed + i) % 4],
+        city: (i + seed % 30) as u32 + 1,
+        clip: Clip::ALL[(seed / 2 + i) % 3],
+        keeps_terrain: (seed + i).is_multiple_of(4),
+    };
+    (0..if seed.is_multiple_of(2) { 0 } else { 2 }).map(content).collect()
+}
+
+/// A scene of the context and two lenses whose steps are these effects, in order; `seed` chooses classes, blends,
+/// bodies and masks. The modules that both back ends need for it.
+fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
+    let scopes: Vec<Scope> = std::iter::once(Scope::Everywhere)
+        .chain(ClassTest::ALL.into_iter().flat_map(|c| [Scope::Lens(0, c), Scope::Lens(1, c)]))
+        .collect();
+    let mut steps = Vec::new();
+    for (i, &effect) in effects.iter().enumerate() {
+        let blend = (i + seed).is_multiple_of(3).then(|| Blend::ALL[(i + seed) % 6]);
+        steps.push(step(effect, scopes[(seed + 4 * i) % scopes.len()], blend));
+    }
+    let lens = |number, volumes: &[usize], body| PlanLens {
+        number,
+        volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % VolumeTest::ALL.len()]).collect(),
+        leaves: LEAVES[seed % 8..].to_vec(),
+        body,
+        border: seed.is_multiple_of(5).then_some(PlanBorder {
+            parameters: 5,
+            dithers: seed.is_multiple_of(2),
+            by_ray: seed.is_multiple_of(3),
+        }),
+    };
+    let kind = [BodyKind::Outline, BodyKind::Shell, BodyKind::Halo][seed / 2 % 3];
+    let body = seed.is_multiple_of(2).then_some(PlanBody { kind, parameters: 3 });
+    let plan = Plan {
+        lenses: vec![lens(0, &[0], None), lens(40, &[1, 2], body)],
+        lines: effects.iter().any(|&e| handlers()[e as usize].lines),
+        steps,
+        haze: seed.is_multiple_of(5),
+        masks: seed.is_multiple_of(7),
+        contents: contents_of(seed),
+        ..Plan::default()
+    };
+    let uber = Uber {
+        effects: plan.effects(),
+        tests: {
+            let mut tests: Vec<VolumeTest> = plan.tests().collect();
+            tests.sort_unstable();
+            tests
+        },
+        leaves: LEAVES[seed % 8..].to_vec(),
+        bodies: plan.bodies(),
+        sides: !seed.is_multiple_of(3),
+        borders: plan.has_borders(),
+        by_ray: plan.has_borders() && seed.is_multiple_of(3),
+        dithers: plan.has_borders(),
+        blends: plan.has_blends(),
+        haze: plan.haze,
+        masks: plan.masks,
+        lines: plan.lines,
+        veils: false,
+        contents: !plan.contents.is_empty(),
+    };
+    let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();
+    let hiding = hiding.chain(uber.hiding(handlers()).map(Program::Uber));
+    let has_lenses = |p: &Program| p.has().lenses;
+    let lining = plan.lining(handlers()).map(Program::Specialised).into_iter();
+    let lining = lining.chain(uber.lining(handlers()).map(Program::Uber));
+    let mut modules: Vec<Module> = hiding
+        .clone()
+        .flat_map(|p| {
+            let layers = [false, true].map(|early| [Module::Layers(p.clone(), early), Module::Slots(p.clone(), early)]);
+            [Module::Geometry(Some(p.clone())), Module::Shadow(Some(by_shapes(p)))]
+                .into_iter()
+                .chain(layers.into_iter().flatten())
+        })
+        .collect();
+    let layering = [
+        plan.layering(handlers()).map(Program::Specialised).zip(plan.hiding(handlers()).map(Program::Specialised)),
+        uber.layering(handlers()).map(Program::Uber).zip(uber.hiding(handlers()).map(Program::Uber)),
+    ];
+    for (shading, hidden) in layering.into_iter().flatten() {
+        modules.push(Module::Composite(shading.clone()));
+        let kinds = [ForwardKind::Tail, ForwardKind::Chance(false), ForwardKind::Chance(true)];
+        modules.extend(kinds.map(|kind| {
+            let (hidden, shading) = (hidden.clone(), shading.clone());
+            Module::Forward(Forward { kind, hidden, shading })
+        }));
+    }
+    modules.extend(hiding.filter(has_lenses).map(Module::Sections));
+    modules.extend(lining.map(Module::Lines));
+    modules.push(Module::Shade(Program::Specialised(plan.shading(handlers()))));
+    modules.push(Module::Shade(Program::Uber(uber.shading(handlers()))));
+    modules
+}
+
+fn all_modules() -> Vec<Module> {
+    let plain = [Program::Specialised(Plan::default()), Program::Uber(Uber::default())];
+    let mut modules = vec![
+        Module::Geometry(None),
+        Module::Shadow(None),
+        Module::Sprite,
+        Module::StoredForm,
+        Module::Resolve,
+        Module::Narrow,
+        Module::Bare,
+    ];
+    modules.extend(plain.map(Module::Shade));
+    modules.push(Module::SpriteList);
+    modules.extend(LEAVES[..7].iter().map(|kind| Module::StoredLayers(vec![*kind])));
+    modules.push(Module::StoredLayers(LEAVES[..7].to_vec()));
+    modules.push(Module::CombinedSprite(LEAVES.to_vec()));
+    modules.extend(LEAVES.map(|kind| Module::CombinedSprite(vec![kind])));
+    let is_filter = |e: &u32| handlers()[*e as usize].kind == EffectKind::Filter;
+    modules.extend(numbers().into_iter().filter(is_filter).map(Module::Filter));
+    modules.extend([Module::Furniture, Module::FurnitureOver]);
+    modules.extend([Module::CountLayers, Module::SortLayers, Module::ShownLayers, Module::LinkSlots]);
+    modules
+}
+
+#[test]
+fn contents_alone_make_modules_that_are_valid() {
+    let lens =
+        |number| PlanLens { number, volumes: vec![VolumeTest::Sphere], leaves: vec![], body: None, border: None };
+    for contents in [contents_of(1), contents_of(3), contents_of(5)] {
+        let plan = Plan { lenses: vec![lens(0), lens(1)], contents, ..Plan::default() };
+        let uber = Uber { tests: vec![VolumeTest::Sphere], contents: true, ..Uber::default() };
+        let hiding = [
+            Program::Specialised(plan.hiding(handlers()).expect("something is clipped")),
+            Program::Uber(uber.hiding(handlers()).expect("something may be clipped")),
+        ];
+        for program in hiding {
+            validate(&Module::Geometry(Some(program.clone())));
+            validate(&Module::Shadow(Some(program)));
+        }
+        assert!(plan.shading(handlers()).contents.is_empty(), "shading asks what is there, not why");
+    }
+}
+
+fn validate(module: &Module) {
+    validate_text(&module.name(), &module.source());
+}
+
+fn validate_text(name: &str, source: &str) {
+    let parsed = match wgpu::naga::front::wgsl::parse_str(source) {
+        Ok(parsed) => parsed,
+        Err(error) => panic!("{name}: {}", error.emit_to_string(source)),
+    };
+    let mut validator = wgpu::naga::valid::Validator::new(
+        wgpu::naga::valid::ValidationFlags::all(),
+        wgpu::naga::valid::Capabilities::default()
+            | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32
+            | wgpu::naga::valid::Capabilities::EARLY_DEPTH_TEST,
+    );
+    if let Err(error) = validator.validate(&parsed) {
+        panic!("{name}: {}", error.emit_to_string(source));
+    }
+}
+
+fn validate_all(lists: &[Vec<u32>]) {
+    use rayon::prelude::*;
+    lists.par_iter().enumerate().for_each(|(seed, list)| {
+        modules(list, seed).iter().for_each(validate);
+    });
+}
+
+#[test]
+fn regions_of_all_kinds_are_told_apart_by_valid_wgsl() {
+    let [sepia, gloss, cel] = ["sepia", "gloss", "cel"].map(|name| effect::number_of(name).expect("there is one"));
+    for (seed, test) in VolumeTest::ALL.into_iter().enumerate() {
+        let lens = |number| PlanLens { number, volumes: vec![test], leaves: LEAVES.to_vec(), body: None, border: None };
+        let steps = vec![
+            step(sepia, Scope::Everywhere, None),
+            step(cel, Scope::Lens(0, ClassTest::Inside), None),
+            step(gloss, Scope::Lens(1, ClassTest::ALL[seed % 4]), None),
+            step(sepia, Scope::Lens(1, ClassTest::ALL[(seed + 1) % 4]), Some(Blend::Multiply)),
+        ];
+        let plan = Plan { lenses: vec![lens(0), lens(1)], steps, haze: seed % 2 == 0, ..Plan::default() };
+        for regions in [Regions::combinations(&plan), Regions::passes(&plan)] {
+            let plan = Plan { regions: Some(regions.clone()), ..plan.clone() };
+            validate(&Module::Geometry(Some(Program::Specialised(plan.clone()))));
+            validate(&Module::Regions(plan.clone()));
+            for region in 0..regions.count().expect("few") {
+                validate(&Module::Shade(Program::Specialised(plan.of_region(region))));
+            }
+        }
+        let regions = Some(Regions::combinations(&plan));
+        validate(&Module::Shade(Program::Specialised(Plan { regions, masks: seed % 3 == 0, ..plan })));
+    }
+}
+
+#[test]
+fn what_finds_no_room_is_read_where_it_stands() {
+    let lens = |number| PlanLens {
+        number,
+        volumes: VolumeTest::ALL.to_vec(),
+        leaves: LEAVES.to_vec(),
+        body: None,
+        border: None,
+    };
+    let plan = Plan { lenses: (0..9).map(lens).collect(), ..Plan::default() };
+    let module = Module::Shade(Program::Specialised(plan));
+    for room in [14, LEAST_CARRIED, 31, 1000] {
+        let source = module.source_for_people(handlers(), &[], room);
+        validate_text(&module.name(), &source);
+        let members = source.matches("@interpolate(flat, either)").count() as u32;
+        let left = source.matches(" = shapes_uniform[").count();
+        assert!(members <= room.max(14), "{members} vectors where {room} fit");
+        assert_eq!(left > 0, room < 1000, "{left} are left with room for {room}");
+    }
+}
+
+#[test]
+fn lens_tests_have_their_numbers_in_wgsl() {
+    for test in VolumeTest::ALL {
+        let line = format!("const {}: u32 = {}u;\n", test.constant(), test.number());
+        assert!(SHAPE.1.contains(&line), "lib/shape.wgsl lacks {line}");
+    }
+}
+
+#[test]
+fn every_module_is_valid_wgsl() {
+    all_modules().iter().for_each(validate);
+}
+
+#[test]
+fn every_effect_of_the_context_is_valid_wgsl_without_a_lens() {
+    for number in numbers() {
+        let lines = handlers()[number as usize].lines;
+        let plan = Plan { steps: vec![step(number, Scope::Everywhere, None)], lines, ..Plan::default() };
+        let uber = Uber { effects: vec![number], lines, ..Uber::default() };
+        let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();
+        for program in hiding.chain(uber.hiding(handlers()).map(Program::Uber)) {
+            validate(&Module::Geometry(Some(program.clone())));
+            validate(&Module::Shadow(Some(program)));
+        }
+        let lining = plan.lining(handlers()).map(Program::Specialised).into_iter();
+        lining.chain(uber.lining(handlers()).map(Program::Uber)).for_each(|p| validate(&Module::Lines(p)));
+        validate(&Module::Shade(Program::Specialised(plan.shading(handlers()))));
+        validate(&Module::Shade(Program::Uber(uber.shading(handlers()))));
+    }
+}
+
+#[test]
+fn every_effect_and_every_ordered_pair_is_valid_wgsl() {
+    let all = numbers();
+    let singles = all.iter().flat_map(|&a| vec![vec![a]; 9]);
+    let pairs = all.iter().flat_map(|&a| all.iter().map(move |&b| vec![a, b]));
+    validate_all(&singles.chain(pairs).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_thousand_triples_of_effects_are_valid_wgsl() {
+    let all = numbers();
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = || {
+        // SplitMix64.
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        all[((mixed ^ (mixed >> 31)) % all.len() as u64) as usize]
+    };
+    validate_all(&(0..1000).map(|_| vec![next(), next(), next()]).collect::<Vec<_>>());
+}
+
+#[test]
+#[ignore = "minutes; ./dev hard"]
+fn all_triples_of_effects_are_valid_wgsl() {
+    let all = numbers();
+    let pairs: Vec<(u32, u32)> = all.iter().flat_map(|&a| all.iter().map(move |&b| (a, b))).collect();
+    validate_all(&pairs.iter().flat_map(|&(a, b)| all.iter().map(move |&c| vec![a, b, c])).collect::<Vec<_>>());
+}
+
+#[test]
+fn an_effect_nobody_uses_is_not_in_the_text() {
+    let greyscale = effect::number_of("greyscale").expect("there is one");
+    let plan = Plan { steps: vec![step(greyscale, Scope::Everywhere, None)], ..Plan::default() };
+    let uber = Uber { effects: plan.effects(), ..Uber::default() };
+    for program in [Program::Specialised(plan), Program::Uber(uber)] {
+        let source = Module::Shade(program).source();
+        assert!(source.contains("fn greyscale"));
+        assert!(!source.contains("fn sepia") && !source.contains("fn thematic") && !source.contains("fn haze"));
+        assert!(!source.contains("var sprites"), "a lens that is not there is in the shader");
+        assert!(!source.contains("struct Material") && !source.contains("fn blend_add"), "{source}");
+    }
+}
