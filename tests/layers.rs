@@ -12,7 +12,7 @@ use veduta::{
     lens::{Border, BorderUnit, Class, Discrete, EffectUse, Lens, Parameter},
     render::{
         frame::Backend,
-        picture::{Aovs, Request},
+        picture::{Aovs, Request, Studio},
     },
     scene::Scene,
     view::Camera,
@@ -51,6 +51,20 @@ fn layers_of_a_number_along_the_ray_grow_denser() {
     }
 }
 
+/// Of one building without semantics, given by its faces and its corners in millimetres.
+fn building(name: &str, faces: &str, corners: &str) -> Studio {
+    let text = format!(
+        r#"{{"type": "CityJSON", "version": "2.0", "transform": {{"scale": [0.001, 0.001, 0.001], "translate": [0, 0, 0]}},
+            "CityObjects": {{"p": {{"type": "Building",
+                "geometry": [{{"type": "MultiSurface", "lod": "2", "boundaries": [{faces}]}}]}}}}, "vertices": [{corners}]}}"#,
+    );
+    let path = std::env::temp_dir().join(format!("veduta-{name}-{}.city.json", std::process::id()));
+    std::fs::write(&path, text).expect("a temporary file");
+    let studio = studio(std::slice::from_ref(&path));
+    std::fs::remove_file(path).expect("the temporary file");
+    studio
+}
+
 #[test]
 fn layers_that_are_alike_in_everything_are_all_laid() {
     // More faces of one surface in one plane than are told apart, and than one walk through a list finds.
@@ -58,17 +72,7 @@ fn layers_that_are_alike_in_everything_are_all_laid() {
     let corners = |i: usize| format!("[0,0,0],[0,10000,0],[0,10000,{0}],[0,0,{0}]", 10_000 - i);
     let faces: Vec<String> =
         (0..count).map(|i| format!("[[{}, {}, {}, {}]]", 4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3)).collect();
-    let text = format!(
-        r#"{{"type": "CityJSON", "version": "2.0", "transform": {{"scale": [0.001, 0.001, 0.001], "translate": [0, 0, 0]}},
-            "CityObjects": {{"p": {{"type": "Building",
-                "geometry": [{{"type": "MultiSurface", "lod": "2", "boundaries": [{}]}}]}}}}, "vertices": [{}]}}"#,
-        faces.join(","),
-        (0..count).map(corners).collect::<Vec<_>>().join(",")
-    );
-    let path = std::env::temp_dir().join(format!("veduta-alike-{}.city.json", std::process::id()));
-    std::fs::write(&path, text).expect("a temporary file");
-    let mut studio = studio(std::slice::from_ref(&path));
-    std::fs::remove_file(path).expect("the temporary file");
+    let mut studio = building("alike", &faces.join(","), &(0..count).map(corners).collect::<Vec<_>>().join(","));
     let scene = of_context(vec![with_numbers("transparent", &[("opacity", a)])]);
     let middle = (SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize;
     for backend in [Backend::Specialised, Backend::Uber] {
@@ -255,6 +259,33 @@ fn x_ray_shows_faces_by_how_they_are_seen() {
             let density = if exponent == 0.0 { 0.0 } else { 1.0 - turn.cos().powf(exponent) };
             let opacity = least + (most - least) * density;
             assert!((f64::from(middle[3]) - (1.0 - opacity)).abs() < 2e-4, "{turn} {exponent}: {middle:?}, {opacity}");
+        }
+    }
+}
+
+#[test]
+fn x_ray_shows_floors_faintly() {
+    let [up, down] = ["[[0, 1, 2, 3]]", "[[3, 2, 1, 0]]"];
+    // How much a face of 10 m rises on its way, whether it is a floor, and which way it looks.
+    let cases = [(0, down, true), (0, up, false), (1200, down, true), (1700, down, false), (1700, up, false)];
+    for (rise, face, is_floor) in cases {
+        let corners = format!("[0,0,0],[10000,0,{rise}],[10000,10000,{rise}],[0,10000,0]");
+        let mut studio = building("floor", face, &corners);
+        let at = DVec3::new(5.0, 5.0, f64::from(rise) / 2000.0);
+        let normal = DVec3::new(-f64::from(rise), 0.0, 10_000.0) / f64::from(rise).hypot(10_000.0);
+        let back = DVec3::new(0.0, -0.8, 0.6);
+        for floors in [0.0, 0.25, 1.0] {
+            let numbers = [("exponent", 1.0), ("least", 0.1), ("most", 0.9), ("floors", floors)];
+            let mut scene = of_context(vec![with_numbers("x-ray", &numbers)]);
+            scene.camera = Some(orthographic(at + 20.0 * back, at, 11.0));
+            let of_face = 0.1 + 0.8 * (1.0 - normal.dot(back));
+            let opacity = if is_floor { floors * of_face } else { of_face };
+            for backend in [Backend::Specialised, Backend::Uber] {
+                let found = veil(&mut studio, &scene, backend, SIZE);
+                let middle = found[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize];
+                let error = f64::from(middle[3]) - (1.0 - opacity);
+                assert!(error.abs() < 2e-4, "{rise} {face} {floors} {backend:?}: {middle:?}, {opacity}");
+            }
         }
     }
 }

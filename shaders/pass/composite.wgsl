@@ -119,7 +119,7 @@ struct Walk {
 // The next note of a list, if it comes after `last`, of which `laid` that are alike were laid; otherwise, and at the end, none.
 fn take_note(walk: ptr<function, Walk>, last: Note, laid: u32) -> Note {
     let is_there = (*walk).next != 0u;
-    // A software adapter goes through both sides of a branch: the end of a list reads its first note again.
+    // A software adapter goes through both sides of a branch: the end of a list reads the first of all notes.
     let number = max((*walk).next, 1u);
     let note = note_at(number);
     let is_twin = is_there && all(note == last);
