@@ -20,7 +20,7 @@ use veduta::{
     lens::{Focus, Rendering, chosen::Choice, rendering::ROWS},
     render::{
         frame::Backend,
-        picture::{Aovs, Request, Studio},
+        picture::{Aovs, Picture, Request, Studio},
     },
     scene::{PoiPlace, Scene},
     visibility::Test,
@@ -154,6 +154,22 @@ fn cases_share_the_occluders_out() {
     assert!(of_specialised.rgba != near.rgba && of_specialised.rgba != far.rgba);
     let of_uber = studio.render(&mixed, &request(Backend::Uber, true)).expect("a picture");
     assert!(of_uber.rgba == of_specialised.rgba);
+    // Each is told with its distance and its case.
+    let told = |picture: &Picture| picture.statistics.lenses[0].occluders.clone().expect("occluders");
+    let eye = scene.camera.expect("a camera").eye;
+    for occluder in told(&of_specialised) {
+        let around = studio.model.family_bounds(studio.model.find_object(&occluder.id).expect("an object"));
+        let away = eye.clamp(around.min, around.max).distance(eye);
+        assert!((occluder.distance - away).abs() < 1e-9, "{occluder:?}, {away}");
+        assert_eq!(occluder.case, Some(Some(if away < 45.0 { 1 } else { 2 })), "{occluder:?}");
+    }
+    let is_of = |case| told(&of_specialised).iter().any(|occluder| occluder.case == Some(Some(case)));
+    assert!(is_of(1) && is_of(2));
+    assert!(told(&near).iter().all(|occluder| occluder.case.is_none()), "all in one way");
+    let in_none =
+        studio.render(&with_cases(&scene, "[{ as = 'flatten', nearer = 0 }]"), &request(Backend::Specialised, true));
+    let in_none = told(&in_none.expect("a picture"));
+    assert!(!in_none.is_empty() && in_none.iter().all(|occluder| occluder.case == Some(None)));
     // The types of the city, and one that it does not have: as they are where no case holds.
     let mut draw = |scene: &Scene| studio.render(scene, &request(Backend::Specialised, true)).expect("a picture").rgba;
     assert!(draw(&with_cases(&scene, &format!("[{{ as = 'flatten', types = ['Tower'] }}, {all}]"))) == far.rgba);

@@ -3,7 +3,7 @@
 use std::sync::{MutexGuard, PoisonError};
 
 use crate::{
-    lens::Lens,
+    lens::{Lens, rendering::When},
     render::{
         occlusion::{Occlusion, Passing},
         picture::{RenderError, Studio},
@@ -14,6 +14,14 @@ use crate::{
     view::View,
 };
 
+/// The cases that a lens draws occluders in; none: all in one way.
+fn cases_of(lens: &Lens) -> Vec<When> {
+    match lens.render.as_ref().map_or(&[][..], |render| &render.cases[..]) {
+        [one] if one.when.is_always() => Vec::new(),
+        several => several.iter().map(|case| case.when.clone()).collect(),
+    }
+}
+
 impl Studio {
     /// What is known of occluders.
     pub(super) fn occlusion(&self) -> MutexGuard<'_, Occlusion> {
@@ -23,14 +31,10 @@ impl Studio {
     /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually (O6). The first time everything
     /// begins settled. A picture of that scene then has its history; one of another moment has none.
     pub fn pass(&mut self, scene: &Scene, size: [u32; 2], dt: f64) -> Result<(), RenderError> {
-        let cases = |lens: &Lens| match lens.render.as_ref().map_or(&[][..], |render| &render.cases[..]) {
-            [one] if one.when.is_always() => Vec::new(),
-            several => several.iter().map(|case| case.when.clone()).collect(),
-        };
         let mut lenses = Vec::new();
         for lens in scene.lenses.iter().filter(|lens| lens.enabled) {
             let Some(of) = lens.occluders() else { continue };
-            lenses.push(Passing { name: &lens.name, of, when: cases(lens) });
+            lenses.push(Passing { name: &lens.name, of, when: cases_of(lens) });
         }
         let eye = Eye::new(&self.camera(scene, size))?;
         let mut occlusion = self.occlusion();
@@ -44,6 +48,11 @@ impl Studio {
         self.occlusion().weights(lens)
     }
 
+    /// Of each case that a lens draws occluders in, the same: together they are its weights, less what is drawn in no case.
+    pub fn case_weights(&self, lens: &str) -> Option<Vec<Vec<f32>>> {
+        self.occlusion().case_weights(lens, self.shown())
+    }
+
     /// How often the city was asked for occluders so far.
     pub fn occlusion_tests(&self) -> u64 {
         self.occlusion().asked()
@@ -54,7 +63,7 @@ impl Studio {
         let of = lens.occluders()?;
         let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };
         let mut occlusion = self.occlusion();
-        Some(occlusion.explained(&lens.name, of, &scene.pois, self.shown(), eye.viewer()))
+        Some(occlusion.explained(&lens.name, (of, &cases_of(lens)), &scene.pois, self.shown(), eye.viewer()))
     }
 
     /// How many of them come and go; `None` where no time passed up to here.

@@ -166,6 +166,20 @@ impl Occlusion {
         Some(thresholds.as_ref().map_or_else(settled, fading))
     }
 
+    /// The same by cases that it is drawn in; what is drawn in none is in none of them.
+    pub fn case_weights(&self, lens: &str, city: ShownCity) -> Option<Vec<Vec<f32>>> {
+        let Remembered { memory, when, cases, .. } = self.remembered.get(lens)?;
+        let units = self.units.as_ref()?;
+        let of_case = |case: usize| {
+            let of_unit = |unit: u32| {
+                let weight = memory.weights()[unit as usize];
+                cases.get(&unit).map_or([0.0; 2], |of_unit| of_unit.thresholds(case, weight))
+            };
+            by_object(units, city, of_unit).into_iter().map(|[from, to]| to - from).collect()
+        };
+        Some((0..when.len()).map(of_case).collect())
+    }
+
     fn memory_of(&self, lens: &str, of: &Occluders, pois: &[Poi], viewer: Viewer) -> Option<&Remembered> {
         self.remembered.get(lens).filter(|remembered| remembered.asked == Asked::new(of, pois, viewer))
     }
@@ -209,30 +223,39 @@ impl Occlusion {
     pub fn explained(
         &mut self,
         lens: &str,
-        of: &Occluders,
+        (of, when): (&Occluders, &[When]),
         pois: &[Poi],
         city: ShownCity,
         viewer: Viewer,
     ) -> Vec<stats::Occluder> {
         let how = How { is_measured: true, ..How::default() };
         let detected = self.found(of, pois, city, viewer, how).detected;
-        let id = |root: u32| city.model.objects[root as usize].id.to_string();
-        let one = |occluder: &visibility::Occluder| stats::Occluder {
-            id: id(occluder.root),
-            why: occluder.why.clone(),
-            coverage: occluder.coverage.map(|c| stats::Coverage { share: c.share, low: c.low, high: c.high }),
+        let units = self.units_of(city);
+        let remembered = self.memory_of(lens, of, pois, viewer);
+        let now = Cases::new(when, &units, city, viewer);
+        let case_of = |unit: u32| {
+            let known = remembered.and_then(|remembered| remembered.cases.get(&unit)).map(CaseMemory::case);
+            Some(known.unwrap_or_else(|| now.first(unit))).filter(|case| *case < when.len()).map(|case| case + 1)
+        };
+        let one = |unit: u32, why: Vec<String>| stats::Occluder {
+            id: city.model.objects[units.roots[unit as usize] as usize].id.to_string(),
+            why,
+            coverage: None,
+            distance: units.boxes[unit as usize].distance_to(viewer.eye),
+            case: (!when.is_empty()).then(|| case_of(unit)),
             weight: None,
         };
-        let found = detected.list.iter().map(|occluder| (occluder.unit, one(occluder)));
-        let Some(memory) = self.memory_of(lens, of, pois, viewer).map(|remembered| &remembered.memory) else {
+        let found = detected.list.iter().map(|occluder| {
+            let coverage = occluder.coverage.map(|c| stats::Coverage { share: c.share, low: c.low, high: c.high });
+            (occluder.unit, stats::Occluder { coverage, ..one(occluder.unit, occluder.why.clone()) })
+        });
+        let Some(memory) = remembered.map(|remembered| &remembered.memory) else {
             return found.map(|(_, occluder)| occluder).collect();
         };
         let mut all: BTreeMap<u32, stats::Occluder> = found.collect();
-        let Some(units) = &self.units else { return Vec::new() };
         for (unit, &weight) in (0..).zip(memory.weights()).filter(|(_, weight)| **weight > 0.0) {
             let kept = memory.is_occluder(unit).then(|| "kept".to_owned()).into_iter().collect();
-            let gone = || stats::Occluder { id: id(units.roots[unit as usize]), why: kept, ..Default::default() };
-            all.entry(unit).or_insert_with(gone).weight = Some(weight);
+            all.entry(unit).or_insert_with(|| one(unit, kept)).weight = Some(weight);
         }
         all.into_values()
             .map(|occluder| stats::Occluder { weight: occluder.weight.or(Some(0.0)), ..occluder })

@@ -198,6 +198,11 @@ pub struct Occluder {
     pub why: Vec<String>,
     /// How much of a point of interest it covers, at most; `null` where no test measures it.
     pub coverage: Option<Coverage>,
+    /// How far its box is from the eye, metres: what `nearer` of a case is compared with.
+    pub distance: f64,
+    /// Of a lens that draws occluders by cases, the one that it is drawn in, from 1 on in the order of `render`; `null`: in none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub case: Option<Option<usize>>,
     /// In a frame of an animation, how far it has come or gone, 0 to 1 (O6); one that no test holds for is `kept` by its margin, or
     /// fades.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -16,7 +16,11 @@ use veduta::{
     },
     figure::animation::Film,
     gpu::Gpu,
-    lens::{Focus, Lens, LensKind, Occluders, Rendering, dither::dither},
+    lens::{
+        Focus, Lens, LensKind, Occluders, Rendering,
+        dither::dither,
+        rendering::{Case, Given, ROWS, When},
+    },
     render::picture::{Aovs, Picture, Request, Studio},
     scene::{CitySpec, Poi, PoiPlace, Scene, animation::Animation},
     view::{
@@ -36,6 +40,8 @@ const FPS: f64 = 30.0;
 const FADE_S: f64 = 0.4;
 /// Reach and margin of the lens that means what is near, metres.
 const NEAR_M: f64 = 45.0;
+/// Reach of the first case, metres.
+const CASE_M: f64 = 60.0;
 const MARGIN_M: f64 = 3.0;
 /// Frames that are drawn one after the other.
 const STRETCH: u32 = 12;
@@ -152,7 +158,12 @@ fn check(file: &Path) -> Result<(), Failed> {
         ..crate::studio::scene(veduta::view::Camera::looking(middle + DVec3::X, middle, 1.0), vec![])
     };
     let near = Test::Spherical { radius: NEAR_M, reference: Reference::Nearest };
-    let film = Film::new(&walk(vec![lens("hides", Test::default()), lens("near", near)]))?;
+    // All are occluders all the time: those near stay as they are, the others are gone.
+    let all = Test::Spherical { radius: 1e5, reference: Reference::Nearest };
+    let case = |nearer_m| Case { when: When { nearer_m, ..When::default() }, ..Case::of_row(&ROWS[0], Given::new()) };
+    let cases = Rendering::of_cases(vec![Case { effects: vec![], ..case(Some(CASE_M)) }, case(None)]);
+    let by_case = Lens { render: Some(cases), ..lens("by case", all) };
+    let film = Film::new(&walk(vec![lens("hides", Test::default()), lens("near", near), by_case.clone()]))?;
     let mut studio = Studio::new(Gpu::open()?, model.clone(), &CitySpec { ground: false, ..CitySpec::default() })?;
     let none = Set::new(units.len());
     let by_unit = |weights: Option<Vec<f32>>| -> Result<Vec<f32>, Failed> {
@@ -161,8 +172,8 @@ fn check(file: &Path) -> Result<(), Failed> {
         weights.iter().zip(&units.of_object).for_each(|(w, &unit)| all[unit as usize] = all[unit as usize].max(*w));
         Ok(all)
     };
-    let [mut hides, mut nears] = [0, 1].map(|_| Classes::new(units.len()));
-    let mut fading = Vec::new();
+    let [mut hides, mut nears, mut cases] = [0, 1, 2].map(|_| Classes::new(units.len()));
+    let [mut fading, mut changing] = [vec![], vec![]];
     for frame in 0..FRAMES {
         let scene = film.scene(frame)?;
         let eye = scene.camera.ok_or("a camera")?.eye;
@@ -179,58 +190,90 @@ fn check(file: &Path) -> Result<(), Failed> {
         let detected = Scope { model: &model, units: &units, index: &index }.detect(&query);
         let weights = by_unit(studio.occluder_weights("hides"))?;
         fading.push(hides.step(weights, |unit| detected.occluders.has(unit), frame)?);
-        let is_near = |unit: u32| {
+        let is_near = |unit: u32, reach: f64| {
             let around = &units.boxes[unit as usize];
             let nearest = eye.clamp(around.min, around.max.max(around.min));
-            unit as usize != tallest && !around.is_empty() && nearest.distance(eye) < NEAR_M
+            unit as usize != tallest && !around.is_empty() && nearest.distance(eye) < reach
         };
-        let weights = by_unit(studio.occluder_weights("near"))?;
-        let was: Vec<bool> = nears.is_in.clone();
-        nears.step(weights, is_near, frame)?;
-        // It is left only beyond the margin.
-        for unit in (0..units.len()).filter(|&u| was[u] && !nears.is_in[u]) {
-            let around = &units.boxes[unit];
-            let away = eye.clamp(around.min, around.max).distance(eye);
-            if frame > 0 && away < NEAR_M + MARGIN_M {
-                return Err(format!("frame {frame}: unit {unit} is left at {away} m").into());
+        let of_cases = studio.case_weights("by case").ok_or("no time passed")?;
+        let whole = of_cases[0].iter().zip(&of_cases[1]).map(|(a, b)| a + b).collect();
+        let expected = |unit: usize| f32::from(u8::from(unit != tallest && !units.boxes[unit].is_empty()));
+        if by_unit(Some(whole))?.iter().enumerate().any(|(unit, sum)| (sum - expected(unit)).abs() > 1e-6) {
+            return Err(format!("frame {frame}: cases are no whole").into());
+        }
+        let weights = [by_unit(studio.occluder_weights("near"))?, by_unit(Some(of_cases[0].clone()))?];
+        let plain = drawn(&mut studio, &Scene { lenses: vec![], ..scene })?.object_id.unwrap_or_default();
+        let fades = |id: &&u32| {
+            let unit = id.checked_sub(1).map(|object| units.of_object[object as usize]);
+            unit.is_some_and(|unit| (0.01..0.99).contains(&weights[1][unit as usize]))
+        };
+        changing.push(plain.iter().filter(fades).count());
+        let kinds = [("near", NEAR_M), ("by case", CASE_M)];
+        for ((classes, weights), (what, reach)) in [&mut nears, &mut cases].into_iter().zip(weights).zip(kinds) {
+            let was: Vec<bool> = classes.is_in.clone();
+            classes.step(weights, |unit| is_near(unit, reach), frame)?;
+            // It is left only beyond the margin.
+            for unit in (0..units.len()).filter(|&u| was[u] && !classes.is_in[u]) {
+                let around = &units.boxes[unit];
+                let away = eye.clamp(around.min, around.max).distance(eye);
+                if frame > 0 && away < reach + MARGIN_M {
+                    return Err(format!("frame {frame}, {what}: unit {unit} is left at {away} m").into());
+                }
             }
         }
     }
-    let [of_hides, of_nears] = [hides.sum()?, nears.sum()?];
-    println!("{}: hides {of_hides:?}, near {of_nears:?}", file.display());
-    if of_hides.classes < 20 || of_nears.classes < 20 {
+    let [of_hides, of_nears, of_cases] = [hides.sum()?, nears.sum()?, cases.sum()?];
+    println!("{}: hides {of_hides:?}, near {of_nears:?}, by case {of_cases:?}", file.display());
+    if of_hides.classes < 20 || of_nears.classes < 20 || of_cases.classes < 20 {
         return Err("the walk meets too little".into());
     }
     // Where most fades: each pixel is of what the weights say.
-    let of_stretch = |first: u32| fading[first as usize..(first + STRETCH) as usize].iter().sum::<usize>();
-    let first = (1..FRAMES - STRETCH).max_by_key(|&first| of_stretch(first)).ok_or("frames")?;
-    let film = Film::new(&walk(vec![lens("hides", Test::default())]))?;
-    studio.pass(&walk(vec![]), SIZE, 0.0)?;
-    let (mut patterned, mut gone) = (0, 0);
-    for frame in 0..first + STRETCH {
-        let scene = film.scene(frame)?;
-        studio.pass(&scene, SIZE, 1.0 / FPS)?;
-        if frame < first {
-            continue;
-        }
-        let weights = studio.occluder_weights("hides").ok_or("no time passed")?;
-        let with = drawn(&mut studio, &scene)?;
-        let plain = drawn(&mut studio, &Scene { lenses: vec![], ..scene })?;
-        for (i, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
-            let [was, now] = [&plain, &with].map(|p| p.object_id.as_ref().map_or(0, |ids| ids[i]));
-            let weight = |id: u32| id.checked_sub(1).map_or(0.0, |object| weights[object as usize]);
-            let is_gone = |id: u32| weight(id) > dither([x, y], 0);
-            if is_gone(now) || (!is_gone(was) && was != now) {
-                let [a, b] = [was, now].map(weight);
-                return Err(format!("frame {frame}: pixel {x} {y} shows {now} ({b}) where {was} ({a}) is").into());
+    let of_hides = lens("hides", Test::default());
+    for (lens, fading) in [(of_hides, fading), (by_case, changing)] {
+        let of_stretch = |first: u32| fading[first as usize..(first + STRETCH) as usize].iter().sum::<usize>();
+        let first = (1..FRAMES - STRETCH).max_by_key(|&first| of_stretch(first)).ok_or("frames")?;
+        let is_by_case = lens.name == "by case";
+        let film = Film::new(&walk(vec![lens]))?;
+        studio.pass(&walk(vec![]), SIZE, 0.0)?;
+        let (mut patterned, mut taken) = (0, 0);
+        for frame in 0..first + STRETCH {
+            let scene = film.scene(frame)?;
+            studio.pass(&scene, SIZE, 1.0 / FPS)?;
+            if frame < first {
+                continue;
             }
-            patterned += usize::from(weight(was) > 0.0 && weight(was) < 1.0);
-            gone += usize::from(is_gone(was));
+            // Between which thresholds each object is taken away.
+            let gone: Vec<[f32; 2]> = if is_by_case {
+                let cases = studio.case_weights("by case").ok_or("no time passed")?;
+                cases[0].iter().zip(&cases[1]).map(|(first, second)| [*first, first + second]).collect()
+            } else {
+                let weights = studio.occluder_weights("hides").ok_or("no time passed")?;
+                weights.into_iter().map(|weight| [0.0, weight]).collect()
+            };
+            let with = drawn(&mut studio, &scene)?;
+            let plain = drawn(&mut studio, &Scene { lenses: vec![], ..scene })?;
+            for (i, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
+                let [was, now] = [&plain, &with].map(|p| p.object_id.as_ref().map_or(0, |ids| ids[i]));
+                let thresholds = |id: u32| id.checked_sub(1).map_or([0.0; 2], |object| gone[object as usize]);
+                let is_gone = |id: u32| {
+                    let ([from, to], own) = (thresholds(id), dither([x, y], 0));
+                    from <= own && to > own
+                };
+                if is_gone(now) || (!is_gone(was) && was != now) {
+                    let [a, b] = [was, now].map(thresholds);
+                    return Err(
+                        format!("frame {frame}: pixel {x} {y} shows {now} ({b:?}) where {was} ({a:?}) is").into()
+                    );
+                }
+                let [from, to] = thresholds(was);
+                patterned += usize::from((0.01..0.99).contains(&(to - from)));
+                taken += usize::from(is_gone(was));
+            }
         }
-    }
-    println!("frames {first} to {}: {patterned} pixels of what fades, {gone} taken away", first + STRETCH - 1);
-    if patterned < 500 || gone < 2_000 {
-        return Err(format!("{patterned} pixels of what fades, {gone} taken away").into());
+        println!("frames {first} to {}: {patterned} pixels of what fades, {taken} taken away", first + STRETCH - 1);
+        if patterned < 500 || taken < 2_000 {
+            return Err(format!("{patterned} pixels of what fades, {taken} taken away").into());
+        }
     }
     Ok(())
 }
