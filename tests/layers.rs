@@ -289,3 +289,50 @@ fn x_ray_shows_floors_faintly() {
         }
     }
 }
+
+/// The colour times opacity, and what is let through, in the middle of a pane that is seen from this far aside, radians.
+fn seen_aside(studio: &mut Studio, turn: f64, effects: &[EffectUse], backend: Backend) -> [f64; 4] {
+    let at = DVec3::new(0.0, 5.0, 5.0);
+    let mut scene = of_context(effects.to_vec());
+    scene.camera = Some(orthographic(at + 20.0 * DVec3::new(-turn.cos(), -turn.sin(), 0.0), at, 11.0));
+    veil(studio, &scene, backend, SIZE)[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize].map(f64::from)
+}
+
+/// How far `at` is on a way of equal steps: the step, and how much of it.
+fn on_ramp(at: f64, count: usize) -> (usize, f64) {
+    let place = at * (count - 1) as f64;
+    let step = (place as usize).min(count - 2);
+    (step, place - step as f64)
+}
+
+#[test]
+fn opacity_and_colour_go_by_their_ramps() {
+    let all = [Pane { name: 0, x: 0, low: [0, 0], high: [10_000, 10_000], material: 0 }];
+    let mut studio = studio_of(&all);
+    let curve = [0.0, 0.7, 0.1, 1.0];
+    let mut x_ray = with_numbers("x-ray", &[("exponent", 1.0), ("least", 0.1), ("most", 0.9)]);
+    x_ray.parameters.insert("curve".into(), Parameter::Numbers(curve.into()));
+    let tint = |colors: &[&str]| {
+        let mut tint = with_numbers("x-ray-tint", &[("exponent", 1.0)]);
+        tint.parameters.insert("colors".into(), Parameter::Texts(colors.iter().map(|c| (*c).to_owned()).collect()));
+        tint
+    };
+    let ramp = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 1.0]];
+    for backend in [Backend::Specialised, Backend::Uber] {
+        for turn in [0.0_f64, 0.4, 0.8, 1.1, 1.3, 1.45] {
+            let edge_on = 1.0 - turn.cos();
+            let (step, share) = on_ramp(edge_on, curve.len());
+            let opacity = 0.1 + 0.8 * (curve[step] + share * (curve[step + 1] - curve[step]));
+            let white = seen_aside(&mut studio, turn, &[x_ray.clone(), tint(&["#ffffff", "#ffffff"])], backend);
+            assert!((white[3] - (1.0 - opacity)).abs() < 2e-4, "{backend:?} {turn}: {white:?}, {opacity}");
+            let found =
+                seen_aside(&mut studio, turn, &[x_ray.clone(), tint(&["#ff0000", "#00ff00", "#ffffff"])], backend);
+            let (step, share) = on_ramp(edge_on, ramp.len());
+            for channel in 0..3 {
+                let color = ramp[step][channel] + share * (ramp[step + 1][channel] - ramp[step][channel]);
+                let error = found[channel] - color * white[channel];
+                assert!(error.abs() < 2e-4, "{backend:?} {turn}: {found:?} by {white:?}, {color}");
+            }
+        }
+    }
+}
