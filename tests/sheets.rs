@@ -143,6 +143,41 @@ fn cells_are_the_pictures_of_render_and_stand_in_the_sheet() {
 }
 
 #[test]
+fn occluders_are_those_that_statistics_list() {
+    let folder = folder("occluders");
+    let [file, sheet, json, stats] = ["s.toml", "g.sheet.toml", "f.json", "stats.json"].map(|name| folder.join(name));
+    let who = |name| format!("[[lens]]\nname = \"{name}\"\nkind = \"occlusion\"\npoi = \"hall\"\n");
+    let beside = "test = { kind = \"spherical\", radius = 60 }\n";
+    std::fs::write(&file, format!("{}{}{}{beside}", SCENE.replace("62]", "9]"), who("who"), who("beside"))).unwrap();
+    let off = ["lens.beside.enabled=false", "lens.who.enabled=false"];
+    let columns = [("both", &off[..0]), ("one", &off[..1]), ("none", &off[..])];
+    let mut text_of_sheet =
+        "veduta_sheet = 1\nscene = \"s.toml\"\ncell_size = [96, 64]\nfigures = [\"occluders\"]\n".to_owned();
+    for (name, set) in &columns {
+        text_of_sheet += &format!("[[column]]\nname = \"{name}\"\nset = {set:?}\n");
+    }
+    std::fs::write(&sheet, text_of_sheet).unwrap();
+    let output = run(&["sheet", text(&sheet), "-o", text(&folder.join("out.png")), "--figures", text(&json)]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let figures: Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
+    let mut told = Vec::new();
+    for (i, (name, set)) in columns.iter().enumerate() {
+        let picture = folder.join("cell.png");
+        let mut arguments =
+            vec!["render", text(&file), "-o", text(&picture), "--size", "96x64", "--stats", text(&stats)];
+        arguments.extend(set.iter().flat_map(|set| ["--set", set]));
+        assert_eq!(run(&arguments).status.code(), Some(0));
+        let listed: Value = serde_json::from_slice(&std::fs::read(&stats).unwrap()).unwrap();
+        let lenses = listed["lenses"].as_array().unwrap();
+        let count: usize = lenses.iter().filter_map(|lens| lens["occluders"].as_array()).map(Vec::len).sum();
+        assert_eq!(figures["cells"][i]["occluders"].as_u64(), Some(count as u64), "{name}: {figures}");
+        told.push(count);
+    }
+    assert!(told[0] > told[1] && told[1] > told[2] && told[2] == 0, "{told:?}");
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn a_sheet_is_the_same_twice_and_made_for_a4_without_a_size() {
     let folder = folder("a4");
     let [sheet, cells, one, two] = ["g.sheet.toml", "cells", "1.png", "2.png"].map(|name| folder.join(name));
