@@ -230,7 +230,7 @@ fn weighted(layers: &[([f32; 3], f64, f64)]) -> [f64; 4] {
     [r, g, b, through]
 }
 
-/// Each pane's colour, opacity and distance in radii of the scene.
+/// Each pane's colour, opacity and distance in radii of the scene: half the diagonals of its box in plan.
 fn weighing(
     studio: &Studio,
     all: &[Pane],
@@ -238,7 +238,7 @@ fn weighing(
     opacity: impl Fn(usize) -> f64,
 ) -> Vec<([f32; 3], f64, f64)> {
     let bounds = studio.extent();
-    let radius = 0.5 * (bounds.max - bounds.min).length();
+    let radius = 0.5 * (bounds.max - bounds.min).truncate().length();
     let of =
         |(pane, color): &(usize, [f32; 3])| (*color, opacity(*pane), (20.0 + all[*pane].x as f64 / 1000.0) / radius);
     stack.iter().map(of).collect()
@@ -249,12 +249,17 @@ fn weighted_layers_are_as_their_formula_says() {
     let mut random = Random(36);
     let mut all = panes(12, &mut random);
     for (i, pane) in all.iter_mut().enumerate() {
-        pane.x = 1500 * i as i64;
+        pane.x = 10_000 * i as i64;
     }
     let mut studio = studio_of(&all);
     let stacks = stacks(&mut studio, &all);
     let opacity = |pane: usize| f64::from((0.1 + 0.02 * pane as f64) as f32);
-    let expected: Vec<_> = stacks.iter().map(|s| weighted(&weighing(&studio, &all, s, opacity))).collect();
+    let weighed: Vec<_> = stacks.iter().map(|s| weighing(&studio, &all, s, opacity)).collect();
+    let is_least = |distance: f64| 0.03 / (1e-5 + distance.powi(4)) <= 1e-2;
+    let least = weighed.iter().flatten().filter(|(.., distance)| is_least(*distance)).count();
+    let count = weighed.iter().flatten().count();
+    assert!((count / 4..count * 3 / 4).contains(&least), "{least} of {count} weigh least");
+    let expected: Vec<_> = weighed.iter().map(|layers| weighted(layers)).collect();
     let scene = by(Transparency::Weighted, &unlike(12));
     for backend in BOTH {
         let found = veil(&mut studio, &scene, backend, SIZE);
