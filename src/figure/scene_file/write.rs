@@ -318,7 +318,7 @@ fn tilted(axis: DVec3) -> String {
 }
 
 /// Yaw, pitch and roll of a rotation, degrees: the inverse of [`rotation`], with as few decimals as it takes.
-fn angles(turn: DQuat) -> [f64; 3] {
+pub(super) fn angles(turn: DQuat) -> [f64; 3] {
     let m = DMat3::from_quat(turn.normalize());
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
     // Looking straight up or down, yaw and roll turn about one axis: all of it is called yaw.
@@ -326,7 +326,9 @@ fn angles(turn: DQuat) -> [f64; 3] {
     let yaw = if upright { (-y.x).atan2(y.y) } else { x.y.atan2(x.x) };
     let pitch = x.z.atan2(x.x.hypot(x.y));
     let roll = if upright { 0.0 } else { y.z.atan2(z.z) };
-    let exact = [yaw, pitch, roll].map(f64::to_degrees);
+    // Half a turn is written as 180, whichever sign its rounding has.
+    let half = |a: f64| if a < 1e-9 - 180.0 { a + 360.0 } else { a };
+    let exact = [yaw, pitch, roll].map(f64::to_degrees).map(half);
     let same = |a: &[f64; 3]| {
         let q = rotation(*a);
         q == turn || -q == turn
