@@ -12,6 +12,7 @@ pub mod basis;
 pub mod first;
 pub mod frustum;
 pub mod jitter;
+pub mod local;
 pub mod path;
 pub mod project;
 

@@ -1,0 +1,146 @@
+//! What best-view lenses show (B1 to B5; V §3.4.1): a picture of its own, placed over the main one and tied to points of interest.
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+
+use crate::{lens::EffectUse, view::Camera};
+
+/// Vertical field of view of local cameras that say nothing of it, radians.
+pub const DEFAULT_FOV: f64 = 45.0 * std::f64::consts::PI / 180.0;
+
+/// What a best-view lens shows, and of what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BestView {
+    /// Names of the points of interest that it is tied to; the first of them is the one that a view is of.
+    pub pois: Vec<String>,
+    /// What is shown.
+    pub depiction: Depiction,
+    /// Names of the lenses that act in its view, best-view lenses among them: those become overlays of its overlay. `None`: all lenses of the
+    /// scene that act in every view (L2).
+    pub lenses: Option<Vec<String>>,
+    /// How its view looks; `None`: as the scene.
+    pub look: Option<Look>,
+}
+
+/// What an overlay is a picture of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Depiction {
+    /// An image of a file (B1).
+    Image(PathBuf),
+    /// Text; `\n` begins a line (B1).
+    Text(String),
+    /// The city, from an eye of its own (B2 to B5).
+    View(LocalView),
+}
+
+/// An eye of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LocalView {
+    /// All of the first point of interest (B2), from `normal`, a direction from it; `None`: from where it is seen best.
+    Best {
+        /// From the object to the eye, not 0.
+        normal: Option<DVec3>,
+        /// Vertical field of view, radians.
+        fov_y: f64,
+    },
+    /// The main eye, looked at from outside (B3, multiple centres of projection).
+    Mcop {
+        /// From the main eye to this one, not 0.
+        normal: DVec3,
+        /// How far, metres.
+        distance_m: f64,
+        /// Vertical field of view, radians.
+        fov_y: f64,
+    },
+    /// From the main eye in another direction (B3, single centre of projection).
+    Scop {
+        /// Where it looks, not 0.
+        direction: DVec3,
+        /// Whether `direction` is on the axes of the camera (x right, y up, z towards whoever looks) and not on the world's.
+        of_camera: bool,
+        /// Whether left and right are exchanged: a rear-view mirror.
+        mirror: bool,
+        /// Vertical field of view, radians.
+        fov_y: f64,
+    },
+    /// A map of what lies around the main eye (B4).
+    Map {
+        /// What is at its top.
+        mode: MapMode,
+        /// Metres of ground from the lower to the upper border.
+        height_m: f64,
+    },
+    /// A small model that can be turned (B5): the first point of interest and what is within `margin_m` of it, alone.
+    Worldlet {
+        /// Where it is looked at from: radians clockwise from north.
+        azimuth: f64,
+        /// And how far from above, radians.
+        elevation: f64,
+        /// How much around the object belongs to it, metres.
+        margin_m: f64,
+        /// Vertical field of view, radians.
+        fov_y: f64,
+    },
+    /// Any eye: a region of the picture that shows another place (B5, Through-The-Lens).
+    Camera(Camera),
+}
+
+/// How a map is turned (B4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum MapMode {
+    /// North is up.
+    #[default]
+    NorthUp,
+    /// Where the main eye looks is up; a compass shows north.
+    HeadUp,
+    /// North is up; a symbol shows where the main eye looks.
+    UserView,
+}
+
+impl MapMode {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 3] =
+        [("north-up", Self::NorthUp), ("head-up", Self::HeadUp), ("user-view", Self::UserView)];
+}
+
+/// How a view looks, as far as views of one scene may differ.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Look {
+    /// The colours surfaces start from.
+    pub base: BaseStyle,
+    /// Effects on everything outside (and under) the lenses, in order.
+    pub effects: Vec<EffectUse>,
+    /// What is behind the city.
+    pub background: Background,
+}
+
+/// The colours surfaces start from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum BaseStyle {
+    /// The file's materials and textures; where it has none, quiet colours by kind of surface.
+    #[default]
+    Natural,
+    /// One clay colour for everything.
+    Clay,
+}
+
+/// What is behind the city.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Background {
+    /// A quiet sky.
+    #[default]
+    Sky,
+    /// One colour, sRGB 0..1.
+    Color([f32; 3]),
+}
+
+impl BestView {
+    /// Its own eye, if what it shows is the city.
+    pub fn view(&self) -> Option<&LocalView> {
+        match &self.depiction {
+            Depiction::View(view) => Some(view),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Overlays: where the pictures of best-view lenses stand over the main one, and the lines that tie them to their places (B6, B7).
+
+use std::path::PathBuf;
+
+/// The overlay of a best-view lens. Lengths are pixels of the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overlay {
+    /// The name of its lens.
+    pub lens: String,
+    /// Who is placed first: higher before lower.
+    pub priority: f64,
+    /// Degree of interest, 0..1: how large it gets where the layout goes by interest.
+    pub interest: f64,
+    /// Preferred size.
+    pub size: [u32; 2],
+    /// It is made no smaller; `None`: half its preferred size.
+    pub min: Option<[u32; 2]>,
+    /// It is made no larger; `None`: its preferred size and a half.
+    pub max: Option<[u32; 2]>,
+    /// Where its upper left corner stands, if not where the layout puts it.
+    pub at: Option<[u32; 2]>,
+    /// 0 to 1.
+    pub opacity: f64,
+    /// What is cut out of it and laid over it.
+    pub frame: Frame,
+    /// A line under what it shows.
+    pub caption: Option<String>,
+    /// How it is tied to its points of interest; `None`: it is not.
+    pub line: Option<ContextLine>,
+}
+
+/// Alpha mask and frame mask of an overlay.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Frame {
+    /// One that is built in.
+    BuiltIn(BuiltInFrame),
+    /// Images, stretched over the overlay: what of it is seen (white) and what not (black), and what is laid over it.
+    Images {
+        /// Alpha mask; `None`: all is seen.
+        alpha: Option<PathBuf>,
+        /// Frame mask, with alpha; `None`: nothing.
+        frame: Option<PathBuf>,
+    },
+}
+
+impl Default for Frame {
+    fn default() -> Self {
+        Self::BuiltIn(BuiltInFrame::Rounded)
+    }
+}
+
+/// Built-in frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum BuiltInFrame {
+    /// Nothing but the picture.
+    None,
+    /// A white border with round corners and a soft shadow.
+    #[default]
+    Rounded,
+    /// A thin dark line.
+    Thin,
+    /// A photographic print: white, wider below.
+    Print,
+    /// An ellipse with a white border.
+    Ellipse,
+    /// It fades out to all sides.
+    Vignette,
+}
+
+impl BuiltInFrame {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 6] = [
+        ("none", Self::None),
+        ("rounded", Self::Rounded),
+        ("thin", Self::Thin),
+        ("print", Self::Print),
+        ("ellipse", Self::Ellipse),
+        ("vignette", Self::Vignette),
+    ];
+}
+
+/// Lines from an overlay to its points of interest (B7). Lengths are pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContextLine {
+    /// How it runs.
+    pub kind: LineKind,
+    /// sRGB 0..1; `None`: the lens colour.
+    pub color: Option<[f32; 3]>,
+    /// Its widths at the overlay and at the place.
+    pub widths: [f64; 2],
+    /// An image along it, with alpha: its left end at the overlay.
+    pub skin: Option<PathBuf>,
+    /// What it ends at.
+    pub to: LineEnd,
+    /// What is drawn where the place is out of the picture or behind the eye.
+    pub outside: Outside,
+    /// Beyond this distance of the place from the eye, metres, an arrow takes its place; `None`: never.
+    pub arrow_distance_m: Option<f64>,
+    /// It fades where it comes near the middle of the picture: nowhere seen within the first radius, all beyond the second.
+    pub fade: Option<[f64; 2]>,
+}
+
+/// How a context line runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum LineKind {
+    /// Straight.
+    #[default]
+    Straight,
+    /// Along the sides of the picture.
+    Orthogonal,
+    /// In a curve.
+    Curved,
+}
+
+impl LineKind {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 3] =
+        [("straight", Self::Straight), ("orthogonal", Self::Orthogonal), ("curved", Self::Curved)];
+}
+
+/// What a context line ends at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum LineEnd {
+    /// The middle of its place.
+    #[default]
+    Point,
+    /// The outline of its object, which is drawn.
+    Area,
+}
+
+impl LineEnd {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 2] = [("point", Self::Point), ("area", Self::Area)];
+}
+
+/// What is drawn for a place that is not in the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Outside {
+    /// An arrow at the border of the picture.
+    #[default]
+    Arrow,
+    /// Nothing.
+    Hidden,
+}
+
+impl Outside {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 2] = [("arrow", Self::Arrow), ("hidden", Self::Hidden)];
+}
+
+impl Default for ContextLine {
+    fn default() -> Self {
+        Self {
+            kind: LineKind::default(),
+            color: None,
+            widths: [6.0, 1.5],
+            skin: None,
+            to: LineEnd::default(),
+            outside: Outside::default(),
+            arrow_distance_m: None,
+            fade: None,
+        }
+    }
+}
+
+impl Overlay {
+    /// Preferred size where none is given, pixels.
+    pub const SIZE: [u32; 2] = [240, 160];
+
+    /// The overlay of a lens that says nothing of it.
+    pub fn of(lens: &str) -> Self {
+        Self {
+            lens: lens.to_owned(),
+            priority: 0.0,
+            interest: 0.5,
+            size: Self::SIZE,
+            min: None,
+            max: None,
+            at: None,
+            opacity: 1.0,
+            frame: Frame::default(),
+            caption: None,
+            line: Some(ContextLine::default()),
+        }
+    }
+}
+
+/// How overlays are laid out (B6).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layout {
+    /// Where they stand.
+    pub along: Along,
+    /// What their sizes go by.
+    pub sizes: Sizes,
+    /// Whether the overlay nearest to the middle of the picture is in the middle of its row.
+    pub exploration_focus: bool,
+    /// Between overlays and the border of the picture, pixels.
+    pub margin_px: f64,
+    /// Between overlays, pixels.
+    pub gap_px: f64,
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self {
+            along: Along::default(),
+            sizes: Sizes::default(),
+            exploration_focus: false,
+            margin_px: 16.0,
+            gap_px: 12.0,
+        }
+    }
+}
+
+/// Where overlays stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Along {
+    /// In a row at the top.
+    Top,
+    /// In a row at the bottom.
+    Bottom,
+    /// In a column on the left.
+    Left,
+    /// In a column on the right.
+    Right,
+    /// In two columns.
+    Sides,
+    /// All around.
+    #[default]
+    Border,
+}
+
+impl Along {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 6] = [
+        ("top", Self::Top),
+        ("bottom", Self::Bottom),
+        ("left", Self::Left),
+        ("right", Self::Right),
+        ("sides", Self::Sides),
+        ("border", Self::Border),
+    ];
+}
+
+/// What the sizes of overlays go by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Sizes {
+    /// Their preferred sizes.
+    #[default]
+    Preferred,
+    /// How near their places are.
+    Distance,
+    /// Their degrees of interest.
+    Interest,
+}
+
+impl Sizes {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 3] =
+        [("preferred", Self::Preferred), ("distance", Self::Distance), ("interest", Self::Interest)];
+}

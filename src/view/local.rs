@@ -1,0 +1,223 @@
+//! Cameras of best-view lenses: local eyes that are placed by an object or by the main eye (B2, B3, B4; V §3.4.1).
+//!
+//! All of them look along a line that the caller gives, at a field of view that the caller gives; what is decided here is where they
+//! stand and what is up in them.
+
+use glam::{DVec2, DVec3};
+
+use crate::view::{Camera, Projection, default_near_m};
+
+/// How far sights of a camera may lie from the eye plane to count as level, sine.
+const LEVEL: f64 = 1e-9;
+
+/// The camera that shows a sphere of centre `middle` and `radius` metres from the direction `normal` (from the middle to the eye), filling the
+/// narrower side of a picture of this aspect (B2): it stands at D = r / sin(α / 2) from the middle, α the smaller of the two fields of view,
+/// and its near plane touches the sphere, so that nothing before the object is drawn.
+///
+/// `viewer` decides what is up where it looks straight down or up ([`upright`]). A sphere of no size is shown as one of a millimetre.
+pub fn around(middle: DVec3, radius: f64, normal: DVec3, fov_y: f64, aspect: f64, viewer: &Camera) -> Camera {
+    let radius = radius.max(1e-3);
+    let narrower = if aspect < 1.0 { 2.0 * ((0.5 * fov_y).tan() * aspect).atan() } else { fov_y };
+    let distance = radius / (0.5 * narrower).sin();
+    let normal = normal.normalize_or(DVec3::Z);
+    Camera {
+        eye: middle + distance * normal,
+        target: middle,
+        up: standing(normal, viewer),
+        projection: Projection::Perspective { fov_y },
+        near_m: (distance - radius).clamp(1e-4, 1e6),
+    }
+}
+
+/// A camera `distance_m` from the viewer along `normal` that looks at the viewer (B3, MCOP).
+pub fn towards_viewer(viewer: &Camera, normal: DVec3, distance_m: f64, fov_y: f64) -> Camera {
+    let normal = normal.normalize_or(DVec3::Z);
+    let eye = viewer.eye + distance_m * normal;
+    Camera {
+        eye,
+        target: viewer.eye,
+        up: upright(normal, viewer),
+        projection: Projection::Perspective { fov_y },
+        near_m: default_near_m(distance_m),
+    }
+}
+
+/// A camera in the viewer's eye that looks along `direction` (B3, SCOP); the viewer's up.
+pub fn from_viewer(viewer: &Camera, direction: DVec3, fov_y: f64) -> Camera {
+    let reach = viewer.eye.distance(viewer.target).max(1.0);
+    Camera {
+        target: viewer.eye + reach * direction.normalize_or(forward(viewer)),
+        projection: Projection::Perspective { fov_y },
+        ..*viewer
+    }
+}
+
+/// A direction given on the viewer's axes - x to the right of its picture, y to its top, z out of it to whoever looks - on the model's.
+pub fn of_viewer(viewer: &Camera, direction: DVec3) -> DVec3 {
+    viewer
+        .basis()
+        .map_or(direction, |basis| direction.x * basis.right + direction.y * basis.up - direction.z * basis.forward)
+}
+
+/// A map: what lies around `centre` seen straight from above, `height_m` metres of ground from its lower to its upper border, with `heading`
+/// (in plan, any length but 0) towards its top. It stands `above_m` metres over the centre.
+pub fn map(centre: DVec3, heading: DVec2, height_m: f64, above_m: f64) -> Camera {
+    Camera {
+        eye: centre + above_m * DVec3::Z,
+        target: centre,
+        up: heading.normalize_or(DVec2::Y).extend(0.0),
+        projection: Projection::Orthographic { height_m },
+        near_m: default_near_m(above_m),
+    }
+}
+
+/// Where a viewer is headed, in plan, of length 1: along its view; looking straight down or up, to the top of its picture. North, where
+/// neither says anything.
+pub fn heading(viewer: &Camera) -> DVec2 {
+    let Ok(basis) = viewer.basis() else { return DVec2::Y };
+    let (ahead, top) = (basis.forward.truncate(), basis.up.truncate());
+    // Looking down the top of the picture lies ahead, looking up it lies behind.
+    let level = if ahead.length() > LEVEL { ahead } else { top * -basis.forward.z.signum() };
+    level.normalize_or(DVec2::Y)
+}
+
+/// What is up in a camera that looks against `normal`, a unit vector, for a viewer who looks along f with u up: (I − n nᵀ)(f − (f·n) u), normalised
+/// (B3). It turns evenly while the normal goes from behind the viewer over its head, and is the viewer's own up where the camera looks the same
+/// way. From two directions below the viewer this is 0: there the viewer's right is taken for up.
+pub fn upright(normal: DVec3, viewer: &Camera) -> DVec3 {
+    let Ok(basis) = viewer.basis() else { return DVec3::Z };
+    let ahead = basis.forward - basis.forward.dot(normal) * basis.up;
+    let across = |v: DVec3| v - v.dot(normal) * normal;
+    across(ahead).try_normalize().filter(|_| across(ahead).length() > LEVEL).unwrap_or(basis.right)
+}
+
+/// Up of a camera that looks against `normal`: z, or, where that is along the view, [`upright`].
+fn standing(normal: DVec3, viewer: &Camera) -> DVec3 {
+    if normal.truncate().length() > 1e-6 { DVec3::Z } else { upright(normal, viewer) }
+}
+
+fn forward(viewer: &Camera) -> DVec3 {
+    (viewer.target - viewer.eye).normalize_or(DVec3::Y)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, TAU};
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{geom::Aabb, view::View};
+
+    fn viewers() -> impl Strategy<Value = Camera> {
+        let unit = || prop::array::uniform3(-1.0..1.0f64).prop_map(DVec3::from);
+        (unit(), unit(), unit()).prop_filter_map("a direction", |(eye, along, up)| {
+            let along = along.try_normalize().filter(|a| a.cross(up).length() > 1e-2)?;
+            let eye = 1e5 * eye;
+            Some(Camera { up, ..Camera::looking(eye, eye + 50.0 * along, 0.8) })
+        })
+    }
+
+    fn units() -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(-1.0..1.0f64)
+            .prop_filter_map("a direction", |v| DVec3::from(v).try_normalize().filter(|v| v.is_normalized()))
+    }
+
+    proptest! {
+        #[test]
+        fn a_sphere_touches_the_narrower_sides(viewer in viewers(), normal in units(), radius in 0.1..500.0f64, aspect in 0.2..5.0f64, fov in 0.1..2.5f64) {
+            let camera = around(viewer.eye, radius, normal, fov, aspect, &viewer);
+            prop_assert!(camera.check().is_ok());
+            let size = if aspect > 1.0 { [(1000.0 * aspect) as u32, 1000] } else { [1000, (1000.0 / aspect) as u32] };
+            let aspect = f64::from(size[0]) / f64::from(size[1]);
+            let camera = Camera { near_m: camera.near_m, ..around(viewer.eye, radius, normal, fov, aspect, &viewer) };
+            let view = View::new(camera, size, &Aabb::EMPTY).unwrap();
+            // The tangent cone of the sphere has the angle α: its rim touches the border of the narrower side, whatever it is.
+            let distance = camera.eye.distance(camera.target);
+            let half = (radius / distance).asin();
+            let narrower = view.half_extent().min_element().atan();
+            prop_assert!((half - narrower).abs() < 1e-9);
+            prop_assert!((camera.near_m - (distance - radius)).abs() < 1e-9 * distance);
+            let centre = view.pixel(viewer.eye).unwrap();
+            prop_assert!((centre.x - 0.5 * f64::from(size[0])).abs() < 1e-3 && (centre.y - 0.5 * f64::from(size[1])).abs() < 1e-3);
+        }
+
+        #[test]
+        fn up_is_across_the_view_and_never_undefined(viewer in viewers(), normal in units()) {
+            let up = upright(normal, &viewer);
+            prop_assert!(up.is_normalized() && (up.dot(normal).abs() < 1e-6 || up == viewer.basis().unwrap().right), "{up}");
+            prop_assert!(towards_viewer(&viewer, normal, 80.0, 0.7).basis().is_ok());
+        }
+
+        #[test]
+        fn directions_of_the_viewer_keep_their_length_and_angles(viewer in viewers(), a in units(), b in units()) {
+            let [wa, wb] = [a, b].map(|d| of_viewer(&viewer, d));
+            prop_assert!((wa.dot(wb) - a.dot(b)).abs() < 1e-9);
+            let ahead = of_viewer(&viewer, -DVec3::Z);
+            prop_assert!((ahead - forward(&viewer)).length() < 1e-9);
+            let back = from_viewer(&viewer, -ahead, 0.7);
+            prop_assert!((forward(&back) + ahead).length() < 1e-9 && back.eye == viewer.eye);
+        }
+    }
+
+    /// From behind, over the head, to the front: no step turns up by more than a few times what the normal turns by.
+    #[test]
+    fn up_turns_evenly_over_the_viewers_head() {
+        let viewer = Camera::looking(DVec3::ZERO, DVec3::Y, 0.8);
+        let normal = |i: i32| {
+            let angle = std::f64::consts::PI * f64::from(i) / 1000.0;
+            DVec3::new(0.0, -angle.cos(), angle.sin())
+        };
+        let up = |i: i32| upright(normal(i), &viewer);
+        assert!((up(0) - DVec3::Z).length() < 1e-12, "looking the same way: the viewer's up");
+        assert!((up(500) - DVec3::Y).length() < 1e-12, "from above: ahead is up");
+        assert!((up(1000) + DVec3::Z).length() < 1e-12, "as a loop goes on");
+        assert!((1..=1000).all(|i| up(i).distance(up(i - 1)) < 0.01));
+    }
+
+    /// Where the rule says nothing: c² = (√5 − 1) / 2 (f − c u) is along the normal.
+    #[test]
+    fn up_is_defined_where_its_rule_is_not() {
+        let viewer = Camera::looking(DVec3::ZERO, DVec3::Y, 0.8);
+        let c = (0.5 * (5.0_f64.sqrt() - 1.0)).sqrt();
+        let normal = DVec3::new(0.0, 1.0, -c).normalize_or(DVec3::Y);
+        assert_eq!(upright(normal, &viewer), DVec3::X);
+        assert!(towards_viewer(&viewer, normal, 10.0, 0.5).basis().is_ok());
+    }
+
+    #[test]
+    fn the_best_view_normal_along_up_shows_the_viewers_ahead_at_the_top() {
+        let viewer = Camera::looking(DVec3::ZERO, DVec3::new(3.0, 4.0, 0.0), 0.8);
+        for z in [1.0, -1.0] {
+            let camera = around(DVec3::new(9.0, 9.0, 5.0), 3.0, DVec3::new(0.0, 0.0, z), 0.6, 1.5, &viewer);
+            assert!((camera.up - DVec3::new(0.6, 0.8, 0.0)).length() < 1e-12, "{}", camera.up);
+        }
+        let level = around(DVec3::ZERO, 3.0, DVec3::X, 0.6, 1.5, &viewer);
+        assert_eq!(level.up, DVec3::Z);
+    }
+
+    #[test]
+    fn headings_are_in_plan() {
+        let looking = |target: DVec3, up: DVec3| Camera { up, ..Camera::looking(DVec3::ZERO, target, 0.8) };
+        let near =
+            |camera: Camera, to: DVec2| assert!((heading(&camera) - to).length() < 1e-12, "{}", heading(&camera));
+        near(looking(DVec3::new(1.0, 0.0, -7.0), DVec3::Z), DVec2::X);
+        near(looking(-DVec3::Z, DVec3::new(0.0, -1.0, 0.0)), -DVec2::Y);
+        near(looking(DVec3::Z, DVec3::new(0.0, -1.0, 0.0)), DVec2::Y);
+        near(looking(-DVec3::Z, DVec3::Z), DVec2::Y);
+    }
+
+    #[test]
+    fn maps_show_their_heading_upwards_and_metres_as_asked() {
+        for i in 0..16 {
+            let to = DVec2::from_angle(TAU * f64::from(i) / 16.0);
+            let centre = DVec3::new(85_000.0, 446_000.0, 2.0);
+            let view = View::new(map(centre, 3.0 * to, 200.0, 500.0), [300, 200], &Aabb::EMPTY).unwrap();
+            let at = view.pixel(centre + 60.0 * to.extend(0.0)).unwrap();
+            assert!((at.truncate() - DVec2::new(150.0, 40.0)).length() < 1e-6, "{at}");
+            let right = DVec2::from_angle(-FRAC_PI_2).rotate(to);
+            let at = view.pixel(centre + 60.0 * right.extend(0.0)).unwrap();
+            assert!((at.truncate() - DVec2::new(210.0, 100.0)).length() < 1e-6, "{at}");
+        }
+    }
+}
