@@ -138,6 +138,7 @@ mod tests {
             shapes: vec![],
             effects,
             render: None,
+            best_view: None,
             content: None,
             body: Default::default(),
             sprite: None,

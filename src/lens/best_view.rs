@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::{lens::EffectUse, view::Camera};
 
 /// Vertical field of view of local cameras that say nothing of it, radians.
-pub const DEFAULT_FOV: f64 = 45.0 * std::f64::consts::PI / 180.0;
+pub const DEFAULT_FOV: f64 = 45_f64.to_radians();
 
 /// What a best-view lens shows, and of what.
 #[derive(Clone, Debug, PartialEq)]

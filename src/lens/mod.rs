@@ -1,5 +1,6 @@
 //! What to show where: a lens = shapes + effects + order (V §3).
 
+pub mod best_view;
 pub mod border;
 pub mod chosen;
 pub mod classify;
@@ -21,6 +22,7 @@ pub mod thematic;
 
 use std::collections::BTreeMap;
 
+pub use best_view::BestView;
 pub use border::{Border, BorderUnit, Discrete};
 pub use classify::classify;
 pub use content::{Content, ContentSource, Copied};
@@ -51,6 +53,8 @@ pub struct Lens {
     pub render: Option<Rendering>,
     /// What it does, in order (K1: at most one scene style), after what it is drawn by.
     pub effects: Vec<EffectUse>,
+    /// What its overlay shows, if it has one (B1 to B5).
+    pub best_view: Option<BestView>,
     /// What it shows in place of what is below it (C6); `None`: it acts on that.
     pub content: Option<Content>,
     /// How the lens body itself is drawn (L5).
@@ -117,16 +121,47 @@ pub enum LensKind {
     Content,
     /// Draws what hides a point of interest so that it can be seen (O2, O3).
     Occlusion,
+    /// Shows an image or a text (B1).
+    Annotation,
+    /// Shows the city from an eye of its own (B2, B3).
+    BestView,
+    /// Shows a map of what lies around the main eye (B4).
+    MapView,
+    /// Shows a small model of a place that can be turned (B5).
+    Worldlet,
+    /// Shows another place in a region of the picture (B5).
+    SeeThrough,
+    /// Shows another place that one can go to (B5).
+    Portal,
 }
 
 impl LensKind {
+    /// All, with their words in scene files.
+    pub const WORDS: [(&str, Self); 9] = [
+        ("color", Self::Color),
+        ("content", Self::Content),
+        ("occlusion", Self::Occlusion),
+        ("annotation", Self::Annotation),
+        ("best-view", Self::BestView),
+        ("map-view", Self::MapView),
+        ("worldlet", Self::Worldlet),
+        ("see-through", Self::SeeThrough),
+        ("portal", Self::Portal),
+    ];
+
     /// Its word in scene files.
     pub fn word(self) -> &'static str {
-        match self {
-            Self::Color => "color",
-            Self::Content => "content",
-            Self::Occlusion => "occlusion",
-        }
+        Self::WORDS.iter().find(|(_, kind)| *kind == self).map_or("", |(word, _)| word)
+    }
+
+    /// The kind with this word.
+    pub fn of_word(word: &str) -> Option<Self> {
+        Self::WORDS.iter().find(|(w, _)| *w == word).map(|(_, kind)| *kind)
+    }
+
+    /// Whether its lenses have an overlay in place of a focus area (V §3.4).
+    pub fn has_overlay(self) -> bool {
+        !matches!(self, Self::Color | Self::Content | Self::Occlusion)
     }
 }
 

@@ -125,6 +125,7 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
         shapes: vec![shape.into()],
         effects: effects.iter().map(use_of).collect(),
         render: None,
+        best_view: None,
         content: None,
         body: LensBody::None,
         sprite: None,

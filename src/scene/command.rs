@@ -181,6 +181,7 @@ mod tests {
             shapes: vec![],
             effects: vec![],
             render: None,
+            best_view: None,
             content: None,
             body: Default::default(),
             sprite: None,

@@ -7,6 +7,7 @@ pub mod animation;
 pub mod check;
 pub mod command;
 pub mod drawn;
+pub mod overlay;
 pub mod technique;
 pub mod transparency;
 
@@ -19,10 +20,12 @@ use crate::{
     view::Camera,
 };
 
+pub use crate::lens::best_view::{Background, BaseStyle};
 pub use animation::Animation;
 pub use check::{SceneProblem, check_against};
 pub use command::{Command, History};
 pub use drawn::Drawn;
+pub use overlay::{Layout, Overlay};
 pub use technique::Technique;
 pub use transparency::Transparency;
 
@@ -41,6 +44,10 @@ pub struct Scene {
     pub pois: Vec<Poi>,
     /// Lenses, bottom to top.
     pub lenses: Vec<Lens>,
+    /// How the pictures of best-view lenses stand over the main one (B6); those without have one with every value at its default.
+    pub overlays: Vec<Overlay>,
+    /// Where overlays stand.
+    pub layout: Layout,
     /// How a picture is made of it.
     pub figure: Figure,
     /// How it changes over time; a picture shows nothing of it.
@@ -94,26 +101,6 @@ pub struct Style {
     pub technique: Technique,
     /// How translucent layers are laid one over the other.
     pub transparency: Transparency,
-}
-
-/// The colours surfaces start from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum BaseStyle {
-    /// The file's materials and textures; where it has none, quiet colours by kind of surface.
-    #[default]
-    Natural,
-    /// One clay colour for everything.
-    Clay,
-}
-
-/// What is behind the city.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum Background {
-    /// A quiet sky.
-    #[default]
-    Sky,
-    /// One colour, sRGB 0..1.
-    Color([f32; 3]),
 }
 
 /// A point of interest.

@@ -2,6 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::{
+    lens::{Lens, best_view::LocalView, nearest::did_you_mean},
+    scene::{Scene, SceneProblem},
+};
+
 /// The overlay of a best-view lens. Lengths are pixels of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
@@ -18,7 +23,7 @@ pub struct Overlay {
     /// It is made no larger; `None`: its preferred size and a half.
     pub max: Option<[u32; 2]>,
     /// Where its upper left corner stands, if not where the layout puts it.
-    pub at: Option<[u32; 2]>,
+    pub at: Option<[f64; 2]>,
     /// 0 to 1.
     pub opacity: f64,
     /// What is cut out of it and laid over it.
@@ -161,6 +166,100 @@ impl Default for ContextLine {
             fade: None,
         }
     }
+}
+
+/// How deep views may nest: overlays in overlays of the main picture's overlays (L2).
+pub const DEEPEST: usize = 3;
+
+/// What is wrong with the overlays of a scene: names that nothing has, and views that show themselves.
+pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
+    let mut problems = Vec::new();
+    let mut note = |table: String, key: &str, message: String| {
+        problems.push(SceneProblem { table, key: key.to_owned(), message });
+    };
+    let has_overlay = |lens: &&Lens| lens.best_view.is_some();
+    for (i, overlay) in scene.overlays.iter().enumerate() {
+        let table = format!("overlay.{i}");
+        match scene.lenses.iter().find(|lens| lens.name == overlay.lens) {
+            None if overlay.lens.is_empty() => {}
+            None => {
+                let hint =
+                    did_you_mean(&overlay.lens, scene.lenses.iter().filter(has_overlay).map(|l| l.name.as_str()));
+                note(table.clone(), "lens", format!("there is no lens \"{}\"{hint}", overlay.lens));
+            }
+            Some(lens) if lens.best_view.is_none() => {
+                let message =
+                    format!("\"{}\" is a lens of kind \"{}\", which has no overlay", lens.name, lens.kind.word());
+                note(table.clone(), "lens", message);
+            }
+            Some(lens) if scene.overlays[..i].iter().any(|other| other.lens == lens.name) => {
+                note(table.clone(), "lens", format!("\"{}\" has an overlay already: a lens has one", lens.name));
+            }
+            Some(_) => {}
+        }
+        let is_over = |a: [u32; 2], b: [u32; 2]| a[0] > b[0] || a[1] > b[1];
+        if overlay.min.is_some_and(|min| is_over(min, overlay.size)) {
+            note(table.clone(), "min", "is larger than size".to_owned());
+        }
+        if overlay.max.is_some_and(|max| is_over(overlay.size, max)) {
+            note(table.clone(), "max", "is smaller than size".to_owned());
+        }
+        if let Some([inner, outer]) = overlay.line.as_ref().and_then(|line| line.fade)
+            && inner > outer
+        {
+            note(table, "line", "fade = [inner, outer]: the inner radius is larger than the outer one".to_owned());
+        }
+    }
+    for (i, lens) in scene.lenses.iter().enumerate() {
+        let Some(shown) = &lens.best_view else { continue };
+        let table = format!("lens.{i}");
+        for name in &shown.pois {
+            if !scene.pois.iter().any(|poi| poi.name == *name) {
+                let hint = did_you_mean(name, scene.pois.iter().map(|poi| poi.name.as_str()));
+                note(table.clone(), "poi", format!("there is no point of interest \"{name}\"{hint}"));
+            }
+        }
+        if shown.pois.is_empty() && matches!(shown.view(), Some(LocalView::Best { .. } | LocalView::Worldlet { .. })) {
+            note(table.clone(), "poi", "is missing: this view is of a point of interest".to_owned());
+        }
+        for name in shown.lenses.iter().flatten() {
+            if !scene.lenses.iter().any(|lens| lens.name == *name) {
+                let hint = did_you_mean(name, scene.lenses.iter().map(|lens| lens.name.as_str()));
+                note(table.clone(), "lenses", format!("there is no lens \"{name}\"{hint}"));
+            }
+        }
+        if let Some(chain) = too_deep(scene, &mut vec![i]) {
+            let names: Vec<String> = chain.iter().map(|&i| format!("\"{}\"", scene.lenses[i].name)).collect();
+            let is_cycle = chain[..chain.len() - 1].contains(&chain[chain.len() - 1]);
+            let why = if is_cycle { "a view would show itself" } else { "views nest at most three deep" };
+            note(table, "lenses", format!("{why}: {}", names.join(" shows ")));
+        }
+    }
+    problems
+}
+
+/// A way from the last lens of `chain` over the lenses of overlays that leads back to the first of it or is too long.
+fn too_deep(scene: &Scene, chain: &mut Vec<usize>) -> Option<Vec<usize>> {
+    let last = scene.lenses.get(*chain.last()?)?;
+    for name in last.best_view.iter().flat_map(|shown| shown.lenses.iter().flatten()) {
+        let Some(next) = scene.lenses.iter().position(|lens| lens.name == *name && lens.best_view.is_some()) else {
+            continue;
+        };
+        let is_cycle = chain.first() == Some(&next);
+        // A cycle that this lens is not on is told where it is.
+        if chain[1..].contains(&next) {
+            continue;
+        }
+        chain.push(next);
+        if is_cycle || chain.len() > DEEPEST {
+            return Some(chain.clone());
+        }
+        if let Some(found) = too_deep(scene, chain) {
+            return Some(found);
+        }
+        chain.pop();
+    }
+    None
 }
 
 impl Overlay {

@@ -101,6 +101,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         shapes: shapes.into_iter().map(Into::into).collect(),
         effects: vec![used(effect)],
         render: None,
+        best_view: None,
         content: None,
         body: LensBody::None,
         sprite: None,

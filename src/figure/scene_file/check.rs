@@ -241,7 +241,7 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
             Some(list) => !list.is_empty() && list.iter().all(|n| n.text().is_some_and(|t| !t.is_empty())),
             None => node.text().is_some_and(|t| !t.is_empty()),
         },
-        Kind::Test => matches!(node.data, Data::Table(_)),
+        Kind::Test | Kind::View => matches!(node.data, Data::Table(_)),
         Kind::Shares | Kind::Colors => {
             let of = if matches!(kind, Kind::Shares) { ParameterKind::Shares } else { ParameterKind::Colors };
             parameter(node).is_some_and(|value| problem_with(&of, &value).is_none())

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::{
     figure::scene_file::{
+        best_view::VIEWS,
         keys::{self, CLASSES, Key, Kind, LATER_TABLES, TABLES, Table},
         rendering::{AS, BY_EFFECTS, WORDS},
         shape_keys::SHAPES,
@@ -26,6 +27,12 @@ pub fn reference() -> String {
     }
     let _ = write!(out, "## Shapes\n\nThe tables `shape` and the elements of `shapes` of a lens.\n\n");
     for table in SHAPES {
+        let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
+        rows(&mut out, table.keys);
+    }
+    out += "## Views\n\nThe table `view` of a lens with an overlay. `best-view` lenses have any of them but `map` and `worldlet`, `best` without being told; \
+            `map-view` and `worldlet` lenses have theirs, `see-through` and `portal` lenses a `camera`.\n\n";
+    for table in VIEWS {
         let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
         rows(&mut out, table.keys);
     }
@@ -258,6 +265,7 @@ fn of_kind(kind: &Kind) -> Value {
             json!({ "type": "array", "items": color, "minItems": 1, "maxItems": MAX_RAMP })
         }
         Kind::Test => json!({ "$ref": TEST }),
+        Kind::View => by(VIEWS, "kind"),
         Kind::Tests => json!({ "type": "array", "items": { "$ref": TEST }, "minItems": 1 }),
         Kind::Rendering => {
             let words: Vec<&str> = ROWS.iter().map(|row| row.word).collect();
@@ -421,7 +429,7 @@ pub(in crate::figure) mod tests {
     #[test]
     fn every_key_is_documented_with_an_example_that_is_right() {
         let text = reference();
-        for (_, table) in TABLES.iter().copied().chain(SHAPES.iter().chain(TESTS).map(|s| ("", s))) {
+        for (_, table) in TABLES.iter().copied().chain(SHAPES.iter().chain(TESTS).chain(VIEWS).map(|s| ("", s))) {
             check_examples(table, &text);
         }
         for effect in all_effects() {

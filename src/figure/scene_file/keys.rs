@@ -3,7 +3,9 @@
 use crate::{
     figure::scene_file::{
         animation::{self, ANIMATION},
+        best_view::LOOK,
         content::CONTENT,
+        overlay::{FRAME, LAYOUT, LINE, OVERLAY},
         sprite::{SPRITE, SPRITE_CAMERA},
         test_keys::CHOICE,
     },
@@ -90,6 +92,8 @@ pub enum Kind {
     Colors,
     /// A detection test: a table of [`super::test_keys::TESTS`].
     Test,
+    /// An eye of its own: a table of [`super::best_view::VIEWS`].
+    View,
     /// Detection tests.
     Tests,
     /// A word of [`crate::lens::rendering::ROWS`], or effects.
@@ -167,6 +171,15 @@ pub const ROOT: Table = Table {
         key("poi", Kind::Tables(&POI), "none", "", "Points of interest.", "[{ name = \"hall\", object = \"ID\" }]"),
         key("lens", Kind::Tables(&LENS), "none", "", "Lenses, bottom to top: the last is the top lens.", "[]"),
         key(
+            "overlay",
+            Kind::Tables(&OVERLAY),
+            "one for each best-view lens",
+            "",
+            "How pictures of best-view lenses stand over the main one.",
+            "[{ lens = \"cathedral\", size = [320, 200] }]",
+        ),
+        key("layout", Kind::Table(&LAYOUT), "around the border", "", "Where overlays stand.", "{ along = \"right\" }"),
+        key(
             "figure",
             Kind::Table(&FIGURE),
             "1280x720, 1 sample",
@@ -186,7 +199,7 @@ pub const ROOT: Table = Table {
 };
 
 /// Top tables of later versions.
-pub const LATER_TABLES: &[&str] = &["time", "overlay", "trajectory"];
+pub const LATER_TABLES: &[&str] = &["time", "trajectory"];
 
 /// `[city]`.
 pub const CITY: Table = Table {
@@ -346,31 +359,28 @@ pub const POI: Table = Table {
 /// `[[lens]]`.
 pub const LENS: Table = Table {
     name: "lens",
-    doc: "A lens: where it acts (`shape`, or `shapes` for several) and what it does (`effects`).",
+    doc: "A lens: where it acts (`shape`, or `shapes` for several) and what it does (`effects`); a lens with an overlay has a `view`, an `image` or a `text` instead.",
     keys: &[
         key("name", Kind::Text, "`lens-N`, N its place in the file", "", "Its name, unique.", "\"old town\""),
         key(
             "kind",
             Kind::Word {
-                now: &["color", "content", "occlusion"],
-                later: &[
-                    "deformation",
+                now: &[
+                    "color",
+                    "content",
+                    "occlusion",
+                    "annotation",
                     "best-view",
                     "map-view",
-                    "annotation",
                     "worldlet",
                     "see-through",
                     "portal",
-                    "time",
-                    "magnifier",
-                    "feature",
-                    "sampling",
-                    "fisheye",
                 ],
+                later: &["deformation", "time", "magnifier", "feature", "sampling", "fisheye"],
             },
             "\"color\"",
             "",
-            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen; see Occlusion lenses.",
+            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
             "\"color\"",
         ),
         key(
@@ -434,8 +444,48 @@ pub const LENS: Table = Table {
             Kind::Names,
             "none",
             "",
-            "Of an occlusion lens: what shall be seen, the name of a `[[poi]]`, or several. It never hides itself.",
+            "The name of a `[[poi]]`, or several. Of an occlusion lens: what shall be seen; it never hides itself. Of a lens with an overlay: what the overlay is tied to by context lines; a view is of the first of them.",
             "\"hall\"",
+        ),
+        key(
+            "view",
+            Kind::View,
+            "by its kind",
+            "",
+            "The eye that the overlay of a best-view lens, a map or another view is seen from; see Views.",
+            "{ kind = \"best\", normal = [0, -1, 0.5] }",
+        ),
+        key(
+            "image",
+            Kind::Text,
+            "none",
+            "",
+            "Of an annotation: the image that it shows, PNG or JPEG.",
+            "\"photo.png\"",
+        ),
+        key(
+            "text",
+            Kind::Text,
+            "none",
+            "",
+            "Of an annotation: the text that it shows; `\\n` begins a line.",
+            "\"Town hall\\n1893\"",
+        ),
+        key(
+            "lenses",
+            Kind::Texts,
+            "all that act in every view",
+            "",
+            "The lenses that act in its view, by name; those that have overlays stand in its overlay as overlays. An empty list: none.",
+            "[\"old town\"]",
+        ),
+        key(
+            "look",
+            Kind::Table(&LOOK),
+            "as the scene",
+            "",
+            "How its view looks, in place of the `[style]` of the scene.",
+            "{ base = \"clay\" }",
         ),
         key(
             "test",
@@ -701,6 +751,7 @@ impl Kind {
             Self::Numbers => "a number, or a list of numbers".into(),
             Self::Effects => "a list of effects: names or tables { effect = NAME, ... }".into(),
             Self::Names => "a text that is not empty, or a list of at least one such text".into(),
+            Self::View => "a table { kind = ..., ... }".into(),
             Self::Test => "a table { kind = ..., ... }, { any = [...] }, { all = [...] } or { not = ... }".into(),
             Self::Shares => ParameterKind::Shares.describe(),
             Self::Colors => ParameterKind::Colors.describe(),
@@ -737,6 +788,11 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("camera of a sprite", &SPRITE_CAMERA),
     ("border of a lens", &BORDER),
     ("force and forbid of a lens", &CHOICE),
+    ("look of a lens", &LOOK),
+    ("[[overlay]]", &OVERLAY),
+    ("frame of an overlay", &FRAME),
+    ("line of an overlay", &LINE),
+    ("[layout]", &LAYOUT),
     ("[figure]", &FIGURE),
     animation::TABLES[0],
     animation::TABLES[1],

@@ -4,6 +4,7 @@
 //! makes a [`Scene`], `write` the file again, `set` applies `PATH=VALUE`, `document` makes the docs and the schema.
 
 pub mod animation;
+mod best_view;
 pub mod check;
 mod content;
 pub mod document;
@@ -11,6 +12,7 @@ mod focus;
 pub mod keys;
 pub(in crate::figure) mod node;
 mod occlusion;
+mod overlay;
 mod parse;
 mod paths;
 mod rendering;

@@ -93,6 +93,19 @@ impl Lines {
 }
 
 impl Node {
+    /// A table without entries.
+    pub fn empty_table(line: u32) -> Self {
+        Self { line, data: Data::Table(Vec::new()) }
+    }
+
+    /// What a table has under this key.
+    pub fn entry(&self, key: &str) -> Option<&Self> {
+        match &self.data {
+            Data::Table(entries) => entries.iter().find(|(name, ..)| name == key).map(|(.., node)| node),
+            _ => None,
+        }
+    }
+
     /// Whether it is a table with this key.
     pub fn has(&self, key: &str) -> bool {
         matches!(&self.data, Data::Table(entries) if entries.iter().any(|(name, ..)| name == key))

@@ -60,7 +60,7 @@ pub(super) fn areas(of: Occluders, shapes: Vec<Focus>) -> Vec<Focus> {
     shapes.into_iter().map(within).collect()
 }
 
-fn texts(node: &Node) -> Vec<String> {
+pub(super) fn texts(node: &Node) -> Vec<String> {
     let all = node.list().unwrap_or(std::slice::from_ref(node));
     all.iter().filter_map(|n| n.text().map(str::to_owned)).collect()
 }

@@ -13,25 +13,28 @@ use glam::{DQuat, DVec2, DVec3};
 use crate::{
     city::{Lod, builtin},
     figure::scene_file::{
-        animation,
+        animation, best_view,
         check::{Checker, Fields, Place, lod},
         content,
         focus::Reader,
         keys::{self, CLASSES, Kind},
         node::{Data, Node},
-        occlusion,
+        occlusion, overlay,
         paths::{Options, PathProblem},
         shape_keys, sprite,
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, Parameter,
-        Placement, effect,
+        BestView, Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind,
+        Parameter, Placement,
+        best_view::Depiction,
+        effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
     },
     scene::{
-        Background, BaseStyle, CitySpec, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency,
+        self, Background, BaseStyle, CitySpec, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun, Technique,
+        Transparency, overlay::Frame,
     },
     shader::{
         Blend, Clip,
@@ -89,9 +92,16 @@ impl<'o> SceneReader<'o> {
                             Place { table: format!("{}.{i}", key.name), prefix: String::new(), line: element.line };
                         let noted = self.checker.problems.len();
                         let fields = self.checker.fields(element, table, &[], place);
-                        if key.name == "poi" {
-                            scene.pois.extend(self.poi(&fields, i));
-                            continue;
+                        match key.name {
+                            "poi" => {
+                                scene.pois.extend(self.poi(&fields, i));
+                                continue;
+                            }
+                            "overlay" => {
+                                scene.overlays.push(self.overlay(&fields));
+                                continue;
+                            }
+                            _ => {}
                         }
                         scene.lenses.push(self.lens(&fields, i));
                         // What else a lens of an unknown kind may have is not known.
@@ -103,9 +113,16 @@ impl<'o> SceneReader<'o> {
                 _ => {}
             }
         }
-        let lists = |key| top.node(key).and_then(Node::list).unwrap_or_default();
+        let lists = |key: &str| top.node(key).and_then(Node::list).unwrap_or_default();
         self.unique("lens", lists("lens"), scene.lenses.iter().map(|l| l.name.as_str()));
         self.unique("poi", lists("poi"), scene.pois.iter().map(|p| p.name.as_str()));
+        for problem in scene::overlay::problems(&scene) {
+            let (table, index) = problem.table.split_once('.').unwrap_or_default();
+            let node = index.parse().ok().and_then(|i: usize| lists(table).get(i));
+            let line = node.and_then(|n| n.entry(&problem.key).or(Some(n))).map_or(1, |n| n.line);
+            let place = Place { table: problem.table.clone(), prefix: String::new(), line };
+            self.checker.note(&place, &problem.key, line, problem.message);
+        }
         scene
     }
 
@@ -115,6 +132,7 @@ impl<'o> SceneReader<'o> {
             "camera" => scene.camera = camera(&mut self.checker, fields),
             "sun" => scene.sun = sun(fields),
             "style" => scene.style = self.style(fields),
+            "layout" => scene.layout = overlay::layout(fields),
             "figure" => scene.figure = figure(fields),
             "animation" => scene.animation = animation::read(&mut self.checker, fields, scene.camera.as_ref()),
             _ => {}
@@ -214,8 +232,10 @@ impl<'o> SceneReader<'o> {
 
     fn lens(&mut self, fields: &Fields, index: usize) -> Lens {
         let placement = self.placement(fields);
-        let is_occlusion = fields.text("kind") == Some(LensKind::Occlusion.word());
-        let mut shapes = self.shapes(fields, !is_occlusion);
+        let kind = fields.text("kind").and_then(LensKind::of_word).unwrap_or_default();
+        let is_occlusion = kind == LensKind::Occlusion;
+        let best_view = self.best_view(fields, kind);
+        let mut shapes = self.shapes(fields, !is_occlusion && !kind.has_overlay());
         let (effects, of_effects) = self.effects(fields, "effects", true);
         let render = is_occlusion.then(|| self.rendering(fields, &effects));
         if !is_occlusion {
@@ -224,7 +244,8 @@ impl<'o> SceneReader<'o> {
         if is_occlusion {
             shapes = self.occluded(fields, shapes);
         } else {
-            for key in occlusion::OWN.into_iter().filter(|key| fields.given(key)) {
+            let own = occlusion::OWN.into_iter().filter(|key| !kind.has_overlay() || *key != "poi");
+            for key in own.filter(|key| fields.given(key)) {
                 let message = "has a meaning only for a lens of kind = \"occlusion\"";
                 self.checker.note(&fields.place, key, fields.line(key), message);
             }
@@ -249,11 +270,6 @@ impl<'o> SceneReader<'o> {
             };
             self.checker.note(&fields.place, "border", fields.line("border"), message);
         }
-        let kind = match fields.text("kind") {
-            Some("content") => LensKind::Content,
-            Some("occlusion") => LensKind::Occlusion,
-            _ => LensKind::Color,
-        };
         Lens {
             name: fields.text("name").map_or_else(|| format!("lens-{index}"), str::to_owned),
             kind,
@@ -263,6 +279,7 @@ impl<'o> SceneReader<'o> {
             shapes,
             render,
             effects,
+            best_view,
             content,
             body: LensBody::WORDS
                 .iter()
@@ -281,6 +298,99 @@ impl<'o> SceneReader<'o> {
             keeps_shadows: fields.boolean("shadows").unwrap_or(false),
             section: fields.color("section"),
         }
+    }
+
+    /// What the overlay of a lens shows, if its kind has one.
+    fn best_view(&mut self, fields: &Fields, kind: LensKind) -> Option<BestView> {
+        let given = |key: &&str| fields.given(key);
+        if !kind.has_overlay() {
+            for key in best_view::OWN.into_iter().filter(given) {
+                let message = "has a meaning only for lenses that have an overlay: annotation, best-view, map-view, worldlet, see-through, portal";
+                self.checker.note(&fields.place, key, fields.line(key), message);
+            }
+            return None;
+        }
+        for key in best_view::NOT_OWN.into_iter().filter(given) {
+            let word = kind.word();
+            let message = match key {
+                "effects" => format!(
+                    "has no meaning for a lens of kind \"{word}\"; what acts on all of its view stands in look = {{ effects = [...] }}"
+                ),
+                _ => format!("has no meaning for a lens of kind \"{word}\", which has an overlay and no focus area"),
+            };
+            self.checker.note(&fields.place, key, fields.line(key), message);
+        }
+        let depiction = match (kind, fields.node("image").and_then(Node::text), fields.text("text")) {
+            (LensKind::Annotation, Some(_), Some(_)) => {
+                let message =
+                    "is given together with image: an annotation is one of them; a caption stands in [[overlay]]";
+                self.checker.note(&fields.place, "text", fields.line("text"), message);
+                None
+            }
+            (LensKind::Annotation, Some(_), None) => self.file(fields, "image").map(Depiction::Image),
+            (LensKind::Annotation, None, Some(text)) => Some(Depiction::Text(text.to_owned())),
+            (LensKind::Annotation, None, None) => {
+                if !fields.given("image") && !fields.given("text") {
+                    let message = "is missing: an annotation shows image = \"FILE\" or text = \"...\"";
+                    self.checker.note(&fields.place, "image", fields.place.line, message);
+                }
+                None
+            }
+            _ => best_view::read_view(&mut self.checker, fields, kind, camera).map(Depiction::View),
+        };
+        let of_view = ["view", "lenses", "look"].into_iter().map(|key| (key, kind == LensKind::Annotation));
+        let of_annotation = ["image", "text"].into_iter().map(|key| (key, kind != LensKind::Annotation));
+        for (key, is_wrong) in of_view.chain(of_annotation) {
+            if is_wrong && fields.given(key) {
+                let message = format!("has no meaning for a lens of kind \"{}\"", kind.word());
+                self.checker.note(&fields.place, key, fields.line(key), message);
+            }
+        }
+        let look = fields.node("look").map(|node| {
+            let place = fields.place.within("look", node.line);
+            let own = self.checker.fields(node, &best_view::LOOK, &[], place);
+            let (effects, _) = self.effects(&own, "effects", false);
+            self.without_sights(&own, "effects", &effects);
+            best_view::look(&own, effects)
+        });
+        let names = |node: &Node| -> Vec<String> {
+            node.list().unwrap_or_default().iter().filter_map(|n| n.text().map(str::to_owned)).collect()
+        };
+        Some(BestView {
+            pois: fields.node("poi").map(occlusion::texts).unwrap_or_default(),
+            depiction: depiction.unwrap_or_else(|| Depiction::Text(String::new())),
+            lenses: fields.node("lenses").map(names),
+            look,
+        })
+    }
+
+    /// The file that a key names; noted where it may not be read.
+    fn file(&mut self, fields: &Fields, key: &str) -> Option<PathBuf> {
+        let node = fields.node(key)?;
+        match self.options.resolve(node.text()?) {
+            Ok(path) => return Some(path),
+            Err(PathProblem::NoData) => {
+                self.lacks_data = true;
+                let message = format!("{} needs the environment variable VEDUTA_DATA, which is not set", node.quoted());
+                self.checker.note(&fields.place, key, node.line, message);
+            }
+            Err(PathProblem::Wrong(message)) => self.checker.note(&fields.place, key, node.line, message),
+        }
+        None
+    }
+
+    fn overlay(&mut self, fields: &Fields) -> scene::Overlay {
+        let table = |key: &str| fields.node(key).filter(|node| overlay::is_table(node));
+        let frame = table("frame").map(|node| {
+            let own = self.checker.fields(node, &overlay::FRAME, &[], fields.place.within("frame", node.line));
+            Frame::Images { alpha: self.file(&own, "alpha"), frame: self.file(&own, "frame") }
+        });
+        let line = table("line").map(|node| {
+            let own = self.checker.fields(node, &overlay::LINE, &[], fields.place.within("line", node.line));
+            let skin = self.file(&own, "skin");
+            (own, skin)
+        });
+        overlay::overlay(fields, overlay::Parts { frame, line })
     }
 
     /// The focus areas of an occlusion lens with these shapes.

@@ -8,16 +8,18 @@ use crate::{
     city::derived::{Derive, Form, Height},
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind, LensSprite,
-        Occluders, OwnEye, Parameter, Placement, Rendering,
+        BestView, Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind,
+        LensSprite, Occluders, OwnEye, Parameter, Placement, Rendering,
+        best_view::{Depiction, LocalView, Look, MapMode},
         chosen::Choice,
         rendering::{Case, ROWS, When},
         sprite::{Format, Mapping},
     },
     scene::{
-        Animation, Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique,
-        Transparency,
+        Animation, Background, BaseStyle, Corner, Figure, Layout, LegendPlace, Overlay, Poi, PoiPlace, Style, Sun,
+        Technique, Transparency,
         animation::{Change, ChangeKey, Numbers},
+        overlay::{Along, BuiltInFrame, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes},
         transparency::{MOST_PEELED, SLOTS},
     },
     shader::{
@@ -321,7 +323,102 @@ prop_compose! {
             (kind, render) = (LensKind::Occlusion, Some(drawn));
             shapes = occlusion::areas(of, if has_shape { shapes } else { vec![] });
         }
-        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, content, body, sprite, border, keeps_shadows, section }
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, best_view: None, content, body, sprite, border, keeps_shadows, section }
+    }
+}
+
+fn names(prefix: &'static str) -> impl Strategy<Value = Vec<String>> {
+    prop::collection::vec(0..2usize, 0..2).prop_map(move |all| all.iter().map(|i| format!("{prefix}{i}")).collect())
+}
+
+fn local_views() -> impl Strategy<Value = (LensKind, Depiction)> {
+    let unit = || point().prop_filter("a direction", |v| v.try_normalize().is_some());
+    let fov = || (1..1790u32).prop_map(|tenths| (f64::from(tenths) / 10.0).to_radians());
+    let angle = |tenths: i32| (f64::from(tenths) / 10.0).to_radians();
+    let mode = prop::sample::select(MapMode::WORDS.map(|(_, mode)| mode).to_vec());
+    let camera = (unit(), fov()).prop_map(|(eye, fov_y)| Camera::looking(eye, DVec3::ZERO, fov_y)).boxed();
+    let of = |kind: LensKind| move |view: LocalView| (kind, Depiction::View(view));
+    prop_oneof![
+        ".{1,6}".prop_map(|text| (LensKind::Annotation, Depiction::Text(text))),
+        "[a-zß]{1,6}[.]png".prop_map(|file| (LensKind::Annotation, Depiction::Image(file.into()))),
+        (prop::option::of(unit()), fov())
+            .prop_map(|(normal, fov_y)| LocalView::Best { normal, fov_y })
+            .prop_map(of(LensKind::BestView)),
+        (unit(), 1e-3..1e6f64, fov())
+            .prop_map(|(normal, distance_m, fov_y)| LocalView::Mcop { normal, distance_m, fov_y })
+            .prop_map(of(LensKind::BestView)),
+        (unit(), any::<bool>(), any::<bool>(), fov())
+            .prop_map(|(direction, of_camera, mirror, fov_y)| LocalView::Scop { direction, of_camera, mirror, fov_y })
+            .prop_map(of(LensKind::BestView)),
+        camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::BestView)),
+        camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::SeeThrough)),
+        camera.prop_map(LocalView::Camera).prop_map(of(LensKind::Portal)),
+        (mode, 1e-3..1e7f64)
+            .prop_map(|(mode, height_m)| LocalView::Map { mode, height_m })
+            .prop_map(of(LensKind::MapView)),
+        (-9000..9000i32, -900..900i32, 0.0..1e3f64, fov())
+            .prop_map(move |(a, e, margin_m, fov_y)| LocalView::Worldlet {
+                azimuth: angle(a),
+                elevation: angle(e),
+                margin_m,
+                fov_y
+            })
+            .prop_map(of(LensKind::Worldlet)),
+    ]
+}
+
+prop_compose! {
+    /// Lenses with overlays: named n2 and n3, tied to points of interest p0 and p1, with lenses n0 and n1 in their views.
+    fn shown()((kind, depiction) in local_views(), mut pois in names("p"), lenses in prop::option::of(names("n\"")), used in effects(), base in any::<bool>(),
+        background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), has_look in any::<bool>()) -> (LensKind, BestView) {
+        let background = background.map_or(Background::Sky, Background::Color);
+        let effects = if used.effect == "sepia" { vec![EffectUse { class: Class::Inside, ..used }] } else { vec![] };
+        let base = if base { BaseStyle::Clay } else { BaseStyle::Natural };
+        let (mut look, mut lenses) = (has_look.then_some(Look { base, effects, background }), lenses.map(|all| all.iter().map(|n| format!("{n}\\ü")).collect()));
+        if kind == LensKind::Annotation {
+            (look, lenses) = (None, None);
+        }
+        if matches!(depiction, Depiction::View(LocalView::Best { .. } | LocalView::Worldlet { .. })) && pois.is_empty() {
+            pois.push("p0".into());
+        }
+        (kind, BestView { pois, depiction, lenses, look })
+    }
+}
+
+prop_compose! {
+    fn lines()(kind in prop::sample::select(LineKind::WORDS.map(|(_, k)| k).to_vec()), color in prop::option::of(prop::array::uniform3(0.0..=1.0f32)),
+        widths in prop::array::uniform2(0.0..200.0f64), skin in prop::option::of("[a-z]{1,4}"), area in any::<bool>(), hidden in any::<bool>(),
+        arrow_distance_m in prop::option::of(0.0..1e6f64), fade in prop::option::of((0.0..100.0f64, 0.0..300.0f64))) -> ContextLine {
+        ContextLine {
+            kind, color, widths, arrow_distance_m,
+            skin: skin.map(Into::into),
+            to: if area { LineEnd::Area } else { LineEnd::Point },
+            outside: if hidden { Outside::Hidden } else { Outside::Arrow },
+            fade: fade.map(|(inner, more)| [inner, inner + more]),
+        }
+    }
+}
+
+prop_compose! {
+    fn overlays()(priority in -1e3..1e3f64, interest in 0.0..=1.0f64, size in prop::array::uniform2(2..2000u32), has_sizes in any::<[bool; 3]>(), at in prop::array::uniform2(-1e3..1e3f64),
+        opacity in 0.0..=1.0f64, frame in prop::option::of(prop::sample::select(BuiltInFrame::WORDS.map(|(_, f)| f).to_vec())), masks in prop::array::uniform2(prop::option::of("[a-z]{1,4}")),
+        caption in prop::option::of(".{1,6}"), line in prop::option::of(lines())) -> Overlay {
+        let masks = masks.map(|file| file.map(Into::into));
+        let [alpha, images] = masks;
+        Overlay {
+            lens: String::new(), priority, interest, size, opacity, caption, line,
+            min: has_sizes[0].then(|| size.map(|side| side / 2)),
+            max: has_sizes[1].then(|| size.map(|side| side + 7)),
+            at: has_sizes[2].then_some(at),
+            frame: frame.map_or(Frame::Images { alpha, frame: images }, Frame::BuiltIn),
+        }
+    }
+}
+
+prop_compose! {
+    fn layouts()(along in prop::sample::select(Along::WORDS.map(|(_, a)| a).to_vec()), sizes in prop::sample::select(Sizes::WORDS.map(|(_, s)| s).to_vec()),
+        exploration_focus in any::<bool>(), margin_px in 0.0..100.0f64, gap_px in 0.0..100.0f64) -> Layout {
+        Layout { along, sizes, exploration_focus, margin_px, gap_px }
     }
 }
 
@@ -377,7 +474,7 @@ prop_compose! {
         near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
-        figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
+        shown in prop::collection::vec((shown(), prop::option::of(overlays())), 0..3), layout in prop::option::of(layouts()), figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
         animation in prop::option::of(animations())) -> Scene {
         let projection_of = |tenths: u32, ortho: bool| match ortho {
             true => Projection::Orthographic { height_m: f64::from(tenths) },
@@ -394,7 +491,25 @@ prop_compose! {
         for (i, lens) in lenses.iter_mut().enumerate() {
             lens.name = format!("n\"{i}\\ü");
         }
+        // What views name has to be there.
+        let mut pois = poi;
+        let mut overlays = Vec::new();
+        if !shown.is_empty() {
+            pois.resize(2, ("o".into(), DVec3::ONE, true));
+            let plain = Lens { name: String::new(), kind: LensKind::Color, enabled: true, color: [0.5; 3], placement: Placement::World, shapes: vec![Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }.into()], render: None, effects: vec![], best_view: None, content: None, body: LensBody::Outline, sprite: None, border: None, keeps_shadows: false, section: None };
+            while lenses.len() < 2 {
+                lenses.push(Lens { name: format!("n\"{}\\ü", lenses.len()), ..plain.clone() });
+            }
+            for ((kind, best_view), overlay) in shown {
+                let name = format!("n\"{}\\ü", lenses.len());
+                overlays.extend(overlay.map(|overlay| Overlay { lens: name.clone(), ..overlay }));
+                lenses.push(Lens { name, kind, shapes: vec![], best_view: Some(best_view), ..plain.clone() });
+            }
+        }
+        let poi = pois;
         let mut scene = Scene {
+            overlays,
+            layout: layout.unwrap_or_default(),
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
             sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2 },
             style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency },

@@ -6,9 +6,9 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use crate::{
     figure::scene_file::{
-        animation,
+        animation, best_view,
         content::derive_keys,
-        occlusion,
+        occlusion, overlay,
         parse::{lens_color, rotation},
         paths::Options,
         rendering, sprite,
@@ -18,7 +18,7 @@ use crate::{
         BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
         color::{parse_hex, to_hex},
     },
-    scene::{Background, BaseStyle, Figure, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency},
+    scene::{Background, BaseStyle, Figure, Layout, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency},
     shader::Clip,
     view::{Camera, Projection, default_near_m},
 };
@@ -40,6 +40,14 @@ pub fn write(scene: &Scene, options: &Options) -> String {
     out.style(&scene.style);
     scene.pois.iter().for_each(|poi| out.poi(poi));
     scene.lenses.iter().enumerate().for_each(|(i, lens)| out.lens(i, lens, options));
+    for overlay in &scene.overlays {
+        out.head("[[overlay]]");
+        overlay::written(overlay, options).iter().for_each(|(key, value)| out.key(key, value));
+    }
+    if scene.layout != Layout::default() {
+        out.head("[layout]");
+        overlay::layout_written(&scene.layout).iter().for_each(|(key, value)| out.key(key, value));
+    }
     let figure = Figure::default();
     if scene.figure != figure {
         out.head("[figure]");
@@ -103,7 +111,7 @@ impl Toml {
         self.key_if(style.base == BaseStyle::Clay, "base", "\"clay\"");
         self.key_if(!style.effects.is_empty(), "effects", &list(style.effects.iter().map(effect)));
         if let Background::Color(c) = style.background {
-            self.key("background", &color(c));
+            self.key("background", &write_color(c));
         }
         self.key_if(style.technique != Technique::default(), "technique", &quoted(style.technique.word()));
         let (method, word) = (style.transparency, quoted(style.transparency.word()));
@@ -128,17 +136,19 @@ impl Toml {
         self.key("name", &quoted(&lens.name));
         self.key("kind", &quoted(lens.kind.word()));
         self.key_if(!lens.enabled, "enabled", "false");
-        self.key_if(lens.color != lens_color(index), "color", &color(lens.color));
+        self.key_if(lens.color != lens_color(index), "color", &write_color(lens.color));
         match &lens.placement {
             Placement::World => {}
             Placement::Object(id) => self.key("attached_to", &format!("{{ object = {} }}", quoted(id))),
             Placement::Poi(name) => self.key("attached_to", &format!("{{ poi = {} }}", quoted(name))),
             Placement::Camera => self.key("placement", "\"camera\""),
         }
+        let shown = lens.best_view.iter().flat_map(|shown| best_view::written(lens.kind, shown, options));
+        shown.for_each(|(key, value)| self.key(key, &value));
         occlusion::written(lens).into_iter().for_each(|(key, value)| self.key(key, &value));
         let shapes: Vec<&Focus> = lens.shapes.iter().filter_map(Focus::own_shape).collect();
         match &shapes[..] {
-            [] if lens.occluders().is_some() => {}
+            [] if lens.occluders().is_some() || lens.best_view.is_some() => {}
             [one] => self.key("shape", &focus(one, options)),
             many => self.key("shapes", &list(many.iter().map(|one| focus(one, options)))),
         }
@@ -164,7 +174,7 @@ impl Toml {
         }
         self.key_if(lens.keeps_shadows, "shadows", "true");
         if let Some(section) = lens.section {
-            self.key("section", &color(section));
+            self.key("section", &write_color(section));
         }
     }
 }
@@ -201,7 +211,7 @@ pub(super) fn point(p: DVec3) -> String {
     list(p.to_array().map(number))
 }
 
-fn color(c: [f32; 3]) -> String {
+pub(super) fn write_color(c: [f32; 3]) -> String {
     let hex = to_hex(c);
     if parse_hex(&hex) == Some(c) { quoted(&hex) } else { list(c.map(|c| format!("{c:?}"))) }
 }

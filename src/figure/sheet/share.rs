@@ -46,6 +46,7 @@ pub fn alone(scene: &Scene, model: &CityModel, id: &str) -> Scene {
             weight: None,
             parameters: Default::default(),
         }],
+        best_view: None,
         content: None,
         body: LensBody::None,
         sprite: None,

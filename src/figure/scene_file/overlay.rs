@@ -1,0 +1,384 @@
+//! `[[overlay]]` and `[layout]` in scene files: their keys, read and written.
+
+use crate::{
+    figure::scene_file::{
+        check::Fields,
+        keys::{Kind, Table, key},
+        node::{Data, Node},
+        paths::Options,
+        write::{number, quoted, write_color},
+    },
+    scene::overlay::{Along, BuiltInFrame, ContextLine, Frame, Layout, LineEnd, LineKind, Outside, Overlay, Sizes},
+};
+
+const fn words<T: Copy, const N: usize>(all: &[(&'static str, T); N]) -> [&'static str; N] {
+    let mut words = [""; N];
+    let mut i = 0;
+    while i < N {
+        words[i] = all[i].0;
+        i += 1;
+    }
+    words
+}
+
+const FRAMES: [&str; 6] = words(&BuiltInFrame::WORDS);
+const LINES: [&str; 3] = words(&LineKind::WORDS);
+const ENDS: [&str; 2] = words(&LineEnd::WORDS);
+const OUTSIDE: [&str; 2] = words(&Outside::WORDS);
+const ALONG: [&str; 6] = words(&Along::WORDS);
+const SIZES: [&str; 3] = words(&Sizes::WORDS);
+
+/// `[[overlay]]`.
+pub const OVERLAY: Table = Table {
+    name: "overlay",
+    doc: "How the picture of a best-view lens stands over the main one. A lens of such a kind without a table here has one with every key at \
+          its default.",
+    keys: &[
+        key("lens", Kind::Text, "", "", "The name of its lens.", "\"cathedral\""),
+        key(
+            "priority",
+            Kind::Number { min: -1e6, max: 1e6 },
+            "0.0",
+            "",
+            "Where there is not room for all, higher ones stay larger; the lowest become markers.",
+            "1.0",
+        ),
+        key(
+            "interest",
+            Kind::Number { min: 0.0, max: 1.0 },
+            "0.5",
+            "",
+            "How large it gets where `[layout]` has `size = \"interest\"`: 0 the smallest, 1 the largest size.",
+            "1.0",
+        ),
+        key("size", Kind::Size, "[240, 160]", "pixels", "Its preferred size.", "[320, 200]"),
+        key("min", Kind::Size, "half of `size`", "pixels", "It is made no smaller.", "[120, 80]"),
+        key("max", Kind::Size, "one and a half of `size`", "pixels", "It is made no larger.", "[480, 300]"),
+        key(
+            "at",
+            Kind::PlanPoint,
+            "where `[layout]` puts it",
+            "pixels",
+            "Where its upper left corner stands, from the upper left corner of the picture.",
+            "[40, 40]",
+        ),
+        key(
+            "opacity",
+            Kind::Number { min: 0.0, max: 1.0 },
+            "1.0",
+            "",
+            "How much of the picture below it hides.",
+            "0.8",
+        ),
+        key(
+            "frame",
+            Kind::WordOrTable(&FRAMES, &FRAME),
+            "\"rounded\"",
+            "",
+            "What is cut out of it and laid over it: a frame that is built in, or images.",
+            "\"print\"",
+        ),
+        key("caption", Kind::Text, "none", "", "A line of text below what it shows.", "\"Town hall, 1893\""),
+        key(
+            "line",
+            Kind::WordOrTable(&["none", LINES[0], LINES[1], LINES[2]], &LINE),
+            "\"straight\"",
+            "",
+            "The context lines from it to its points of interest: how they run, or a table that says more; `none`: it has none.",
+            "{ kind = \"curved\", to = \"area\" }",
+        ),
+    ],
+};
+
+/// `frame` of an overlay.
+pub const FRAME: Table = Table {
+    name: "frame",
+    doc: "Masks of an overlay: images, stretched over it.",
+    keys: &[
+        key("alpha", Kind::Text, "none: all is seen", "", "What of it is seen: white yes, black no.", "\"alpha.png\""),
+        key(
+            "frame",
+            Kind::Text,
+            "none",
+            "",
+            "What is laid over it; what shows is where this is transparent.",
+            "\"frame.png\"",
+        ),
+    ],
+};
+
+/// `line` of an overlay.
+pub const LINE: Table = Table {
+    name: "line",
+    doc: "Context lines: how an overlay is tied to its points of interest.",
+    keys: &[
+        key(
+            "kind",
+            Kind::Word { now: &LINES, later: &[] },
+            "\"straight\"",
+            "",
+            "How they run: straight, along the sides of the picture, or in a curve.",
+            "\"orthogonal\"",
+        ),
+        key("color", Kind::Color, "the lens colour", "", "Their colour.", "\"#333333\""),
+        key(
+            "width",
+            Kind::Number { min: 0.0, max: 200.0 },
+            "6.0",
+            "pixels",
+            "How wide they are at the overlay.",
+            "10.0",
+        ),
+        key(
+            "end_width",
+            Kind::Number { min: 0.0, max: 200.0 },
+            "1.5",
+            "pixels",
+            "How wide they are at the place.",
+            "2.0",
+        ),
+        key(
+            "skin",
+            Kind::Text,
+            "one colour",
+            "",
+            "An image along them, with alpha; its left end is at the overlay.",
+            "\"skin.png\"",
+        ),
+        key(
+            "to",
+            Kind::Word { now: &ENDS, later: &[] },
+            "\"point\"",
+            "",
+            "What they end at: the middle of the place, or the outline of its object, which is then drawn.",
+            "\"area\"",
+        ),
+        key(
+            "outside",
+            Kind::Word { now: &OUTSIDE, later: &[] },
+            "\"arrow\"",
+            "",
+            "What is drawn for a place that is out of the picture or behind the eye: an arrow at the border, or nothing.",
+            "\"hidden\"",
+        ),
+        key(
+            "arrow_distance",
+            Kind::Number { min: 0.0, max: 1e9 },
+            "never",
+            "m",
+            "For a place that is farther from the eye than this an arrow at the overlay takes the place of the line.",
+            "500.0",
+        ),
+        key(
+            "fade",
+            Kind::PlanLengths,
+            "none",
+            "pixels",
+            "`[inner, outer]`: lines fade out towards the middle of the picture, from the outer radius to the inner one, within which they are not seen.",
+            "[60, 200]",
+        ),
+    ],
+};
+
+/// `[layout]`.
+pub const LAYOUT: Table = Table {
+    name: "layout",
+    doc: "Where overlays stand. They never overlap, and leave free the points of interest that they can leave free.",
+    keys: &[
+        key(
+            "along",
+            Kind::Word { now: &ALONG, later: &[] },
+            "\"border\"",
+            "",
+            "In a row at the `top` or the `bottom`, in a column on the `left` or the `right`, in two columns (`sides`), or all around the `border`.",
+            "\"right\"",
+        ),
+        key(
+            "size",
+            Kind::Word { now: &SIZES, later: &[] },
+            "\"preferred\"",
+            "",
+            "What their sizes go by, between `min` and `max` of each: their preferred size, how near their places are (`distance`), or their `interest`.",
+            "\"distance\"",
+        ),
+        key(
+            "exploration_focus",
+            Kind::Boolean,
+            "false",
+            "",
+            "The overlay whose place is nearest to the middle of the picture stands in the middle of its row.",
+            "true",
+        ),
+        key(
+            "margin",
+            Kind::Number { min: 0.0, max: 4096.0 },
+            "16.0",
+            "pixels",
+            "To the border of the picture.",
+            "24.0",
+        ),
+        key("gap", Kind::Number { min: 0.0, max: 4096.0 }, "12.0", "pixels", "Between overlays.", "8.0"),
+    ],
+};
+
+fn of_word<T: Copy + Default>(all: &[(&str, T)], word: Option<&str>) -> T {
+    all.iter().find(|(w, _)| word == Some(*w)).map_or_else(T::default, |(_, value)| *value)
+}
+
+fn word_of<T: PartialEq>(all: &[(&'static str, T)], value: &T) -> String {
+    quoted(all.iter().find(|(_, v)| v == value).map_or("", |(word, _)| word))
+}
+
+fn size(node: &Node) -> Option<[u32; 2]> {
+    node.numbers::<2>().map(|size| size.map(|side| side as u32))
+}
+
+/// The layout.
+pub fn layout(fields: &Fields) -> Layout {
+    let default = Layout::default();
+    Layout {
+        along: of_word(&Along::WORDS, fields.text("along")),
+        sizes: of_word(&Sizes::WORDS, fields.text("size")),
+        exploration_focus: fields.boolean("exploration_focus").unwrap_or(default.exploration_focus),
+        margin_px: fields.number("margin").unwrap_or(default.margin_px),
+        gap_px: fields.number("gap").unwrap_or(default.gap_px),
+    }
+}
+
+/// What is read in other tables of an overlay.
+pub struct Parts<'a> {
+    /// `frame`, where it is a table, with its files.
+    pub frame: Option<Frame>,
+    /// `line`, where it is a table, and its skin.
+    pub line: Option<(Fields<'a>, Option<std::path::PathBuf>)>,
+}
+
+/// An overlay.
+pub fn overlay(fields: &Fields, parts: Parts) -> Overlay {
+    let default = Overlay::of(fields.text("lens").unwrap_or_default());
+    let number = |key: &str, default: f64| fields.number(key).unwrap_or(default);
+    let frame = match fields.node("frame").and_then(Node::text) {
+        Some(word) => Frame::BuiltIn(of_word(&BuiltInFrame::WORDS, Some(word))),
+        None => parts.frame.unwrap_or_default(),
+    };
+    let line = match (fields.node("line").and_then(Node::text), parts.line) {
+        (Some("none"), _) => None,
+        (word, None) => Some(ContextLine { kind: of_word(&LineKind::WORDS, word), ..ContextLine::default() }),
+        (_, Some((own, skin))) => {
+            let plain = ContextLine::default();
+            Some(ContextLine {
+                kind: of_word(&LineKind::WORDS, own.text("kind")),
+                color: own.color("color"),
+                widths: [
+                    own.number("width").unwrap_or(plain.widths[0]),
+                    own.number("end_width").unwrap_or(plain.widths[1]),
+                ],
+                skin,
+                to: of_word(&LineEnd::WORDS, own.text("to")),
+                outside: of_word(&Outside::WORDS, own.text("outside")),
+                arrow_distance_m: own.number("arrow_distance"),
+                fade: own.node("fade").and_then(Node::numbers::<2>),
+            })
+        }
+    };
+    Overlay {
+        priority: number("priority", default.priority),
+        interest: number("interest", default.interest),
+        size: fields.node("size").and_then(size).unwrap_or(default.size),
+        min: fields.node("min").and_then(size),
+        max: fields.node("max").and_then(size),
+        at: fields.node("at").and_then(Node::numbers::<2>),
+        opacity: number("opacity", default.opacity),
+        frame,
+        caption: fields.text("caption").map(str::to_owned),
+        line,
+        ..default
+    }
+}
+
+/// Whether a node is a table.
+pub fn is_table(node: &Node) -> bool {
+    matches!(node.data, Data::Table(_))
+}
+
+/// The keys of an overlay.
+pub(super) fn written(overlay: &Overlay, options: &Options) -> Vec<(&'static str, String)> {
+    let default = Overlay::of(&overlay.lens);
+    let pair = |[a, b]: [u32; 2]| format!("[{a}, {b}]");
+    let mut keys = vec![("lens", quoted(&overlay.lens))];
+    let mut number_if = |name, value: f64, default: f64| {
+        if value != default {
+            keys.push((name, number(value)));
+        }
+    };
+    number_if("priority", overlay.priority, default.priority);
+    number_if("interest", overlay.interest, default.interest);
+    number_if("opacity", overlay.opacity, default.opacity);
+    if overlay.size != default.size {
+        keys.push(("size", pair(overlay.size)));
+    }
+    keys.extend(overlay.min.map(|size| ("min", pair(size))));
+    keys.extend(overlay.max.map(|size| ("max", pair(size))));
+    keys.extend(overlay.at.map(|[x, y]| ("at", format!("[{}, {}]", number(x), number(y)))));
+    match &overlay.frame {
+        frame if *frame == Frame::default() => {}
+        Frame::BuiltIn(frame) => keys.push(("frame", word_of(&BuiltInFrame::WORDS, frame))),
+        Frame::Images { alpha, frame } => {
+            let file = |name, file: &Option<std::path::PathBuf>| {
+                file.as_ref().map(|file| format!("{name} = {}", quoted(&options.written(file))))
+            };
+            let own: Vec<String> = file("alpha", alpha).into_iter().chain(file("frame", frame)).collect();
+            keys.push(("frame", format!("{{ {} }}", own.join(", "))));
+        }
+    }
+    keys.extend(overlay.caption.as_ref().map(|text| ("caption", quoted(text))));
+    match &overlay.line {
+        None => keys.push(("line", quoted("none"))),
+        Some(line) if *line == ContextLine::default() => {}
+        Some(line) => keys.push(("line", line_table(line, options))),
+    }
+    keys
+}
+
+fn line_table(line: &ContextLine, options: &Options) -> String {
+    let plain = ContextLine::default();
+    let mut own = vec![format!("kind = {}", word_of(&LineKind::WORDS, &line.kind))];
+    own.extend(line.color.map(|color| format!("color = {}", write_color(color))));
+    for (key, i) in [("width", 0), ("end_width", 1)] {
+        if line.widths[i] != plain.widths[i] {
+            own.push(format!("{key} = {}", number(line.widths[i])));
+        }
+    }
+    own.extend(line.skin.as_ref().map(|file| format!("skin = {}", quoted(&options.written(file)))));
+    if line.to != plain.to {
+        own.push(format!("to = {}", word_of(&LineEnd::WORDS, &line.to)));
+    }
+    if line.outside != plain.outside {
+        own.push(format!("outside = {}", word_of(&Outside::WORDS, &line.outside)));
+    }
+    own.extend(line.arrow_distance_m.map(|metres| format!("arrow_distance = {}", number(metres))));
+    own.extend(line.fade.map(|[a, b]| format!("fade = [{}, {}]", number(a), number(b))));
+    format!("{{ {} }}", own.join(", "))
+}
+
+/// The keys of a layout that is not the default one.
+pub(super) fn layout_written(layout: &Layout) -> Vec<(&'static str, String)> {
+    let default = Layout::default();
+    let mut keys = Vec::new();
+    if layout.along != default.along {
+        keys.push(("along", word_of(&Along::WORDS, &layout.along)));
+    }
+    if layout.sizes != default.sizes {
+        keys.push(("size", word_of(&Sizes::WORDS, &layout.sizes)));
+    }
+    if layout.exploration_focus {
+        keys.push(("exploration_focus", "true".to_owned()));
+    }
+    if layout.margin_px != default.margin_px {
+        keys.push(("margin", number(layout.margin_px)));
+    }
+    if layout.gap_px != default.gap_px {
+        keys.push(("gap", number(layout.gap_px)));
+    }
+    keys
+}
