@@ -23,6 +23,7 @@ pub mod geom;
 pub mod gpu;
 pub mod lens;
 pub mod measure;
+pub mod overlay;
 pub mod render;
 pub mod scene;
 pub mod shader;

@@ -57,7 +57,7 @@ fn bytes(color: [f32; 3]) -> [u8; 4] {
 fn panels(furniture: &Furniture) -> Vec<Panel> {
     let panel = |piece: &Piece| match piece {
         Piece::Panel(panel) => Some(*panel),
-        Piece::Text(_) => None,
+        _ => None,
     };
     furniture.pieces.iter().filter_map(panel).collect()
 }
@@ -210,6 +210,7 @@ fn tiles_of_a_large_picture_show_one_text() {
             opacity: 0.6,
             radius_px: 9.0,
             softness_px: 1.0,
+            ellipse: false,
         };
         vec![Piece::Panel(panel(20.0)), line("Rotterdam", [30.0 + shift, 40.0])]
     };
@@ -234,6 +235,7 @@ fn furniture_over_nothing_keeps_its_colour() {
         opacity: 0.5,
         radius_px: 0.0,
         softness_px: 1.0,
+        ellipse: false,
     };
     let drawn = over([1.0; 3], [60, 60], true, vec![Piece::Panel(panel)]);
     let [r, g, b, a] = pixel(&drawn, 30.0, 30.0);

@@ -302,7 +302,15 @@ fn the_visible_share_is_that_of_rays_through_all_triangles() {
 fn a_page_is_its_furniture_on_its_ground_tile_by_tile() {
     let mut studio: Studio = studio(&[citydata("cube.city.json")]);
     let panel = |low: [f32; 2], high: [f32; 2]| {
-        Piece::Panel(Panel { low, high, color: [1.0, 0.0, 0.0], opacity: 1.0, radius_px: 0.0, softness_px: 1.0 })
+        Piece::Panel(Panel {
+            low,
+            high,
+            color: [1.0, 0.0, 0.0],
+            opacity: 1.0,
+            radius_px: 0.0,
+            softness_px: 1.0,
+            ellipse: false,
+        })
     };
     // Wider than a target: across where tiles meet.
     let size = [4200, 20];

@@ -1,6 +1,7 @@
 // Titles, captions and legends over the finished picture (architecture, decision 13): panels with round corners, and
 // lines of text whose coverage was made pixel by pixel on the host. One instance per item, drawn in order; colours are
-// linear, the result is premultiplied.
+// linear, the result is premultiplied. Overlays and their context lines (B6, B7) are furniture too: pictures, texel by texel,
+// and strips of triangles.
 
 struct Frame {
     // Width, height of the target, pixels.
@@ -13,7 +14,7 @@ struct FurnitureItem {
     @location(1) high: vec2f,
     // Linear colour and alpha.
     @location(2) color: vec4f,
-    // The same for what surrounds letters.
+    // The same for what surrounds letters; of a panel and of a picture y says whether it is an ellipse.
     @location(3) halo: vec4f,
     // Of a panel's corners, pixels.
     @location(4) radius: f32,
@@ -64,7 +65,9 @@ fn panel(at: vec2f, low: vec2f, high: vec2f, radius: f32, softness: f32) -> f32 
 @fragment
 fn fragment(shown: Shown) -> @location(0) vec4f {
     if shown.texels.y == 0u {
-        let alpha = shown.color.a * panel(shown.at.xy, shown.low, shown.high, shown.radius, shown.softness);
+        let as_panel = panel(shown.at.xy, shown.low, shown.high, shown.radius, shown.softness);
+        let as_ellipse = ellipse(shown.at.xy, shown.low, shown.high, shown.softness);
+        let alpha = shown.color.a * select(as_panel, as_ellipse, shown.halo.y > 0.5);
         return vec4f(shown.color.rgb * alpha, alpha);
     }
     let place = vec2u(shown.at.xy - shown.low);
@@ -73,4 +76,113 @@ fn fragment(shown: Shown) -> @location(0) vec4f {
     let letter = shown.color.a * both.x;
     let halo = shown.halo.a * both.y * (1.0 - letter);
     return vec4f(shown.color.rgb * letter + shown.halo.rgb * halo, letter + halo);
+}
+
+// The picture of an overlay, at its size; straight alpha. Without pictures: the skin of a context line.
+@group(1) @binding(0) var picture: texture_2d<f32>;
+// What of it is seen, stretched over it: the mean of its colours, times its alpha.
+@group(1) @binding(1) var mask: texture_2d<f32>;
+@group(1) @binding(2) var linear_sampler: sampler;
+
+// How much of a pixel an ellipse covers that fills a rectangle, by the first-order distance from its border.
+fn ellipse(at: vec2f, low: vec2f, high: vec2f, softness: f32) -> f32 {
+    let half = max(0.5 * (high - low), vec2f(0.5));
+    let unit = (at - 0.5 * (low + high)) / half;
+    let steepness = max(length(unit / half), 1e-6);
+    let distance = 0.5 * (dot(unit, unit) - 1.0) / steepness;
+    let share = clamp(0.5 - distance / softness, 0.0, 1.0);
+    return select(share, share * share * (3.0 - 2.0 * share), softness > 1.0);
+}
+
+// An overlay's picture. Its item has its opacity as alpha; its halo says whether left and right are exchanged, and whether it is an ellipse.
+// A soft border lies inside of its rectangle.
+@fragment
+fn picture_fragment(shown: Shown) -> @location(0) vec4f {
+    let size = shown.high - shown.low;
+    let inside = shown.at.xy - shown.low;
+    let across = select(inside.x, size.x - inside.x, shown.halo.x > 0.5);
+    let place = vec2i(floor(vec2f(across, inside.y)));
+    let least = vec2i(textureDimensions(picture)) - 1;
+    let color = textureLoad(picture, clamp(place, vec2i(0), least), 0);
+    let seen = textureSampleLevel(mask, linear_sampler, inside / size, 0.0);
+    let inset = select(0.0, 0.5 * shown.softness, shown.softness > 1.0);
+    let low = shown.low + inset;
+    let high = shown.high - inset;
+    let as_panel = panel(shown.at.xy, low, high, shown.radius, shown.softness);
+    let as_ellipse = ellipse(shown.at.xy, low, high, shown.softness);
+    let share = select(as_panel, as_ellipse, shown.halo.y > 0.5);
+    let alpha = shown.color.a * share * color.a * seen.a * dot(seen.rgb, vec3f(1.0 / 3.0));
+    return vec4f(color.rgb * alpha, alpha);
+}
+
+// A corner of a strip: a context line is a strip along its way, a pixel wider on both sides than what is seen.
+struct StripVertex {
+    // Pixels of the target.
+    @location(0) at: vec2f,
+    // How far from the way, to the left of it, and half the width there; pixels.
+    @location(1) across: f32,
+    @location(2) half_width: f32,
+    // How far along the way, and how long it is; pixels.
+    @location(3) along: f32,
+    @location(4) length: f32,
+    // Half the widths at both ends, pixels.
+    @location(5) ends: vec2f,
+    // Linear colour and alpha.
+    @location(6) color: vec4f,
+    // What it fades towards: a point, pixels of the target, and the radii within which nothing and beyond which all is seen.
+    @location(7) fade: vec4f,
+}
+
+struct StripShown {
+    @builtin(position) at: vec4f,
+    @location(0) across: f32,
+    @location(1) half_width: f32,
+    @location(2) along: f32,
+    @location(3) @interpolate(flat) length: f32,
+    @location(4) @interpolate(flat) ends: vec2f,
+    @location(5) @interpolate(flat) color: vec4f,
+    @location(6) @interpolate(flat) fade: vec4f,
+}
+
+@vertex
+fn strip_vertex(corner: StripVertex) -> StripShown {
+    let clip = vec2f(2.0, -2.0) * corner.at / frame.size + vec2f(-1.0, 1.0);
+    let c = corner;
+    return StripShown(vec4f(clip, 0.0, 1.0), c.across, c.half_width, c.along, c.length, c.ends, c.color, c.fade);
+}
+
+// How much of a strip is seen at this distance from what it fades towards (B7): 0 ≤ e ≤ r, t²(3 - 2t).
+fn faded(distance: f32, inner: f32, outer: f32) -> f32 {
+    let beyond = select(0.0, 1.0, distance > outer);
+    let t = select(beyond, clamp((distance - inner) / max(outer - inner, 1e-6), 0.0, 1.0), outer > inner);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+fn strip_alpha(shown: StripShown) -> f32 {
+    // A strip thinner than a pixel is a fainter one of a pixel.
+    let half_width = max(shown.half_width, 0.5);
+    let thin = min(shown.half_width / 0.5, 1.0);
+    let sides = clamp(half_width - abs(shown.across) + 0.5, 0.0, 1.0) * thin;
+    let ends = clamp(shown.along + 0.5, 0.0, 1.0) * clamp(shown.length - shown.along + 0.5, 0.0, 1.0);
+    let seen = faded(length(shown.at.xy - shown.fade.xy), shown.fade.z, shown.fade.w);
+    return shown.color.a * sides * ends * select(seen, 1.0, shown.fade.w <= 0.0);
+}
+
+@fragment
+fn strip(shown: StripShown) -> @location(0) vec4f {
+    let alpha = strip_alpha(shown);
+    return vec4f(shown.color.rgb * alpha, alpha);
+}
+
+// With a skin: a picture whose corners are those of the strip, mapped projectively (B7: u·w and v·w over w, w by the end width), so
+// that it does not shear where the strip gets narrower. Its colour is the strip's times that of the skin.
+@fragment
+fn strip_skin(shown: StripShown) -> @location(0) vec4f {
+    let t = clamp(shown.along / max(shown.length, 1e-6), 0.0, 1.0);
+    let w = mix(shown.ends.x, shown.ends.y, t);
+    let u = t * shown.ends.y / max(w, 1e-6);
+    let v = 0.5 - 0.5 * clamp(shown.across / max(shown.half_width, 1e-6), -1.0, 1.0);
+    let texel = textureSampleLevel(picture, linear_sampler, vec2f(u, v), 0.0);
+    let alpha = strip_alpha(shown) * texel.a;
+    return vec4f(shown.color.rgb * texel.rgb * alpha, alpha);
 }

@@ -4,6 +4,7 @@ pub mod animation;
 pub mod file;
 pub mod furniture;
 pub mod legend;
+pub mod overlays;
 pub mod picture;
 pub mod scene_file;
 pub mod sheet;
@@ -19,8 +20,18 @@ use crate::{
 
 /// Draws a picture with the title, the caption and the legends that the scene's `[figure]` asks for.
 pub fn draw(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
-    let furniture = furniture_of(studio, scene, request.size)?;
-    studio.render_with(scene, request, &furniture)
+    let overlays = overlays::overlays(studio, scene, request, None)?;
+    let own = furniture_of(studio, scene, request.size)?;
+    let furniture = Furniture { pieces: overlays.furniture.pieces.into_iter().chain(own.pieces).collect() };
+    let mut picture = studio.render_with(scene, request, &furniture)?;
+    if request.statistics {
+        let figures = overlays.figures.iter().map(|own| {
+            let [width, height] = own.size;
+            serde_json::json!({ "lens": own.lens, "width": width, "height": height, "rendered": own.rendered })
+        });
+        picture.statistics.overlays = figures.collect();
+    }
+    Ok(picture)
 }
 
 /// The title, caption and legends of a picture of `size` pixels; nothing where the scene asks for nothing.

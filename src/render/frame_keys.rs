@@ -221,7 +221,8 @@ impl Renderer {
             keys.push(Key::Resolve);
         }
         if wants_furniture(input) {
-            keys.push(Key::Furniture { layered: input.transparent });
+            let layered = input.transparent;
+            keys.extend(input.furniture.parts().map(|part| Key::Furniture { layered, part }));
             keys.extend(input.transparent.then_some(Key::FurnitureOver));
         }
         for key in &keys {

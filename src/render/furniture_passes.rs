@@ -26,7 +26,7 @@ impl Renderer {
         };
         let whole = input.view.size;
         furniture.fit(&self.gpu, &self.pipelines, input.furniture, whole, input.tile, input.transparent)?;
-        if furniture.count() == 0 {
+        if furniture.counts().0 == 0 {
             return Ok(());
         }
         let slot = recorder.begin("furniture", "main", &[], true);
@@ -44,13 +44,13 @@ impl Renderer {
         if let Some(timer) = &recorder.timer {
             timer.begin_count(&mut pass, slot);
         }
-        pass.set_pipeline(self.pipelines.get(&Key::Furniture { layered: input.transparent }));
-        furniture.draw(&mut pass);
+        furniture.draw(&mut pass, &self.gpu, &self.pipelines, &self.images, input.transparent);
         if let Some(timer) = &recorder.timer {
             timer.end_count(&mut pass, slot);
         }
         drop(pass);
-        recorder.count(1, 2 * u64::from(furniture.count()));
+        let (draws, triangles) = furniture.counts();
+        recorder.count(draws, triangles);
         let Some(over) = furniture.copied(encoder, &targets.picture.texture) else { return Ok(()) };
         let slot = recorder.begin("furniture over", "main", &[], false);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

@@ -16,6 +16,39 @@ use crate::{
     shader::{Module, Plan, Program, VolumeTest},
 };
 
+/// Which furniture a pipeline draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum FurniturePart {
+    /// Panels and text.
+    Items,
+    /// Pictures of overlays.
+    Picture,
+    /// Context lines of one colour.
+    Strip,
+    /// Context lines with a skin.
+    Skin,
+}
+
+impl FurniturePart {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Items => "furniture",
+            Self::Picture => "overlays",
+            Self::Strip => "context lines",
+            Self::Skin => "context lines with a skin",
+        }
+    }
+
+    fn entry_points(self) -> (&'static str, Option<&'static str>) {
+        match self {
+            Self::Items => ("vertex", Some("fragment")),
+            Self::Picture => ("vertex", Some("picture_fragment")),
+            Self::Strip => ("strip_vertex", Some("strip")),
+            Self::Skin => ("strip_vertex", Some("strip_skin")),
+        }
+    }
+}
+
 /// What makes a pipeline the one it is.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Key {
@@ -151,6 +184,8 @@ pub enum Key {
     Furniture {
         /// Into a layer.
         layered: bool,
+        /// Which of them.
+        part: FurniturePart,
     },
     /// The layer of furniture over a transparent picture.
     FurnitureOver,
@@ -245,6 +280,9 @@ const SOLID_CORNER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Fl
 const CORNER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Float32x2];
 const FURNITURE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![
     0 => Float32x2, 1 => Float32x2, 2 => Float32x4, 3 => Float32x4, 4 => Float32, 5 => Float32, 6 => Uint32, 7 => Uint32];
+
+const STRIP: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![
+    0 => Float32x2, 1 => Float32, 2 => Float32, 3 => Float32, 4 => Float32, 5 => Float32x2, 6 => Float32x4, 7 => Float32x4];
 
 fn per_vertex(array_stride: u64, attributes: &[wgpu::VertexAttribute]) -> Option<wgpu::VertexBufferLayout<'_>> {
     Some(wgpu::VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes })
@@ -373,8 +411,9 @@ impl Key {
                 format!("{} {draw}", self.module().name())
             }
             Self::Resolve => "resolve".to_owned(),
-            Self::Furniture { layered: false } => "furniture".to_owned(),
-            Self::Furniture { layered: true } => "furniture in a layer".to_owned(),
+            Self::Furniture { layered, part } => {
+                format!("{}{}", part.name(), if *layered { " in a layer" } else { "" })
+            }
             Self::FurnitureOver => "furniture over a transparent picture".to_owned(),
             Self::Bare => "bare lit draw".to_owned(),
         }
@@ -463,6 +502,7 @@ impl Key {
                 (GeometryKind::Coplanar, _) => ("vertex_coplanar_layer", Some("note_coplanar")),
             },
             Self::Translucent(own) => own.entry_points(),
+            Self::Furniture { part, .. } => part.entry_points(),
             Self::Composite { shown, .. } => ("vertex", Some(if *shown { "veil_and_shown" } else { "veil" })),
             Self::Shadow(None) => ("vertex", None),
             Self::Shade { shown, .. } => {
@@ -517,6 +557,9 @@ impl Key {
             | Self::SolidSprite(SolidStage::Nearest | SolidStage::Farthest)
             | Self::CombinedSprite(SolidStage::NearestFace | SolidStage::FarthestFace, _) => {
                 vec![per_vertex(12, SOLID_CORNER)]
+            }
+            Self::Furniture { part: FurniturePart::Strip | FurniturePart::Skin, .. } => {
+                vec![per_vertex(size_of::<layout::StripVertex>() as u64, STRIP)]
             }
             Self::Furniture { .. } => vec![Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<layout::FurnitureItem>() as u64,
@@ -592,7 +635,7 @@ impl Key {
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
-            Self::Furniture { layered } => vec![Some(wgpu::ColorTargetState {
+            Self::Furniture { layered, .. } => vec![Some(wgpu::ColorTargetState {
                 format: if *layered { FURNITURE_LAYER } else { PICTURE },
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,

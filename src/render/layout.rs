@@ -337,6 +337,20 @@ pub struct FurnitureItem {
     pub row_texels: u32,
 }
 
+/// A corner of a context line.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct StripVertex {
+    pub at: [f32; 2],
+    pub across: f32,
+    pub half_width: f32,
+    pub along: f32,
+    pub length: f32,
+    pub ends: [f32; 2],
+    pub color: [f32; 4],
+    pub fade: [f32; 4],
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -501,6 +515,7 @@ mod tests {
                 &Module::SpriteList,
                 host!(ListStage { view, shape, clip_scale, clip_shift, width, height, first_list, leaf, room, pad_0 }),
             ),
+            (&Module::Furniture, host!(StripVertex { at, across, half_width, along, length, ends, color, fade })),
             (
                 &Module::Furniture,
                 host!(FurnitureItem { low, high, color, halo, radius, softness, first_texel, row_texels }),

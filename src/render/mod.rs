@@ -23,6 +23,8 @@ mod frame_keys;
 pub mod furniture;
 mod furniture_passes;
 pub mod hiding;
+pub mod images;
+mod insets;
 pub mod invokers;
 pub mod key;
 pub mod layers;

@@ -19,8 +19,9 @@ impl Renderer {
     /// # Errors
     /// Those of the graphics card.
     pub fn page(&mut self, size: [u32; 2], ground: Srgb, furniture: &Furniture) -> Result<Vec<[u8; 4]>, GpuError> {
-        let key = Key::Furniture { layered: false };
-        self.pipelines.prepare(&key);
+        for part in furniture.parts() {
+            self.pipelines.prepare(&Key::Furniture { layered: false, part });
+        }
         let mut rgba = vec![[0; 4]; size[0] as usize * size[1] as usize];
         let mut on_gpu = FurnitureOnGpu::new(&self.gpu)?;
         let [r, g, b] = linear_from_srgb(ground).map(f64::from);
@@ -36,10 +37,7 @@ impl Renderer {
                 color_attachments: &[Some(color_attachment(&view, wgpu::Color { r, g, b, a: 1.0 }))],
                 ..Default::default()
             });
-            if on_gpu.count() > 0 {
-                pass.set_pipeline(self.pipelines.get(&key));
-                on_gpu.draw(&mut pass);
-            }
+            on_gpu.draw(&mut pass, &self.gpu, &self.pipelines, &self.images, false);
             drop(pass);
             self.gpu.queue.submit([encoder.finish()]);
             let texels = self.gpu.read_texture(&target, 0, wgpu::TextureAspect::All)?;

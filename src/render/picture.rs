@@ -28,6 +28,7 @@ use crate::{
         footprints::{self, OwnFootprints},
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
         furniture::{self, Furniture},
+        insets::Inset,
         layers::LayerFigures,
         lens_figures::lens_figures,
         lens_volumes::{LensVolumes, Tools, volumes_of},
@@ -155,6 +156,8 @@ pub struct Studio {
     pub reading: LoadOptions,
     /// Those loaded so far.
     content_cities: Mutex<ContentCities>,
+    /// Pictures from other eyes, by number.
+    pub(super) insets: BTreeMap<u64, Inset>,
     /// Where the shown triangles are, made for the first picture whose lenses are counted.
     index: OnceLock<SpatialIndex>,
     /// What its objects cover of the ground, once an effect asks for it.
@@ -208,6 +211,7 @@ impl Studio {
             occlusion: Mutex::default(),
             reading: LoadOptions::default(),
             content_cities: Mutex::default(),
+            insets: BTreeMap::new(),
             index: OnceLock::new(),
             footprints: OnceLock::new(),
         })
@@ -304,7 +308,12 @@ impl Studio {
         self.draw_with(scene, request, &furniture::NONE)
     }
 
-    fn draw_with(&mut self, scene: &Scene, request: &Request, furniture: &Furniture) -> Result<(), RenderError> {
+    pub(super) fn draw_with(
+        &mut self,
+        scene: &Scene,
+        request: &Request,
+        furniture: &Furniture,
+    ) -> Result<(), RenderError> {
         let drawn = scene.drawn();
         let prepared = self.prepare(&drawn, request.size)?;
         let view = self.view(scene, request.size, &prepared)?;

@@ -6,7 +6,7 @@ use crate::{
     gpu::Gpu,
     render::{
         cut,
-        key::{GeometryKind, Key},
+        key::{FurniturePart, GeometryKind, Key},
         worker::Worker,
     },
     shader::Module,
@@ -95,6 +95,8 @@ pub struct Layouts {
     pub resolve: wgpu::BindGroupLayout,
     /// Furniture, group 0: the target, coverage of text.
     pub furniture: wgpu::BindGroupLayout,
+    /// Furniture, group 1: the picture of an overlay, its mask, a sampler.
+    pub furniture_picture: wgpu::BindGroupLayout,
     /// Furniture over a transparent picture, group 0: both.
     pub furniture_over: wgpu::BindGroupLayout,
     /// Where samples are summed: f32 where it can be blended, else f16.
@@ -161,6 +163,7 @@ impl Layouts {
     fn new(gpu: &Gpu) -> Self {
         use wgpu::{TextureSampleType as T, TextureViewDimension as D};
         let float = image(T::Float { filterable: false }, D::D2);
+        let filterable = image(T::Float { filterable: true }, D::D2);
         let depth = image(T::Depth, D::D2);
         let surfaces = image(T::Uint, D::D2);
         let floats = image(T::Float { filterable: false }, D::D2Array);
@@ -301,6 +304,11 @@ impl Layouts {
             filter: layout(gpu, "filter", &[(0, all, dynamic), (1, S::FRAGMENT, packed), (2, all, uniform())]),
             resolve: layout(gpu, "resolve", &[(0, S::FRAGMENT, uniform()), (1, S::FRAGMENT, float)]),
             furniture: layout(gpu, "furniture", &[(0, all, uniform()), (1, S::FRAGMENT, storage())]),
+            furniture_picture: layout(
+                gpu,
+                "furniture's pictures",
+                &[(0, S::FRAGMENT, filterable), (1, S::FRAGMENT, filterable), (2, S::FRAGMENT, filtered)],
+            ),
             furniture_over: layout(gpu, "furniture over", &[(0, S::FRAGMENT, float), (1, S::FRAGMENT, float)]),
             sums,
         }
@@ -361,6 +369,9 @@ impl Layouts {
             Key::Resolve => vec![Some(&self.resolve)],
             Key::StoredForm(_) | Key::StoredLayers(_) => vec![None, Some(&self.planes), Some(&self.stored)],
             Key::SpriteList => vec![None, None, Some(&self.stored)],
+            Key::Furniture { part: FurniturePart::Picture | FurniturePart::Skin, .. } => {
+                vec![Some(&self.furniture), Some(&self.furniture_picture)]
+            }
             Key::Furniture { .. } => vec![Some(&self.furniture)],
             Key::FurnitureOver => vec![Some(&self.furniture_over)],
         };

@@ -3,7 +3,7 @@
 //! It refuses to know files, commands and windows. Between two equal frames it allocates and uploads
 //! nothing; [`Gpu::allocations`] and [`Gpu::uploads`] prove it.
 
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use crate::{
     gpu::{Gpu, GpuError},
@@ -13,6 +13,7 @@ use crate::{
         curtain::Curtain,
         edges::EdgeBuffers,
         furniture::FurnitureOnGpu,
+        images::Images,
         layers::{LayerFigures, LayersOnGpu},
         layout,
         narrow::Narrowing,
@@ -68,6 +69,8 @@ pub struct Renderer {
     pub(super) has_sections: bool,
     /// Titles, captions and legends, once a picture had some.
     pub(super) furniture: Option<FurnitureOnGpu>,
+    /// What of it is images.
+    pub images: Images,
     /// The sprites that have eyes of their own.
     pub(super) own_sprites: OwnSprites,
     /// The stored sprites of the last frame.
@@ -151,6 +154,47 @@ pub(super) struct Buffers {
     pub mesh: Synced,
 }
 
+impl Buffers {
+    /// Empty ones.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        use wgpu::BufferUsages as U;
+        let uniform = |label| Synced::new(gpu, label, U::UNIFORM);
+        let storage = |label| Synced::new(gpu, label, U::STORAGE);
+        Ok(Self {
+            view: uniform("view")?,
+            sun_view: uniform("sun's view")?,
+            light: uniform("light")?,
+            planes: storage("lens planes")?,
+            solids: storage("solids of lenses")?,
+            solid_corners: Synced::new(gpu, "corners of solids", U::VERTEX)?,
+            sprite_stages: uniform("sprite stages")?,
+            sprites: Room::new(gpu, "depth sprites of lenses", U::STORAGE | U::COPY_SRC | U::COPY_DST, COARSER)?,
+            stored_stages: uniform("stages of stored sprites")?,
+            lists: Room::new(gpu, "lists of crossings", U::STORAGE | U::COPY_DST, COARSER)?,
+            crossings: Room::new(gpu, "crossings", U::STORAGE, COARSER)?,
+            counts: Room::new(gpu, "counts of sprites", U::STORAGE | U::COPY_DST | U::COPY_SRC, COARSER)?,
+            sprite_places: uniform("places of depth sprites")?,
+            lens_shapes: uniform("lens shapes")?,
+            parameters: uniform("parameters")?,
+            invoker_table: uniform("invoker table")?,
+            invokers: storage("invokers")?,
+            tile_lists: storage("invokers of tiles")?,
+            filter_stages: uniform("filter stages")?,
+            object_values: storage("object values")?,
+            eye: uniform("main view for the sun")?,
+            shapes: storage("lens shapes for the sun")?,
+            shape_planes: storage("lens planes for the sun")?,
+            line_stages: uniform("line stages")?,
+            cities: uniform("cities")?,
+            sun_cities: uniform("cities for the sun")?,
+            shape_invoker_table: uniform("invoker table for the sun")?,
+            shape_invokers: storage("invokers for the sun")?,
+            resolve: uniform("resolve")?,
+            mesh: Synced::new(gpu, "parts of the picture", U::VERTEX)?,
+        })
+    }
+}
+
 /// What a shadow map shows.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shadow {
@@ -187,41 +231,7 @@ pub(super) struct Groups {
 impl Renderer {
     /// A renderer without a city.
     pub fn new(gpu: Gpu) -> Result<Self, GpuError> {
-        use wgpu::BufferUsages as U;
-        let uniform = |label| Synced::new(&gpu, label, U::UNIFORM);
-        let storage = |label| Synced::new(&gpu, label, U::STORAGE);
-        let buffers = Buffers {
-            view: uniform("view")?,
-            sun_view: uniform("sun's view")?,
-            light: uniform("light")?,
-            planes: storage("lens planes")?,
-            solids: storage("solids of lenses")?,
-            solid_corners: Synced::new(&gpu, "corners of solids", U::VERTEX)?,
-            sprite_stages: uniform("sprite stages")?,
-            sprites: Room::new(&gpu, "depth sprites of lenses", U::STORAGE | U::COPY_SRC | U::COPY_DST, COARSER)?,
-            stored_stages: uniform("stages of stored sprites")?,
-            lists: Room::new(&gpu, "lists of crossings", U::STORAGE | U::COPY_DST, COARSER)?,
-            crossings: Room::new(&gpu, "crossings", U::STORAGE, COARSER)?,
-            counts: Room::new(&gpu, "counts of sprites", U::STORAGE | U::COPY_DST | U::COPY_SRC, COARSER)?,
-            sprite_places: uniform("places of depth sprites")?,
-            lens_shapes: uniform("lens shapes")?,
-            parameters: uniform("parameters")?,
-            invoker_table: uniform("invoker table")?,
-            invokers: storage("invokers")?,
-            tile_lists: storage("invokers of tiles")?,
-            filter_stages: uniform("filter stages")?,
-            object_values: storage("object values")?,
-            eye: uniform("main view for the sun")?,
-            shapes: storage("lens shapes for the sun")?,
-            shape_planes: storage("lens planes for the sun")?,
-            line_stages: uniform("line stages")?,
-            cities: uniform("cities")?,
-            sun_cities: uniform("cities for the sun")?,
-            shape_invoker_table: uniform("invoker table for the sun")?,
-            shape_invokers: storage("invokers for the sun")?,
-            resolve: uniform("resolve")?,
-            mesh: Synced::new(&gpu, "parts of the picture", U::VERTEX)?,
-        };
+        let buffers = Buffers::new(&gpu)?;
         let shadow_sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadow"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -247,6 +257,7 @@ impl Renderer {
             sections: None,
             has_sections: false,
             furniture: None,
+            images: Images::new(&gpu),
             ran: Vec::new(),
             solids_of: None,
             own_sprites: OwnSprites::default(),
@@ -328,6 +339,14 @@ impl Renderer {
     pub(super) fn object_id(&self, code: u32) -> u32 {
         // The plain ground is no object: its NO_OBJECT wraps to 0.
         code.checked_sub(1).and_then(|number| self.surface(number)).map_or(0, |s| s.object.wrapping_add(1))
+    }
+
+    /// Keeps the image of a file ([`Images::of_file`]).
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn image_of_file(&mut self, number: u64, file: &Path, size: Option<[u32; 2]>) -> Result<bool, String> {
+        self.images.of_file(&self.gpu, number, file, size)
     }
 
     /// The pipelines.

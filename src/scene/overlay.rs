@@ -22,8 +22,6 @@ pub struct Overlay {
     pub min: Option<[u32; 2]>,
     /// It is made no larger; `None`: its preferred size and a half.
     pub max: Option<[u32; 2]>,
-    /// Where its upper left corner stands, if not where the layout puts it.
-    pub at: Option<[f64; 2]>,
     /// 0 to 1.
     pub opacity: f64,
     /// What is cut out of it and laid over it.
@@ -275,7 +273,6 @@ impl Overlay {
             size: Self::SIZE,
             min: None,
             max: None,
-            at: None,
             opacity: 1.0,
             frame: Frame::default(),
             caption: None,

@@ -216,7 +216,7 @@ impl Painter {
         radius_px: f32,
         softness_px: f32,
     ) {
-        self.pieces.push(Piece::Panel(Panel { low, high, color, opacity, radius_px, softness_px }));
+        self.pieces.push(Piece::Panel(Panel { low, high, color, opacity, radius_px, softness_px, ellipse: false }));
     }
 
     fn text(&mut self, text: &str, at: [f32; 2], style: TextStyle, color: Srgb) {

@@ -39,7 +39,7 @@ fn figure(legend: LegendPlace) -> Figure {
 fn cards(furniture: &Furniture) -> Vec<Panel> {
     let panels = furniture.pieces.iter().filter_map(|piece| match piece {
         Piece::Panel(panel) => Some(*panel),
-        Piece::Text(_) => None,
+        _ => None,
     });
     panels.filter(|p| p.color == [1.0; 3] && p.opacity < 1.0).collect()
 }

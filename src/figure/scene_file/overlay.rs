@@ -55,14 +55,6 @@ pub const OVERLAY: Table = Table {
         key("min", Kind::Size, "half of `size`", "pixels", "It is made no smaller.", "[120, 80]"),
         key("max", Kind::Size, "one and a half of `size`", "pixels", "It is made no larger.", "[480, 300]"),
         key(
-            "at",
-            Kind::PlanPoint,
-            "where `[layout]` puts it",
-            "pixels",
-            "Where its upper left corner stands, from the upper left corner of the picture.",
-            "[40, 40]",
-        ),
-        key(
             "opacity",
             Kind::Number { min: 0.0, max: 1.0 },
             "1.0",
@@ -287,7 +279,6 @@ pub fn overlay(fields: &Fields, parts: Parts) -> Overlay {
         size: fields.node("size").and_then(size).unwrap_or(default.size),
         min: fields.node("min").and_then(size),
         max: fields.node("max").and_then(size),
-        at: fields.node("at").and_then(Node::numbers::<2>),
         opacity: number("opacity", default.opacity),
         frame,
         caption: fields.text("caption").map(str::to_owned),
@@ -319,7 +310,6 @@ pub(super) fn written(overlay: &Overlay, options: &Options) -> Vec<(&'static str
     }
     keys.extend(overlay.min.map(|size| ("min", pair(size))));
     keys.extend(overlay.max.map(|size| ("max", pair(size))));
-    keys.extend(overlay.at.map(|[x, y]| ("at", format!("[{}, {}]", number(x), number(y)))));
     match &overlay.frame {
         frame if *frame == Frame::default() => {}
         Frame::BuiltIn(frame) => keys.push(("frame", word_of(&BuiltInFrame::WORDS, frame))),

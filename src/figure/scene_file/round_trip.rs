@@ -400,7 +400,7 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn overlays()(priority in -1e3..1e3f64, interest in 0.0..=1.0f64, size in prop::array::uniform2(2..2000u32), has_sizes in any::<[bool; 3]>(), at in prop::array::uniform2(-1e3..1e3f64),
+    fn overlays()(priority in -1e3..1e3f64, interest in 0.0..=1.0f64, size in prop::array::uniform2(2..2000u32), has_sizes in any::<[bool; 2]>(),
         opacity in 0.0..=1.0f64, frame in prop::option::of(prop::sample::select(BuiltInFrame::WORDS.map(|(_, f)| f).to_vec())), masks in prop::array::uniform2(prop::option::of("[a-z]{1,4}")),
         caption in prop::option::of(".{1,6}"), line in prop::option::of(lines())) -> Overlay {
         let masks = masks.map(|file| file.map(Into::into));
@@ -409,7 +409,6 @@ prop_compose! {
             lens: String::new(), priority, interest, size, opacity, caption, line,
             min: has_sizes[0].then(|| size.map(|side| side / 2)),
             max: has_sizes[1].then(|| size.map(|side| side + 7)),
-            at: has_sizes[2].then_some(at),
             frame: frame.map_or(Frame::Images { alpha, frame: images }, Frame::BuiltIn),
         }
     }

@@ -315,7 +315,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "kind = \"colour\"",
-            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\", is \"colour\"; did you mean \"color\"?",
+            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"colour\"; did you mean \"color\"?",
         ),
         (
             "placement = \"camara\"",
@@ -432,7 +432,7 @@ fn of_a_lens_of_a_wrong_kind_only_that_is_told() {
     for (kind, expected) in [
         (
             "occlusionn",
-            "must be \"color\" or \"content\" or \"occlusion\", is \"occlusionn\"; did you mean \"occlusion\"?",
+            "must be \"color\" or \"content\" or \"occlusion\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?",
         ),
         ("see-through", "\"see-through\" is not available yet; available: color, content, occlusion"),
     ] {

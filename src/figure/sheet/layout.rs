@@ -293,6 +293,7 @@ impl Pen {
             opacity: 1.0,
             radius_px: 0.0,
             softness_px: 1.0,
+            ellipse: false,
         }));
     }
 }

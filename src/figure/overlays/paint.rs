@@ -1,0 +1,350 @@
+//! The pieces of overlays, context lines, arrows and markers.
+
+use std::path::Path;
+
+use glam::{DVec2, Vec2};
+
+use crate::{
+    figure::overlays::Room,
+    lens::{
+        best_view::{LocalView, MapMode},
+        color::Srgb,
+    },
+    overlay::{Focus, Rect},
+    render::{
+        furniture::{ImagePiece, Panel, Piece, Strip},
+        text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter, Weight},
+    },
+    scene::{
+        Overlay,
+        overlay::{BuiltInFrame, ContextLine, Frame},
+    },
+    view::{Camera, local},
+};
+
+const WHITE: Srgb = [1.0; 3];
+const INK: Srgb = [0.1, 0.115, 0.14];
+const NEEDLE: Srgb = [0.84, 0.15, 0.16];
+
+/// What an image of an overlay is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// What it shows.
+    Picture,
+    /// Its alpha mask.
+    Alpha,
+    /// Its frame mask.
+    Frame,
+    /// The skin of its lines.
+    Skin,
+}
+
+/// The number of an image of the overlay of a lens, in a view whose numbers begin after `numbers`.
+pub fn number(numbers: u64, lens: usize, part: Part) -> u64 {
+    numbers + 1 + 4 * lens as u64 + part as u64
+}
+
+/// The masks of a frame.
+pub fn masks(frame: &Frame) -> [(Part, Option<&Path>); 2] {
+    match frame {
+        Frame::BuiltIn(_) => [(Part::Alpha, None), (Part::Frame, None)],
+        Frame::Images { alpha, frame } => [(Part::Alpha, alpha.as_deref()), (Part::Frame, frame.as_deref())],
+    }
+}
+
+/// Makes pieces; lengths go by the em of the picture's text.
+pub struct Painter {
+    em: f32,
+    setter: Typesetter,
+    pieces: Vec<Piece>,
+}
+
+impl Painter {
+    pub fn new(em: f32) -> Self {
+        Self { em, setter: Typesetter::default(), pieces: Vec::new() }
+    }
+
+    pub fn em(&self) -> f32 {
+        self.em
+    }
+
+    pub fn into_pieces(self) -> Vec<Piece> {
+        self.pieces
+    }
+
+    /// So many thirteenths of the em, whole pixels, at least one.
+    fn px(&self, n: f32) -> i32 {
+        (n * self.em / 13.0).round().max(1.0) as i32
+    }
+
+    fn caption_style(&self) -> TextStyle {
+        TextStyle { size_px: 0.92 * self.em, weight: Weight::Regular, tabular: false }
+    }
+
+    /// Where in an overlay that stands here its picture is.
+    pub fn picture_room(&self, overlay: &Overlay, rect: Rect) -> Room {
+        let frame = match &overlay.frame {
+            Frame::BuiltIn(frame) => *frame,
+            Frame::Images { .. } => BuiltInFrame::None,
+        };
+        let (around, below) = match frame {
+            BuiltInFrame::None | BuiltInFrame::Vignette => (0, 0),
+            BuiltInFrame::Thin => (self.px(1.0), self.px(1.0)),
+            BuiltInFrame::Rounded | BuiltInFrame::Ellipse => (self.px(4.0), self.px(4.0)),
+            BuiltInFrame::Print => (self.px(8.0), self.px(22.0)),
+        };
+        let below = if overlay.caption.is_some() { below.max(self.px(22.0)) } else { below };
+        let size: [i32; 2] = std::array::from_fn(|i| rect.max[i] - rect.min[i]);
+        // A frame never takes all of a small overlay.
+        let fits = |wanted: i32, side: i32| wanted.min((side - 1).max(0) / 3);
+        let (x, top, bottom) = (fits(around, size[0]), fits(around, size[1]), fits(below, size[1]));
+        Room { low: [rect.min[0] + x, rect.min[1] + top], high: [rect.max[0] - x, rect.max[1] - bottom] }
+    }
+
+    fn panel(&mut self, low: [f32; 2], high: [f32; 2], color: Srgb, opacity: f32, radius_px: f32, softness_px: f32) {
+        self.pieces.push(Piece::Panel(Panel { low, high, color, opacity, radius_px, softness_px, ellipse: false }));
+    }
+
+    fn ground(&mut self, overlay: &Overlay, rect: Rect, radius: f32) {
+        let opacity = overlay.opacity as f32;
+        let (low, high) = (rect.min.map(|v| v as f32), rect.max.map(|v| v as f32));
+        let drop = self.px(2.0) as f32;
+        let shadow = |v: [f32; 2]| [v[0], v[1] + drop];
+        self.panel(shadow(low), shadow(high), [0.05, 0.07, 0.1], 0.3 * opacity, radius, self.em);
+        self.panel(low, high, WHITE, opacity, radius, 1.0);
+    }
+
+    /// The picture of an overlay in its frame.
+    pub fn overlay(
+        &mut self,
+        overlay: &Overlay,
+        rect: Rect,
+        image: u64,
+        mirror: bool,
+        [alpha, frame]: [Option<u64>; 2],
+    ) {
+        let room = self.picture_room(overlay, rect);
+        let (low, high) = (room.low.map(|v| v as f32), room.high.map(|v| v as f32));
+        let side = room.size()[0].min(room.size()[1]) as f32;
+        let opacity = overlay.opacity as f32;
+        let mut piece = ImagePiece {
+            image,
+            mask: alpha,
+            low,
+            high,
+            mirror,
+            opacity,
+            ellipse: false,
+            radius_px: 0.0,
+            softness_px: 1.0,
+        };
+        match &overlay.frame {
+            Frame::BuiltIn(BuiltInFrame::None) | Frame::Images { .. } => {}
+            Frame::BuiltIn(BuiltInFrame::Rounded) => {
+                self.ground(overlay, rect, self.px(7.0) as f32);
+                piece.radius_px = self.px(4.0) as f32;
+            }
+            Frame::BuiltIn(BuiltInFrame::Thin) => {
+                let (low, high) = (rect.min.map(|v| v as f32), rect.max.map(|v| v as f32));
+                self.panel(low, high, INK, opacity, 0.0, 1.0);
+            }
+            Frame::BuiltIn(BuiltInFrame::Print) => self.ground(overlay, rect, self.px(1.0) as f32),
+            Frame::BuiltIn(BuiltInFrame::Ellipse) => {
+                let around = self.px(4.0) as f32;
+                let (outer_low, outer_high) = (low.map(|v| v - around), high.map(|v| v + around));
+                let drop = self.px(2.0) as f32;
+                for (color, opacity, down, softness_px) in
+                    [([0.05, 0.07, 0.1], 0.3 * opacity, drop, self.em), (WHITE, opacity, 0.0, 1.0)]
+                {
+                    self.pieces.push(Piece::Panel(Panel {
+                        low: [outer_low[0], outer_low[1] + down],
+                        high: [outer_high[0], outer_high[1] + down],
+                        color,
+                        opacity,
+                        radius_px: 0.0,
+                        softness_px,
+                        ellipse: true,
+                    }));
+                }
+                piece.ellipse = true;
+            }
+            Frame::BuiltIn(BuiltInFrame::Vignette) => {
+                (piece.radius_px, piece.softness_px) = (0.5 * side, (0.3 * side).max(1.0));
+            }
+        }
+        self.pieces.push(Piece::Image(piece));
+        if let Some(frame) = frame {
+            let over = ImagePiece { image: frame, mask: None, mirror: false, ..piece };
+            self.pieces.push(Piece::Image(over));
+        }
+        if let Some(caption) = &overlay.caption {
+            let band = [high[1], rect.max[1] as f32];
+            self.centred(caption, [rect.min[0] as f32, rect.max[0] as f32], band, self.caption_style());
+        }
+    }
+
+    fn centred(&mut self, text: &str, [left, right]: [f32; 2], [top, bottom]: [f32; 2], style: TextStyle) {
+        let room = (right - left - self.em).max(0.0);
+        let Some(text) = self.setter.wrapped(text, style, room, 1).into_iter().next() else { return };
+        let width = self.setter.width(&text, style);
+        let base = (0.5 * (top + bottom + CAP_HEIGHT * style.size_px)).round();
+        let at = [0.5 * (left + right - width), base];
+        self.pieces.push(Piece::Text(TextLine { text, at, style, color: INK, halo: None }));
+    }
+
+    /// An overlay of text.
+    pub fn text(&mut self, overlay: &Overlay, rect: Rect, text: &str) {
+        self.ground(overlay, rect, self.px(7.0) as f32);
+        let style = TextStyle { size_px: self.em, weight: Weight::Regular, tabular: false };
+        let pad = 0.8 * self.em;
+        let height = (1.4 * self.em).round();
+        let [width, tall] = [0, 1].map(|i| (rect.max[i] - rect.min[i]) as f32 - 2.0 * pad);
+        let most = (tall / height).floor().max(0.0) as usize;
+        let mut lines = Vec::new();
+        for (i, line) in text.split('\n').enumerate() {
+            // The first of several lines is a heading.
+            let weight = if i == 0 && text.contains('\n') { Weight::SemiBold } else { Weight::Regular };
+            let style = TextStyle { weight, ..style };
+            let left = most.saturating_sub(lines.len());
+            lines.extend(self.setter.wrapped(line, style, width, left).into_iter().map(|line| (line, style)));
+        }
+        for (i, (text, style)) in lines.into_iter().enumerate() {
+            let y = rect.min[1] as f32 + pad + height * i as f32;
+            let base = (y + 0.5 * (height + CAP_HEIGHT * style.size_px)).round();
+            let at = [rect.min[0] as f32 + pad, base];
+            self.pieces.push(Piece::Text(TextLine { text, at, style, color: INK, halo: None }));
+        }
+    }
+
+    fn strip(&mut self, points: &[DVec2], widths: [f64; 2], color: Srgb, opacity: f32) -> Strip {
+        let points = points.iter().map(|p| p.as_vec2().to_array()).collect();
+        Strip { points, widths: widths.map(|w| w as f32), color, opacity, skin: None, fade: None }
+    }
+
+    /// A context line, or its first part as an arrow.
+    pub fn line(
+        &mut self,
+        points: &[DVec2],
+        style: &ContextLine,
+        lens_color: Srgb,
+        skin: Option<u64>,
+        is_far: bool,
+        size: [u32; 2],
+    ) {
+        let color = style.color.unwrap_or(lens_color);
+        if is_far {
+            if let [from, to, ..] = points
+                && let Some(direction) = (*to - *from).try_normalize()
+            {
+                let length = f64::from(self.px(26.0));
+                self.arrow(*from + length * direction, direction, color);
+            }
+            return;
+        }
+        let centre = [0.5 * size[0] as f32, 0.5 * size[1] as f32];
+        let fade = style.fade.map(|radii| (centre, radii.map(|r| r as f32)));
+        if skin.is_none() {
+            // Seen on dark and on light ground.
+            let rim = f64::from(self.px(2.0));
+            let casing = self.strip(points, style.widths.map(|w| w + rim), WHITE, 0.75);
+            self.pieces.push(Piece::Strip(Strip { fade, ..casing }));
+        }
+        let color = if skin.is_some() { style.color.unwrap_or(WHITE) } else { color };
+        let strip = self.strip(points, style.widths, color, 1.0);
+        self.pieces.push(Piece::Strip(Strip { skin, fade, ..strip }));
+    }
+
+    /// What a line ends at: a dot, or the outline of an area.
+    pub fn focus(&mut self, focus: &Focus, style: &ContextLine, lens_color: Srgb) {
+        let color = style.color.unwrap_or(lens_color);
+        match focus {
+            Focus::Point(at) => {
+                for (radius, color) in [(self.px(5.0), WHITE), (self.px(3.5), color)] {
+                    let (at, radius) = (at.as_vec2(), radius as f32);
+                    let (low, high) = (at - radius, at + radius);
+                    self.panel(low.into(), high.into(), color, 1.0, radius, 1.0);
+                }
+            }
+            Focus::Area(ring) => {
+                let closed: Vec<DVec2> = ring.iter().chain(ring.first()).copied().collect();
+                for (width, color, opacity) in [(self.px(4.0), WHITE, 0.75), (self.px(2.0), color, 1.0)] {
+                    let strip = self.strip(&closed, [f64::from(width); 2], color, opacity);
+                    self.pieces.push(Piece::Strip(strip));
+                }
+            }
+        }
+    }
+
+    /// An arrow head with its tip here.
+    pub fn arrow(&mut self, tip: DVec2, direction: DVec2, color: Srgb) {
+        let length = f64::from(self.px(15.0));
+        let width = f64::from(self.px(14.0));
+        let rim = f64::from(self.px(2.0));
+        for (grown, color, opacity) in [(rim, WHITE, 0.85), (0.0, color, 1.0)] {
+            let points = [tip - (length + grown) * direction, tip + 1.4 * grown * direction];
+            let strip = self.strip(&points, [width + 3.0 * grown, 0.0], color, opacity);
+            self.pieces.push(Piece::Strip(strip));
+        }
+    }
+
+    /// Stands for so many overlays.
+    pub fn marker(&mut self, at: DVec2, count: usize) {
+        let radius = self.px(10.0) as f32;
+        let at = at.as_vec2();
+        for (radius, color) in [(radius + self.px(1.5) as f32, WHITE), (radius, INK)] {
+            self.panel((at - radius).into(), (at + radius).into(), color, 1.0, radius, 1.0);
+        }
+        let style = TextStyle { size_px: 0.9 * self.em, weight: Weight::SemiBold, tabular: true };
+        let text = count.to_string();
+        let width = self.setter.width(&text, style);
+        let base = at.y + 0.5 * CAP_HEIGHT * style.size_px;
+        self.pieces.push(Piece::Text(TextLine {
+            text,
+            at: [at.x - 0.5 * width, base.round()],
+            style,
+            color: WHITE,
+            halo: None,
+        }));
+    }
+
+    /// What is drawn into a view beside the city: on maps a compass, or where the main eye is and looks (B4).
+    pub fn signs(&mut self, view: &LocalView, main: &Camera, room: Room) {
+        let LocalView::Map { mode, .. } = view else { return };
+        let heading = local::heading(main);
+        let on_page = |v: DVec2| DVec2::new(v.x, -v.y);
+        match mode {
+            MapMode::NorthUp => {}
+            MapMode::UserView => {
+                let middle =
+                    0.5 * DVec2::new(f64::from(room.low[0] + room.high[0]), f64::from(room.low[1] + room.high[1]));
+                let ahead = on_page(heading);
+                self.arrow(middle + f64::from(self.px(9.0)) * ahead, ahead, NEEDLE);
+            }
+            MapMode::HeadUp => {
+                // North in a map whose top is the heading.
+                let north = on_page(DVec2::Y.rotate(DVec2::new(heading.y, heading.x)));
+                let radius = f64::from(self.px(15.0));
+                let corner = DVec2::new(f64::from(room.high[0]), f64::from(room.low[1]));
+                let middle = corner + (radius + f64::from(self.px(6.0))) * DVec2::new(-1.0, 1.0);
+                let (at, reach) = (middle.as_vec2(), Vec2::splat(radius as f32));
+                self.panel((at - reach).into(), (at + reach).into(), WHITE, 0.9, radius as f32, 1.0);
+                let half = 0.62 * radius;
+                for (tip, color) in [(north, NEEDLE), (-north, [0.55, 0.57, 0.6])] {
+                    let strip = self.strip(&[middle, middle + half * tip], [0.42 * radius, 0.0], color, 1.0);
+                    self.pieces.push(Piece::Strip(strip));
+                }
+                let style = TextStyle { size_px: 0.62 * self.em, weight: Weight::SemiBold, tabular: false };
+                let width = self.setter.width("N", style);
+                let at = (middle + 0.82 * radius * north).as_vec2();
+                let base = at.y + 0.5 * CAP_HEIGHT * style.size_px;
+                self.pieces.push(Piece::Text(TextLine {
+                    text: "N".into(),
+                    at: [at.x - 0.5 * width, base],
+                    style,
+                    color: INK,
+                    halo: None,
+                }));
+            }
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! The scene that an overlay shows: the main one from an eye of its own, with its own lenses and look.
+
+use glam::{DVec2, DVec3};
+
+use crate::{
+    city::CityModel,
+    geom::{Aabb, Shape},
+    lens::{
+        BestView, Class, EffectUse, Focus, Lens, LensBody, LensKind, Placement,
+        best_view::{LocalView, MapMode},
+        chosen::Choice,
+    },
+    render::picture::{RenderError, Studio},
+    scene::{Figure, LegendPlace, Poi, PoiPlace, Scene, Style},
+    view::{Camera, local},
+};
+
+/// Radius of the sphere around a point of interest that is a point and no object, metres.
+pub const POINT_RADIUS_M: f64 = 25.0;
+/// How far above all else the eye of a map stands, metres.
+const ABOVE_M: f64 = 100.0;
+
+/// What an overlay shows.
+#[derive(Clone, Debug)]
+pub struct Local {
+    /// The scene, with its camera.
+    pub scene: Scene,
+    /// Whether nothing is behind it.
+    pub transparent: bool,
+    /// Whether left and right are exchanged.
+    pub mirror: bool,
+}
+
+/// The sphere around a point of interest (B2): middle and radius, metres. Of an object: that around the box around it and its parts.
+pub fn sphere(poi: &Poi, model: &CityModel) -> Option<(DVec3, f64)> {
+    match &poi.place {
+        PoiPlace::At(at) => Some((*at, POINT_RADIUS_M)),
+        PoiPlace::Object(id) => {
+            let bounds = model.family_bounds(model.find_object(id)?);
+            (!bounds.is_empty()).then(|| (bounds.center(), 0.5 * bounds.size().length()))
+        }
+    }
+}
+
+/// The scene that the view of a lens shows on so many pixels, seen from a picture with this camera.
+///
+/// # Errors
+/// Where its point of interest has no place in the city.
+pub fn local(
+    studio: &Studio,
+    scene: &Scene,
+    main: &Camera,
+    lens: &Lens,
+    shown: &BestView,
+    view: &LocalView,
+    size: [u32; 2],
+) -> Result<Local, RenderError> {
+    let model = &*studio.model;
+    let first = || {
+        let poi = shown.pois.first().and_then(|name| scene.pois.iter().find(|poi| poi.name == *name));
+        poi.and_then(|poi| sphere(poi, model).map(|sphere| (poi, sphere))).ok_or_else(|| {
+            let name = shown.pois.first().map_or("", String::as_str);
+            RenderError::Scene(format!(
+                "lens \"{}\": its point of interest \"{name}\" has no place in the city",
+                lens.name
+            ))
+        })
+    };
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let mut own = Local { scene: seen_through(scene, shown), transparent: false, mirror: false };
+    let camera = match view {
+        LocalView::Best { normal, fov_y } => {
+            let (poi, (middle, radius)) = first()?;
+            let normal = match normal {
+                Some(normal) => *normal,
+                None => best_normal(studio, poi, *fov_y, aspect)?,
+            };
+            local::around(middle, radius, normal, *fov_y, aspect, main)
+        }
+        LocalView::Mcop { normal, distance_m, fov_y } => local::towards_viewer(main, *normal, *distance_m, *fov_y),
+        LocalView::Scop { direction, of_camera, mirror, fov_y } => {
+            own.mirror = *mirror;
+            let direction = if *of_camera { local::of_viewer(main, *direction) } else { *direction };
+            local::from_viewer(main, direction, *fov_y)
+        }
+        LocalView::Map { mode, height_m } => {
+            let heading = if *mode == MapMode::HeadUp { local::heading(main) } else { DVec2::Y };
+            let top = studio.extent().max.z.max(main.eye.z);
+            local::map(
+                main.eye.truncate().extend(if top.is_finite() { top } else { main.eye.z }),
+                heading,
+                *height_m,
+                ABOVE_M,
+            )
+        }
+        LocalView::Worldlet { azimuth, elevation, margin_m, fov_y } => {
+            let (poi, (middle, radius)) = first()?;
+            own.transparent = true;
+            own.scene.lenses.push(alone(poi, model, *margin_m));
+            let (up, level) = (elevation.sin(), elevation.cos());
+            let normal = DVec3::new(level * azimuth.sin(), level * azimuth.cos(), up);
+            local::around(middle, radius + margin_m, normal, *fov_y, aspect, main)
+        }
+        LocalView::Camera(camera) => *camera,
+    };
+    own.scene.camera = Some(camera);
+    Ok(own)
+}
+
+/// The scene as the view of a lens has it, still without its camera.
+fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
+    let mut own = scene.clone();
+    own.animation = None;
+    own.figure = Figure { legend: LegendPlace::None, title: None, caption: None, ..own.figure };
+    for lens in &mut own.lenses {
+        let is_in = match &shown.lenses {
+            Some(names) => names.contains(&lens.name),
+            // What is fixed to a camera, and what is flat, acts in its own view alone (L2).
+            None => lens.best_view.is_none() && lens.placement != Placement::Camera && !is_flat(lens),
+        };
+        lens.enabled &= is_in;
+    }
+    if let Some(look) = &shown.look {
+        let (base, effects, background) = (look.base, look.effects.clone(), look.background);
+        own.style = Style { base, effects, background, ..own.style };
+    }
+    own
+}
+
+fn is_flat(lens: &Lens) -> bool {
+    lens.shapes.iter().any(|s| s.any(&|f| matches!(f, Focus::Shape(Shape::Flat { .. }))))
+}
+
+/// A lens that leaves nothing but a point of interest and the objects that come within `margin_m` of its box in plan.
+fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
+    let near = match &poi.place {
+        PoiPlace::At(at) => Aabb { min: *at, max: *at },
+        PoiPlace::Object(id) => model.find_object(id).map_or(Aabb::EMPTY, |object| model.family_bounds(object)),
+    };
+    let meets = |bounds: Aabb| {
+        let reach = DVec2::splat(margin_m);
+        let (low, high) = (near.min.truncate() - reach, near.max.truncate() + reach);
+        bounds.min.truncate().cmple(high).all() && bounds.max.truncate().cmpge(low).all()
+    };
+    let is_own = |id: &str| matches!(&poi.place, PoiPlace::Object(own) if own == id);
+    let roots = model.roots();
+    let taken = roots.iter().enumerate().filter(|&(object, &root)| root as usize == object).filter(|&(object, _)| {
+        let is_near = || !model.objects[object].class.is_ground() && meets(model.family_bounds(object as u32));
+        is_own(&model.objects[object].id) || (margin_m > 0.0 && is_near())
+    });
+    let mut ids: Vec<String> = taken.map(|(object, _)| model.objects[object].id.to_string()).collect();
+    if let PoiPlace::Object(id) = &poi.place
+        && !ids.contains(id)
+    {
+        ids.push(id.clone());
+    }
+    let erased = EffectUse {
+        effect: "eraser".into(),
+        class: Class::Rest,
+        blend: None,
+        weight: None,
+        parameters: Default::default(),
+    };
+    Lens {
+        name: String::new(),
+        kind: LensKind::Color,
+        enabled: true,
+        color: [0.0; 3],
+        placement: Placement::World,
+        shapes: vec![Focus::Thematic(Choice { ids, ..Choice::default() })],
+        render: None,
+        effects: vec![erased],
+        best_view: None,
+        content: None,
+        body: LensBody::None,
+        sprite: None,
+        border: None,
+        keeps_shadows: false,
+        section: None,
+    }
+}
+
+fn best_normal(_studio: &Studio, _poi: &Poi, _fov_y: f64, _aspect: f64) -> Result<DVec3, RenderError> {
+    Ok(DVec3::new(-1.0, -1.0, 0.8).normalize_or(DVec3::Z))
+}

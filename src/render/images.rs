@@ -1,0 +1,151 @@
+//! Images that stand over pictures: those of overlays, their masks, the skins of context lines.
+
+use std::path::{Path, PathBuf};
+
+use image::{RgbaImage, imageops};
+use rustc_hash::FxHashMap;
+
+use crate::{
+    city::{
+        Texture, TextureImage, Wrap,
+        texture::{Pixels, decode},
+    },
+    gpu::Gpu,
+    render::{
+        pipelines::{PICTURE, Pipelines},
+        renderer::group,
+    },
+};
+
+/// Images by number; straight alpha.
+#[derive(Debug)]
+pub struct Images {
+    kept: FxHashMap<u64, Image>,
+    /// One opaque white texel: the mask of what has none.
+    white: Option<wgpu::TextureView>,
+    sampler: wgpu::Sampler,
+}
+
+#[derive(Debug)]
+struct Image {
+    /// The file that it shows, and the size that it was asked for in.
+    of: Option<(PathBuf, Option<[u32; 2]>)>,
+    size: [u32; 2],
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+}
+
+impl Images {
+    /// None.
+    pub fn new(gpu: &Gpu) -> Self {
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("images"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self { kept: FxHashMap::default(), white: None, sampler }
+    }
+
+    /// The size of an image; `None`: there is none with this number.
+    pub fn size(&self, number: u64) -> Option<[u32; 2]> {
+        self.kept.get(&number).map(|image| image.size)
+    }
+
+    /// Forgets images.
+    pub fn keep(&mut self, is_kept: impl Fn(u64) -> bool) {
+        self.kept.retain(|number, _| is_kept(*number));
+    }
+
+    /// Keeps sRGB texels, row 0 at the top.
+    pub fn set(&mut self, gpu: &Gpu, number: u64, size: [u32; 2], rgba: &[[u8; 4]]) {
+        let texture = self.fitted(gpu, number, size);
+        gpu.write_texture_level(&texture, 0, bytemuck::cast_slice(rgba));
+        self.white(gpu);
+    }
+
+    /// Keeps what a target shows.
+    pub fn copy(&mut self, gpu: &Gpu, number: u64, picture: &wgpu::Texture) {
+        let size = [picture.width(), picture.height()];
+        let texture = self.fitted(gpu, number, size);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_texture_to_texture(picture.as_image_copy(), texture.as_image_copy(), picture.size());
+        gpu.queue.submit([encoder.finish()]);
+        self.white(gpu);
+    }
+
+    /// Keeps the image of a file: as large as it is, or filling `size`, cut where its shape is another. Whether it was read.
+    ///
+    /// # Errors
+    /// Why the file cannot be read.
+    pub fn of_file(&mut self, gpu: &Gpu, number: u64, file: &Path, size: Option<[u32; 2]>) -> Result<bool, String> {
+        let is_of = |image: &Image| image.of.as_ref().is_some_and(|(own, wanted)| own == file && *wanted == size);
+        if self.kept.get(&number).is_some_and(is_of) {
+            return Ok(false);
+        }
+        let pixels = decode(&Texture { image: TextureImage::File(file.to_owned()), wrap: [Wrap::Repeat; 2] })?;
+        let (size_made, texels) = match size {
+            None => ([pixels.width, pixels.height], pixels.levels.into_iter().next().unwrap_or_default()),
+            Some(size) => (size, filling(&pixels, size)),
+        };
+        self.set(gpu, number, size_made, texels.as_chunks().0);
+        if let Some(image) = self.kept.get_mut(&number) {
+            image.of = Some((file.to_owned(), size));
+        }
+        Ok(true)
+    }
+
+    fn fitted(&mut self, gpu: &Gpu, number: u64, size: [u32; 2]) -> wgpu::Texture {
+        use wgpu::TextureUsages as U;
+        if let Some(image) = self.kept.get(&number).filter(|image| image.size == size) {
+            return image.texture.clone();
+        }
+        let texture = gpu.texture("image", [size[0], size[1], 1], 1, PICTURE, U::TEXTURE_BINDING | U::COPY_DST);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        self.kept.insert(number, Image { of: None, size, texture: texture.clone(), view });
+        texture
+    }
+
+    fn white(&mut self, gpu: &Gpu) {
+        self.white.get_or_insert_with(|| {
+            use wgpu::TextureUsages as U;
+            let texture = gpu.texture("white", [1, 1, 1], 1, PICTURE, U::TEXTURE_BINDING | U::COPY_DST);
+            gpu.write_texture_level(&texture, 0, &[255; 4]);
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        });
+    }
+
+    /// What binds an image and its mask; `None`: one of them is missing.
+    pub(super) fn group(
+        &self,
+        gpu: &Gpu,
+        pipelines: &Pipelines,
+        image: u64,
+        mask: Option<u64>,
+    ) -> Option<wgpu::BindGroup> {
+        use wgpu::BindingResource as R;
+        let image = &self.kept.get(&image)?.view;
+        let mask = match mask {
+            None => self.white.as_ref()?,
+            Some(mask) => &self.kept.get(&mask)?.view,
+        };
+        let entries = [(0, R::TextureView(image)), (1, R::TextureView(mask)), (2, R::Sampler(&self.sampler))];
+        Some(group(gpu, "image over the picture", &pipelines.layouts.furniture_picture, &entries))
+    }
+}
+
+/// An image that fills `size`, its middle where its shape is another; from the level that is just finer.
+fn filling(pixels: &Pixels, size: [u32; 2]) -> Vec<u8> {
+    let scale = |level: usize| {
+        let own = pixels.size(level);
+        (f64::from(own[0]) / f64::from(size[0])).min(f64::from(own[1]) / f64::from(size[1]))
+    };
+    let level = (0..pixels.levels.len()).rev().find(|&level| scale(level) >= 1.0).unwrap_or(0);
+    let [width, height] = pixels.size(level);
+    let Some(image) = RgbaImage::from_raw(width, height, pixels.levels[level].clone()) else { return Vec::new() };
+    let scale = scale(level);
+    let wanted: [u32; 2] =
+        std::array::from_fn(|i| ((f64::from(size[i]) * scale).round() as u32).clamp(1, [width, height][i]));
+    let cut = imageops::crop_imm(&image, (width - wanted[0]) / 2, (height - wanted[1]) / 2, wanted[0], wanted[1]);
+    imageops::resize(&cut.to_image(), size[0], size[1], imageops::FilterType::CatmullRom).into_raw()
+}
