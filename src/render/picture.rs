@@ -6,6 +6,8 @@ use std::{
     time::Instant,
 };
 
+use glam::DVec3;
+
 use crate::{
     city::{
         CityModel, Lod,
@@ -156,6 +158,8 @@ pub struct Studio {
     pub reading: LoadOptions,
     /// Those loaded so far.
     content_cities: Mutex<ContentCities>,
+    /// From where objects are seen best, by object and field of view.
+    pub(super) best_normals: Mutex<BTreeMap<(u32, u64), DVec3>>,
     /// Pictures from other eyes, by number.
     pub(super) insets: BTreeMap<u64, Inset>,
     /// Where the shown triangles are, made for the first picture whose lenses are counted.
@@ -211,6 +215,7 @@ impl Studio {
             occlusion: Mutex::default(),
             reading: LoadOptions::default(),
             content_cities: Mutex::default(),
+            best_normals: Mutex::default(),
             insets: BTreeMap::new(),
             index: OnceLock::new(),
             footprints: OnceLock::new(),

@@ -6,7 +6,7 @@ use crate::{
     city::CityModel,
     geom::{Aabb, Shape},
     lens::{
-        BestView, Class, EffectUse, Focus, Lens, LensBody, LensKind, Placement,
+        BestView, Class, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, Placement,
         best_view::{LocalView, MapMode},
         chosen::Choice,
     },
@@ -71,9 +71,11 @@ pub fn local(
     let camera = match view {
         LocalView::Best { normal, fov_y } => {
             let (poi, (middle, radius)) = first()?;
-            let normal = match normal {
-                Some(normal) => *normal,
-                None => best_normal(studio, poi, *fov_y, aspect)?,
+            let normal = match (normal, &poi.place) {
+                (Some(normal), _) => *normal,
+                (None, PoiPlace::Object(id)) => studio.best_normal(id, *fov_y)?,
+                // A place has no facades: from the south-west and from above.
+                (None, PoiPlace::At(_)) => DVec3::new(-1.0, -1.0, 0.8),
             };
             local::around(middle, radius, normal, *fov_y, aspect, main)
         }
@@ -159,7 +161,7 @@ fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
         class: Class::Rest,
         blend: None,
         weight: None,
-        parameters: Default::default(),
+        parameters: [("keep_terrain".to_owned(), Parameter::Boolean(false))].into(),
     };
     Lens {
         name: String::new(),
@@ -178,8 +180,4 @@ fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
         keeps_shadows: false,
         section: None,
     }
-}
-
-fn best_normal(_studio: &Studio, _poi: &Poi, _fov_y: f64, _aspect: f64) -> Result<DVec3, RenderError> {
-    Ok(DVec3::new(-1.0, -1.0, 0.8).normalize_or(DVec3::Z))
 }
