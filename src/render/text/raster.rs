@@ -7,7 +7,7 @@ use swash::{
 
 use crate::{
     lens::color::{Srgb, linear_from_srgb},
-    render::text::{TextLine, Typesetter, cleaned, font_of, size_of},
+    render::text::{TextLine, Typesetter, cleaned, size_of},
 };
 
 /// A line of text as pixels of the picture.
@@ -63,36 +63,40 @@ impl Typesetter {
     /// The glyphs that may reach into the picture: so many as fit beside each other, however long the text.
     fn stamps(&mut self, line: &TextLine, size: [u32; 2]) -> Vec<Stamp> {
         let (glyphs, _) = self.shaped(&cleaned(&line.text), line.style);
-        let mut scaler = self.scale.builder(font_of(line.style.weight)).size(size_of(line.style)).hint(false).build();
         let halo = line.halo.filter(|h| h.width_px > 0.0 && h.opacity > 0.0);
         let mut stroke = Stroke::new(halo.map_or(0.0, |h| 2.0 * h.width_px.min(size_of(line.style))));
         stroke.join(Join::Round);
         let mut stamps = Vec::new();
-        for glyph in glyphs {
-            let (x, y) = (line.at[0] + glyph.x, line.at[1] - glyph.y);
-            let reach = 3.0 * size_of(line.style);
-            if !(-reach..size[0] as f32 + reach).contains(&x) || !(-reach..size[1] as f32 + reach).contains(&y) {
-                continue;
-            }
-            let (column, row) = (x.floor(), y.round());
-            let mut render = Render::new(&[Source::Outline]);
-            // Quarters of a pixel: letters stand evenly.
-            render.offset(Vector::new(((x - column) * 4.0).floor() / 4.0, 0.0));
-            let channels = if halo.is_some() { 2 } else { 1 };
-            for channel in 0..channels {
-                if channel == 1 {
-                    render.style(stroke);
+        for run in glyphs.chunk_by(|a, b| a.face == b.face) {
+            let face = run[0].face;
+            let mut scaler = self.scale.builder(face.font()).size(size_of(line.style)).hint(false).build();
+            for glyph in run {
+                let (x, y) = (line.at[0] + glyph.x, line.at[1] - glyph.y);
+                let reach = 3.0 * size_of(line.style);
+                if !(-reach..size[0] as f32 + reach).contains(&x) || !(-reach..size[1] as f32 + reach).contains(&y) {
+                    continue;
                 }
-                let Some(image) = render.render(&mut scaler, glyph.id) else { continue };
-                let placed = image.placement;
-                if placed.width > 0 && placed.height > 0 {
-                    stamps.push(Stamp {
-                        left: column as i64 + i64::from(placed.left),
-                        top: row as i64 - i64::from(placed.top),
-                        width: placed.width as usize,
-                        data: image.data,
-                        channel,
-                    });
+                let (column, row) = (x.floor(), y.round());
+                let mut render = Render::new(&[Source::Outline]);
+                render.embolden(face.emboldened_em() * size_of(line.style));
+                // Quarters of a pixel: letters stand evenly.
+                render.offset(Vector::new(((x - column) * 4.0).floor() / 4.0, 0.0));
+                let channels = if halo.is_some() { 2 } else { 1 };
+                for channel in 0..channels {
+                    if channel == 1 {
+                        render.style(stroke);
+                    }
+                    let Some(image) = render.render(&mut scaler, glyph.id) else { continue };
+                    let placed = image.placement;
+                    if placed.width > 0 && placed.height > 0 {
+                        stamps.push(Stamp {
+                            left: column as i64 + i64::from(placed.left),
+                            top: row as i64 - i64::from(placed.top),
+                            width: placed.width as usize,
+                            data: image.data,
+                            channel,
+                        });
+                    }
                 }
             }
         }
@@ -163,11 +167,55 @@ mod tests {
 
     #[test]
     fn the_pixels_of_a_missing_glyph_are_a_box() {
-        let run = Typesetter::default().rasterised(&line("漢", [10.0, 50.0]), [100, 100]).expect("a box");
+        let run = Typesetter::default().rasterised(&line("ש", [10.0, 50.0]), [100, 100]).expect("a box");
         let [w, h] = run.size.map(|s| s as usize);
         let column = |x: usize| (0..h).filter(|y| run.texels[y * w + x][0] > 100).count();
         let sides = (0..w).filter(|&x| column(x) * 10 > h * 8).count();
         assert!(sides >= 2, "no two upright sides in {w}x{h}");
+    }
+
+    #[test]
+    fn every_script_of_the_fonts_leaves_ink_and_no_boxes() {
+        let mut set = Typesetter::default();
+        let mut drawn = |text: &str, weight: Weight| {
+            let mut line = line(text, [10.0, 50.0]);
+            line.style.weight = weight;
+            set.rasterised(&line, [100, 100]).expect("pixels")
+        };
+        let ink = |run: &Run| run.texels.iter().map(|texel| u32::from(texel[0])).sum::<u32>();
+        for weight in [Weight::Regular, Weight::SemiBold] {
+            let missing = drawn("ש", weight);
+            let mut seen = vec![missing];
+            for c in "城视臺京駅築のカ한글서ΑλЖя".chars() {
+                let run = drawn(&c.to_string(), weight);
+                assert!(ink(&run) > 255 * 40, "{c}");
+                // Upright: in the em of 40 pixels that stands on the base line, a little below and above it.
+                assert!(
+                    run.origin[1] >= 14 && run.origin[1] + run.size[1] <= 60,
+                    "{c}: {:?} {:?}",
+                    run.origin,
+                    run.size
+                );
+                assert!(!seen.contains(&run), "{c} looks like another");
+                seen.push(run);
+            }
+        }
+        assert!(ink(&drawn("京", Weight::SemiBold)) * 100 > ink(&drawn("京", Weight::Regular)) * 110, "no heavier");
+    }
+
+    #[test]
+    fn scripts_beside_each_other_are_drawn_as_alone() {
+        let mut set = Typesetter::default();
+        let mut drawn = |text: &str, x: f32| set.rasterised(&line(text, [x, 50.0]), [200, 100]).expect("pixels");
+        // 漢 is as wide as the em: its neighbour stands on a whole pixel.
+        let (both, han, latin) = (drawn("漢H", 10.0), drawn("漢", 10.0), drawn("H", 50.0));
+        let at = |run: &Run, x: u32, y: u32| {
+            let [i, j] = [x.wrapping_sub(run.origin[0]), y.wrapping_sub(run.origin[1])];
+            if i < run.size[0] && j < run.size[1] { run.texels[(j * run.size[0] + i) as usize][0] } else { 0 }
+        };
+        for (x, y) in (0..100).flat_map(|y| (0..200).map(move |x| (x, y))) {
+            assert_eq!(at(&both, x, y), at(&han, x, y).saturating_add(at(&latin, x, y)), "{x} {y}");
+        }
     }
 
     #[test]
