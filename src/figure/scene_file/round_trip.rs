@@ -15,7 +15,7 @@ use crate::{
         sprite::{Format, Mapping},
     },
     scene::{
-        Animation, Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique,
+        Animation, Background, BaseStyle, Corner, Figure, LegendPlace, Poi, PoiPlace, Style, Sun, Technique, TextSize,
         Transparency,
         animation::{Change, ChangeKey, Numbers},
         transparency::{MOST_PEELED, SLOTS},
@@ -327,10 +327,11 @@ prop_compose! {
 
 prop_compose! {
     fn figures()(place in 0..6usize, title in prop::option::of(".{1,8}"), caption in prop::option::of("[a-z\n\"]{1,8}"),
-        text_px in prop::option::of(6.0..=400.0f64)) -> Figure {
+        text in prop::option::of((6.0..=180.0f64, any::<bool>())), dpi in prop::option::of(72.0..=150.0f64)) -> Figure {
         let corner = |i: usize| LegendPlace::Corner(Corner::WORDS[i].1);
         let legend = if place < 2 { [LegendPlace::None, LegendPlace::Auto][place] } else { corner(place - 2) };
-        Figure { legend, title, caption, text_px, ..Figure::default() }
+        let size = |(size, is_in_points): (f64, bool)| if is_in_points { TextSize::Points(size) } else { TextSize::Pixels(size) };
+        Figure { legend, title, caption, text: text.map(size), dpi, ..Figure::default() }
     }
 }
 

@@ -125,9 +125,10 @@ fn in_table(table: &mut Table, key: &str, rest: &[String], value: Option<Value>)
         table.insert("shapes".into(), Value::Array(vec![one]));
     }
     // Giving the one form takes the other away.
-    if rest.is_empty() && value.is_some() && (key == "shape" || key == "shapes") {
-        table.remove("shape");
-        table.remove("shapes");
+    for forms in [["shape", "shapes"], ["text_px", "text_pt"]] {
+        if rest.is_empty() && value.is_some() && forms.contains(&key) {
+            forms.iter().for_each(|form| drop(table.remove(*form)));
+        }
     }
     match (rest.split_first(), value) {
         (None, Some(value)) => {

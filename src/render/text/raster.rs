@@ -7,7 +7,7 @@ use swash::{
 
 use crate::{
     lens::color::{Srgb, linear_from_srgb},
-    render::text::{TextLine, Typesetter, cleaned, size_of},
+    render::text::{Halo, TextLine, Typesetter, cleaned, size_of},
 };
 
 /// A line of text as pixels of the picture.
@@ -27,7 +27,18 @@ struct Stamp {
     top: i64,
     width: usize,
     data: Vec<u8>,
-    channel: usize,
+    part: Part,
+}
+
+/// What of a glyph a stamp is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// What its outline encloses.
+    Letter,
+    /// A line along its outline, which makes it heavier.
+    Weight,
+    /// A wide line along its outline.
+    Halo,
 }
 
 impl Typesetter {
@@ -64,11 +75,18 @@ impl Typesetter {
     fn stamps(&mut self, line: &TextLine, size: [u32; 2]) -> Vec<Stamp> {
         let (glyphs, _) = self.shaped(&cleaned(&line.text), line.style);
         let halo = line.halo.filter(|h| h.width_px > 0.0 && h.opacity > 0.0);
-        let mut stroke = Stroke::new(halo.map_or(0.0, |h| 2.0 * h.width_px.min(size_of(line.style))));
-        stroke.join(Join::Round);
+        let stroke = |width: f32| {
+            let mut stroke = Stroke::new(width);
+            stroke.join(Join::Round);
+            stroke
+        };
         let mut stamps = Vec::new();
         for run in glyphs.chunk_by(|a, b| a.face == b.face) {
             let face = run[0].face;
+            let heavier = face.emboldened_em() * size_of(line.style);
+            let weight = (heavier > 0.0).then(|| (Part::Weight, Some(stroke(heavier))));
+            let around = |h: Halo| (Part::Halo, Some(stroke(2.0 * h.width_px.min(size_of(line.style)) + heavier)));
+            let parts = [Some((Part::Letter, None)), weight, halo.map(around)];
             let mut scaler = self.scale.builder(face.font()).size(size_of(line.style)).hint(false).build();
             for glyph in run {
                 let (x, y) = (line.at[0] + glyph.x, line.at[1] - glyph.y);
@@ -77,13 +95,11 @@ impl Typesetter {
                     continue;
                 }
                 let (column, row) = (x.floor(), y.round());
-                let mut render = Render::new(&[Source::Outline]);
-                render.embolden(face.emboldened_em() * size_of(line.style));
-                // Quarters of a pixel: letters stand evenly.
-                render.offset(Vector::new(((x - column) * 4.0).floor() / 4.0, 0.0));
-                let channels = if halo.is_some() { 2 } else { 1 };
-                for channel in 0..channels {
-                    if channel == 1 {
+                for (part, stroke) in parts.into_iter().flatten() {
+                    let mut render = Render::new(&[Source::Outline]);
+                    // Quarters of a pixel: letters stand evenly.
+                    render.offset(Vector::new(((x - column) * 4.0).floor() / 4.0, 0.0));
+                    if let Some(stroke) = stroke {
                         render.style(stroke);
                     }
                     let Some(image) = render.render(&mut scaler, glyph.id) else { continue };
@@ -94,7 +110,7 @@ impl Typesetter {
                             top: row as i64 - i64::from(placed.top),
                             width: placed.width as usize,
                             data: image.data,
-                            channel,
+                            part,
                         });
                     }
                 }
@@ -105,7 +121,8 @@ impl Typesetter {
 }
 
 impl Run {
-    /// Lays a glyph over what is there: letters that touch add up, halos do not.
+    /// Lays a glyph over what is there: letters that touch add up, halos do not. A line along an outline lies half on the letter: where it
+    /// covers a share of a pixel, it covers that share of what the letter leaves free.
     fn put(&mut self, stamp: &Stamp) {
         let [w, h] = self.size.map(i64::from);
         for (i, &coverage) in stamp.data.iter().enumerate() {
@@ -114,8 +131,13 @@ impl Run {
             if (0..w).contains(&x) && (0..h).contains(&y) {
                 let texel = &mut self.texels[(y * w + x) as usize];
                 texel[1] = texel[1].max(coverage);
-                if stamp.channel == 0 {
-                    texel[0] = texel[0].saturating_add(coverage);
+                match stamp.part {
+                    Part::Letter => texel[0] = texel[0].saturating_add(coverage),
+                    Part::Weight => {
+                        let [is, more] = [texel[0], coverage].map(u32::from);
+                        texel[0] = (is + (more * (255 - is) + 127) / 255) as u8;
+                    }
+                    Part::Halo => {}
                 }
             }
         }
@@ -138,7 +160,7 @@ pub fn bent(coverage: u8, color: Srgb) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::text::{Halo, TextStyle, Weight};
+    use crate::render::text::{TextStyle, Weight};
 
     fn line(text: &str, at: [f32; 2]) -> TextLine {
         let style = TextStyle { size_px: 40.0, weight: Weight::Regular, tabular: false };
