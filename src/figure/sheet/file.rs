@@ -262,6 +262,9 @@ set = ["lens.0.enabled=false"]
             ("poi = \"hall\"", "wrap = 2", "wrap: has a meaning only where there is no [[row]]"),
             ("poi = \"hall\"", "pairs = 0", "pairs: must be a whole number 1 to 10000"),
             ("poi = \"hall\"", "cell_size = [0, 9]", "cell_size: must be [width, height]"),
+            ("poi = \"hall\"", "text_px = 9\ntext_pt = 9", "text_pt: is given together with text_px"),
+            ("poi = \"hall\"", "text_pt = 97", "text_pt: 97 points at 300 dpi are 404.17 pixels; 6 to 400"),
+            ("poi = \"hall\"", "text_pt = 4\ncell_size = [9, 9]", "text_pt: 4 points at 96 dpi are 5.33 pixels"),
             ("set = [\"style.base=clay\"]", "set = [1]", "set: must be a list of texts"),
             ("[[row]]\n[[column]]", "[[column]]", "[cell.0] row: there is no row \"2\""),
         ] {
