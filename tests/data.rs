@@ -2,6 +2,8 @@
 //!
 //! One module per room below `tests/data/`; each gives its trials, which are made even without the data.
 
+#[path = "data/best_views.rs"]
+mod best_views;
 #[path = "data/derived.rs"]
 mod derived;
 #[path = "data/edges.rs"]
@@ -41,6 +43,7 @@ fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 's
 fn main() {
     let arguments = Arguments::from_args();
     let rooms = [
+        best_views::trials(),
         derived::trials(),
         edges::trials(),
         faces::trials(),

@@ -1,18 +1,34 @@
 //! `veduta info`: the first thing one runs on an unknown file.
 
+mod sights;
+
 use std::path::PathBuf;
 
 use clap::Args;
+use serde::Serialize;
 
 use crate::{
-    city::facts,
-    cli::{GlobalArguments, Outcome, load, output, report, terminal::Paint},
+    city::{
+        CityModel,
+        facts::{self, Facts},
+        shown::shown_geometries,
+        spatial::SpatialIndex,
+    },
+    cli::{Failure, GlobalArguments, Outcome, load, output, report, terminal::Paint},
+    lens::nearest::did_you_mean,
+    view::Field,
+    visibility,
 };
+
+pub use sights::{LandmarkFacts, ViewFacts};
 
 const EXAMPLES: &str = "\
 Examples:
   veduta info city.city.json                    a summary to read
   veduta info --list tiles/*.city.jsonl         several files as one city, every object by name
+  veduta info --landmarks 10 city.city.json     what stands out in it
+  veduta info --best-views church city.city.json
+                                                from where one object is seen best, as cameras for scenes
   veduta info --json city.glb | jq .objects.total
   zcat city.json.gz | veduta info -             from a pipe
 
@@ -31,17 +47,56 @@ pub struct Arguments {
     /// Name every object, with type, parents, levels of detail, and where it is
     #[arg(long)]
     pub list: bool,
+    /// List the views from which this object (with its parts) is seen best, best first
+    #[arg(long, value_name = "ID")]
+    pub best_views: Option<String>,
+    /// List the N objects that stand out most: by height, footprint, isolation and what their attributes say
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub landmarks: Option<u32>,
+}
+
+/// What is said: facts, and what was asked for beside them.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answer {
+    /// What is in the city.
+    #[serde(flatten)]
+    pub facts: Facts,
+    /// The best views of the object asked for, best first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub best_views: Option<Vec<ViewFacts>>,
+    /// The landmarks, those that stand out most first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub landmarks: Option<Vec<LandmarkFacts>>,
 }
 
 /// Loads the files and says what is in them.
 pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let (city, _) = load::load(&arguments.files, global)?;
-    let facts = facts::facts(&city, arguments.list);
+    let best_views = arguments.best_views.as_ref().map(|id| best_views(&city, id)).transpose()?;
+    let landmarks = arguments.landmarks.map(|n| landmarks(&city, n));
+    let answer = Answer { facts: facts::facts(&city, arguments.list), best_views, landmarks };
     if arguments.json {
         return output::write(std::path::Path::new("-"), |out| {
-            serde_json::to_writer_pretty(&mut *out, &facts)?;
+            serde_json::to_writer_pretty(&mut *out, &answer)?;
             writeln!(out)
         });
     }
-    output::print(&report::text(&facts, &city.sources, Paint::for_stdout()))
+    output::print(&report::text(&answer, &city.sources, Paint::for_stdout()))
+}
+
+fn best_views(city: &CityModel, id: &str) -> Outcome<Vec<ViewFacts>> {
+    let object = city.find_object(id).ok_or_else(|| {
+        let hint = did_you_mean(id, city.objects.iter().map(|object| &*object.id));
+        Failure::failed(format!("--best-views: the city has no object \"{id}\"{hint}"))
+    })?;
+    let shown = shown_geometries(city, None);
+    let index = SpatialIndex::build(city, &shown);
+    let views = visibility::best_views(city, &shown, &index, object, &Field::default());
+    let views = views.map_err(|e| Failure::failed(format!("--best-views: {e}")))?;
+    Ok(views.iter().map(ViewFacts::new).collect())
+}
+
+fn landmarks(city: &CityModel, n: u32) -> Vec<LandmarkFacts> {
+    let found = visibility::landmarks(city, &shown_geometries(city, None), n as usize);
+    found.into_iter().map(|landmark| LandmarkFacts::new(city, landmark)).collect()
 }

@@ -1,9 +1,10 @@
-//! The text form of [`Facts`]: one screen that tells what a file is, at most 100 columns wide.
+//! The text form of an [`Answer`]: one screen that tells what a file is, at most 100 columns wide.
 //!
 //! Text from files is shown with control characters replaced: an id must not be able to steer the terminal.
 
 mod cells;
 mod crs;
+mod sights;
 
 use std::fmt::Write;
 
@@ -13,6 +14,7 @@ use crate::{
         facts::{AttributeFacts, Extent, Facts, TreeLine},
     },
     cli::{
+        info::Answer,
         report::cells::{Align, Table, bytes, clean, count, cut, length, percent},
         terminal::Paint,
     },
@@ -26,7 +28,8 @@ const WIDTH: usize = 100;
 const INDENT: usize = 12;
 
 /// The whole report, ending with a newline.
-pub fn text(facts: &Facts, sources: &[Source], paint: Paint) -> String {
+pub fn text(answer: &Answer, sources: &[Source], paint: Paint) -> String {
+    let facts = &answer.facts;
     let mut report = Report { out: String::new(), paint };
     report.files(facts, sources);
     report.place(facts);
@@ -37,6 +40,8 @@ pub fn text(facts: &Facts, sources: &[Source], paint: Paint) -> String {
     report.textures(facts);
     report.warnings(facts);
     report.list(facts);
+    answer.landmarks.iter().for_each(|landmarks| report.landmarks(landmarks));
+    answer.best_views.iter().for_each(|views| report.best_views(views));
     report.out
 }
 
@@ -338,10 +343,14 @@ mod tests {
         }
     }
 
+    fn some_answer() -> Answer {
+        Answer { facts: some_facts(), best_views: None, landmarks: None }
+    }
+
     #[test]
     fn a_report_fits_and_cannot_steer_the_terminal() {
         let source = Source { path: "y/".repeat(120).into(), format: "CityJSON", version: "2.0".into() };
-        let text = text(&some_facts(), &[source], Paint { on: false });
+        let text = text(&some_answer(), &[source], Paint { on: false });
         assert!(!text.contains('\u{1b}'), "{text}");
         for line in text.lines() {
             assert!(line.chars().count() <= WIDTH, "{} columns: {line}", line.chars().count());
@@ -353,7 +362,7 @@ mod tests {
 
     #[test]
     fn colours_only_where_wanted() {
-        assert!(text(&some_facts(), &[], Paint { on: true }).contains("\u{1b}[1;36mObjects"));
+        assert!(text(&some_answer(), &[], Paint { on: true }).contains("\u{1b}[1;36mObjects"));
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub mod ray;
 pub mod region;
 pub mod shaft;
 pub mod shape;
+pub mod sphere;
 pub mod triangulate;
 
 pub use aabb::Aabb;
@@ -18,3 +19,4 @@ pub(crate) use meets::clipped;
 pub use ray::Ray;
 pub use region::Region;
 pub use shape::{Shape, Solid, Volume};
+pub use sphere::Sphere;

@@ -10,6 +10,7 @@
 
 pub mod basis;
 pub mod first;
+pub mod framing;
 pub mod frustum;
 pub mod jitter;
 pub mod path;
@@ -19,6 +20,7 @@ use glam::DVec3;
 
 pub use basis::Basis;
 pub use first::first_view;
+pub use framing::{Field, Framing, FramingError};
 pub use frustum::{Frustum, HalfSpace};
 pub use jitter::jitter_px;
 pub use project::View;

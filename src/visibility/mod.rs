@@ -3,19 +3,25 @@
 //! The unit is the root city object with all its parts ([`Units`]). A [`Test`] says when one is an occluder; [`Scope::detect`]
 //! asks it of a whole city and says of each occluder which parts of the test held ([`Detected`]). [`Memory`] keeps classes from
 //! flickering over time (O6), [`CaseMemory`] the ways in which they are drawn.
+//!
+//! And what is worth seeing: the best views of an object ([`best_views`], B2), and the objects that stand out ([`landmarks()`], B9).
 
+mod best_view;
 mod bounds;
 mod cases;
 mod coverage;
 mod detect;
+mod landmarks;
 mod memory;
 mod set;
 mod test;
 mod units;
 
+pub use best_view::{APART, BestView, MOST_VIEWS, NoView, Seen, Subject, best_views, upright};
 pub use cases::CaseMemory;
 pub use coverage::Coverage;
 pub use detect::{Detected, Margin, Occluder, Query, Scope};
+pub use landmarks::{Landmark, Terms, landmarks};
 pub use memory::{Memory, Pace};
 pub use set::Set;
 pub use test::{Reference, Test};

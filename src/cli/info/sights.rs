@@ -1,0 +1,131 @@
+//! Best views and landmarks as `info --json` has them.
+
+use glam::DVec3;
+use serde::Serialize;
+
+use crate::{
+    city::CityModel,
+    visibility::{BestView, Landmark},
+};
+
+/// A view of an object. `eye`, `target`, `up`, `fov_deg` and `near_m` are those of a scene's camera.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ViewFacts {
+    /// Best-view normal: from the middle of the object to the eye, unit.
+    pub normal: [f64; 3],
+    /// Where the eye is from the object, degrees clockwise from north, 0..360; straight above 0.
+    pub azimuth_deg: f64,
+    /// How high the eye stands over the object's middle, degrees above the horizon.
+    pub elevation_deg: f64,
+    /// The eye, metres.
+    pub eye: [f64; 3],
+    /// The middle of the ball around the object, metres.
+    pub target: [f64; 3],
+    /// Up in the picture.
+    pub up: [f64; 3],
+    /// Vertical field of view.
+    pub fov_deg: f64,
+    /// Where the ball around the object begins, metres along the view axis.
+    pub near_m: f64,
+    /// Where it ends, metres.
+    pub far_m: f64,
+    /// Share of the area of its facades that is seen, 0..1.
+    pub visible: f64,
+    /// What is seen of what would be were the object alone, 0..1.
+    pub unoccluded: f64,
+    /// How good the view is, 0..1.
+    pub score: f64,
+}
+
+impl ViewFacts {
+    /// Of a view.
+    pub fn new(view: &BestView) -> Self {
+        let framing = &view.framing;
+        let n = framing.normal;
+        Self {
+            normal: n.into(),
+            azimuth_deg: to_degrees(n.x.atan2(n.y)).rem_euclid(360.0),
+            elevation_deg: to_degrees(n.z.clamp(-1.0, 1.0).asin()),
+            eye: to_micrometres(framing.eye),
+            target: to_micrometres(framing.target),
+            up: framing.up.into(),
+            fov_deg: to_degrees(framing.fov_y),
+            near_m: framing.near_m,
+            far_m: framing.far_m,
+            visible: view.seen.visible,
+            unoccluded: view.seen.unoccluded,
+            score: view.score,
+        }
+    }
+}
+
+/// Degrees without the dust of their computation: to a billionth.
+fn to_degrees(radians: f64) -> f64 {
+    (radians.to_degrees() * 1e9).round() / 1e9
+}
+
+/// To the micrometre, finer than which coordinates of countries are not.
+fn to_micrometres(p: DVec3) -> [f64; 3] {
+    p.to_array().map(|x| (x * 1e6).round() / 1e6)
+}
+
+/// An object that stands out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LandmarkFacts {
+    /// Unique id.
+    pub id: String,
+    /// Type as the file names it.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// Its name, where attributes give one.
+    pub name: Option<String>,
+    /// Weighted sum of the terms, 0..1.
+    pub score: f64,
+    /// From its lowest point to its highest, metres.
+    pub height_m: f64,
+    /// Mean height of what is within 200 m, by footprint, metres.
+    pub neighbours_m: f64,
+    /// What it covers of the ground, square metres.
+    pub footprint_m2: f64,
+    /// How far the nearest object is that is at least as high, metres in plan; `null`: there is none.
+    pub isolation_m: Option<f64>,
+    /// What the score is made of.
+    pub terms: TermFacts,
+}
+
+/// The terms of a landmark's score, each 0..1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TermFacts {
+    /// Its height over that of its neighbours.
+    pub height: f64,
+    /// Its footprint over that of its neighbours.
+    pub footprint: f64,
+    /// How far it is to the next that is as high.
+    pub isolation: f64,
+    /// What its attributes say.
+    pub attributes: f64,
+}
+
+impl LandmarkFacts {
+    /// Of a landmark of a city.
+    pub fn new(city: &CityModel, landmark: Landmark) -> Self {
+        let object = &city.objects[landmark.object as usize];
+        let terms = landmark.terms;
+        Self {
+            id: object.id.to_string(),
+            kind: city.strings.get(object.kind).to_owned(),
+            name: landmark.name,
+            score: landmark.score,
+            height_m: landmark.height_m,
+            neighbours_m: landmark.neighbours_m,
+            footprint_m2: landmark.footprint_m2,
+            isolation_m: landmark.isolation_m,
+            terms: TermFacts {
+                height: terms.height,
+                footprint: terms.footprint,
+                isolation: terms.isolation,
+                attributes: terms.attributes,
+            },
+        }
+    }
+}
