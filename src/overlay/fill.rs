@@ -242,6 +242,7 @@ fn fill_at(problem: &Problem, step: u32, inward: bool, folds: bool) -> Option<Fi
     let board = &problem.board;
     let mut rows: Vec<Vec<usize>> = vec![Vec::new(); lanes.len()];
     let mut windows: Vec<Vec<Windows>> = vec![vec![Windows::new(); sizes.len()]; lanes.len()];
+    let boards: Vec<Board> = lanes.iter().map(|lane| board.beside(lane.side, board.clearance, &sizes)).collect();
     let mut left = Vec::new();
     for (item, &size) in sizes.iter().enumerate() {
         let mut sides: Vec<(f64, usize)> =
@@ -252,7 +253,7 @@ fn fill_at(problem: &Problem, step: u32, inward: bool, folds: bool) -> Option<Fi
             if size[side.depth_axis()] > board.inner.size()[side.depth_axis()] {
                 return None;
             }
-            windows[k][item] = board.windows(side, 0, size, span, &[]);
+            windows[k][item] = boards[k].windows(side, 0, size, span, &[]);
             let at = problem.place_in_row(&rows[k], item, side);
             let with = rows[k][..at].iter().chain([&item]).chain(&rows[k][at..]);
             let seats: Vec<_> = with.map(|&i| (&windows[k][i][..], sizes[i][side.along_axis()])).collect();

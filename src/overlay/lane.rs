@@ -66,6 +66,16 @@ impl Board {
         Rect::new(min, size)
     }
 
+    /// The board with another clearance, with the points alone that overlays of such sizes may cover that stand at this side.
+    pub fn beside(&self, side: Side, clearance: f64, sizes: &[[i32; 2]]) -> Self {
+        let d = side.depth_axis();
+        let thick = sizes.iter().map(|s| s[d]).max().unwrap_or(0);
+        let strip = self.rect(side, 0, 0, [thick; 2]);
+        let (low, high) = (f64::from(strip.min[d]) - clearance - 1.0, f64::from(strip.max[d]) + clearance + 1.0);
+        let points = self.points.iter().copied().filter(|p| (low..=high).contains(&p[d])).collect();
+        Self { clearance, points, ..*self }
+    }
+
     /// Where an overlay can stand along a side at a depth, from `low` up to `high`, pixels: covering no point and keeping the gap from `obstacles`.
     pub fn windows(
         &self,

@@ -16,17 +16,22 @@ use crate::overlay::{
     line::way,
 };
 
-/// Changes that are tried before the search gives up on large layouts.
-const MOST_TRIALS: usize = 20_000;
+/// Changes that are tried times overlays, before the search gives up: a change costs as much more as there are overlays.
+const MOST_TRIALS: usize = 200_000;
 
 /// The most overlays for which all orders are tried.
 pub const MOST_PROVEN: usize = 9;
+
+/// Stands for a lane where an overlay is further inward.
+const INWARD: usize = usize::MAX;
 
 /// What was found.
 #[derive(Clone, Debug)]
 pub struct Ordered {
     /// The overlays on each lane.
     pub rows: Vec<Vec<usize>>,
+    /// Those further inward: the same places.
+    pub inward: Vec<(usize, Side, Rect)>,
     /// Crossings of lines with lines and overlays.
     pub crossings: u32,
     /// Whether no other order of these rows has less.
@@ -55,13 +60,13 @@ impl<'a> Packer<'a> {
         change: bool,
     ) -> Self {
         let obstacles: Vec<Rect> = filled.inward.iter().map(|i| i.2).collect();
-        let board = Board { clearance, ..problem.board.clone() };
-        let mut on_lanes = filled.rows.concat();
-        on_lanes.sort_unstable();
+        let mut all: Vec<usize> = filled.rows.iter().flatten().copied().chain(filled.inward.iter().map(|i| i.0)).collect();
+        all.sort_unstable();
         let of_lane = |(lane, row): (&Lane, &Vec<usize>)| {
+            let board = problem.board.beside(lane.side, clearance, &filled.sizes);
             let mut windows = vec![Windows::new(); filled.sizes.len()];
             let mut last: Option<usize> = None;
-            for &i in if change { &on_lanes } else { row } {
+            for &i in if change { &all } else { row } {
                 let size = filled.sizes[i];
                 windows[i] = match last.filter(|j| filled.sizes[*j] == size) {
                     Some(j) => windows[j].clone(),
@@ -144,6 +149,7 @@ pub fn ways_of(problem: &Problem, item: usize, rect: &Rect, side: Side) -> Vec<W
 struct State<'p, 'a> {
     packer: &'p Packer<'a>,
     rows: Vec<Vec<usize>>,
+    inward: Vec<(usize, Side, Rect)>,
     rects: Vec<Option<Rect>>,
     ways: Vec<Vec<Way>>,
     /// Crossings of each pair, both ways round.
@@ -154,6 +160,8 @@ struct State<'p, 'a> {
 /// A change of rows that was looked at.
 struct Trial {
     rows: Vec<(usize, Vec<usize>)>,
+    /// Those further inward that change: the number there, and whom it is.
+    inward: Vec<(usize, usize)>,
     /// Overlay, new rectangle, new ways.
     moved: Vec<(usize, Rect, Vec<Way>)>,
     crossings: u32,
@@ -181,23 +189,24 @@ impl<'p, 'a> State<'p, 'a> {
                 }
             }
         }
-        Some(Self { packer, rows: filled.rows.clone(), rects, ways, counts, crossings })
+        Some(Self { packer, rows: filled.rows.clone(), inward: filled.inward.clone(), rects, ways, counts, crossings })
     }
 
-    /// Looks at rows `k` made anew; `None` if one does not fit.
-    fn look(&self, rows: Vec<(usize, Vec<usize>)>) -> Option<Trial> {
+    /// Looks at rows `k` made anew, and at others in places further inward; `None` if a row does not fit.
+    fn look(&self, rows: Vec<(usize, Vec<usize>)>, inward: Vec<(usize, usize)>) -> Option<Trial> {
         let problem = self.packer.problem;
-        let mut moved = Vec::new();
-        let mut longer = 0.0;
+        let mut placed: Vec<(usize, Side, Rect)> = inward.iter().map(|(n, i)| (*i, self.inward[*n].1, self.inward[*n].2)).collect();
         for (k, row) in &rows {
             let side = self.packer.filled.lanes[*k].side;
-            for (&i, rect) in row.iter().zip(self.packer.row(*k, row)?) {
-                if self.rects[i] != Some(rect) {
-                    let ways = ways_of(problem, i, &rect, side);
-                    longer +=
-                        ways.iter().map(Way::length).sum::<f64>() - self.ways[i].iter().map(Way::length).sum::<f64>();
-                    moved.push((i, rect, ways));
-                }
+            placed.extend(row.iter().zip(self.packer.row(*k, row)?).map(|(i, rect)| (*i, side, rect)));
+        }
+        let mut moved = Vec::new();
+        let mut longer = 0.0;
+        for (i, side, rect) in placed {
+            if self.rects[i] != Some(rect) {
+                let ways = ways_of(problem, i, &rect, side);
+                longer += ways.iter().map(Way::length).sum::<f64>() - self.ways[i].iter().map(Way::length).sum::<f64>();
+                moved.push((i, rect, ways));
             }
         }
         let (mut before, mut after) = (0, 0);
@@ -212,12 +221,15 @@ impl<'p, 'a> State<'p, 'a> {
                 before += self.counts[*i][j];
             }
         }
-        Some(Trial { rows, moved, crossings: self.crossings + after - before, longer })
+        Some(Trial { rows, inward, moved, crossings: self.crossings + after - before, longer })
     }
 
     fn take(&mut self, trial: Trial) {
         for (k, row) in trial.rows {
             self.rows[k] = row;
+        }
+        for (n, item) in trial.inward {
+            self.inward[n].0 = item;
         }
         let moved: Vec<usize> = trial.moved.iter().map(|m| m.0).collect();
         for (i, rect, ways) in trial.moved {
@@ -234,24 +246,37 @@ impl<'p, 'a> State<'p, 'a> {
         self.crossings = trial.crossings;
     }
 
-    /// Where each overlay of the lanes stands: lane and number in the row.
+    /// Where each overlay stands: lane and number in the row; [`INWARD`] and the number there.
     fn places(&self) -> Vec<(usize, usize, usize)> {
         let row = |(k, row): (usize, &Vec<usize>)| row.iter().enumerate().map(|(n, i)| (*i, k, n)).collect::<Vec<_>>();
         let mut places: Vec<_> = self.rows.iter().enumerate().flat_map(row).collect();
+        places.extend(self.inward.iter().enumerate().map(|(n, i)| (i.0, INWARD, n)));
         places.sort_unstable();
         places
     }
 
-    /// Two overlays change places.
-    fn swapped(&self, (_, k, m): (usize, usize, usize), (_, l, n): (usize, usize, usize)) -> Option<Trial> {
-        let mut first = self.rows[k].clone();
-        if k == l {
-            first.swap(m, n);
-            return self.look(vec![(k, first)]);
+    /// Two overlays change places; further inward only those of one size can.
+    fn swapped(&self, (i, k, m): (usize, usize, usize), (j, l, n): (usize, usize, usize)) -> Option<Trial> {
+        let sizes = &self.packer.filled.sizes;
+        if (k == INWARD || l == INWARD) && sizes[i] != sizes[j] {
+            return None;
         }
-        let mut second = self.rows[l].clone();
-        std::mem::swap(&mut first[m], &mut second[n]);
-        self.look(vec![(k, first), (l, second)])
+        let with = |k: usize, m: usize, item: usize| {
+            let mut row = self.rows[k].clone();
+            row[m] = item;
+            vec![(k, row)]
+        };
+        match (k == INWARD, l == INWARD) {
+            (true, true) => self.look(Vec::new(), vec![(m, j), (n, i)]),
+            (true, false) => self.look(with(l, n, i), vec![(m, j)]),
+            (false, true) => self.look(with(k, m, j), vec![(n, i)]),
+            (false, false) if k == l => {
+                let mut row = self.rows[k].clone();
+                row.swap(m, n);
+                self.look(vec![(k, row)], Vec::new())
+            }
+            (false, false) => self.look([with(k, m, j), with(l, n, i)].concat(), Vec::new()),
+        }
     }
 
     /// An overlay moves to place `n` of lane `l`.
@@ -260,11 +285,11 @@ impl<'p, 'a> State<'p, 'a> {
         first.remove(m);
         if k == l {
             first.insert(n.min(first.len()), item);
-            return self.look(vec![(k, first)]);
+            return self.look(vec![(k, first)], Vec::new());
         }
         let mut second = self.rows[l].clone();
         second.insert(n.min(second.len()), item);
-        self.look(vec![(k, first), (l, second)])
+        self.look(vec![(k, first), (l, second)], Vec::new())
     }
 
     /// Overlays whose lines cross change places as long as that makes the lines shorter.
@@ -341,8 +366,7 @@ fn try_all(packer: &Packer, state: &State, below: u32) -> Option<(Vec<Vec<usize>
         best: None,
         below,
     };
-    let filled = packer.filled;
-    search.inward = filled.inward.iter().map(|(i, _, rect)| (*rect, state.ways[*i].clone())).collect();
+    search.inward = state.inward.iter().map(|(i, _, rect)| (*rect, state.ways[*i].clone())).collect();
     let fixed = pairs(&search.inward, 0, u32::MAX);
     let mut rows = Vec::new();
     search.rows(&mut items, &mut rows, &mut Vec::new(), fixed);
@@ -428,14 +452,15 @@ impl Exhaustive<'_, '_> {
     }
 }
 
-/// Searches for the order of rows with least crossings, beginning with that of `packer`. `trials`: how many changes are tried, at most.
+/// Searches for the order of rows with least crossings, beginning with that of `packer`. `trials`: how many changes
+/// are tried at most, times overlays.
 pub fn search(packer: &Packer, trials: Option<usize>) -> Option<Ordered> {
     let mut state = State::new(packer)?;
     let layout = &packer.problem.request.layout;
     let count: usize = state.rows.iter().map(Vec::len).sum();
     let mut is_least = state.crossings == 0;
     if layout.order == Order::Anchors && state.crossings > 0 {
-        let mut trials = trials.unwrap_or(MOST_TRIALS);
+        let mut trials = trials.unwrap_or(MOST_TRIALS) / state.rects.len().max(1);
         state.uncross(&mut trials);
         state.improve(&mut trials);
         is_least = state.crossings == 0;
@@ -446,5 +471,5 @@ pub fn search(packer: &Packer, trials: Option<usize>) -> Option<Ordered> {
             }
         }
     }
-    Some(Ordered { rows: state.rows, crossings: state.crossings, is_least })
+    Some(Ordered { rows: state.rows, inward: state.inward, crossings: state.crossings, is_least })
 }

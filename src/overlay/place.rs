@@ -44,6 +44,8 @@ pub struct Placed {
     pub focused: Option<u32>,
     /// Crossings for which no better order was found: it is not looked for again until their number changes.
     pub(crate) hopeless: u32,
+    /// Calls since there was no frame before.
+    pub(crate) calls: usize,
 }
 
 /// An overlay that has a place.
@@ -156,17 +158,17 @@ pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
     let problem = Problem::new(request);
     let focused = focused(&problem, before);
     if let Some(kept) = before.and_then(|before| keep(&problem, before, focused)) {
-        return finished(&problem, kept, focused);
+        return finished(&problem, kept, focused, before.map_or(0, |b| b.calls.wrapping_add(1)));
     }
     let mut filled = fill(&problem);
     let mut is_least = None;
     // Search of the rows as they were filled fits at least as well as they do.
     if let Some(ordered) = search(&Packer::new(&problem, &filled, problem.board.clearance, focused, true), None) {
         is_least = Some(ordered.is_least);
-        filled.rows = ordered.rows;
+        (filled.rows, filled.inward) = (ordered.rows, ordered.inward);
     }
     let rects = packed(&problem, &filled, focused).unwrap_or_else(|| vec![None; problem.overlays.len()]);
-    finished(&problem, Kept { filled, rects, gliding: false, hopeless: 0, is_least }, focused)
+    finished(&problem, Kept { filled, rects, gliding: false, hopeless: 0, is_least }, focused, 0)
 }
 
 /// Which overlay is in the exploration focus: the nearest to the centre of interest; that of before unless another is nearer by more than the dead band.
@@ -198,7 +200,7 @@ pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Crossings {
 }
 
 /// All that is told of a frame.
-fn finished(problem: &Problem, kept: Kept, focused: Option<usize>) -> Placed {
+fn finished(problem: &Problem, kept: Kept, focused: Option<usize>, calls: usize) -> Placed {
     let Kept { filled, rects, gliding, hopeless, is_least } = kept;
     let ways = all_ways(problem, &filled, &rects);
     let crossings = count(&rects, &ways);
@@ -216,6 +218,7 @@ fn finished(problem: &Problem, kept: Kept, focused: Option<usize>) -> Placed {
         layout: problem.request.layout.clone(),
         focused: focused.map(|i| problem.overlays[i].id),
         hopeless,
+        calls,
     };
     placed.folded.sort_unstable();
     let sides = sides_of(&filled);

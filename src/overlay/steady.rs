@@ -16,11 +16,14 @@ use crate::overlay::{
     size::SHRINK_STEPS,
 };
 
-/// How many overlays per call are tried on a lane anew.
+/// How many overlays per call look for a better place, times overlays: the others have their turn in the next calls. At most [`MOST_RETURNS`].
+const RETURNS: usize = 400;
+
+/// See [`RETURNS`].
 const MOST_RETURNS: usize = 4;
 
-/// How many changes of order are tried per call.
-const MOST_TRIALS: usize = 400;
+/// How many changes of order are tried per call, times overlays.
+const MOST_TRIALS: usize = 6000;
 
 /// Of two neighbours in the order of distance, the second comes first only when it is nearer by this factor.
 const NEARER: f64 = 0.95;
@@ -92,14 +95,16 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
     if layout.order == Order::Anchors {
         let shown: Vec<Option<Rect>> = held.iter().zip(&ideal).map(|(h, i)| i.and(*h).or(*i)).collect();
         let deep = deep_crossings(problem, &filled, &shown, dead_band);
-        hopeless = deep;
-        if deep > 0 && deep != before.hopeless {
+        // What was not found is looked for again when it is worse by an eighth, or when it has been less by half.
+        hopeless = if deep * 2 < before.hopeless { deep } else { before.hopeless };
+        if deep > hopeless {
+            hopeless = deep + deep / 8;
             let packer = Packer::new(problem, &filled, problem.board.clearance, focused, true);
             let now = count(&rects_of(&packer)?, &all_ways(problem, &filled, &rects_of(&packer)?)).sum();
             let ordered = search(&packer, Some(MOST_TRIALS))?;
             is_least = Some(ordered.is_least);
             if ordered.crossings < now {
-                filled.rows = ordered.rows;
+                (filled.rows, filled.inward) = (ordered.rows, ordered.inward);
                 ideal = packed(problem, &filled, focused)?;
                 (is_settled, hopeless) = (true, 0);
             }
@@ -238,19 +243,16 @@ fn come(
     let waiting: Vec<usize> =
         (0..ideal.len()).filter(|&i| ideal[i].is_none() || filled.inward.iter().any(|f| f.0 == i)).collect();
     let mut folded = Vec::new();
-    for item in waiting {
+    for (n, &item) in waiting.iter().enumerate() {
         let id = problem.overlays[item].id;
         let was_folded = before.folded.binary_search(&id).is_ok();
-        let was_placed = before.placements.binary_search_by_key(&id, |p| p.id).is_ok();
-        let is_inward = filled.inward.iter().any(|f| f.0 == item);
-        let is_patient = was_folded || was_placed;
-        if is_patient && returns >= MOST_RETURNS {
+        let is_patient = was_folded || is_inward[item];
+        if is_patient && !has_turn(n) {
             if ideal[item].is_none() {
                 folded.push(item);
             }
             continue;
         }
-        returns += usize::from(is_patient);
         // What was not there before needs no more room than it takes.
         let spare = if is_patient { dead_band } else { 0.0 };
         if let Some((k, at)) = lane_for(problem, filled, item, problem.board.clearance + spare) {
@@ -262,7 +264,7 @@ fn come(
                 continue;
             }
         }
-        if is_inward {
+        if is_inward[item] {
             continue;
         }
         let obstacles: Vec<Rect> = ideal.iter().flatten().copied().collect();
@@ -287,7 +289,6 @@ fn come(
 
 /// The lane, and the place in its row, where an overlay could stand too.
 fn lane_for(problem: &Problem, filled: &Filled, item: usize, clearance: f64) -> Option<(usize, usize)> {
-    let board = Board { clearance, ..problem.board.clone() };
     let obstacles: Vec<Rect> = filled.inward.iter().filter(|f| f.0 != item).map(|f| f.2).collect();
     let mut sides: Vec<(f64, usize)> = (0..filled.lanes.len())
         .map(|k| (unease(problem, item, &filled.lanes[k], &filled.rows[k], &filled.sizes), k))
@@ -298,8 +299,10 @@ fn lane_for(problem: &Problem, filled: &Filled, item: usize, clearance: f64) -> 
         let (d, a) = (lane.side.depth_axis(), lane.side.along_axis());
         let at = problem.place_in_row(&filled.rows[k], item, lane.side);
         let row: Vec<usize> = [&filled.rows[k][..at], &[item], &filled.rows[k][at..]].concat();
+        let board = problem.board.beside(lane.side, clearance, &filled.sizes);
         let inner = board.inner.size();
         let length: i32 = row.iter().map(|i| filled.sizes[*i][a] + board.gap).sum();
+        // Before any windows: a full row has no room, whatever the points are.
         if filled.sizes[item][d] > inner[d] || length - board.gap > lane.span.1 - lane.span.0 {
             return None;
         }
