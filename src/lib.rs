@@ -7,7 +7,7 @@
 //!
 //! 1. [`geom`]: shapes and numbers; exact predicates, triangulation, the BVH.
 //! 2. [`city`]: files become one plain [`city::CityModel`] and a list of warnings.
-//! 3. [`view`]: the eye. [`shader`]: WGSL text. [`gpu`]: wgpu, and nothing that knows a city.
+//! 3. [`view`]: the eye. [`overlay`]: 2D places in a picture. [`shader`]: WGSL text. [`gpu`]: wgpu, and nothing that knows a city.
 //! 4. [`visibility`]: who hides what.
 //! 5. [`lens`]: what to show where: shapes, effects, depth sprites and their CPU twins.
 //! 6. [`scene`]: plain data: city + view + lenses + POIs + styles, edited by commands.

@@ -286,6 +286,20 @@ fn no_text_is_too_much() {
 }
 
 #[test]
+fn characters_that_no_font_has_are_counted_once() {
+    let mut scene = scene_of(thematic("function"));
+    scene.figure.title = Some("東京 서울 Αθήνα Минск".into());
+    let drawn = figure::draw(&mut town(), &scene, &request(1, false)).expect("a picture");
+    assert!(drawn.statistics.warnings.iter().all(|warning| warning["code"] != "no-glyph"));
+    scene.figure.title = Some("東京 😀😀 ש".into());
+    scene.figure.caption = Some("😀".into());
+    let drawn = figure::draw(&mut town(), &scene, &request(1, false)).expect("a picture");
+    let told: Vec<_> = drawn.statistics.warnings.iter().filter(|warning| warning["code"] == "no-glyph").collect();
+    assert_eq!((told.len(), &told[0]["count"]), (1, &2.into()));
+    assert_eq!(told[0]["message"], "no font has ש (U+05E9), 😀 (U+1F600): drawn as boxes");
+}
+
+#[test]
 fn the_font_has_its_notice() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let read = |name: &str| std::fs::read_to_string(root.join(name)).expect(name);

@@ -568,7 +568,7 @@ fn wrong_files_are_told_in_one_line() {
     save(&mut studio, &first, &right);
     let whole = std::fs::read(&right).expect("a file");
     let depth = folder.file("depth.exr");
-    veduta::figure::picture::save_depth(&depth, [2, 2], &[1.0; 4], &[]).expect("an AOV");
+    veduta::figure::picture::save_depth(&depth, [2, 2], &[1.0; 4], &Default::default()).expect("an AOV");
     std::fs::write(folder.file("text.exr"), "no picture").expect("a file");
     std::fs::write(folder.file("torn.exr"), &whole[..whole.len() / 2]).expect("a file");
     let good = studio.sprite_of(&first, SIZE, 0).expect("a sprite");

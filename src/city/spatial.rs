@@ -147,26 +147,43 @@ impl SpatialIndex {
 
     /// Visits every triangle that a ray meets not farther than `t_max`, in no particular order; one without direction meets none.
     pub fn hits(&self, model: &CityModel, ray: &Ray, t_max: f64, mut visit: impl FnMut(&Hit)) {
+        self.hits_until(model, ray, t_max, |hit| {
+            visit(hit);
+            false
+        });
+    }
+
+    /// The same, until `visit` says that it is enough.
+    pub fn hits_until(&self, model: &CityModel, ray: &Ray, t_max: f64, mut visit: impl FnMut(&Hit) -> bool) {
+        /// Every box is beyond this end.
+        const ENOUGH: f64 = f64::NEG_INFINITY;
         let Some(test) = TriangleTest::new(ray) else { return };
         self.top.along_ray(ray, t_max, |item, end| {
             let number = self.tiles[item as usize];
             let tile = &model.tiles[number as usize];
             let object = model.geometries[tile.geometry as usize].object;
-            let mut try_triangle = |triangle: u32| {
-                if let Some(t) = test.hit(corners(model, number, triangle)).filter(|t| *t <= t_max) {
-                    visit(&Hit { object, geometry: tile.geometry, tile: number, triangle, t });
-                }
+            // The new end.
+            let mut try_all = |mut triangles: std::ops::Range<u32>, end: f64| -> f64 {
+                let is_enough = end == ENOUGH
+                    || triangles.any(|triangle| {
+                        let hit = test.hit(corners(model, number, triangle)).filter(|t| *t <= t_max);
+                        hit.is_some_and(|t| visit(&Hit { object, geometry: tile.geometry, tile: number, triangle, t }))
+                    });
+                if is_enough { ENOUGH } else { end }
             };
             let triangles = tile.indices.start / 3..tile.indices.end / 3;
             match &self.runs[item as usize] {
-                None => triangles.for_each(try_triangle),
-                Some(runs) => runs.along_ray(ray, end, |run, end| {
-                    let first = triangles.start + run * RUN as u32;
-                    (first..(first + RUN as u32).min(triangles.end)).for_each(&mut try_triangle);
-                    end
-                }),
+                None => try_all(triangles, end),
+                Some(runs) => {
+                    let mut left = end;
+                    runs.along_ray(ray, end, |run, _| {
+                        let first = triangles.start + run * RUN as u32;
+                        left = try_all(first..(first + RUN as u32).min(triangles.end), left);
+                        left
+                    });
+                    left
+                }
             }
-            end
         });
     }
 
@@ -287,6 +304,31 @@ mod tests {
                         assert!(hit.is_some_and(|h| (h.t - 30.0).abs() < 2.0), "{target} {direction}: {hit:?}");
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn hits_end_where_it_is_enough() {
+        let row = grid_of_cubes(30, 1);
+        let model = &row;
+        let shown: Vec<u32> = (0..model.geometries.len() as u32).collect();
+        let through = model.extent().center() - 1000.0 * DVec3::X + DVec3::new(0.0, 0.3, 0.2);
+        let hills = terrain(40);
+        let over = hills.extent().center() - 1000.0 * DVec3::X;
+        for (model, shown, origin) in [(model, &shown[..], through), (&hills, &[0][..], over)] {
+            let index = SpatialIndex::build(model, shown);
+            let ray = Ray { origin, direction: DVec3::X };
+            let mut all = Vec::new();
+            index.hits(model, &ray, f64::INFINITY, |hit| all.push(hit.triangle));
+            assert!(all.len() > 20, "{}", all.len());
+            for wanted in 1..=all.len() {
+                let mut some = Vec::new();
+                index.hits_until(model, &ray, f64::INFINITY, |hit| {
+                    some.push(hit.triangle);
+                    some.len() == wanted
+                });
+                assert_eq!(some, all[..wanted], "the same, as far as it goes");
             }
         }
     }

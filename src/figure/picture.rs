@@ -7,13 +7,22 @@ use crate::figure::file::{WriteError, write_whole};
 /// Text that goes into a picture: keyword and value.
 pub type Note = (&'static str, String);
 
+/// What a file says of its picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Notes {
+    /// Texts.
+    pub texts: Vec<Note>,
+    /// Dots per inch on paper, > 0: PNG alone has a place for it.
+    pub dpi: Option<f64>,
+}
+
 /// The notes every picture carries: program version and hash of the scene.
-pub fn notes(scene_hash: Option<u64>) -> Vec<Note> {
-    let mut notes = vec![("Software", concat!("Veduta ", env!("CARGO_PKG_VERSION")).to_owned())];
+pub fn notes(scene_hash: Option<u64>) -> Notes {
+    let mut texts = vec![("Software", concat!("Veduta ", env!("CARGO_PKG_VERSION")).to_owned())];
     if let Some(hash) = scene_hash {
-        notes.push(("veduta:scene", format!("{hash:016x}")));
+        texts.push(("veduta:scene", format!("{hash:016x}")));
     }
-    notes
+    Notes { texts, dpi: None }
 }
 
 /// FNV-1a of a text: names a scene; not a defence against anybody.
@@ -21,24 +30,17 @@ pub fn hash(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
-fn png(
-    size: [u32; 2],
-    color: png::ColorType,
-    depth: png::BitDepth,
-    notes: &[Note],
-    data: &[u8],
-    dpi: Option<f64>,
-) -> io::Result<Vec<u8>> {
+fn png(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, notes: &Notes, data: &[u8]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
-    encoder.set_pixel_dims(dpi.map(|dpi| {
+    encoder.set_pixel_dims(notes.dpi.map(|dpi| {
         let per_metre = (dpi / 0.0254).round() as u32;
         png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }
     }));
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.set_compression(png::Compression::Balanced);
-    for (keyword, value) in notes {
+    for (keyword, value) in &notes.texts {
         encoder.add_text_chunk((*keyword).to_owned(), value.clone()).map_err(io::Error::other)?;
     }
     if color != png::ColorType::Grayscale {
@@ -55,11 +57,11 @@ fn save_png(
     size: [u32; 2],
     color: png::ColorType,
     depth: png::BitDepth,
-    notes: &[Note],
+    notes: &Notes,
     data: &[u8],
 ) -> Result<(), WriteError> {
     let bytes =
-        png(size, color, depth, notes, data, None).map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
+        png(size, color, depth, notes, data).map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
     write_whole(path, |out| out.write_all(&bytes))
 }
 
@@ -69,7 +71,7 @@ pub fn save_picture(
     size: [u32; 2],
     rgba: &[[u8; 4]],
     opaque: bool,
-    notes: &[Note],
+    notes: &Notes,
 ) -> Result<(), WriteError> {
     if opaque {
         let rgb: Vec<u8> = rgba.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
@@ -77,20 +79,6 @@ pub fn save_picture(
     } else {
         save_png(path, size, png::ColorType::Rgba, png::BitDepth::Eight, notes, bytemuck::cast_slice(rgba))
     }
-}
-
-/// A page to print: sRGB, without alpha, at so many dots per inch.
-pub fn save_page(
-    path: &Path,
-    size: [u32; 2],
-    rgba: &[[u8; 4]],
-    dpi: Option<f64>,
-    notes: &[Note],
-) -> Result<(), WriteError> {
-    let rgb: Vec<u8> = rgba.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
-    let bytes = png(size, png::ColorType::Rgb, png::BitDepth::Eight, notes, &rgb, dpi)
-        .map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
-    write_whole(path, |out| out.write_all(&bytes))
 }
 
 /// Whether a path asks for EXR (else PNG); anything else is refused.
@@ -113,7 +101,7 @@ pub fn check_aov_path(path: &Path) -> Result<(), WriteError> {
 
 /// Depth: metres along the view axis, +∞ = nothing. EXR: one f32 channel `Z`. PNG: 16 bit, 0 = nothing,
 /// 1..65535 = min..max linearly, both in the note `veduta:depth_m`.
-pub fn save_depth(path: &Path, size: [u32; 2], metres: &[f32], notes: &[Note]) -> Result<(), WriteError> {
+pub fn save_depth(path: &Path, size: [u32; 2], metres: &[f32], notes: &Notes) -> Result<(), WriteError> {
     if is_exr(path)? {
         return save_exr(path, size, vec![("Z".to_owned(), exr::prelude::FlatSamples::F32(metres.to_vec()))]);
     }
@@ -128,14 +116,14 @@ pub fn save_depth(path: &Path, size: [u32; 2], metres: &[f32], notes: &[Note]) -
         1 + (share * 65_534.0).round() as u16
     };
     let data: Vec<u8> = metres.iter().flat_map(|&d| code(d).to_be_bytes()).collect();
-    let mut notes = notes.to_vec();
+    let mut notes = notes.clone();
     let range = if min <= max { format!("{min} {max}") } else { "nothing".to_owned() };
-    notes.push(("veduta:depth_m", range));
+    notes.texts.push(("veduta:depth_m", range));
     save_png(path, size, png::ColorType::Grayscale, png::BitDepth::Sixteen, &notes, &data)
 }
 
 /// Object ids: index + 1 as 24 bits, R the high byte; 0 = nothing. PNG only.
-pub fn save_object_id(path: &Path, size: [u32; 2], ids: &[u32], notes: &[Note]) -> Result<(), WriteError> {
+pub fn save_object_id(path: &Path, size: [u32; 2], ids: &[u32], notes: &Notes) -> Result<(), WriteError> {
     if is_exr(path)? {
         return save_exr(path, size, vec![("id".to_owned(), exr::prelude::FlatSamples::U32(ids.to_vec()))]);
     }
@@ -154,7 +142,7 @@ pub fn save_object_id(path: &Path, size: [u32; 2], ids: &[u32], notes: &[Note]) 
 }
 
 /// Normals: unit, model axes, towards the eye; 0,0,0 = nothing. EXR: f32 channels `X`, `Y`, `Z`. PNG: round(255(½+½n)).
-pub fn save_normal(path: &Path, size: [u32; 2], normals: &[[f32; 3]], notes: &[Note]) -> Result<(), WriteError> {
+pub fn save_normal(path: &Path, size: [u32; 2], normals: &[[f32; 3]], notes: &Notes) -> Result<(), WriteError> {
     if is_exr(path)? {
         let channel = |i: usize| exr::prelude::FlatSamples::F32(normals.iter().map(|n| n[i]).collect());
         let channels = ["X", "Y", "Z"].iter().enumerate().map(|(i, name)| ((*name).to_owned(), channel(i)));
@@ -171,7 +159,7 @@ pub fn save_lens_mask(
     size: [u32; 2],
     planes: &[Vec<u32>],
     lens_count: usize,
-    notes: &[Note],
+    notes: &Notes,
 ) -> Result<(), WriteError> {
     let nothing = vec![0; size[0] as usize * size[1] as usize];
     if is_exr(path)? {
@@ -225,7 +213,7 @@ mod tests {
     fn depth_survives_both_formats() {
         let folder = folder("depth");
         let metres = [1.5, f32::INFINITY, 100.25, 7.0, 2.0, 1.5];
-        save_depth(&folder.join("d.exr"), [3, 2], &metres, &[]).unwrap();
+        save_depth(&folder.join("d.exr"), [3, 2], &metres, &Notes::default()).unwrap();
         let read = exr::prelude::read_first_flat_layer_from_file(folder.join("d.exr")).unwrap();
         let channel = &read.layer_data.channel_data.list[0];
         assert_eq!(channel.name.to_string(), "Z");
@@ -245,25 +233,44 @@ mod tests {
     }
 
     #[test]
+    fn a_file_says_its_dots_per_inch() {
+        let folder = folder("dpi");
+        let file = folder.join("p.png");
+        // Per metre and rounded: 300 / 0.0254 = 11811.02.
+        for (dpi, per_metre) in
+            [(None, None), (Some(300.0), Some(11_811)), (Some(96.0), Some(3780)), (Some(10.0), Some(394))]
+        {
+            for opaque in [true, false] {
+                save_picture(&file, [1, 1], &[[1, 2, 3, 4]], opaque, &Notes { dpi, ..notes(None) }).unwrap();
+                let decoder = png::Decoder::new(io::BufReader::new(fs::File::open(&file).unwrap()));
+                let found = decoder.read_info().unwrap().info().pixel_dims;
+                assert_eq!(found.map(|dots| [dots.xppu, dots.yppu]), per_metre.map(|dots| [dots; 2]));
+                assert!(found.is_none_or(|dots| dots.unit == png::Unit::Meter));
+            }
+        }
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
     fn ids_and_masks_are_bits_not_colours() {
         let folder = folder("ids");
-        save_object_id(&folder.join("i.png"), [2, 1], &[0x0001_0203, 0], &[]).unwrap();
+        save_object_id(&folder.join("i.png"), [2, 1], &[0x0001_0203, 0], &Notes::default()).unwrap();
         let read = image::open(folder.join("i.png")).unwrap().into_rgb8();
         assert_eq!(read.get_pixel(0, 0).0, [1, 2, 3]);
-        save_lens_mask(&folder.join("m.png"), [2, 1], &[vec![0x8001, 2]], 16, &[]).unwrap();
+        save_lens_mask(&folder.join("m.png"), [2, 1], &[vec![0x8001, 2]], 16, &Notes::default()).unwrap();
         let read = image::open(folder.join("m.png")).unwrap().into_luma16();
         assert_eq!(read.into_raw(), [0x8001, 2]);
-        let refused = save_lens_mask(&folder.join("m.png"), [2, 1], &[vec![0, 0]], 17, &[]).unwrap_err();
+        let refused = save_lens_mask(&folder.join("m.png"), [2, 1], &[vec![0, 0]], 17, &Notes::default()).unwrap_err();
         assert!(refused.to_string().contains("write .exr"), "{refused}");
         let planes = [vec![1, 2], vec![3, 4_000_000_000]];
-        save_lens_mask(&folder.join("m.exr"), [2, 1], &planes, 40, &[]).unwrap();
+        save_lens_mask(&folder.join("m.exr"), [2, 1], &planes, 40, &Notes::default()).unwrap();
         let read = exr::prelude::read_first_flat_layer_from_file(folder.join("m.exr")).unwrap();
         for (i, channel) in read.layer_data.channel_data.list.iter().enumerate() {
             assert_eq!(channel.name.to_string(), format!("m{i}"));
             let exr::prelude::FlatSamples::U32(values) = &channel.sample_data else { panic!("not u32") };
             assert_eq!(values, &planes[i]);
         }
-        assert!(save_normal(&folder.join("n.jpg"), [1, 1], &[[0.0; 3]], &[]).is_err());
+        assert!(save_normal(&folder.join("n.jpg"), [1, 1], &[[0.0; 3]], &Notes::default()).is_err());
         fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -10,6 +10,7 @@ use crate::{
         parts::{parts, put},
         pipelines::PICTURE,
         renderer::Renderer,
+        told,
     },
 };
 
@@ -19,6 +20,7 @@ impl Renderer {
     /// # Errors
     /// Those of the graphics card.
     pub fn page(&mut self, size: [u32; 2], ground: Srgb, furniture: &Furniture) -> Result<Vec<[u8; 4]>, GpuError> {
+        told::boxes(&told::without_glyph(furniture)).iter().for_each(|(_, message)| log::warn!("{message}"));
         for part in furniture.parts() {
             self.pipelines.prepare(&Key::Furniture { layered: false, part });
         }

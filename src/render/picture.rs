@@ -1,7 +1,7 @@
 //! A picture, its AOVs and its statistics, from a scene and a city: the shown surface written down.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     sync::{Arc, Mutex, OnceLock, PoisonError},
     time::Instant,
 };
@@ -126,6 +126,8 @@ pub struct Picture {
     pub(super) method: MethodFigures,
     /// Objects by lens that have no form that its content derives: shown as they are, left out, shown as something else.
     pub(super) not_derived: [BTreeMap<u32, u32>; 3],
+    /// Characters of the furniture that no font has.
+    pub(super) without_glyph: BTreeSet<char>,
     /// GPU allocations and uploads while drawing (reading back not counted).
     made: (u64, u64),
     /// What it cost.
@@ -276,6 +278,7 @@ impl Studio {
         }
         picture.open = told::open_shells(self, &prepared.volumes, &prepared.operations);
         picture.not_derived = told::not_derived(&prepared.contents);
+        picture.without_glyph = told::without_glyph(furniture);
         picture.fold(&drawn, scene.lenses.len());
         told::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
         if request.statistics {
@@ -739,6 +742,7 @@ impl Picture {
             layers: LayerFigures::default(),
             method: MethodFigures::default(),
             not_derived: Default::default(),
+            without_glyph: Default::default(),
             made: (0, 0),
             statistics: Statistics::default(),
         }

@@ -1,21 +1,24 @@
 //! What a picture warns of: codes that come from the scene and not from a file (docs/warnings.md).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::{
     render::{
         content_cities::SceneContents,
         enclosed::{areas, objects_meeting, with_corners_outside},
+        furniture::{Furniture, Piece},
         operations::Operations,
         picture::{Picture, Studio},
         sections::ends_of,
+        text::{cleaned, has_glyph},
         volume::LensVolume,
     },
     scene::Scene,
 };
 
 /// The codes.
-pub const CODES: [&str; 6] = [SPRITE_LAYERS, OPEN_SHELLS, NOT_DERIVED, NOTHING_DERIVED, DERIVED_INSTEAD, LAYER_ROOM];
+pub const CODES: [&str; 7] =
+    [SPRITE_LAYERS, OPEN_SHELLS, NOT_DERIVED, NOTHING_DERIVED, DERIVED_INSTEAD, LAYER_ROOM, NO_GLYPH];
 
 /// Rays have more intervals than a sprite has layers.
 const SPRITE_LAYERS: &str = "sprite-layers";
@@ -40,6 +43,30 @@ pub(super) fn not_derived(contents: &SceneContents) -> [BTreeMap<u32, u32>; 3] {
 
 /// Translucent fragments found no room.
 const LAYER_ROOM: &str = "layer-room";
+
+/// Text has characters that no font has.
+const NO_GLYPH: &str = "no-glyph";
+/// Characters that a message names; the others are counted.
+const MOST_NAMED: usize = 5;
+
+/// The characters of `furniture` that no font has, each once.
+pub(super) fn without_glyph(furniture: &Furniture) -> BTreeSet<char> {
+    let texts = furniture.pieces.iter().filter_map(|piece| match piece {
+        Piece::Text(line) => Some(&line.text),
+        Piece::Panel(_) | Piece::Image(_) | Piece::Strip(_) => None,
+    });
+    texts.flat_map(|text| cleaned(text).chars().collect::<Vec<_>>()).filter(|c| !has_glyph(*c)).collect()
+}
+
+/// How many they are, and which.
+pub(super) fn boxes(missing: &BTreeSet<char>) -> Option<(u64, String)> {
+    let named: Vec<String> =
+        missing.iter().take(MOST_NAMED).map(|c| format!("{c} (U+{:04X})", u32::from(*c))).collect();
+    let more =
+        if missing.len() > MOST_NAMED { format!(" and {} more", missing.len() - MOST_NAMED) } else { String::new() };
+    let message = format!("no font has {}{more}: drawn as boxes", named.join(", "));
+    (!missing.is_empty()).then_some((missing.len() as u64, message))
+}
 
 /// What is missing of translucent layers, of all samples and parts of a picture.
 fn missing_layers(picture: &Picture) -> Option<(u64, String)> {
@@ -128,10 +155,16 @@ fn each<'a>(scene: &'a Scene, picture: &'a Picture, (_, counts, message): Told) 
     counts(picture).iter().map(of_lens).collect()
 }
 
-/// One line for each lens that something is told of.
+/// What is told of no lens: code, count, message.
+fn of_pictures(picture: &Picture) -> impl Iterator<Item = (&'static str, u64, String)> {
+    let told = [(LAYER_ROOM, missing_layers(picture)), (NO_GLYPH, boxes(&picture.without_glyph))];
+    told.into_iter().filter_map(|(code, found)| found.map(|(count, message)| (code, count, message)))
+}
+
+/// One line for each thing that is told, and each lens that it is told of.
 pub(super) fn messages(scene: &Scene, picture: &Picture) -> Vec<String> {
     let of_lenses = TOLD.into_iter().flat_map(|told| each(scene, picture, told)).map(|(_, _, message)| message);
-    of_lenses.chain(missing_layers(picture).map(|(_, message)| message)).collect()
+    of_lenses.chain(of_pictures(picture).map(|(_, _, message)| message)).collect()
 }
 
 /// The same in the form of warnings of files.
@@ -146,8 +179,8 @@ pub(super) fn warnings(scene: &Scene, picture: &Picture) -> Vec<serde_json::Valu
             || serde_json::json!({ "code": code, "count": count, "objects": lenses, "message": messages.join("; ") }),
         )
     };
-    let layers = missing_layers(picture).map(
-        |(count, message)| serde_json::json!({ "code": LAYER_ROOM, "count": count, "objects": [], "message": message }),
+    let of_pictures = of_pictures(picture).map(
+        |(code, count, message)| serde_json::json!({ "code": code, "count": count, "objects": [], "message": message }),
     );
-    TOLD.into_iter().filter_map(warning).chain(layers).collect()
+    TOLD.into_iter().filter_map(warning).chain(of_pictures).collect()
 }

@@ -134,8 +134,46 @@ pub struct Figure {
     pub title: Option<String>,
     /// A caption, at the bottom left; `\n` begins a line.
     pub caption: Option<String>,
-    /// Size of the text (its em), pixels, 6..=400; `None`: by the size of the picture.
-    pub text_px: Option<f64>,
+    /// Size of the text (its em); `None`: by the size of the picture.
+    pub text: Option<TextSize>,
+    /// Dots per inch of the picture on paper, 10..=2400: what points are measured by, and what the file says. `None`: points are
+    /// those of [`DEFAULT_DPI`], and the file says nothing.
+    pub dpi: Option<f64>,
+}
+
+/// Dots per inch where a figure in points says none: the reference pixel of the web, 1/96 inch.
+pub const DEFAULT_DPI: f64 = 96.0;
+
+/// Points of an inch.
+const POINTS_PER_INCH: f64 = 72.0;
+
+/// Size of text, its em.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TextSize {
+    /// Pixels.
+    Pixels(f64),
+    /// Points, 1/72 inch each.
+    Points(f64),
+}
+
+impl TextSize {
+    /// What it may be, pixels.
+    pub const RANGE_PX: std::ops::RangeInclusive<f64> = 6.0..=400.0;
+
+    /// Pixels of a picture of so many dots per inch.
+    pub fn px(self, dpi: f64) -> f64 {
+        match self {
+            Self::Pixels(px) => px,
+            Self::Points(points) => points * dpi / POINTS_PER_INCH,
+        }
+    }
+}
+
+impl Figure {
+    /// The size of the text, pixels, where the scene gives it.
+    pub fn text_px(&self) -> Option<f64> {
+        self.text.map(|size| size.px(self.dpi.unwrap_or(DEFAULT_DPI)))
+    }
 }
 
 impl Default for Figure {
@@ -146,7 +184,8 @@ impl Default for Figure {
             legend: LegendPlace::default(),
             title: None,
             caption: None,
-            text_px: None,
+            text: None,
+            dpi: None,
         }
     }
 }

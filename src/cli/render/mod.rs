@@ -15,7 +15,7 @@ use crate::{
     cli::{Failure, GlobalArguments, Outcome, load, output, terminal},
     figure::{
         self,
-        picture::{self, Note},
+        picture::{self, Notes},
         scene_file::{self, Options},
     },
     gpu::Gpu,
@@ -92,11 +92,12 @@ pub fn with_warnings(statistics: &mut stats::Statistics, warnings: &[serde_json:
     statistics.warnings = warnings.iter().cloned().chain(of_picture).collect();
 }
 
-/// What a picture says about itself: the program's version and a hash of the scene, paths relative to its file. An animation is no
+/// What a picture says about itself: the program's version, its dots per inch where the scene has them, and a hash of the scene, paths relative to its file. An animation is no
 /// part of a picture.
-pub fn notes(scene: &Scene, options: &Options) -> Vec<Note> {
+pub fn notes(scene: &Scene, options: &Options) -> Notes {
     let still = Scene { animation: None, ..scene.clone() };
-    picture::notes(Some(picture::hash(&scene_file::to_toml_for(&still, options))))
+    let hash = picture::hash(&scene_file::to_toml_for(&still, options));
+    Notes { dpi: scene.figure.dpi, ..picture::notes(Some(hash)) }
 }
 
 /// How paths of a scene file, or of the command line, are read.
@@ -180,7 +181,7 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
     Ok((studio, warnings))
 }
 
-fn write_aov(aov: &AovRequest, picture: &Picture, lens_count: usize, notes: &[Note]) -> Outcome {
+fn write_aov(aov: &AovRequest, picture: &Picture, lens_count: usize, notes: &Notes) -> Outcome {
     let (file, size) = (&aov.file, picture.size);
     // Image-space lenses do not exist in this version: displayed and shown surface are one.
     let written = match aov.kind {

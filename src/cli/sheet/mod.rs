@@ -12,15 +12,15 @@ use crate::{
     figure::{
         file::write_whole,
         legend::{self, Legend},
-        picture,
+        picture::{self, Notes},
         scene_file::{self, Options},
         sheet::{
             self, Cell, Layout, Sheet, Words,
-            layout::{A4_DPI, PAPER, lay_out},
+            layout::{PAPER, lay_out},
         },
     },
     render::picture::{Request, Studio},
-    scene::{CitySpec, Scene, check_against},
+    scene::{CitySpec, Scene, TextSize, check_against},
 };
 use figures::Figures;
 
@@ -116,7 +116,8 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
 /// Writes the sheet itself.
 pub fn save(file: &Path, drawn: &Drawn) -> Outcome {
     let page = &drawn.layout;
-    picture::save_page(file, page.size, &drawn.page, drawn.dpi, &picture::notes(None)).map_err(output::unwritten)
+    let notes = Notes { dpi: drawn.dpi, ..picture::notes(None) };
+    picture::save_picture(file, page.size, &drawn.page, true, &notes).map_err(output::unwritten)
 }
 
 /// Where the cells go: no two to one file, and none to the sheet's.
@@ -202,7 +203,8 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
         progress.at(done as u64 + 1);
     }
     drop(progress);
-    let planned = Sheet { cell_size: Some(cell_size), text_px: Some(f64::from(planned.text_px)), ..sheet.clone() };
+    let planned =
+        Sheet { cell_size: Some(cell_size), text: Some(TextSize::Pixels(planned.text_px.into())), ..sheet.clone() };
     let layout = lay_out(&planned, &words, &legends, size).map_err(failed)?;
     let Some((_, studio)) = kept else { return Err(failed("there is no cell".to_owned())) };
     let mut page =
@@ -210,8 +212,13 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
     for (at, rgba) in layout.cells.iter().zip(&pictures) {
         blit(&mut page, layout.size[0], *at, rgba, cell_size);
     }
-    let dpi = sheet.cell_size.is_none().then_some(A4_DPI);
-    Ok(Drawn { dpi, layout, cells: cells.into_iter().zip(pictures).collect(), figures: found, page })
+    Ok(Drawn {
+        dpi: sheet.dpi_of_file(),
+        layout,
+        cells: cells.into_iter().zip(pictures).collect(),
+        figures: found,
+        page,
+    })
 }
 
 /// The studio of a scene's city: the kept one, if it has that city.

@@ -118,7 +118,7 @@ impl Painter {
         if is_empty || lines.iter().any(|l| l.width > inside.width) || height_of(lines) > inside.height {
             let [w, h] = size;
             log::warn!(
-                "there is no room for the {what} in {w}x{h} pixels; a larger picture, a smaller figure.text_px or a shorter text would be right"
+                "there is no room for the {what} in {w}x{h} pixels; a larger picture, smaller letters (figure.text_px, text_pt) or a shorter text would be right"
             );
             return 0.0;
         }

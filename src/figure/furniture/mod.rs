@@ -39,7 +39,7 @@ const LEGEND_HEIGHT: f32 = 0.8;
 pub fn em_px(figure: &Figure, size: [u32; 2]) -> f32 {
     let [w, h] = size.map(|side| side as f32);
     let by_size = (EM_PX * (w / 1280.0).min(h / 720.0)).max(LEAST_EM_PX);
-    figure.text_px.map_or(by_size, |px| px as f32)
+    figure.text_px().map_or(by_size, |px| px as f32)
 }
 
 /// Lays out a figure's title, caption and legends over a picture of `size` pixels.

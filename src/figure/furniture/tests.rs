@@ -4,7 +4,7 @@ use super::*;
 use crate::{
     lens::thematic::{LegendEntry, LegendKind, Rule, ThematicScale},
     render::furniture::{Panel, Piece},
-    scene::LegendPlace,
+    scene::{LegendPlace, TextSize},
 };
 
 /// A legend of so many categories, `other` and `no data`.
@@ -142,7 +142,15 @@ fn text_follows_the_picture_and_the_scene() {
     assert_eq!(em([2560, 1440]), 2.0 * EM_PX);
     assert_eq!(em([2560, 720]), EM_PX);
     assert_eq!(em([64, 64]), LEAST_EM_PX);
-    assert_eq!(em_px(&Figure { text_px: Some(20.0), ..auto }, [64, 64]), 20.0);
+    let of = |text, dpi| em_px(&Figure { text: Some(text), dpi, ..auto.clone() }, [64, 64]);
+    assert_eq!(of(TextSize::Pixels(20.0), None), 20.0);
+    assert_eq!(of(TextSize::Pixels(20.0), Some(300.0)), 20.0);
+    // N points at D dots per inch are N D / 72 pixels; without D at 96.
+    assert_eq!(of(TextSize::Points(9.0), Some(300.0)), 37.5);
+    assert_eq!(of(TextSize::Points(9.0), Some(72.0)), 9.0);
+    assert_eq!(of(TextSize::Points(9.0), None), 12.0);
+    // What is not given in points does not follow the dots.
+    assert_eq!(em_px(&Figure { dpi: Some(300.0), ..auto.clone() }, [1280, 720]), EM_PX);
 }
 
 #[test]

@@ -671,6 +671,11 @@ pub const BORDER: Table = Table {
     ],
 };
 
+/// Text in points.
+pub const TEXT_PT: Kind = Kind::Number { min: 1.0, max: 400.0 };
+/// Dots per inch.
+pub const DPI: Kind = Kind::Number { min: 10.0, max: 2400.0 };
+
 /// `[figure]`.
 pub const FIGURE: Table = Table {
     name: "figure",
@@ -709,6 +714,22 @@ pub const FIGURE: Table = Table {
             "pixels",
             "Size of the text of legends and captions.",
             "16.0",
+        ),
+        key(
+            "text_pt",
+            TEXT_PT,
+            "by the size of the picture",
+            "points",
+            "The same in points, 1/72 inch, in place of `text_px`: N points at `dpi` D are N·D/72 pixels, which are 6 to 400.",
+            "9.0",
+        ),
+        key(
+            "dpi",
+            DPI,
+            "96 for points; the file says none",
+            "dots per inch",
+            "Resolution of the picture on paper: what `text_pt` is measured by, and what the PNG says (pHYs).",
+            "300.0",
         ),
     ],
 };

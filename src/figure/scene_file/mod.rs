@@ -8,6 +8,7 @@ mod best_view;
 pub mod check;
 mod content;
 pub mod document;
+mod figure;
 mod focus;
 pub mod keys;
 pub(in crate::figure) mod node;
@@ -25,6 +26,7 @@ mod write;
 use std::{fmt, io::Read, path::Path};
 
 pub use check::Problem;
+pub(in crate::figure) use figure::text_size;
 pub use parse::rotation;
 pub use paths::{Options, PathProblem};
 pub use set::{set, set_within};

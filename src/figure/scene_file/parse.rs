@@ -15,7 +15,7 @@ use crate::{
     figure::scene_file::{
         animation, best_view,
         check::{Checker, Fields, Place, lod},
-        content,
+        content, figure,
         focus::Reader,
         keys::{self, CLASSES, Kind},
         node::{Data, Node},
@@ -33,8 +33,7 @@ use crate::{
         ramp::{MAX_CATEGORIES, category},
     },
     scene::{
-        self, Background, BaseStyle, CitySpec, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun, Technique,
-        Transparency, overlay::Frame,
+        self, Background, BaseStyle, CitySpec, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency, overlay::Frame,
     },
     shader::{
         Blend, Clip,
@@ -133,7 +132,7 @@ impl<'o> SceneReader<'o> {
             "sun" => scene.sun = sun(fields),
             "style" => scene.style = self.style(fields),
             "layout" => scene.layout = overlay::layout(fields),
-            "figure" => scene.figure = figure(fields),
+            "figure" => scene.figure = figure::read(&mut self.checker, fields),
             "animation" => scene.animation = animation::read(&mut self.checker, fields, scene.camera.as_ref()),
             _ => {}
         }
@@ -845,18 +844,5 @@ fn sun(fields: &Fields) -> Sun {
         azimuth: radians("azimuth_deg", default.azimuth),
         elevation: radians("elevation_deg", default.elevation),
         shadows: fields.boolean("shadows").unwrap_or(default.shadows),
-    }
-}
-
-fn figure(fields: &Fields) -> Figure {
-    let default = Figure::default();
-    let size = fields.node("size").and_then(Node::numbers::<2>).map_or(default.size, |s| s.map(|side| side as u32));
-    Figure {
-        size,
-        samples: fields.integer("samples").unwrap_or(default.samples),
-        legend: fields.text("legend").and_then(LegendPlace::of_word).unwrap_or(default.legend),
-        title: fields.text("title").map(str::to_owned),
-        caption: fields.text("caption").map(str::to_owned),
-        text_px: fields.number("text_px"),
     }
 }

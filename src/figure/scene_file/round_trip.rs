@@ -17,7 +17,7 @@ use crate::{
     },
     scene::{
         Animation, Background, BaseStyle, Corner, Figure, Layout, LegendPlace, Overlay, Poi, PoiPlace, Style, Sun,
-        Technique, Transparency,
+        Technique, TextSize, Transparency,
         animation::{Change, ChangeKey, Numbers},
         overlay::{Along, BuiltInFrame, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes},
         transparency::{MOST_PEELED, SLOTS},
@@ -423,10 +423,11 @@ prop_compose! {
 
 prop_compose! {
     fn figures()(place in 0..6usize, title in prop::option::of(".{1,8}"), caption in prop::option::of("[a-z\n\"]{1,8}"),
-        text_px in prop::option::of(6.0..=400.0f64)) -> Figure {
+        text in prop::option::of((6.0..=180.0f64, any::<bool>())), dpi in prop::option::of(72.0..=150.0f64)) -> Figure {
         let corner = |i: usize| LegendPlace::Corner(Corner::WORDS[i].1);
         let legend = if place < 2 { [LegendPlace::None, LegendPlace::Auto][place] } else { corner(place - 2) };
-        Figure { legend, title, caption, text_px, ..Figure::default() }
+        let size = |(size, is_in_points): (f64, bool)| if is_in_points { TextSize::Points(size) } else { TextSize::Pixels(size) };
+        Figure { legend, title, caption, text: text.map(size), dpi, ..Figure::default() }
     }
 }
 

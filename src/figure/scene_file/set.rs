@@ -125,9 +125,10 @@ fn in_table(table: &mut Table, key: &str, rest: &[String], value: Option<Value>)
         table.insert("shapes".into(), Value::Array(vec![one]));
     }
     // Giving the one form takes the other away.
-    if rest.is_empty() && value.is_some() && (key == "shape" || key == "shapes") {
-        table.remove("shape");
-        table.remove("shapes");
+    for forms in [["shape", "shapes"], ["text_px", "text_pt"]] {
+        if rest.is_empty() && value.is_some() && forms.contains(&key) {
+            forms.iter().for_each(|form| drop(table.remove(*form)));
+        }
     }
     match (rest.split_first(), value) {
         (None, Some(value)) => {
@@ -205,6 +206,7 @@ fn in_list(list: &mut Vec<Value>, name: &str, key: &str, rest: &[String], value:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::TextSize;
     use crate::{geom::Shape, lens::Focus, scene::BaseStyle, view::Projection};
 
     const SCENE: &str = r#"
@@ -297,6 +299,22 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
             "lens.0.shapes=[{kind=\"sphere\",center=[0,0,0],radius=1},{kind=\"sphere\",center=[9,0,0],radius=1}]",
         );
         assert_eq!(both.unwrap().lenses[0].shapes.len(), 2);
+    }
+
+    #[test]
+    fn one_size_of_text_takes_the_other_away() {
+        let scene = after("figure.text_px=20").unwrap();
+        assert_eq!(scene.figure.text, Some(TextSize::Pixels(20.0)));
+        let then = |scene: &Scene, assignment: &str| {
+            let mut scene = scene.clone();
+            set(&scene.clone(), assignment).unwrap().redo(&mut scene);
+            scene
+        };
+        let scene = then(&scene, "figure.text_pt=9");
+        assert_eq!((scene.figure.text, scene.figure.text_px()), (Some(TextSize::Points(9.0)), Some(12.0)));
+        let scene = then(&scene, "figure.dpi=300");
+        assert_eq!((scene.figure.dpi, scene.figure.text_px()), (Some(300.0), Some(37.5)));
+        assert_eq!(then(&scene, "figure.text_px=20").figure.text_px(), Some(20.0));
     }
 
     #[test]

@@ -105,6 +105,16 @@ fn every_mistake_names_its_line_place_and_remedy() {
             "[figure] size: must be [width, height], two whole numbers 1 to 16384, is [16385, 1]",
         ),
         ("veduta = 1\n[figure]\nsize = [0, 100]", "[figure] size: must be"),
+        ("veduta = 1\n[figure]\ndpi = 9", "[figure] dpi: must be a number 10 to 2400, is 9"),
+        (
+            "veduta = 1\n[figure]\ntext_px = 16\ntext_pt = 9",
+            "s.toml:4: [figure] text_pt: is given together with text_px: one of them would be right",
+        ),
+        (
+            "veduta = 1\n[figure]\ntext_pt = 72\ndpi = 600",
+            "s.toml:3: [figure] text_pt: 72 points at 600 dpi are 600 pixels; 6 to 400 pixels would be right",
+        ),
+        ("veduta = 1\n[figure]\ntext_pt = 4", "text_pt: 4 points at 96 dpi are 5.33 pixels; 6 to 400"),
         ("veduta = 1\n[figure]\nsamples = 1.5", "[figure] samples: must be a whole number 1 to 1024, is 1.5"),
         (
             "veduta = 1\n[city]\nfiles = [\"a\"]\nlod = \"fine\"",

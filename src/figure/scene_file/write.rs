@@ -18,7 +18,9 @@ use crate::{
         BorderUnit, Class, Content, Discrete, EffectUse, Focus, Lens, LensBody, Parameter, Placement,
         color::{parse_hex, to_hex},
     },
-    scene::{Background, BaseStyle, Figure, Layout, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency},
+    scene::{
+        Background, BaseStyle, Figure, Layout, Poi, PoiPlace, Scene, Style, Sun, Technique, TextSize, Transparency,
+    },
     shader::Clip,
     view::{Camera, Projection, default_near_m},
 };
@@ -59,7 +61,12 @@ pub fn write(scene: &Scene, options: &Options) -> String {
         for (key, text) in [("title", &scene.figure.title), ("caption", &scene.figure.caption)] {
             out.key_if(text.is_some(), key, &quoted(text.as_deref().unwrap_or_default()));
         }
-        out.key_if(scene.figure.text_px.is_some(), "text_px", &number(scene.figure.text_px.unwrap_or_default()));
+        match scene.figure.text {
+            Some(TextSize::Pixels(px)) => out.key("text_px", &number(px)),
+            Some(TextSize::Points(points)) => out.key("text_pt", &number(points)),
+            None => {}
+        }
+        out.key_if(scene.figure.dpi.is_some(), "dpi", &number(scene.figure.dpi.unwrap_or_default()));
     }
     if let Some(own) = &scene.animation {
         out.head("[animation]");

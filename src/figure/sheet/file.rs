@@ -8,11 +8,12 @@ use crate::{
             SceneFileError,
             check::{Checker, Fields, Place},
             node::{self, Node},
-            read_text,
+            read_text, text_size,
         },
-        sheet::{CellFigure, CellNote, Setting, Sheet, Variation, keys},
+        sheet::{CellFigure, CellNote, Setting, Sheet, Variation, keys, layout::A4_DPI},
     },
     lens::nearest::did_you_mean,
+    scene::DEFAULT_DPI,
 };
 
 /// How often frames are timed where nothing is said.
@@ -64,6 +65,8 @@ impl Reader {
             self.checker.note(&top.place, "wrap", top.line("wrap"), "has a meaning only where there is no [[row]]");
         }
         let cell_size = top.node("cell_size").and_then(Node::numbers::<2>).map(|size| size.map(|side| side as u32));
+        let dpi = top.number("dpi");
+        let of_page = (!top.given("cell_size")).then_some(A4_DPI);
         Some(Sheet {
             scene: top.text("scene")?.to_owned(),
             settings: settings(&top),
@@ -77,7 +80,8 @@ impl Reader {
             cell_size,
             samples: top.integer("samples"),
             gap_px: top.number("gap_px"),
-            text_px: top.number("text_px"),
+            text: text_size(&mut self.checker, &top, dpi.or(of_page).unwrap_or(DEFAULT_DPI)),
+            dpi,
             rows,
             columns,
             notes,
@@ -258,6 +262,9 @@ set = ["lens.0.enabled=false"]
             ("poi = \"hall\"", "wrap = 2", "wrap: has a meaning only where there is no [[row]]"),
             ("poi = \"hall\"", "pairs = 0", "pairs: must be a whole number 1 to 10000"),
             ("poi = \"hall\"", "cell_size = [0, 9]", "cell_size: must be [width, height]"),
+            ("poi = \"hall\"", "text_px = 9\ntext_pt = 9", "text_pt: is given together with text_px"),
+            ("poi = \"hall\"", "text_pt = 97", "text_pt: 97 points at 300 dpi are 404.17 pixels; 6 to 400"),
+            ("poi = \"hall\"", "text_pt = 4\ncell_size = [9, 9]", "text_pt: 4 points at 96 dpi are 5.33 pixels"),
             ("set = [\"style.base=clay\"]", "set = [1]", "set: must be a list of texts"),
             ("[[row]]\n[[column]]", "[[column]]", "[cell.0] row: there is no row \"2\""),
         ] {

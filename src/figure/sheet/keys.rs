@@ -1,6 +1,6 @@
 //! The one table of sheet-file keys: it drives the checks, the messages, `docs/sheet.md` and the JSON schema.
 
-use crate::figure::scene_file::keys::{Key, Kind, Table, key};
+use crate::figure::scene_file::keys::{DPI, Key, Kind, TEXT_PT, Table, key};
 
 /// Cells in a row or in a column at most.
 pub const MOST: i64 = 64;
@@ -107,7 +107,7 @@ pub const ROOT: Table = Table {
         key(
             "cell_size",
             Kind::Size,
-            "the largest that fits 3508x2480 pixels, A4 landscape at 300 dpi, in the scene's proportions",
+            "the largest that fits 3508x2480 pixels, A4 landscape at 300 dpi (`dpi`), in the scene's proportions",
             "pixels",
             "Width and height of each cell.",
             "[640, 360]",
@@ -135,6 +135,22 @@ pub const ROOT: Table = Table {
             "pixels",
             "Size of the text.",
             "24.0",
+        ),
+        key(
+            "text_pt",
+            TEXT_PT,
+            "as for `text_px`",
+            "points",
+            "The same in points, 1/72 inch, in place of `text_px`: N points at `dpi` D are N·D/72 pixels, which are 6 to 400.",
+            "8.0",
+        ),
+        key(
+            "dpi",
+            DPI,
+            "300; with `cell_size` 96 for points, and the file says none",
+            "dots per inch",
+            "Resolution of the sheet on paper: of A4 without `cell_size`, of `text_pt`, and what the PNG says (pHYs).",
+            "600.0",
         ),
     ],
 };

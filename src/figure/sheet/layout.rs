@@ -25,15 +25,17 @@ use crate::{
         furniture::{Furniture, Panel, Piece},
         text::{TextStyle, Weight},
     },
+    scene::{DEFAULT_DPI, TextSize},
     view::MAX_SIZE,
 };
 
-/// The page that a sheet fits without a size of its own: A4 landscape at 300 dpi, pixels.
-pub const A4: [u32; 2] = [3508, 2480];
-/// Dots per inch of it.
+/// The page that a sheet fits without a size of its own: A4 landscape, millimetres.
+const A4_MM: [f64; 2] = [297.0, 210.0];
+const MM_PER_INCH: f64 = 25.4;
+/// Dots per inch of it where the sheet says nothing else.
 pub const A4_DPI: f64 = 300.0;
-/// The em on it, pixels: 8.6 pt, and what it may be where there is little room: 7.2 and 6 pt.
-const A4_EMS_PX: [f32; 3] = [36.0, 30.0, 25.0];
+/// The em on it, points, and what it may be where there is little room: 36, 30 and 25 pixels at 300 dpi.
+const A4_EMS: [TextSize; 3] = [TextSize::Points(8.64), TextSize::Points(7.2), TextSize::Points(6.0)];
 /// Width of all columns of a sheet with cells of a given size, em.
 const COLUMNS_EM: f32 = 97.0;
 /// No text is smaller unless the sheet says so, pixels.
@@ -86,7 +88,8 @@ pub fn lay_out(sheet: &Sheet, words: &Words, legends: &[Legend], scene_size: [u3
     let found = match sheet.cell_size {
         Some(size) => {
             let columns = (size[0] as f32) * sheet.lines()[1] as f32;
-            page.with(size, sheet.text_px.map_or((columns / COLUMNS_EM).max(LEAST_EM_PX), |px| px as f32))
+            let dpi = sheet.dpi.unwrap_or(DEFAULT_DPI);
+            page.with(size, sheet.text.map_or((columns / COLUMNS_EM).max(LEAST_EM_PX), |text| text.px(dpi) as f32))
         }
         None => page.on_a4(scene_size),
     };
@@ -100,6 +103,11 @@ pub fn lay_out(sheet: &Sheet, words: &Words, legends: &[Legend], scene_size: [u3
     Ok(found)
 }
 
+/// A4 landscape, pixels.
+pub fn a4(dpi: f64) -> [u32; 2] {
+    A4_MM.map(|mm| (mm / MM_PER_INCH * dpi).round() as u32)
+}
+
 struct Page<'a> {
     sheet: &'a Sheet,
     words: &'a Words,
@@ -109,7 +117,10 @@ struct Page<'a> {
 impl Page<'_> {
     /// With the largest cells that fit A4, with smaller text where there are none; what does not fit with any is longer.
     fn on_a4(&self, [w, h]: [u32; 2]) -> Layout {
-        let ems = self.sheet.text_px.map_or(A4_EMS_PX.to_vec(), |px| vec![px as f32]);
+        let dpi = self.sheet.dpi.unwrap_or(A4_DPI);
+        let a4 = a4(dpi);
+        let ems: Vec<f32> =
+            self.sheet.text.map_or(A4_EMS.to_vec(), |text| vec![text]).iter().map(|em| em.px(dpi) as f32).collect();
         let of_width = |width: u32, em: f32| {
             let height = (f64::from(width) * f64::from(h) / f64::from(w)).round().clamp(1.0, f64::from(MAX_SIZE));
             self.with([width, height as u32], em)
@@ -117,10 +128,10 @@ impl Page<'_> {
         let [lines, per_line] = self.sheet.lines().map(|n| n as u32);
         let least = |em: f32| (LEAST_CELL_EM * em).ceil() as u32;
         for em in &ems {
-            let mut width = A4[0];
+            let mut width = a4[0];
             while width >= least(*em) {
                 let found = of_width(width, *em);
-                let [over_x, over_y] = [0, 1].map(|axis| found.size[axis].saturating_sub(A4[axis]));
+                let [over_x, over_y] = [0, 1].map(|axis| found.size[axis].saturating_sub(a4[axis]));
                 if over_x == 0 && over_y == 0 {
                     return found;
                 }
@@ -349,12 +360,14 @@ mod tests {
 
     #[test]
     fn a_sheet_fills_a4_and_nothing_meets() {
+        let a4 = a4(A4_DPI);
+        assert_eq!(a4, [3508, 2480]);
         for (rows, columns) in [(1, 1), (1, 4), (3, 4), (4, 3), (2, 9)] {
             let named = |key: &str, n| (0..n).map(|i| format!("[[{key}]]\nname = \"{key}-{i}\"\n")).collect::<String>();
             let found = laid(&format!("{TEXTS}{}{}", named("row", rows), named("column", columns)), 3).unwrap();
-            assert!(found.size[0] <= A4[0] && found.size[1] <= A4[1], "{:?}", found.size);
+            assert!(found.size[0] <= a4[0] && found.size[1] <= a4[1], "{:?}", found.size);
             // A caption that takes a line more in a narrower cell leaves a line free in each row.
-            let is_full = found.size[0] + 40 > A4[0] || found.size[1] + 40 + 60 * rows as u32 > A4[1];
+            let is_full = found.size[0] + 40 > a4[0] || found.size[1] + 40 + 60 * rows as u32 > a4[1];
             assert!(is_full, "{rows}x{columns}: {:?}", found.size);
             assert_eq!(found.cells.len(), rows * columns);
             check_apart(&found);
@@ -365,8 +378,38 @@ mod tests {
     fn what_does_not_fit_is_longer_and_not_smaller_than_legible() {
         let rows = "[[row]]\n".repeat(30);
         let found = laid(&format!("{TEXTS}{rows}[[column]]\n[[column]]\n"), 3).unwrap();
-        assert!(found.text_px == 25.0 && found.cell_size == [500, 281] && found.size[1] > A4[1], "{:?}", found.size);
+        assert!(
+            found.text_px == 25.0 && found.cell_size == [500, 281] && found.size[1] > a4(A4_DPI)[1],
+            "{:?}",
+            found.size
+        );
         check_apart(&found);
+    }
+
+    #[test]
+    fn points_follow_the_dots_of_the_paper() {
+        let columns = "column = [{}, {}]\n";
+        // 36 pixels at 300 dots per inch are as long as 18 at 150, on half the page.
+        for (dpi, em, page) in
+            [("", 36.0, [3508, 2480]), ("dpi = 150\n", 18.0, [1754, 1240]), ("dpi = 600\n", 72.0, [7016, 4961])]
+        {
+            let found = laid(&format!("{columns}{dpi}"), 1).unwrap();
+            assert_eq!(found.text_px, em);
+            assert!(
+                found.size[0] <= page[0] && found.size[0] + 40 > page[0] && found.size[1] <= page[1],
+                "{:?}",
+                found.size
+            );
+        }
+        let em = |text: &str| laid(&format!("{columns}{text}"), 0).unwrap().text_px;
+        assert_eq!(em("text_pt = 7.5"), 31.25);
+        assert_eq!(em("text_pt = 7.5\ndpi = 600"), 62.5);
+        assert_eq!(em("text_pt = 7.5\ncell_size = [640, 480]"), 10.0);
+        assert_eq!(em("text_pt = 7.5\ncell_size = [640, 480]\ndpi = 144"), 15.0);
+        assert_eq!(em("text_px = 20\ndpi = 600"), 20.0);
+        let said = |text: &str| sheet(text).dpi_of_file();
+        assert_eq!([said(""), said("dpi = 600"), said("cell_size = [64, 48]")], [Some(300.0), Some(600.0), None]);
+        assert_eq!(said("cell_size = [64, 48]\ndpi = 150"), Some(150.0));
     }
 
     #[test]

@@ -12,6 +12,8 @@ pub mod keys;
 pub mod layout;
 pub mod share;
 
+use crate::scene::TextSize;
+
 pub use cells::{Cell, cells};
 pub use layout::{Layout, Words};
 
@@ -48,8 +50,10 @@ pub struct Sheet {
     pub samples: Option<u32>,
     /// Pixels between cells; `None`: an em.
     pub gap_px: Option<f64>,
-    /// The em, pixels.
-    pub text_px: Option<f64>,
+    /// The em.
+    pub text: Option<TextSize>,
+    /// Dots per inch on paper; `None`: [`layout::A4_DPI`] where the sheet fits A4.
+    pub dpi: Option<f64>,
 }
 
 /// A row or a column.
@@ -113,6 +117,11 @@ impl Sheet {
     /// How many rows and columns of cells there are.
     pub fn grid(&self) -> [usize; 2] {
         [self.rows.len().max(1), self.columns.len().max(1)]
+    }
+
+    /// The dots per inch that the file says: none where it has a size in pixels and nothing else is said.
+    pub fn dpi_of_file(&self) -> Option<f64> {
+        self.dpi.or(self.cell_size.is_none().then_some(layout::A4_DPI))
     }
 
     /// Lines of cells, and cells in a line, as they stand on the page.

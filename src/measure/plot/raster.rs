@@ -7,19 +7,28 @@ use resvg::{
     usvg::{Options, Tree, fontdb},
 };
 
-static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
-    let mut fonts = fontdb::Database::new();
-    fonts.load_font_data(include_bytes!("../../../assets/font/Inter-Regular.ttf").to_vec());
-    fonts.load_font_data(include_bytes!("../../../assets/font/Inter-SemiBold.ttf").to_vec());
-    Arc::new(fonts)
-});
+use crate::render::text::fonts;
+
+static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| database(&[fonts::REGULAR, fonts::SEMI_BOLD]));
+/// With what the first have no letters for.
+static ALL_FONTS: LazyLock<Arc<fontdb::Database>> =
+    LazyLock::new(|| database(&[fonts::REGULAR, fonts::SEMI_BOLD, fonts::fallback_data()]));
+
+fn database(files: &[&'static [u8]]) -> Arc<fontdb::Database> {
+    let mut found = fontdb::Database::new();
+    for file in files {
+        found.load_font_source(fontdb::Source::Binary(Arc::new(*file)));
+    }
+    Arc::new(found)
+}
 
 /// Size and pixels (sRGB, opaque) of an SVG drawing at `scale` pixels per CSS pixel.
 ///
 /// # Errors
 /// What makes the text no SVG drawing, or too large a one.
 pub fn pixels(svg: &str, scale: f32) -> Result<([u32; 2], Vec<[u8; 4]>), String> {
-    let options = Options { fontdb: Arc::clone(&FONTS), font_family: "Inter".to_owned(), ..Options::default() };
+    let fonts = if svg.chars().all(|c| c.is_control() || fonts::is_in_first(c)) { &FONTS } else { &ALL_FONTS };
+    let options = Options { fontdb: Arc::clone(fonts), font_family: "Inter".to_owned(), ..Options::default() };
     let tree = Tree::from_str(svg, &options).map_err(|error| error.to_string())?;
     let size = tree.size().to_int_size().scale_by(scale).ok_or("a drawing of no size")?;
     let mut pixmap = Pixmap::new(size.width(), size.height()).ok_or("a drawing that is too large")?;
@@ -46,6 +55,8 @@ mod tests {
         assert_eq!(drawn("", false), 0);
         assert!(drawn("Veduta", false) > 10_000);
         assert!(drawn("Veduta", true) > drawn("Veduta", false), "semi-bold is darker");
+        let [han, other] = ["東京", "京東"].map(|text| drawn(text, false));
+        assert!(han > 10_000 && han.abs_diff(other) * 20 < han, "{han} {other}");
         assert!(pixels("no drawing", 1.0).is_err());
     }
 }

@@ -1,19 +1,19 @@
-//! Text: from a string to placed glyphs of the font that ships with the program, and to coverage.
+//! Text: from a string to placed glyphs of the fonts that ship with the program, and to coverage.
 //!
-//! Only the shipped font is ever used, so a picture's text is the same on every machine. What the font lacks is drawn
-//! as a box. Texts may come from any file: they are cleaned and bounded before anything is measured.
+//! Only the shipped fonts are ever used, so a picture's text is the same on every machine. What the first lacks is set in
+//! the second (Chinese, Japanese, Korean), on the same base line; what both lack is drawn as a box. Texts may come from any
+//! file: they are cleaned and bounded before anything is measured.
 
+mod breaks;
+pub mod fonts;
 mod raster;
 
-use swash::{FontRef, scale::ScaleContext, shape::ShapeContext, text::Script};
+use swash::{scale::ScaleContext, shape::ShapeContext, text::Script};
 
+pub use fonts::has_glyph;
 pub use raster::{Run, bent};
 
-use crate::lens::color::Srgb;
-
-/// Inter 4 (OFL 1.1, `assets/font/NOTICE.md`), a subset: Latin, Greek, Cyrillic, figures and signs.
-const REGULAR: &[u8] = include_bytes!("../../../assets/font/Inter-Regular.ttf");
-const SEMI_BOLD: &[u8] = include_bytes!("../../../assets/font/Inter-SemiBold.ttf");
+use crate::{lens::color::Srgb, render::text::fonts::Face};
 
 /// Characters of one text that are drawn at most; the rest is an ellipsis.
 pub const MAX_CHARS: usize = 1000;
@@ -70,6 +70,7 @@ pub struct TextLine {
 /// A glyph and where its origin is on the base line, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PlacedGlyph {
+    face: Face,
     id: u16,
     x: f32,
     y: f32,
@@ -92,7 +93,8 @@ impl std::fmt::Debug for Typesetter {
 }
 
 /// A text fit to be set on one line: control characters and line ends become blanks, marks of direction and other
-/// characters without width go, blanks are single, and it ends with an ellipsis after [`MAX_CHARS`].
+/// characters without width go, blanks are single, letters of Korean syllables are one syllable, and it ends with an
+/// ellipsis after [`MAX_CHARS`].
 pub fn cleaned(text: &str) -> String {
     let mut out = String::new();
     // Whatever the text, no more of it is looked at.
@@ -106,7 +108,13 @@ pub fn cleaned(text: &str) -> String {
                     out.push(' ');
                 }
             }
-            c => out.push(c),
+            c => match out.chars().next_back().and_then(|last| syllable(last, c)) {
+                Some(joined) => {
+                    out.pop();
+                    out.push(joined);
+                }
+                None => out.push(c),
+            },
         }
     }
     out.truncate(out.trim_end().len());
@@ -116,33 +124,40 @@ pub fn cleaned(text: &str) -> String {
     out
 }
 
-fn font_of(weight: Weight) -> FontRef<'static> {
-    let data = match weight {
-        Weight::Regular => REGULAR,
-        Weight::SemiBold => SEMI_BOLD,
-    };
-    FontRef::from_index(data, 0).unwrap_or_else(|| unreachable!("a test reads the shipped fonts"))
+/// The Korean syllable of a leading letter and a vowel, or of an open syllable and a trailing letter (Unicode 3.12).
+fn syllable(last: char, c: char) -> Option<char> {
+    let [s, l, v, t] = [0xac00, 0x1100, 0x1161, 0x11a7];
+    let (last, c) = (u32::from(last), u32::from(c));
+    let below = |c: u32, first: u32, count: u32| c.checked_sub(first).filter(|i| *i < count);
+    if let (Some(leading), Some(vowel)) = (below(last, l, 19), below(c, v, 21)) {
+        return char::from_u32(s + (leading * 21 + vowel) * 28);
+    }
+    let open = below(last, s, 11_172).filter(|i| i % 28 == 0)?;
+    let trailing = below(c, t, 28).filter(|i| *i > 0)?;
+    char::from_u32(s + open + trailing)
 }
 
 impl Typesetter {
     /// The glyphs of a cleaned text with kerning, and the width of it, pixels.
     fn shaped(&mut self, text: &str, style: TextStyle) -> (Vec<PlacedGlyph>, f32) {
-        let mut shaper = self
-            .shape
-            .builder(font_of(style.weight))
-            // The font has no script that joins letters: one way of setting does for all.
-            .script(Script::Latin)
-            .size(size_of(style))
-            .features(&[("tnum", u16::from(style.tabular))])
-            .build();
-        shaper.add_str(text);
         let (mut glyphs, mut x) = (Vec::new(), 0.0);
-        shaper.shape_with(|cluster| {
-            for glyph in cluster.glyphs {
-                glyphs.push(PlacedGlyph { id: glyph.id, x: x + glyph.x, y: glyph.y });
-                x += glyph.advance;
-            }
-        });
+        for (face, run) in fonts::runs(text, style.weight) {
+            let mut shaper = self
+                .shape
+                .builder(face.font())
+                // The fonts have no script that joins letters: one way of setting does for all.
+                .script(Script::Latin)
+                .size(size_of(style))
+                .features(&[("tnum", u16::from(style.tabular))])
+                .build();
+            shaper.add_str(run);
+            shaper.shape_with(|cluster| {
+                for glyph in cluster.glyphs {
+                    glyphs.push(PlacedGlyph { face, id: glyph.id, x: x + glyph.x, y: glyph.y });
+                    x += glyph.advance;
+                }
+            });
+        }
         (glyphs, x)
     }
 
@@ -171,8 +186,8 @@ impl Typesetter {
         if self.shaped(&text, style).1 <= width_px { text } else { String::new() }
     }
 
-    /// The text in at most `most` lines of `width_px`, broken at blanks; what does not fit ends in an ellipsis. A line
-    /// end of the text begins a line.
+    /// The text in at most `most` lines of `width_px`, broken at blanks, Chinese and Japanese also between characters; what
+    /// does not fit ends in an ellipsis. A line end of the text begins a line.
     pub fn wrapped(&mut self, text: &str, style: TextStyle, width_px: f32, most: usize) -> Vec<String> {
         let mut bounded: String = text.chars().take(MAX_CHARS).collect();
         if bounded.len() < text.len() {
@@ -183,11 +198,14 @@ impl Typesetter {
             let paragraph = cleaned(paragraph);
             let mut line = String::new();
             for word in paragraph.split(' ') {
-                let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
-                if line.is_empty() || self.shaped(&longer, style).1 <= width_px {
-                    line = longer;
-                } else {
-                    lines.push(std::mem::replace(&mut line, word.to_owned()));
+                for (i, piece) in breaks::pieces(word).into_iter().enumerate() {
+                    let blank = if i == 0 && !line.is_empty() { " " } else { "" };
+                    let longer = format!("{line}{blank}{piece}");
+                    if line.is_empty() || self.shaped(&longer, style).1 <= width_px {
+                        line = longer;
+                    } else {
+                        lines.push(std::mem::replace(&mut line, piece.to_owned()));
+                    }
                 }
             }
             lines.push(line);
@@ -206,11 +224,6 @@ fn size_of(style: TextStyle) -> f32 {
     if style.size_px.is_finite() { style.size_px.clamp(*SIZES_PX.start(), *SIZES_PX.end()) } else { *SIZES_PX.start() }
 }
 
-/// Whether the font has a glyph for the character.
-pub fn has_glyph(c: char) -> bool {
-    font_of(Weight::Regular).charmap().map(c) != 0
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -226,12 +239,56 @@ mod tests {
         for c in signs.chars().chain(letters.chars()).chain(' '..='~') {
             assert!(has_glyph(c), "{c:?}");
         }
-        assert!(!has_glyph('😀') && !has_glyph('ש') && !has_glyph('漢'));
+        assert!(signs.chars().chain(letters.chars()).all(fonts::is_in_first));
+        assert!(!has_glyph('😀') && !has_glyph('ש'));
         for weight in [Weight::Regular, Weight::SemiBold] {
-            assert_eq!(font_of(weight).metrics(&[]).units_per_em, 2048);
+            assert_eq!(Face::First(weight).font().metrics(&[]).units_per_em, 2048);
         }
-        let cap = font_of(Weight::Regular).metrics(&[]).cap_height / 2048.0;
-        assert!((cap - CAP_HEIGHT).abs() < 1e-3, "{cap}");
+        let cap = |face: Face| {
+            let metrics = face.font().metrics(&[]);
+            metrics.cap_height / f32::from(metrics.units_per_em)
+        };
+        assert!((cap(Face::First(Weight::Regular)) - CAP_HEIGHT).abs() < 1e-3);
+        // Letters of both fonts stand beside each other.
+        assert!((cap(Face::Fallback(Weight::Regular)) - CAP_HEIGHT).abs() < 0.01);
+    }
+
+    #[test]
+    fn the_fallback_has_what_figures_of_east_asia_need() {
+        // All syllables of Korean, all kana, and of each standard of characters the first and the last.
+        for c in ('\u{ac00}'..='\u{d7a3}').chain('ぁ'..='ゖ').chain('ァ'..='ヺ').chain('ㄅ'..='ㄩ').chain('！'..='～')
+        {
+            assert!(has_glyph(c), "{c:?}");
+        }
+        let chinese = "啊座亍齄城市视图建筑年代一龘臺灣街區、。《》「」￥";
+        let japanese = "亜腕弌瑤都市眺め東京駅周辺々〆ヶー㎡";
+        for c in chinese.chars().filter(|c| *c != '龘').chain(japanese.chars()).chain("伽詰".chars()) {
+            assert!(has_glyph(c) && !fonts::is_in_first(c), "{c:?}");
+        }
+    }
+
+    #[test]
+    fn runs_are_of_one_font_and_keep_marks_with_their_letters() {
+        let runs = |text| fonts::runs(text, Weight::Regular);
+        let (first, fallback) = (Face::First(Weight::Regular), Face::Fallback(Weight::Regular));
+        assert_eq!(runs("Delft Дом"), [(first, "Delft Дом")]);
+        assert_eq!(runs("東京 Tokyo駅"), [(fallback, "東京"), (first, " Tokyo"), (fallback, "駅")]);
+        assert_eq!(runs("か\u{3099}e\u{301}"), [(fallback, "か\u{3099}"), (first, "e\u{301}")]);
+        // What neither has is a box of the first.
+        assert_eq!(runs("東😀"), [(fallback, "東"), (first, "😀")]);
+        assert_eq!(runs(""), [(first, "")]);
+    }
+
+    #[test]
+    fn chinese_is_as_wide_as_its_em_and_scripts_stand_beside_each_other() {
+        let mut set = Typesetter::default();
+        assert!((set.width("城市视图", STYLE) - 4.0 * STYLE.size_px).abs() < 1e-3);
+        let parts = ["東京", " Tokyo ", "서울"].map(|part| set.shaped(part, STYLE).1);
+        let whole = set.shaped("東京 Tokyo 서울", STYLE);
+        assert!((whole.1 - parts.iter().sum::<f32>()).abs() < 1e-2);
+        // One base line.
+        assert!(whole.0.iter().all(|glyph| glyph.y == 0.0));
+        assert!(whole.0.windows(2).all(|pair| pair[0].x < pair[1].x));
     }
 
     #[test]
@@ -246,7 +303,7 @@ mod tests {
         assert!((width("111", tabular) - width("888", tabular)).abs() < 1e-3);
         assert!(width("111", STYLE) < width("888", STYLE));
         // What the font does not have takes the width of its box.
-        assert!(width("漢字", STYLE) > 10.0);
+        assert!(width("שלום", STYLE) > 10.0);
     }
 
     #[test]
@@ -254,6 +311,9 @@ mod tests {
         assert_eq!(cleaned("  a\tb\r\n\u{0}c\u{1b}[31m "), "a b c [31m");
         assert_eq!(cleaned("\u{202e}abc\u{200b}\u{feff}"), "abc");
         assert_eq!(cleaned("5\u{2009}000\u{a0}m"), "5\u{2009}000\u{a0}m");
+        // Korean as some systems write names of files: letter by letter.
+        assert_eq!(cleaned("\u{1112}\u{1161}\u{11ab}\u{1100}\u{1173}\u{11af}"), "한글");
+        assert_eq!(cleaned("\u{ac00}\u{11a7}\u{1112}\u{11ab}"), "\u{ac00}\u{11a7}\u{1112}\u{11ab}");
         let million = "x".repeat(1_000_000);
         assert_eq!(cleaned(&million).chars().count(), MAX_CHARS + 1);
         assert!(cleaned(&million).ends_with('…'));
@@ -284,6 +344,17 @@ mod tests {
         let long = set.wrapped(&"x".repeat(400), STYLE, width, 3);
         assert!(long.len() == 1 && long[0].ends_with('…') && set.width(&long[0], STYLE) <= width, "{long:?}");
         assert!(set.wrapped("", STYLE, width, 3).is_empty());
+    }
+
+    #[test]
+    fn lines_without_blanks_break_between_characters() {
+        let mut set = Typesetter::default();
+        let five = 5.0 * STYLE.size_px + 0.1;
+        assert_eq!(set.wrapped("城市视图建筑年代", STYLE, five, 9), ["城市视图建", "筑年代"]);
+        // What closes does not begin a line.
+        assert_eq!(set.wrapped("城市视图建。年代", STYLE, five, 9), ["城市视图", "建。年代"]);
+        assert_eq!(set.wrapped("東京 LoD2", STYLE, five, 9), ["東京 LoD2"]);
+        assert_eq!(set.wrapped("東京都 LoD2の街", STYLE, five, 9), ["東京都", "LoD2の街"]);
     }
 
     proptest! {

@@ -7,7 +7,7 @@ use swash::{
 
 use crate::{
     lens::color::{Srgb, linear_from_srgb},
-    render::text::{TextLine, Typesetter, cleaned, font_of, size_of},
+    render::text::{Halo, TextLine, Typesetter, cleaned, size_of},
 };
 
 /// A line of text as pixels of the picture.
@@ -27,7 +27,18 @@ struct Stamp {
     top: i64,
     width: usize,
     data: Vec<u8>,
-    channel: usize,
+    part: Part,
+}
+
+/// What of a glyph a stamp is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// What its outline encloses.
+    Letter,
+    /// A line along its outline, which makes it heavier.
+    Weight,
+    /// A wide line along its outline.
+    Halo,
 }
 
 impl Typesetter {
@@ -63,36 +74,45 @@ impl Typesetter {
     /// The glyphs that may reach into the picture: so many as fit beside each other, however long the text.
     fn stamps(&mut self, line: &TextLine, size: [u32; 2]) -> Vec<Stamp> {
         let (glyphs, _) = self.shaped(&cleaned(&line.text), line.style);
-        let mut scaler = self.scale.builder(font_of(line.style.weight)).size(size_of(line.style)).hint(false).build();
         let halo = line.halo.filter(|h| h.width_px > 0.0 && h.opacity > 0.0);
-        let mut stroke = Stroke::new(halo.map_or(0.0, |h| 2.0 * h.width_px.min(size_of(line.style))));
-        stroke.join(Join::Round);
+        let stroke = |width: f32| {
+            let mut stroke = Stroke::new(width);
+            stroke.join(Join::Round);
+            stroke
+        };
         let mut stamps = Vec::new();
-        for glyph in glyphs {
-            let (x, y) = (line.at[0] + glyph.x, line.at[1] - glyph.y);
-            let reach = 3.0 * size_of(line.style);
-            if !(-reach..size[0] as f32 + reach).contains(&x) || !(-reach..size[1] as f32 + reach).contains(&y) {
-                continue;
-            }
-            let (column, row) = (x.floor(), y.round());
-            let mut render = Render::new(&[Source::Outline]);
-            // Quarters of a pixel: letters stand evenly.
-            render.offset(Vector::new(((x - column) * 4.0).floor() / 4.0, 0.0));
-            let channels = if halo.is_some() { 2 } else { 1 };
-            for channel in 0..channels {
-                if channel == 1 {
-                    render.style(stroke);
+        for run in glyphs.chunk_by(|a, b| a.face == b.face) {
+            let face = run[0].face;
+            let heavier = face.emboldened_em() * size_of(line.style);
+            let weight = (heavier > 0.0).then(|| (Part::Weight, Some(stroke(heavier))));
+            let around = |h: Halo| (Part::Halo, Some(stroke(2.0 * h.width_px.min(size_of(line.style)) + heavier)));
+            let parts = [Some((Part::Letter, None)), weight, halo.map(around)];
+            let mut scaler = self.scale.builder(face.font()).size(size_of(line.style)).hint(false).build();
+            for glyph in run {
+                let (x, y) = (line.at[0] + glyph.x, line.at[1] - glyph.y);
+                let reach = 3.0 * size_of(line.style);
+                if !(-reach..size[0] as f32 + reach).contains(&x) || !(-reach..size[1] as f32 + reach).contains(&y) {
+                    continue;
                 }
-                let Some(image) = render.render(&mut scaler, glyph.id) else { continue };
-                let placed = image.placement;
-                if placed.width > 0 && placed.height > 0 {
-                    stamps.push(Stamp {
-                        left: column as i64 + i64::from(placed.left),
-                        top: row as i64 - i64::from(placed.top),
-                        width: placed.width as usize,
-                        data: image.data,
-                        channel,
-                    });
+                let (column, row) = (x.floor(), y.round());
+                for (part, stroke) in parts.into_iter().flatten() {
+                    let mut render = Render::new(&[Source::Outline]);
+                    // Quarters of a pixel: letters stand evenly.
+                    render.offset(Vector::new(((x - column) * 4.0).floor() / 4.0, 0.0));
+                    if let Some(stroke) = stroke {
+                        render.style(stroke);
+                    }
+                    let Some(image) = render.render(&mut scaler, glyph.id) else { continue };
+                    let placed = image.placement;
+                    if placed.width > 0 && placed.height > 0 {
+                        stamps.push(Stamp {
+                            left: column as i64 + i64::from(placed.left),
+                            top: row as i64 - i64::from(placed.top),
+                            width: placed.width as usize,
+                            data: image.data,
+                            part,
+                        });
+                    }
                 }
             }
         }
@@ -101,7 +121,8 @@ impl Typesetter {
 }
 
 impl Run {
-    /// Lays a glyph over what is there: letters that touch add up, halos do not.
+    /// Lays a glyph over what is there: letters that touch add up, halos do not. A line along an outline lies half on the letter: where it
+    /// covers a share of a pixel, it covers that share of what the letter leaves free.
     fn put(&mut self, stamp: &Stamp) {
         let [w, h] = self.size.map(i64::from);
         for (i, &coverage) in stamp.data.iter().enumerate() {
@@ -110,8 +131,13 @@ impl Run {
             if (0..w).contains(&x) && (0..h).contains(&y) {
                 let texel = &mut self.texels[(y * w + x) as usize];
                 texel[1] = texel[1].max(coverage);
-                if stamp.channel == 0 {
-                    texel[0] = texel[0].saturating_add(coverage);
+                match stamp.part {
+                    Part::Letter => texel[0] = texel[0].saturating_add(coverage),
+                    Part::Weight => {
+                        let [is, more] = [texel[0], coverage].map(u32::from);
+                        texel[0] = (is + (more * (255 - is) + 127) / 255) as u8;
+                    }
+                    Part::Halo => {}
                 }
             }
         }
@@ -134,7 +160,7 @@ pub fn bent(coverage: u8, color: Srgb) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::text::{Halo, TextStyle, Weight};
+    use crate::render::text::{TextStyle, Weight};
 
     fn line(text: &str, at: [f32; 2]) -> TextLine {
         let style = TextStyle { size_px: 40.0, weight: Weight::Regular, tabular: false };
@@ -163,11 +189,55 @@ mod tests {
 
     #[test]
     fn the_pixels_of_a_missing_glyph_are_a_box() {
-        let run = Typesetter::default().rasterised(&line("漢", [10.0, 50.0]), [100, 100]).expect("a box");
+        let run = Typesetter::default().rasterised(&line("ש", [10.0, 50.0]), [100, 100]).expect("a box");
         let [w, h] = run.size.map(|s| s as usize);
         let column = |x: usize| (0..h).filter(|y| run.texels[y * w + x][0] > 100).count();
         let sides = (0..w).filter(|&x| column(x) * 10 > h * 8).count();
         assert!(sides >= 2, "no two upright sides in {w}x{h}");
+    }
+
+    #[test]
+    fn every_script_of_the_fonts_leaves_ink_and_no_boxes() {
+        let mut set = Typesetter::default();
+        let mut drawn = |text: &str, weight: Weight| {
+            let mut line = line(text, [10.0, 50.0]);
+            line.style.weight = weight;
+            set.rasterised(&line, [100, 100]).expect("pixels")
+        };
+        let ink = |run: &Run| run.texels.iter().map(|texel| u32::from(texel[0])).sum::<u32>();
+        for weight in [Weight::Regular, Weight::SemiBold] {
+            let missing = drawn("ש", weight);
+            let mut seen = vec![missing];
+            for c in "城视臺京駅築のカ한글서ΑλЖя".chars() {
+                let run = drawn(&c.to_string(), weight);
+                assert!(ink(&run) > 255 * 40, "{c}");
+                // Upright: in the em of 40 pixels that stands on the base line, a little below and above it.
+                assert!(
+                    run.origin[1] >= 14 && run.origin[1] + run.size[1] <= 60,
+                    "{c}: {:?} {:?}",
+                    run.origin,
+                    run.size
+                );
+                assert!(!seen.contains(&run), "{c} looks like another");
+                seen.push(run);
+            }
+        }
+        assert!(ink(&drawn("京", Weight::SemiBold)) * 100 > ink(&drawn("京", Weight::Regular)) * 110, "no heavier");
+    }
+
+    #[test]
+    fn scripts_beside_each_other_are_drawn_as_alone() {
+        let mut set = Typesetter::default();
+        let mut drawn = |text: &str, x: f32| set.rasterised(&line(text, [x, 50.0]), [200, 100]).expect("pixels");
+        // 漢 is as wide as the em: its neighbour stands on a whole pixel.
+        let (both, han, latin) = (drawn("漢H", 10.0), drawn("漢", 10.0), drawn("H", 50.0));
+        let at = |run: &Run, x: u32, y: u32| {
+            let [i, j] = [x.wrapping_sub(run.origin[0]), y.wrapping_sub(run.origin[1])];
+            if i < run.size[0] && j < run.size[1] { run.texels[(j * run.size[0] + i) as usize][0] } else { 0 }
+        };
+        for (x, y) in (0..100).flat_map(|y| (0..200).map(move |x| (x, y))) {
+            assert_eq!(at(&both, x, y), at(&han, x, y).saturating_add(at(&latin, x, y)), "{x} {y}");
+        }
     }
 
     #[test]

@@ -40,6 +40,8 @@ use crate::{
 
 /// Views of an object that are listed at most.
 pub const MOST_VIEWS: usize = 8;
+/// Part of the best score that a listed view has at least.
+const LEAST: f64 = 1.0 / 3.0;
 /// Directions of two listed views differ by at least this, radians.
 pub const APART: f64 = 30.0 * std::f64::consts::PI / 180.0;
 
@@ -106,8 +108,8 @@ impl<'a> Subject<'a> {
         Ok(Self { model, index, is_own, ball, facades })
     }
 
-    /// Its views, best first: each the best of those around it, [`APART`] from all before it, `most` (≤ [`MOST_VIEWS`]) at most and
-    /// one at least. What is seen from nowhere, as what is in another object, has the views that it would have alone, with `visible` 0.
+    /// Its views, best first: each the best of those around it, [`APART`] from all before it, and a third as good as the first at least;
+    /// `most` (≤ [`MOST_VIEWS`]) at most and one at least. What is seen from nowhere, as what is in another object, has the views that it would have alone, with `visible` 0.
     pub fn best_views(&self, field: &Field, most: usize) -> Result<Vec<BestView>, NoView> {
         search::best_views(self, field, most.clamp(1, MOST_VIEWS))
     }
@@ -146,14 +148,17 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Whether the object itself is before a sample, and whether another is. Of a closed body the inner sides of its far faces are
-    /// behind the near ones, so which way faces look is not asked.
+    /// Whether the object itself is before a sample, and whether another is; not asked of what it hides itself. Of a closed body the
+    /// inner sides of its far faces are behind the near ones, so which way faces look is not asked either.
     fn hidden(&self, eye: DVec3, sample: &Sample, distance: f64) -> (bool, bool) {
         let ray = Ray { origin: eye, direction: sample.at - eye };
         let (mut by_itself, mut by_others) = (false, false);
-        self.index.hits(self.model, &ray, 1.0 - SKIN_M / distance, |hit| match self.is_own[hit.object as usize] {
-            true => by_itself |= hit.triangle != sample.triangle,
-            false => by_others = true,
+        self.index.hits_until(self.model, &ray, 1.0 - SKIN_M / distance, |hit| {
+            match self.is_own[hit.object as usize] {
+                true => by_itself |= hit.triangle != sample.triangle,
+                false => by_others = true,
+            }
+            by_itself
         });
         (by_itself, by_others)
     }

@@ -9,7 +9,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
     view::{Field, Framing},
-    visibility::best_view::{APART, BestView, NoView, Seen, Subject, upright},
+    visibility::best_view::{APART, BestView, LEAST, NoView, Seen, Subject, upright},
 };
 
 /// Azimuths, 5° apart.
@@ -195,7 +195,9 @@ pub(super) fn best_views(subject: &Subject, field: &Field, most: usize) -> Resul
         here > 0.0 && around(*at, TURN).into_iter().all(|other| ratings.score(other) <= here)
     };
     let tops: Vec<Place> = first.iter().copied().filter(is_top).collect();
-    let mut starts = apart(ratings.ordered(tops).into_iter().map(|(at, _)| at), most);
+    let tops = ratings.ordered(tops);
+    let least = tops.first().map_or(0.0, |(_, best)| LEAST * best);
+    let mut starts = apart(tops.into_iter().filter(|(_, score)| *score >= least).map(|(at, _)| at), most);
     if starts.is_empty() {
         // Nothing is seen even of an object alone: faces that are seen from their edges only.
         starts = vec![(0, TURN)];

@@ -1,0 +1,194 @@
+//! Whether lines cross, exactly: lines are polylines on a lattice of 1/256 pixel, and predicates are of integers.
+//!
+//! Two lines cross when they share any point, touching included. One thing is no crossing: two lines that end at the same focus and meet nowhere else.
+//! A line crosses an overlay when it shares any point with its rectangle, border included.
+
+use glam::DVec2;
+
+use crate::{
+    geom::exact::{dot, orient, segments_meet},
+    overlay::Rect,
+};
+
+/// Lattice steps per pixel.
+pub const STEPS: i64 = 256;
+
+/// The largest coordinate of a line's point, pixels; what is further away is drawn there.
+pub const FURTHEST: f64 = (1 << 20) as f64;
+
+/// A point on the lattice.
+pub type Lattice = [i64; 2];
+
+/// The nearest lattice point to a place, pixels; `None` if that is not finite.
+pub fn lattice(place: DVec2) -> Option<Lattice> {
+    let step = |x: f64| (x.clamp(-FURTHEST, FURTHEST) * STEPS as f64).round() as i64;
+    place.is_finite().then(|| [step(place.x), step(place.y)])
+}
+
+/// The place of a lattice point, pixels; exact.
+pub fn pixels(point: Lattice) -> DVec2 {
+    DVec2::new(point[0] as f64, point[1] as f64) / STEPS as f64
+}
+
+/// A line's points on the lattice, from its overlay to its focus; neighbours differ, and there are two at least.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Way {
+    points: Vec<Lattice>,
+    low: Lattice,
+    high: Lattice,
+}
+
+impl Way {
+    /// Of points that may repeat; `None` if all are one.
+    pub fn new(mut points: Vec<Lattice>) -> Option<Self> {
+        points.dedup();
+        let (first, rest) = points.split_first()?;
+        if rest.is_empty() {
+            return None;
+        }
+        let corner = |pick: fn(i64, i64) -> i64| rest.iter().fold(*first, |a, b| [pick(a[0], b[0]), pick(a[1], b[1])]);
+        let (low, high) = (corner(i64::min), corner(i64::max));
+        Some(Self { points, low, high })
+    }
+
+    /// Its points, from the overlay to the focus.
+    pub fn points(&self) -> &[Lattice] {
+        &self.points
+    }
+
+    /// Its length, lattice steps.
+    pub fn length(&self) -> f64 {
+        self.points
+            .windows(2)
+            .map(|p| (p[1][0] - p[0][0]) as f64)
+            .zip(self.points.windows(2).map(|p| (p[1][1] - p[0][1]) as f64))
+            .map(|(x, y)| x.hypot(y))
+            .sum()
+    }
+
+    /// The way without its last `length` pixels; `None` if nothing is left.
+    pub fn shortened(&self, length: f64) -> Option<Self> {
+        let mut left = length * STEPS as f64;
+        let mut points = self.points.clone();
+        while let [.., before, end] = points[..] {
+            let along = DVec2::new((end[0] - before[0]) as f64, (end[1] - before[1]) as f64);
+            let long = along.length();
+            if long > left {
+                let kept = along * (1.0 - left / long);
+                *points.last_mut()? = [before[0] + kept.x.round() as i64, before[1] + kept.y.round() as i64];
+                return Self::new(points);
+            }
+            left -= long;
+            points.pop();
+        }
+        None
+    }
+
+    /// Whether it crosses another.
+    pub fn crosses(&self, other: &Self) -> bool {
+        if (0..2).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
+            return false;
+        }
+        let (ends, other_ends) = (self.points.len() - 2, other.points.len() - 2);
+        let same_focus = self.points.last() == other.points.last();
+        self.points.windows(2).enumerate().any(|(i, p)| {
+            other.points.windows(2).enumerate().any(|(j, q)| {
+                if same_focus && i == ends && j == other_ends {
+                    // Both end here: they share more than the end only where one lies along the other.
+                    let focus = p[1];
+                    let along = |a: Lattice| [a[0] - focus[0], a[1] - focus[1]];
+                    orient(p[0], focus, q[0]) == 0 && dot(along(p[0]), along(q[0])) > 0
+                } else {
+                    segments_meet(p[0], p[1], q[0], q[1])
+                }
+            })
+        })
+    }
+
+    /// Whether it crosses the rectangle of an overlay.
+    pub fn crosses_overlay(&self, rect: &Rect) -> bool {
+        let low = [0, 1].map(|i| i64::from(rect.min[i]) * STEPS);
+        let high = [0, 1].map(|i| i64::from(rect.max[i]) * STEPS);
+        if (0..2).any(|i| self.high[i] < low[i] || high[i] < self.low[i]) {
+            return false;
+        }
+        self.points.windows(2).any(|p| {
+            // Two convex shapes are apart if an edge's normal parts them: x, y, or that of the segment.
+            let apart = |i: usize| p[0][i].max(p[1][i]) < low[i] || high[i] < p[0][i].min(p[1][i]);
+            let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+            let sides = corners.map(|c| orient(p[0], p[1], c).signum());
+            !apart(0) && !apart(1) && !(sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0))
+        })
+    }
+}
+
+/// How many crossings there are between two overlays and their lines: pairs of lines, and lines over the other's rectangle.
+pub fn between(rect: &Rect, ways: &[Way], other_rect: &Rect, other_ways: &[Way]) -> u32 {
+    let lines = ways.iter().map(|a| other_ways.iter().filter(|b| a.crosses(b)).count()).sum::<usize>();
+    let over = ways.iter().filter(|a| a.crosses_overlay(other_rect)).count();
+    let under = other_ways.iter().filter(|b| b.crosses_overlay(rect)).count();
+    (lines + over + under) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn way(points: &[[i64; 2]]) -> Way {
+        Way::new(points.iter().map(|p| [p[0] * STEPS, p[1] * STEPS]).collect()).unwrap()
+    }
+
+    #[test]
+    fn lines_cross_where_they_share_a_point() {
+        let a = way(&[[0, 0], [10, 10]]);
+        assert!(a.crosses(&way(&[[0, 10], [10, 0]])), "an X");
+        assert!(a.crosses(&way(&[[0, 10], [5, 5]])), "a T at a focus");
+        assert!(a.crosses(&way(&[[5, 5], [5, 20]])), "a T at a start");
+        assert!(!a.crosses(&way(&[[0, 1], [9, 10]])), "side by side");
+        assert!(a.crosses(&way(&[[20, 0], [20, 5], [0, 5]])), "in the second segment");
+    }
+
+    #[test]
+    fn lines_that_meet_in_their_focus_alone_do_not_cross() {
+        let a = way(&[[0, 0], [10, 10]]);
+        assert!(!a.crosses(&way(&[[0, 10], [10, 10]])));
+        assert!(!a.crosses(&way(&[[20, 20], [10, 10]])), "from the other side");
+        assert!(a.crosses(&way(&[[5, 5], [10, 10]])), "along each other");
+        assert!(a.crosses(&way(&[[0, 10], [10, 0], [10, 10]])), "in the focus, and before");
+        assert!(a.crosses(&way(&[[10, 10], [20, 10]])), "the focus of one, the start of the other");
+    }
+
+    #[test]
+    fn a_line_crosses_an_overlay_border_included() {
+        let rect = Rect::new([10, 10], [10, 10]);
+        for (points, crosses) in [
+            ([[0, 0], [30, 30]], true),
+            ([[0, 12], [12, 0]], false),
+            ([[0, 20], [20, 0]], true),
+            ([[0, 25], [25, 25]], false),
+            ([[12, 12], [15, 15]], true),
+            ([[0, 20], [30, 20]], true),
+            ([[20, 0], [20, 9]], false),
+        ] {
+            assert_eq!(way(&points).crosses_overlay(&rect), crosses, "{points:?}");
+        }
+    }
+
+    #[test]
+    fn a_way_is_shortened_from_its_focus() {
+        let a = way(&[[0, 0], [10, 0], [10, 10]]);
+        assert_eq!(a.shortened(4.0), Some(way(&[[0, 0], [10, 0], [10, 6]])));
+        assert_eq!(a.shortened(10.0), Some(way(&[[0, 0], [10, 0]])));
+        assert_eq!(a.shortened(13.0), Some(way(&[[0, 0], [7, 0]])));
+        assert_eq!(a.shortened(20.0), None);
+        assert_eq!(a.length(), 20.0 * STEPS as f64);
+    }
+
+    #[test]
+    fn places_become_lattice_points() {
+        assert_eq!(lattice(DVec2::new(1.5, -0.001)), Some([384, 0]));
+        assert_eq!(lattice(DVec2::new(f64::NAN, 0.0)), None);
+        assert_eq!(lattice(DVec2::new(1e300, 0.0)).map(pixels), Some(DVec2::new(FURTHEST, 0.0)));
+        assert!(Way::new(vec![[1, 1], [1, 1]]).is_none() && Way::new(vec![]).is_none());
+    }
+}

@@ -1,0 +1,297 @@
+//! All at once: overlays with a place, lines, markers, and what could not be done.
+
+use glam::DVec2;
+
+use crate::overlay::{
+    Layout, Rect, Request,
+    crossings::{Way, pixels},
+    fill::{Filled, Problem, fill},
+    lane::Side,
+    line::way,
+    order::{Packer, packed, search, sides_of},
+    steady::{Kept, all_ways, dead_band, keep},
+};
+
+/// Folded overlays whose anchors are nearer to each other than this share a marker, pixels.
+pub const MARKER_RADIUS: f64 = 24.0;
+
+/// Where overlays stand, and their lines. It is also what the next frame needs to know of this one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Placed {
+    /// Those that have a place, by id.
+    pub placements: Vec<Placement>,
+    /// Those that have none, by id.
+    pub folded: Vec<u32>,
+    /// What stands for those that are folded.
+    pub markers: Vec<Marker>,
+    /// The context lines, by overlay and anchor.
+    pub lines: Vec<ContextLine>,
+    /// Which lines cross what.
+    pub crossings: Crossings,
+    /// Whether no other order along the lanes has less crossings, with as many overlays on each. True only where there are none, or where this call tried all orders.
+    pub is_least: bool,
+    /// What could not be done, by overlay.
+    pub facts: Vec<Fact>,
+    /// Whether overlays are on their way: the next call moves them further, even if nothing else changes.
+    pub gliding: bool,
+    /// Eighths of the way from wanted to smallest sizes, 0..8.
+    pub step: u32,
+    /// The picture that this is for, pixels.
+    pub picture: [u32; 2],
+    /// The layout that this is of.
+    pub layout: Layout,
+    /// The overlay in the exploration focus.
+    pub focused: Option<u32>,
+    /// Crossings for which no better order was found: it is not looked for again until their number changes.
+    pub(crate) hopeless: u32,
+    /// Calls since there was no frame before.
+    pub(crate) calls: usize,
+}
+
+/// An overlay that has a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Its id.
+    pub id: u32,
+    /// Where it stands, whole pixels.
+    pub rect: Rect,
+    /// On which side.
+    pub seat: Seat,
+}
+
+/// How an overlay stands at its side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seat {
+    /// In the row along it; the number counts from the top or from the left.
+    Lane(Side, u32),
+    /// Further inward, or in a corner.
+    Inward(Side),
+}
+
+/// Stands for folded overlays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Marker {
+    /// Where: the first anchor of the most important of them, moved into the picture; pixels. Of those without an anchor the picture's middle.
+    pub at: DVec2,
+    /// Whom it stands for, by id; their number is what it shows.
+    pub overlays: Vec<u32>,
+}
+
+/// A context line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContextLine {
+    /// Whose.
+    pub overlay: u32,
+    /// Which of its anchors, by number.
+    pub anchor: usize,
+    /// From the overlay's border to the focus, pixels; two at least, on 1/256 of a pixel. A curve is given by segments.
+    pub points: Vec<DVec2>,
+}
+
+/// Which lines cross what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Crossings {
+    /// Pairs of lines of different overlays that share a point, other than a common focus where both end.
+    pub lines: u32,
+    /// Pairs of a line and another overlay that share a point.
+    pub overlays: u32,
+}
+
+impl Crossings {
+    /// Both.
+    pub fn sum(self) -> u32 {
+        self.lines + self.overlays
+    }
+}
+
+/// What could not be done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fact {
+    /// The overlay covers points, which it would wherever it stood; numbers in [`Request::avoid`].
+    Covers {
+        /// Id.
+        overlay: u32,
+        /// Which points.
+        points: Vec<usize>,
+    },
+    /// The overlay is larger than the picture less its margin, even at its smallest.
+    TooLarge {
+        /// Id.
+        overlay: u32,
+    },
+    /// There is no room left for the overlay.
+    NoRoom {
+        /// Id.
+        overlay: u32,
+    },
+    /// The anchor is no place: not finite, or an area without points.
+    NoAnchor {
+        /// Id.
+        overlay: u32,
+        /// Its number.
+        anchor: usize,
+    },
+    /// The overlay covers its own focus, so that there is no line to it.
+    OnItsFocus {
+        /// Id.
+        overlay: u32,
+        /// The number of the anchor.
+        anchor: usize,
+    },
+}
+
+impl Placed {
+    /// Whether an overlay covers points.
+    pub(crate) fn covers(&self, id: u32) -> bool {
+        self.facts.iter().any(|f| matches!(f, Fact::Covers { overlay, .. } if *overlay == id))
+    }
+}
+
+/// Places overlays and draws their lines. `before`: what this call gave for the frame before; without it, the result depends on the request alone.
+///
+/// Overlays keep the gap between each other and the margin to the border, and cover no point that they could avoid. With a frame before they keep still
+/// ([`crate::overlay::steady`]), but never at the price of these promises.
+///
+/// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, and O((n + p)²) for each that stands further inward. With a frame before
+/// O(n² + n p), all of it comparisons of boxes.
+pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
+    let problem = Problem::new(request);
+    let focused = focused(&problem, before);
+    if let Some(kept) = before.and_then(|before| keep(&problem, before, focused)) {
+        return finished(&problem, kept, focused, before.map_or(0, |b| b.calls.wrapping_add(1)));
+    }
+    let mut filled = fill(&problem);
+    let mut is_least = None;
+    // Search of the rows as they were filled fits at least as well as they do.
+    if let Some(ordered) = search(&Packer::new(&problem, &filled, problem.board.clearance, focused, true), None) {
+        is_least = Some(ordered.is_least);
+        (filled.rows, filled.inward) = (ordered.rows, ordered.inward);
+    }
+    let rects = packed(&problem, &filled, focused).unwrap_or_else(|| vec![None; problem.overlays.len()]);
+    finished(&problem, Kept { filled, rects, gliding: false, hopeless: 0, is_least }, focused, 0)
+}
+
+/// Which overlay is in the exploration focus: the nearest to the centre of interest; that of before unless another is nearer by more than the dead band.
+fn focused(problem: &Problem, before: Option<&Placed>) -> Option<usize> {
+    let centre = problem.request.layout.centre_of_interest.filter(|c| c.is_finite())?;
+    let candidates = || (0..problem.overlays.len()).filter(|&i| !problem.targets[i].is_empty());
+    let distance = |i: usize| problem.wish[i].distance(centre);
+    let nearest = candidates().min_by(|&a, &b| {
+        distance(a).total_cmp(&distance(b)).then(problem.overlays[a].id.cmp(&problem.overlays[b].id))
+    })?;
+    let last = before.and_then(|b| b.focused).and_then(|id| candidates().find(|&i| problem.overlays[i].id == id));
+    last.filter(|&last| distance(last) <= distance(nearest) + dead_band(problem)).or(Some(nearest))
+}
+
+/// The crossings of all overlays and their lines.
+pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Crossings {
+    let mut crossings = Crossings::default();
+    let present: Vec<(&Rect, &Vec<Way>)> = rects.iter().zip(ways).filter_map(|(r, w)| Some((r.as_ref()?, w))).collect();
+    for (n, (rect, ways)) in present.iter().enumerate() {
+        for (other_rect, other_ways) in &present[..n] {
+            for way in *ways {
+                crossings.lines += other_ways.iter().filter(|w| way.crosses(w)).count() as u32;
+                crossings.overlays += u32::from(way.crosses_overlay(other_rect));
+            }
+            crossings.overlays += other_ways.iter().filter(|w| w.crosses_overlay(rect)).count() as u32;
+        }
+    }
+    crossings
+}
+
+/// All that is told of a frame.
+fn finished(problem: &Problem, kept: Kept, focused: Option<usize>, calls: usize) -> Placed {
+    let Kept { filled, rects, gliding, hopeless, is_least } = kept;
+    let ways = all_ways(problem, &filled, &rects);
+    let crossings = count(&rects, &ways);
+    let mut placed = Placed {
+        placements: placements(problem, &filled, &rects),
+        folded: (0..rects.len()).filter(|&i| rects[i].is_none()).map(|i| problem.overlays[i].id).collect(),
+        markers: markers(problem, &rects),
+        lines: Vec::new(),
+        crossings,
+        is_least: crossings.sum() == 0 || is_least == Some(true),
+        facts: Vec::new(),
+        gliding,
+        step: filled.step,
+        picture: problem.request.picture,
+        layout: problem.request.layout.clone(),
+        focused: focused.map(|i| problem.overlays[i].id),
+        hopeless,
+        calls,
+    };
+    placed.folded.sort_unstable();
+    let sides = sides_of(&filled);
+    let mut by_id: Vec<usize> = (0..rects.len()).collect();
+    by_id.sort_by_key(|i| problem.overlays[*i].id);
+    for i in by_id {
+        let id = problem.overlays[i].id;
+        for (target, anchor) in &problem.targets[i] {
+            let (Some(rect), Some(side)) = (rects[i], sides[i]) else { break };
+            match way(&rect, side, target, problem.request.lines) {
+                Some(way) => placed.lines.push(ContextLine {
+                    overlay: id,
+                    anchor: *anchor,
+                    points: way.points().iter().map(|p| pixels(*p)).collect(),
+                }),
+                None => placed.facts.push(Fact::OnItsFocus { overlay: id, anchor: *anchor }),
+            }
+        }
+        placed.facts.extend(facts(problem, i, rects[i].as_ref()));
+    }
+    placed
+}
+
+fn placements(problem: &Problem, filled: &Filled, rects: &[Option<Rect>]) -> Vec<Placement> {
+    let mut placements = Vec::new();
+    let mut add = |i: usize, seat: Seat| {
+        placements.extend(rects[i].map(|rect| Placement { id: problem.overlays[i].id, rect, seat }))
+    };
+    for (lane, row) in filled.lanes.iter().zip(&filled.rows) {
+        row.iter().zip(0..).for_each(|(i, n)| add(*i, Seat::Lane(lane.side, n)));
+    }
+    filled.inward.iter().for_each(|(i, side, _)| add(*i, Seat::Inward(*side)));
+    placements.sort_by_key(|p| p.id);
+    placements
+}
+
+fn markers(problem: &Problem, rects: &[Option<Rect>]) -> Vec<Marker> {
+    let mut markers: Vec<Marker> = Vec::new();
+    let [width, height] = problem.request.picture.map(f64::from);
+    for i in (0..rects.len()).filter(|i| rects[*i].is_none()) {
+        let at = problem.wish[i].clamp(DVec2::ZERO, DVec2::new(width, height));
+        let id = problem.overlays[i].id;
+        match markers.iter_mut().find(|m| m.at.distance(at) < MARKER_RADIUS) {
+            Some(marker) => marker.overlays.push(id),
+            None => markers.push(Marker { at, overlays: vec![id] }),
+        }
+    }
+    markers.iter_mut().for_each(|m| m.overlays.sort_unstable());
+    markers
+}
+
+fn facts(problem: &Problem, i: usize, rect: Option<&Rect>) -> Vec<Fact> {
+    let overlay = problem.overlays[i].id;
+    let mut facts = Vec::new();
+    for anchor in 0..problem.overlays[i].anchors.len() {
+        if !problem.targets[i].iter().any(|t| t.1 == anchor) {
+            facts.push(Fact::NoAnchor { overlay, anchor });
+        }
+    }
+    match rect {
+        Some(rect) => {
+            let covered = |p: &DVec2| p.is_finite() && rect.covers(*p, problem.board.clearance);
+            let points: Vec<usize> =
+                problem.request.avoid.iter().enumerate().filter(|(_, p)| covered(p)).map(|(n, _)| n).collect();
+            if !points.is_empty() {
+                facts.push(Fact::Covers { overlay, points });
+            }
+        }
+        None => {
+            let (min, room) = (problem.sizes[i].min, problem.board.inner.size());
+            let is_large = min[0] > room[0] || min[1] > room[1];
+            facts.push(if is_large { Fact::TooLarge { overlay } } else { Fact::NoRoom { overlay } });
+        }
+    }
+    facts
+}
