@@ -117,7 +117,7 @@ impl Way {
             let apart = |i: usize| p[0][i].max(p[1][i]) < low[i] || high[i] < p[0][i].min(p[1][i]);
             let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
             let sides = corners.map(|c| orient(p[0], p[1], c).signum());
-            !apart(0) && !apart(1) && !(sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0))
+            !(apart(0) || apart(1) || sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0))
         })
     }
 }

@@ -12,7 +12,7 @@ use crate::overlay::{
     Order, Rect,
     crossings::{Way, between},
     fill::{Filled, Lane, Problem},
-    lane::{Board, Seat, Side, Windows, pack, wishes},
+    lane::{Seat, Side, Windows, pack, wishes},
     line::way,
 };
 
@@ -60,7 +60,8 @@ impl<'a> Packer<'a> {
         change: bool,
     ) -> Self {
         let obstacles: Vec<Rect> = filled.inward.iter().map(|i| i.2).collect();
-        let mut all: Vec<usize> = filled.rows.iter().flatten().copied().chain(filled.inward.iter().map(|i| i.0)).collect();
+        let mut all: Vec<usize> =
+            filled.rows.iter().flatten().copied().chain(filled.inward.iter().map(|i| i.0)).collect();
         all.sort_unstable();
         let of_lane = |(lane, row): (&Lane, &Vec<usize>)| {
             let board = problem.board.beside(lane.side, clearance, &filled.sizes);
@@ -195,7 +196,8 @@ impl<'p, 'a> State<'p, 'a> {
     /// Looks at rows `k` made anew, and at others in places further inward; `None` if a row does not fit.
     fn look(&self, rows: Vec<(usize, Vec<usize>)>, inward: Vec<(usize, usize)>) -> Option<Trial> {
         let problem = self.packer.problem;
-        let mut placed: Vec<(usize, Side, Rect)> = inward.iter().map(|(n, i)| (*i, self.inward[*n].1, self.inward[*n].2)).collect();
+        let mut placed: Vec<(usize, Side, Rect)> =
+            inward.iter().map(|(n, i)| (*i, self.inward[*n].1, self.inward[*n].2)).collect();
         for (k, row) in &rows {
             let side = self.packer.filled.lanes[*k].side;
             placed.extend(row.iter().zip(self.packer.row(*k, row)?).map(|(i, rect)| (*i, side, rect)));

@@ -84,10 +84,11 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
         }
     }
     let mut ideal = fit(problem, &mut filled, &held, focused)?;
-    if filled.step > 0 && !before.gliding {
-        if let Some((grown, rects)) = grown(problem, &filled, &held, dead_band, focused) {
-            (filled, ideal) = (grown, rects);
-        }
+    if filled.step > 0
+        && !before.gliding
+        && let Some((grown, rects)) = grown(problem, &filled, &held, dead_band, focused)
+    {
+        (filled, ideal) = (grown, rects);
     }
     let has_come = come(problem, before, &mut filled, &mut ideal, dead_band, focused)?;
     is_settled |= has_come;
@@ -239,9 +240,12 @@ fn come(
     focused: Option<usize>,
 ) -> Option<bool> {
     let mut has_come = false;
-    let mut returns = 0;
-    let waiting: Vec<usize> =
-        (0..ideal.len()).filter(|&i| ideal[i].is_none() || filled.inward.iter().any(|f| f.0 == i)).collect();
+    let mut is_inward = vec![false; ideal.len()];
+    filled.inward.iter().for_each(|f| is_inward[f.0] = true);
+    let waiting: Vec<usize> = (0..ideal.len()).filter(|&i| ideal[i].is_none() || is_inward[i]).collect();
+    let turns = (RETURNS / ideal.len().max(1)).clamp(1, MOST_RETURNS);
+    let first = before.calls.wrapping_mul(turns) % waiting.len().max(1);
+    let has_turn = |n: usize| (n + waiting.len() - first) % waiting.len() < turns;
     let mut folded = Vec::new();
     for (n, &item) in waiting.iter().enumerate() {
         let id = problem.overlays[item].id;

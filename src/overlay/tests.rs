@@ -290,9 +290,10 @@ fn naive_over(line: &[DVec2], rect: &Rect) -> bool {
         let lattice = |x: f64| (x * 256.0) as i128;
         // Parameters as fractions; all denominators are made positive.
         let (mut low, mut high) = ((0, 1), (1, 1));
-        for i in 0..2 {
-            let (from, to) = (lattice(p[0][i]), lattice(p[1][i]));
-            let (min, max) = (i128::from(rect.min[i]) * 256, i128::from(rect.max[i]) * 256);
+        let axis = |i: usize| (p[0][i], p[1][i], rect.min[i], rect.max[i]);
+        for (from, to, min, max) in [axis(0), axis(1)] {
+            let (from, to) = (lattice(from), lattice(to));
+            let (min, max) = (i128::from(min) * 256, i128::from(max) * 256);
             let way = to - from;
             if way == 0 {
                 if from < min || max < from {
