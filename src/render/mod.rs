@@ -4,7 +4,7 @@
 //! [`frame`] lists the passes of one sample; [`renderer`] holds what stays on the graphics card.
 //! This room knows no files and no commands.
 
-mod best_normals;
+mod best_views;
 pub mod body;
 pub mod city;
 mod city_passes;

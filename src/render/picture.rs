@@ -6,8 +6,6 @@ use std::{
     time::Instant,
 };
 
-use glam::DVec3;
-
 use crate::{
     city::{
         CityModel, Lod,
@@ -23,6 +21,7 @@ use crate::{
     lens::solids::{ShownCity, Solids},
     render::{
         Renderer,
+        best_views::KnownViews,
         body::Leaf,
         city::Shown,
         content_cities::{self, ContentCities, SceneContents},
@@ -161,7 +160,7 @@ pub struct Studio {
     /// Those loaded so far.
     content_cities: Mutex<ContentCities>,
     /// From where objects are seen best, by object and field of view.
-    pub(super) best_normals: Mutex<BTreeMap<(u32, u64), DVec3>>,
+    pub(super) known_views: Mutex<KnownViews>,
     /// Pictures from other eyes, by number.
     pub(super) insets: BTreeMap<u64, Inset>,
     /// Where the shown triangles are, made for the first picture whose lenses are counted.
@@ -217,7 +216,7 @@ impl Studio {
             occlusion: Mutex::default(),
             reading: LoadOptions::default(),
             content_cities: Mutex::default(),
-            best_normals: Mutex::default(),
+            known_views: Mutex::default(),
             insets: BTreeMap::new(),
             index: OnceLock::new(),
             footprints: OnceLock::new(),

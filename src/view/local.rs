@@ -1,4 +1,4 @@
-//! Cameras of best-view lenses: local eyes that are placed by an object or by the main eye (B2, B3, B4; V §3.4.1).
+//! Cameras of best-view lenses that go by the main eye (B3, B4; V §3.4.1); those that go by an object are [`crate::view::Framing`]s.
 //!
 //! All of them look along a line that the caller gives, at a field of view that the caller gives; what is decided here is where they
 //! stand and what is up in them.
@@ -9,25 +9,6 @@ use crate::view::{Camera, Projection, default_near_m};
 
 /// How far sights of a camera may lie from the eye plane to count as level, sine.
 const LEVEL: f64 = 1e-9;
-
-/// The camera that shows a sphere of centre `middle` and `radius` metres from the direction `normal` (from the middle to the eye), filling the
-/// narrower side of a picture of this aspect (B2): it stands at D = r / sin(α / 2) from the middle, α the smaller of the two fields of view,
-/// and its near plane touches the sphere, so that nothing before the object is drawn.
-///
-/// `viewer` decides what is up where it looks straight down or up ([`upright`]). A sphere of no size is shown as one of a millimetre.
-pub fn around(middle: DVec3, radius: f64, normal: DVec3, fov_y: f64, aspect: f64, viewer: &Camera) -> Camera {
-    let radius = radius.max(1e-3);
-    let narrower = if aspect < 1.0 { 2.0 * ((0.5 * fov_y).tan() * aspect).atan() } else { fov_y };
-    let distance = radius / (0.5 * narrower).sin();
-    let normal = normal.normalize_or(DVec3::Z);
-    Camera {
-        eye: middle + distance * normal,
-        target: middle,
-        up: standing(normal, viewer),
-        projection: Projection::Perspective { fov_y },
-        near_m: (distance - radius).clamp(1e-4, 1e6),
-    }
-}
 
 /// A camera `distance_m` from the viewer along `normal` that looks at the viewer (B3, MCOP).
 pub fn towards_viewer(viewer: &Camera, normal: DVec3, distance_m: f64, fov_y: f64) -> Camera {
@@ -91,11 +72,6 @@ pub fn upright(normal: DVec3, viewer: &Camera) -> DVec3 {
     across(ahead).try_normalize().filter(|_| across(ahead).length() > LEVEL).unwrap_or(basis.right)
 }
 
-/// Up of a camera that looks against `normal`: z, or, where that is along the view, [`upright`].
-fn standing(normal: DVec3, viewer: &Camera) -> DVec3 {
-    if normal.truncate().length() > 1e-6 { DVec3::Z } else { upright(normal, viewer) }
-}
-
 fn forward(viewer: &Camera) -> DVec3 {
     (viewer.target - viewer.eye).normalize_or(DVec3::Y)
 }
@@ -124,23 +100,6 @@ mod tests {
     }
 
     proptest! {
-        #[test]
-        fn a_sphere_touches_the_narrower_sides(viewer in viewers(), normal in units(), radius in 0.1..500.0f64, aspect in 0.2..5.0f64, fov in 0.1..2.5f64) {
-            let size = if aspect > 1.0 { [(1000.0 * aspect) as u32, 1000] } else { [1000, (1000.0 / aspect) as u32] };
-            let aspect = f64::from(size[0]) / f64::from(size[1]);
-            let camera = around(viewer.eye, radius, normal, fov, aspect, &viewer);
-            prop_assert!(camera.check().is_ok());
-            let view = View::new(camera, size, &Aabb::EMPTY).unwrap();
-            // The tangent cone of the sphere has the angle α: its rim touches the border of the narrower side, whatever it is.
-            let distance = camera.eye.distance(camera.target);
-            let half = (radius / distance).asin();
-            let narrower = view.half_extent().min_element().atan();
-            prop_assert!((half - narrower).abs() < 1e-9);
-            prop_assert!((camera.near_m - (distance - radius)).abs() < 1e-9 * distance);
-            let centre = view.pixel(viewer.eye).unwrap();
-            prop_assert!((centre.x - 0.5 * f64::from(size[0])).abs() < 1e-3 && (centre.y - 0.5 * f64::from(size[1])).abs() < 1e-3);
-        }
-
         #[test]
         fn up_is_across_the_view_and_never_undefined(viewer in viewers(), normal in units()) {
             let up = upright(normal, &viewer);
@@ -182,17 +141,6 @@ mod tests {
         let normal = DVec3::new(0.0, 1.0, -c).normalize_or(DVec3::Y);
         assert_eq!(upright(normal, &viewer), DVec3::X);
         assert!(towards_viewer(&viewer, normal, 10.0, 0.5).basis().is_ok());
-    }
-
-    #[test]
-    fn the_best_view_normal_along_up_shows_the_viewers_ahead_at_the_top() {
-        let viewer = Camera::looking(DVec3::ZERO, DVec3::new(3.0, 4.0, 0.0), 0.8);
-        for z in [1.0, -1.0] {
-            let camera = around(DVec3::new(9.0, 9.0, 5.0), 3.0, DVec3::new(0.0, 0.0, z), 0.6, 1.5, &viewer);
-            assert!((camera.up - DVec3::new(0.6, 0.8, 0.0)).length() < 1e-12, "{}", camera.up);
-        }
-        let level = around(DVec3::ZERO, 3.0, DVec3::X, 0.6, 1.5, &viewer);
-        assert_eq!(level.up, DVec3::Z);
     }
 
     #[test]

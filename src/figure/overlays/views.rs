@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     city::CityModel,
-    geom::{Aabb, Shape},
+    geom::{Aabb, Shape, Sphere},
     lens::{
         BestView, Class, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, Placement,
         best_view::{LocalView, MapMode},
@@ -12,10 +12,10 @@ use crate::{
     },
     render::picture::{RenderError, Studio},
     scene::{Figure, LegendPlace, Poi, PoiPlace, Scene, Style},
-    view::{Camera, local},
+    view::{Camera, Field, Framing, local},
 };
 
-/// Radius of the sphere around a point of interest that is a point and no object, metres.
+/// Radius of the ball around a point of interest that is a point and no object, metres.
 pub const POINT_RADIUS_M: f64 = 25.0;
 /// How far above all else the eye of a map stands, metres.
 const ABOVE_M: f64 = 100.0;
@@ -31,14 +31,11 @@ pub struct Local {
     pub mirror: bool,
 }
 
-/// The sphere around a point of interest (B2): middle and radius, metres. Of an object: that around the box around it and its parts.
-pub fn sphere(poi: &Poi, model: &CityModel) -> Option<(DVec3, f64)> {
+/// The ball around a point of interest (B2).
+fn ball(studio: &Studio, poi: &Poi) -> Result<Sphere, RenderError> {
     match &poi.place {
-        PoiPlace::At(at) => Some((*at, POINT_RADIUS_M)),
-        PoiPlace::Object(id) => {
-            let bounds = model.family_bounds(model.find_object(id)?);
-            (!bounds.is_empty()).then(|| (bounds.center(), 0.5 * bounds.size().length()))
-        }
+        PoiPlace::At(at) => Ok(Sphere { center: *at, radius: POINT_RADIUS_M }),
+        PoiPlace::Object(id) => studio.ball(id),
     }
 }
 
@@ -56,28 +53,34 @@ pub fn local(
     size: [u32; 2],
 ) -> Result<Local, RenderError> {
     let model = &*studio.model;
+    let wrong = |message: String| RenderError::Scene(format!("lens \"{}\": {message}", lens.name));
+    let of_lens = |error: RenderError| match error {
+        RenderError::Scene(message) => wrong(message),
+        other => other,
+    };
     let first = || {
-        let poi = shown.pois.first().and_then(|name| scene.pois.iter().find(|poi| poi.name == *name));
-        poi.and_then(|poi| sphere(poi, model).map(|sphere| (poi, sphere))).ok_or_else(|| {
-            let name = shown.pois.first().map_or("", String::as_str);
-            RenderError::Scene(format!(
-                "lens \"{}\": its point of interest \"{name}\" has no place in the city",
-                lens.name
-            ))
-        })
+        let name = shown.pois.first().map_or("", String::as_str);
+        let poi = scene.pois.iter().find(|poi| poi.name == name);
+        let poi = poi.ok_or_else(|| wrong(format!("there is no point of interest \"{name}\"")))?;
+        ball(studio, poi).map(|ball| (poi, ball)).map_err(of_lens)
     };
     let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let viewer = main.basis().ok().map(|basis| [basis.forward, basis.up]);
+    let framed = |ball: &Sphere, normal: DVec3, fov_y: f64| {
+        let framing = Framing::new(ball, normal, &Field { fov_y, aspect }, viewer);
+        framing.map(|framing| framing.camera()).map_err(|error| wrong(error.to_string()))
+    };
     let mut own = Local { scene: seen_through(scene, shown), transparent: false, mirror: false };
     let camera = match view {
         LocalView::Best { normal, fov_y } => {
-            let (poi, (middle, radius)) = first()?;
+            let (poi, ball) = first()?;
             let normal = match (normal, &poi.place) {
                 (Some(normal), _) => *normal,
-                (None, PoiPlace::Object(id)) => studio.best_normal(id, *fov_y)?,
+                (None, PoiPlace::Object(id)) => studio.best_normal(id, *fov_y).map_err(of_lens)?,
                 // A place has no facades: from the south-west and from above.
                 (None, PoiPlace::At(_)) => DVec3::new(-1.0, -1.0, 0.8),
             };
-            local::around(middle, radius, normal, *fov_y, aspect, main)
+            framed(&ball, normal, *fov_y)?
         }
         LocalView::Mcop { normal, distance_m, fov_y } => local::towards_viewer(main, *normal, *distance_m, *fov_y),
         LocalView::Scop { direction, of_camera, mirror, fov_y } => {
@@ -96,12 +99,12 @@ pub fn local(
             )
         }
         LocalView::Worldlet { azimuth, elevation, margin_m, fov_y } => {
-            let (poi, (middle, radius)) = first()?;
+            let (poi, ball) = first()?;
             own.transparent = true;
             own.scene.lenses.push(alone(poi, model, *margin_m));
             let (up, level) = (elevation.sin(), elevation.cos());
             let normal = DVec3::new(level * azimuth.sin(), level * azimuth.cos(), up);
-            local::around(middle, radius + margin_m, normal, *fov_y, aspect, main)
+            framed(&Sphere { radius: ball.radius + margin_m, ..ball }, normal, *fov_y)?
         }
         LocalView::Camera(camera) => *camera,
     };

@@ -33,7 +33,8 @@ use crate::{
         ramp::{MAX_CATEGORIES, category},
     },
     scene::{
-        self, Background, BaseStyle, CitySpec, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency, overlay::Frame,
+        self, Background, BaseStyle, CitySpec, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency,
+        overlay::Frame,
     },
     shader::{
         Blend, Clip,

@@ -1,0 +1,77 @@
+//! The balls around objects, and the directions that they are seen best from, found once (B2).
+
+use std::{
+    collections::HashMap,
+    sync::{MutexGuard, PoisonError},
+};
+
+use glam::DVec3;
+
+use crate::{
+    geom::Sphere,
+    render::picture::{RenderError, Studio},
+    view::Field,
+    visibility::Subject,
+};
+
+/// What is known of objects, by their number in the city.
+#[derive(Debug, Default)]
+pub(super) struct KnownViews {
+    balls: HashMap<u32, Sphere>,
+    /// And by the bits of the vertical field of view.
+    normals: HashMap<(u32, u64), DVec3>,
+}
+
+impl Studio {
+    /// The smallest ball around what is shown of an object and its parts, metres.
+    ///
+    /// # Errors
+    /// Where the city has no such object, or nothing of it is shown.
+    pub fn ball(&self, id: &str) -> Result<Sphere, RenderError> {
+        let object = self.object(id)?;
+        if let Some(ball) = self.known().balls.get(&object) {
+            return Ok(*ball);
+        }
+        let ball = self.with_subject(object, |subject| Ok(subject.ball))?;
+        self.known().balls.insert(object, ball);
+        Ok(ball)
+    }
+
+    /// The best-view normal of an object, unit: of the best view with this vertical field of view in a picture of 16 by 9. It does not depend
+    /// on the size of what shows it, so that it stays the same when that changes.
+    ///
+    /// # Errors
+    /// As for [`Studio::ball`]; a field of view that no camera has.
+    pub fn best_normal(&self, id: &str, fov_y: f64) -> Result<DVec3, RenderError> {
+        let object = self.object(id)?;
+        let key = (object, fov_y.to_bits());
+        if let Some(normal) = self.known().normals.get(&key) {
+            return Ok(*normal);
+        }
+        let field = Field { fov_y, ..Field::default() };
+        let normal = self.with_subject(object, |subject| {
+            let views = subject.best_views(&field, 1).map_err(|error| RenderError::Scene(error.to_string()))?;
+            Ok(views.first().map_or(DVec3::Z, |view| view.framing.normal))
+        })?;
+        self.known().normals.insert(key, normal);
+        Ok(normal)
+    }
+
+    fn object(&self, id: &str) -> Result<u32, RenderError> {
+        self.model.find_object(id).ok_or_else(|| RenderError::Scene(format!("the city has no object \"{id}\"")))
+    }
+
+    fn with_subject<T>(
+        &self,
+        object: u32,
+        ask: impl FnOnce(&Subject) -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
+        let shown = self.shown();
+        let subject = Subject::new(&self.model, &self.geometries, shown.index(), object);
+        ask(&subject.map_err(|error| RenderError::Scene(error.to_string()))?)
+    }
+
+    fn known(&self) -> MutexGuard<'_, KnownViews> {
+        self.known_views.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
