@@ -20,6 +20,7 @@ use crate::{
     figure::{
         self,
         animation::{Film, FilmError},
+        overlays::{self, Standing},
         picture,
     },
     render::{picture::Request, stats::Statistics},
@@ -130,8 +131,9 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let [first, last] = arguments.frames.unwrap_or(all).of(film.frames()).map_err(Failure::usage)?;
     // Before anything is drawn: a frame without a scene may be the last.
     let first_scene = film.scene(first).map_err(failed)?;
-    // Occluders have a history, which begins with frame 0 whichever frames are drawn.
-    let has_history = first_scene.lenses.iter().any(|lens| lens.enabled && lens.occluders().is_some());
+    // Occluders and overlays have a history, which begins with frame 0 whichever frames are drawn.
+    let has_history =
+        first_scene.lenses.iter().any(|lens| lens.enabled && (lens.occluders().is_some() || lens.best_view.is_some()));
     let begin = if has_history { 0 } else { first };
     (begin..=last).try_for_each(|frame| film.scene(frame).map(|_| ())).map_err(failed)?;
     let folder = Folder::new(&arguments.output, film.frames())?;
@@ -139,12 +141,14 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let count = u64::from(last - first) + 1;
     log::info!("{count} frames, {} per second", film.fps());
     let progress = terminal::Progress::counting(count, "drawing", "frames", global);
-    let (mut lines, mut is_warned) = (Vec::new(), false);
+    let (mut lines, mut is_warned, mut standing) = (Vec::new(), false, Standing::default());
     for frame in begin..=last {
         let scene = film.scene(frame).map_err(failed)?;
         let at_frame = |error: String| Failure::failed(format!("{}: frame {frame}: {error}", file.display()));
         studio.pass(&scene, scene.figure.size, 1.0 / film.fps()).map_err(|error| at_frame(error.to_string()))?;
         if frame < first {
+            overlays::pass(&studio, &scene, scene.figure.size, &mut standing)
+                .map_err(|error| at_frame(error.to_string()))?;
             continue;
         }
         if !is_warned && studio.is_fading() && scene.figure.samples < SMOOTH {
@@ -160,7 +164,8 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             );
         }
         let asked = request(&scene, arguments.stats.is_some());
-        let mut drawn = figure::draw(&mut studio, &scene, &asked).map_err(|error| at_frame(error.to_string()))?;
+        let mut drawn = figure::draw_next(&mut studio, &scene, &asked, &mut standing)
+            .map_err(|error| at_frame(error.to_string()))?;
         if arguments.stats.is_some() {
             render::with_warnings(&mut drawn.statistics, &warnings);
             let told = Told { number: frame, at_s: f64::from(frame) / film.fps(), statistics: &drawn.statistics };

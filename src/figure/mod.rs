@@ -11,6 +11,7 @@ pub mod sheet;
 pub mod ticks;
 
 use crate::{
+    figure::overlays::Standing,
     render::{
         furniture::Furniture,
         picture::{Picture, RenderError, Request, Studio},
@@ -18,10 +19,44 @@ use crate::{
     scene::Scene,
 };
 
-/// Draws a picture with the title, the caption and the legends that the scene's `[figure]` asks for.
+/// Draws a picture with its overlays, and with the title, the caption and the legends that the scene's `[figure]` asks for.
+///
+/// # Errors
+/// Those of a picture; what an overlay shows and is not there.
 pub fn draw(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
-    let overlays = overlays::overlays(studio, scene, request, None)?;
+    draw_next(studio, scene, request, &mut Standing::default())
+}
+
+/// The same for a frame of several: overlays go on from where they stood in the frame before.
+///
+/// # Errors
+/// As for [`draw`].
+pub fn draw_next(
+    studio: &mut Studio,
+    scene: &Scene,
+    request: &Request,
+    standing: &mut Standing,
+) -> Result<Picture, RenderError> {
     let own = furniture_of(studio, scene, request.size)?;
+    draw_with(studio, scene, request, standing, own)
+}
+
+/// Draws a picture with its overlays, and without title, caption and legends.
+///
+/// # Errors
+/// As for [`draw`].
+pub fn draw_untitled(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
+    draw_with(studio, scene, request, &mut Standing::default(), Furniture::default())
+}
+
+fn draw_with(
+    studio: &mut Studio,
+    scene: &Scene,
+    request: &Request,
+    standing: &mut Standing,
+    own: Furniture,
+) -> Result<Picture, RenderError> {
+    let overlays = overlays::overlays(studio, scene, request, standing)?;
     let furniture = Furniture { pieces: overlays.furniture.pieces.into_iter().chain(own.pieces).collect() };
     let mut picture = studio.render_with(scene, request, &furniture)?;
     if request.statistics {

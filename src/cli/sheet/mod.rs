@@ -10,6 +10,7 @@ use crate::{
     city::builtin,
     cli::{Failure, GlobalArguments, Outcome, output, render, terminal},
     figure::{
+        self,
         file::write_whole,
         legend::{self, Legend},
         picture::{self, Notes},
@@ -197,7 +198,8 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
         progress.says(format!("drawing {}", cell.name));
         let studio = studio_of(kept, &cell.scene, options, global)?;
         let in_cell = |error: &dyn std::fmt::Display| failed(format!("cell {}: {error}", cell.name));
-        pictures[i] = studio.render(&cell.scene, &request(&cell.scene)).map_err(|error| in_cell(&error))?.rgba;
+        pictures[i] =
+            figure::draw_untitled(studio, &cell.scene, &request(&cell.scene)).map_err(|error| in_cell(&error))?.rgba;
         found[i] = figures::of(studio, cell, sheet).map_err(|error| in_cell(&error))?;
         words.figures[i] = sheet.figures.iter().map(|figure| found[i].text(*figure)).collect();
         progress.at(done as u64 + 1);

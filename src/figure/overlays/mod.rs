@@ -8,12 +8,14 @@
 mod paint;
 pub mod views;
 
+use std::{collections::BTreeMap, path::Path};
+
 use glam::{DVec2, DVec3};
 
 use crate::{
     figure::furniture::em_px,
     geom::outline,
-    lens::{BestView, Lens, best_view::Depiction},
+    lens::{BestView, Lens, best_view::Depiction, color::Srgb},
     overlay::{self, Focus, Placed, arrow::border_arrow},
     render::{
         furniture::Furniture,
@@ -24,10 +26,11 @@ use crate::{
         anchor::anchor,
         overlay::{Along, LineEnd, LineKind, Outside, Sizes},
     },
-    view::View,
+    view::{Camera, View},
 };
 
 use paint::Painter;
+use views::Local;
 
 /// How far overlays stay from points of interest, pixels.
 const CLEARANCE_PX: f64 = 6.0;
@@ -41,8 +44,6 @@ pub struct Overlays {
     pub furniture: Furniture,
     /// What each overlay is, for statistics.
     pub figures: Vec<OverlayFigures>,
-    /// Where they stand; for the next frame.
-    pub placed: Placed,
 }
 
 /// One overlay, for statistics.
@@ -56,11 +57,20 @@ pub struct OverlayFigures {
     pub rendered: bool,
 }
 
+/// Where the overlays of a picture, and those in them, stood last: from there they go on, so that they keep still while the eye moves (B6). An
+/// empty one is that of a picture alone, which goes by its scene only.
+#[derive(Clone, Debug, Default)]
+pub struct Standing {
+    /// By the numbers of their views.
+    of_views: BTreeMap<u64, Placed>,
+}
+
 /// A lens with an overlay in one picture.
-struct Shown<'a> {
+struct Shown {
     index: usize,
-    lens: &'a Lens,
-    best_view: &'a BestView,
+    name: String,
+    color: Srgb,
+    best_view: BestView,
     overlay: Overlay,
     places: Vec<Place>,
 }
@@ -76,6 +86,25 @@ struct Place {
     distance: f64,
 }
 
+/// What stands where in a view.
+struct Plan {
+    /// Numbers of its images come after this one.
+    numbers: u64,
+    size: [u32; 2],
+    camera: Camera,
+    em: f32,
+    shown: Vec<Shown>,
+    placed: Placed,
+    /// What those show that show the city, by the number of their lens.
+    views: BTreeMap<usize, Inner>,
+}
+
+/// The view of an overlay.
+struct Inner {
+    local: Local,
+    plan: Option<Plan>,
+}
+
 /// The overlays of a picture; the insets that they show are drawn where they are others than before.
 ///
 /// # Errors
@@ -84,122 +113,189 @@ pub fn overlays(
     studio: &mut Studio,
     scene: &Scene,
     request: &Request,
-    before: Option<&Placed>,
+    standing: &mut Standing,
 ) -> Result<Overlays, RenderError> {
+    let plan = stand(studio, scene, request.size, standing)?;
     let mut kept = Vec::new();
-    let made = overlays_of(studio, scene, request, before, 0, &mut kept)?;
+    let made = plan.map_or_else(|| Ok(Overlays::default()), |plan| plan.paint(studio, request, &mut kept))?;
     studio.keep_insets(|number| kept.contains(&number));
     Ok(made)
 }
 
-fn overlays_of(
-    studio: &mut Studio,
+/// Lets overlays take their places for a frame that is not drawn.
+///
+/// # Errors
+/// What a view of an overlay names and the city does not have.
+pub fn pass(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Standing) -> Result<(), RenderError> {
+    stand(studio, scene, size, standing).map(|_| ())
+}
+
+fn stand(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Standing) -> Result<Option<Plan>, RenderError> {
+    let mut new = Standing::default();
+    let plan = plan(studio, scene, size, 0, standing, &mut new)?;
+    *standing = new;
+    Ok(plan)
+}
+
+/// Where the overlays of a view stand, and those in them; `None`: it has none.
+fn plan(
+    studio: &Studio,
     scene: &Scene,
-    request: &Request,
-    before: Option<&Placed>,
+    size: [u32; 2],
     numbers: u64,
-    kept: &mut Vec<u64>,
-) -> Result<Overlays, RenderError> {
+    before: &Standing,
+    now: &mut Standing,
+) -> Result<Option<Plan>, RenderError> {
     if !scene.lenses.iter().any(|lens| lens.enabled && lens.best_view.is_some()) {
-        return Ok(Overlays::default());
+        return Ok(None);
     }
-    let camera = studio.camera(scene, request.size);
-    let view = View::new(camera, request.size, &studio.extent())?;
+    let camera = studio.camera(scene, size);
+    let view = View::new(camera, size, &studio.extent())?;
     let shown: Vec<Shown> =
         scene.lenses.iter().enumerate().filter_map(|(i, lens)| seen(studio, scene, &view, i, lens)).collect();
-    let asked = layout_of(studio, scene, &view, &shown, em_px(&scene.figure, request.size));
-    let placed = overlay::place(&asked, before);
-    let mut painter = Painter::new(em_px(&scene.figure, request.size));
-    let of = |id: u32| shown.iter().find(|s| s.index as u32 == id);
-    for line in &placed.lines {
-        let Some(one) = of(line.overlay) else { continue };
-        let Some(style) = &one.overlay.line else { continue };
-        let place = &one.places.iter().filter(|p| p.focus.is_some()).nth(line.anchor);
-        let number = paint::number(numbers, one.index, paint::Part::Skin);
-        let skin = match &style.skin {
-            None => None,
-            Some(file) => {
-                kept.push(number);
-                studio.renderer.image_of_file(number, file, None).map_err(|e| wrong(one.lens, &e))?;
-                Some(number)
-            }
-        };
-        let is_far = place.is_some_and(|p| style.arrow_distance_m.is_some_and(|most| p.distance > most));
-        painter.line(&line.points, style, one.lens.color, skin, is_far, request.size);
-        if let (false, Some(focus)) = (is_far, place.and_then(|p| p.focus.as_ref())) {
-            painter.focus(focus, style, one.lens.color);
-        }
-    }
-    let mut figures = Vec::new();
-    for placement in &placed.placements {
-        let Some(one) = of(placement.id) else { continue };
+    let em = em_px(&scene.figure, size);
+    let asked = layout_of(studio, scene, &view, &shown, em);
+    let placed = overlay::place(&asked, before.of_views.get(&numbers));
+    now.of_views.insert(numbers, placed.clone());
+    let mut plan = Plan { numbers, size, camera, em, shown, placed, views: BTreeMap::new() };
+    for placement in &plan.placed.placements {
+        let Some(one) = plan.of(placement.id) else { continue };
+        let Some(view) = one.best_view.view() else { continue };
+        let room = paint::picture_room(&one.overlay, placement.rect, em).size();
+        let local = views::local(studio, scene, &camera, &one.name, &one.best_view, view, room)?;
         let number = paint::number(numbers, one.index, paint::Part::Picture);
-        kept.push(number);
-        let room = painter.picture_room(&one.overlay, placement.rect);
-        let (mut rendered, mut mirror) = (false, false);
-        match &one.best_view.depiction {
-            Depiction::Text(text) => painter.text(&one.overlay, placement.rect, text),
-            Depiction::Image(file) => {
-                rendered =
-                    studio.renderer.image_of_file(number, file, Some(room.size())).map_err(|e| wrong(one.lens, &e))?;
+        let inner = self::plan(studio, &local.scene, room, number * NUMBERS, before, now)?;
+        plan.views.insert(one.index, Inner { local, plan: inner });
+    }
+    Ok(Some(plan))
+}
+
+impl Plan {
+    fn of(&self, id: u32) -> Option<&Shown> {
+        self.shown.iter().find(|one| one.index as u32 == id)
+    }
+
+    fn paint(&self, studio: &mut Studio, request: &Request, kept: &mut Vec<u64>) -> Result<Overlays, RenderError> {
+        let mut painter = Painter::new(self.em);
+        self.lines(studio, &mut painter, kept)?;
+        let mut figures = Vec::new();
+        for placement in &self.placed.placements {
+            let Some(one) = self.of(placement.id) else { continue };
+            figures.push(self.overlay(studio, request, &mut painter, one, placement.rect, kept)?);
+        }
+        for one in &self.shown {
+            let style = one.overlay.line.as_ref().filter(|style| style.outside == Outside::Arrow);
+            let Some(style) = style else { continue };
+            for place in one.places.iter().filter(|place| place.focus.is_none()) {
+                if let Some(arrow) = border_arrow(self.size, 0.4 * f64::from(self.em), place.direction) {
+                    painter.arrow(arrow.tip, arrow.direction, style.color.unwrap_or(one.color));
+                }
             }
-            Depiction::View(view) => {
-                let own = views::local(studio, scene, &camera, one.lens, one.best_view, view, room.size())?;
+        }
+        for marker in &self.placed.markers {
+            painter.marker(marker.at, marker.overlays.len());
+        }
+        Ok(Overlays { furniture: Furniture { pieces: painter.into_pieces() }, figures })
+    }
+
+    fn lines(&self, studio: &mut Studio, painter: &mut Painter, kept: &mut Vec<u64>) -> Result<(), RenderError> {
+        for line in &self.placed.lines {
+            let Some(one) = self.of(line.overlay) else { continue };
+            let Some(style) = &one.overlay.line else { continue };
+            let place = one.places.iter().filter(|p| p.focus.is_some()).nth(line.anchor);
+            let skin = self.image(studio, one, paint::Part::Skin, style.skin.as_deref(), None, kept)?;
+            let is_far = place.is_some_and(|p| style.arrow_distance_m.is_some_and(|most| p.distance > most));
+            painter.line(&line.points, style, one.color, skin, is_far, self.size);
+            if let (false, Some(focus)) = (is_far, place.and_then(|p| p.focus.as_ref())) {
+                painter.focus(focus, style, one.color);
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps an image of a file for the renderer, at `size` or as it is; its number.
+    fn image(
+        &self,
+        studio: &mut Studio,
+        one: &Shown,
+        part: paint::Part,
+        file: Option<&Path>,
+        size: Option<[u32; 2]>,
+        kept: &mut Vec<u64>,
+    ) -> Result<Option<u64>, RenderError> {
+        let Some(file) = file else { return Ok(None) };
+        let number = paint::number(self.numbers, one.index, part);
+        kept.push(number);
+        studio.renderer.image_of_file(number, file, size).map_err(|error| wrong(&one.name, &error))?;
+        Ok(Some(number))
+    }
+
+    fn overlay(
+        &self,
+        studio: &mut Studio,
+        request: &Request,
+        painter: &mut Painter,
+        one: &Shown,
+        rect: overlay::Rect,
+        kept: &mut Vec<u64>,
+    ) -> Result<OverlayFigures, RenderError> {
+        let room = paint::picture_room(&one.overlay, rect, self.em);
+        let number = paint::number(self.numbers, one.index, paint::Part::Picture);
+        let (mut rendered, mut mirror) = (false, false);
+        match (&one.best_view.depiction, self.views.get(&one.index)) {
+            (Depiction::Text(text), _) => {
+                painter.text(&one.overlay, rect, text);
+                return Ok(OverlayFigures { lens: one.index as u32, size: room.size(), rendered });
+            }
+            (Depiction::Image(file), _) => {
+                kept.push(number);
+                let read = studio.renderer.image_of_file(number, file, Some(room.size()));
+                rendered = read.map_err(|error| wrong(&one.name, &error))?;
+            }
+            (Depiction::View(_), None) => {}
+            (Depiction::View(_), Some(inner)) => {
+                kept.push(number);
                 let asked = Request {
                     size: room.size(),
-                    transparent: own.transparent,
+                    transparent: inner.local.transparent,
                     aovs: Aovs::default(),
                     statistics: false,
                     ..*request
                 };
-                let nested = overlays_of(studio, &own.scene, &asked, None, number * NUMBERS, kept)?;
-                rendered = studio.inset(number, &own.scene, &asked, &nested.furniture)?;
-                mirror = own.mirror;
+                let over = match &inner.plan {
+                    Some(plan) => plan.paint(studio, &asked, kept)?.furniture,
+                    None => Furniture::default(),
+                };
+                rendered = studio.inset(number, &inner.local.scene, &asked, &over)?;
+                mirror = inner.local.mirror;
             }
         }
-        if !matches!(one.best_view.depiction, Depiction::Text(_)) {
-            let mut masks = [None, None];
-            for (mask, (part, file)) in masks.iter_mut().zip(paint::masks(&one.overlay.frame)) {
-                let Some(file) = file else { continue };
-                let number = paint::number(numbers, one.index, part);
-                kept.push(number);
-                studio.renderer.image_of_file(number, file, Some(room.size())).map_err(|e| wrong(one.lens, &e))?;
-                *mask = Some(number);
-            }
-            painter.overlay(&one.overlay, placement.rect, number, mirror, masks);
-            if let Depiction::View(view) = &one.best_view.depiction {
-                painter.signs(view, &camera, room);
-            }
+        let [alpha, frame] = paint::masks(&one.overlay.frame);
+        let masks = [
+            self.image(studio, one, paint::Part::Alpha, alpha, Some(room.size()), kept)?,
+            self.image(studio, one, paint::Part::Frame, frame, Some(room.size()), kept)?,
+        ];
+        painter.overlay(&one.overlay, rect, number, mirror, masks);
+        if let Some(view) = one.best_view.view() {
+            painter.signs(view, &self.camera, room);
         }
-        figures.push(OverlayFigures { lens: one.index as u32, size: room.size(), rendered });
+        Ok(OverlayFigures { lens: one.index as u32, size: room.size(), rendered })
     }
-    for one in &shown {
-        let Some(style) = one.overlay.line.as_ref().filter(|style| style.outside == Outside::Arrow) else { continue };
-        for place in one.places.iter().filter(|place| place.focus.is_none()) {
-            if let Some(arrow) = border_arrow(request.size, 0.4 * f64::from(painter.em()), place.direction) {
-                painter.arrow(arrow.tip, arrow.direction, style.color.unwrap_or(one.lens.color));
-            }
-        }
-    }
-    for marker in &placed.markers {
-        painter.marker(marker.at, marker.overlays.len());
-    }
-    Ok(Overlays { furniture: Furniture { pieces: painter.into_pieces() }, figures, placed })
 }
 
-fn wrong(lens: &Lens, message: &str) -> RenderError {
-    RenderError::Scene(format!("lens \"{}\": {message}", lens.name))
+fn wrong(lens: &str, message: &str) -> RenderError {
+    RenderError::Scene(format!("lens \"{lens}\": {message}"))
 }
 
 /// What of a lens's overlay depends on the eye; `None`: it has no overlay.
-fn seen<'a>(studio: &Studio, scene: &Scene, view: &View, index: usize, lens: &'a Lens) -> Option<Shown<'a>> {
-    let best_view = lens.best_view.as_ref().filter(|_| lens.enabled)?;
+fn seen(studio: &Studio, scene: &Scene, view: &View, index: usize, lens: &Lens) -> Option<Shown> {
+    let best_view = lens.best_view.clone().filter(|_| lens.enabled)?;
     let overlay =
         scene.overlays.iter().find(|o| o.lens == lens.name).cloned().unwrap_or_else(|| Overlay::of(&lens.name));
     let to_area = overlay.line.as_ref().is_some_and(|line| line.to == LineEnd::Area);
     let pois = best_view.pois.iter().filter_map(|name| scene.pois.iter().find(|poi| poi.name == *name));
     let places = pois.filter_map(|poi| place(studio, scene, view, poi, to_area)).collect();
-    Some(Shown { index, lens, best_view, overlay, places })
+    Some(Shown { index, name: lens.name.clone(), color: lens.color, best_view, overlay, places })
 }
 
 fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_area: bool) -> Option<Place> {
@@ -258,9 +354,7 @@ fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f
             distance: one.places.iter().map(|place| place.distance).fold(f64::INFINITY, f64::min).min(1e9),
         }
     });
-    let all: Vec<&str> = scene.pois.iter().map(|poi| poi.name.as_str()).collect();
-    let avoid = scene.pois.iter().filter(|poi| all.contains(&poi.name.as_str()));
-    let avoid = avoid.filter_map(|poi| match place(studio, scene, view, poi, false)?.focus? {
+    let avoid = scene.pois.iter().filter_map(|poi| match place(studio, scene, view, poi, false)?.focus? {
         Focus::Point(at) => Some(at),
         Focus::Area(_) => None,
     });

@@ -44,12 +44,38 @@ pub fn number(numbers: u64, lens: usize, part: Part) -> u64 {
     numbers + 1 + 4 * lens as u64 + part as u64
 }
 
-/// The masks of a frame.
-pub fn masks(frame: &Frame) -> [(Part, Option<&Path>); 2] {
+/// Alpha mask and frame mask of a frame that is made of images.
+pub fn masks(frame: &Frame) -> [Option<&Path>; 2] {
     match frame {
-        Frame::BuiltIn(_) => [(Part::Alpha, None), (Part::Frame, None)],
-        Frame::Images { alpha, frame } => [(Part::Alpha, alpha.as_deref()), (Part::Frame, frame.as_deref())],
+        Frame::BuiltIn(_) => [None, None],
+        Frame::Images { alpha, frame } => [alpha.as_deref(), frame.as_deref()],
     }
+}
+
+/// So many thirteenths of the em, whole pixels, at least one.
+fn px(em: f32, n: f32) -> i32 {
+    (n * em / 13.0).round().max(1.0) as i32
+}
+
+/// Where in an overlay that stands here its picture is.
+pub fn picture_room(overlay: &Overlay, rect: Rect, em: f32) -> Room {
+    let px = |n| px(em, n);
+    let frame = match &overlay.frame {
+        Frame::BuiltIn(frame) => *frame,
+        Frame::Images { .. } => BuiltInFrame::None,
+    };
+    let (around, below) = match frame {
+        BuiltInFrame::None | BuiltInFrame::Vignette => (0, 0),
+        BuiltInFrame::Thin => (px(1.0), px(1.0)),
+        BuiltInFrame::Rounded | BuiltInFrame::Ellipse => (px(4.0), px(4.0)),
+        BuiltInFrame::Print => (px(8.0), px(22.0)),
+    };
+    let below = if overlay.caption.is_some() { below.max(px(22.0)) } else { below };
+    let size: [i32; 2] = std::array::from_fn(|i| rect.max[i] - rect.min[i]);
+    // A frame never takes all of a small overlay.
+    let fits = |wanted: i32, side: i32| wanted.min((side - 1).max(0) / 3);
+    let (x, top, bottom) = (fits(around, size[0]), fits(around, size[1]), fits(below, size[1]));
+    Room { low: [rect.min[0] + x, rect.min[1] + top], high: [rect.max[0] - x, rect.max[1] - bottom] }
 }
 
 /// Makes pieces; lengths go by the em of the picture's text.
@@ -64,41 +90,16 @@ impl Painter {
         Self { em, setter: Typesetter::default(), pieces: Vec::new() }
     }
 
-    pub fn em(&self) -> f32 {
-        self.em
-    }
-
     pub fn into_pieces(self) -> Vec<Piece> {
         self.pieces
     }
 
-    /// So many thirteenths of the em, whole pixels, at least one.
     fn px(&self, n: f32) -> i32 {
-        (n * self.em / 13.0).round().max(1.0) as i32
+        px(self.em, n)
     }
 
     fn caption_style(&self) -> TextStyle {
         TextStyle { size_px: 0.92 * self.em, weight: Weight::Regular, tabular: false }
-    }
-
-    /// Where in an overlay that stands here its picture is.
-    pub fn picture_room(&self, overlay: &Overlay, rect: Rect) -> Room {
-        let frame = match &overlay.frame {
-            Frame::BuiltIn(frame) => *frame,
-            Frame::Images { .. } => BuiltInFrame::None,
-        };
-        let (around, below) = match frame {
-            BuiltInFrame::None | BuiltInFrame::Vignette => (0, 0),
-            BuiltInFrame::Thin => (self.px(1.0), self.px(1.0)),
-            BuiltInFrame::Rounded | BuiltInFrame::Ellipse => (self.px(4.0), self.px(4.0)),
-            BuiltInFrame::Print => (self.px(8.0), self.px(22.0)),
-        };
-        let below = if overlay.caption.is_some() { below.max(self.px(22.0)) } else { below };
-        let size: [i32; 2] = std::array::from_fn(|i| rect.max[i] - rect.min[i]);
-        // A frame never takes all of a small overlay.
-        let fits = |wanted: i32, side: i32| wanted.min((side - 1).max(0) / 3);
-        let (x, top, bottom) = (fits(around, size[0]), fits(around, size[1]), fits(below, size[1]));
-        Room { low: [rect.min[0] + x, rect.min[1] + top], high: [rect.max[0] - x, rect.max[1] - bottom] }
     }
 
     fn panel(&mut self, low: [f32; 2], high: [f32; 2], color: Srgb, opacity: f32, radius_px: f32, softness_px: f32) {
@@ -123,7 +124,7 @@ impl Painter {
         mirror: bool,
         [alpha, frame]: [Option<u64>; 2],
     ) {
-        let room = self.picture_room(overlay, rect);
+        let room = picture_room(overlay, rect, self.em);
         let (low, high) = (room.low.map(|v| v as f32), room.high.map(|v| v as f32));
         let side = room.size()[0].min(room.size()[1]) as f32;
         let opacity = overlay.opacity as f32;

@@ -47,13 +47,13 @@ pub fn local(
     studio: &Studio,
     scene: &Scene,
     main: &Camera,
-    lens: &Lens,
+    lens: &str,
     shown: &BestView,
     view: &LocalView,
     size: [u32; 2],
 ) -> Result<Local, RenderError> {
     let model = &*studio.model;
-    let wrong = |message: String| RenderError::Scene(format!("lens \"{}\": {message}", lens.name));
+    let wrong = |message: String| RenderError::Scene(format!("lens \"{lens}\": {message}"));
     let of_lens = |error: RenderError| match error {
         RenderError::Scene(message) => wrong(message),
         other => other,

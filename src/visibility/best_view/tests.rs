@@ -158,8 +158,8 @@ fn a_city_that_turns_takes_its_views_along() {
         // It is the best again, but for ties, which go by azimuth and do not turn.
         let after = all.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
         assert!(after.score >= 0.97 * all[0].score, "{quarters}: {after:?}");
-        // Faces may be cut into other triangles, and samples stand elsewhere: a step of the lattice.
-        assert!(off(after) < 5.5, "{quarters}: {}°", off(after));
+        // Faces may be cut into other triangles, and samples stand elsewhere: a step of the lattice in azimuth and in elevation, 5° each.
+        assert!(off(after) < 7.1, "{quarters}: {}°", off(after));
         assert!((after.score - before.score).abs() < 0.02 * before.score, "{quarters}");
         assert!((after.seen.visible - before.seen.visible).abs() < 0.03, "{quarters}");
     }
