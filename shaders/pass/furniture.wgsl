@@ -94,8 +94,26 @@ fn ellipse(at: vec2f, low: vec2f, high: vec2f, softness: f32) -> f32 {
     return select(share, share * share * (3.0 - 2.0 * share), softness > 1.0);
 }
 
-// An overlay's picture. Its item has its opacity as alpha; its halo says whether left and right are exchanged, and whether it is an ellipse.
-// A soft border lies inside of its rectangle.
+// Taps on each side of a pixel of a fisheye: towards its border many texels share one.
+const FISHEYE_TAPS: i32 = 4;
+
+// What a fisheye shows at a place, of a picture that is 1 + d times as large as it; the middle is as much larger, the border stays where it is:
+// shares of the way to the corners, of an ellipse to its rim (view::local::unfisheye).
+fn fisheye(inside: vec2f, size: vec2f, d: f32, is_ellipse: bool) -> vec4f {
+    let reach = 0.5 * size * select(1.4142135, 1.0, is_ellipse);
+    var sum = vec4f(0.0);
+    for (var tap = 0; tap < FISHEYE_TAPS * FISHEYE_TAPS; tap++) {
+        let offset = (vec2f(f32(tap % FISHEYE_TAPS), f32(tap / FISHEYE_TAPS)) + 0.5) / f32(FISHEYE_TAPS) - 0.5;
+        let shown = (inside + offset - 0.5 * size) / reach;
+        let place = shown / (1.0 + d * (1.0 - min(length(shown), 1.0)));
+        let uv = 0.5 + place * reach / size;
+        sum += textureSampleLevel(picture, linear_sampler, uv, 0.0);
+    }
+    return sum / f32(FISHEYE_TAPS * FISHEYE_TAPS);
+}
+
+// An overlay's picture. Its item has its opacity as alpha; its halo says whether left and right are exchanged, whether it is an ellipse, and
+// by how much more than once a fisheye magnifies its middle. A soft border lies inside of its rectangle.
 @fragment
 fn picture_fragment(shown: Shown) -> @location(0) vec4f {
     let size = shown.high - shown.low;
@@ -103,7 +121,10 @@ fn picture_fragment(shown: Shown) -> @location(0) vec4f {
     let across = select(inside.x, size.x - inside.x, shown.halo.x > 0.5);
     let place = vec2i(floor(vec2f(across, inside.y)));
     let least = vec2i(textureDimensions(picture)) - 1;
-    let color = textureLoad(picture, clamp(place, vec2i(0), least), 0);
+    var color = textureLoad(picture, clamp(place, vec2i(0), least), 0);
+    if shown.halo.z > 0.0 {
+        color = fisheye(vec2f(across, inside.y), size, shown.halo.z, shown.halo.y > 0.5);
+    }
     let seen = textureSampleLevel(mask, linear_sampler, inside / size, 0.0);
     let inset = select(0.0, 0.5 * shown.softness, shown.softness > 1.0);
     let low = shown.low + inset;

@@ -9,6 +9,9 @@ use crate::{lens::EffectUse, view::Camera};
 /// Vertical field of view of local cameras that say nothing of it, radians.
 pub const DEFAULT_FOV: f64 = 45_f64.to_radians();
 
+/// The most that a fisheye magnifies the middle of a map: it is drawn as much larger on each side.
+pub const MOST_MAGNIFIED: f64 = 4.0;
+
 /// What a best-view lens shows, and of what.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BestView {
@@ -70,6 +73,11 @@ pub enum LocalView {
         mode: MapMode,
         /// Metres of ground from the lower to the upper border.
         height_m: f64,
+        /// Fisheye: how many times larger its middle is than it would be without, 1..=[`MOST_MAGNIFIED`]; 1: none (B4).
+        magnification: f64,
+        /// Lazy tracking: how far the main eye may be from the map's middle before the map follows, as a share of the way to its border, 0..1
+        /// (B4); 0: it always does.
+        lazy: f64,
     },
     /// A small model that can be turned (B5): the first point of interest and what is within `margin_m` of it, alone.
     Worldlet {
@@ -84,6 +92,16 @@ pub enum LocalView {
     },
     /// Any eye: a region of the picture that shows another place (B5, Through-The-Lens).
     Camera(Camera),
+}
+
+impl LocalView {
+    /// How much a fisheye magnifies its middle; 1: there is none.
+    pub fn magnification(&self) -> f64 {
+        match self {
+            Self::Map { magnification, .. } => *magnification,
+            _ => 1.0,
+        }
+    }
 }
 
 /// How a map is turned (B4).

@@ -63,6 +63,8 @@ pub struct ImagePiece {
     pub radius_px: f32,
     /// Over how many pixels the border fades: 1 is a clean one, more lies inside; ≥ 1.
     pub softness_px: f32,
+    /// Fisheye: how many times larger the middle is ([`crate::view::local::fisheye`]); the image is as much larger than its place. At 1, its texels are pixels.
+    pub magnification: f32,
 }
 
 /// A way of so many widths through the picture (B7).
@@ -328,7 +330,7 @@ fn assembled(furniture: &Furniture, runs: &[Option<Run>], tile: PictureTile) -> 
                         low,
                         high,
                         color: [0.0, 0.0, 0.0, image.opacity.clamp(0.0, 1.0)],
-                        halo: [flag(image.mirror), flag(image.ellipse), 0.0, 0.0],
+                        halo: [flag(image.mirror), flag(image.ellipse), (image.magnification - 1.0).max(0.0), 0.0],
                         radius: image.radius_px.max(0.0),
                         softness: image.softness_px.max(1.0),
                         ..Default::default()

@@ -112,6 +112,7 @@ pub(super) struct Inset {
 
 impl Studio {
     /// Draws `scene` and `furniture` over it into the image `number` ([`Renderer::images`]), unless that shows it already. Whether it was drawn.
+    /// `is_stale`: images of the furniture show something else than before.
     ///
     /// # Errors
     /// Those of a picture.
@@ -121,12 +122,14 @@ impl Studio {
         scene: &Scene,
         request: &Request,
         furniture: &Furniture,
+        is_stale: bool,
     ) -> Result<bool, RenderError> {
         let mut inset = match self.insets.remove(&number) {
             Some(inset) => inset,
             None => Inset { state: ViewState::new(&self.renderer.gpu)?, occlusion: Mutex::default(), of: None },
         };
-        let shows = self.renderer.images.size(number).is_some()
+        let shows = !is_stale
+            && self.renderer.images.size(number).is_some()
             && inset.of.as_ref().is_some_and(|(s, r, f)| s == scene && r == request && f == furniture);
         let drawn = if shows { Ok(()) } else { self.draw_inset(&mut inset, number, scene, request, furniture) };
         if drawn.is_ok() {

@@ -52,6 +52,25 @@ pub fn map(centre: DVec3, heading: DVec2, height_m: f64, above_m: f64) -> Camera
     }
 }
 
+/// The middle of a map that follows an eye lazily (B4): that of before, moved no further than it takes for the eye to be within `reach` of it.
+pub fn followed(before: DVec2, eye: DVec2, reach: f64) -> DVec2 {
+    let away = eye - before;
+    let distance = away.length();
+    if distance <= reach { before } else { eye - away * (reach / distance) }
+}
+
+/// Where a fisheye shows a place: both as shares of the way from the middle to where it ends, of length 0..1. The middle becomes
+/// `magnification` times larger (Sarkar and Brown's (d + 1) r / (d r + 1), d = magnification − 1).
+pub fn fisheye(place: DVec2, magnification: f64) -> DVec2 {
+    let d = magnification - 1.0;
+    place * ((d + 1.0) / (d * place.length() + 1.0))
+}
+
+/// The place that a fisheye shows there: the inverse of [`fisheye`], which the shader of overlays has too.
+pub fn unfisheye(shown: DVec2, magnification: f64) -> DVec2 {
+    shown / (1.0 + (magnification - 1.0) * (1.0 - shown.length().min(1.0)))
+}
+
 /// Where a viewer is headed, in plan, of length 1: along its view; looking straight down or up, to the top of its picture. North, where
 /// neither says anything.
 pub fn heading(viewer: &Camera) -> DVec2 {
@@ -152,6 +171,30 @@ mod tests {
         near(looking(-DVec3::Z, DVec3::new(0.0, -1.0, 0.0)), -DVec2::Y);
         near(looking(DVec3::Z, DVec3::new(0.0, -1.0, 0.0)), DVec2::Y);
         near(looking(-DVec3::Z, DVec3::Z), DVec2::Y);
+    }
+
+    #[test]
+    fn a_lazy_map_follows_no_further_than_it_must() {
+        let at = DVec2::new;
+        assert_eq!(followed(at(10.0, 20.0), at(40.0, 60.0), 50.0), at(10.0, 20.0), "just within");
+        assert_eq!(followed(at(10.0, 20.0), at(40.0, 60.0), 25.0), at(25.0, 40.0), "halfway");
+        assert_eq!(followed(at(10.0, 20.0), at(40.0, 60.0), 0.0), at(40.0, 60.0));
+        assert_eq!(followed(at(10.0, 20.0), at(10.0, 20.0), 0.0), at(10.0, 20.0));
+    }
+
+    #[test]
+    fn a_fisheye_magnifies_its_middle_and_keeps_its_border() {
+        for magnification in [1.0, 1.5, 4.0] {
+            for i in 0..=100 {
+                let place = DVec2::from_angle(0.7) * f64::from(i) / 100.0;
+                let shown = fisheye(place, magnification);
+                assert!((unfisheye(shown, magnification) - place).length() < 1e-12);
+                assert!(shown.length() <= 1.0 + 1e-12);
+            }
+            let near = 1e-6;
+            assert!((fisheye(DVec2::X * near, magnification).x / near - magnification).abs() < 1e-4);
+            assert!((fisheye(DVec2::X, magnification) - DVec2::X).length() < 1e-12);
+        }
     }
 
     #[test]

@@ -49,11 +49,13 @@ fn check(file: &Path) -> Result<(), Failed> {
             Query { viewer, pois: &pois, test: &test, forced: &none, forbidden: &none, measured: true, margin: None };
         let covered: f64 = scope.detect(&query).list.iter().filter_map(|o| o.coverage).map(|c| c.share).sum();
         println!("  occluders cover {covered:.3} together");
-        if best.seen.visible < 0.25 || best.seen.unoccluded < 0.8 {
+        // Of a convex body a half is seen at most; of one with wings and courts less.
+        if best.seen.visible < 0.2 || best.seen.unoccluded < 0.8 {
             return Err(format!("{id} is not seen well: {:?}", best.seen).into());
         }
-        // What single occluders cover adds up to no less than all of them do; a wall behind another counts twice.
-        if covered > 0.25 || covered + 0.08 < 1.0 - best.seen.unoccluded {
+        // What single occluders cover adds up to no less than all of them do; a wall behind another counts twice. Terrain, into
+        // which the feet of walls reach, hides a tenth at most, and is no occluder.
+        if covered > 0.25 || covered + 0.1 < 1.0 - best.seen.unoccluded {
             return Err(format!("{id}: occluders cover {covered}, {:?}", best.seen).into());
         }
     }

@@ -29,7 +29,7 @@ use crate::{
     view::{Camera, View},
 };
 
-use paint::Painter;
+use paint::{Content, Painter};
 use views::Local;
 
 /// How far overlays stay from points of interest, pixels.
@@ -63,6 +63,8 @@ pub struct OverlayFigures {
 pub struct Standing {
     /// By the numbers of their views.
     of_views: BTreeMap<u64, Placed>,
+    /// What was in the middle of maps, by their numbers.
+    middles: BTreeMap<u64, DVec2>,
 }
 
 /// A lens with an overlay in one picture.
@@ -102,6 +104,8 @@ struct Plan {
 /// The view of an overlay.
 struct Inner {
     local: Local,
+    /// Pixels that it is drawn with.
+    size: [u32; 2],
     plan: Option<Plan>,
 }
 
@@ -162,10 +166,13 @@ fn plan(
         let Some(one) = plan.of(placement.id) else { continue };
         let Some(view) = one.best_view.view() else { continue };
         let room = paint::picture_room(&one.overlay, placement.rect, em).size();
-        let local = views::local(studio, scene, &camera, &one.name, &one.best_view, view, room)?;
         let number = paint::number(numbers, one.index, paint::Part::Picture);
-        let inner = self::plan(studio, &local.scene, room, number * NUMBERS, before, now)?;
-        plan.views.insert(one.index, Inner { local, plan: inner });
+        let tracked = before.middles.get(&number).copied();
+        let local = views::local(studio, scene, &camera, &one.name, &one.best_view, view, room, tracked)?;
+        now.middles.extend(local.middle.map(|middle| (number, middle)));
+        let size = room.map(|side| (f64::from(side) * local.magnification).round() as u32);
+        let inner = self::plan(studio, &local.scene, size, number * NUMBERS, before, now)?;
+        plan.views.insert(one.index, Inner { local, size, plan: inner });
     }
     Ok(Some(plan))
 }
@@ -241,8 +248,9 @@ impl Plan {
     ) -> Result<OverlayFigures, RenderError> {
         let room = paint::picture_room(&one.overlay, rect, self.em);
         let number = paint::number(self.numbers, one.index, paint::Part::Picture);
-        let (mut rendered, mut mirror) = (false, false);
-        match (&one.best_view.depiction, self.views.get(&one.index)) {
+        let inner = self.views.get(&one.index);
+        let mut rendered = false;
+        match (&one.best_view.depiction, inner) {
             (Depiction::Text(text), _) => {
                 painter.text(&one.overlay, rect, text);
                 return Ok(OverlayFigures { lens: one.index as u32, size: room.size(), rendered });
@@ -256,18 +264,18 @@ impl Plan {
             (Depiction::View(_), Some(inner)) => {
                 kept.push(number);
                 let asked = Request {
-                    size: room.size(),
+                    size: inner.size,
                     transparent: inner.local.transparent,
                     aovs: Aovs::default(),
                     statistics: false,
                     ..*request
                 };
                 let over = match &inner.plan {
-                    Some(plan) => plan.paint(studio, &asked, kept)?.furniture,
-                    None => Furniture::default(),
+                    Some(plan) => plan.paint(studio, &asked, kept)?,
+                    None => Overlays::default(),
                 };
-                rendered = studio.inset(number, &inner.local.scene, &asked, &over)?;
-                mirror = inner.local.mirror;
+                let is_stale = over.figures.iter().any(|figures| figures.rendered);
+                rendered = studio.inset(number, &inner.local.scene, &asked, &over.furniture, is_stale)?;
             }
         }
         let [alpha, frame] = paint::masks(&one.overlay.frame);
@@ -275,9 +283,12 @@ impl Plan {
             self.image(studio, one, paint::Part::Alpha, alpha, Some(room.size()), kept)?,
             self.image(studio, one, paint::Part::Frame, frame, Some(room.size()), kept)?,
         ];
-        painter.overlay(&one.overlay, rect, number, mirror, masks);
-        if let Some(view) = one.best_view.view() {
-            painter.signs(view, &self.camera, room);
+        let local = inner.map(|inner| &inner.local);
+        let mirror = local.is_some_and(|local| local.mirror);
+        let magnification = local.map_or(1.0, |local| local.magnification) as f32;
+        painter.overlay(&one.overlay, rect, Content { image: number, mirror, magnification, masks });
+        if let (Some(view), Some(local)) = (one.best_view.view(), local) {
+            painter.signs(&one.overlay, view, local, &self.camera, room);
         }
         Ok(OverlayFigures { lens: one.index as u32, size: room.size(), rendered })
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{DVec2, Vec2};
 
 use crate::{
-    figure::overlays::Room,
+    figure::overlays::{Room, views::Local},
     lens::{
         best_view::{LocalView, MapMode},
         color::Srgb,
@@ -78,6 +78,23 @@ pub fn picture_room(overlay: &Overlay, rect: Rect, em: f32) -> Room {
     Room { low: [rect.min[0] + x, rect.min[1] + top], high: [rect.max[0] - x, rect.max[1] - bottom] }
 }
 
+/// What an overlay shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Content {
+    /// The number of its image.
+    pub image: u64,
+    /// Whether left and right are exchanged.
+    pub mirror: bool,
+    /// How much a fisheye magnifies its middle.
+    pub magnification: f32,
+    /// The numbers of its alpha mask and its frame mask.
+    pub masks: [Option<u64>; 2],
+}
+
+fn is_ellipse(overlay: &Overlay) -> bool {
+    matches!(overlay.frame, Frame::BuiltIn(BuiltInFrame::Ellipse))
+}
+
 /// Makes pieces; lengths go by the em of the picture's text.
 pub struct Painter {
     em: f32,
@@ -116,14 +133,8 @@ impl Painter {
     }
 
     /// The picture of an overlay in its frame.
-    pub fn overlay(
-        &mut self,
-        overlay: &Overlay,
-        rect: Rect,
-        image: u64,
-        mirror: bool,
-        [alpha, frame]: [Option<u64>; 2],
-    ) {
+    pub fn overlay(&mut self, overlay: &Overlay, rect: Rect, content: Content) {
+        let Content { image, mirror, magnification, masks: [alpha, frame] } = content;
         let room = picture_room(overlay, rect, self.em);
         let (low, high) = (room.low.map(|v| v as f32), room.high.map(|v| v as f32));
         let side = room.size()[0].min(room.size()[1]) as f32;
@@ -138,6 +149,7 @@ impl Painter {
             ellipse: false,
             radius_px: 0.0,
             softness_px: 1.0,
+            magnification,
         };
         match &overlay.frame {
             Frame::BuiltIn(BuiltInFrame::None) | Frame::Images { .. } => {}
@@ -175,7 +187,7 @@ impl Painter {
         }
         self.pieces.push(Piece::Image(piece));
         if let Some(frame) = frame {
-            let over = ImagePiece { image: frame, mask: None, mirror: false, ..piece };
+            let over = ImagePiece { image: frame, mask: None, mirror: false, magnification: 1.0, ..piece };
             self.pieces.push(Piece::Image(over));
         }
         if let Some(caption) = &overlay.caption {
@@ -309,17 +321,21 @@ impl Painter {
     }
 
     /// What is drawn into a view beside the city: on maps a compass, or where the main eye is and looks (B4).
-    pub fn signs(&mut self, view: &LocalView, main: &Camera, room: Room) {
-        let LocalView::Map { mode, .. } = view else { return };
+    pub fn signs(&mut self, overlay: &Overlay, view: &LocalView, local: &Local, main: &Camera, room: Room) {
+        let LocalView::Map { mode, height_m, magnification, .. } = view else { return };
         let heading = local::heading(main);
         let on_page = |v: DVec2| DVec2::new(v.x, -v.y);
         match mode {
             MapMode::NorthUp => {}
             MapMode::UserView => {
-                let middle =
-                    0.5 * DVec2::new(f64::from(room.low[0] + room.high[0]), f64::from(room.low[1] + room.high[1]));
+                let (low, high) = (room.low.map(f64::from), room.high.map(f64::from));
+                let half = 0.5 * (DVec2::from(high) - DVec2::from(low));
+                let reach = half * if is_ellipse(overlay) { 1.0 } else { std::f64::consts::SQRT_2 };
+                let from_middle = main.eye.truncate() - local.middle.unwrap_or(main.eye.truncate());
+                let place = on_page(from_middle) * (2.0 * half.y / height_m);
+                let at = DVec2::from(low) + half + local::fisheye(place / reach, *magnification) * reach;
                 let ahead = on_page(heading);
-                self.arrow(middle + f64::from(self.px(9.0)) * ahead, ahead, NEEDLE);
+                self.arrow(at + f64::from(self.px(9.0)) * ahead, ahead, NEEDLE);
             }
             MapMode::HeadUp => {
                 // North in a map whose top is the heading.

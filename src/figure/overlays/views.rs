@@ -29,6 +29,10 @@ pub struct Local {
     pub transparent: bool,
     /// Whether left and right are exchanged.
     pub mirror: bool,
+    /// Of a map: what is in its middle.
+    pub middle: Option<DVec2>,
+    /// How much larger it is drawn than it is shown, for a fisheye.
+    pub magnification: f64,
 }
 
 /// The ball around a point of interest (B2).
@@ -39,7 +43,8 @@ fn ball(studio: &Studio, poi: &Poi) -> Result<Sphere, RenderError> {
     }
 }
 
-/// The scene that the view of a lens shows on so many pixels, seen from a picture with this camera.
+/// The scene that the view of a lens shows on so many pixels, seen from a picture with this camera. `tracked`: of a map, what was in its middle
+/// in the frame before.
 ///
 /// # Errors
 /// Where its point of interest has no place in the city.
@@ -51,6 +56,7 @@ pub fn local(
     shown: &BestView,
     view: &LocalView,
     size: [u32; 2],
+    tracked: Option<DVec2>,
 ) -> Result<Local, RenderError> {
     let model = &*studio.model;
     let wrong = |message: String| RenderError::Scene(format!("lens \"{lens}\": {message}"));
@@ -70,7 +76,13 @@ pub fn local(
         let framing = Framing::new(ball, normal, &Field { fov_y, aspect }, viewer);
         framing.map(|framing| framing.camera()).map_err(|error| wrong(error.to_string()))
     };
-    let mut own = Local { scene: seen_through(scene, shown), transparent: false, mirror: false };
+    let mut own = Local {
+        scene: seen_through(scene, shown),
+        transparent: false,
+        mirror: false,
+        middle: None,
+        magnification: view.magnification(),
+    };
     let camera = match view {
         LocalView::Best { normal, fov_y } => {
             let (poi, ball) = first()?;
@@ -88,15 +100,15 @@ pub fn local(
             let direction = if *of_camera { local::of_viewer(main, *direction) } else { *direction };
             local::from_viewer(main, direction, *fov_y)
         }
-        LocalView::Map { mode, height_m } => {
+        LocalView::Map { mode, height_m, lazy, .. } => {
             let heading = if *mode == MapMode::HeadUp { local::heading(main) } else { DVec2::Y };
-            let top = studio.extent().max.z.max(main.eye.z);
-            local::map(
-                main.eye.truncate().extend(if top.is_finite() { top } else { main.eye.z }),
-                heading,
-                *height_m,
-                ABOVE_M,
-            )
+            let eye = main.eye.truncate();
+            let middle =
+                tracked.map_or(eye, |before| local::followed(before, eye, 0.5 * lazy * height_m * aspect.min(1.0)));
+            own.middle = Some(middle);
+            // Of the city's height alone: an eye that rises sees the same map.
+            let top = studio.extent().max.z;
+            local::map(middle.extend(if top.is_finite() { top } else { 0.0 }), heading, *height_m, ABOVE_M)
         }
         LocalView::Worldlet { azimuth, elevation, margin_m, fov_y } => {
             let (poi, ball) = first()?;

@@ -12,7 +12,9 @@ use crate::{
     },
     lens::{
         LensKind,
-        best_view::{Background, BaseStyle, BestView, DEFAULT_FOV, Depiction, LocalView, Look, MapMode},
+        best_view::{
+            Background, BaseStyle, BestView, DEFAULT_FOV, Depiction, LocalView, Look, MOST_MAGNIFIED, MapMode,
+        },
         nearest::did_you_mean,
     },
     view::Camera,
@@ -109,6 +111,23 @@ pub const VIEWS: &[Table] = &[
                 "m",
                 "Metres of ground from its lower to its upper border.",
                 "800.0",
+            ),
+            key(
+                "magnification",
+                Kind::Number { min: 1.0, max: MOST_MAGNIFIED },
+                "1.0",
+                "",
+                "Fisheye: how many times larger its middle is than without; what is at its border is as much smaller.",
+                "2.5",
+            ),
+            key(
+                "lazy",
+                Kind::Number { min: 0.0, max: 1.0 },
+                "0.0",
+                "",
+                "Lazy tracking: how far the main eye may move from the middle before the map follows, as a share of the way to the border. \
+                 A single picture has the eye in the middle; `animate` lets the map keep still.",
+                "0.5",
             ),
         ],
     },
@@ -256,6 +275,8 @@ pub fn read_view(
                 .find(|(w, _)| own.text("mode") == Some(*w))
                 .map_or_else(Default::default, |(_, m)| *m),
             height_m: own.number("height_m").unwrap_or(500.0),
+            magnification: own.number("magnification").unwrap_or(1.0),
+            lazy: own.number("lazy").unwrap_or(0.0),
         },
         "worldlet" => LocalView::Worldlet {
             azimuth: own.number("azimuth_deg").unwrap_or(215.0).to_radians(),
@@ -325,10 +346,15 @@ fn view_keys(view: &LocalView) -> (&'static str, Vec<(&'static str, String)>) {
             let mirror = mirror.then(|| ("mirror", "true".to_owned()));
             ("scop", direction.into_iter().chain(axes).chain(mirror).chain(fov(*fov_y)).collect())
         }
-        LocalView::Map { mode, height_m } => {
+        LocalView::Map { mode, height_m, magnification, lazy } => {
             let word = MapMode::WORDS.iter().find(|(_, m)| m == mode).map_or("north-up", |(word, _)| word);
             let mode = (*mode != MapMode::default()).then(|| ("mode", quoted(word)));
-            ("map", mode.into_iter().chain([("height_m", number(*height_m))]).collect())
+            let magnification = (*magnification != 1.0).then(|| ("magnification", number(*magnification)));
+            let lazy = (*lazy != 0.0).then(|| ("lazy", number(*lazy)));
+            (
+                "map",
+                mode.into_iter().chain([("height_m", number(*height_m))]).chain(magnification).chain(lazy).collect(),
+            )
         }
         LocalView::Worldlet { azimuth, elevation, margin_m, fov_y } => {
             let mut keys =

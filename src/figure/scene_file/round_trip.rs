@@ -353,8 +353,8 @@ fn local_views() -> impl Strategy<Value = (LensKind, Depiction)> {
         camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::BestView)),
         camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::SeeThrough)),
         camera.prop_map(LocalView::Camera).prop_map(of(LensKind::Portal)),
-        (mode, 1e-3..1e7f64)
-            .prop_map(|(mode, height_m)| LocalView::Map { mode, height_m })
+        (mode, 1e-3..1e7f64, 1.0..4.0f64, 0.0..1.0f64)
+            .prop_map(|(mode, height_m, magnification, lazy)| LocalView::Map { mode, height_m, magnification, lazy })
             .prop_map(of(LensKind::MapView)),
         (-9000..9000i32, -900..900i32, 0.0..1e3f64, fov())
             .prop_map(move |(a, e, margin_m, fov_y)| LocalView::Worldlet {

@@ -444,7 +444,10 @@ fn of_a_lens_of_a_wrong_kind_only_that_is_told() {
             "occlusionn",
             "must be \"color\" or \"content\" or \"occlusion\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?",
         ),
-        ("see-through", "\"see-through\" is not available yet; available: color, content, occlusion"),
+        (
+            "magnifier",
+            "\"magnifier\" is not available yet; available: color, content, occlusion, annotation, best-view, map-view, worldlet, see-through, portal",
+        ),
     ] {
         let message = read_text(&lens_text(&format!("{rest}\nkind = \"{kind}\""))).unwrap_err();
         assert_eq!(message, format!("s.toml:9: [lens.0] kind: {expected}"));
