@@ -27,6 +27,8 @@ Examples:
   veduta info city.city.json                    a summary to read
   veduta info --list tiles/*.city.jsonl         several files as one city, every object by name
   veduta info --landmarks 10 city.city.json     what stands out in it
+  veduta info --landmarks 5 --scene sights.toml city.city.json
+                                                the same as a scene: each in an overlay, tied to its place
   veduta info --best-views church city.city.json
                                                 from where one object is seen best, as cameras for scenes
   veduta info --json city.glb | jq .objects.total
@@ -50,6 +52,9 @@ pub struct Arguments {
     /// List the views from which this object (with its parts) is seen best, best first
     #[arg(long, value_name = "ID")]
     pub best_views: Option<String>,
+    /// With --landmarks: also write a scene in which each of them has a best-view lens
+    #[arg(long, value_name = "FILE.toml", requires = "landmarks")]
+    pub scene: Option<PathBuf>,
     /// List the N objects that stand out most: by height, footprint, isolation and what their attributes say
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub landmarks: Option<u32>,
@@ -74,6 +79,11 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let (city, _) = load::load(&arguments.files, global)?;
     let best_views = arguments.best_views.as_ref().map(|id| best_views(&city, id)).transpose()?;
     let landmarks = arguments.landmarks.map(|n| landmarks(&city, n));
+    if let Some(file) = &arguments.scene {
+        output::check([file])?;
+        let text = sights::scene(&arguments.files, landmarks.iter().flatten(), file);
+        output::write(file, |out| out.write_all(text.as_bytes()))?;
+    }
     let answer = Answer { facts: facts::facts(&city, arguments.list), best_views, landmarks };
     if arguments.json {
         return output::write(std::path::Path::new("-"), |out| {

@@ -70,6 +70,27 @@ pub struct Lens {
 }
 
 impl Lens {
+    /// A lens without shapes and without effects.
+    pub fn plain(name: impl Into<String>, kind: LensKind, color: [f32; 3]) -> Self {
+        Self {
+            name: name.into(),
+            kind,
+            enabled: true,
+            color,
+            placement: Placement::World,
+            shapes: Vec::new(),
+            render: None,
+            effects: Vec::new(),
+            best_view: None,
+            content: None,
+            body: LensBody::None,
+            sprite: None,
+            border: None,
+            keeps_shadows: false,
+            section: None,
+        }
+    }
+
     /// Its border, if it has a width.
     pub fn soft_border(&self) -> Option<Border> {
         self.border.filter(|b| b.width > 0.0)

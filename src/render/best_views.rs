@@ -17,7 +17,7 @@ use crate::{
 /// What is known of objects, by their number in the city.
 #[derive(Debug, Default)]
 pub(super) struct KnownViews {
-    balls: HashMap<u32, Sphere>,
+    balls: HashMap<u32, (Sphere, DVec3)>,
     /// And by the bits of the vertical field of view.
     normals: HashMap<(u32, u64), DVec3>,
 }
@@ -28,13 +28,25 @@ impl Studio {
     /// # Errors
     /// Where the city has no such object, or nothing of it is shown.
     pub fn ball(&self, id: &str) -> Result<Sphere, RenderError> {
+        self.bulk(id).map(|bulk| bulk.0)
+    }
+
+    /// The middle of the facades of an object, metres: see [`Subject::middle`].
+    ///
+    /// # Errors
+    /// As for [`Studio::ball`].
+    pub fn middle(&self, id: &str) -> Result<DVec3, RenderError> {
+        self.bulk(id).map(|bulk| bulk.1)
+    }
+
+    fn bulk(&self, id: &str) -> Result<(Sphere, DVec3), RenderError> {
         let object = self.object(id)?;
-        if let Some(ball) = self.known().balls.get(&object) {
-            return Ok(*ball);
+        if let Some(bulk) = self.known().balls.get(&object) {
+            return Ok(*bulk);
         }
-        let ball = self.with_subject(object, |subject| Ok(subject.ball))?;
-        self.known().balls.insert(object, ball);
-        Ok(ball)
+        let bulk = self.with_subject(object, |subject| Ok((subject.ball, subject.middle())))?;
+        self.known().balls.insert(object, bulk);
+        Ok(bulk)
     }
 
     /// The best-view normal of an object, unit: of the best view with this vertical field of view in a picture of 16 by 9. It does not depend

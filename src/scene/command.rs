@@ -1,6 +1,13 @@
 //! Every edit of a scene is a command with a name that can be undone and redone, whoever issues it (architecture 14).
 
-use crate::{lens::Lens, scene::Scene, view::Camera};
+use crate::{
+    lens::{
+        BestView, Lens, LensKind,
+        best_view::{Depiction, LocalView},
+    },
+    scene::Scene,
+    view::Camera,
+};
 
 /// One edit. Scenes are small plain data, so a command simply holds both sides of it: undoing cannot drift.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +54,19 @@ impl Command {
         Some(Self::of(format!("reorder lens {}", lens.name), scene, |s| {
             let lens = s.lenses.remove(from);
             s.lenses.insert(to, lens);
+        }))
+    }
+
+    /// Steps through a portal (B5): its eye becomes the main one, and the main one, `from`, its own, so that it leads back. `None`: there is no portal
+    /// at `index`.
+    pub fn step_through(scene: &Scene, index: usize, from: Camera) -> Option<Self> {
+        let lens = scene.lenses.get(index).filter(|lens| lens.kind == LensKind::Portal)?;
+        let Some(&LocalView::Camera(to)) = lens.best_view.as_ref().and_then(BestView::view) else { return None };
+        Some(Self::of(format!("step through {}", lens.name), scene, |s| {
+            s.camera = Some(to);
+            if let Some(shown) = &mut s.lenses[index].best_view {
+                shown.depiction = Depiction::View(LocalView::Camera(from));
+            }
         }))
     }
 
@@ -129,6 +149,8 @@ impl History {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     fn resized(scene: &Scene, width: u32) -> Command {
@@ -150,6 +172,27 @@ mod tests {
         assert_eq!(history.redo(), None, "a new edit ends the other future");
         while history.undo().is_some() {}
         assert_eq!(*history.scene(), Scene::default());
+    }
+
+    #[test]
+    fn a_portal_leads_there_and_back() {
+        let [here, there] = [0.0, 500.0].map(|x| Camera::looking(DVec3::new(x, 0.0, 9.0), DVec3::ZERO + DVec3::Y, 0.8));
+        let shown = BestView {
+            pois: Vec::new(),
+            depiction: Depiction::View(LocalView::Camera(there)),
+            lenses: None,
+            look: None,
+        };
+        let portal = Lens { best_view: Some(shown), ..Lens::plain("gate", LensKind::Portal, [0.0; 3]) };
+        let mut scene = Scene { camera: Some(here), lenses: vec![portal], ..Scene::default() };
+        let before = scene.clone();
+        Command::step_through(&scene, 0, here).unwrap().redo(&mut scene);
+        assert_eq!(scene.camera, Some(there));
+        Command::step_through(&scene, 0, there).unwrap().redo(&mut scene);
+        assert_eq!(scene, before);
+        scene.lenses[0].kind = LensKind::SeeThrough;
+        assert_eq!(Command::step_through(&scene, 0, here), None, "a window is no door");
+        assert_eq!(Command::step_through(&scene, 1, here), None);
     }
 
     #[test]

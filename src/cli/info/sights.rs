@@ -1,12 +1,24 @@
 //! Best views and landmarks as `info --json` has them.
 
+use std::path::{Path, PathBuf};
+
 use glam::DVec3;
 use serde::Serialize;
 
 use crate::{
-    city::CityModel,
+    city::{CityModel, builtin},
+    figure::scene_file::{self, Options},
+    lens::{
+        self, Lens, LensKind,
+        best_view::{DEFAULT_FOV, Depiction, LocalView},
+        color::parse_hex,
+    },
+    scene::{Overlay, Poi, PoiPlace, Scene, overlay::BuiltInFrame, overlay::Frame},
     visibility::{BestView, Landmark},
 };
+
+/// Colours of context lines, told apart by people who do not see all colours (Okabe and Ito), the darker ones.
+const LINE_COLORS: [&str; 5] = ["#d55e00", "#0072b2", "#009e73", "#882255", "#332288"];
 
 /// A view of an object. `eye`, `target`, `up`, `fov_deg` and `near_m` are those of a scene's camera.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -128,4 +140,33 @@ impl LandmarkFacts {
             },
         }
     }
+}
+
+/// A scene of a city of files in which each landmark has a best-view lens (B9), as the text of `file`: paths are relative to it where they
+/// can be.
+pub fn scene<'a>(files: &[PathBuf], landmarks: impl Iterator<Item = &'a LandmarkFacts>, file: &Path) -> String {
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let is_builtin = |path: &Path| path.to_str().is_some_and(|name| name.starts_with(builtin::PREFIX));
+    let mut made = Scene::default();
+    made.city.files = files.iter().map(|f| if is_builtin(f) { f.clone() } else { absolute(f) }).collect();
+    for (i, landmark) in landmarks.enumerate() {
+        let called = landmark.name.clone().unwrap_or_else(|| format!("Landmark {}", i + 1));
+        let is_taken = |name: &str| made.pois.iter().any(|poi| poi.name == name);
+        let name = if is_taken(&called) { format!("{called} ({})", i + 1) } else { called };
+        let color = parse_hex(LINE_COLORS[i % LINE_COLORS.len()]).unwrap_or_default();
+        made.pois.push(Poi { name: name.clone(), place: PoiPlace::Object(landmark.id.clone()) });
+        let view = LocalView::Best { normal: None, fov_y: DEFAULT_FOV };
+        let shown =
+            lens::BestView { pois: vec![name.clone()], depiction: Depiction::View(view), lenses: None, look: None };
+        made.lenses.push(Lens { best_view: Some(shown), ..Lens::plain(name.clone(), LensKind::BestView, color) });
+        // Those that stand out most are placed first.
+        let priority = landmark.score;
+        let frame = Frame::BuiltIn(BuiltInFrame::Print);
+        made.overlays.push(Overlay { priority, frame, caption: Some(name.clone()), ..Overlay::of(&name) });
+    }
+    let options = Options::for_file(&absolute(file));
+    format!(
+        "# Landmarks, as `veduta info --landmarks` finds them, each in an overlay.\n{}",
+        scene_file::to_toml_for(&made, &options)
+    )
 }

@@ -15,6 +15,7 @@ Examples:
   veduta render tiles/*.city.jsonl -o city.png --size 1920x1080 --samples 16
   veduta render scene.toml -o figure.png --set lens.0.shape.radius=80 --set lens.b.enabled=false
   veduta render scene.toml -o figure.png --sprite hall=hall.exr
+  veduta render scene.toml -o beyond.png --through gate      what is seen after stepping through a portal
   veduta render scene.toml -o figure.png --aov depth=depth.exr --aov object-id=ids.png --stats stats.json
 
 A FILE that ends in .toml is a scene (docs/scene.md); city files get a good first view.
@@ -54,6 +55,9 @@ pub struct Arguments {
     /// Write the depth sprite that a lens is tested by (docs/sprites.md); repeatable
     #[arg(long = "sprite", value_name = "LENS=FILE.exr")]
     pub sprites: Vec<SpriteRequest>,
+    /// Step through a portal first: the picture is of where it leads, and it leads back
+    #[arg(long, value_name = "LENS")]
+    pub through: Option<String>,
     /// Leave out sky and background: straight alpha
     #[arg(long)]
     pub transparent: bool,

@@ -19,11 +19,13 @@ use crate::{
         scene_file::{self, Options},
     },
     gpu::Gpu,
+    lens::{LensKind, nearest::did_you_mean},
     render::{
         picture::{Aovs, Picture, RenderError, Request, Studio},
         stats, told,
     },
-    scene::{History, Scene, check_against},
+    scene::{Command, History, Scene, check_against},
+    view::Camera,
 };
 
 /// Lenses that a PNG mask holds.
@@ -45,6 +47,10 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         sprite.lens(&scene)?;
     }
     let (mut studio, warnings) = open(&scene, &options, global)?;
+    if let Some(name) = &arguments.through {
+        let from = studio.camera(&scene, scene.figure.size);
+        portal(&scene, name, from)?.redo(&mut scene);
+    }
     let has = |kind| arguments.aovs.iter().any(|aov| aov.kind == kind);
     let request = Request {
         size: scene.figure.size,
@@ -83,6 +89,17 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     // Last, so that a picture that is there means that everything is there.
     picture::save_picture(&arguments.output, picture.size, &picture.rgba, !arguments.transparent, &notes)
         .map_err(output::unwritten)
+}
+
+/// The step through the portal of this name.
+fn portal(scene: &Scene, name: &str, from: Camera) -> Outcome<Command> {
+    let found = scene.lenses.iter().position(|lens| lens.name == name);
+    let step = found.and_then(|index| Command::step_through(scene, index, from));
+    step.ok_or_else(|| {
+        let portals = scene.lenses.iter().filter(|lens| lens.kind == LensKind::Portal);
+        let hint = did_you_mean(name, portals.map(|lens| lens.name.as_str()));
+        Failure::usage(format!("--through: the scene has no portal \"{name}\"{hint}"))
+    })
 }
 
 /// Puts what is to be warned of into statistics: of the files as it is worded for the command line, the rest about this picture.

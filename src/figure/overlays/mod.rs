@@ -310,7 +310,11 @@ fn seen(studio: &Studio, scene: &Scene, view: &View, index: usize, lens: &Lens) 
 }
 
 fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_area: bool) -> Option<Place> {
-    let at = anchor(&crate::lens::Placement::Poi(poi.name.clone()), &scene.pois, &studio.model).ok().flatten()?;
+    let anchor = || anchor(&crate::lens::Placement::Poi(poi.name.clone()), &scene.pois, &studio.model).ok().flatten();
+    let at = match &poi.place {
+        PoiPlace::Object(id) => studio.middle(id).ok().or_else(anchor)?,
+        PoiPlace::At(_) => anchor()?,
+    };
     let from_eye = at - view.camera.eye;
     let direction = DVec2::new(from_eye.dot(view.basis.right), -from_eye.dot(view.basis.up));
     let [w, h] = view.size.map(f64::from);
@@ -346,6 +350,15 @@ fn area(studio: &Studio, view: &View, id: &str) -> Option<Vec<DVec2>> {
     (hull.len() >= 3).then(|| hull.into_iter().map(|[x, y]| DVec2::new(x as f64, y as f64) / 256.0).collect())
 }
 
+/// What an overlay prefers: a card is no higher than its text.
+fn preferred_size(one: &Shown, em: f32) -> [u32; 2] {
+    let [width, height] = one.overlay.size;
+    match &one.best_view.depiction {
+        Depiction::Text(text) => [width, height.min(paint::text_height(text, width, em))],
+        _ => [width, height],
+    }
+}
+
 /// What the layout is asked.
 fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f32) -> overlay::Request {
     let layout = &scene.layout;
@@ -353,7 +366,7 @@ fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f
     let lines = shown.iter().find_map(|one| one.overlay.line.as_ref().map(|line| line.kind)).unwrap_or_default();
     let overlays = shown.iter().map(|one| {
         let focuses: Vec<Focus> = one.places.iter().filter_map(|place| place.focus.clone()).collect();
-        let preferred = size(one.overlay.size);
+        let preferred = size(preferred_size(one, em));
         overlay::Overlay {
             id: one.index as u32,
             priority: one.overlay.priority,

@@ -95,6 +95,41 @@ fn is_ellipse(overlay: &Overlay) -> bool {
     matches!(overlay.frame, Frame::BuiltIn(BuiltInFrame::Ellipse))
 }
 
+/// How text is set in an overlay, pixels.
+struct Card {
+    em: f32,
+    pad: f32,
+    line: f32,
+}
+
+impl Card {
+    fn new(em: f32) -> Self {
+        Self { em, pad: 0.8 * em, line: (1.4 * em).round() }
+    }
+
+    /// At most so many lines, each no wider than `width` where it has a place to break. The first of several paragraphs is a heading.
+    fn lines(&self, setter: &mut Typesetter, text: &str, width: f32, most: usize) -> Vec<(String, TextStyle)> {
+        let mut lines = Vec::new();
+        for (i, paragraph) in text.split('\n').enumerate() {
+            let weight = if i == 0 && text.contains('\n') { Weight::SemiBold } else { Weight::Regular };
+            let style = TextStyle { size_px: self.em, weight, tabular: false };
+            let left = most.saturating_sub(lines.len());
+            lines.extend(setter.wrapped(paragraph, style, width, left).into_iter().map(|line| (line, style)));
+        }
+        lines
+    }
+}
+
+/// The height of an overlay of this width that holds all of a text, whole pixels.
+pub fn text_height(text: &str, width: u32, em: f32) -> u32 {
+    let card = Card::new(em);
+    let lines = card.lines(&mut Typesetter::default(), text, width as f32 - 2.0 * card.pad, MOST_LINES);
+    (2.0 * card.pad + card.line * lines.len() as f32).ceil() as u32
+}
+
+/// Lines of text that are counted; no overlay shows more.
+const MOST_LINES: usize = 1000;
+
 /// Makes pieces; lengths go by the em of the picture's text.
 pub struct Painter {
     em: f32,
@@ -208,23 +243,13 @@ impl Painter {
     /// An overlay of text.
     pub fn text(&mut self, overlay: &Overlay, rect: Rect, text: &str) {
         self.ground(overlay, rect, self.px(7.0) as f32);
-        let style = TextStyle { size_px: self.em, weight: Weight::Regular, tabular: false };
-        let pad = 0.8 * self.em;
-        let height = (1.4 * self.em).round();
-        let [width, tall] = [0, 1].map(|i| (rect.max[i] - rect.min[i]) as f32 - 2.0 * pad);
-        let most = (tall / height).floor().max(0.0) as usize;
-        let mut lines = Vec::new();
-        for (i, line) in text.split('\n').enumerate() {
-            // The first of several lines is a heading.
-            let weight = if i == 0 && text.contains('\n') { Weight::SemiBold } else { Weight::Regular };
-            let style = TextStyle { weight, ..style };
-            let left = most.saturating_sub(lines.len());
-            lines.extend(self.setter.wrapped(line, style, width, left).into_iter().map(|line| (line, style)));
-        }
-        for (i, (text, style)) in lines.into_iter().enumerate() {
-            let y = rect.min[1] as f32 + pad + height * i as f32;
-            let base = (y + 0.5 * (height + CAP_HEIGHT * style.size_px)).round();
-            let at = [rect.min[0] as f32 + pad, base];
+        let card = Card::new(self.em);
+        let [width, tall] = [0, 1].map(|i| (rect.max[i] - rect.min[i]) as f32 - 2.0 * card.pad);
+        let most = (tall / card.line).floor().max(0.0) as usize;
+        for (i, (text, style)) in card.lines(&mut self.setter, text, width, most).into_iter().enumerate() {
+            let y = rect.min[1] as f32 + card.pad + card.line * i as f32;
+            let base = (y + 0.5 * (card.line + CAP_HEIGHT * style.size_px)).round();
+            let at = [rect.min[0] as f32 + card.pad, base];
             self.pieces.push(Piece::Text(TextLine { text, at, style, color: INK, halo: None }));
         }
     }

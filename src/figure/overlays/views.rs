@@ -6,7 +6,7 @@ use crate::{
     city::CityModel,
     geom::{Aabb, Shape, Sphere},
     lens::{
-        BestView, Class, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, Placement,
+        BestView, Class, EffectUse, Focus, Lens, LensKind, Parameter, Placement,
         best_view::{LocalView, MapMode},
         chosen::Choice,
     },
@@ -179,20 +179,8 @@ fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
         parameters: [("keep_terrain".to_owned(), Parameter::Boolean(false))].into(),
     };
     Lens {
-        name: String::new(),
-        kind: LensKind::Color,
-        enabled: true,
-        color: [0.0; 3],
-        placement: Placement::World,
         shapes: vec![Focus::Thematic(Choice { ids, ..Choice::default() })],
-        render: None,
         effects: vec![erased],
-        best_view: None,
-        content: None,
-        body: LensBody::None,
-        sprite: None,
-        border: None,
-        keeps_shadows: false,
-        section: None,
+        ..Lens::plain("", LensKind::Color, [0.0; 3])
     }
 }

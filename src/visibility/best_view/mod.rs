@@ -114,6 +114,12 @@ impl<'a> Subject<'a> {
         search::best_views(self, field, most.clamp(1, MOST_VIEWS))
     }
 
+    /// The middle of its facades: the mean of their samples, metres. Unlike that of its box it lies at or in the bulk of the object, whatever towers
+    /// or wings it has.
+    pub fn middle(&self) -> DVec3 {
+        self.facades.samples.iter().map(|sample| sample.at).sum::<DVec3>() / SAMPLES as f64
+    }
+
     /// Its view from a direction that is given (BVN, any length); `viewer` as for [`Framing::new`].
     pub fn view_along(&self, normal: DVec3, field: &Field, viewer: Option<[DVec3; 2]>) -> Result<BestView, NoView> {
         let framing = Framing::new(&self.ball, normal, field, viewer)?;
