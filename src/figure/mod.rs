@@ -61,8 +61,8 @@ fn draw_with(
     let mut picture = studio.render_with(scene, request, &furniture)?;
     if request.statistics {
         let figures = overlays.figures.iter().map(|own| {
-            let [width, height] = own.size;
-            serde_json::json!({ "lens": own.lens, "width": width, "height": height, "rendered": own.rendered })
+            let ([x, y], [width, height]) = (own.at, own.size);
+            serde_json::json!({ "lens": own.lens, "x": x, "y": y, "width": width, "height": height, "rendered": own.rendered })
         });
         picture.statistics.overlays = figures.collect();
     }

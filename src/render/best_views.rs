@@ -11,7 +11,7 @@ use crate::{
     geom::Sphere,
     render::picture::{RenderError, Studio},
     view::Field,
-    visibility::Subject,
+    visibility::{BestView, Subject},
 };
 
 /// What is known of objects, by their number in the city.
@@ -19,7 +19,7 @@ use crate::{
 pub(super) struct KnownViews {
     balls: HashMap<u32, (Sphere, DVec3)>,
     /// And by the bits of the vertical field of view.
-    normals: HashMap<(u32, u64), DVec3>,
+    best: HashMap<(u32, u64), BestView>,
 }
 
 impl Studio {
@@ -49,24 +49,24 @@ impl Studio {
         Ok(bulk)
     }
 
-    /// The best-view normal of an object, unit: of the best view with this vertical field of view in a picture of 16 by 9. It does not depend
-    /// on the size of what shows it, so that it stays the same when that changes.
+    /// The best view of an object with this vertical field of view in a picture of 16 by 9. Its normal does not depend on the size of what shows it, so
+    /// that it stays the same when that changes.
     ///
     /// # Errors
     /// As for [`Studio::ball`]; a field of view that no camera has.
-    pub fn best_normal(&self, id: &str, fov_y: f64) -> Result<DVec3, RenderError> {
+    pub fn best_view(&self, id: &str, fov_y: f64) -> Result<BestView, RenderError> {
         let object = self.object(id)?;
         let key = (object, fov_y.to_bits());
-        if let Some(normal) = self.known().normals.get(&key) {
-            return Ok(*normal);
+        if let Some(best) = self.known().best.get(&key) {
+            return Ok(*best);
         }
         let field = Field { fov_y, ..Field::default() };
-        let normal = self.with_subject(object, |subject| {
+        let best = self.with_subject(object, |subject| {
             let views = subject.best_views(&field, 1).map_err(|error| RenderError::Scene(error.to_string()))?;
-            Ok(views.first().map_or(DVec3::Z, |view| view.framing.normal))
+            views.first().copied().ok_or_else(|| RenderError::Scene(format!("the object \"{id}\" has no view")))
         })?;
-        self.known().normals.insert(key, normal);
-        Ok(normal)
+        self.known().best.insert(key, best);
+        Ok(best)
     }
 
     fn object(&self, id: &str) -> Result<u32, RenderError> {

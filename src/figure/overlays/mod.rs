@@ -51,6 +51,8 @@ pub struct Overlays {
 pub struct OverlayFigures {
     /// The number of its lens.
     pub lens: u32,
+    /// Left and top of what it shows, pixels of the picture.
+    pub at: [i32; 2],
     /// Width and height of what it shows, pixels.
     pub size: [u32; 2],
     /// Whether it was drawn for this picture.
@@ -253,7 +255,7 @@ impl Plan {
         match (&one.best_view.depiction, inner) {
             (Depiction::Text(text), _) => {
                 painter.text(&one.overlay, rect, text);
-                return Ok(OverlayFigures { lens: one.index as u32, size: room.size(), rendered });
+                return Ok(OverlayFigures { lens: one.index as u32, at: room.low, size: room.size(), rendered });
             }
             (Depiction::Image(file), _) => {
                 kept.push(number);
@@ -290,7 +292,7 @@ impl Plan {
         if let (Some(view), Some(local)) = (one.best_view.view(), local) {
             painter.signs(&one.overlay, view, local, &self.camera, room);
         }
-        Ok(OverlayFigures { lens: one.index as u32, size: room.size(), rendered })
+        Ok(OverlayFigures { lens: one.index as u32, at: room.low, size: room.size(), rendered })
     }
 }
 

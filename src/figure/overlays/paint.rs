@@ -366,8 +366,12 @@ impl Painter {
                 // North in a map whose top is the heading.
                 let north = on_page(DVec2::Y.rotate(DVec2::new(heading.y, heading.x)));
                 let radius = f64::from(self.px(15.0));
-                let corner = DVec2::new(f64::from(room.high[0]), f64::from(room.low[1]));
-                let middle = corner + (radius + f64::from(self.px(6.0))) * DVec2::new(-1.0, 1.0);
+                let (low, high) = (room.low.map(f64::from), room.high.map(f64::from));
+                let half = 0.5 * (DVec2::from(high) - DVec2::from(low));
+                // At the upper right of what is seen.
+                let corner = half * if is_ellipse(overlay) { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
+                let inward = radius + f64::from(self.px(if is_ellipse(overlay) { 0.0 } else { 6.0 }));
+                let middle = DVec2::from(low) + half + (corner - inward) * DVec2::new(1.0, -1.0);
                 let (at, reach) = (middle.as_vec2(), Vec2::splat(radius as f32));
                 self.panel((at - reach).into(), (at + reach).into(), WHITE, 0.9, radius as f32, 1.0);
                 let half = 0.62 * radius;

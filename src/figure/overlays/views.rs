@@ -12,11 +12,14 @@ use crate::{
     },
     render::picture::{RenderError, Studio},
     scene::{Figure, LegendPlace, Poi, PoiPlace, Scene, Style},
-    view::{Camera, Field, Framing, local},
+    view::{Camera, Field, Framing, default_near_m, local},
 };
 
 /// Radius of the ball around a point of interest that is a point and no object, metres.
 pub const POINT_RADIUS_M: f64 = 25.0;
+/// From this share on that is seen of an object, of what would be were it alone, what stands before it stays: to cut it away, and the ground with it, would
+/// take more than it gives.
+const CLEAR: f64 = 0.9;
 /// How far above all else the eye of a map stands, metres.
 const ABOVE_M: f64 = 100.0;
 
@@ -86,13 +89,18 @@ pub fn local(
     let camera = match view {
         LocalView::Best { normal, fov_y } => {
             let (poi, ball) = first()?;
-            let normal = match (normal, &poi.place) {
-                (Some(normal), _) => *normal,
-                (None, PoiPlace::Object(id)) => studio.best_normal(id, *fov_y).map_err(of_lens)?,
+            match (normal, &poi.place) {
+                (Some(normal), _) => framed(&ball, *normal, *fov_y)?,
+                (None, PoiPlace::Object(id)) => {
+                    let best = studio.best_view(id, *fov_y).map_err(of_lens)?;
+                    let camera = framed(&ball, best.framing.normal, *fov_y)?;
+                    let is_clear = best.seen.unoccluded >= CLEAR;
+                    let near_m = default_near_m(camera.eye.distance(camera.target));
+                    if is_clear { Camera { near_m, ..camera } } else { camera }
+                }
                 // A place has no facades: from the south-west and from above.
-                (None, PoiPlace::At(_)) => DVec3::new(-1.0, -1.0, 0.8),
-            };
-            framed(&ball, normal, *fov_y)?
+                (None, PoiPlace::At(_)) => framed(&ball, DVec3::new(-1.0, -1.0, 0.8), *fov_y)?,
+            }
         }
         LocalView::Mcop { normal, distance_m, fov_y } => local::towards_viewer(main, *normal, *distance_m, *fov_y),
         LocalView::Scop { direction, of_camera, mirror, fov_y } => {

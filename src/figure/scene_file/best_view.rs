@@ -34,7 +34,7 @@ pub const VIEWS: &[Table] = &[
     Table {
         name: "best",
         doc: "All of the first point of interest: the sphere around it fills the overlay. What is nearer to this eye than that sphere is \
-              left out, so that nothing hides it.",
+              left out, so that nothing hides it; where the eye is chosen and less than a tenth of the object is hidden, it stays.",
         keys: &[
             view_kind("\"best\""),
             key(

@@ -1,0 +1,321 @@
+//! Best-view lenses in pictures (B1 to B8): overlays show what their own eyes see, pixel by pixel, and only when it changed.
+
+mod studio;
+
+use glam::{DVec2, DVec3};
+use studio::*;
+use veduta::{
+    figure::{
+        self,
+        overlays::{Standing, views},
+        scene_file::{Options, parse},
+    },
+    lens::best_view::LocalView,
+    render::picture::{Aovs, Picture, Request, Studio},
+    scene::Scene,
+    view::{Camera, local},
+};
+
+const SIZE: [u32; 2] = [640, 360];
+
+/// A scene over the market square, from above the church.
+fn square(rest: &str) -> Scene {
+    let head = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [-75, -110, 62]\ntarget = [8, 12, 4]\n\
+                fov_deg = 46\n[figure]\nsize = [640, 360]\n";
+    parse(&format!("{head}{rest}"), "s.toml", &Options::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn request(size: [u32; 2]) -> Request {
+    Request {
+        size,
+        samples: 1,
+        transparent: false,
+        aovs: Aovs::default(),
+        statistics: true,
+        backend: Default::default(),
+    }
+}
+
+fn drawn(studio: &mut Studio, scene: &Scene) -> Picture {
+    figure::draw(studio, scene, &request(SIZE)).unwrap()
+}
+
+/// Of an overlay of a picture: lens, left and top, width and height, whether it was drawn.
+type Told = (usize, [usize; 2], [usize; 2], bool);
+
+fn told(picture: &Picture) -> Vec<Told> {
+    let number = |v: &serde_json::Value, key: &str| v[key].as_u64().unwrap() as usize;
+    let overlays = picture.statistics.overlays.iter();
+    overlays
+        .map(|v| {
+            let [lens, x, y, w, h] = ["lens", "x", "y", "width", "height"].map(|key| number(v, key));
+            (lens, [x, y], [w, h], v["rendered"].as_bool().unwrap())
+        })
+        .collect()
+}
+
+fn rendered(picture: &Picture) -> Vec<bool> {
+    told(picture).iter().map(|t| t.3).collect()
+}
+
+/// What is shown in a part of a picture.
+fn part(picture: &Picture, at: [usize; 2], size: [usize; 2]) -> Vec<[u8; 4]> {
+    let width = picture.size[0] as usize;
+    (0..size[1]).flat_map(|y| picture.rgba[(at[1] + y) * width + at[0]..][..size[0]].iter().copied()).collect()
+}
+
+/// The picture of what a lens of a scene shows, drawn by itself.
+fn alone(studio: &mut Studio, scene: &Scene, lens: usize, size: [u32; 2]) -> Picture {
+    let camera = studio.camera(scene, SIZE);
+    let own = &scene.lenses[lens];
+    let shown = own.best_view.as_ref().unwrap();
+    let made = views::local(studio, scene, &camera, &own.name, shown, shown.view().unwrap(), size, None).unwrap();
+    let mut own = made.scene.clone();
+    own.lenses.retain(|lens| lens.best_view.is_none());
+    studio.render(&own, &request(size)).unwrap()
+}
+
+const PLAIN: &str = "frame = \"none\"\nline = \"none\"\n";
+
+#[test]
+fn overlays_show_what_their_own_eyes_see_texel_by_texel() {
+    let views = [
+        ("best-view", "poi = \"hall\"", ""),
+        ("best-view", "poi = \"hall\"", "normal = [0, -1, 1]"),
+        ("best-view", "poi = \"hall\"", "normal = [0, 0, 2]"),
+        ("best-view", "", "kind = \"mcop\", distance = 80"),
+        ("best-view", "", "kind = \"scop\", direction = [1, 0, -0.5]"),
+        ("best-view", "", "kind = \"scop\", direction = [1, 1, 0], axes = \"world\", mirror = true"),
+        ("map-view", "", "mode = \"head-up\", height_m = 300"),
+        ("see-through", "", "eye = [0, -60, 30], target = [0, 0, 5]"),
+        ("portal", "", "eye = [60, 60, 30], target = [0, 0, 5]"),
+    ];
+    let mut studio = None;
+    for (kind, poi, view) in views {
+        let scene = square(&format!(
+            "[[poi]]\nname = \"hall\"\nobject = \"town-hall\"\n[[lens]]\nname = \"a\"\nkind = \"{kind}\"\n{poi}\nview = {{ {view} }}\n\
+             [[overlay]]\nlens = \"a\"\nsize = [150, 101]\n{PLAIN}"
+        ));
+        let studio = studio.get_or_insert_with(|| of_scene(&scene));
+        let picture = drawn(studio, &scene);
+        let (lens, at, size, is_new) = told(&picture)[0];
+        assert_eq!((lens, size, is_new), (0, [150, 101], true), "{view}: at exactly its size");
+        let mut expected = alone(studio, &scene, 0, [150, 101]).rgba;
+        if view.contains("mirror") {
+            expected = expected.chunks(150).flat_map(|row| row.iter().rev().copied()).collect();
+        }
+        let shown = part(&picture, at, size);
+        let other = shown.iter().zip(&expected).filter(|(a, b)| a != b).count();
+        // The compass of a head-up map, the only sign among these, is 30 pixels wide.
+        let sign = if kind == "map-view" { 32 * 32 } else { 0 };
+        assert!(other <= sign, "{kind} {view}: {other} texels differ");
+        assert_eq!(other > 0, kind == "map-view", "{kind} {view}");
+    }
+}
+
+#[test]
+fn an_overlay_is_drawn_again_only_when_what_it_shows_changed() {
+    let scene = square(
+        "[[poi]]\nname = \"hall\"\nobject = \"town-hall\"\n[[lens]]\nname = \"hall\"\nkind = \"best-view\"\npoi = \"hall\"\n\
+         [[lens]]\nname = \"map\"\nkind = \"map-view\"\n[[lens]]\nname = \"note\"\nkind = \"annotation\"\ntext = \"x\"\npoi = \"hall\"\n\
+         [[lens]]\nname = \"old\"\nshape = { kind = \"sphere\", center = [44, -7, 10], radius = 15 }\neffects = [\"sepia\"]\n",
+    );
+    let mut studio = of_scene(&scene);
+    let mut standing = Standing::default();
+    let mut draw = |scene: &Scene| figure::draw_next(&mut studio, scene, &request(SIZE), &mut standing).unwrap();
+    let first = draw(&scene);
+    assert_eq!(rendered(&first), [true, true, false]);
+    let again = draw(&scene);
+    assert_eq!((rendered(&again), again.rgba == first.rgba), (vec![false; 3], true), "nothing changed");
+    let mut moved = scene.clone();
+    moved.camera.as_mut().unwrap().eye.z += 1.0;
+    assert_eq!(rendered(&draw(&moved)), [false; 3], "the main eye rose: map and best view stay as they are");
+    moved.camera.as_mut().unwrap().eye.x += 3.0;
+    assert_eq!(rendered(&draw(&moved)), [false, true, false], "the map follows the main eye");
+    moved.figure.title = Some("Title".into());
+    assert_eq!(rendered(&draw(&moved)), [false; 3], "titles are those of the main picture");
+    moved.lenses[3].effects = vec![used("invert")];
+    assert_eq!(rendered(&draw(&moved)), [true, true, false], "lenses of the world act in every view");
+    moved.sun.elevation -= 0.1;
+    assert_eq!(rendered(&draw(&moved)), [true, true, false]);
+    moved.lenses[0].enabled = false;
+    assert_eq!(rendered(&draw(&moved)), [false, false], "what is off takes no place");
+    moved.lenses[0].enabled = true;
+    assert_eq!(rendered(&draw(&moved)), [true, false, false], "and was forgotten");
+}
+
+#[test]
+fn views_in_views_are_drawn_again_from_the_inside_outwards() {
+    let scene = square(
+        "[[lens]]\nname = \"outer\"\nkind = \"see-through\"\nview = { eye = [0, -60, 30], target = [0, 0, 5] }\nlenses = [\"inner\"]\n\
+         [[lens]]\nname = \"inner\"\nkind = \"see-through\"\nview = { eye = [60, 60, 30], target = [0, 0, 5] }\n\
+         [[overlay]]\nlens = \"outer\"\nsize = [300, 200]\n[[overlay]]\nlens = \"inner\"\nsize = [120, 80]\n",
+    );
+    let mut studio = of_scene(&scene);
+    let first = drawn(&mut studio, &scene);
+    let told_first = told(&first);
+    assert_eq!(rendered(&first), [true, true], "the inner one stands in the picture too");
+    assert_eq!(rendered(&drawn(&mut studio, &scene)), [false, false]);
+    // The view in the view: what the outer overlay shows holds the frame and the picture of the inner one.
+    let mut without = scene.clone();
+    without.lenses[0].best_view.as_mut().unwrap().lenses = Some(Vec::new());
+    let plain = drawn(&mut studio, &without);
+    let (_, at, size, _) = told_first[0];
+    let differing = part(&first, at, size).iter().zip(part(&plain, at, size)).filter(|(a, b)| **a != *b).count();
+    assert!((110 * 70..130 * 95).contains(&differing), "{differing}");
+    // What the inner one shows changes: both are drawn again.
+    drawn(&mut studio, &scene);
+    let mut moved = scene.clone();
+    moved.lenses[1].best_view.as_mut().unwrap().depiction = veduta::lens::best_view::Depiction::View(
+        LocalView::Camera(Camera::looking(DVec3::new(60.0, 50.0, 30.0), DVec3::ZERO, 0.8)),
+    );
+    assert_eq!(rendered(&drawn(&mut studio, &moved)), [true, true]);
+}
+
+/// The middle of all pixels of a part of a picture that are of a colour, and how many they are.
+fn middle_of(pixels: &[[u8; 4]], width: usize, is_it: impl Fn([u8; 4]) -> bool) -> Option<(DVec2, usize)> {
+    let found: Vec<DVec2> = (0..pixels.len())
+        .filter(|&i| is_it(pixels[i]))
+        .map(|i| DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5))
+        .collect();
+    (!found.is_empty()).then(|| (found.iter().sum::<DVec2>() / found.len() as f64, found.len()))
+}
+
+/// A column of pure magenta at a place, seen from above as a disc of 6 m.
+fn marked(at: DVec3, rest: &str) -> Scene {
+    let [x, y] = [at.x, at.y];
+    square(&format!(
+        "[[lens]]\nname = \"mark\"\nbody = \"none\"\nshape = {{ kind = \"cylinder\", center = [{x}, {y}, 0], radius = 3, height = 400 }}\n\
+         effects = [{{ effect = \"flat\" }}, {{ effect = \"overlay\", color = \"#ff00ff\", strength = 1.0 }}]\n{rest}"
+    ))
+}
+
+fn is_magenta([r, g, b, _]: [u8; 4]) -> bool {
+    r > 200 && g < 60 && b > 200
+}
+
+#[test]
+fn a_fisheye_shows_places_where_its_closed_form_has_them() {
+    // The eye is at (−75, −110); the map shows 200 m on 180 pixels.
+    for (frame, reach) in [("ellipse", 1.0), ("none", std::f64::consts::SQRT_2)] {
+        for offset in [DVec2::new(12.0, 5.0), DVec2::new(30.0, 40.0), DVec2::new(-20.0, 55.0)] {
+            let place = DVec2::new(-75.0, -110.0) + offset;
+            let scene = marked(
+                place.extend(0.0),
+                &format!(
+                    "[[lens]]\nname = \"map\"\nkind = \"map-view\"\nview = {{ height_m = 200, magnification = 3 }}\n\
+                     [[overlay]]\nlens = \"map\"\nsize = [180, 180]\nframe = \"{frame}\"\n"
+                ),
+            );
+            let picture = drawn(&mut of_scene(&scene), &scene);
+            let (_, at, size, _) = told(&picture)[0];
+            let half = DVec2::new(size[0] as f64, size[1] as f64) * 0.5;
+            let (found, count) =
+                middle_of(&part(&picture, at, size), size[0], is_magenta).expect("the mark is on the map");
+            let shown = |offset: DVec2| {
+                let on_map = DVec2::new(offset.x, -offset.y) * (2.0 * half.y / 200.0);
+                half + local::fisheye(on_map / (half * reach), 3.0) * half * reach
+            };
+            // The middle of a disc is not that of its picture: the mean over the disc.
+            let disc = (0..400).map(|i| {
+                let (turn, r) = (DVec2::from_angle(f64::from(i) * 2.399_963), 3.0 * (f64::from(i) / 400.0).sqrt());
+                shown(offset + r * turn)
+            });
+            let expected = disc.sum::<DVec2>() / 400.0;
+            assert!((found - expected).length() < 0.75, "{frame} {offset}: {found} for {expected}, {count} pixels");
+            let without = half + DVec2::new(offset.x, -offset.y) * (2.0 * half.y / 200.0);
+            assert!((found - without).length() > 3.0, "it is distorted");
+        }
+    }
+}
+
+#[test]
+fn a_lazy_map_keeps_still_until_the_eye_is_out_of_reach() {
+    let scene = square(
+        "[[lens]]\nname = \"map\"\nkind = \"map-view\"\nview = { mode = \"user-view\", height_m = 200, lazy = 0.5 }\n\
+         [[overlay]]\nlens = \"map\"\nsize = [160, 160]\nframe = \"none\"\n",
+    );
+    let mut studio = of_scene(&scene);
+    let mut standing = Standing::default();
+    let mut arrows = Vec::new();
+    let mut drawn_again = Vec::new();
+    for step in 0..8 {
+        let mut now = scene.clone();
+        let camera = now.camera.as_mut().unwrap();
+        (camera.eye.x, camera.target.x) =
+            (camera.eye.x + 10.0 * f64::from(step), camera.target.x + 10.0 * f64::from(step));
+        let picture = figure::draw_next(&mut studio, &now, &request(SIZE), &mut standing).unwrap();
+        let (_, at, size, is_new) = told(&picture)[0];
+        let is_red = |[r, g, b, _]: [u8; 4]| r > 190 && g < 70 && b < 80;
+        arrows.push(middle_of(&part(&picture, at, size), size[0], is_red).unwrap().0.x);
+        drawn_again.push(is_new);
+    }
+    // Half of the way to the border is 50 m.
+    assert_eq!(drawn_again, [true, false, false, false, false, false, true, true]);
+    let per_step = 10.0 * 160.0 / 200.0;
+    for (step, pair) in arrows.windows(2).enumerate() {
+        let expected = if step < 5 { per_step } else { 0.0 };
+        assert!((pair[1] - pair[0] - expected).abs() < 0.5, "{arrows:?}");
+    }
+    // A single picture has the eye in the middle.
+    let mut last = scene;
+    let camera = last.camera.as_mut().unwrap();
+    (camera.eye.x, camera.target.x) = (camera.eye.x + 70.0, camera.target.x + 70.0);
+    let picture = drawn(&mut studio, &last);
+    let (_, at, size, _) = told(&picture)[0];
+    let is_red = |[r, g, b, _]: [u8; 4]| r > 190 && g < 70 && b < 80;
+    let arrow = middle_of(&part(&picture, at, size), size[0], is_red).unwrap().0;
+    assert!((arrow - 80.0).length() < 8.0, "{arrow}");
+}
+
+#[test]
+fn compasses_show_north_and_arrows_where_the_eye_looks() {
+    let needle = |[r, g, b, _]: [u8; 4]| r > 190 && g < 70 && b < 80;
+    let tail = |[r, g, b, _]: [u8; 4]| r.abs_diff(140) < 12 && g.abs_diff(145) < 12 && b.abs_diff(153) < 12;
+    for degrees in [0, 60, 135, 200, 310] {
+        let to = DVec2::from_angle(f64::from(degrees).to_radians());
+        let (tx, ty) = (-75.0 + 100.0 * to.x, -110.0 + 100.0 * to.y);
+        let scene = |mode: &str| {
+            let mut scene = square(&format!(
+                "[[lens]]\nname = \"map\"\nkind = \"map-view\"\nview = {{ mode = \"{mode}\", height_m = 20000 }}\n\
+                 look = {{ background = \"#ffffff\" }}\nlenses = []\n[[overlay]]\nlens = \"map\"\nsize = [200, 200]\nframe = \"none\"\n"
+            ));
+            scene.camera.as_mut().unwrap().target = DVec3::new(tx, ty, 30.0);
+            scene
+        };
+        let mut studio = of_scene(&scene("head-up"));
+        let picture = drawn(&mut studio, &scene("head-up"));
+        let (_, at, size, _) = told(&picture)[0];
+        let pixels = part(&picture, at, size);
+        let red = middle_of(&pixels, size[0], needle).unwrap().0;
+        let grey = middle_of(&pixels, size[0], tail).unwrap().0;
+        // In a map whose top is the direction of view, north is turned by as much the other way.
+        let north = DVec2::new(-to.x, -to.y);
+        let found = (red - grey).normalize_or(DVec2::X);
+        assert!(found.angle_to(north).abs() < 0.15, "{degrees}°: {found} for {north}");
+        let picture = drawn(&mut studio, &scene("user-view"));
+        let (_, at, size, _) = told(&picture)[0];
+        let red = middle_of(&part(&picture, at, size), size[0], needle).unwrap().0 - 100.0;
+        let ahead = DVec2::new(to.x, -to.y);
+        // The arrow head is heavier at its base.
+        assert!(red.length() < 6.0 && red.length() > 0.2 && red.angle_to(-ahead).abs() < 0.6, "{degrees}°: {red}");
+    }
+}
+
+#[test]
+fn lines_of_places_out_of_the_picture_are_arrows_or_nothing() {
+    let with = |line: &str| {
+        square(&format!(
+            "[[poi]]\nname = \"behind\"\nat = [-150, -300, 10]\n[[lens]]\nname = \"a\"\nkind = \"annotation\"\ntext = \"x\"\n\
+             color = \"#ff00ff\"\npoi = \"behind\"\n[[overlay]]\nlens = \"a\"\nsize = [60, 40]\nline = {{ {line} }}\n"
+        ))
+    };
+    let mut studio = of_scene(&with(""));
+    let arrow = drawn(&mut studio, &with("outside = \"arrow\""));
+    let (tip, count) = middle_of(&arrow.rgba, SIZE[0] as usize, is_magenta).expect("an arrow");
+    assert!((20..200).contains(&count), "{count}");
+    // The place lies behind, below and to the left.
+    assert!(tip.y > 330.0 || tip.x < 20.0, "{tip}");
+    let hidden = drawn(&mut studio, &with("outside = \"hidden\""));
+    assert_eq!(middle_of(&hidden.rgba, SIZE[0] as usize, is_magenta), None);
+}
