@@ -186,7 +186,7 @@ fn marked(at: DVec3, rest: &str) -> Scene {
     let [x, y] = [at.x, at.y];
     square(&format!(
         "[[lens]]\nname = \"mark\"\nbody = \"none\"\nshape = {{ kind = \"cylinder\", center = [{x}, {y}, 0], radius = 3, height = 400 }}\n\
-         effects = [{{ effect = \"flat\" }}, {{ effect = \"overlay\", color = \"#ff00ff\", strength = 1.0 }}]\n{rest}"
+         effects = [{{ effect = \"flat\" }}, {{ effect = \"overlay\", color = \"#ff00ff\", opacity = 1.0 }}]\n{rest}"
     ))
 }
 

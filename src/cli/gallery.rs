@@ -53,6 +53,8 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "sections"
     "see-inside"
     "shown-as"
+    "sights"
+    "sights-of-the-hague"
     "three-lenses"
     "tiesel-3-12-a"
     "tiesel-3-12-b"
@@ -71,6 +73,9 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "trapp-3-3-2-a"
     "trapp-3-3-2-b"
     "trapp-3-3-2-c"
+    "trapp-3-4-1"
+    "trapp-3-4-3-a"
+    "trapp-3-4-3-b"
     "trapp-3-5-1"
     "trapp-3-5-2-a"
     "trapp-3-5-2-b"
@@ -78,6 +83,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "trapp-3-5-3-a"
     "trapp-3-5-3-b"
     "trapp-3-5-3-c"
+    "trapp-5-3-1"
     "vienna-roofs"
     "vienna-shapes"
     "who-hides-the-church"
@@ -92,6 +98,9 @@ pub const SHEETS: &[(&str, &str)] = &[
     ("trapp-3-3-4", include_str!("../../scenes/trapp-3-3-4.sheet.toml")),
     ("trapp-3-3-5", include_str!("../../scenes/trapp-3-3-5.sheet.toml")),
     ("trapp-3-3-6", include_str!("../../scenes/trapp-3-3-6.sheet.toml")),
+    ("trapp-3-4-5", include_str!("../../scenes/trapp-3-4-5.sheet.toml")),
+    ("trapp-3-4-8", include_str!("../../scenes/trapp-3-4-8.sheet.toml")),
+    ("trapp-5-3-2", include_str!("../../scenes/trapp-5-3-2.sheet.toml")),
 ];
 
 /// Arguments of `veduta gallery`.
