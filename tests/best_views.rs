@@ -278,7 +278,7 @@ fn compasses_show_north_and_arrows_where_the_eye_looks() {
         let scene = |mode: &str| {
             let mut scene = square(&format!(
                 "[[lens]]\nname = \"map\"\nkind = \"map-view\"\nview = {{ mode = \"{mode}\", height_m = 20000 }}\n\
-                 look = {{ background = \"#ffffff\" }}\nlenses = []\n[[overlay]]\nlens = \"map\"\nsize = [200, 200]\nframe = \"none\"\n"
+                 look = {{ background = \"#ffffff\" }}\nlenses = []\n[layout]\nalong = \"right\"\n[[overlay]]\nlens = \"map\"\nsize = [200, 200]\nframe = \"none\"\n"
             ));
             scene.camera.as_mut().unwrap().target = DVec3::new(tx, ty, 30.0);
             scene
@@ -295,7 +295,9 @@ fn compasses_show_north_and_arrows_where_the_eye_looks() {
         assert!(found.angle_to(north).abs() < 0.15, "{degrees}°: {found} for {north}");
         let picture = drawn(&mut studio, &scene("user-view"));
         let (_, at, size, _) = told(&picture)[0];
-        let red = middle_of(&part(&picture, at, size), size[0], needle).unwrap().0 - 100.0;
+        let half = 0.5 * DVec2::new(size[0] as f64, size[1] as f64);
+        let red = middle_of(&part(&picture, at, size), size[0], needle).unwrap().0 - half;
+        assert_eq!(size, [200, 200]);
         let ahead = DVec2::new(to.x, -to.y);
         // The arrow head is heavier at its base.
         assert!(red.length() < 6.0 && red.length() > 0.2 && red.angle_to(-ahead).abs() < 0.6, "{degrees}°: {red}");
