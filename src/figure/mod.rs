@@ -20,8 +20,8 @@ use crate::{
 
 /// Draws a picture with the title, the caption and the legends that the scene's `[figure]` asks for.
 pub fn draw(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
-    let overlays = overlays::overlays(studio, scene, request, None)?;
     let own = furniture_of(studio, scene, request.size)?;
+    let overlays = overlays::overlays(studio, scene, request, &furniture::cards(&own), None)?;
     let furniture = Furniture { pieces: overlays.furniture.pieces.into_iter().chain(own.pieces).collect() };
     let mut picture = studio.render_with(scene, request, &furniture)?;
     if request.statistics {

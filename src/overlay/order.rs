@@ -105,6 +105,14 @@ impl<'a> Packer<'a> {
         let focused = self.focused.and_then(|f| row.iter().position(|i| *i == f));
         let mut wishes = wishes(self.problem.request.layout.along, lane.span, &lengths, &anchors, board.gap, focused);
         wishes.iter_mut().zip(row).for_each(|(wish, i)| *wish = self.wishes[*i].unwrap_or(*wish));
+        self.row_near(k, row, &wishes)
+    }
+
+    /// The rectangles of a row whose overlays begin as near to `wishes` (pixels along the side) as can be; `None` if it does not fit.
+    pub fn row_near(&self, k: usize, row: &[usize], wishes: &[i32]) -> Option<Vec<Rect>> {
+        let lane = self.filled.lanes[k];
+        let (a, board) = (lane.side.along_axis(), &self.problem.board);
+        let lengths: Vec<i32> = row.iter().map(|i| self.filled.sizes[*i][a]).collect();
         let seat =
             |(n, i): (usize, &usize)| Seat { windows: &self.windows[k][*i], length: lengths[n], wish: wishes[n] };
         let seats: Vec<Seat> = row.iter().enumerate().map(seat).collect();
@@ -143,7 +151,10 @@ pub fn sides_of(filled: &Filled) -> Vec<Option<Side>> {
 
 /// The ways of the lines of an overlay.
 pub fn ways_of(problem: &Problem, item: usize, rect: &Rect, side: Side) -> Vec<Way> {
-    problem.targets[item].iter().filter_map(|(target, _)| way(rect, side, target, problem.request.lines)).collect()
+    problem.targets[item]
+        .iter()
+        .filter_map(|(target, _)| way(rect, side, target, problem.overlays[item].lines))
+        .collect()
 }
 
 /// One state of the search.
@@ -281,8 +292,11 @@ impl<'p, 'a> State<'p, 'a> {
         }
     }
 
-    /// An overlay moves to place `n` of lane `l`.
+    /// An overlay of a lane moves to place `n` of lane `l`.
     fn moved(&self, (item, k, m): (usize, usize, usize), (l, n): (usize, usize)) -> Option<Trial> {
+        if k == INWARD {
+            return None;
+        }
         let mut first = self.rows[k].clone();
         first.remove(m);
         if k == l {

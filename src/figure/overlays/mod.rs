@@ -14,7 +14,7 @@ use crate::{
     figure::furniture::em_px,
     geom::outline,
     lens::{BestView, Lens, best_view::Depiction},
-    overlay::{self, Focus, Placed, arrow::border_arrow},
+    overlay::{self, Focus, Placed, Rect, arrow::border_arrow},
     render::{
         furniture::Furniture,
         picture::{Aovs, RenderError, Request, Studio},
@@ -76,7 +76,8 @@ struct Place {
     distance: f64,
 }
 
-/// The overlays of a picture; the insets that they show are drawn where they are others than before.
+/// The overlays of a picture; the insets that they show are drawn where they are others than before. They leave `blocked` free, pixels: what is drawn over
+/// them.
 ///
 /// # Errors
 /// What a view of an overlay names and the city does not have, images that cannot be read, those of pictures.
@@ -84,10 +85,11 @@ pub fn overlays(
     studio: &mut Studio,
     scene: &Scene,
     request: &Request,
+    blocked: &[Rect],
     before: Option<&Placed>,
 ) -> Result<Overlays, RenderError> {
     let mut kept = Vec::new();
-    let made = overlays_of(studio, scene, request, before, 0, &mut kept)?;
+    let made = overlays_of(studio, scene, request, blocked, before, 0, &mut kept)?;
     studio.keep_insets(|number| kept.contains(&number));
     Ok(made)
 }
@@ -96,6 +98,7 @@ fn overlays_of(
     studio: &mut Studio,
     scene: &Scene,
     request: &Request,
+    blocked: &[Rect],
     before: Option<&Placed>,
     numbers: u64,
     kept: &mut Vec<u64>,
@@ -107,7 +110,7 @@ fn overlays_of(
     let view = View::new(camera, request.size, &studio.extent())?;
     let shown: Vec<Shown> =
         scene.lenses.iter().enumerate().filter_map(|(i, lens)| seen(studio, scene, &view, i, lens)).collect();
-    let asked = layout_of(studio, scene, &view, &shown, em_px(&scene.figure, request.size));
+    let asked = layout_of(studio, scene, &view, &shown, blocked, em_px(&scene.figure, request.size));
     let placed = overlay::place(&asked, before);
     let mut painter = Painter::new(em_px(&scene.figure, request.size));
     let of = |id: u32| shown.iter().find(|s| s.index as u32 == id);
@@ -152,7 +155,7 @@ fn overlays_of(
                     statistics: false,
                     ..*request
                 };
-                let nested = overlays_of(studio, &own.scene, &asked, None, number * NUMBERS, kept)?;
+                let nested = overlays_of(studio, &own.scene, &asked, &[], None, number * NUMBERS, kept)?;
                 rendered = studio.inset(number, &own.scene, &asked, &nested.furniture)?;
                 mirror = own.mirror;
             }
@@ -240,10 +243,16 @@ fn area(studio: &Studio, view: &View, id: &str) -> Option<Vec<DVec2>> {
 }
 
 /// What the layout is asked.
-fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f32) -> overlay::Request {
+fn layout_of(
+    studio: &Studio,
+    scene: &Scene,
+    view: &View,
+    shown: &[Shown],
+    blocked: &[Rect],
+    em: f32,
+) -> overlay::Request {
     let layout = &scene.layout;
     let size = |side: [u32; 2]| DVec2::new(side[0].into(), side[1].into());
-    let lines = shown.iter().find_map(|one| one.overlay.line.as_ref().map(|line| line.kind)).unwrap_or_default();
     let overlays = shown.iter().map(|one| {
         let focuses: Vec<Focus> = one.places.iter().filter_map(|place| place.focus.clone()).collect();
         let preferred = size(one.overlay.size);
@@ -254,13 +263,16 @@ fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f
             preferred,
             max: one.overlay.max.map_or(1.5 * preferred, size),
             anchors: if one.overlay.line.is_some() { focuses } else { Vec::new() },
+            lines: match one.overlay.line.as_ref().map(|line| line.kind).unwrap_or_default() {
+                LineKind::Straight => overlay::LineKind::Straight,
+                LineKind::Orthogonal => overlay::LineKind::Orthogonal,
+                LineKind::Curved => overlay::LineKind::Curved,
+            },
             weight: one.overlay.interest,
             distance: one.places.iter().map(|place| place.distance).fold(f64::INFINITY, f64::min).min(1e9),
         }
     });
-    let all: Vec<&str> = scene.pois.iter().map(|poi| poi.name.as_str()).collect();
-    let avoid = scene.pois.iter().filter(|poi| all.contains(&poi.name.as_str()));
-    let avoid = avoid.filter_map(|poi| match place(studio, scene, view, poi, false)?.focus? {
+    let avoid = scene.pois.iter().filter_map(|poi| match place(studio, scene, view, poi, false)?.focus? {
         Focus::Point(at) => Some(at),
         Focus::Area(_) => None,
     });
@@ -278,6 +290,7 @@ fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f
         overlays: overlays.collect(),
         avoid: avoid.collect(),
         clearance: CLEARANCE_PX * f64::from(em) / 13.0,
+        blocked: blocked.to_vec(),
         layout: overlay::Layout {
             arrangement,
             along,
@@ -290,11 +303,6 @@ fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f
             gap: layout.gap_px.round() as u32,
             centre_of_interest: layout.exploration_focus.then(|| 0.5 * DVec2::new(w, h)),
             ..overlay::Layout::default()
-        },
-        lines: match lines {
-            LineKind::Straight => overlay::LineKind::Straight,
-            LineKind::Orthogonal => overlay::LineKind::Orthogonal,
-            LineKind::Curved => overlay::LineKind::Curved,
         },
     }
 }
