@@ -104,7 +104,7 @@ pub struct Layout {
     /// How far an overlay glides per call, pixels, 1 and up; infinite: in one step.
     pub glide: f64,
     /// Up to how many overlays the least number of crossings is proven, where it is not zero: all orders are tried, which takes
-    /// a millisecond for 6, and nine times as long for each more. At most 9.
+    /// a millisecond for 6, and nine times as long for each more. At most 9, and at most 5 with a frame before.
     pub proven: u32,
 }
 

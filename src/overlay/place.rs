@@ -36,7 +36,7 @@ pub struct Placed {
     pub gliding: Vec<Side>,
     /// Whether the next call gives this again, at no cost, if the request is equal (which one with NaN never is).
     pub settled: bool,
-    /// Why overlays are not where they glide to or keep still, but moved there in one step; `None` if none did.
+    /// Why overlays moved further than they glide, or changed their order; `None` if none did.
     pub jump: Option<Jump>,
     /// Eighths of the way from wanted to smallest sizes, 0..8.
     pub step: u32,
@@ -193,7 +193,7 @@ pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
     let mut filled = fill(&problem);
     let mut is_least = None;
     // Search of the rows as they were filled fits at least as well as they do.
-    if let Some(ordered) = search(&Packer::new(&problem, &filled, problem.board.clearance, focused, true), None) {
+    if let Some(ordered) = search(&Packer::new(&problem, &filled, problem.board.clearance, focused, true), false) {
         is_least = Some(ordered.is_least);
         (filled.rows, filled.inward) = (ordered.rows, ordered.inward);
     }

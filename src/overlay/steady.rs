@@ -23,9 +23,6 @@ const RETURNS: usize = 400;
 /// See [`RETURNS`].
 const MOST_RETURNS: usize = 4;
 
-/// How many changes of order are tried per call, times overlays.
-const MOST_TRIALS: usize = 6000;
-
 /// Of two neighbours in the order of distance, the second comes first only when it is nearer by this factor.
 const NEARER: f64 = 0.95;
 
@@ -113,32 +110,36 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
     }
     let mut turns = Turns { last: before.turn, tried: if old == problem.request { before.tried } else { 0 } };
     let come = come(problem, before, &mut turns, &mut filled, &mut ideal, dead_band, focused)?;
+    let was_gliding = &before.gliding;
+    let advance = |filled: &Filled, ideal: &[Option<Rect>]| {
+        Advance { problem, filled, held: &held, ideal, was_gliding }.rects(&old_rows)
+    };
+    let (mut rects, mut gliding) = advance(&filled, &ideal);
     let (mut hopeless, mut is_least, mut has_order) = (0, None, false);
     if layout.order == Order::Anchors {
-        let shown: Vec<Option<Rect>> = held.iter().zip(&ideal).map(|(h, i)| i.and(*h).or(*i)).collect();
-        let deep = deep_crossings(problem, &filled, &shown, dead_band);
+        let deep = deep_crossings(problem, &filled, &rects, dead_band);
         // What was not found is looked for again when it is worse by an eighth, or when it has been less by half.
         hopeless = if deep * 2 < before.hopeless { deep } else { before.hopeless };
         if deep > hopeless {
-            hopeless = deep + deep / 8;
             let packer = Packer::new(problem, &filled, problem.board.clearance, focused, true);
-            let rects = rects_of(&packer)?;
-            let now = count(&rects, &all_ways(problem, &filled, &rects)).sum();
-            let ordered = search(&packer, Some(MOST_TRIALS))?;
-            is_least = Some(ordered.is_least);
-            if ordered.crossings < now {
-                (filled.rows, filled.inward) = (ordered.rows, ordered.inward);
-                ideal = packed(problem, &filled, focused)?;
+            let ordered = search(&packer, true)?;
+            let other = Filled { rows: ordered.rows, inward: ordered.inward, ..filled.clone() };
+            let other_ideal = packed(problem, &other, focused)?;
+            let (other_rects, other_gliding) = advance(&other, &other_ideal);
+            // Less crossings than those that stay even if their places move by the dead band: so that soon after they do not change back.
+            let crossings = count(&other_rects, &all_ways(problem, &other, &other_rects)).sum();
+            if crossings >= deep {
+                hopeless = deep + deep / 8;
+            } else if crossings < stood(problem, &held, &seats) {
+                is_least = Some(ordered.is_least && other_rects == other_ideal);
+                (filled, rects, gliding) = (other, other_rects, other_gliding);
                 (has_order, hopeless) = (true, 0);
             }
         }
     }
-    let was_gliding = &before.gliding;
-    let (rects, gliding) =
-        Advance { problem, filled: &filled, held: &held, ideal: &ideal, was_gliding }.rects(&old_rows);
     let has_rows = filled.rows.iter().zip(&old_rows).any(|(new, old)| *new != old.1);
     let has_moved = rects != held || has_rows || filled.step != before.step || hopeless != before.hopeless;
-    let jump = leaps(problem, &held, &rects).then(|| {
+    let jump = (has_order || leaps(problem, &held, &rects)).then(|| {
         let is_reordered = has_order || layout.order != Order::Anchors && has_rows;
         let causes = [(come.any, Jump::Came), (is_reordered, Jump::Order), (filled.step != before.step, Jump::Size)];
         causes.into_iter().find(|cause| cause.0).map_or(Jump::Room, |cause| cause.1)
@@ -379,6 +380,12 @@ pub fn all_ways(problem: &Problem, filled: &Filled, rects: &[Option<Rect>]) -> V
         .enumerate()
         .map(|(i, (rect, side))| rect.zip(*side).map_or(Vec::new(), |(r, s)| ways_of(problem, i, &r, s)))
         .collect()
+}
+
+/// The crossings if all stood where they stood before.
+fn stood(problem: &Problem, held: &[Option<Rect>], seats: &[Option<Seat>]) -> u32 {
+    let ways = |i: usize| Some(ways_of(problem, i, &held[i]?, seats[i]?.side()));
+    count(held, &(0..held.len()).map(|i| ways(i).unwrap_or_default()).collect::<Vec<_>>()).sum()
 }
 
 /// Crossings that stay when all lines end before their focus by the dead band.

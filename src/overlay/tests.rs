@@ -1,5 +1,7 @@
 //! Promises of `place`: closed forms, properties, brute force, and a walk.
 
+mod over_time;
+
 use glam::DVec2;
 use proptest::prelude::*;
 
