@@ -20,7 +20,7 @@ use crate::{
     figure::{
         self,
         animation::{Film, FilmError},
-        overlays::{self, Standing},
+        overlays::Standing,
         picture,
     },
     render::{picture::Request, stats::Statistics},
@@ -147,7 +147,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         let at_frame = |error: String| Failure::failed(format!("{}: frame {frame}: {error}", file.display()));
         studio.pass(&scene, scene.figure.size, 1.0 / film.fps()).map_err(|error| at_frame(error.to_string()))?;
         if frame < first {
-            overlays::pass(&studio, &scene, scene.figure.size, &mut standing)
+            figure::pass(&studio, &scene, scene.figure.size, &mut standing)
                 .map_err(|error| at_frame(error.to_string()))?;
             continue;
         }

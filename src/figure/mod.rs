@@ -41,6 +41,15 @@ pub fn draw_next(
     draw_with(studio, scene, request, standing, own)
 }
 
+/// Lets the overlays of a frame that is not drawn take their places.
+///
+/// # Errors
+/// What an overlay shows and is not there.
+pub fn pass(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Standing) -> Result<(), RenderError> {
+    let own = furniture_of(studio, scene, size)?;
+    overlays::pass(studio, scene, size, &furniture::cards(&own), standing)
+}
+
 /// Draws a picture with its overlays, and without title, caption and legends.
 ///
 /// # Errors
@@ -56,7 +65,7 @@ fn draw_with(
     standing: &mut Standing,
     own: Furniture,
 ) -> Result<Picture, RenderError> {
-    let overlays = overlays::overlays(studio, scene, request, standing)?;
+    let overlays = overlays::overlays(studio, scene, request, &furniture::cards(&own), standing)?;
     let furniture = Furniture { pieces: overlays.furniture.pieces.into_iter().chain(own.pieces).collect() };
     let mut picture = studio.render_with(scene, request, &furniture)?;
     if request.statistics {

@@ -56,7 +56,10 @@ impl<'a> Problem<'a> {
             p.is_finite() && picture.covers(**p, clearance + 1.0)
         };
         let points = request.avoid.iter().filter(near).copied().collect();
-        let board = Board { inner, gap: whole(layout.gap), clearance, points };
+        let near = |x: i32| x.clamp(-(FURTHEST as i32), FURTHEST as i32);
+        let blocked = request.blocked.iter().map(|r| Rect { min: r.min.map(near), max: r.max.map(near) });
+        let blocked = blocked.filter(|r| r.within(&inner, whole(layout.gap))).collect();
+        let board = Board { inner, gap: whole(layout.gap), clearance, points, blocked };
         let mut overlays: Vec<&Overlay> = request.overlays.iter().collect();
         let rank = |o: &Overlay| if o.priority.is_nan() { f64::NEG_INFINITY } else { o.priority + 0.0 };
         overlays.sort_by(|a, b| rank(b).total_cmp(&rank(a)).then(a.id.cmp(&b.id)));
@@ -96,6 +99,12 @@ impl<'a> Problem<'a> {
         sides.iter().map(lane).collect()
     }
 
+    /// Whether an overlay has no place in the picture even at its smallest.
+    pub fn is_too_large(&self, item: usize) -> bool {
+        let (min, room) = (self.sizes[item].min, self.board.inner.size());
+        min[0] > room[0] || min[1] > room[1]
+    }
+
     /// By what an overlay is sorted into a row of a side.
     pub fn key(&self, item: usize, side: Side) -> f64 {
         match self.request.layout.order {
@@ -128,7 +137,7 @@ impl<'a> Problem<'a> {
             let origin = if side.is_first() { board.inner.min[d] } else { -board.inner.max[d] };
             let inward = |low: i32, high: i32| if side.is_first() { high - origin } else { -low - origin };
             // The least depth is 0, or touches something.
-            let beside = obstacles.iter().map(|o| inward(o.min[d], o.max[d]) + board.gap);
+            let beside = obstacles.iter().chain(&board.blocked).map(|o| inward(o.min[d], o.max[d]) + board.gap);
             let past = board.points.iter().map(|p| {
                 let at = (p[d] + if side.is_first() { board.clearance } else { -board.clearance })
                     * if side.is_first() { 1.0 } else { -1.0 };
@@ -165,13 +174,13 @@ impl<'a> Problem<'a> {
         let mut best: Option<((usize, i32), Side, Rect)> = None;
         for &side in &self.sides {
             let (d, a) = (side.depth_axis(), side.along_axis());
-            let mut depths: Vec<i32> = obstacles.iter().map(|o| if side.is_first() { o.max[d] - board.inner.min[d] } else { board.inner.max[d] - o.min[d] } + board.gap).collect();
+            let mut depths: Vec<i32> = obstacles.iter().chain(&board.blocked).map(|o| if side.is_first() { o.max[d] - board.inner.min[d] } else { board.inner.max[d] - o.min[d] } + board.gap).collect();
             depths.push(0);
             depths.sort_unstable();
             depths.dedup();
             let span = (board.inner.min[a], board.inner.max[a]);
             let wish = (self.wish[item][a] - f64::from(size[a]) * 0.5).clamp(-FURTHEST, FURTHEST) as i32;
-            for depth in depths.into_iter().filter(|depth| depth + size[d] <= board.inner.size()[d]) {
+            for depth in depths.into_iter().filter(|at| *at >= 0 && at + size[d] <= board.inner.size()[d]) {
                 let windows = bare.windows(side, depth, size, span, obstacles);
                 let ends = windows.iter().flat_map(|w| [w.0, w.1]);
                 let beside = board.points.iter().flat_map(|p| {

@@ -54,6 +54,8 @@ pub struct Board {
     pub clearance: f64,
     /// The points not to be covered, finite, in the picture or just beside it.
     pub points: Vec<DVec2>,
+    /// What is left free like an overlay that stands there, pixels.
+    pub blocked: Vec<Rect>,
 }
 
 impl Board {
@@ -73,10 +75,26 @@ impl Board {
         let strip = self.rect(side, 0, 0, [thick; 2]);
         let (low, high) = (f64::from(strip.min[d]) - clearance - 1.0, f64::from(strip.max[d]) + clearance + 1.0);
         let points = self.points.iter().copied().filter(|p| (low..=high).contains(&p[d])).collect();
-        Self { clearance, points, ..*self }
+        Self { clearance, points, blocked: self.blocked.clone(), ..*self }
     }
 
-    /// Where an overlay can stand along a side at a depth, from `low` up to `high`, pixels: covering no point and keeping the gap from `obstacles`.
+    /// How many points an overlay covers that stands there.
+    pub fn covered(&self, rect: &Rect) -> usize {
+        self.points.iter().filter(|p| rect.covers(**p, self.clearance)).count()
+    }
+
+    /// Whether it would be too near to what is blocked.
+    pub fn is_blocked(&self, rect: &Rect) -> bool {
+        self.blocked.iter().any(|b| b.within(rect, self.gap))
+    }
+
+    /// Whether it covers no point, and keeps the gap from what is blocked.
+    pub fn is_free(&self, rect: &Rect) -> bool {
+        !self.is_blocked(rect) && self.covered(rect) == 0
+    }
+
+    /// Where an overlay can stand along a side at a depth, from `low` up to `high`, pixels: covering no point and keeping the gap from
+    /// `obstacles` and from what is blocked.
     pub fn windows(
         &self,
         side: Side,
@@ -89,7 +107,7 @@ impl Board {
         let length = size[a];
         let strip = self.rect(side, 0, depth, size);
         let mut closed: Vec<(i32, i32)> = Vec::new();
-        for obstacle in obstacles {
+        for obstacle in obstacles.iter().chain(&self.blocked) {
             if strip.min[d] < obstacle.max[d] + self.gap && obstacle.min[d] < strip.max[d] + self.gap {
                 closed.push((obstacle.min[a] - self.gap - length + 1, obstacle.max[a] + self.gap - 1));
             }
@@ -260,6 +278,7 @@ mod tests {
             gap: 5,
             clearance,
             points: points.iter().map(|p| DVec2::from_array(*p)).collect(),
+            blocked: Vec::new(),
         }
     }
 

@@ -29,7 +29,7 @@ pub use place::{Fact, Marker, Placed, Placement, place};
 pub use rect::Rect;
 
 /// All that decides where overlays stand.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Request {
     /// Width and height of the picture, pixels.
     pub picture: [u32; 2],
@@ -39,10 +39,11 @@ pub struct Request {
     pub avoid: Vec<DVec2>,
     /// How far, in x or in y, an overlay stays from each of those points, pixels, 0 and up; 6 looks well.
     pub clearance: f64,
+    /// What overlays leave free as they do one another, with the gap: a title, a legend. Pixels, each `max` above its `min`; what is outside of the picture does not
+    /// matter. Who has no room beside them is folded.
+    pub blocked: Vec<Rect>,
     /// How they are arranged.
     pub layout: Layout,
-    /// The kind of the context lines.
-    pub lines: LineKind,
 }
 
 /// One overlay, as the layout sees it.
@@ -61,6 +62,8 @@ pub struct Overlay {
     pub max: DVec2,
     /// Where its context lines end. The first says where it would like to stand. What is not finite has no line.
     pub anchors: Vec<Focus>,
+    /// The kind of its context lines.
+    pub lines: LineKind,
     /// Degree of interest, 0..1; for [`SizeRule::ByInterest`].
     pub weight: f64,
     /// From the eye, metres, above 0; for [`SizeRule::ByDistance`] and [`Order::Distance`].
@@ -101,7 +104,7 @@ pub struct Layout {
     /// How far an overlay glides per call, pixels, 1 and up; infinite: in one step.
     pub glide: f64,
     /// Up to how many overlays the least number of crossings is proven, where it is not zero: all orders are tried, which takes
-    /// a millisecond for 6, and nine times as long for each more. At most 9.
+    /// a millisecond for 6, and nine times as long for each more. At most 9, and at most 5 with a frame before.
     pub proven: u32,
 }
 
@@ -181,9 +184,10 @@ pub enum SizeRule {
 }
 
 /// The way of a context line from its overlay to its focus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LineKind {
     /// A segment.
+    #[default]
     Straight,
     /// Square to the overlay's border, then along it.
     Orthogonal,

@@ -19,8 +19,14 @@ use crate::overlay::{
 /// Changes that are tried times overlays, before the search gives up: a change costs as much more as there are overlays.
 const MOST_TRIALS: usize = 200_000;
 
+/// The same with a frame before.
+const KEPT_TRIALS: usize = 6000;
+
 /// The most overlays for which all orders are tried.
 pub const MOST_PROVEN: usize = 9;
+
+/// The same with a frame before.
+const KEPT_PROVEN: usize = 5;
 
 /// Stands for a lane where an overlay is further inward.
 const INWARD: usize = usize::MAX;
@@ -105,6 +111,14 @@ impl<'a> Packer<'a> {
         let focused = self.focused.and_then(|f| row.iter().position(|i| *i == f));
         let mut wishes = wishes(self.problem.request.layout.along, lane.span, &lengths, &anchors, board.gap, focused);
         wishes.iter_mut().zip(row).for_each(|(wish, i)| *wish = self.wishes[*i].unwrap_or(*wish));
+        self.row_near(k, row, &wishes)
+    }
+
+    /// The rectangles of a row whose overlays begin as near to `wishes` (pixels along the side) as can be; `None` if it does not fit.
+    pub fn row_near(&self, k: usize, row: &[usize], wishes: &[i32]) -> Option<Vec<Rect>> {
+        let lane = self.filled.lanes[k];
+        let (a, board) = (lane.side.along_axis(), &self.problem.board);
+        let lengths: Vec<i32> = row.iter().map(|i| self.filled.sizes[*i][a]).collect();
         let seat =
             |(n, i): (usize, &usize)| Seat { windows: &self.windows[k][*i], length: lengths[n], wish: wishes[n] };
         let seats: Vec<Seat> = row.iter().enumerate().map(seat).collect();
@@ -143,7 +157,10 @@ pub fn sides_of(filled: &Filled) -> Vec<Option<Side>> {
 
 /// The ways of the lines of an overlay.
 pub fn ways_of(problem: &Problem, item: usize, rect: &Rect, side: Side) -> Vec<Way> {
-    problem.targets[item].iter().filter_map(|(target, _)| way(rect, side, target, problem.request.lines)).collect()
+    problem.targets[item]
+        .iter()
+        .filter_map(|(target, _)| way(rect, side, target, problem.overlays[item].lines))
+        .collect()
 }
 
 /// One state of the search.
@@ -281,8 +298,11 @@ impl<'p, 'a> State<'p, 'a> {
         }
     }
 
-    /// An overlay moves to place `n` of lane `l`.
+    /// An overlay of a lane moves to place `n` of lane `l`.
     fn moved(&self, (item, k, m): (usize, usize, usize), (l, n): (usize, usize)) -> Option<Trial> {
+        if k == INWARD {
+            return None;
+        }
         let mut first = self.rows[k].clone();
         first.remove(m);
         if k == l {
@@ -357,10 +377,13 @@ impl<'p, 'a> State<'p, 'a> {
     }
 }
 
-/// Tries all orders of the overlays on the lanes, with as many on each lane as now, and gives the first of those with least crossings, if less than `below`.
-fn try_all(packer: &Packer, state: &State, below: u32) -> Option<(Vec<Vec<usize>>, u32)> {
+/// Tries all orders of the overlays on the lanes, with as many on each lane as now, and gives the first of those with least crossings, if less than `below`:
+/// the lowest, or if the order is kept the one that begins most like it.
+fn try_all(packer: &Packer, state: &State, below: u32, is_kept: bool) -> Option<(Vec<Vec<usize>>, u32)> {
     let mut items: Vec<usize> = state.rows.concat();
-    items.sort_unstable();
+    if !is_kept {
+        items.sort_unstable();
+    }
     let mut search = Exhaustive {
         packer,
         lengths: state.rows.iter().map(Vec::len).collect(),
@@ -454,21 +477,22 @@ impl Exhaustive<'_, '_> {
     }
 }
 
-/// Searches for the order of rows with least crossings, beginning with that of `packer`. `trials`: how many changes
-/// are tried at most, times overlays.
-pub fn search(packer: &Packer, trials: Option<usize>) -> Option<Ordered> {
+/// Searches for the order of rows with least crossings, beginning with that of `packer`. An order that `is_kept` is that of the frame before: less changes are
+/// tried, and all orders only of few overlays.
+pub fn search(packer: &Packer, is_kept: bool) -> Option<Ordered> {
     let mut state = State::new(packer)?;
     let layout = &packer.problem.request.layout;
     let count: usize = state.rows.iter().map(Vec::len).sum();
     let mut is_least = state.crossings == 0;
     if layout.order == Order::Anchors && state.crossings > 0 {
-        let mut trials = trials.unwrap_or(MOST_TRIALS) / state.rects.len().max(1);
+        let (trials, proven) = if is_kept { (KEPT_TRIALS, KEPT_PROVEN) } else { (MOST_TRIALS, MOST_PROVEN) };
+        let mut trials = trials / state.rects.len().max(1);
         state.uncross(&mut trials);
         state.improve(&mut trials);
         is_least = state.crossings == 0;
-        if !is_least && count <= (layout.proven as usize).min(MOST_PROVEN) {
+        if !is_least && count <= (layout.proven as usize).min(proven) {
             is_least = true;
-            if let Some((rows, crossings)) = try_all(packer, &state, state.crossings) {
+            if let Some((rows, crossings)) = try_all(packer, &state, state.crossings, is_kept) {
                 (state.rows, state.crossings) = (rows, crossings);
             }
         }

@@ -3,13 +3,13 @@
 use glam::DVec2;
 
 use crate::overlay::{
-    Layout, Rect, Request,
+    Rect, Request,
     crossings::{Way, pixels},
     fill::{Filled, Problem, fill},
     lane::Side,
     line::way,
     order::{Packer, packed, search, sides_of},
-    steady::{Kept, all_ways, dead_band, keep},
+    steady::{Kept, Turns, all_ways, dead_band, keep},
 };
 
 /// Folded overlays whose anchors are nearer to each other than this share a marker, pixels.
@@ -32,20 +32,39 @@ pub struct Placed {
     pub is_least: bool,
     /// What could not be done, by overlay.
     pub facts: Vec<Fact>,
-    /// Whether overlays are on their way: the next call moves them further, even if nothing else changes.
-    pub gliding: bool,
+    /// The sides along which overlays are on their way: the next call moves them further, even if nothing else changes.
+    pub gliding: Vec<Side>,
+    /// Whether the next call gives this again, at no cost, if the request is equal (which one with NaN never is).
+    pub settled: bool,
+    /// Why overlays moved further than they glide, or changed their order; `None` if none did.
+    pub jump: Option<Jump>,
     /// Eighths of the way from wanted to smallest sizes, 0..8.
     pub step: u32,
-    /// The picture that this is for, pixels.
-    pub picture: [u32; 2],
-    /// The layout that this is of.
-    pub layout: Layout,
+    /// What was asked for.
+    pub request: Request,
     /// The overlay in the exploration focus.
     pub focused: Option<u32>,
     /// Crossings for which no better order was found: it is not looked for again until their number changes.
     pub(crate) hopeless: u32,
-    /// Calls since there was no frame before.
-    pub(crate) calls: usize,
+    /// Who of those that wait for a place, or for a better one, had its turn last.
+    pub(crate) turn: Option<u32>,
+    /// How many of them had theirs since the request or a place has changed.
+    pub(crate) tried: usize,
+}
+
+/// Why overlays move in one step. The first that holds is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Jump {
+    /// There is no frame before, or it has another picture, arrangement, margin or gap, or what stood there has no room at all any more.
+    Anew,
+    /// An overlay came: a new one, or one that was folded or further inward and has found a place. Those of its lane make room.
+    Came,
+    /// The order along a lane changed: less lines cross, or what the order goes by has changed.
+    Order,
+    /// All have become smaller or larger, and on the way they would meet.
+    Size,
+    /// A point, or what is blocked, came where an overlay stood, and would be covered on the way.
+    Room,
 }
 
 /// An overlay that has a place.
@@ -66,6 +85,14 @@ pub enum Seat {
     Lane(Side, u32),
     /// Further inward, or in a corner.
     Inward(Side),
+}
+
+impl Seat {
+    /// Its side.
+    pub fn side(self) -> Side {
+        let (Self::Lane(side, _) | Self::Inward(side)) = self;
+        side
+    }
 }
 
 /// Stands for folded overlays.
@@ -155,20 +182,29 @@ impl Placed {
 /// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, and O((n + p)²) for each that stands further inward. With a frame before
 /// O(n² + n p), all of it comparisons of boxes.
 pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
+    if let Some(before) = before.filter(|before| before.settled && before.request == *request) {
+        return before.clone();
+    }
     let problem = Problem::new(request);
     let focused = focused(&problem, before);
     if let Some(kept) = before.and_then(|before| keep(&problem, before, focused)) {
-        return finished(&problem, kept, focused, before.map_or(0, |b| b.calls.wrapping_add(1)));
+        return finished(&problem, kept, focused);
     }
     let mut filled = fill(&problem);
     let mut is_least = None;
     // Search of the rows as they were filled fits at least as well as they do.
-    if let Some(ordered) = search(&Packer::new(&problem, &filled, problem.board.clearance, focused, true), None) {
+    if let Some(ordered) = search(&Packer::new(&problem, &filled, problem.board.clearance, focused, true), false) {
         is_least = Some(ordered.is_least);
         (filled.rows, filled.inward) = (ordered.rows, ordered.inward);
     }
     let rects = packed(&problem, &filled, focused).unwrap_or_else(|| vec![None; problem.overlays.len()]);
-    finished(&problem, Kept { filled, rects, gliding: false, hopeless: 0, is_least }, focused, 0)
+    let turns = Turns::default();
+    let jump = Some(Jump::Anew);
+    finished(
+        &problem,
+        Kept { filled, rects, gliding: Vec::new(), settled: false, jump, hopeless: 0, turns, is_least },
+        focused,
+    )
 }
 
 /// Which overlay is in the exploration focus: the nearest to the centre of interest; that of before unless another is nearer by more than the dead band.
@@ -200,8 +236,8 @@ pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Crossings {
 }
 
 /// All that is told of a frame.
-fn finished(problem: &Problem, kept: Kept, focused: Option<usize>, calls: usize) -> Placed {
-    let Kept { filled, rects, gliding, hopeless, is_least } = kept;
+fn finished(problem: &Problem, kept: Kept, focused: Option<usize>) -> Placed {
+    let Kept { filled, rects, gliding, settled, jump, hopeless, turns, is_least } = kept;
     let ways = all_ways(problem, &filled, &rects);
     let crossings = count(&rects, &ways);
     let mut placed = Placed {
@@ -213,12 +249,14 @@ fn finished(problem: &Problem, kept: Kept, focused: Option<usize>, calls: usize)
         is_least: crossings.sum() == 0 || is_least == Some(true),
         facts: Vec::new(),
         gliding,
+        settled,
+        jump,
         step: filled.step,
-        picture: problem.request.picture,
-        layout: problem.request.layout.clone(),
+        request: problem.request.clone(),
         focused: focused.map(|i| problem.overlays[i].id),
         hopeless,
-        calls,
+        turn: turns.last,
+        tried: turns.tried,
     };
     placed.folded.sort_unstable();
     let sides = sides_of(&filled);
@@ -228,7 +266,7 @@ fn finished(problem: &Problem, kept: Kept, focused: Option<usize>, calls: usize)
         let id = problem.overlays[i].id;
         for (target, anchor) in &problem.targets[i] {
             let (Some(rect), Some(side)) = (rects[i], sides[i]) else { break };
-            match way(&rect, side, target, problem.request.lines) {
+            match way(&rect, side, target, problem.overlays[i].lines) {
                 Some(way) => placed.lines.push(ContextLine {
                     overlay: id,
                     anchor: *anchor,
@@ -288,9 +326,7 @@ fn facts(problem: &Problem, i: usize, rect: Option<&Rect>) -> Vec<Fact> {
             }
         }
         None => {
-            let (min, room) = (problem.sizes[i].min, problem.board.inner.size());
-            let is_large = min[0] > room[0] || min[1] > room[1];
-            facts.push(if is_large { Fact::TooLarge { overlay } } else { Fact::NoRoom { overlay } });
+            facts.push(if problem.is_too_large(i) { Fact::TooLarge { overlay } } else { Fact::NoRoom { overlay } });
         }
     }
     facts

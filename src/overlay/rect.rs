@@ -30,7 +30,7 @@ impl Rect {
 
     /// Whether less than `gap` pixels are between the two, in x and in y; with a gap of 0: whether they overlap.
     pub fn within(&self, other: &Self, gap: i32) -> bool {
-        (0..2).all(|i| self.min[i] < other.max[i] + gap && other.min[i] < self.max[i] + gap)
+        (0..2).all(|i| self.min[i] < other.max[i].saturating_add(gap) && other.min[i] < self.max[i].saturating_add(gap))
     }
 
     /// Whether `point` (pixels) is in it, or nearer to it than `clearance` both in x and in y. A point on its border is in it.

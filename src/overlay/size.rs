@@ -64,10 +64,21 @@ fn at_least(size: [i32; 2], least: [i32; 2]) -> [i32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::overlay::LineKind;
 
     fn overlay(distance: f64, weight: f64) -> Overlay {
         let [min, preferred, max] = [DVec2::new(40.0, 20.0), DVec2::new(100.0, 80.0), DVec2::new(200.0, 100.0)];
-        Overlay { id: 0, priority: 0.0, min, preferred, max, anchors: vec![], weight, distance }
+        Overlay {
+            id: 0,
+            priority: 0.0,
+            min,
+            preferred,
+            max,
+            anchors: vec![],
+            lines: LineKind::Straight,
+            weight,
+            distance,
+        }
     }
 
     fn wanted(overlays: &[Overlay], rule: SizeRule) -> Vec<[i32; 2]> {

@@ -1,19 +1,20 @@
 //! Overlays keep still while the camera moves: what of the frame before stays (B6).
 //!
-//! Overlays stay on their lanes, in their order, and at their size; where they would best stand is worked out anew with that. As long as none of these places is
-//! further away than the dead band, nothing moves; otherwise all glide there together, each by the same share of its way, so that none meet on it.
-//! An overlay stays between the points between which it stands, and a point that walks into it pushes it along.
+//! Overlays stay on their lanes, in their order, and at their size; where they would best stand is worked out anew with that. As long as none of these places along
+//! a side is further away than the dead band, nothing moves there; otherwise all of that side glide together, each by the same share of its way, so that none
+//! meet on it. An overlay stays between the points between which it stands, and a point that walks into it pushes it along.
 //! The order changes only where a line has crossed another by more than the dead band, and another order has less crossings; what was shrunk,
-//! folded or put inward comes back when there would be room even if all points came nearer by the dead band. Such a change is made at once, in one step.
+//! folded or put inward comes back when there would be room even if all points came nearer by the dead band. Such a change is made at once, in one step, by those
+//! of the sides that it changes; [`crate::overlay::place::Jump`] tells of it.
 
 use crate::overlay::{
-    Order, Placed, Rect,
+    Order, Placed, Rect, Request,
     crossings::Way,
     fill::{Filled, Problem, unease},
     lane::{Board, Side, fits},
     order::{Packer, packed, rects_of, search, sides_of, ways_of},
-    place::{Seat, count},
-    size::SHRINK_STEPS,
+    place::{Jump, Seat, count},
+    size::{SHRINK_STEPS, Sizes},
 };
 
 /// How many overlays per call look for a better place, times overlays: the others have their turn in the next calls. At most [`MOST_RETURNS`].
@@ -21,9 +22,6 @@ const RETURNS: usize = 400;
 
 /// See [`RETURNS`].
 const MOST_RETURNS: usize = 4;
-
-/// How many changes of order are tried per call, times overlays.
-const MOST_TRIALS: usize = 6000;
 
 /// Of two neighbours in the order of distance, the second comes first only when it is nearer by this factor.
 const NEARER: f64 = 0.95;
@@ -35,21 +33,38 @@ pub struct Kept {
     pub filled: Filled,
     /// The rectangle of each overlay.
     pub rects: Vec<Option<Rect>>,
-    /// Whether they are still on their way.
-    pub gliding: bool,
+    /// The sides along which they are still on their way.
+    pub gliding: Vec<Side>,
+    /// Whether nothing would change without a change of the request.
+    pub settled: bool,
+    /// Why some moved further than they glide.
+    pub jump: Option<Jump>,
     /// Crossings beyond the dead band for which no better order was found.
     pub hopeless: u32,
+    /// Who has had a turn.
+    pub turns: Turns,
     /// Whether the number of crossings is the least; `None` if it was not asked.
     pub is_least: Option<bool>,
+}
+
+/// Overlays that wait for a place, or for a better one, have their turns one after another: to look for one takes time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Turns {
+    /// The id of the last that had its turn.
+    pub last: Option<u32>,
+    /// How many had theirs since the request, or a place, has changed.
+    pub tried: usize,
 }
 
 /// The frame after `before`; `None` if too much is new to keep it.
 pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Option<Kept> {
     let layout = &problem.request.layout;
-    if before.picture != problem.request.picture || before.layout.arrangement != layout.arrangement {
-        return None;
-    }
-    if (before.layout.margin, before.layout.gap) != (layout.margin, layout.gap) {
+    let old = &before.request;
+    let fixed = |request: &Request| {
+        let layout = &request.layout;
+        (request.picture, layout.arrangement, layout.margin, layout.gap)
+    };
+    if fixed(old) != fixed(problem.request) {
         return None;
     }
     let dead_band = dead_band(problem);
@@ -62,22 +77,25 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
     }
     let mut filled = Filled {
         step: before.step,
-        sizes: Vec::new(),
+        sizes: kept_sizes(problem, &held, &seats, before, dead_band),
         lanes: Vec::new(),
         rows: Vec::new(),
         inward: Vec::new(),
         folded: Vec::new(),
     };
-    filled.sizes = kept_sizes(problem, &held, before.step, if before.gliding { 0.0 } else { dead_band });
     filled.lanes = problem.lanes(&filled.sizes);
     filled.rows = rows(problem, &filled, &seats)?;
-    let mut is_settled = rearrange(problem, &mut filled.rows, &filled.lanes.iter().map(|l| l.side).collect::<Vec<_>>());
+    let old_rows: Vec<(Side, Vec<usize>)> = filled.lanes.iter().map(|l| l.side).zip(filled.rows.clone()).collect();
+    rearrange(problem, &mut filled);
     for (i, seat) in seats.iter().enumerate() {
         if let (Some(Seat::Inward(side)), Some(rect)) = (seat, held[i]) {
             let size = filled.sizes[i];
-            let is_good =
-                rect.size() == size && !problem.board.points.iter().any(|p| rect.covers(*p, problem.board.clearance));
-            let is_helpless = || before.covers(problem.overlays[i].id) && problem.place_inward(i, size, &[]).is_none();
+            let is_good = rect.size() == size && problem.board.is_free(&rect);
+            let is_helpless = || {
+                before.covers(problem.overlays[i].id)
+                    && !problem.board.is_blocked(&rect)
+                    && problem.place_inward(i, size, &[]).is_none()
+            };
             if is_good || is_helpless() {
                 filled.inward.push((i, *side, rect));
             }
@@ -85,34 +103,50 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
     }
     let mut ideal = fit(problem, &mut filled, &held, focused)?;
     if filled.step > 0
-        && !before.gliding
+        && before.gliding.is_empty()
         && let Some((grown, rects)) = grown(problem, &filled, &held, dead_band, focused)
     {
         (filled, ideal) = (grown, rects);
     }
-    let has_come = come(problem, before, &mut filled, &mut ideal, dead_band, focused)?;
-    is_settled |= has_come;
-    let (mut hopeless, mut is_least) = (0, None);
+    let mut turns = Turns { last: before.turn, tried: if old == problem.request { before.tried } else { 0 } };
+    let come = come(problem, before, &mut turns, &mut filled, &mut ideal, dead_band, focused)?;
+    let was_gliding = &before.gliding;
+    let advance = |filled: &Filled, ideal: &[Option<Rect>]| {
+        Advance { problem, filled, held: &held, ideal, was_gliding }.rects(&old_rows)
+    };
+    let (mut rects, mut gliding) = advance(&filled, &ideal);
+    let (mut hopeless, mut is_least, mut has_order) = (0, None, false);
     if layout.order == Order::Anchors {
-        let shown: Vec<Option<Rect>> = held.iter().zip(&ideal).map(|(h, i)| i.and(*h).or(*i)).collect();
-        let deep = deep_crossings(problem, &filled, &shown, dead_band);
+        let deep = deep_crossings(problem, &filled, &rects, dead_band);
         // What was not found is looked for again when it is worse by an eighth, or when it has been less by half.
         hopeless = if deep * 2 < before.hopeless { deep } else { before.hopeless };
         if deep > hopeless {
-            hopeless = deep + deep / 8;
             let packer = Packer::new(problem, &filled, problem.board.clearance, focused, true);
-            let now = count(&rects_of(&packer)?, &all_ways(problem, &filled, &rects_of(&packer)?)).sum();
-            let ordered = search(&packer, Some(MOST_TRIALS))?;
-            is_least = Some(ordered.is_least);
-            if ordered.crossings < now {
-                (filled.rows, filled.inward) = (ordered.rows, ordered.inward);
-                ideal = packed(problem, &filled, focused)?;
-                (is_settled, hopeless) = (true, 0);
+            let ordered = search(&packer, true)?;
+            let other = Filled { rows: ordered.rows, inward: ordered.inward, ..filled.clone() };
+            let other_ideal = packed(problem, &other, focused)?;
+            let (other_rects, other_gliding) = advance(&other, &other_ideal);
+            // Less crossings than those that stay even if their places move by the dead band: so that soon after they do not change back.
+            let crossings = count(&other_rects, &all_ways(problem, &other, &other_rects)).sum();
+            if crossings >= deep {
+                hopeless = deep + deep / 8;
+            } else if crossings < stood(problem, &held, &seats) {
+                is_least = Some(ordered.is_least && other_rects == other_ideal);
+                (filled, rects, gliding) = (other, other_rects, other_gliding);
+                (has_order, hopeless) = (true, 0);
             }
         }
     }
-    let (rects, gliding) = advance(problem, &held, ideal, before.gliding, is_settled);
-    Some(Kept { filled, rects, gliding, hopeless, is_least })
+    let has_rows = filled.rows.iter().zip(&old_rows).any(|(new, old)| *new != old.1);
+    let has_moved = rects != held || has_rows || filled.step != before.step || hopeless != before.hopeless;
+    let jump = (has_order || leaps(problem, &held, &rects)).then(|| {
+        let is_reordered = has_order || layout.order != Order::Anchors && has_rows;
+        let causes = [(come.any, Jump::Came), (is_reordered, Jump::Order), (filled.step != before.step, Jump::Size)];
+        causes.into_iter().find(|cause| cause.0).map_or(Jump::Room, |cause| cause.1)
+    });
+    turns.tried = if has_moved { 0 } else { turns.tried };
+    let settled = !has_moved && was_gliding.is_empty() && gliding.is_empty() && turns.tried >= come.waiting;
+    Some(Kept { filled, rects, gliding, settled, jump, hopeless, turns, is_least })
 }
 
 /// The dead band, pixels, finite.
@@ -121,15 +155,22 @@ pub fn dead_band(problem: &Problem) -> f64 {
     if band.is_nan() { 0.0 } else { band.clamp(0.0, 1e6) }
 }
 
-/// The sizes after `step`; those of before where they differ by no more than the dead band.
-fn kept_sizes(problem: &Problem, held: &[Option<Rect>], step: u32, dead_band: f64) -> Vec<[i32; 2]> {
-    let kept = |(sizes, held): (&crate::overlay::size::Sizes, &Option<Rect>)| {
-        let new = sizes.shrunk(step);
-        let near =
-            |old: [i32; 2]| (0..2).all(|i| f64::from((old[i] - new[i]).abs()) <= dead_band && old[i] >= sizes.min[i]);
-        held.map(|r| r.size()).filter(|old| near(*old)).unwrap_or(new)
+/// The sizes after the steps of before; those of before where they differ by no more than the dead band and are not on their way.
+fn kept_sizes(
+    problem: &Problem,
+    held: &[Option<Rect>],
+    seats: &[Option<Seat>],
+    before: &Placed,
+    dead_band: f64,
+) -> Vec<[i32; 2]> {
+    let kept = |(i, sizes): (usize, &Sizes)| {
+        let new = sizes.shrunk(before.step);
+        let is_gliding = seats[i].is_some_and(|seat| before.gliding.contains(&seat.side()));
+        let band = if is_gliding { 0.0 } else { dead_band };
+        let near = |old: [i32; 2]| (0..2).all(|i| f64::from((old[i] - new[i]).abs()) <= band && old[i] >= sizes.min[i]);
+        held[i].map(|r| r.size()).filter(|old| near(*old)).unwrap_or(new)
     };
-    problem.sizes.iter().zip(held).map(kept).collect()
+    problem.sizes.iter().enumerate().map(kept).collect()
 }
 
 /// The rows of before, less what has gone; `None` if a lane is no more.
@@ -149,28 +190,24 @@ fn rows(problem: &Problem, filled: &Filled, seats: &[Option<Seat>]) -> Option<Ve
     Some(rows.into_iter().map(|row| row.into_iter().map(|r| r.1).collect()).collect())
 }
 
-/// Rows that do not go by anchors, in their order; whether that has changed.
-fn rearrange(problem: &Problem, rows: &mut [Vec<usize>], sides: &[Side]) -> bool {
-    let order = problem.request.layout.order;
-    let factor = match order {
-        Order::Anchors => return false,
+/// Rows that do not go by anchors, in their order.
+fn rearrange(problem: &Problem, filled: &mut Filled) {
+    let factor = match problem.request.layout.order {
+        Order::Anchors => return,
         Order::Distance => NEARER,
         Order::Priority | Order::Id => 1.0,
     };
-    let mut has_changed = false;
-    for (row, side) in rows.iter_mut().zip(sides) {
+    for (row, lane) in filled.rows.iter_mut().zip(&filled.lanes) {
         // Sorting by neighbours; each passes another at most once.
         for end in (1..row.len()).rev() {
             for n in 0..end {
-                let (first, second) = (problem.key(row[n], *side), problem.key(row[n + 1], *side));
+                let (first, second) = (problem.key(row[n], lane.side), problem.key(row[n + 1], lane.side));
                 if second < first * factor {
                     row.swap(n, n + 1);
-                    has_changed = true;
                 }
             }
         }
     }
-    has_changed
 }
 
 /// Places for what stands on the lanes: between the points where it stood, otherwise anywhere along the lane, otherwise smaller.
@@ -212,7 +249,8 @@ fn grown(
     dead_band: f64,
     focused: Option<usize>,
 ) -> Option<(Filled, Vec<Option<Rect>>)> {
-    if !filled.inward.is_empty() || !filled.folded.is_empty() {
+    let waits = |i: usize| held[i].is_none() && !problem.is_too_large(i);
+    if !filled.inward.is_empty() || (0..held.len()).any(waits) {
         return None;
     }
     let sizes: Vec<_> = problem.sizes.iter().map(|s| s.shrunk(filled.step - 1)).collect();
@@ -229,24 +267,40 @@ fn grown(
     Some((larger, rects))
 }
 
+/// What [`come`] did.
+struct Come {
+    /// Whether an overlay has found a place, or a better one.
+    any: bool,
+    /// How many wait for one, of those that are not too large for the picture.
+    waiting: usize,
+}
+
 /// Finds places for what has none: new overlays, those that were folded, those further inward whose place is taken; and brings those further inward back to a
-/// lane. Whether anything came. `None` if a new overlay has no place, but a less important one has.
+/// lane. `None` if a new overlay has no place, but a less important one has.
 fn come(
     problem: &Problem,
     before: &Placed,
+    turns: &mut Turns,
     filled: &mut Filled,
     ideal: &mut Vec<Option<Rect>>,
     dead_band: f64,
     focused: Option<usize>,
-) -> Option<bool> {
-    let mut has_come = false;
+) -> Option<Come> {
+    let mut any = false;
     let mut is_inward = vec![false; ideal.len()];
     filled.inward.iter().for_each(|f| is_inward[f.0] = true);
-    let waiting: Vec<usize> = (0..ideal.len()).filter(|&i| ideal[i].is_none() || is_inward[i]).collect();
-    let turns = (RETURNS / ideal.len().max(1)).clamp(1, MOST_RETURNS);
-    let first = before.calls.wrapping_mul(turns) % waiting.len().max(1);
-    let has_turn = |n: usize| (n + waiting.len() - first) % waiting.len() < turns;
-    let mut folded = Vec::new();
+    let (too_large, waiting): (Vec<usize>, Vec<usize>) =
+        (0..ideal.len()).filter(|&i| ideal[i].is_none() || is_inward[i]).partition(|i| problem.is_too_large(*i));
+    let most = (RETURNS / ideal.len().max(1)).clamp(1, MOST_RETURNS);
+    let last = turns.last.and_then(|id| problem.overlays.iter().position(|o| o.id == id));
+    let first = last.map_or(0, |last| waiting.partition_point(|i| *i <= last)) % waiting.len().max(1);
+    let has_turn = |n: usize| (n + waiting.len() - first) % waiting.len() < most;
+    if !waiting.is_empty() {
+        let had = most.min(waiting.len());
+        turns.tried += had;
+        turns.last = Some(problem.overlays[waiting[(first + had - 1) % waiting.len()]].id);
+    }
+    let mut folded = too_large;
     for (n, &item) in waiting.iter().enumerate() {
         let id = problem.overlays[item].id;
         let was_folded = before.folded.binary_search(&id).is_ok();
@@ -264,7 +318,7 @@ fn come(
             with.inward.retain(|f| f.0 != item);
             with.rows[k].insert(at, item);
             if let Some(rects) = packed(problem, &with, focused) {
-                (*filled, *ideal, has_come) = (with, rects, true);
+                (*filled, *ideal, any) = (with, rects, true);
                 continue;
             }
         }
@@ -281,14 +335,15 @@ fn come(
             Some((side, rect)) => {
                 filled.inward.push((item, side, rect));
                 ideal[item] = Some(rect);
-                has_come = true;
+                any = true;
             }
             None if !was_folded && ideal[item + 1..].iter().any(Option::is_some) => return None,
             None => folded.push(item),
         }
     }
+    folded.sort_unstable();
     filled.folded = folded;
-    Some(has_come)
+    Some(Come { any, waiting: waiting.len() })
 }
 
 /// The lane, and the place in its row, where an overlay could stand too.
@@ -327,6 +382,12 @@ pub fn all_ways(problem: &Problem, filled: &Filled, rects: &[Option<Rect>]) -> V
         .collect()
 }
 
+/// The crossings if all stood where they stood before.
+fn stood(problem: &Problem, held: &[Option<Rect>], seats: &[Option<Seat>]) -> u32 {
+    let ways = |i: usize| Some(ways_of(problem, i, &held[i]?, seats[i]?.side()));
+    count(held, &(0..held.len()).map(|i| ways(i).unwrap_or_default()).collect::<Vec<_>>()).sum()
+}
+
 /// Crossings that stay when all lines end before their focus by the dead band.
 fn deep_crossings(problem: &Problem, filled: &Filled, rects: &[Option<Rect>], dead_band: f64) -> u32 {
     let ways = all_ways(problem, filled, rects);
@@ -339,38 +400,79 @@ fn deep_crossings(problem: &Problem, filled: &Filled, rects: &[Option<Rect>], de
     count(rects, &shortened).sum()
 }
 
-/// The rectangles of this frame, on the way from those `held` to those that are best, and whether they are still on it.
-fn advance(
-    problem: &Problem,
-    held: &[Option<Rect>],
-    ideal: Vec<Option<Rect>>,
-    was_gliding: bool,
-    is_settled: bool,
-) -> (Vec<Option<Rect>>, bool) {
-    let pairs = || held.iter().zip(&ideal).filter_map(|(h, i)| i.map(|i| (*h, i)));
-    if is_settled || pairs().any(|(h, _)| h.is_none()) {
-        return (ideal, false);
-    }
-    let furthest = pairs().filter_map(|(h, i)| Some(h?.distance(&i))).max().unwrap_or(0);
-    if furthest == 0 {
-        return (ideal, false);
-    }
-    let board = &problem.board;
-    let covered = |rect: &Rect| board.points.iter().filter(|p| rect.covers(**p, board.clearance)).count();
-    let no_worse = |rects: &[Option<Rect>]| {
-        rects.iter().zip(&ideal).all(|(r, i)| {
-            r.zip(*i).is_none_or(|(r, i)| r == i || (board.inner.holds(&r) && covered(&r) <= covered(&i)))
-        })
-    };
-    let shown: Vec<Option<Rect>> = held.iter().zip(&ideal).map(|(h, i)| i.and(*h)).collect();
-    if !was_gliding && f64::from(furthest) <= dead_band(problem) {
-        return if no_worse(&shown) { (shown, false) } else { (ideal, false) };
-    }
+/// Whether an overlay moved further than it glides.
+fn leaps(problem: &Problem, held: &[Option<Rect>], rects: &[Option<Rect>]) -> bool {
+    let glide = glide(problem);
+    held.iter().zip(rects).any(|(h, r)| h.zip(*r).is_some_and(|(h, r)| f64::from(h.distance(&r)) > glide))
+}
+
+/// How far overlays glide per call, pixels, 1 and up.
+fn glide(problem: &Problem) -> f64 {
     let glide = problem.request.layout.glide;
-    let share = (if glide.is_nan() { 1.0 } else { glide.max(1.0) } / f64::from(furthest)).min(1.0);
-    let between: Vec<Option<Rect>> =
-        shown.iter().zip(&ideal).map(|(h, i)| h.zip(*i).map(|(h, i)| h.towards(&i, share))).collect();
-    let placed: Vec<Rect> = between.iter().flatten().copied().collect();
-    let is_apart = placed.iter().enumerate().all(|(n, a)| placed[..n].iter().all(|b| !a.within(b, board.gap)));
-    if share < 1.0 && is_apart && no_worse(&between) { (between, true) } else { (ideal, false) }
+    if glide.is_nan() { 1.0 } else { glide.max(1.0) }
+}
+
+/// On the way from those `held` to those that are best.
+struct Advance<'a> {
+    problem: &'a Problem<'a>,
+    filled: &'a Filled,
+    held: &'a [Option<Rect>],
+    ideal: &'a [Option<Rect>],
+    was_gliding: &'a [Side],
+}
+
+impl Advance<'_> {
+    /// The rectangles of this frame, and the sides that are still on their way. Lanes whose row is not that of before are where they are best at once.
+    fn rects(&self, old_rows: &[(Side, Vec<usize>)]) -> (Vec<Option<Rect>>, Vec<Side>) {
+        let mut rects = self.ideal.to_vec();
+        let mut gliding = Vec::new();
+        let is_old = |k: usize| {
+            let old = old_rows.iter().find(|old| old.0 == self.filled.lanes[k].side);
+            // Those that have gone leave room, no more.
+            old.is_some_and(|old| old.1.iter().filter(|i| self.filled.rows[k].contains(i)).eq(&self.filled.rows[k]))
+        };
+        let packer = Packer::new(self.problem, self.filled, self.problem.board.clearance, None, false);
+        for k in (0..self.filled.rows.len()).filter(|k| is_old(*k)) {
+            let Some((row, is_gliding)) = self.row(k, &packer) else { continue };
+            self.filled.rows[k].iter().zip(row).for_each(|(i, rect)| rects[*i] = Some(rect));
+            gliding.extend(is_gliding.then_some(self.filled.lanes[k].side));
+        }
+        // Lanes do not meet, other than while they grow or shrink.
+        let all: Vec<Rect> = rects.iter().flatten().copied().collect();
+        let gap = self.problem.board.gap;
+        if all.iter().enumerate().any(|(n, a)| all[..n].iter().any(|b| a.within(b, gap))) {
+            return (self.ideal.to_vec(), Vec::new());
+        }
+        (rects, gliding)
+    }
+
+    /// Those of lane `k`, in the order of its row, and whether they are still on their way; `None`: where they are best.
+    fn row(&self, k: usize, packer: &Packer) -> Option<(Vec<Rect>, bool)> {
+        let row = &self.filled.rows[k];
+        let side = self.filled.lanes[k].side;
+        let held: Vec<Rect> = row.iter().map(|i| self.held[*i]).collect::<Option<_>>()?;
+        let ideal: Vec<Rect> = row.iter().map(|i| self.ideal[*i]).collect::<Option<_>>()?;
+        let left = |rects: &[Rect]| rects.iter().zip(&ideal).map(|(r, i)| r.distance(i)).max().unwrap_or(0);
+        let furthest = left(&held);
+        let is_gliding = self.was_gliding.contains(&side) || f64::from(furthest) > dead_band(self.problem);
+        let share = if is_gliding { glide(self.problem) / f64::from(furthest.max(1)) } else { 0.0 };
+        if furthest == 0 || share >= 1.0 {
+            return None;
+        }
+        let next: Vec<Rect> = held.iter().zip(&ideal).map(|(h, i)| h.towards(i, share)).collect();
+        let board = &self.problem.board;
+        let is_good = |(rect, ideal): (&Rect, &Rect)| {
+            rect == ideal
+                || board.inner.holds(rect) && !board.is_blocked(rect) && board.covered(rect) <= board.covered(ideal)
+        };
+        if next.iter().zip(&ideal).all(is_good) {
+            return Some((next, is_gliding));
+        }
+        // A point is in the way, or what is blocked: as near as can be.
+        let starts: Vec<i32> = next.iter().map(|r| r.min[side.along_axis()]).collect();
+        let pushed = packer.row_near(k, row, &starts)?;
+        // On a way around a point they could stand for ever.
+        let goes_on = !is_gliding || left(&pushed) < furthest;
+        goes_on.then(|| (pushed, is_gliding))
+    }
 }

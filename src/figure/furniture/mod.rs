@@ -17,8 +17,9 @@ pub(in crate::figure) mod section;
 
 use crate::{
     figure::legend::Legend,
+    overlay::Rect,
     render::{
-        furniture::Furniture,
+        furniture::{Furniture, Piece},
         text::{TextStyle, Weight, cleaned},
     },
     scene::{Corner, Figure},
@@ -81,6 +82,19 @@ pub fn lay_out(figure: &Figure, legends: &[Legend], size: [u32; 2]) -> Furniture
         painter.card_or_warn("legend", &lines, room, place, size);
     }
     Furniture { pieces: painter.pieces }
+}
+
+/// Where the cards of furniture stand, with their shadows but not what is on them; pixels, rounded outwards.
+pub fn cards(furniture: &Furniture) -> Vec<Rect> {
+    let mut cards: Vec<Rect> = Vec::new();
+    for piece in &furniture.pieces {
+        let Piece::Panel(panel) = piece else { continue };
+        let rect = Rect { min: panel.low.map(|v| v.floor() as i32), max: panel.high.map(|v| v.ceil() as i32) };
+        if !cards.iter().any(|card| card.holds(&rect)) {
+            cards.push(rect);
+        }
+    }
+    cards
 }
 
 /// Height of lines one below the other, pixels.

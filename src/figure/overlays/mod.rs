@@ -16,7 +16,7 @@ use crate::{
     figure::furniture::em_px,
     geom::outline,
     lens::{BestView, Lens, best_view::Depiction, color::Srgb},
-    overlay::{self, Focus, Placed, arrow::border_arrow},
+    overlay::{self, Focus, Placed, Rect, arrow::border_arrow},
     render::{
         furniture::Furniture,
         picture::{Aovs, RenderError, Request, Studio},
@@ -111,7 +111,8 @@ struct Inner {
     plan: Option<Plan>,
 }
 
-/// The overlays of a picture; the insets that they show are drawn where they are others than before.
+/// The overlays of a picture; the insets that they show are drawn where they are others than before. They leave `blocked` free, pixels: what is
+/// drawn over them.
 ///
 /// # Errors
 /// What a view of an overlay names and the city does not have, images that cannot be read, those of pictures.
@@ -119,9 +120,10 @@ pub fn overlays(
     studio: &mut Studio,
     scene: &Scene,
     request: &Request,
+    blocked: &[Rect],
     standing: &mut Standing,
 ) -> Result<Overlays, RenderError> {
-    let plan = stand(studio, scene, request.size, standing)?;
+    let plan = stand(studio, scene, request.size, blocked, standing)?;
     let mut kept = Vec::new();
     let made = plan.map_or_else(|| Ok(Overlays::default()), |plan| plan.paint(studio, request, &mut kept))?;
     studio.keep_insets(|number| kept.contains(&number));
@@ -132,13 +134,25 @@ pub fn overlays(
 ///
 /// # Errors
 /// What a view of an overlay names and the city does not have.
-pub fn pass(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Standing) -> Result<(), RenderError> {
-    stand(studio, scene, size, standing).map(|_| ())
+pub fn pass(
+    studio: &Studio,
+    scene: &Scene,
+    size: [u32; 2],
+    blocked: &[Rect],
+    standing: &mut Standing,
+) -> Result<(), RenderError> {
+    stand(studio, scene, size, blocked, standing).map(|_| ())
 }
 
-fn stand(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Standing) -> Result<Option<Plan>, RenderError> {
+fn stand(
+    studio: &Studio,
+    scene: &Scene,
+    size: [u32; 2],
+    blocked: &[Rect],
+    standing: &mut Standing,
+) -> Result<Option<Plan>, RenderError> {
     let mut new = Standing::default();
-    let plan = plan(studio, scene, size, 0, standing, &mut new)?;
+    let plan = plan(studio, scene, size, blocked, 0, standing, &mut new)?;
     *standing = new;
     Ok(plan)
 }
@@ -148,6 +162,7 @@ fn plan(
     studio: &Studio,
     scene: &Scene,
     size: [u32; 2],
+    blocked: &[Rect],
     numbers: u64,
     before: &Standing,
     now: &mut Standing,
@@ -160,7 +175,7 @@ fn plan(
     let shown: Vec<Shown> =
         scene.lenses.iter().enumerate().filter_map(|(i, lens)| seen(studio, scene, &view, i, lens)).collect();
     let em = em_px(&scene.figure, size);
-    let asked = layout_of(studio, scene, &view, &shown, em);
+    let asked = layout_of(studio, scene, &view, &shown, blocked, em);
     let placed = overlay::place(&asked, before.of_views.get(&numbers));
     now.of_views.insert(numbers, placed.clone());
     let mut plan = Plan { numbers, size, camera, em, shown, placed, views: BTreeMap::new() };
@@ -173,7 +188,7 @@ fn plan(
         let local = views::local(studio, scene, &camera, &one.name, &one.best_view, view, room, tracked)?;
         now.middles.extend(local.middle.map(|middle| (number, middle)));
         let size = room.map(|side| (f64::from(side) * local.magnification).round() as u32);
-        let inner = self::plan(studio, &local.scene, size, number * NUMBERS, before, now)?;
+        let inner = self::plan(studio, &local.scene, size, &[], number * NUMBERS, before, now)?;
         plan.views.insert(one.index, Inner { local, size, plan: inner });
     }
     Ok(Some(plan))
@@ -245,7 +260,7 @@ impl Plan {
         request: &Request,
         painter: &mut Painter,
         one: &Shown,
-        rect: overlay::Rect,
+        rect: Rect,
         kept: &mut Vec<u64>,
     ) -> Result<OverlayFigures, RenderError> {
         let room = paint::picture_room(&one.overlay, rect, self.em);
@@ -362,10 +377,16 @@ fn preferred_size(one: &Shown, em: f32) -> [u32; 2] {
 }
 
 /// What the layout is asked.
-fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f32) -> overlay::Request {
+fn layout_of(
+    studio: &Studio,
+    scene: &Scene,
+    view: &View,
+    shown: &[Shown],
+    blocked: &[Rect],
+    em: f32,
+) -> overlay::Request {
     let layout = &scene.layout;
     let size = |side: [u32; 2]| DVec2::new(side[0].into(), side[1].into());
-    let lines = shown.iter().find_map(|one| one.overlay.line.as_ref().map(|line| line.kind)).unwrap_or_default();
     let overlays = shown.iter().map(|one| {
         let focuses: Vec<Focus> = one.places.iter().filter_map(|place| place.focus.clone()).collect();
         let preferred = size(preferred_size(one, em));
@@ -376,6 +397,11 @@ fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f
             preferred,
             max: one.overlay.max.map_or(1.5 * preferred, size),
             anchors: if one.overlay.line.is_some() { focuses } else { Vec::new() },
+            lines: match one.overlay.line.as_ref().map(|line| line.kind).unwrap_or_default() {
+                LineKind::Straight => overlay::LineKind::Straight,
+                LineKind::Orthogonal => overlay::LineKind::Orthogonal,
+                LineKind::Curved => overlay::LineKind::Curved,
+            },
             weight: one.overlay.interest,
             distance: one.places.iter().map(|place| place.distance).fold(f64::INFINITY, f64::min).min(1e9),
         }
@@ -398,6 +424,7 @@ fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f
         overlays: overlays.collect(),
         avoid: avoid.collect(),
         clearance: CLEARANCE_PX * f64::from(em) / 13.0,
+        blocked: blocked.to_vec(),
         layout: overlay::Layout {
             arrangement,
             along,
@@ -410,11 +437,6 @@ fn layout_of(studio: &Studio, scene: &Scene, view: &View, shown: &[Shown], em: f
             gap: layout.gap_px.round() as u32,
             centre_of_interest: layout.exploration_focus.then(|| 0.5 * DVec2::new(w, h)),
             ..overlay::Layout::default()
-        },
-        lines: match lines {
-            LineKind::Straight => overlay::LineKind::Straight,
-            LineKind::Orthogonal => overlay::LineKind::Orthogonal,
-            LineKind::Curved => overlay::LineKind::Curved,
         },
     }
 }
