@@ -1,10 +1,12 @@
-//! Overlays of a picture (B1 to B7): what best-view lenses show, where it stands, and the lines that tie it to its places, as [`Furniture`].
+//! Overlays of a picture (B1 to B7): what best-view lenses show, where it stands, and the lines that tie it to its places, as [`Furniture`];
+//! below them markers and traces of what moves.
 //!
 //! ```text
 //! scene ── points of interest in the picture ── layout and lines (crate::overlay) ── pieces of furniture
 //!   └── for each lens with an overlay: a scene of its own (views) ── an inset of the studio, drawn where it is another
 //! ```
 
+mod moving;
 mod paint;
 pub mod views;
 
@@ -13,7 +15,7 @@ use glam::{DVec2, DVec3};
 use crate::{
     figure::furniture::em_px,
     geom::outline,
-    lens::{BestView, Lens, best_view::Depiction},
+    lens::{BestView, Lens, Placement, best_view::Depiction},
     overlay::{self, Focus, Placed, arrow::border_arrow},
     render::{
         furniture::Furniture,
@@ -100,7 +102,7 @@ fn overlays_of(
     numbers: u64,
     kept: &mut Vec<u64>,
 ) -> Result<Overlays, RenderError> {
-    if !scene.lenses.iter().any(|lens| lens.enabled && lens.best_view.is_some()) {
+    if !scene.moves() && !scene.lenses.iter().any(|lens| lens.enabled && lens.best_view.is_some()) {
         return Ok(Overlays::default());
     }
     let camera = studio.camera(scene, request.size);
@@ -110,6 +112,7 @@ fn overlays_of(
     let asked = layout_of(studio, scene, &view, &shown, em_px(&scene.figure, request.size));
     let placed = overlay::place(&asked, before);
     let mut painter = Painter::new(em_px(&scene.figure, request.size));
+    moving::paint(&mut painter, scene, &view);
     let of = |id: u32| shown.iter().find(|s| s.index as u32 == id);
     for line in &placed.lines {
         let Some(one) = of(line.overlay) else { continue };
@@ -153,7 +156,7 @@ fn overlays_of(
                     ..*request
                 };
                 let nested = overlays_of(studio, &own.scene, &asked, None, number * NUMBERS, kept)?;
-                rendered = studio.inset(number, &own.scene, &asked, &nested.furniture)?;
+                rendered = studio.inset(number, &at_its_moment(&own.scene), &asked, &nested.furniture)?;
                 mirror = own.mirror;
             }
         }
@@ -187,6 +190,21 @@ fn overlays_of(
     Ok(Overlays { furniture: Furniture { pieces: painter.into_pieces() }, figures, placed })
 }
 
+/// What of a scene its picture without furniture is made of: nothing moves in it, nor has it points of interest that no lens asks for. It
+/// stays the same where only they are others.
+fn at_its_moment(scene: &Scene) -> Scene {
+    let mut own = scene.clone();
+    (own.trajectories, own.time_s) = (Vec::new(), 0.0);
+    own.pois = scene.standing_pois();
+    own.pois.retain(|poi| {
+        scene.lenses.iter().filter(|lens| lens.enabled).any(|lens| {
+            let is_looked_for = lens.occluders().is_some_and(|of| of.pois.contains(&poi.name));
+            is_looked_for || lens.placement == Placement::Poi(poi.name.clone())
+        })
+    });
+    own
+}
+
 fn wrong(lens: &Lens, message: &str) -> RenderError {
     RenderError::Scene(format!("lens \"{}\": {message}", lens.name))
 }
@@ -203,7 +221,7 @@ fn seen<'a>(studio: &Studio, scene: &Scene, view: &View, index: usize, lens: &'a
 }
 
 fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_area: bool) -> Option<Place> {
-    let at = anchor(&crate::lens::Placement::Poi(poi.name.clone()), &scene.pois, &studio.model).ok().flatten()?;
+    let at = anchor(&Placement::Poi(poi.name.clone()), scene, &studio.model).ok().flatten()?;
     let from_eye = at - view.camera.eye;
     let direction = DVec2::new(from_eye.dot(view.basis.right), -from_eye.dot(view.basis.up));
     let [w, h] = view.size.map(f64::from);

@@ -36,6 +36,7 @@ fn ball(studio: &Studio, poi: &Poi) -> Result<Sphere, RenderError> {
     match &poi.place {
         PoiPlace::At(at) => Ok(Sphere { center: *at, radius: POINT_RADIUS_M }),
         PoiPlace::Object(id) => studio.ball(id),
+        PoiPlace::On(name) => Err(RenderError::Scene(format!("there is no trajectory \"{name}\""))),
     }
 }
 
@@ -62,7 +63,10 @@ pub fn local(
         let name = shown.pois.first().map_or("", String::as_str);
         let poi = scene.pois.iter().find(|poi| poi.name == name);
         let poi = poi.ok_or_else(|| wrong(format!("there is no point of interest \"{name}\"")))?;
-        ball(studio, poi).map(|ball| (poi, ball)).map_err(of_lens)
+        let ahead = scene.moving(poi).and_then(|moving| moving.direction).and_then(local::level_heading);
+        let standing = Poi { name: poi.name.clone(), place: scene.place(poi) };
+        let ball = ball(studio, &standing).map_err(of_lens)?;
+        Ok::<_, RenderError>((standing, ball, ahead.unwrap_or_else(|| local::heading(main))))
     };
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let viewer = main.basis().ok().map(|basis| [basis.forward, basis.up]);
@@ -73,12 +77,12 @@ pub fn local(
     let mut own = Local { scene: seen_through(scene, shown), transparent: false, mirror: false };
     let camera = match view {
         LocalView::Best { normal, fov_y } => {
-            let (poi, ball) = first()?;
+            let (poi, ball, _) = first()?;
             let normal = match (normal, &poi.place) {
                 (Some(normal), _) => *normal,
                 (None, PoiPlace::Object(id)) => studio.best_normal(id, *fov_y).map_err(of_lens)?,
                 // A place has no facades: from the south-west and from above.
-                (None, PoiPlace::At(_)) => DVec3::new(-1.0, -1.0, 0.8),
+                (None, PoiPlace::At(_) | PoiPlace::On(_)) => DVec3::new(-1.0, -1.0, 0.8),
             };
             framed(&ball, normal, *fov_y)?
         }
@@ -99,12 +103,20 @@ pub fn local(
             )
         }
         LocalView::Worldlet { azimuth, elevation, margin_m, fov_y } => {
-            let (poi, ball) = first()?;
+            let (poi, ball, _) = first()?;
             own.transparent = true;
-            own.scene.lenses.push(alone(poi, model, *margin_m));
+            own.scene.lenses.push(alone(&poi, model, *margin_m));
             let (up, level) = (elevation.sin(), elevation.cos());
             let normal = DVec3::new(level * azimuth.sin(), level * azimuth.cos(), up);
             framed(&Sphere { radius: ball.radius + margin_m, ..ball }, normal, *fov_y)?
+        }
+        LocalView::Follow { distance_m, height_m, fov_y } => {
+            let (_, ball, heading) = first()?;
+            local::behind(ball.center, heading, *distance_m, *height_m, *fov_y)
+        }
+        LocalView::Onboard { azimuth, height_m, fov_y } => {
+            let (_, ball, heading) = first()?;
+            local::level(ball.center + *height_m * DVec3::Z, heading, *azimuth, *fov_y)
         }
         LocalView::Camera(camera) => *camera,
     };
@@ -140,6 +152,7 @@ fn is_flat(lens: &Lens) -> bool {
 fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
     let near = match &poi.place {
         PoiPlace::At(at) => Aabb { min: *at, max: *at },
+        PoiPlace::On(_) => Aabb::EMPTY,
         PoiPlace::Object(id) => model.find_object(id).map_or(Aabb::EMPTY, |object| model.family_bounds(object)),
     };
     let meets = |bounds: Aabb| {
