@@ -69,7 +69,8 @@ fn alone(studio: &mut Studio, scene: &Scene, lens: usize, size: [u32; 2]) -> Pic
     let camera = studio.camera(scene, SIZE);
     let own = &scene.lenses[lens];
     let shown = own.best_view.as_ref().unwrap();
-    let made = views::local(studio, scene, &camera, &own.name, shown, shown.view().unwrap(), size, None).unwrap();
+    let from = views::From { main: camera, size, tracked: None };
+    let made = views::local(studio, scene, &own.name, shown, shown.view().unwrap(), &from).unwrap();
     let mut own = made.scene.clone();
     own.lenses.retain(|lens| lens.best_view.is_none());
     studio.render(&own, &request(size)).unwrap()

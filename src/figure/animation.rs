@@ -75,6 +75,7 @@ impl Film {
         let time = self.animation.time(frame);
         let failed = |message| FilmError::Frame { frame, time, message };
         let mut scene = self.still.clone();
+        scene.time_s += time;
         if let Some(path) = &self.camera {
             scene.camera = Some(path.at(time).map_err(|error| failed(format!("camera: {error}")))?);
         }

@@ -90,6 +90,24 @@ pub enum LocalView {
         /// Vertical field of view, radians.
         fov_y: f64,
     },
+    /// What moves with the first point of interest, followed from behind (B5); behind one that does not move is the side of the main eye.
+    Follow {
+        /// How far behind it, in plan, metres.
+        distance_m: f64,
+        /// How far above it, metres.
+        height_m: f64,
+        /// Vertical field of view, radians.
+        fov_y: f64,
+    },
+    /// From the first point of interest, level, to where it goes; from one that does not move where the main eye looks.
+    Onboard {
+        /// Radians clockwise from there: π looks back.
+        azimuth: f64,
+        /// How far the eye is above it, metres.
+        height_m: f64,
+        /// Vertical field of view, radians.
+        fov_y: f64,
+    },
     /// Any eye: a region of the picture that shows another place (B5, Through-The-Lens).
     Camera(Camera),
 }

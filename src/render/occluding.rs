@@ -38,7 +38,7 @@ impl Studio {
         }
         let eye = Eye::new(&self.camera(scene, size))?;
         let mut occlusion = self.occlusion();
-        occlusion.pass(&lenses, &scene.pois, self.shown(), eye.viewer(), dt);
+        occlusion.pass(&lenses, &scene.standing_pois(), self.shown(), eye.viewer(), dt);
         Ok(())
     }
 
@@ -63,14 +63,14 @@ impl Studio {
         let of = lens.occluders()?;
         let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };
         let mut occlusion = self.occlusion();
-        Some(occlusion.explained(&lens.name, (of, &cases_of(lens)), &scene.pois, self.shown(), eye.viewer()))
+        Some(occlusion.explained(&lens.name, (of, &cases_of(lens)), &scene.standing_pois(), self.shown(), eye.viewer()))
     }
 
     /// How many of them come and go; `None` where no time passed up to here.
     pub(super) fn over_time(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<stats::OverTime> {
         let (of, eye) = (lens.occluders().filter(|_| lens.enabled)?, Eye::new(&view.camera).ok()?);
         let occlusion = self.occlusion();
-        occlusion.over_time(&lens.name, of, &scene.pois, eye.viewer())
+        occlusion.over_time(&lens.name, of, &scene.standing_pois(), eye.viewer())
     }
 
     /// Whether occluders come, go or change at the moment up to which time passed ([`Self::pass`]).

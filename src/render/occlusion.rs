@@ -334,11 +334,12 @@ impl Occlusion {
     }
 }
 
-/// What a place means in the city.
+/// What a place means in the city; scenes that are drawn hold nothing that moves ([`crate::scene::Scene::drawn`]).
 fn poi_of(place: &PoiPlace, city: ShownCity) -> Option<visibility::Poi> {
     match place {
         PoiPlace::At(at) => Some(visibility::Poi::At(*at)),
         PoiPlace::Object(id) => city.model.find_object(id).map(visibility::Poi::Object),
+        PoiPlace::On(_) => None,
     }
 }
 

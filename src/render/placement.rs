@@ -59,7 +59,7 @@ impl Eye {
     /// From a lens' own coordinates to the model's; `None` where what it is attached to is not there:
     /// [`crate::scene::check_against`] says so.
     pub(super) fn motion(&self, lens: &Lens, scene: &Scene, model: &CityModel) -> Option<Motion> {
-        Some(match anchor(&lens.placement, &scene.pois, model).ok()? {
+        Some(match anchor(&lens.placement, scene, model).ok()? {
             Some(DVec3::ZERO) => Motion::NONE,
             Some(translation) => Motion { rotation: DQuat::IDENTITY, translation },
             None => {

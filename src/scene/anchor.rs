@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::{
     city::CityModel,
     lens::{Placement, nearest::did_you_mean},
-    scene::{Poi, PoiPlace},
+    scene::{PoiPlace, Scene},
 };
 
 /// Why a lens is attached to nothing.
@@ -20,19 +20,23 @@ pub enum AnchorProblem {
     /// The scene has no such point of interest.
     #[error("the scene has no point of interest \"{0}\"{1}")]
     NoPoi(String, String),
+    /// The scene has no such trajectory.
+    #[error("the scene has no trajectory \"{0}\"")]
+    NoTrajectory(String),
 }
 
 /// The origin of the coordinates of shapes that are placed so, metres; a camera's is its eye, which is not known here: `None`.
-pub fn anchor(placement: &Placement, pois: &[Poi], model: &CityModel) -> Result<Option<DVec3>, AnchorProblem> {
+pub fn anchor(placement: &Placement, scene: &Scene, model: &CityModel) -> Result<Option<DVec3>, AnchorProblem> {
     match placement {
         Placement::Camera => Ok(None),
         Placement::World => Ok(Some(DVec3::ZERO)),
         Placement::Object(id) => middle_of(id, model).map(Some),
-        Placement::Poi(name) => match pois.iter().find(|poi| poi.name == *name).map(|poi| &poi.place) {
-            Some(PoiPlace::At(at)) => Ok(Some(*at)),
-            Some(PoiPlace::Object(id)) => middle_of(id, model).map(Some),
+        Placement::Poi(name) => match scene.pois.iter().find(|poi| poi.name == *name).map(|poi| scene.place(poi)) {
+            Some(PoiPlace::At(at)) => Ok(Some(at)),
+            Some(PoiPlace::Object(id)) => middle_of(&id, model).map(Some),
+            Some(PoiPlace::On(name)) => Err(AnchorProblem::NoTrajectory(name)),
             None => {
-                let hint = did_you_mean(name, pois.iter().map(|poi| poi.name.as_str()));
+                let hint = did_you_mean(name, scene.pois.iter().map(|poi| poi.name.as_str()));
                 Err(AnchorProblem::NoPoi(name.clone(), hint))
             }
         },

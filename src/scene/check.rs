@@ -52,7 +52,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
         }
     }
     for (i, lens) in scene.lenses.iter().enumerate() {
-        let Err(problem) = anchor(&lens.placement, &scene.pois, model) else { continue };
+        let Err(problem) = anchor(&lens.placement, scene, model) else { continue };
         let key = match (&lens.placement, &problem) {
             (Placement::Object(_), _) => "attached_to.object",
             // It is told of the point of interest.
@@ -123,7 +123,7 @@ fn check_occluders(of: &Occluders, table: &str, scene: &Scene, model: &CityModel
         |key: String, message: String| problems.push(SceneProblem { table: table.to_owned(), key, message });
     for (i, name) in of.pois.iter().enumerate() {
         let placement = Placement::Poi(name.clone());
-        match anchor(&placement, &scene.pois, model) {
+        match anchor(&placement, scene, model) {
             // It is told of the point of interest.
             Ok(_) | Err(AnchorProblem::NoObject(..)) => {}
             Err(wrong) => {

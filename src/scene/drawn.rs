@@ -1,5 +1,5 @@
 //! The lenses that a picture is made with: an occlusion lens that draws its occluders in several ways, or what they hide, stands for
-//! several lenses with one way each.
+//! several lenses with one way each. What moves stands still in it.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use crate::{
     scene::{PoiPlace, Scene},
 };
 
-/// A scene whose lenses draw in one way each.
+/// A scene whose lenses draw in one way each, at its moment.
 #[derive(Clone, Debug)]
 pub struct Drawn<'a> {
     /// With such lenses.
@@ -36,7 +36,11 @@ impl Scene {
     pub fn drawn(&self) -> Drawn<'_> {
         let is_plain = |lens: &Lens| lens.render.as_ref().is_none_or(Rendering::is_plain);
         if self.lenses.iter().all(is_plain) {
-            return Drawn { scene: Cow::Borrowed(self), owners: None, wholes: Vec::new() };
+            let scene = match self.moves() {
+                true => Cow::Owned(Self { pois: self.standing_pois(), ..self.clone() }),
+                false => Cow::Borrowed(self),
+            };
+            return Drawn { scene, owners: None, wholes: Vec::new() };
         }
         let (mut lenses, mut owners, mut wholes) = (Vec::new(), Vec::new(), Vec::new());
         for (lens, owner) in self.lenses.iter().zip(0..) {
@@ -54,7 +58,11 @@ impl Scene {
             }
             owners.resize(lenses.len(), owner);
         }
-        Drawn { scene: Cow::Owned(Self { lenses, ..self.clone() }), owners: Some(owners), wholes }
+        Drawn {
+            scene: Cow::Owned(Self { lenses, pois: self.standing_pois(), ..self.clone() }),
+            owners: Some(owners),
+            wholes,
+        }
     }
 
     fn parts(&self, lens: &Lens, render: &Rendering) -> Vec<Lens> {
@@ -83,7 +91,7 @@ impl Scene {
         let ids: Vec<String> = shown
             .filter_map(|poi| match &poi.place {
                 PoiPlace::Object(id) => Some(id.clone()),
-                PoiPlace::At(_) => None,
+                PoiPlace::At(_) | PoiPlace::On(_) => None,
             })
             .collect();
         if !render.poi_effects.is_empty() && !ids.is_empty() {

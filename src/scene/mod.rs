@@ -9,6 +9,7 @@ pub mod command;
 pub mod drawn;
 pub mod overlay;
 pub mod technique;
+pub mod trajectory;
 pub mod transparency;
 
 use std::path::PathBuf;
@@ -27,6 +28,7 @@ pub use command::{Command, History};
 pub use drawn::Drawn;
 pub use overlay::{Layout, Overlay};
 pub use technique::Technique;
+pub use trajectory::{Moving, Trajectory};
 pub use transparency::Transparency;
 
 /// All of a scene.
@@ -38,8 +40,12 @@ pub struct Scene {
     pub camera: Option<Camera>,
     /// Light.
     pub sun: Sun,
+    /// The moment that is shown, seconds: where what moves is.
+    pub time_s: f64,
     /// How the context looks.
     pub style: Style,
+    /// The ways of what moves.
+    pub trajectories: Vec<Trajectory>,
     /// Points of interest.
     pub pois: Vec<Poi>,
     /// Lenses, bottom to top.
@@ -119,6 +125,8 @@ pub enum PoiPlace {
     Object(String),
     /// A point, metres.
     At(DVec3),
+    /// What moves along the trajectory of this name: [`Scene::place`] says where it is.
+    On(String),
 }
 
 /// How a picture is made.

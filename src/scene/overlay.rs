@@ -217,7 +217,16 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
                 note(table.clone(), "poi", format!("there is no point of interest \"{name}\"{hint}"));
             }
         }
-        if shown.pois.is_empty() && matches!(shown.view(), Some(LocalView::Best { .. } | LocalView::Worldlet { .. })) {
+        let is_of_poi = matches!(
+            shown.view(),
+            Some(
+                LocalView::Best { .. }
+                    | LocalView::Worldlet { .. }
+                    | LocalView::Follow { .. }
+                    | LocalView::Onboard { .. }
+            )
+        );
+        if shown.pois.is_empty() && is_of_poi {
             note(table.clone(), "poi", "is missing: this view is of a point of interest".to_owned());
         }
         for name in shown.lenses.iter().flatten() {

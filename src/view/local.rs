@@ -9,6 +9,8 @@ use crate::view::{Camera, Projection, default_near_m};
 
 /// How far sights of a camera may lie from the eye plane to count as level, sine.
 const LEVEL: f64 = 1e-9;
+/// How far from the eye the target of a level camera is, metres.
+const LEVEL_REACH_M: f64 = 50.0;
 
 /// A camera `distance_m` from the viewer along `normal` that looks at the viewer (B3, MCOP).
 pub fn towards_viewer(viewer: &Camera, normal: DVec3, distance_m: f64, fov_y: f64) -> Camera {
@@ -69,6 +71,27 @@ pub fn fisheye(place: DVec2, magnification: f64) -> DVec2 {
 /// The place that a fisheye shows there: the inverse of [`fisheye`], which the shader of overlays has too.
 pub fn unfisheye(shown: DVec2, magnification: f64) -> DVec2 {
     shown / (1.0 + (magnification - 1.0) * (1.0 - shown.length().min(1.0)))
+}
+
+/// A camera behind and above `at`, which it looks at, where `heading` (in plan, of length 1) is ahead: `distance_m` ≥ 0 behind it and
+/// `height_m` above. Straight above it the heading is at its top.
+pub fn behind(at: DVec3, heading: DVec2, distance_m: f64, height_m: f64, fov_y: f64) -> Camera {
+    let eye = at - distance_m * heading.extend(0.0) + height_m * DVec3::Z;
+    let up = if distance_m > 1e-6 * height_m.abs() { DVec3::Z } else { heading.extend(0.0) };
+    Camera { up, ..Camera::looking(eye, at, fov_y) }
+}
+
+/// A level camera at `at` that looks `azimuth` radians clockwise from `heading`, in plan.
+pub fn level(at: DVec3, heading: DVec2, azimuth: f64, fov_y: f64) -> Camera {
+    let along = heading.rotate(DVec2::from_angle(-azimuth));
+    Camera::looking(at, at + LEVEL_REACH_M * along.extend(0.0), fov_y)
+}
+
+/// Where something is headed, in plan, of length 1, that moves so; `None`: it does not move, or straight up or down.
+pub fn level_heading(direction: DVec3) -> Option<DVec2> {
+    Some(direction.truncate())
+        .filter(|level| level.length() > LEVEL * direction.length())
+        .and_then(DVec2::try_normalize)
 }
 
 /// Where a viewer is headed, in plan, of length 1: along its view; looking straight down or up, to the top of its picture. North, where

@@ -81,8 +81,7 @@ impl Curve {
 /// A place over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
-    pieces: Vec<Piece>,
-    first: DVec3,
+    line: Line,
     /// Metres along the path over seconds.
     way: Way,
     /// Seconds at each key.
@@ -128,6 +127,12 @@ impl Piece {
         (b + x * (2.0 * c + x * 3.0 * d)).length()
     }
 
+    /// Where it goes at a parameter, of length 1; on the way to its end where it rests there. `None`: it goes nowhere.
+    fn direction(&self, x: f64) -> Option<DVec3> {
+        let [_, b, c, d] = self.cubic;
+        (b + x * (2.0 * c + x * 3.0 * d)).try_normalize().or_else(|| (b + c + d).try_normalize())
+    }
+
     /// Metres of its part, by quadrature.
     fn length(&self, from: f64, to: f64) -> f64 {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
@@ -140,6 +145,11 @@ impl Piece {
 
     /// The place so many metres from its beginning.
     fn after(&self, metres: f64) -> DVec3 {
+        self.at(self.parameter(metres))
+    }
+
+    /// The parameter of that place.
+    fn parameter(&self, metres: f64) -> f64 {
         let node = |i: usize| i as f64 / PIECES as f64;
         let i = self.lengths.partition_point(|l| *l <= metres).clamp(1, PIECES) - 1;
         let rest = metres - self.lengths[i];
@@ -150,27 +160,95 @@ impl Piece {
             let middle = 0.5 * (low + high);
             if self.length(from, middle) < rest { low = middle } else { high = middle }
         }
-        self.at(high)
+        high
+    }
+}
+
+/// What a line through points is like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Form {
+    /// Whether it goes on from the last point to the first.
+    pub is_closed: bool,
+    /// Whether it is a centripetal Catmull-Rom curve; else straight from point to point.
+    pub is_smooth: bool,
+}
+
+/// A line through points, by the metres along it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    pieces: Vec<Piece>,
+    first: DVec3,
+    /// Metres along it at each point; of a closed one at last where it is back at the first.
+    marks: Vec<f64>,
+}
+
+impl Line {
+    /// Through `points`, metres, at least one.
+    pub fn new(points: &[DVec3], form: Form) -> Self {
+        let (pieces, marks) = pieces(points, form);
+        Self { pieces, first: points.first().copied().unwrap_or_default(), marks }
+    }
+
+    /// Its length, metres.
+    pub fn length(&self) -> f64 {
+        self.marks.last().copied().unwrap_or(0.0)
+    }
+
+    /// Metres along it at each point, from 0; of a closed line at last where it is back at the first.
+    pub fn marks(&self) -> &[f64] {
+        &self.marks
+    }
+
+    /// The place so many metres along it; its ends beyond them.
+    pub fn at(&self, metres: f64) -> DVec3 {
+        self.piece_at(metres).map_or(self.first, |i| self.pieces[i].after(metres - self.pieces[i].start))
+    }
+
+    /// Where it goes from there, of length 1; at a corner and where points are one, where it goes on, and at its end where it came from.
+    /// `None`: all its points are one.
+    pub fn direction(&self, metres: f64) -> Option<DVec3> {
+        let at = self.piece_at(metres).unwrap_or(0);
+        let own = self.pieces.get(at)?;
+        let onward = self.pieces[at + 1..].iter().find_map(|piece| piece.direction(0.0));
+        own.direction(own.parameter(metres - own.start))
+            .or(onward)
+            .or_else(|| self.pieces[..at].iter().rev().find_map(|piece| piece.direction(1.0)))
+    }
+
+    /// Places along it that straight lines may join, with the metres to each: its points, and of a smooth one some between them.
+    pub fn vertices(&self) -> Vec<(f64, DVec3)> {
+        let mut all = vec![(0.0, self.first)];
+        for piece in self.pieces.iter().filter(|piece| piece.whole() > 0.0) {
+            let [_, _, square, cubic] = piece.cubic;
+            let nodes = if square == DVec3::ZERO && cubic == DVec3::ZERO { PIECES..=PIECES } else { 1..=PIECES };
+            let place = |i: usize| (piece.start + piece.lengths[i], piece.at(i as f64 / PIECES as f64));
+            all.extend(nodes.map(place));
+        }
+        all
+    }
+
+    /// The last piece that begins there or before.
+    fn piece_at(&self, metres: f64) -> Option<usize> {
+        self.pieces.partition_point(|piece| piece.start <= metres).checked_sub(1)
     }
 }
 
 impl Path {
     /// Through `points`, metres, at `times`, seconds, ascending; both of one length, at least one.
     pub fn new(times: &[f64], points: &[DVec3]) -> Self {
-        let (pieces, marks) = curve(points);
-        let way = Way::Keys(Curve::new(times, &marks));
-        Self { pieces, first: points.first().copied().unwrap_or_default(), way, times: times.to_vec() }
+        let line = Line::new(points, CURVE);
+        let way = Way::Keys(Curve::new(times, &line.marks));
+        Self { line, way, times: times.to_vec() }
     }
 
     /// Through `points` from the first of `times` to the last at one speed.
     pub fn constant(times: &[f64], points: &[DVec3]) -> Self {
-        let (pieces, marks) = curve(points);
+        let line = Line::new(points, CURVE);
         let (from, to) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
-        let length = marks.last().copied().unwrap_or(0.0);
+        let length = line.length();
         let time = |(mark, own): (&f64, &f64)| if length > 0.0 { from + (to - from) * mark / length } else { *own };
-        let times = marks.iter().zip(times).map(time).collect();
-        let first = points.first().copied().unwrap_or_default();
-        Self { pieces, first, way: Way::Constant { from, to, length }, times }
+        let times = line.marks.iter().zip(times).map(time).collect();
+        Self { line, way: Way::Constant { from, to, length }, times }
     }
 
     /// One of both.
@@ -188,45 +266,56 @@ impl Path {
 
     /// Its length, metres.
     pub fn length(&self) -> f64 {
-        self.pieces.last().map_or(0.0, |piece| piece.start + piece.whole())
+        self.line.length()
     }
 
     /// Where it is at a time, seconds.
     pub fn at(&self, time: f64) -> DVec3 {
-        let metres = match &self.way {
+        self.line.at(match &self.way {
             Way::Keys(curve) => curve.at(time),
             Way::Constant { from, to, length } if to > from => length * ((time - from) / (to - from)).clamp(0.0, 1.0),
             Way::Constant { length, .. } => *length,
-        };
-        let after = self.pieces.partition_point(|piece| piece.start <= metres);
-        after.checked_sub(1).map_or(self.first, |i| self.pieces[i].after(metres - self.pieces[i].start))
+        })
     }
 }
 
-/// The curve through points, and the metres along it at each.
-fn curve(points: &[DVec3]) -> (Vec<Piece>, Vec<f64>) {
+/// An open curve.
+const CURVE: Form = Form { is_closed: false, is_smooth: true };
+
+/// The line through points, and the metres along it at each.
+fn pieces(points: &[DVec3], form: Form) -> (Vec<Piece>, Vec<f64>) {
+    let count = points.len();
+    let last = if form.is_closed && count > 1 { count } else { count.saturating_sub(1) };
+    let point = |i: usize| points[i % count];
     // Centripetal: knots are apart by the root of the distance.
-    let knot = |i: usize| points[i].distance(points[i + 1]).sqrt();
-    let secant = |i: usize| (points[i + 1] - points[i]) / knot(i);
+    let knot = |i: usize| point(i).distance(point(i + 1)).sqrt();
+    let secant = |i: usize| (point(i + 1) - point(i)) / knot(i);
     let is_there = |i: usize| knot(i) > 0.0;
-    let last = points.len().saturating_sub(1);
+    // Which piece is before one and after one.
+    let before = |i: usize| if i == 0 && form.is_closed { last.checked_sub(1) } else { i.checked_sub(1) };
+    let after = |i: usize| if form.is_closed { Some((i + 1) % last) } else { Some(i + 1).filter(|next| *next < last) };
     let (mut pieces, mut marks) = (Vec::with_capacity(last), vec![0.0]);
     for i in 0..last {
         // Directions per knot; where nothing is beyond, straight on.
         let bent = |before: usize, after: usize| {
-            let across = (points[after + 1] - points[before]) / (knot(before) + knot(after));
+            let across = (point(after + 1) - point(before)) / (knot(before) + knot(after));
             (secant(before) - across + secant(after)) * knot(i)
         };
-        let straight = points[i + 1] - points[i];
+        let straight = point(i + 1) - point(i);
         let ends = match is_there(i) {
             false => [DVec3::ZERO; 2],
+            true if !form.is_smooth => [straight; 2],
             true => [
-                if i > 0 && is_there(i - 1) { bent(i - 1, i) } else { straight },
-                if i + 1 < last && is_there(i + 1) { bent(i, i + 1) } else { straight },
+                before(i).filter(|before| is_there(*before)).map_or(straight, |before| bent(before, i)),
+                after(i).filter(|after| is_there(*after)).map_or(straight, |after| bent(i, after)),
             ],
         };
         let start = marks[i];
-        let piece = Piece::new(points[i], points[i + 1], ends, start);
+        let mut piece = Piece::new(point(i), point(i + 1), ends, start);
+        if !form.is_smooth {
+            // To the bit, whatever rounds.
+            piece.cubic[2..].fill(DVec3::ZERO);
+        }
         marks.push(start + piece.whole());
         pieces.push(piece);
     }

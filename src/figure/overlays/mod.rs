@@ -1,10 +1,12 @@
-//! Overlays of a picture (B1 to B7): what best-view lenses show, where it stands, and the lines that tie it to its places, as [`Furniture`].
+//! Overlays of a picture (B1 to B7): what best-view lenses show, where it stands, and the lines that tie it to its places, as [`Furniture`];
+//! below them markers and traces of what moves.
 //!
 //! ```text
 //! scene ── points of interest in the picture ── layout and lines (crate::overlay) ── pieces of furniture
 //!   └── for each lens with an overlay: a scene of its own (views) ── an inset of the studio, drawn where it is another
 //! ```
 
+mod moving;
 mod paint;
 pub mod views;
 
@@ -15,10 +17,10 @@ use glam::{DVec2, DVec3};
 use crate::{
     figure::furniture::em_px,
     geom::outline,
-    lens::{BestView, Lens, best_view::Depiction, color::Srgb},
+    lens::{BestView, Lens, Placement, best_view::Depiction, color::Srgb},
     overlay::{self, Focus, Placed, Rect, arrow::border_arrow},
     render::{
-        furniture::Furniture,
+        furniture::{Furniture, Piece},
         picture::{Aovs, RenderError, Request, Studio},
     },
     scene::{
@@ -99,6 +101,8 @@ struct Plan {
     em: f32,
     shown: Vec<Shown>,
     placed: Placed,
+    /// Markers and traces of what moves.
+    moving: Vec<Piece>,
     /// What those show that show the city, by the number of their lens.
     views: BTreeMap<usize, Inner>,
 }
@@ -167,7 +171,7 @@ fn plan(
     before: &Standing,
     now: &mut Standing,
 ) -> Result<Option<Plan>, RenderError> {
-    if !scene.lenses.iter().any(|lens| lens.enabled && lens.best_view.is_some()) {
+    if !scene.moves() && !scene.lenses.iter().any(|lens| lens.enabled && lens.best_view.is_some()) {
         return Ok(None);
     }
     let camera = studio.camera(scene, size);
@@ -178,14 +182,18 @@ fn plan(
     let asked = layout_of(studio, scene, &view, &shown, blocked, em);
     let placed = overlay::place(&asked, before.of_views.get(&numbers));
     now.of_views.insert(numbers, placed.clone());
-    let mut plan = Plan { numbers, size, camera, em, shown, placed, views: BTreeMap::new() };
+    let mut ways = Painter::new(em);
+    moving::paint(&mut ways, scene, &view);
+    let moving = ways.into_pieces();
+    let mut plan = Plan { numbers, size, camera, em, shown, placed, moving, views: BTreeMap::new() };
     for placement in &plan.placed.placements {
         let Some(one) = plan.of(placement.id) else { continue };
         let Some(view) = one.best_view.view() else { continue };
         let room = paint::picture_room(&one.overlay, placement.rect, em).size();
         let number = paint::number(numbers, one.index, paint::Part::Picture);
         let tracked = before.middles.get(&number).copied();
-        let local = views::local(studio, scene, &camera, &one.name, &one.best_view, view, room, tracked)?;
+        let from = views::From { main: camera, size: room, tracked };
+        let local = views::local(studio, scene, &one.name, &one.best_view, view, &from)?;
         now.middles.extend(local.middle.map(|middle| (number, middle)));
         let size = room.map(|side| (f64::from(side) * local.magnification).round() as u32);
         let inner = self::plan(studio, &local.scene, size, &[], number * NUMBERS, before, now)?;
@@ -201,6 +209,7 @@ impl Plan {
 
     fn paint(&self, studio: &mut Studio, request: &Request, kept: &mut Vec<u64>) -> Result<Overlays, RenderError> {
         let mut painter = Painter::new(self.em);
+        painter.put(&self.moving);
         self.lines(studio, &mut painter, kept)?;
         let mut figures = Vec::new();
         for placement in &self.placed.placements {
@@ -292,7 +301,8 @@ impl Plan {
                     None => Overlays::default(),
                 };
                 let is_stale = over.figures.iter().any(|figures| figures.rendered);
-                rendered = studio.inset(number, &inner.local.scene, &asked, &over.furniture, is_stale)?;
+                rendered =
+                    studio.inset(number, &at_its_moment(&inner.local.scene), &asked, &over.furniture, is_stale)?;
             }
         }
         let [alpha, frame] = paint::masks(&one.overlay.frame);
@@ -311,6 +321,21 @@ impl Plan {
     }
 }
 
+/// What of a scene its picture without furniture is made of: nothing moves in it, nor has it points of interest that no lens asks for. It
+/// stays the same where only they are others.
+fn at_its_moment(scene: &Scene) -> Scene {
+    let mut own = scene.clone();
+    (own.trajectories, own.time_s) = (Vec::new(), 0.0);
+    own.pois = scene.standing_pois();
+    own.pois.retain(|poi| {
+        scene.lenses.iter().filter(|lens| lens.enabled).any(|lens| {
+            let is_looked_for = lens.occluders().is_some_and(|of| of.pois.contains(&poi.name));
+            is_looked_for || lens.placement == Placement::Poi(poi.name.clone())
+        })
+    });
+    own
+}
+
 fn wrong(lens: &str, message: &str) -> RenderError {
     RenderError::Scene(format!("lens \"{lens}\": {message}"))
 }
@@ -327,10 +352,10 @@ fn seen(studio: &Studio, scene: &Scene, view: &View, index: usize, lens: &Lens) 
 }
 
 fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_area: bool) -> Option<Place> {
-    let anchor = || anchor(&crate::lens::Placement::Poi(poi.name.clone()), &scene.pois, &studio.model).ok().flatten();
+    let anchor = || anchor(&Placement::Poi(poi.name.clone()), scene, &studio.model).ok().flatten();
     let at = match &poi.place {
         PoiPlace::Object(id) => studio.middle(id).ok().or_else(anchor)?,
-        PoiPlace::At(_) => anchor()?,
+        PoiPlace::At(_) | PoiPlace::On(_) => anchor()?,
     };
     let from_eye = at - view.camera.eye;
     let direction = DVec2::new(from_eye.dot(view.basis.right), -from_eye.dot(view.basis.up));

@@ -142,6 +142,11 @@ impl Painter {
         Self { em, setter: Typesetter::default(), pieces: Vec::new() }
     }
 
+    /// Adds pieces that are made.
+    pub fn put(&mut self, pieces: &[Piece]) {
+        self.pieces.extend_from_slice(pieces);
+    }
+
     pub fn into_pieces(self) -> Vec<Piece> {
         self.pieces
     }
@@ -322,6 +327,38 @@ impl Painter {
             let points = [tip - (length + grown) * direction, tip + 1.4 * grown * direction];
             let strip = self.strip(&points, [width + 3.0 * grown, 0.0], color, opacity);
             self.pieces.push(Piece::Strip(strip));
+        }
+    }
+
+    /// A part of the way of something that moves: what it has gone, or what lies before it.
+    pub fn trace(&mut self, points: &[DVec2], color: Srgb, is_gone: bool) {
+        let (width, rim) = (f64::from(self.px(3.0)), f64::from(self.px(2.0)));
+        let (casing, opacity) = if is_gone { (0.8, 1.0) } else { (0.35, 0.45) };
+        for (width, color, opacity) in [(width + rim, WHITE, casing), (width, color, opacity)] {
+            let strip = self.strip(points, [width; 2], color, opacity);
+            self.pieces.push(Piece::Strip(strip));
+        }
+    }
+
+    /// Something that moves, here and to there; without a direction it stands, or comes or goes along the ray.
+    pub fn moving(&mut self, at: DVec2, direction: Option<DVec2>, color: Srgb) {
+        let radius = self.px(8.0) as f32;
+        let [rim, drop] = [2.0, 1.0].map(|n| self.px(n) as f32);
+        let place = at.as_vec2();
+        let disc = |painter: &mut Self, middle: Vec2, radius: f32, color: Srgb, opacity: f32, softness: f32| {
+            painter.panel((middle - radius).into(), (middle + radius).into(), color, opacity, radius, softness);
+        };
+        disc(self, place + Vec2::new(0.0, drop), radius + 2.0 * rim, [0.05, 0.07, 0.1], 0.35, 2.0 * rim);
+        disc(self, place, radius + rim, WHITE, 1.0, 1.0);
+        disc(self, place, radius, color, 1.0, 1.0);
+        match direction {
+            None => disc(self, place, 0.35 * radius, WHITE, 1.0, 1.0),
+            Some(along) => {
+                let reach = f64::from(radius);
+                let points = [at - 0.45 * reach * along, at + 0.75 * reach * along];
+                let strip = self.strip(&points, [1.05 * reach, 0.0], WHITE, 1.0);
+                self.pieces.push(Piece::Strip(strip));
+            }
         }
     }
 

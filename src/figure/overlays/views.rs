@@ -43,24 +43,34 @@ fn ball(studio: &Studio, poi: &Poi) -> Result<Sphere, RenderError> {
     match &poi.place {
         PoiPlace::At(at) => Ok(Sphere { center: *at, radius: POINT_RADIUS_M }),
         PoiPlace::Object(id) => studio.ball(id),
+        PoiPlace::On(name) => Err(RenderError::Scene(format!("there is no trajectory \"{name}\""))),
     }
 }
 
-/// The scene that the view of a lens shows on so many pixels, seen from a picture with this camera. `tracked`: of a map, what was in its middle
-/// in the frame before.
+/// What a view goes by, beside what it shows.
+#[derive(Clone, Copy, Debug)]
+pub struct From {
+    /// The camera of the picture that it stands in.
+    pub main: Camera,
+    /// Width and height of what it shows, pixels.
+    pub size: [u32; 2],
+    /// Of a map: what was in its middle in the frame before.
+    pub tracked: Option<DVec2>,
+}
+
+/// The scene that the view of a lens shows.
 ///
 /// # Errors
 /// Where its point of interest has no place in the city.
 pub fn local(
     studio: &Studio,
     scene: &Scene,
-    main: &Camera,
     lens: &str,
     shown: &BestView,
     view: &LocalView,
-    size: [u32; 2],
-    tracked: Option<DVec2>,
+    &From { main, size, tracked }: &From,
 ) -> Result<Local, RenderError> {
+    let main = &main;
     let model = &*studio.model;
     let wrong = |message: String| RenderError::Scene(format!("lens \"{lens}\": {message}"));
     let of_lens = |error: RenderError| match error {
@@ -71,7 +81,10 @@ pub fn local(
         let name = shown.pois.first().map_or("", String::as_str);
         let poi = scene.pois.iter().find(|poi| poi.name == name);
         let poi = poi.ok_or_else(|| wrong(format!("there is no point of interest \"{name}\"")))?;
-        ball(studio, poi).map(|ball| (poi, ball)).map_err(of_lens)
+        let ahead = scene.moving(poi).and_then(|moving| moving.direction).and_then(local::level_heading);
+        let standing = Poi { name: poi.name.clone(), place: scene.place(poi) };
+        let ball = ball(studio, &standing).map_err(of_lens)?;
+        Ok::<_, RenderError>((standing, ball, ahead.unwrap_or_else(|| local::heading(main))))
     };
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let viewer = main.basis().ok().map(|basis| [basis.forward, basis.up]);
@@ -88,7 +101,7 @@ pub fn local(
     };
     let camera = match view {
         LocalView::Best { normal, fov_y } => {
-            let (poi, ball) = first()?;
+            let (poi, ball, _) = first()?;
             match (normal, &poi.place) {
                 (Some(normal), _) => framed(&ball, *normal, *fov_y)?,
                 (None, PoiPlace::Object(id)) => {
@@ -99,7 +112,7 @@ pub fn local(
                     if is_clear { Camera { near_m, ..camera } } else { camera }
                 }
                 // A place has no facades: from the south-west and from above.
-                (None, PoiPlace::At(_)) => framed(&ball, DVec3::new(-1.0, -1.0, 0.8), *fov_y)?,
+                (None, PoiPlace::At(_) | PoiPlace::On(_)) => framed(&ball, DVec3::new(-1.0, -1.0, 0.8), *fov_y)?,
             }
         }
         LocalView::Mcop { normal, distance_m, fov_y } => local::towards_viewer(main, *normal, *distance_m, *fov_y),
@@ -119,12 +132,20 @@ pub fn local(
             local::map(middle.extend(if top.is_finite() { top } else { 0.0 }), heading, *height_m, ABOVE_M)
         }
         LocalView::Worldlet { azimuth, elevation, margin_m, fov_y } => {
-            let (poi, ball) = first()?;
+            let (poi, ball, _) = first()?;
             own.transparent = true;
-            own.scene.lenses.push(alone(poi, model, *margin_m));
+            own.scene.lenses.push(alone(&poi, model, *margin_m));
             let (up, level) = (elevation.sin(), elevation.cos());
             let normal = DVec3::new(level * azimuth.sin(), level * azimuth.cos(), up);
             framed(&Sphere { radius: ball.radius + margin_m, ..ball }, normal, *fov_y)?
+        }
+        LocalView::Follow { distance_m, height_m, fov_y } => {
+            let (_, ball, heading) = first()?;
+            local::behind(ball.center, heading, *distance_m, *height_m, *fov_y)
+        }
+        LocalView::Onboard { azimuth, height_m, fov_y } => {
+            let (_, ball, heading) = first()?;
+            local::level(ball.center + *height_m * DVec3::Z, heading, *azimuth, *fov_y)
         }
         LocalView::Camera(camera) => *camera,
     };
@@ -160,6 +181,7 @@ fn is_flat(lens: &Lens) -> bool {
 fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
     let near = match &poi.place {
         PoiPlace::At(at) => Aabb { min: *at, max: *at },
+        PoiPlace::On(_) => Aabb::EMPTY,
         PoiPlace::Object(id) => model.find_object(id).map_or(Aabb::EMPTY, |object| model.family_bounds(object)),
     };
     let meets = |bounds: Aabb| {

@@ -13,7 +13,10 @@ use crate::{
         write::{degrees, list, number, point, quoted},
     },
     lens::nearest::did_you_mean,
-    scene::animation::{Animation, Change, ChangeKey, MOST_FRAMES, Numbers, Track},
+    scene::{
+        Scene,
+        animation::{Animation, Change, ChangeKey, MOST_FRAMES, Numbers, Track},
+    },
     view::{
         Camera, Projection,
         path::{CameraKey, CameraPath, PathError, Speed},
@@ -39,7 +42,7 @@ pub const ANIMATION: Table = Table {
         key(
             "frames",
             Kind::Integer { min: 1, max: MOST_FRAMES as i64 },
-            "up to the last key",
+            "up to the last key, and until all that moves has arrived or gone round",
             "",
             "How many pictures; frame i, from 0, is at i / `fps` seconds.",
             "300",
@@ -168,8 +171,9 @@ pub(super) fn numbers(node: &Node) -> Option<Numbers> {
     }
 }
 
-/// Reads the table; `camera`: the scene's, whose values keys fall back on.
-pub(super) fn read(checker: &mut Checker, fields: &Fields, camera: Option<&Camera>) -> Option<Animation> {
+/// Reads the table of a scene of which all else is read: keys fall back on its camera.
+pub(super) fn read(checker: &mut Checker, fields: &Fields, scene: &Scene) -> Option<Animation> {
+    let camera = scene.camera.as_ref();
     let before = checker.problems.len();
     let speed = speed_of(fields);
     let cameras = camera_keys(checker, fields, camera, speed);
@@ -183,6 +187,9 @@ pub(super) fn read(checker: &mut Checker, fields: &Fields, camera: Option<&Camer
     let fps = fields.number("fps").unwrap_or(FPS);
     let last_camera = cameras.iter().map(|key| key.at);
     let last = changes.iter().flat_map(|change| change.keys.iter().map(|key| key.at)).chain(last_camera);
+    // What moves arrives, or goes round once.
+    let arrivals = scene.trajectories.iter().map(|way| (way.end_s() - scene.time_s).clamp(0.0, LATEST_S));
+    let last = last.chain(arrivals);
     let by_keys = (last.fold(0.0, f64::max) * fps).round() + 1.0;
     if !fields.given("frames") && by_keys > f64::from(MOST_FRAMES) {
         let message = format!("is {by_keys} up to the last key; at most {MOST_FRAMES} would be right");

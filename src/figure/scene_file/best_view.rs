@@ -164,6 +164,49 @@ pub const VIEWS: &[Table] = &[
         ],
     },
     Table {
+        name: "follow",
+        doc: "The first point of interest, followed from behind the direction that it moves in: it is in the middle, and what lies before it \
+              above. Behind a point of interest that does not move, or straight up or down, is the side of the main eye.",
+        keys: &[
+            view_kind("\"follow\""),
+            key(
+                "distance_m",
+                Kind::Number { min: 0.0, max: FAR_M },
+                "40.0",
+                "m",
+                "How far behind it, in plan.",
+                "60.0",
+            ),
+            key("height_m", Kind::Number { min: 0.001, max: FAR_M }, "25.0", "m", "How far above it.", "12.0"),
+            FOV,
+        ],
+    },
+    Table {
+        name: "onboard",
+        doc: "From the first point of interest, level, to where it moves; from one that does not move, or straight up or down, to where the \
+              main eye looks.",
+        keys: &[
+            view_kind("\"onboard\""),
+            key(
+                "azimuth_deg",
+                Kind::Number { min: -FAR_M, max: FAR_M },
+                "0.0",
+                "degrees",
+                "Clockwise from there: 90 looks to its right, 180 back.",
+                "180.0",
+            ),
+            key(
+                "height_m",
+                Kind::Number { min: -FAR_M, max: FAR_M },
+                "0.0",
+                "m",
+                "How far the eye is above it.",
+                "1.7",
+            ),
+            FOV,
+        ],
+    },
+    Table {
         name: "camera",
         doc: "Any eye; its keys are those of `[camera]`.",
         keys: &[
@@ -220,7 +263,7 @@ pub const NOT_OWN: [&str; 13] = [
 /// The words of the views that a kind of lens may have, the default first; empty: it has none.
 pub fn views_of(kind: LensKind) -> &'static [&'static str] {
     match kind {
-        LensKind::BestView => &["best", "mcop", "scop", "camera"],
+        LensKind::BestView => &["best", "mcop", "scop", "follow", "onboard", "camera"],
         LensKind::MapView => &["map"],
         LensKind::Worldlet => &["worldlet"],
         LensKind::SeeThrough | LensKind::Portal => &["camera"],
@@ -282,6 +325,16 @@ pub fn read_view(
             azimuth: own.number("azimuth_deg").unwrap_or(215.0).to_radians(),
             elevation: own.number("elevation_deg").unwrap_or(30.0).to_radians(),
             margin_m: own.number("margin").unwrap_or(0.0),
+            fov_y,
+        },
+        "follow" => LocalView::Follow {
+            distance_m: own.number("distance_m").unwrap_or(40.0),
+            height_m: own.number("height_m").unwrap_or(25.0),
+            fov_y,
+        },
+        "onboard" => LocalView::Onboard {
+            azimuth: own.number("azimuth_deg").unwrap_or(0.0).to_radians(),
+            height_m: own.number("height_m").unwrap_or(0.0),
             fov_y,
         },
         _ => LocalView::Camera(camera(checker, &own)?),
@@ -364,6 +417,14 @@ fn view_keys(view: &LocalView) -> (&'static str, Vec<(&'static str, String)>) {
             }
             keys.extend(fov(*fov_y));
             ("worldlet", keys)
+        }
+        LocalView::Follow { distance_m, height_m, fov_y } => {
+            let own = [("distance_m", number(*distance_m)), ("height_m", number(*height_m))];
+            ("follow", own.into_iter().chain(fov(*fov_y)).collect())
+        }
+        LocalView::Onboard { azimuth, height_m, fov_y } => {
+            let own = [("azimuth_deg", number(degrees(*azimuth))), ("height_m", number(*height_m))];
+            ("onboard", own.into_iter().chain(fov(*fov_y)).collect())
         }
         LocalView::Camera(camera) => ("camera", camera_keys(camera)),
     }

@@ -228,6 +228,16 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         Kind::Planes(least) => {
             return wrong_rows::<4>(kind, node, *least, "plane", "[x, y, z, d], four finite numbers", f64::MAX);
         }
+        Kind::Times(least) => {
+            let list = node.list().unwrap_or_default();
+            let times: Vec<f64> = list.iter().filter_map(Node::number).filter(|t| (0.0..=1e6).contains(t)).collect();
+            if let Some(i) = times.windows(2).position(|pair| pair[1] <= pair[0]).filter(|_| times.len() == list.len())
+            {
+                let [before, own] = [times[i], times[i + 1]];
+                return Some(format!("time {}, {own}, must be later than the one before, {before}", i + 1));
+            }
+            list.len() >= *least && times.len() == list.len()
+        }
         Kind::Color => color(node).is_some(),
         Kind::Background => node.text() == Some("sky") || color(node).is_some(),
         Kind::Lod => lod(node).is_some(),

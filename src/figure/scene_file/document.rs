@@ -250,6 +250,9 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Tables(table) => json!({ "type": "array", "items": object(table) }),
         Kind::Shape => json!({ "$ref": SHAPE }),
         Kind::Shapes => json!({ "type": "array", "items": { "$ref": SHAPE }, "minItems": 1 }),
+        Kind::Times(least) => {
+            json!({ "type": "array", "items": { "type": "number", "minimum": 0, "maximum": 1e6 }, "minItems": least })
+        }
         Kind::Numbers => json!({ "type": ["number", "array"] }),
         Kind::Effects => json!({ "type": "array", "items": { "$ref": EFFECT } }),
         Kind::Names => {

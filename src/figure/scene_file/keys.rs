@@ -8,6 +8,7 @@ use crate::{
         overlay::{FRAME, LAYOUT, LINE, OVERLAY},
         sprite::{SPRITE, SPRITE_CAMERA},
         test_keys::CHOICE,
+        trajectory::{TIME, TRAJECTORY},
     },
     lens::{Rendering, ramp},
     scene::{Transparency, transparency::MOST_PEELED},
@@ -64,6 +65,8 @@ pub enum Kind {
     Rings,
     /// At least so many planes `[x, y, z, d]`.
     Planes(usize),
+    /// At least so many seconds, each 0 or more and later than the one before.
+    Times(usize),
     /// `"#rrggbb"` or `[r, g, b]`.
     Color,
     /// `"sky"` or a colour.
@@ -167,7 +170,16 @@ pub const ROOT: Table = Table {
             "{ eye = [0, -90, 60], target = [0, 0, 5] }",
         ),
         key("sun", Kind::Table(&SUN), "from the south-west", "", "Light.", "{ azimuth_deg = 215.0 }"),
+        key("time", Kind::Table(&TIME), "the beginning", "", "Which moment is shown.", "{ at_s = 12.5 }"),
         key("style", Kind::Table(&STYLE), "natural", "", "How the context looks.", "{ base = \"clay\" }"),
+        key(
+            "trajectory",
+            Kind::Tables(&TRAJECTORY),
+            "none",
+            "",
+            "Ways that points of interest move along.",
+            "[{ name = \"tram\", points = [[0, 0, 2], [80, 0, 2]], speed_m_s = 8.0 }]",
+        ),
         key("poi", Kind::Tables(&POI), "none", "", "Points of interest.", "[{ name = \"hall\", object = \"ID\" }]"),
         key("lens", Kind::Tables(&LENS), "none", "", "Lenses, bottom to top: the last is the top lens.", "[]"),
         key(
@@ -199,7 +211,7 @@ pub const ROOT: Table = Table {
 };
 
 /// Top tables of later versions.
-pub const LATER_TABLES: &[&str] = &["time", "trajectory"];
+pub const LATER_TABLES: &[&str] = &[];
 
 /// `[city]`.
 pub const CITY: Table = Table {
@@ -348,11 +360,12 @@ pub const TRANSPARENCY: Table = Table {
 /// `[[poi]]`.
 pub const POI: Table = Table {
     name: "poi",
-    doc: "A point of interest: a city object or a place; exactly one of `object` and `at`.",
+    doc: "A point of interest: a city object or a place; exactly one of `object`, `at` and `trajectory`.",
     keys: &[
         key("name", Kind::Text, "`poi-N`, N its place in the file", "", "Its name, unique.", "\"hall\""),
         key("object", Kind::Text, "none", "", "Id of a city object.", "\"NL.IMBAG.Pand.0503100000031316\""),
         key("at", Kind::Point, "none", "m", "A point.", "[10.0, 20.0, 3.0]"),
+        key("trajectory", Kind::Text, "none", "", "Name of a `[[trajectory]]`: it moves along it.", "\"tram 1\""),
     ],
 };
 
@@ -761,6 +774,9 @@ impl Kind {
             Self::PlanPoints(least) => format!("a list of at least {least} points [x, y]"),
             Self::Rings => "a list of rings, each a list of at least 3 points [x, y]".into(),
             Self::Planes(least) => format!("a list of at least {least} planes [x, y, z, d]"),
+            Self::Times(least) => {
+                format!("a list of at least {least} times, 0 or more, each later than the one before")
+            }
             Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Background => "\"sky\" or a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Lod => "a level of detail like \"2\" or \"1.3\"".into(),
@@ -799,8 +815,10 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("[city]", &CITY),
     ("[camera]", &CAMERA),
     ("[sun]", &SUN),
+    ("[time]", &TIME),
     ("[style]", &STYLE),
     ("transparency of [style]", &TRANSPARENCY),
+    ("[[trajectory]]", &TRAJECTORY),
     ("[[poi]]", &POI),
     ("[[lens]]", &LENS),
     ("attached_to of a lens", &ATTACHED_TO),

@@ -21,6 +21,7 @@ mod set;
 pub mod shape_keys;
 pub mod sprite;
 pub mod test_keys;
+mod trajectory;
 mod write;
 
 use std::{fmt, io::Read, path::Path};

@@ -21,7 +21,7 @@ use crate::{
         node::{Data, Node},
         occlusion, overlay,
         paths::{Options, PathProblem},
-        shape_keys, sprite,
+        shape_keys, sprite, trajectory,
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
@@ -97,6 +97,10 @@ impl<'o> SceneReader<'o> {
                                 scene.pois.extend(self.poi(&fields, i));
                                 continue;
                             }
+                            "trajectory" => {
+                                scene.trajectories.extend(trajectory::read(&mut self.checker, &fields, i));
+                                continue;
+                            }
                             "overlay" => {
                                 scene.overlays.push(self.overlay(&fields));
                                 continue;
@@ -116,7 +120,11 @@ impl<'o> SceneReader<'o> {
         let lists = |key: &str| top.node(key).and_then(Node::list).unwrap_or_default();
         self.unique("lens", lists("lens"), scene.lenses.iter().map(|l| l.name.as_str()));
         self.unique("poi", lists("poi"), scene.pois.iter().map(|p| p.name.as_str()));
-        for problem in scene::overlay::problems(&scene) {
+        self.unique("trajectory", lists("trajectory"), scene.trajectories.iter().map(|way| way.name.as_str()));
+        // Of a way that is wrong it is told already.
+        let is_whole = scene.trajectories.len() == lists("trajectory").len();
+        let of_ways = if is_whole { scene::trajectory::problems(&scene) } else { Vec::new() };
+        for problem in scene::overlay::problems(&scene).into_iter().chain(of_ways) {
             let (table, index) = problem.table.split_once('.').unwrap_or_default();
             let node = index.parse().ok().and_then(|i: usize| lists(table).get(i));
             let line = node.and_then(|n| n.entry(&problem.key).or(Some(n))).map_or(1, |n| n.line);
@@ -131,10 +139,11 @@ impl<'o> SceneReader<'o> {
             "city" => scene.city = self.city(fields),
             "camera" => scene.camera = camera(&mut self.checker, fields),
             "sun" => scene.sun = sun(fields),
+            "time" => scene.time_s = fields.number("at_s").unwrap_or(0.0),
             "style" => scene.style = self.style(fields),
             "layout" => scene.layout = overlay::layout(fields),
             "figure" => scene.figure = figure::read(&mut self.checker, fields),
-            "animation" => scene.animation = animation::read(&mut self.checker, fields, scene.camera.as_ref()),
+            "animation" => scene.animation = animation::read(&mut self.checker, fields, scene),
             _ => {}
         }
     }
@@ -213,17 +222,19 @@ impl<'o> SceneReader<'o> {
 
     fn poi(&mut self, fields: &Fields, index: usize) -> Option<Poi> {
         let name = fields.text("name").map_or_else(|| format!("poi-{index}"), str::to_owned);
-        let place = match (fields.text("object"), fields.point("at")) {
-            (Some(id), None) if !fields.given("at") => PoiPlace::Object(id.to_owned()),
-            (None, Some(at)) if !fields.given("object") => PoiPlace::At(at),
-            (None, None) if fields.given("object") || fields.given("at") => return None,
-            (both, _) => {
-                let message = if both.is_some() {
-                    "is given together with object: a point of interest is one of them"
-                } else {
-                    "is missing: give object = \"ID\" or at = [x, y, z]"
-                };
-                self.checker.note(&fields.place, "at", fields.line("at"), message);
+        let given: Vec<&str> = ["object", "at", "trajectory"].into_iter().filter(|key| fields.given(key)).collect();
+        let place = match given[..] {
+            ["object"] => PoiPlace::Object(fields.text("object")?.to_owned()),
+            ["at"] => PoiPlace::At(fields.point("at")?),
+            [_] => PoiPlace::On(fields.text("trajectory")?.to_owned()),
+            [] => {
+                let message = "is missing: give object = \"ID\", at = [x, y, z] or trajectory = \"NAME\"";
+                self.checker.note(&fields.place, "at", fields.place.line, message);
+                return None;
+            }
+            [first, second, ..] => {
+                let message = format!("is given together with {first}: a point of interest is one of them");
+                self.checker.note(&fields.place, second, fields.line(second), message);
                 return None;
             }
         };

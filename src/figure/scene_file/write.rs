@@ -11,7 +11,7 @@ use crate::{
         occlusion, overlay,
         parse::{lens_color, rotation},
         paths::Options,
-        rendering, sprite,
+        rendering, sprite, trajectory,
     },
     geom::{Shape, shape::FlatFigure},
     lens::{
@@ -39,7 +39,15 @@ pub fn write(scene: &Scene, options: &Options) -> String {
         out.camera(camera);
     }
     out.sun(&scene.sun);
+    if scene.time_s != 0.0 {
+        out.head("[time]");
+        out.key("at_s", &number(scene.time_s));
+    }
     out.style(&scene.style);
+    for (i, way) in scene.trajectories.iter().enumerate() {
+        out.head("[[trajectory]]");
+        trajectory::written(i, way).iter().for_each(|(key, value)| out.key(key, value));
+    }
     scene.pois.iter().for_each(|poi| out.poi(poi));
     scene.lenses.iter().enumerate().for_each(|(i, lens)| out.lens(i, lens, options));
     for overlay in &scene.overlays {
@@ -135,6 +143,7 @@ impl Toml {
         match &poi.place {
             PoiPlace::Object(id) => self.key("object", &quoted(id)),
             PoiPlace::At(at) => self.key("at", &point(*at)),
+            PoiPlace::On(way) => self.key("trajectory", &quoted(way)),
         }
     }
 

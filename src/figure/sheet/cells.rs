@@ -104,7 +104,7 @@ fn told(setting: &Setting, error: &SceneFileError, cell: &str) -> String {
 fn poi_of(sheet: &Sheet, scene: &Scene) -> Result<String, String> {
     let id = |place: &PoiPlace| match place {
         PoiPlace::Object(id) => Some(id.clone()),
-        PoiPlace::At(_) => None,
+        PoiPlace::At(_) | PoiPlace::On(_) => None,
     };
     let Some(name) = &sheet.poi else {
         return scene.pois.iter().find_map(|poi| id(&poi.place)).ok_or_else(|| {
