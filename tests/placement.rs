@@ -369,7 +369,7 @@ fn the_middle_of_an_object_is_that_of_its_whole_family() {
             let own = model.geometries.iter().filter(|g| belongs(g.object as usize, i));
             let bounds = own.clone().fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
             let placement = Placement::Object(object.id.to_string());
-            match anchor(&placement, &[], &model) {
+            match anchor(&placement, &Scene::default(), &model) {
                 Ok(at) => assert_eq!(at, Some(bounds.center()), "{file}: {}", object.id),
                 Err(problem) => assert!(bounds.is_empty(), "{file}: {problem}"),
             }
