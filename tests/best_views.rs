@@ -8,9 +8,10 @@ use veduta::{
     figure::{
         self,
         overlays::{Standing, views},
-        scene_file::{Options, parse},
+        scene_file::{Options, parse, read, set_within},
     },
     lens::best_view::LocalView,
+    overlay::Placed,
     render::picture::{Aovs, Picture, Request, Studio},
     scene::Scene,
     view::{Camera, local},
@@ -287,9 +288,10 @@ fn compasses_show_north_and_arrows_where_the_eye_looks() {
         let mut studio = of_scene(&scene("head-up"));
         let picture = drawn(&mut studio, &scene("head-up"));
         let (_, at, size, _) = told(&picture)[0];
-        let pixels = part(&picture, at, size);
-        let red = middle_of(&pixels, size[0], needle).unwrap().0;
-        let grey = middle_of(&pixels, size[0], tail).unwrap().0;
+        // The upper right corner, where the compass is; the city is some pixels in the middle.
+        let pixels = part(&picture, [at[0] + size[0] - 60, at[1]], [60, 60]);
+        let red = middle_of(&pixels, 60, needle).unwrap().0;
+        let grey = middle_of(&pixels, 60, tail).unwrap().0;
         // In a map whose top is the direction of view, north is turned by as much the other way.
         let north = DVec2::new(-to.x, -to.y);
         let found = (red - grey).normalize_or(DVec2::X);
@@ -321,4 +323,137 @@ fn lines_of_places_out_of_the_picture_are_arrows_or_nothing() {
     assert!(tip.y > 330.0 || tip.x < 20.0, "{tip}");
     let hidden = drawn(&mut studio, &with("outside = \"hidden\""));
     assert_eq!(middle_of(&hidden.rgba, SIZE[0] as usize, is_magenta), None);
+}
+
+/// A shipped scene, its city, its picture, and where its overlays stand.
+struct Shipped {
+    scene: Scene,
+    studio: Studio,
+    picture: Picture,
+    placed: Placed,
+}
+
+fn shipped(name: &str, changes: &[&str]) -> Shipped {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{name}.toml"));
+    let options = Options::for_file(&path);
+    let mut scene = read(&path, &options).expect("a scene");
+    for change in changes {
+        set_within(&scene, change, &options).expect("a change").redo(&mut scene);
+    }
+    let mut studio = of_scene(&scene);
+    let mut standing = Standing::default();
+    let size = scene.figure.size;
+    let picture = figure::draw_next(&mut studio, &scene, &request(size), &mut standing).expect("a picture");
+    let placed = standing.of_picture().expect("overlays").clone();
+    Shipped { scene, studio, picture, placed }
+}
+
+/// Share of what a lens shows that is of an object and its parts.
+fn share_of(shipped: &mut Shipped, lens: usize, object: &str) -> f64 {
+    let Shipped { scene, studio, .. } = shipped;
+    let own = &scene.lenses[lens];
+    let shown = own.best_view.as_ref().unwrap();
+    let from = views::From { main: studio.camera(scene, scene.figure.size), size: [240, 160], tracked: None };
+    let mut local = views::local(studio, scene, &own.name, shown, shown.view().unwrap(), &from).unwrap().scene;
+    local.lenses.clear();
+    let asked = Request { aovs: Aovs { object_id: true, ..Aovs::default() }, ..request([240, 160]) };
+    let ids = studio.render(&local, &asked).unwrap().object_id.expect("ids");
+    let (model, root) = (&studio.model, studio.model.find_object(object).expect("an object"));
+    let roots = model.roots();
+    let is_own = |id: &&u32| **id > 0 && (**id - 1 == root || roots[**id as usize - 1] == root);
+    ids.iter().filter(is_own).count() as f64 / ids.len() as f64
+}
+
+#[test]
+fn trapp_3_4_1_shows_sights_in_their_context() {
+    let mut made = shipped("trapp-3-4-1", &[]);
+    // The mill is out of the picture; the others are tied to their places, without crossings.
+    assert_eq!((made.placed.placements.len(), made.placed.lines.len(), made.placed.crossings.sum()), (4, 3, 0));
+    for (lens, object) in ["church", "town-hall", "windmill", "bridge"].into_iter().enumerate() {
+        let share = share_of(&mut made, lens, object);
+        assert!(share > 0.06, "{object} takes {share} of its overlay");
+    }
+}
+
+#[test]
+fn trapp_3_4_3_ties_one_depiction_to_several_places_and_shows_the_surroundings() {
+    let made = shipped("trapp-3-4-3-a", &[]);
+    assert_eq!((made.placed.placements.len(), made.placed.lines.len()), (1, 3));
+    let made = shipped("trapp-3-4-3-b", &[]);
+    let camera = made.studio.camera(&made.scene, made.scene.figure.size);
+    let own = made.scene.lenses[0].best_view.as_ref().unwrap();
+    let from = views::From { main: camera, size: [200, 200], tracked: None };
+    let map = views::local(&made.studio, &made.scene, "map", own, own.view().unwrap(), &from).unwrap();
+    let seen = map.scene.camera.unwrap();
+    assert_eq!(seen.eye.truncate(), camera.eye.truncate(), "around the eye");
+    assert_eq!((seen.target - seen.eye).normalize_or(DVec3::X), -DVec3::Z, "from above");
+}
+
+#[test]
+fn trapp_3_4_5_is_three_maps_of_one_place() {
+    let red = |made: &Shipped| {
+        let (_, at, size, _) = told(&made.picture)[0];
+        let needle = |[r, g, b, _]: [u8; 4]| r > 205 && g < 60 && b < 60;
+        let half = DVec2::new(size[0] as f64, size[1] as f64) * 0.5;
+        middle_of(&part(&made.picture, at, size), size[0], needle).map(|(at, count)| (at - half, count))
+    };
+    let [north, heading, user] = ["north-up", "head-up", "user-view"]
+        .map(|mode| red(&shipped("trapp-3-4-3-b", &[&format!("lens.map.view.mode={mode}")])));
+    assert_eq!(north, None, "north up has no sign");
+    assert!(heading.is_some_and(|(at, _)| at.x > 60.0 && at.y < -60.0), "a compass at the upper right: {heading:?}");
+    assert!(user.is_some_and(|(at, _)| at.length() < 8.0), "an arrow in the middle: {user:?}");
+}
+
+#[test]
+fn trapp_3_4_8_orders_hides_and_fades_lines() {
+    let hidden =
+        shipped("sights", &["overlay.0={ lens = 'the mill', line = { outside = 'hidden', color = '#ff00ff' } }"]);
+    assert_eq!((hidden.placed.placements.len(), hidden.placed.lines.len(), hidden.placed.crossings.sum()), (5, 4, 0));
+    assert_eq!(
+        middle_of(&hidden.picture.rgba, 1280, is_magenta),
+        None,
+        "the mill is out of the picture, and so has no line"
+    );
+    let line = "overlay.0={ lens = 'the town hall', line = { fade = [160, 300], color = '#ff00ff' } }";
+    let faded = shipped("sights", &[line]);
+    let whole = shipped("sights", &[&line.replace("fade = [160, 300], ", "")]);
+    let near = |made: &Shipped, inner: f64, outer: f64| {
+        let pixels = made.picture.rgba.iter().enumerate().filter(|(i, color)| {
+            let at = DVec2::new((i % 1280) as f64 + 0.5, (i / 1280) as f64 + 0.5);
+            (inner..outer).contains(&(at - DVec2::new(640.0, 360.0)).length()) && is_magenta(**color)
+        });
+        pixels.count()
+    };
+    // The line comes from above the town hall, and ends in a dot that is 214 pixels from the middle.
+    assert_eq!(near(&faded, 300.0, 1000.0), near(&whole, 300.0, 1000.0), "beyond the outer radius all of it is seen");
+    assert!(near(&faded, 225.0, 260.0) == 0 && near(&whole, 225.0, 260.0) > 20, "towards the middle it vanishes");
+}
+
+#[test]
+fn trapp_5_3_2_goes_by_what_one_looks_at() {
+    let focus = shipped("sights", &["layout.exploration_focus=true"]);
+    let middle = |made: &Shipped, lens: u32| {
+        let rect = made.placed.placements.iter().find(|p| p.id == lens).unwrap().rect;
+        (f64::from(rect.min[0] + rect.max[0]) / 2.0, rect.size())
+    };
+    // The fountain is nearest to the middle of the picture.
+    assert!((middle(&focus, 2).0 - 640.0).abs() <= 1.0);
+    let sized = shipped("sights", &["layout.size=distance"]);
+    let areas: Vec<i32> = (0..5).map(|lens| middle(&sized, lens).1).map(|[w, h]| w * h).collect();
+    // Church, fountain, town hall, mill, bridge: from near to far.
+    let by_distance = [0, 2, 1, 3, 4];
+    assert!(by_distance.windows(2).all(|pair| areas[pair[0]] > areas[pair[1]]), "{areas:?}");
+}
+
+#[test]
+fn trapp_5_3_1_magnifies_the_middle() {
+    let made = shipped("trapp-5-3-1", &[]);
+    let view = made.scene.lenses[0].best_view.as_ref().unwrap().view().unwrap();
+    assert!(matches!(view, LocalView::Map { magnification, .. } if *magnification == 3.0));
+    // It is another picture than without: by how much, the closed form says (above).
+    let plain = shipped("trapp-5-3-1", &["lens.map.view.magnification=1"]);
+    let (_, at, size, _) = told(&made.picture)[0];
+    let other =
+        part(&made.picture, at, size).iter().zip(part(&plain.picture, at, size)).filter(|(a, b)| **a != *b).count();
+    assert!(other > size[0] * size[1] / 2);
 }

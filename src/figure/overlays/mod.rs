@@ -71,6 +71,13 @@ pub struct Standing {
     middles: BTreeMap<u64, DVec2>,
 }
 
+impl Standing {
+    /// Those of the picture itself; `None`: it has none.
+    pub fn of_picture(&self) -> Option<&Placed> {
+        self.of_views.get(&0)
+    }
+}
+
 /// A lens with an overlay in one picture.
 struct Shown {
     index: usize,

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::{
     figure::scene_file::{
         best_view::VIEWS,
-        keys::{self, CLASSES, Key, Kind, LATER_TABLES, TABLES, Table},
+        keys::{self, CLASSES, Key, Kind, TABLES, Table},
         rendering::{AS, BY_EFFECTS, WORDS},
         shape_keys::SHAPES,
         test_keys::TESTS,
@@ -55,7 +55,6 @@ pub fn reference() -> String {
     let names: Vec<&str> = all_effects().map(|e| e.name.as_str()).collect();
     let _ = write!(out, "The effects are {}; [effects.md](effects.md) has their parameters.\n\n", words(&names));
     out += "`lod` may stand among them too: `{ effect = \"lod\", lod = \"1.2\" }`, with a `class`, is `content = { lod = \"1.2\" }` of its\nlens, and written as that.\n\n";
-    let _ = writeln!(out, "Tables of later versions: {}.", words(LATER_TABLES));
     out
 }
 

@@ -210,9 +210,6 @@ pub const ROOT: Table = Table {
     ],
 };
 
-/// Top tables of later versions.
-pub const LATER_TABLES: &[&str] = &[];
-
 /// `[city]`.
 pub const CITY: Table = Table {
     name: "city",

@@ -76,7 +76,7 @@ impl<'o> SceneReader<'o> {
     /// Reads a whole file.
     pub fn scene(&mut self, root: &Node) -> Scene {
         let place = Place { table: String::new(), prefix: String::new(), line: 1 };
-        let top = self.checker.fields(root, &keys::ROOT, keys::LATER_TABLES, place);
+        let top = self.checker.fields(root, &keys::ROOT, &[], place);
         let mut scene = Scene::default();
         for key in keys::ROOT.keys {
             let Some(node) = top.node(key.name) else { continue };

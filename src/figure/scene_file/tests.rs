@@ -69,7 +69,7 @@ fn every_mistake_names_its_line_place_and_remedy() {
         ("veduta = 2", "s.toml:1: veduta: must be 1, is 2"),
         ("veduta = 1\nx = [", "s.toml:2: "),
         ("veduta = 1\n\n[camra]\n", "s.toml:3: camra: unknown key; did you mean \"camera\"?"),
-        ("veduta = 1\n[time]\n", "time: is not available yet"),
+        ("veduta = 1\n[time]\nat = 3\n", "[time] at: unknown key; did you mean \"at_s\"?"),
         ("veduta = 1\ncity = 3\n", "city: must be a table, is 3"),
         (
             "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]",
