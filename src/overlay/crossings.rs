@@ -53,6 +53,12 @@ impl Way {
         &self.points
     }
 
+    /// The rectangle around it, pixels, rounded outwards.
+    pub fn around(&self) -> Rect {
+        let pixel = |v: i64| v.div_euclid(STEPS) as i32;
+        Rect { min: self.low.map(pixel), max: self.high.map(|v| pixel(v + STEPS - 1)) }
+    }
+
     /// Its length, lattice steps.
     pub fn length(&self) -> f64 {
         self.points

@@ -61,7 +61,6 @@ impl<'a> Problem<'a> {
         let blocked = blocked.filter(|r| r.within(&inner, whole(layout.gap))).collect();
         let board = Board { inner, gap: whole(layout.gap), clearance, points, blocked };
         let mut overlays: Vec<&Overlay> = request.overlays.iter().collect();
-        let rank = |o: &Overlay| if o.priority.is_nan() { f64::NEG_INFINITY } else { o.priority + 0.0 };
         overlays.sort_by(|a, b| rank(b).total_cmp(&rank(a)).then(a.id.cmp(&b.id)));
         let targets = |o: &&Overlay| -> Vec<(Target, usize)> {
             o.anchors.iter().enumerate().filter_map(|(i, focus)| Some((Target::new(focus)?, i))).collect()
@@ -103,6 +102,11 @@ impl<'a> Problem<'a> {
     pub fn is_too_large(&self, item: usize) -> bool {
         let (min, room) = (self.sizes[item].min, self.board.inner.size());
         min[0] > room[0] || min[1] > room[1]
+    }
+
+    /// What it is placed by, higher before lower.
+    pub fn rank(&self, item: usize) -> f64 {
+        rank(self.overlays[item])
     }
 
     /// Whether overlays of these sizes could have room, told by area alone: with its gap each takes a rectangle of the picture and one gap more.
@@ -162,6 +166,11 @@ impl<'a> Problem<'a> {
         }
         best.map(|(_, side, rect)| (side, rect))
     }
+}
+
+/// The priority; what is no number counts as the lowest.
+fn rank(overlay: &Overlay) -> f64 {
+    if overlay.priority.is_nan() { f64::NEG_INFINITY } else { overlay.priority + 0.0 }
 }
 
 fn aligned(align: Align, first: Side, last: Side) -> Vec<Side> {

@@ -39,7 +39,7 @@ fn check(file: &Path) -> Result<(), Failed> {
     if places.len() < PLACES {
         return Err(format!("{} of {PLACES} places", places.len()).into());
     }
-    let extent = boxes.iter().fold(Aabb::EMPTY, |all, b| all.union(b));
+    let extent = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
     let (middle, reach) = (extent.center(), extent.size().truncate().length());
     // A stroll above the roofs, half around the city and nearer, that looks about.
     let view = |n: u32| {
