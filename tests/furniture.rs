@@ -329,9 +329,9 @@ caption = "Each stands beside what it names, and what the figure says of itself 
 legend = "bottom-right"
 
 [[lens]]
-name = "heights"
+name = "ages"
 shape = { kind = "sphere", center = [0.0, -40.0, 10.0], radius = 110.0 }
-effects = [{ effect = "thematic", attribute = "measuredHeight" }]
+effects = [{ effect = "thematic", attribute = "yearOfConstruction" }]
 "##;
 
 #[test]

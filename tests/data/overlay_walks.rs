@@ -64,7 +64,8 @@ fn check(file: &Path) -> Result<(), Failed> {
         println!("{arrangement:?}, {kind:?}: {} tied; {walk:?}", tied as f64 / f64::from(FRAMES));
         let still = walk.still as f64 / walk.standings as f64;
         let jumps: usize = walk.jumps.values().sum();
-        if still < 0.9 || jumps > 20 || walk.swaps_back > 2 || walk.covering > 0 {
+        // Half around the city in ten seconds: points walk through the overlays all the time.
+        if still < 0.8 || jumps > FRAMES as usize / 8 || walk.swaps_back > 2 || walk.covering > 0 {
             return Err(format!("{arrangement:?}, {kind:?}: {walk:?}").into());
         }
     }
