@@ -510,6 +510,6 @@ impl Advance<'_> {
         let pushed = packer.row_near(k, row, &starts)?;
         // On a way around a point they could stand for ever.
         let goes_on = !is_gliding || left(&pushed) < furthest;
-        goes_on.then(|| (pushed, is_gliding))
+        goes_on.then_some((pushed, is_gliding))
     }
 }
