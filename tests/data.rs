@@ -12,10 +12,13 @@ mod edges;
 mod faces;
 #[path = "data/info.rs"]
 mod info;
+mod layouts;
 #[path = "data/meshes.rs"]
 mod meshes;
 #[path = "data/occluders.rs"]
 mod occluders;
+#[path = "data/overlay_walks.rs"]
+mod overlay_walks;
 #[path = "data/pictures.rs"]
 mod pictures;
 #[path = "data/scenes.rs"]
@@ -50,6 +53,7 @@ fn main() {
         info::trials(),
         meshes::trials(),
         occluders::trials(),
+        overlay_walks::trials(),
         pictures::trials(),
         scenes::trials(),
         walks::trials(),

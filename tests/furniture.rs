@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use studio::*;
 use veduta::{
-    figure::{self, legend::legends},
+    figure::{self, furniture, legend::legends, overlays, scene_file},
     geom::Shape,
     lens::{EffectUse, Lens, Parameter, ramp::ramp},
     render::{
@@ -310,4 +310,64 @@ fn the_font_has_its_notice() {
         assert!(name == "NOTICE.md" || notice.contains(&name), "{name} is not in the notice");
     }
     assert!(read("README.md").contains("assets/font/OFL.txt"));
+}
+
+/// Eight overlays around a town, with a title, a caption and a legend.
+const LABELLED: &str = r##"
+veduta = 1
+
+[city]
+files = ["builtin:town"]
+
+[camera]
+eye = [-240.0, -310.0, 170.0]
+target = [0.0, 0.0, 10.0]
+
+[figure]
+title = "Eight places of a town"
+caption = "Each stands beside what it names, and what the figure says of itself is left free."
+legend = "bottom-right"
+
+[[lens]]
+name = "ages"
+shape = { kind = "sphere", center = [0.0, -40.0, 10.0], radius = 110.0 }
+effects = [{ effect = "thematic", attribute = "yearOfConstruction" }]
+"##;
+
+#[test]
+fn overlays_leave_titles_captions_and_legends_free() {
+    let mut studio = town();
+    let mut text = LABELLED.to_owned();
+    for i in 0..8 {
+        let turn = f64::from(i) * std::f64::consts::TAU / 8.0;
+        let (x, y) = (90.0 * turn.cos(), 90.0 * turn.sin());
+        text += &format!(
+            "[[poi]]\nname = \"p{i}\"\nat = [{x:.3}, {y:.3}, 8.0]\n[[lens]]\nname = \"l{i}\"\nkind = \"annotation\"\npoi = \"p{i}\"\n\
+             text = \"Place {i}\"\n[[overlay]]\nlens = \"l{i}\"\nsize = [150, 56]\n"
+        );
+    }
+    let scene =
+        scene_file::parse(&text, "s", &scene_file::Options::for_command_line()).unwrap_or_else(|e| panic!("{e}"));
+    for size in [SIZE, [1280, 720], [720, 1280]] {
+        let asked = Request { size, ..request(1, false) };
+        let own = figure::furniture_of(&studio, &scene, size).unwrap();
+        let cards = furniture::cards(&own);
+        assert!((3..=6).contains(&cards.len()), "title, caption and legend, and their shadows: {cards:?}");
+        let meets = |made: &overlays::Overlays| {
+            let is_over = |p: &&veduta::overlay::Placement| cards.iter().any(|card| card.within(&p.rect, 0));
+            made.placed.placements.iter().filter(is_over).count()
+        };
+        let careless = overlays::overlays(&mut studio, &scene, &asked, &[], None).unwrap();
+        let made = overlays::overlays(&mut studio, &scene, &asked, &cards, None).unwrap();
+        assert!(meets(&careless) > 0, "{size:?}: there is something to leave free");
+        assert_eq!((meets(&made), made.placed.placements.len()), (0, 8), "{size:?}");
+        // That is what a figure is.
+        let pieces = made.furniture.pieces.into_iter().chain(own.pieces).collect();
+        let drawn = studio.render_with(&scene, &asked, &Furniture { pieces }).unwrap();
+        assert_eq!(figure::draw(&mut studio, &scene, &asked).unwrap().rgba, drawn.rgba, "{size:?}");
+        if let Some(folder) = std::env::var_os("VEDUTA_SHOW") {
+            let file = std::path::Path::new(&folder).join(format!("labelled-{}.png", size[0]));
+            figure::picture::save_picture(&file, size, &drawn.rgba, true, &Default::default()).unwrap();
+        }
+    }
 }

@@ -5,10 +5,7 @@
 
 use glam::DVec2;
 
-use crate::{
-    geom::exact::{dot, orient, segments_meet},
-    overlay::Rect,
-};
+use crate::overlay::Rect;
 
 /// Lattice steps per pixel.
 pub const STEPS: i64 = 256;
@@ -54,6 +51,12 @@ impl Way {
     /// Its points, from the overlay to the focus.
     pub fn points(&self) -> &[Lattice] {
         &self.points
+    }
+
+    /// The rectangle around it, pixels, rounded outwards.
+    pub fn around(&self) -> Rect {
+        let pixel = |v: i64| v.div_euclid(STEPS) as i32;
+        Rect { min: self.low.map(pixel), max: self.high.map(|v| pixel(v + STEPS - 1)) }
     }
 
     /// Its length, lattice steps.
@@ -128,6 +131,29 @@ pub fn between(rect: &Rect, ways: &[Way], other_rect: &Rect, other_ways: &[Way])
     let over = ways.iter().filter(|a| a.crosses_overlay(other_rect)).count();
     let under = other_ways.iter().filter(|b| b.crosses_overlay(rect)).count();
     (lines + over + under) as u32
+}
+
+/// Twice the signed area of a triangle. Coordinates are at most [`FURTHEST`] · [`STEPS`] = 2²⁸, so that products stay below 2⁵⁹: exact.
+#[inline]
+fn orient(a: Lattice, b: Lattice, c: Lattice) -> i64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// The scalar product; as exact.
+fn dot(u: Lattice, v: Lattice) -> i64 {
+    u[0] * v[0] + u[1] * v[1]
+}
+
+/// Whether the closed segments `a b` and `c d` share any point.
+#[inline]
+fn segments_meet(a: Lattice, b: Lattice, c: Lattice, d: Lattice) -> bool {
+    let apart = |i: usize| a[i].max(b[i]) < c[i].min(d[i]) || c[i].max(d[i]) < a[i].min(b[i]);
+    if apart(0) || apart(1) {
+        return false;
+    }
+    let sides = |p, q, r, s| orient(p, q, r).signum() * orient(p, q, s).signum();
+    // Collinear segments whose boxes meet do meet; for all others both tests must straddle or touch.
+    sides(a, b, c, d) <= 0 && sides(c, d, a, b) <= 0
 }
 
 #[cfg(test)]

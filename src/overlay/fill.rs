@@ -3,7 +3,8 @@
 //! Overlays are placed by priority, the higher first. All shrink together, by eighths of the way from the size that they want to their smallest, until the
 //! lanes hold all of them; if that is not enough, again until all find a place on the lanes or further inward; at their smallest size, who finds no place is
 //! folded. An overlay stands as little inward as it can: no place in the whole picture is missed, as one that touches nothing could be pushed outwards until
-//! it does. With n overlays and p points this takes O(n² + n p) where lanes hold all, and O((n + p)²) for each overlay that stands further inward.
+//! it does. With n overlays and p points this takes O(n² + n p) where lanes hold all, and O((n + p) log (n + p)) for each overlay
+//! that stands further inward.
 
 use glam::DVec2;
 
@@ -61,7 +62,6 @@ impl<'a> Problem<'a> {
         let blocked = blocked.filter(|r| r.within(&inner, whole(layout.gap))).collect();
         let board = Board { inner, gap: whole(layout.gap), clearance, points, blocked };
         let mut overlays: Vec<&Overlay> = request.overlays.iter().collect();
-        let rank = |o: &Overlay| if o.priority.is_nan() { f64::NEG_INFINITY } else { o.priority + 0.0 };
         overlays.sort_by(|a, b| rank(b).total_cmp(&rank(a)).then(a.id.cmp(&b.id)));
         let targets = |o: &&Overlay| -> Vec<(Target, usize)> {
             o.anchors.iter().enumerate().filter_map(|(i, focus)| Some((Target::new(focus)?, i))).collect()
@@ -105,6 +105,18 @@ impl<'a> Problem<'a> {
         min[0] > room[0] || min[1] > room[1]
     }
 
+    /// What it is placed by, higher before lower.
+    pub fn rank(&self, item: usize) -> f64 {
+        rank(self.overlays[item])
+    }
+
+    /// Whether overlays of these sizes could have room, told by area alone: with its gap each takes a rectangle of the picture and one gap more.
+    fn has_area(&self, sizes: &[[i32; 2]]) -> bool {
+        let area =
+            |size: [i32; 2]| size.map(|s| i128::from(s.max(0)) + i128::from(self.board.gap)).into_iter().product();
+        sizes.iter().map(|s| area(*s)).sum::<i128>() <= area(self.board.inner.size())
+    }
+
     /// By what an overlay is sorted into a row of a side.
     pub fn key(&self, item: usize, side: Side) -> f64 {
         match self.request.layout.order {
@@ -119,52 +131,6 @@ impl<'a> Problem<'a> {
     pub fn place_in_row(&self, row: &[usize], item: usize, side: Side) -> usize {
         let key = |i: usize| (self.key(i, side), i);
         row.partition_point(|&i| key(i).0.total_cmp(&key(item).0).then(i.cmp(&item)).is_lt())
-    }
-
-    /// The place that is least inward for an overlay of `size`, keeping the gap from `obstacles` and covering no point.
-    pub fn place_inward(&self, item: usize, size: [i32; 2], obstacles: &[Rect]) -> Option<(Side, Rect)> {
-        let board = &self.board;
-        let inner = board.inner.size();
-        if size[0] > inner[0] || size[1] > inner[1] {
-            return None;
-        }
-        let reach = self.request.layout.reach;
-        let reach = if reach.is_nan() { 1.0 } else { reach.clamp(0.0, 1.0) };
-        let mut best: Option<(i32, i32, Side, Rect)> = None;
-        for &side in &self.sides {
-            let (d, a) = (side.depth_axis(), side.along_axis());
-            let deepest = (inner[d] - size[d]).min((f64::from(inner[d]) * reach) as i32 - size[d]).max(0);
-            let origin = if side.is_first() { board.inner.min[d] } else { -board.inner.max[d] };
-            let inward = |low: i32, high: i32| if side.is_first() { high - origin } else { -low - origin };
-            // The least depth is 0, or touches something.
-            let beside = obstacles.iter().chain(&board.blocked).map(|o| inward(o.min[d], o.max[d]) + board.gap);
-            let past = board.points.iter().map(|p| {
-                let at = (p[d] + if side.is_first() { board.clearance } else { -board.clearance })
-                    * if side.is_first() { 1.0 } else { -1.0 };
-                at.floor() as i32 - origin
-            });
-            let mut depths: Vec<i32> =
-                past.flat_map(|at| [at, at + 1]).chain(beside).filter(|at| (1..=deepest).contains(at)).collect();
-            depths.push(0);
-            depths.sort_unstable();
-            depths.dedup();
-            let span = (board.inner.min[a], board.inner.max[a]);
-            let wish = (self.wish[item][a] - f64::from(size[a]) * 0.5).clamp(-FURTHEST, FURTHEST) as i32;
-            for depth in depths {
-                if best.is_some_and(|b| (b.0, b.1) <= (depth, 0)) {
-                    break;
-                }
-                let windows = board.windows(side, depth, size, span, obstacles);
-                if let Some(at) = nearest(&windows, wish, span.0, span.1) {
-                    let found = (depth, (at - wish).abs(), side, board.rect(side, at, depth, size));
-                    if best.is_none_or(|b| (found.0, found.1) < (b.0, b.1)) {
-                        best = Some(found);
-                    }
-                    break;
-                }
-            }
-        }
-        best.map(|(.., side, rect)| (side, rect))
     }
 
     /// The place of those at the border of the picture or beside an obstacle that covers fewest points; for an overlay that covers some wherever it is.
@@ -203,11 +169,34 @@ impl<'a> Problem<'a> {
     }
 }
 
+/// The priority; what is no number counts as the lowest.
+fn rank(overlay: &Overlay) -> f64 {
+    if overlay.priority.is_nan() { f64::NEG_INFINITY } else { overlay.priority + 0.0 }
+}
+
 fn aligned(align: Align, first: Side, last: Side) -> Vec<Side> {
     match align {
         Align::First => vec![first],
         Align::Last => vec![last],
         Align::Both => vec![first, last],
+    }
+}
+
+/// Sizes for which there was no room: where more stand, there is none for larger ones either.
+#[derive(Default)]
+struct Full(Vec<[i32; 2]>);
+
+impl Full {
+    /// A place for an overlay of `size`, looked for where that has a chance.
+    fn unless<T>(&mut self, size: [i32; 2], look: impl FnOnce() -> Option<T>) -> Option<T> {
+        if self.0.iter().any(|s| s[0] <= size[0] && s[1] <= size[1]) {
+            return None;
+        }
+        let place = look();
+        if place.is_none() {
+            self.0.push(size);
+        }
+        place
     }
 }
 
@@ -249,6 +238,9 @@ fn fill_at(problem: &Problem, step: u32, inward: bool, folds: bool) -> Option<Fi
     let sizes: Vec<[i32; 2]> = problem.sizes.iter().map(|s| s.shrunk(step)).collect();
     let lanes = problem.lanes(&sizes);
     let board = &problem.board;
+    if !folds && !problem.has_area(&sizes) {
+        return None;
+    }
     let mut rows: Vec<Vec<usize>> = vec![Vec::new(); lanes.len()];
     let mut windows: Vec<Vec<Windows>> = vec![vec![Windows::new(); sizes.len()]; lanes.len()];
     let boards: Vec<Board> = lanes.iter().map(|lane| board.beside(lane.side, board.clearance, &sizes)).collect();
@@ -262,7 +254,10 @@ fn fill_at(problem: &Problem, step: u32, inward: bool, folds: bool) -> Option<Fi
             if size[side.depth_axis()] > board.inner.size()[side.depth_axis()] {
                 return None;
             }
-            windows[k][item] = boards[k].windows(side, 0, size, span, &[]);
+            windows[k][item] = match sizes[..item].iter().rposition(|s| *s == size) {
+                Some(other) if !windows[k][other].is_empty() => windows[k][other].clone(),
+                _ => boards[k].windows(side, 0, size, span, &[]),
+            };
             let at = problem.place_in_row(&rows[k], item, side);
             let with = rows[k][..at].iter().chain([&item]).chain(&rows[k][at..]);
             let seats: Vec<_> = with.map(|&i| (&windows[k][i][..], sizes[i][side.along_axis()])).collect();
@@ -280,11 +275,13 @@ fn fill_at(problem: &Problem, step: u32, inward: bool, folds: bool) -> Option<Fi
     }
     let packed = crate::overlay::order::packed(problem, &filled, None)?;
     let mut obstacles: Vec<Rect> = packed.into_iter().flatten().collect();
+    let mut full = Full::default();
+    let mut hopeless = Full::default();
     for item in left {
         let size = filled.sizes[item];
-        let place = problem.place_inward(item, size, &obstacles).or_else(|| {
-            let helpless = folds && problem.place_inward(item, size, &[]).is_none();
-            if helpless { problem.place_covering(item, size, &obstacles) } else { None }
+        let place = full.unless(size, || problem.place_inward(item, size, &obstacles)).or_else(|| {
+            let mut free = || hopeless.unless(size, || problem.place_inward(item, size, &[]));
+            if folds && free().is_none() { problem.place_covering(item, size, &obstacles) } else { None }
         });
         match place {
             Some((side, rect)) => {

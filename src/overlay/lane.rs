@@ -4,7 +4,7 @@
 //! place of each that leaves room for those after it; forwards, the place of each that is nearest to the one that it wants. If a row fits at all, the first
 //! pass finds that out. Both are linear in the overlays and their windows.
 
-use crate::overlay::{Along, Rect};
+use crate::overlay::{Along, Rect, rect::closed_by};
 use glam::DVec2;
 
 /// A side of the picture.
@@ -113,26 +113,10 @@ impl Board {
             }
         }
         for point in &self.points {
-            // The strip at this very place covers the point or does not: asked of the same predicate as all else.
-            let mut here = strip;
-            let near = point[a].floor() as i32;
-            (here.min[a], here.max[a]) = (near, near + length);
-            if !here.covers(*point, self.clearance) {
+            if !strip.covers_in(d, *point, self.clearance) {
                 continue;
             }
-            let covers = |at: i32| {
-                let mut rect = strip;
-                (rect.min[a], rect.max[a]) = (at, at + length);
-                rect.covers(*point, self.clearance)
-            };
-            let (mut first, mut last) =
-                ((point[a] - self.clearance).floor() as i32 - length, (point[a] + self.clearance).ceil() as i32);
-            while first < near && !covers(first) {
-                first += 1;
-            }
-            while last > near && !covers(last) {
-                last -= 1;
-            }
+            let (first, last) = closed_by(point[a], self.clearance, length);
             closed.push((first, last));
         }
         closed.sort_unstable();

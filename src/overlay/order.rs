@@ -8,6 +8,8 @@
 //!
 //! A change costs O(n) for each overlay whose place it changes; the counts of all pairs are kept.
 
+use std::cell::Cell;
+
 use crate::overlay::{
     Order, Rect,
     crossings::{Way, between},
@@ -16,11 +18,11 @@ use crate::overlay::{
     line::way,
 };
 
-/// Changes that are tried times overlays, before the search gives up: a change costs as much more as there are overlays.
-const MOST_TRIALS: usize = 200_000;
+/// Pairs of overlays whose lines are looked at before the search gives up; curves count as much more as they have segments. About 10 ms.
+const MOST_WORK: usize = 200_000;
 
 /// The same with a frame before.
-const KEPT_TRIALS: usize = 6000;
+const KEPT_WORK: usize = 20_000;
 
 /// The most overlays for which all orders are tried.
 pub const MOST_PROVEN: usize = 9;
@@ -173,6 +175,8 @@ struct State<'p, 'a> {
     /// Crossings of each pair, both ways round.
     counts: Vec<Vec<u32>>,
     crossings: u32,
+    /// Pairs that were looked at so far.
+    work: Cell<usize>,
 }
 
 /// A change of rows that was looked at.
@@ -207,7 +211,16 @@ impl<'p, 'a> State<'p, 'a> {
                 }
             }
         }
-        Some(Self { packer, rows: filled.rows.clone(), inward: filled.inward.clone(), rects, ways, counts, crossings })
+        Some(Self {
+            packer,
+            rows: filled.rows.clone(),
+            inward: filled.inward.clone(),
+            rects,
+            ways,
+            counts,
+            crossings,
+            work: Cell::new(0),
+        })
     }
 
     /// Looks at rows `k` made anew, and at others in places further inward; `None` if a row does not fit.
@@ -228,6 +241,8 @@ impl<'p, 'a> State<'p, 'a> {
                 moved.push((i, rect, ways));
             }
         }
+        let segments: usize = moved.iter().flat_map(|m| &m.2).map(|way| way.points().len() - 1).sum();
+        self.work.set(self.work.get() + (segments + moved.len()) * self.rects.len());
         let (mut before, mut after) = (0, 0);
         for (n, (i, rect, ways)) in moved.iter().enumerate() {
             for j in 0..self.rects.len() {
@@ -315,7 +330,7 @@ impl<'p, 'a> State<'p, 'a> {
     }
 
     /// Overlays whose lines cross change places as long as that makes the lines shorter.
-    fn uncross(&mut self, trials: &mut usize) {
+    fn uncross(&mut self, work: usize) {
         let mut again = true;
         while again && self.crossings > 0 {
             again = false;
@@ -325,10 +340,9 @@ impl<'p, 'a> State<'p, 'a> {
                     if self.counts[first.0][second.0] == 0 {
                         continue;
                     }
-                    if *trials == 0 {
+                    if self.work.get() > work {
                         return;
                     }
-                    *trials -= 1;
                     if let Some(trial) = self.swapped(*first, *second).filter(|t| t.longer < -0.5) {
                         self.take(trial);
                         again = true;
@@ -341,7 +355,7 @@ impl<'p, 'a> State<'p, 'a> {
     }
 
     /// Overlays change places, or one moves, as long as less lines cross.
-    fn improve(&mut self, trials: &mut usize) {
+    fn improve(&mut self, work: usize) {
         let mut again = true;
         while again && self.crossings > 0 {
             again = false;
@@ -356,10 +370,9 @@ impl<'p, 'a> State<'p, 'a> {
                     .enumerate()
                     .flat_map(|(k, row)| (0..=row.len()).map(move |n| ((usize::MAX, k, n), false)));
                 for (second, swap) in others.chain(gaps) {
-                    if *trials == 0 {
+                    if self.work.get() > work {
                         break 'all;
                     }
-                    *trials -= 1;
                     let trial =
                         if swap { self.swapped(*first, second) } else { self.moved(*first, (second.1, second.2)) };
                     let Some(trial) = trial.filter(|t| t.crossings < self.crossings) else { continue };
@@ -485,10 +498,9 @@ pub fn search(packer: &Packer, is_kept: bool) -> Option<Ordered> {
     let count: usize = state.rows.iter().map(Vec::len).sum();
     let mut is_least = state.crossings == 0;
     if layout.order == Order::Anchors && state.crossings > 0 {
-        let (trials, proven) = if is_kept { (KEPT_TRIALS, KEPT_PROVEN) } else { (MOST_TRIALS, MOST_PROVEN) };
-        let mut trials = trials / state.rects.len().max(1);
-        state.uncross(&mut trials);
-        state.improve(&mut trials);
+        let (work, proven) = if is_kept { (KEPT_WORK, KEPT_PROVEN) } else { (MOST_WORK, MOST_PROVEN) };
+        state.uncross(work);
+        state.improve(work);
         is_least = state.crossings == 0;
         if !is_least && count <= (layout.proven as usize).min(proven) {
             is_least = true;

@@ -179,7 +179,7 @@ impl Placed {
 /// Overlays keep the gap between each other and the margin to the border, and cover no point that they could avoid. With a frame before they keep still
 /// ([`crate::overlay::steady`]), but never at the price of these promises.
 ///
-/// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, and O((n + p)²) for each that stands further inward. With a frame before
+/// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, O((n + p) log (n + p)) for each that stands further inward, and a bounded search for the order. With a frame before
 /// O(n² + n p), all of it comparisons of boxes.
 pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
     if let Some(before) = before.filter(|before| before.settled && before.request == *request) {
@@ -198,11 +198,13 @@ pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
         (filled.rows, filled.inward) = (ordered.rows, ordered.inward);
     }
     let rects = packed(&problem, &filled, focused).unwrap_or_else(|| vec![None; problem.overlays.len()]);
+    let ways = all_ways(&problem, &filled, &rects);
+    let crossings = count(&rects, &ways).crossings;
     let turns = Turns::default();
     let jump = Some(Jump::Anew);
     finished(
         &problem,
-        Kept { filled, rects, gliding: Vec::new(), settled: false, jump, hopeless: 0, turns, is_least },
+        Kept { filled, rects, crossings, gliding: Vec::new(), settled: false, jump, hopeless: 0, turns, is_least },
         focused,
     )
 }
@@ -219,27 +221,52 @@ fn focused(problem: &Problem, before: Option<&Placed>) -> Option<usize> {
     last.filter(|&last| distance(last) <= distance(nearest) + dead_band(problem)).or(Some(nearest))
 }
 
+/// Crossings, and between which overlays they are.
+#[derive(Clone, Debug, Default)]
+pub struct Counted {
+    /// How many.
+    pub crossings: Crossings,
+    /// The numbers of two overlays between which there are some.
+    pub pairs: Vec<(usize, usize)>,
+}
+
 /// The crossings of all overlays and their lines.
-pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Crossings {
-    let mut crossings = Crossings::default();
-    let present: Vec<(&Rect, &Vec<Way>)> = rects.iter().zip(ways).filter_map(|(r, w)| Some((r.as_ref()?, w))).collect();
-    for (n, (rect, ways)) in present.iter().enumerate() {
-        for (other_rect, other_ways) in &present[..n] {
-            for way in *ways {
-                crossings.lines += other_ways.iter().filter(|w| way.crosses(w)).count() as u32;
-                crossings.overlays += u32::from(way.crosses_overlay(other_rect));
+pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Counted {
+    let mut counted = Counted::default();
+    let present = |i: usize| Some((i, rects[i]?, &ways[i][..], hull(&rects[i]?, &ways[i])));
+    let present: Vec<_> = (0..rects.len()).filter_map(present).collect();
+    for (n, (i, rect, ways, hull)) in present.iter().enumerate() {
+        for (j, other_rect, other_ways, other_hull) in &present[..n] {
+            if !hull.within(other_hull, 1) {
+                continue;
             }
-            crossings.overlays += other_ways.iter().filter(|w| w.crosses_overlay(rect)).count() as u32;
+            let lines: usize = ways.iter().map(|way| other_ways.iter().filter(|w| way.crosses(w)).count()).sum();
+            let over = ways.iter().filter(|w| w.crosses_overlay(other_rect)).count()
+                + other_ways.iter().filter(|w| w.crosses_overlay(rect)).count();
+            if lines + over > 0 {
+                counted.crossings.lines += lines as u32;
+                counted.crossings.overlays += over as u32;
+                counted.pairs.push((*i, *j));
+            }
         }
     }
-    crossings
+    counted
+}
+
+/// The rectangle around an overlay and its lines, rounded outwards.
+fn hull(rect: &Rect, ways: &[Way]) -> Rect {
+    ways.iter().fold(*rect, |hull, way| {
+        let around = way.around();
+        Rect {
+            min: [0, 1].map(|i| hull.min[i].min(around.min[i])),
+            max: [0, 1].map(|i| hull.max[i].max(around.max[i])),
+        }
+    })
 }
 
 /// All that is told of a frame.
 fn finished(problem: &Problem, kept: Kept, focused: Option<usize>) -> Placed {
-    let Kept { filled, rects, gliding, settled, jump, hopeless, turns, is_least } = kept;
-    let ways = all_ways(problem, &filled, &rects);
-    let crossings = count(&rects, &ways);
+    let Kept { filled, rects, crossings, gliding, settled, jump, hopeless, turns, is_least } = kept;
     let mut placed = Placed {
         placements: placements(problem, &filled, &rects),
         folded: (0..rects.len()).filter(|&i| rects[i].is_none()).map(|i| problem.overlays[i].id).collect(),

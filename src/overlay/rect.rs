@@ -35,15 +35,12 @@ impl Rect {
 
     /// Whether `point` (pixels) is in it, or nearer to it than `clearance` both in x and in y. A point on its border is in it.
     pub fn covers(&self, point: DVec2, clearance: f64) -> bool {
-        let in_axis = |i: usize| {
-            let (low, high) = (f64::from(self.min[i]), f64::from(self.max[i]));
-            if clearance > 0.0 {
-                low - clearance < point[i] && point[i] < high + clearance
-            } else {
-                low <= point[i] && point[i] <= high
-            }
-        };
-        in_axis(0) && in_axis(1)
+        self.covers_in(0, point, clearance) && self.covers_in(1, point, clearance)
+    }
+
+    /// The same in one axis (0 x, 1 y).
+    pub fn covers_in(&self, axis: usize, point: DVec2, clearance: f64) -> bool {
+        covers(self.min[axis], self.max[axis], point[axis], clearance)
     }
 
     /// Whether all of `other` is in it.
@@ -62,6 +59,26 @@ impl Rect {
         let corner = |a: [i32; 2], b: [i32; 2]| [between(a[0], b[0]), between(a[1], b[1])];
         Self { min: corner(self.min, other.min), max: corner(self.max, other.max) }
     }
+}
+
+/// Whether an interval of pixels covers a coordinate, clearance included.
+fn covers(low: i32, high: i32, at: f64, clearance: f64) -> bool {
+    let (low, high) = (f64::from(low), f64::from(high));
+    if clearance > 0.0 { low - clearance < at && at < high + clearance } else { low <= at && at <= high }
+}
+
+/// The first and the last pixel from which an interval of `length` pixels (1 and up) covers a coordinate: asked of the same predicate as all else.
+pub fn closed_by(at: f64, clearance: f64, length: i32) -> (i32, i32) {
+    // Truncation is at most one off, and this is cheaper than rounding.
+    let near = if at < f64::from(at as i32) { at as i32 - 1 } else { at as i32 };
+    let (mut first, mut last) = ((at - clearance) as i32 - length - 1, (at + clearance) as i32 + 1);
+    while first < near && !covers(first, first + length, at, clearance) {
+        first += 1;
+    }
+    while last > near && !covers(last, last + length, at, clearance) {
+        last -= 1;
+    }
+    (first, last)
 }
 
 #[cfg(test)]

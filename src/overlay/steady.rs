@@ -9,16 +9,16 @@
 
 use crate::overlay::{
     Order, Placed, Rect, Request,
-    crossings::Way,
+    crossings::{Way, between},
     fill::{Filled, Problem, unease},
-    lane::{Board, Side, fits},
+    lane::{Board, Side, Windows, fits},
     order::{Packer, packed, rects_of, search, sides_of, ways_of},
-    place::{Jump, Seat, count},
+    place::{Counted, Crossings, Jump, Seat, count},
     size::{SHRINK_STEPS, Sizes},
 };
 
 /// How many overlays per call look for a better place, times overlays: the others have their turn in the next calls. At most [`MOST_RETURNS`].
-const RETURNS: usize = 400;
+const RETURNS: usize = 200;
 
 /// See [`RETURNS`].
 const MOST_RETURNS: usize = 4;
@@ -33,6 +33,8 @@ pub struct Kept {
     pub filled: Filled,
     /// The rectangle of each overlay.
     pub rects: Vec<Option<Rect>>,
+    /// What their lines cross.
+    pub crossings: Crossings,
     /// The sides along which they are still on their way.
     pub gliding: Vec<Side>,
     /// Whether nothing would change without a change of the request.
@@ -115,9 +117,11 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
         Advance { problem, filled, held: &held, ideal, was_gliding }.rects(&old_rows)
     };
     let (mut rects, mut gliding) = advance(&filled, &ideal);
+    let ways = all_ways(problem, &filled, &rects);
+    let mut counted = count(&rects, &ways);
     let (mut hopeless, mut is_least, mut has_order) = (0, None, false);
     if layout.order == Order::Anchors {
-        let deep = deep_crossings(problem, &filled, &rects, dead_band);
+        let deep = deep_crossings(&ways, &rects, &counted, dead_band);
         // What was not found is looked for again when it is worse by an eighth, or when it has been less by half.
         hopeless = if deep * 2 < before.hopeless { deep } else { before.hopeless };
         if deep > hopeless {
@@ -127,12 +131,15 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
             let other_ideal = packed(problem, &other, focused)?;
             let (other_rects, other_gliding) = advance(&other, &other_ideal);
             // Less crossings than those that stay even if their places move by the dead band: so that soon after they do not change back.
-            let crossings = count(&other_rects, &all_ways(problem, &other, &other_rects)).sum();
+            let other_ways = all_ways(problem, &other, &other_rects);
+            let other_counted = count(&other_rects, &other_ways);
+            let crossings = other_counted.crossings.sum();
             if crossings >= deep {
                 hopeless = deep + deep / 8;
             } else if crossings < stood(problem, &held, &seats) {
                 is_least = Some(ordered.is_least && other_rects == other_ideal);
                 (filled, rects, gliding) = (other, other_rects, other_gliding);
+                counted = other_counted;
                 (has_order, hopeless) = (true, 0);
             }
         }
@@ -146,7 +153,8 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
     });
     turns.tried = if has_moved { 0 } else { turns.tried };
     let settled = !has_moved && was_gliding.is_empty() && gliding.is_empty() && turns.tried >= come.waiting;
-    Some(Kept { filled, rects, gliding, settled, jump, hopeless, turns, is_least })
+    let crossings = counted.crossings;
+    Some(Kept { filled, rects, crossings, gliding, settled, jump, hopeless, turns, is_least })
 }
 
 /// The dead band, pixels, finite.
@@ -276,7 +284,7 @@ struct Come {
 }
 
 /// Finds places for what has none: new overlays, those that were folded, those further inward whose place is taken; and brings those further inward back to a
-/// lane. `None` if a new overlay has no place, but a less important one has.
+/// lane. `None` if a new overlay has no place, but one of lower priority has, and none of its size.
 fn come(
     problem: &Problem,
     before: &Placed,
@@ -337,8 +345,23 @@ fn come(
                 ideal[item] = Some(rect);
                 any = true;
             }
-            None if !was_folded && ideal[item + 1..].iter().any(Option::is_some) => return None,
-            None => folded.push(item),
+            None if was_folded => folded.push(item),
+            None => {
+                // At the cost of one that is less important: the least important of those further inward of its size, or all anew.
+                let is_less = |i: usize| problem.rank(i) < problem.rank(item);
+                let other = filled.inward.iter().enumerate().filter(|(_, f)| is_less(f.0));
+                let other = other.filter(|(_, f)| filled.sizes[f.0] == filled.sizes[item]).max_by_key(|(_, f)| f.0);
+                match other.map(|(n, _)| n) {
+                    Some(n) => {
+                        let (loser, side, rect) = filled.inward[n];
+                        filled.inward[n] = (item, side, rect);
+                        (ideal[item], ideal[loser], any) = (Some(rect), None, true);
+                        folded.push(loser);
+                    }
+                    None if (0..ideal.len()).any(|i| ideal[i].is_some() && is_less(i)) => return None,
+                    None => folded.push(item),
+                }
+            }
         }
     }
     folded.sort_unstable();
@@ -365,9 +388,16 @@ fn lane_for(problem: &Problem, filled: &Filled, item: usize, clearance: f64) -> 
         if filled.sizes[item][d] > inner[d] || length - board.gap > lane.span.1 - lane.span.0 {
             return None;
         }
-        let windows: Vec<_> =
-            row.iter().map(|i| board.windows(lane.side, 0, filled.sizes[*i], lane.span, &obstacles)).collect();
-        fits(windows.iter().zip(&row).map(|(w, i)| (&w[..], filled.sizes[*i][a])), board.gap).then_some((k, at))
+        let mut of_size: Vec<([i32; 2], Windows)> = Vec::new();
+        for size in row.iter().map(|i| filled.sizes[*i]) {
+            if !of_size.iter().any(|(known, _)| *known == size) {
+                of_size.push((size, board.windows(lane.side, 0, size, lane.span, &obstacles)));
+            }
+        }
+        let windows =
+            |size: [i32; 2]| of_size.iter().find(|(known, _)| *known == size).map_or(&[][..], |(_, w)| &w[..]);
+        let seats = row.iter().map(|i| (windows(filled.sizes[*i]), filled.sizes[*i][a]));
+        fits(seats, board.gap).then_some((k, at))
     })
 }
 
@@ -385,19 +415,26 @@ pub fn all_ways(problem: &Problem, filled: &Filled, rects: &[Option<Rect>]) -> V
 /// The crossings if all stood where they stood before.
 fn stood(problem: &Problem, held: &[Option<Rect>], seats: &[Option<Seat>]) -> u32 {
     let ways = |i: usize| Some(ways_of(problem, i, &held[i]?, seats[i]?.side()));
-    count(held, &(0..held.len()).map(|i| ways(i).unwrap_or_default()).collect::<Vec<_>>()).sum()
+    count(held, &(0..held.len()).map(|i| ways(i).unwrap_or_default()).collect::<Vec<_>>()).crossings.sum()
 }
 
-/// Crossings that stay when all lines end before their focus by the dead band.
-fn deep_crossings(problem: &Problem, filled: &Filled, rects: &[Option<Rect>], dead_band: f64) -> u32 {
-    let ways = all_ways(problem, filled, rects);
-    let all = count(rects, &ways).sum();
-    if all == 0 || dead_band == 0.0 {
-        return all;
+/// Crossings that stay when all lines end before their focus by the dead band; `all`: how many there are, and between whom.
+fn deep_crossings(ways: &[Vec<Way>], rects: &[Option<Rect>], all: &Counted, dead_band: f64) -> u32 {
+    if all.pairs.is_empty() || dead_band == 0.0 {
+        return all.crossings.sum();
     }
-    let shortened: Vec<Vec<Way>> =
-        ways.iter().map(|ways| ways.iter().filter_map(|w| w.shortened(dead_band)).collect()).collect();
-    count(rects, &shortened).sum()
+    let mut shortened: Vec<Option<Vec<Way>>> = vec![None; ways.len()];
+    let mut sum = 0;
+    for &(i, j) in &all.pairs {
+        for k in [i, j] {
+            let short = || ways[k].iter().filter_map(|w| w.shortened(dead_band)).collect();
+            shortened[k].get_or_insert_with(short);
+        }
+        if let (Some(a), Some(b), Some(of_a), Some(of_b)) = (rects[i], rects[j], &shortened[i], &shortened[j]) {
+            sum += between(&a, of_a, &b, of_b);
+        }
+    }
+    sum
 }
 
 /// Whether an overlay moved further than it glides.

@@ -364,7 +364,7 @@ fn least_by_brute_force(asked: &Request, placed: &Placed) -> u32 {
             row.iter().zip(row_rects).for_each(|(i, rect)| stand(*i, filled.lanes[k].side, rect));
         }
         inward.iter().for_each(|(i, side, rect)| stand(*i, *side, *rect));
-        least = least.min(count(&rects, &ways).sum());
+        least = least.min(count(&rects, &ways).crossings.sum());
     };
     look(&items);
     let mut i = 0;

@@ -169,7 +169,7 @@ fn crossings_of(asked: &Request, before: &Placed) -> Crossings {
         let of = |focus: &Focus| way(&old?.rect, old?.seat.side(), &Target::new(focus)?, overlay.lines);
         ways.push(overlay.anchors.iter().filter_map(of).collect());
     }
-    count(&rects, &ways)
+    count(&rects, &ways).crossings
 }
 
 /// Where a pinhole camera sees a place: pixels, and metres along its view; `None` behind it.
