@@ -353,14 +353,16 @@ fn overlays_leave_titles_captions_and_legends_free() {
         let own = figure::furniture_of(&studio, &scene, size).unwrap();
         let cards = furniture::cards(&own);
         assert!((3..=6).contains(&cards.len()), "title, caption and legend, and their shadows: {cards:?}");
-        let meets = |made: &overlays::Overlays| {
+        let meets = |standing: &overlays::Standing| {
+            let placed = standing.of_picture().expect("overlays");
             let is_over = |p: &&veduta::overlay::Placement| cards.iter().any(|card| card.within(&p.rect, 0));
-            made.placed.placements.iter().filter(is_over).count()
+            (placed.placements.iter().filter(is_over).count(), placed.placements.len())
         };
-        let careless = overlays::overlays(&mut studio, &scene, &asked, &[], None).unwrap();
-        let made = overlays::overlays(&mut studio, &scene, &asked, &cards, None).unwrap();
-        assert!(meets(&careless) > 0, "{size:?}: there is something to leave free");
-        assert_eq!((meets(&made), made.placed.placements.len()), (0, 8), "{size:?}");
+        let [mut careless, mut careful] = [(); 2].map(|()| overlays::Standing::default());
+        overlays::overlays(&mut studio, &scene, &asked, &[], &mut careless).unwrap();
+        let made = overlays::overlays(&mut studio, &scene, &asked, &cards, &mut careful).unwrap();
+        assert!(meets(&careless).0 > 0, "{size:?}: there is something to leave free");
+        assert_eq!(meets(&careful), (0, 8), "{size:?}");
         // That is what a figure is.
         let pieces = made.furniture.pieces.into_iter().chain(own.pieces).collect();
         let drawn = studio.render_with(&scene, &asked, &Furniture { pieces }).unwrap();

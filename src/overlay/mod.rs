@@ -9,7 +9,7 @@
 //! 4. [`order`]: the order on the lanes that makes least lines cross, told by exact predicates ([`crossings`]).
 //! 5. [`steady`]: with the frame before, overlays keep still, or glide.
 //!
-//! Beside it the geometry of drawing: [`line`] (the ways of lines), [`ribbon`] (their skins), [`arrow`] (for points outside of the picture).
+//! Beside it the geometry of drawing: [`mod@line`] (the ways of lines), [`ribbon`] (their skins), [`arrow`] (for points outside of the picture).
 
 pub mod arrow;
 pub mod crossings;
