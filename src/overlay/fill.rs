@@ -140,7 +140,10 @@ impl<'a> Problem<'a> {
         let mut best: Option<((usize, i32), Side, Rect)> = None;
         for &side in &self.sides {
             let (d, a) = (side.depth_axis(), side.along_axis());
-            let mut depths: Vec<i32> = obstacles.iter().chain(&board.blocked).map(|o| if side.is_first() { o.max[d] - board.inner.min[d] } else { board.inner.max[d] - o.min[d] } + board.gap).collect();
+            let past = |o: &Rect| {
+                board.gap + if side.is_first() { o.max[d] - board.inner.min[d] } else { board.inner.max[d] - o.min[d] }
+            };
+            let mut depths: Vec<i32> = obstacles.iter().chain(&board.blocked).map(past).collect();
             depths.push(0);
             depths.sort_unstable();
             depths.dedup();

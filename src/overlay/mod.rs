@@ -40,7 +40,8 @@ pub struct Request {
     pub avoid: Vec<DVec2>,
     /// How far, in x or in y, an overlay stays from each of those points, pixels, 0 and up; 6 looks well.
     pub clearance: f64,
-    /// What overlays leave free as they do one another, with the gap: a title, a legend. Pixels, each `max` above its `min`; what is outside of the picture does not
+    /// What overlays leave free as they do one another, with the gap: a title, a legend. Pixels, each `max` above its `min`; what is outside of the
+    /// picture does not
     /// matter. Who has no room beside them is folded.
     pub blocked: Vec<Rect>,
     /// How they are arranged.

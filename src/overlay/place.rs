@@ -28,7 +28,8 @@ pub struct Placed {
     pub lines: Vec<ContextLine>,
     /// Which lines cross what.
     pub crossings: Crossings,
-    /// Whether no other order along the lanes has less crossings, with as many overlays on each. True only where there are none, or where this call tried all orders.
+    /// Whether no other order along the lanes has less crossings, with as many overlays on each. True only where there are none, or where this call
+    /// tried all orders.
     pub is_least: bool,
     /// What could not be done, by overlay.
     pub facts: Vec<Fact>,
@@ -179,8 +180,8 @@ impl Placed {
 /// Overlays keep the gap between each other and the margin to the border, and cover no point that they could avoid. With a frame before they keep still
 /// ([`crate::overlay::steady`]), but never at the price of these promises.
 ///
-/// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, O((n + p) log (n + p)) for each that stands further inward, and a bounded search for the order. With a frame before
-/// O(n² + n p), all of it comparisons of boxes.
+/// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, O((n + p) log (n + p)) for each that
+/// stands further inward, and a bounded search for the order. With a frame before O(n² + n p), all of it comparisons of boxes.
 pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
     if let Some(before) = before.filter(|before| before.settled && before.request == *request) {
         return before.clone();

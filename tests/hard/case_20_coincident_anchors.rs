@@ -1,4 +1,5 @@
-//! Case 20, overlays with coincident anchors: no line crosses where an order without crossings exists, and else as few as in the best of all orders. Oracle: all
+//! Case 20, overlays with coincident anchors: no line crosses where an order without crossings exists, and else as few as in the best of all orders.
+//! Oracle: all
 //! permutations, with crossings told by fractions of the lattice coordinates, which share no code with the layout.
 
 use glam::DVec2;

@@ -1,4 +1,5 @@
-//! Case 21, overlays: points of interest on one pixel, no overlay at all, overlays larger than the picture, and all of their places behind the camera: a defined
+//! Case 21, overlays: points of interest on one pixel, no overlay at all, overlays larger than the picture, and all of their places behind the
+//! camera: a defined
 //! picture, of one pixel too, and the same bytes by both back ends. Oracle: byte equality, and the picture without them.
 
 use veduta::{
