@@ -70,7 +70,7 @@ pub struct Lens {
 }
 
 impl Lens {
-    /// A lens without shapes and without effects.
+    /// A lens without shapes and without effects, its body as lenses of its kind have it.
     pub fn plain(name: impl Into<String>, kind: LensKind, color: [f32; 3]) -> Self {
         Self {
             name: name.into(),
@@ -83,7 +83,7 @@ impl Lens {
             effects: Vec::new(),
             best_view: None,
             content: None,
-            body: LensBody::None,
+            body: LensBody::of_kind(kind),
             sprite: None,
             border: None,
             keeps_shadows: false,

@@ -160,7 +160,7 @@ pub fn scene<'a>(files: &[PathBuf], landmarks: impl Iterator<Item = &'a Landmark
             lens::BestView { pois: vec![name.clone()], depiction: Depiction::View(view), lenses: None, look: None };
         made.lenses.push(Lens { best_view: Some(shown), ..Lens::plain(name.clone(), LensKind::BestView, color) });
         // Those that stand out most are placed first.
-        let priority = landmark.score;
+        let priority = (1e3 * landmark.score).round() / 1e3;
         let frame = Frame::BuiltIn(BuiltInFrame::Print);
         made.overlays.push(Overlay { priority, frame, caption: Some(name.clone()), ..Overlay::of(&name) });
     }
@@ -169,4 +169,33 @@ pub fn scene<'a>(files: &[PathBuf], landmarks: impl Iterator<Item = &'a Landmark
         "# Landmarks, as `veduta info --landmarks` finds them, each in an overlay.\n{}",
         scene_file::to_toml_for(&made, &options)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scene_of_landmarks_is_one_that_is_read() {
+        let landmark = |id: &str, name: Option<&str>| LandmarkFacts {
+            id: id.into(),
+            kind: "Building".into(),
+            name: name.map(str::to_owned),
+            score: 0.123_456_7,
+            height_m: 30.0,
+            neighbours_m: 10.0,
+            footprint_m2: 400.0,
+            isolation_m: None,
+            terms: TermFacts { height: 0.5, footprint: 0.5, isolation: 1.0, attributes: 0.0 },
+        };
+        let all = [landmark("a", Some("Church")), landmark("b", None), landmark("c", Some("Church"))];
+        let file = Path::new("out/sights.toml");
+        let text = scene(&["builtin:square".into(), "city/a.json".into()], all.iter(), file);
+        let options = Options { allow_outside: true, ..Options::for_file(file) };
+        let read = scene_file::parse(&text, "sights.toml", &options).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let names: Vec<&str> = read.lenses.iter().map(|lens| lens.name.as_str()).collect();
+        assert_eq!(names, ["Church", "Landmark 2", "Church (3)"]);
+        assert_eq!(read.city.files[1], std::path::absolute("city/a.json").unwrap());
+        assert!(read.overlays.iter().all(|overlay| overlay.priority == 0.123));
+    }
 }

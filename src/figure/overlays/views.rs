@@ -6,7 +6,7 @@ use crate::{
     city::CityModel,
     geom::{Aabb, Shape, Sphere},
     lens::{
-        BestView, Class, EffectUse, Focus, Lens, LensKind, Parameter, Placement,
+        BestView, Class, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, Placement,
         best_view::{LocalView, MapMode},
         chosen::Choice,
     },
@@ -211,6 +211,7 @@ fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
     Lens {
         shapes: vec![Focus::Thematic(Choice { ids, ..Choice::default() })],
         effects: vec![erased],
+        body: LensBody::None,
         ..Lens::plain("", LensKind::Color, [0.0; 3])
     }
 }
