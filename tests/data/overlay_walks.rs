@@ -63,9 +63,16 @@ fn check(file: &Path) -> Result<(), Failed> {
         let walk = layouts::walk(frames).map_err(|e| format!("{arrangement:?}, {kind:?}: {e}"))?;
         println!("{arrangement:?}, {kind:?}: {} tied; {walk:?}", tied as f64 / f64::from(FRAMES));
         let still = walk.still as f64 / walk.standings as f64;
-        let jumps: usize = walk.jumps.values().sum();
+        // Those further inward, half of them in one column, look for another place when a point walks into theirs.
+        let came = walk.jumps.get("Came").copied().unwrap_or_default();
+        let jumps = walk.jumps.values().sum::<usize>() - came;
         // Half around the city in ten seconds: points walk through the overlays all the time.
-        if still < 0.8 || jumps > FRAMES as usize / 8 || walk.swaps_back > 2 || walk.covering > 0 {
+        if still < 0.8
+            || jumps > FRAMES as usize / 8
+            || came > FRAMES as usize / 5
+            || walk.swaps_back > 2
+            || walk.covering > 0
+        {
             return Err(format!("{arrangement:?}, {kind:?}: {walk:?}").into());
         }
     }
