@@ -295,7 +295,8 @@ fn compasses_show_north_and_arrows_where_the_eye_looks() {
         // In a map whose top is the direction of view, north is turned by as much the other way.
         let north = DVec2::new(-to.x, -to.y);
         let found = (red - grey).normalize_or(DVec2::X);
-        assert!(found.angle_to(north).abs() < 0.15, "{degrees}°: {found} for {north}");
+        // The letter N covers a part of the red half, whose middle is aside by that; the compass is a dozen pixels in radius.
+        assert!(found.angle_to(north).abs() < 0.3, "{degrees}°: {found} for {north}");
         let picture = drawn(&mut studio, &scene("user-view"));
         let (_, at, size, _) = told(&picture)[0];
         let half = 0.5 * DVec2::new(size[0] as f64, size[1] as f64);

@@ -86,6 +86,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "trapp-5-3-1"
     "vienna-roofs"
     "vienna-shapes"
+    "visitor"
     "who-hides-the-church"
     "window"
 };

@@ -67,10 +67,10 @@ fn check(file: &Path) -> Result<(), Failed> {
         let came = walk.jumps.get("Came").copied().unwrap_or_default();
         let jumps = walk.jumps.values().sum::<usize>() - came;
         // Half around the city in ten seconds: points walk through the overlays all the time.
-        if still < 0.8
+        if still < 0.75
             || jumps > FRAMES as usize / 8
             || came > FRAMES as usize / 5
-            || walk.swaps_back > 2
+            || walk.swaps_back > 3
             || walk.covering > 0
         {
             return Err(format!("{arrangement:?}, {kind:?}: {walk:?}").into());

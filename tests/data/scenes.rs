@@ -12,7 +12,10 @@ use veduta::{
         Geometry,
         load::{LoadOptions, Quiet, load},
     },
-    figure::scene_file::{self, Options},
+    figure::{
+        self,
+        scene_file::{self, Options},
+    },
     gpu::Gpu,
     render::{
         frame::Backend,
@@ -39,7 +42,8 @@ fn check(path: &Path) -> Result<(), Failed> {
     let model = Arc::new(model);
     let mut studio = Studio::new(Gpu::open()?, model.clone(), &scene.city)?;
     let volumes = studio.lens_volumes(&scene, scene.figure.size)?;
-    for (i, lens) in scene.lenses.iter().enumerate() {
+    // Those with an overlay have no focus area.
+    for (i, lens) in scene.lenses.iter().enumerate().filter(|(_, lens)| lens.best_view.is_none()) {
         let own = volumes.iter().filter(|v| v.lens as usize == i);
         let bounds: Vec<_> = own.map(|v| v.bounds).collect();
         let meets = |g: &&Geometry| bounds.iter().any(|b| g.bounds.meets(b));
@@ -50,7 +54,7 @@ fn check(path: &Path) -> Result<(), Failed> {
     let mut draw = |backend: Backend| {
         let aovs = Aovs { depth: true, object_id: true, normal: false, lens_mask: true };
         let request = Request { size: [240, 135], samples: 2, transparent: false, aovs, statistics: false, backend };
-        studio.render(&scene, &request)
+        figure::draw_untitled(&mut studio, &scene, &request)
     };
     let (a, b) = (draw(Backend::Specialised)?, draw(Backend::Uber)?);
     if a.rgba != b.rgba || a.lens_mask != b.lens_mask || a.object_id != b.object_id {
