@@ -174,6 +174,26 @@ fn views_in_views_are_drawn_again_from_the_inside_outwards() {
     assert_eq!(rendered(&drawn(&mut studio, &moved)), [true, true]);
 }
 
+#[test]
+fn views_nest_three_deep_whatever_their_numbers() {
+    let mut rest = String::new();
+    for i in 0..20 {
+        rest += &format!(
+            "[[lens]]\nname = \"c{i}\"\nbody = \"none\"\nshape = {{ kind = \"sphere\", center = [{i}, 0, 5], radius = 4 }}\neffects = [\"sepia\"]\n"
+        );
+    }
+    for (name, inner) in [("a", "[\"b\"]"), ("b", "[\"c\"]"), ("c", "[]")] {
+        rest += &format!(
+            "[[lens]]\nname = \"{name}\"\nkind = \"see-through\"\nview = {{ eye = [0, -60, 30], target = [0, 0, 5] }}\nlenses = {inner}\n\
+             [[overlay]]\nlens = \"{name}\"\nsize = [200, 130]\n"
+        );
+    }
+    let scene = square(&rest);
+    let mut studio = of_scene(&scene);
+    assert_eq!(rendered(&drawn(&mut studio, &scene)), [true; 3]);
+    assert_eq!(rendered(&drawn(&mut studio, &scene)), [false; 3]);
+}
+
 /// The middle of all pixels of a part of a picture that are of a colour, and how many they are.
 fn middle_of(pixels: &[[u8; 4]], width: usize, is_it: impl Fn([u8; 4]) -> bool) -> Option<(DVec2, usize)> {
     let found: Vec<DVec2> = (0..pixels.len())
@@ -457,4 +477,90 @@ fn trapp_5_3_1_magnifies_the_middle() {
     let other =
         part(&made.picture, at, size).iter().zip(part(&plain.picture, at, size)).filter(|(a, b)| **a != *b).count();
     assert!(other > size[0] * size[1] / 2);
+}
+
+/// A folder with images, by name, of so many pixels each.
+fn images(name: &str, all: &[(&str, [u32; 2], &dyn Fn(u32, u32) -> [u8; 4])]) -> std::path::PathBuf {
+    let folder = std::env::temp_dir().join(format!("veduta-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for (file, [width, height], color) in all {
+        let image = image::RgbaImage::from_fn(*width, *height, |x, y| image::Rgba(color(x, y)));
+        image.save(folder.join(file)).expect("an image");
+    }
+    folder
+}
+
+fn in_folder(folder: &std::path::Path, rest: &str) -> Scene {
+    let head = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [-75, -110, 62]\ntarget = [8, 12, 4]\n\
+                fov_deg = 46\n[figure]\nsize = [640, 360]\n";
+    let options = Options { base: folder.to_owned(), ..Options::default() };
+    parse(&format!("{head}{rest}"), "s.toml", &options).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn masks_say_what_is_seen_and_what_lies_over_it() {
+    let black_and_white = |x: u32, _: u32| if x < 80 { [0, 0, 0, 255] } else { [255; 4] };
+    let rim = |x: u32, y: u32| if x.min(y) < 5 || x >= 155 || y >= 95 { [255, 0, 255, 255] } else { [0; 4] };
+    let folder = images("masks", &[("alpha.png", [160, 100], &black_and_white), ("frame.png", [160, 100], &rim)]);
+    let scene = in_folder(
+        &folder,
+        "[[lens]]\nname = \"a\"\nkind = \"see-through\"\nview = { eye = [0, -60, 30], target = [0, 0, 5] }\n\
+         [[overlay]]\nlens = \"a\"\nsize = [160, 100]\nline = \"none\"\nframe = { alpha = \"alpha.png\", frame = \"frame.png\" }\n",
+    );
+    let mut studio = of_scene(&scene);
+    let picture = drawn(&mut studio, &scene);
+    let (_, at, size, _) = told(&picture)[0];
+    assert_eq!(size, [160, 100]);
+    let shown = part(&picture, at, size);
+    let own = alone(&mut studio, &scene, 0, [160, 100]).rgba;
+    let below =
+        part(&drawn(&mut studio, &Scene { lenses: Vec::new(), overlays: Vec::new(), ..scene.clone() }), at, size);
+    std::fs::remove_dir_all(folder).expect("the folder");
+    for (i, pixel) in shown.iter().enumerate() {
+        let (x, y) = ((i % 160) as u32, (i / 160) as u32);
+        let over = rim(x, y);
+        let expected = match (over[3] > 0, x < 80) {
+            (true, _) => over,
+            (false, true) => below[i],
+            (false, false) => own[i],
+        };
+        assert_eq!(*pixel, expected, "({x}, {y})");
+    }
+}
+
+#[test]
+fn skins_run_along_their_lines() {
+    // The half at the overlay is green, that at the place magenta; the rim is transparent.
+    let stripes = |x: u32, y: u32| match (x < 32, (4..12).contains(&y)) {
+        (_, false) => [0; 4],
+        (true, true) => [0, 255, 0, 255],
+        (false, true) => [255, 0, 255, 255],
+    };
+    let folder = images("skins", &[("skin.png", [64, 16], &stripes)]);
+    let scene = in_folder(
+        &folder,
+        "[[poi]]\nname = \"hall\"\nobject = \"town-hall\"\n[[lens]]\nname = \"a\"\nkind = \"annotation\"\ntext = \"x\"\npoi = \"hall\"\n\
+         [layout]\nalong = \"left\"\n[[overlay]]\nlens = \"a\"\nsize = [60, 40]\nline = { width = 24, end_width = 24, skin = \"skin.png\" }\n",
+    );
+    let mut studio = of_scene(&scene);
+    let mut standing = Standing::default();
+    let picture = figure::draw_next(&mut studio, &scene, &request(SIZE), &mut standing).unwrap();
+    std::fs::remove_dir_all(folder).expect("the folder");
+    let line = standing.of_picture().expect("an overlay").lines[0].points.clone();
+    let (from, to) = (line[0], line[line.len() - 1]);
+    let color = |t: f64, across: f64| {
+        let along = (to - from).normalize_or(DVec2::X);
+        let at = from.lerp(to, t) + across * along.perp();
+        picture.rgba[at.y as usize * 640 + at.x as usize]
+    };
+    for t in [0.1, 0.3, 0.45] {
+        assert!(matches!(color(t, 0.0), [0..=40, 230.., 0..=40, _]), "{t}: {:?}", color(t, 0.0));
+    }
+    for t in [0.55, 0.7, 0.9] {
+        assert!(is_magenta(color(t, 0.0)), "{t}: {:?}", color(t, 0.0));
+    }
+    for (t, across) in [(0.3, 8.0), (0.3, -8.0), (0.7, 8.0), (0.7, -8.0)] {
+        let [r, g, b, _] = color(t, across);
+        assert!(!is_magenta([r, g, b, 255]) && !(g > 230 && r < 40), "the rim is clear: {t}, {across}");
+    }
 }

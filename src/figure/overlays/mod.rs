@@ -36,8 +36,8 @@ use views::Local;
 
 /// How far overlays stay from points of interest, pixels.
 const CLEARANCE_PX: f64 = 6.0;
-/// How many numbers of images one view has for those over it.
-const NUMBERS: u64 = 1 << 20;
+/// How many numbers of images one view has for those over it: so many that views three deep have all of 64 bits.
+const NUMBERS: u64 = 1 << 16;
 
 /// What stands over a picture on account of its best-view lenses.
 #[derive(Clone, Debug, Default)]
@@ -203,7 +203,7 @@ fn plan(
         let local = views::local(studio, scene, &one.name, &one.best_view, view, &from)?;
         now.middles.extend(local.middle.map(|middle| (number, middle)));
         let size = room.map(|side| (f64::from(side) * local.magnification).round() as u32);
-        let inner = self::plan(studio, &local.scene, size, &[], number * NUMBERS, before, now)?;
+        let inner = self::plan(studio, &local.scene, size, &[], number.wrapping_mul(NUMBERS), before, now)?;
         plan.views.insert(one.index, Inner { local, size, plan: inner });
     }
     Ok(Some(plan))
