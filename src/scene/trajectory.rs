@@ -146,3 +146,78 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
     });
     told.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn way(points: &[[f64; 3]], pace: Pace, is_closed: bool, is_smooth: bool) -> Trajectory {
+        Trajectory {
+            name: "way".into(),
+            points: points.iter().map(|p| DVec3::from_array(*p)).collect(),
+            pace,
+            form: Form { is_closed, is_smooth },
+            start_s: 5.0,
+            color: [0.0; 3],
+            marker: true,
+            trace: false,
+        }
+    }
+
+    fn is_at(way: &Trajectory, time_s: f64, at: [f64; 3], direction: [f64; 3]) {
+        let found = way.at(time_s);
+        assert!((found.at - DVec3::from_array(at)).length() < 1e-9, "{time_s}: {found:?}");
+        let to = found.direction.expect("a direction");
+        assert!((to - DVec3::from_array(direction)).length() < 1e-9, "{time_s}: {found:?}");
+    }
+
+    #[test]
+    fn what_has_a_speed_goes_evenly_along_straight_lines() {
+        let way = way(&[[0.0, 0.0, 2.0], [80.0, 0.0, 2.0], [80.0, 60.0, 2.0]], Pace::Speed(10.0), false, false);
+        is_at(&way, -3.0, [0.0, 0.0, 2.0], [1.0, 0.0, 0.0]);
+        is_at(&way, 9.0, [40.0, 0.0, 2.0], [1.0, 0.0, 0.0]);
+        is_at(&way, 13.0, [80.0, 0.0, 2.0], [0.0, 1.0, 0.0]);
+        is_at(&way, 16.0, [80.0, 30.0, 2.0], [0.0, 1.0, 0.0]);
+        is_at(&way, 1e5, [80.0, 60.0, 2.0], [0.0, 1.0, 0.0]);
+        assert_eq!(way.end_s(), 19.0);
+        assert_eq!([9.0, 1e5].map(|t| way.at(t).gone_m), [40.0, 140.0]);
+    }
+
+    #[test]
+    fn what_is_closed_goes_round_and_round() {
+        let triangle = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]];
+        for (pace, is_smooth) in [(Pace::Speed(1.0), false), (Pace::Times(vec![0.0, 3.0, 7.0, 12.0]), false)] {
+            let way = way(&triangle, pace, true, is_smooth);
+            for round in [0.0, 12.0, 1200.0] {
+                is_at(&way, 5.0 + round + 1.5, [1.5, 0.0, 0.0], [1.0, 0.0, 0.0]);
+                is_at(&way, 5.0 + round + 9.5, [1.5, 2.0, 0.0], [-0.6, -0.8, 0.0]);
+            }
+        }
+    }
+
+    #[test]
+    fn times_say_when_it_is_at_its_points() {
+        let points = [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [10.0, 30.0, 0.0], [50.0, 30.0, 10.0]];
+        let times = [2.0, 4.0, 10.0, 11.0];
+        for is_smooth in [false, true] {
+            let way = way(&points, Pace::Times(times.to_vec()), false, is_smooth);
+            for (point, time) in points.iter().zip(times) {
+                let found = way.at(5.0 + time).at;
+                assert!((found - DVec3::from_array(*point)).length() < 1e-6, "{is_smooth} {time}: {found}");
+            }
+            assert_eq!(way.at(0.0).at, DVec3::ZERO, "it stands until it sets out, and until its first time");
+        }
+        let way = way(&points, Pace::Times(times.to_vec()), false, false);
+        is_at(&way, 5.0 + 7.0, [10.0, 15.0, 0.0], [0.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn what_has_no_way_stands_and_looks_nowhere() {
+        for pace in [Pace::Speed(3.0), Pace::Times(vec![0.0, 9.0])] {
+            for is_smooth in [false, true] {
+                let found = way(&[[7.0, 8.0, 9.0]; 2], pace.clone(), false, is_smooth).at(8.0);
+                assert_eq!((found.at, found.direction), (DVec3::new(7.0, 8.0, 9.0), None));
+            }
+        }
+    }
+}

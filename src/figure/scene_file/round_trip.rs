@@ -20,6 +20,7 @@ use crate::{
         Technique, TextSize, Transparency,
         animation::{Change, ChangeKey, Numbers},
         overlay::{Along, BuiltInFrame, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes},
+        trajectory::{Pace as WayPace, Trajectory},
         transparency::{MOST_PEELED, SLOTS},
     },
     shader::{
@@ -28,7 +29,7 @@ use crate::{
     },
     view::{
         Camera, Projection,
-        path::{CameraKey, Speed},
+        path::{self, CameraKey, Speed},
     },
     visibility::{Margin, Pace, Reference, Test},
 };
@@ -353,6 +354,12 @@ fn local_views() -> impl Strategy<Value = (LensKind, Depiction)> {
         camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::BestView)),
         camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::SeeThrough)),
         camera.prop_map(LocalView::Camera).prop_map(of(LensKind::Portal)),
+        (0.0..1e3f64, 0.0..1e3f64, fov())
+            .prop_map(|(distance_m, height_m, fov_y)| LocalView::Follow { distance_m, height_m, fov_y })
+            .prop_map(of(LensKind::BestView)),
+        (-9000..9000i32, 0.0..1e3f64, fov())
+            .prop_map(move |(a, height_m, fov_y)| LocalView::Onboard { azimuth: angle(a), height_m, fov_y })
+            .prop_map(of(LensKind::BestView)),
         (mode, 1e-3..1e7f64, 1.0..4.0f64, 0.0..1.0f64)
             .prop_map(|(mode, height_m, magnification, lazy)| LocalView::Map { mode, height_m, magnification, lazy })
             .prop_map(of(LensKind::MapView)),
@@ -470,12 +477,25 @@ fn transparencies() -> impl Strategy<Value = Transparency> {
 }
 
 prop_compose! {
+    /// Ways, without their names; those by times have one for each point, and one more where they are closed.
+    fn ways()(points in prop::collection::vec(point(), 2..5), by_speed in any::<bool>(), speed in 1e-6..1e3f64,
+        steps in prop::collection::vec(1e-3..1e3f64, 5), flags in prop::array::uniform4(any::<bool>()), start_s in -1e6..1e6f64,
+        color in prop::array::uniform3(0.0..=1.0f32)) -> Trajectory {
+        let [is_closed, is_smooth, marker, trace] = flags;
+        let count = points.len() + usize::from(is_closed);
+        let times = steps[..count].iter().scan(0.0, |sum, step| { *sum += step; Some(*sum) }).collect();
+        let pace = if by_speed { WayPace::Speed(speed) } else { WayPace::Times(times) };
+        Trajectory { name: String::new(), points, pace, form: path::Form { is_closed, is_smooth }, start_s, color, marker, trace }
+    }
+}
+
+prop_compose! {
     fn scenes()(eye in point(), target in point(), ortho in any::<bool>(), tenths in 1..1790u32, with_camera in any::<bool>(),
         near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
         shown in prop::collection::vec((shown(), prop::option::of(overlays())), 0..3), layout in prop::option::of(layouts()), figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
-        animation in prop::option::of(animations())) -> Scene {
+        (animation, ways, time_s) in (prop::option::of(animations()), prop::collection::vec(ways(), 0..3), -1e6..1e6f64)) -> Scene {
         let projection_of = |tenths: u32, ortho: bool| match ortho {
             true => Projection::Orthographic { height_m: f64::from(tenths) },
             false => Projection::Perspective { fov_y: (f64::from(tenths) / 10.0).to_radians() },
@@ -506,14 +526,17 @@ prop_compose! {
                 lenses.push(Lens { name, kind, shapes: vec![], best_view: Some(best_view), ..plain.clone() });
             }
         }
+        let moving = ways.first().map(|_| Poi { name: "m".into(), place: PoiPlace::On("w0".into()) });
         let poi = pois;
         let mut scene = Scene {
+            trajectories: ways.into_iter().enumerate().map(|(i, way)| Trajectory { name: format!("w{i}"), ..way }).collect(),
+            time_s,
             overlays,
             layout: layout.unwrap_or_default(),
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
             sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2 },
             style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency },
-            pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).collect(),
+            pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).chain(moving).collect(),
             lenses,
             figure: Figure { size, samples, ..figure },
             animation,
