@@ -354,10 +354,10 @@ fn local_views() -> impl Strategy<Value = (LensKind, Depiction)> {
         camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::BestView)),
         camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::SeeThrough)),
         camera.prop_map(LocalView::Camera).prop_map(of(LensKind::Portal)),
-        (0.0..1e3f64, 0.0..1e3f64, fov())
+        (1e-3..1e3f64, 1e-3..1e3f64, fov())
             .prop_map(|(distance_m, height_m, fov_y)| LocalView::Follow { distance_m, height_m, fov_y })
             .prop_map(of(LensKind::BestView)),
-        (-9000..9000i32, 0.0..1e3f64, fov())
+        (-9000..9000i32, 1e-3..1e3f64, fov())
             .prop_map(move |(a, height_m, fov_y)| LocalView::Onboard { azimuth: angle(a), height_m, fov_y })
             .prop_map(of(LensKind::BestView)),
         (mode, 1e-3..1e7f64, 1.0..4.0f64, 0.0..1.0f64)
@@ -385,7 +385,7 @@ prop_compose! {
         if kind == LensKind::Annotation {
             (look, lenses) = (None, None);
         }
-        if matches!(depiction, Depiction::View(LocalView::Best { .. } | LocalView::Worldlet { .. })) && pois.is_empty() {
+        if matches!(depiction, Depiction::View(LocalView::Best { .. } | LocalView::Worldlet { .. } | LocalView::Follow { .. } | LocalView::Onboard { .. })) && pois.is_empty() {
             pois.push("p0".into());
         }
         (kind, BestView { pois, depiction, lenses, look })
