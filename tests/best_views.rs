@@ -479,8 +479,11 @@ fn trapp_5_3_1_magnifies_the_middle() {
     assert!(other > size[0] * size[1] / 2);
 }
 
+/// The colour of a texel of an image.
+type Texels<'a> = &'a dyn Fn(u32, u32) -> [u8; 4];
+
 /// A folder with images, by name, of so many pixels each.
-fn images(name: &str, all: &[(&str, [u32; 2], &dyn Fn(u32, u32) -> [u8; 4])]) -> std::path::PathBuf {
+fn images(name: &str, all: &[(&str, [u32; 2], Texels)]) -> std::path::PathBuf {
     let folder = std::env::temp_dir().join(format!("veduta-{name}-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     for (file, [width, height], color) in all {
@@ -561,7 +564,7 @@ fn skins_run_along_their_lines() {
     }
     for (t, across) in [(0.3, 8.0), (0.3, -8.0), (0.7, 8.0), (0.7, -8.0)] {
         let [r, g, b, _] = color(t, across);
-        assert!(!is_magenta([r, g, b, 255]) && !(g > 230 && r < 40), "the rim is clear: {t}, {across}");
+        assert!(!(is_magenta([r, g, b, 255]) || (g > 230 && r < 40)), "the rim is clear: {t}, {across}");
     }
 }
 
