@@ -1,7 +1,8 @@
-//! What the layout of 200 labels costs (B6, B7): from nothing, and from the frame before on a walk, in parts of a plain frame of the same run.
+//! What overlays cost (B6, B7, B8), in parts of a plain frame of the same run: the layout of 200 labels, from nothing and from the frame before on a
+//! walk; and twelve overlays that show what they showed before, while the main view is drawn again.
 //!
-//! `cargo bench --bench overlays [-- --pairs N]`: a frame is drawn, and one is laid out, in turn; the median of their ratios is given with its 95 % interval. A
-//! target is met when the interval's upper end meets it.
+//! `cargo bench --bench overlays [-- --pairs N] [--only labels|unchanged]`: a frame is drawn, and one is laid out or drawn with overlays, in turn; the
+//! median of their ratios is given with its 95 % interval. A target is met when the interval's upper end meets it.
 
 #![expect(clippy::print_stdout, reason = "a bench prints its table")]
 
@@ -12,28 +13,37 @@ use std::{sync::Arc, time::Instant};
 use glam::{DVec2, DVec3};
 use veduta::{
     city::load::{LoadOptions, Quiet, load},
+    figure::{
+        overlays::{Standing, overlays},
+        scene_file::{self, Options},
+    },
     geom::Aabb,
     gpu::Gpu,
     measure::{
         ratio::{Estimate, ratios},
         stage::plain_scene,
     },
-    overlay::{Align, Arrangement, Focus, Layout, LineKind, Overlay, Rect, Request, place},
-    render::picture::Studio,
-    scene::CitySpec,
+    overlay::{self, Align, Arrangement, Focus, Layout, LineKind, Overlay, Rect, place},
+    render::{
+        furniture::Furniture,
+        picture::{Aovs, Request, Studio},
+    },
+    scene::{CitySpec, Scene},
     view::{Camera, View},
 };
 
 const SIZE: [u32; 2] = [1280, 720];
 const LABELS: usize = 200;
+const OVERLAYS: usize = 12;
 
 fn main() {
-    let mut pairs = 61;
+    let (mut pairs, mut only) = (61, None);
     let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
     while let Some(argument) = arguments.next() {
         match (argument.as_str(), arguments.next()) {
             ("--pairs", Some(n)) => pairs = n.parse().expect("--pairs wants a number"),
-            _ => panic!("{argument} is not --pairs N"),
+            ("--only", Some(part)) => only = Some(part),
+            _ => panic!("{argument} is not --pairs N or --only labels|unchanged"),
         }
     }
     let model = load(&[bench_city::written(bench_city::BENCH_BUILDINGS)], &LoadOptions::default(), &Quiet)
@@ -41,15 +51,95 @@ fn main() {
     let spec = CitySpec { ground: false, ..CitySpec::default() };
     let gpu = Gpu::open().unwrap_or_else(|error| panic!("{error}"));
     println!("adapter {}, {pairs} pairs, {}x{}, {LABELS} labels", gpu.name(), SIZE[0], SIZE[1]);
-    let mut studio = Studio::new(gpu, Arc::new(model), &spec).unwrap_or_else(|error| panic!("{error}"));
-    let boxes: Vec<Aabb> = studio.geometries.iter().map(|g| studio.model.geometries[*g as usize].bounds).collect();
-    let step = (boxes.len() / LABELS).max(1);
-    let places: Vec<DVec3> = boxes.iter().step_by(step).take(LABELS).map(Aabb::center).collect();
-    let extent = studio.extent();
     println!(
         "{:<42} {:>9} {:>9} {:>24} {:>8}",
         "layout / plain frame", "ms", "frame ms", "ratio (95 % interval)", "target"
     );
+    let model = Arc::new(model);
+    let studio = |gpu| Studio::new(gpu, Arc::clone(&model), &spec).unwrap_or_else(|error| panic!("{error}"));
+    let mut plain = studio(gpu);
+    if only.as_deref() != Some("unchanged") {
+        labels(&mut plain, pairs);
+    }
+    if only.as_deref() != Some("labels") {
+        let gpu = Gpu::open().unwrap_or_else(|error| panic!("{error}"));
+        unchanged(&mut plain, &mut studio(gpu), pairs);
+    }
+}
+
+/// Milliseconds.
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let done = work();
+    (done, start.elapsed().as_secs_f64() * 1e3)
+}
+
+fn row(name: &str, own: &[f64], frames: &[f64], target: f64) {
+    let of = |values: &[f64]| Estimate::of(values).expect("one pair or more, and finite times");
+    let Estimate { median, low, high } = of(&ratios(own, frames));
+    let verdict = if high <= target { "met" } else { "MISSED" };
+    let [own, frame] = [own, frames].map(|times| of(times).median);
+    println!("{name:<42} {own:>9.3} {frame:>9.1} {median:>9.4} ({low:.4}..{high:.4}) {target:>6.2} {verdict}");
+}
+
+fn frame(studio: &mut Studio, scene: &Scene, furniture: &Furniture) {
+    studio.redraw_with(scene, SIZE, furniture).unwrap_or_else(|error| panic!("{error}"));
+    studio.renderer.gpu.wait().unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// Twelve best views of 160 × 120 pixels with lines and captions: the frame with them over the one without.
+fn unchanged(plain: &mut Studio, own: &mut Studio, pairs: usize) {
+    let extent = plain.extent();
+    let roots: Vec<&str> = own.model.objects.iter().filter(|o| !o.class.is_ground()).map(|o| &*o.id).collect();
+    let chosen: Vec<String> = roots.iter().step_by((roots.len() / OVERLAYS).max(1)).map(|id| id.to_string()).collect();
+    let table = |(n, id): (usize, &String)| {
+        format!(
+            "[[poi]]\nname = \"{n}\"\nobject = \"{id}\"\n[[lens]]\nname = \"{n}\"\nkind = \"best-view\"\npoi = \"{n}\"\n\
+             [[overlay]]\nlens = \"{n}\"\nsize = [160, 120]\nframe = \"print\"\ncaption = \"House {n}\"\n"
+        )
+    };
+    let tables: String = chosen.iter().take(OVERLAYS).enumerate().map(table).collect();
+    let text = format!("veduta = 1\n[city]\nfiles = [\"any.city.json\"]\n{tables}");
+    let options = Options { allow_outside: true, ..Options::default() };
+    let mut scene = scene_file::parse(&text, "overlays", &options).unwrap_or_else(|error| panic!("{error}"));
+    let mut standing = Standing::default();
+    let (mut without, mut with) = (Vec::new(), Vec::new());
+    let mut hosts = Vec::new();
+    let mut drawn_again = 0;
+    for n in 0..=pairs {
+        let alone = plain_scene(view(&extent, n).camera);
+        let ((), time) = timed(|| frame(plain, &alone, &Furniture::default()));
+        without.push(time);
+        scene = Scene { camera: alone.camera, style: alone.style, sun: alone.sun, ..scene };
+        let start = Instant::now();
+        let request = Request {
+            size: SIZE,
+            samples: 1,
+            transparent: false,
+            aovs: Aovs::default(),
+            statistics: false,
+            backend: own.backend,
+        };
+        let overlays = overlays(own, &scene, &request, &[], &mut standing).unwrap_or_else(|error| panic!("{error}"));
+        hosts.push(start.elapsed().as_secs_f64() * 1e3);
+        frame(own, &scene, &overlays.furniture);
+        with.push(start.elapsed().as_secs_f64() * 1e3);
+        if n > 0 {
+            drawn_again += overlays.figures.iter().filter(|figures| figures.rendered).count();
+        }
+    }
+    assert_eq!(drawn_again, 0, "what overlays show does not change on this walk");
+    let more: Vec<f64> = with.iter().zip(&without).map(|(with, without)| with - without).collect();
+    row("12 unchanged overlays", &more[1..], &without[1..], 0.07);
+    row("of that, until the frame is begun", &hosts[1..], &without[1..], 0.07);
+}
+
+/// Layouts of 200 labels over the frame.
+fn labels(studio: &mut Studio, pairs: usize) {
+    let boxes: Vec<Aabb> = studio.geometries.iter().map(|g| studio.model.geometries[*g as usize].bounds).collect();
+    let step = (boxes.len() / LABELS).max(1);
+    let places: Vec<DVec3> = boxes.iter().step_by(step).take(LABELS).map(Aabb::center).collect();
+    let extent = studio.extent();
     for (name, arrangement) in [("border", Arrangement::Border), ("sides", Arrangement::Vertical(Align::Both))] {
         for lines in [LineKind::Straight, LineKind::Orthogonal, LineKind::Curved] {
             let request = |n: usize| asked(&view(&extent, n), &places, arrangement, lines);
@@ -58,24 +148,13 @@ fn main() {
                 let (mut layouts, mut frames) = (Vec::new(), Vec::new());
                 for n in 1..=pairs {
                     let asked = request(n);
-                    let start = Instant::now();
-                    let placed = place(&asked, is_walk.then_some(&before));
-                    layouts.push(start.elapsed().as_secs_f64() * 1e3);
+                    let (placed, time) = timed(|| place(&asked, is_walk.then_some(&before)));
+                    layouts.push(time);
                     before = placed;
                     let scene = plain_scene(view(&extent, n).camera);
-                    let start = Instant::now();
-                    studio.redraw(&scene, SIZE).unwrap_or_else(|error| panic!("{error}"));
-                    studio.renderer.gpu.wait().unwrap_or_else(|error| panic!("{error}"));
-                    frames.push(start.elapsed().as_secs_f64() * 1e3);
+                    frames.push(timed(|| frame(studio, &scene, &Furniture::default())).1);
                 }
-                let of = |values: &[f64]| Estimate::of(values).expect("one pair or more, and finite times");
-                let Estimate { median, low, high } = of(&ratios(&layouts, &frames));
-                let verdict = if high <= target { "met" } else { "MISSED" };
-                let name = format!("{name}, {lines:?}, {what}");
-                let [layout, frame] = [&layouts, &frames].map(|times| of(times).median);
-                println!(
-                    "{name:<42} {layout:>9.3} {frame:>9.1} {median:>9.4} ({low:.4}..{high:.4}) {target:>6.2} {verdict}"
-                );
+                row(&format!("{name}, {lines:?}, {what}"), &layouts, &frames, target);
             }
         }
     }
@@ -90,7 +169,7 @@ fn view(extent: &Aabb, n: usize) -> View {
 }
 
 /// Labels of the places, all of whose middles shall stay free.
-fn asked(view: &View, places: &[DVec3], arrangement: Arrangement, lines: LineKind) -> Request {
+fn asked(view: &View, places: &[DVec3], arrangement: Arrangement, lines: LineKind) -> overlay::Request {
     let [width, height] = SIZE.map(f64::from);
     let seen = |at: &DVec3| {
         let pixel = view.pixel(*at).filter(|p| p.z > view.camera.near_m)?.truncate();
@@ -108,7 +187,7 @@ fn asked(view: &View, places: &[DVec3], arrangement: Arrangement, lines: LineKin
         weight: 0.5,
         distance: at.distance(view.camera.eye),
     };
-    Request {
+    overlay::Request {
         picture: SIZE,
         overlays: (0..).zip(places).map(overlay).collect(),
         avoid: places.iter().filter_map(seen).collect(),

@@ -23,6 +23,8 @@ struct FurnitureItem {
     // Where a text's coverage begins and how long a row of it is; 0: this is a panel.
     @location(6) first_texel: u32,
     @location(7) row_texels: u32,
+    // What of it is drawn: left, top, right, bottom; whole pixels of the target.
+    @location(8) part: vec4f,
 }
 
 struct Shown {
@@ -42,10 +44,9 @@ struct Shown {
 
 @vertex
 fn vertex(@builtin(vertex_index) i: u32, item: FurnitureItem) -> Shown {
-    // Two triangles; a panel's border may fade outside of it.
+    // Two triangles.
     let corner = vec2f(f32(i == 1u || i == 2u || i == 4u), f32(i == 2u || i == 4u || i == 5u));
-    let margin = select(0.0, 0.5 * item.softness + 0.5, item.row_texels == 0u);
-    let at = mix(item.low - margin, item.high + margin, corner);
+    let at = mix(item.part.xy, item.part.zw, corner);
     let clip = vec2f(2.0, -2.0) * at / frame.size + vec2f(-1.0, 1.0);
     let texels = vec2u(item.first_texel, item.row_texels);
     return Shown(vec4f(clip, 0.0, 1.0), item.low, item.high, item.color, item.halo, item.radius, item.softness, texels);
@@ -76,6 +77,12 @@ fn fragment(shown: Shown) -> @location(0) vec4f {
     let letter = shown.color.a * both.x;
     let halo = shown.halo.a * both.y * (1.0 - letter);
     return vec4f(shown.color.rgb * letter + shown.halo.rgb * halo, letter + halo);
+}
+
+// A panel where nothing of its border fades, and nothing shines through: without blending.
+@fragment
+fn solid(shown: Shown) -> @location(0) vec4f {
+    return vec4f(shown.color.rgb, 1.0);
 }
 
 // The picture of an overlay, at its size; straight alpha. Without pictures: the skin of a context line.
@@ -134,6 +141,15 @@ fn picture_fragment(shown: Shown) -> @location(0) vec4f {
     let share = select(as_panel, as_ellipse, shown.halo.y > 0.5);
     let alpha = shown.color.a * share * color.a * seen.a * dot(seen.rgb, vec3f(1.0 / 3.0));
     return vec4f(color.rgb * alpha, alpha);
+}
+
+// The same where nothing of its border fades, and nothing shines through: without blending.
+@fragment
+fn opaque_picture(shown: Shown) -> @location(0) vec4f {
+    let inside = shown.at.xy - shown.low;
+    let across = select(inside.x, shown.high.x - shown.low.x - inside.x, shown.halo.x > 0.5);
+    let place = vec2i(floor(vec2f(across, inside.y)));
+    return vec4f(textureLoad(picture, clamp(place, vec2i(0), vec2i(textureDimensions(picture)) - 1), 0).rgb, 1.0);
 }
 
 // A corner of a strip: a context line is a strip along its way, a pixel wider on both sides than what is seen.

@@ -15,6 +15,7 @@ use crate::{
         images::Images,
         key::{FurniturePart, Key},
         layout::{FurnitureItem, StripVertex},
+        patch::Patch,
         pipelines::{FURNITURE_LAYER, PICTURE, Pipelines},
         renderer::group,
         synced::Synced,
@@ -114,23 +115,24 @@ impl Furniture {
 
     /// What draws it; some of it may come twice.
     pub(super) fn parts(&self) -> impl Iterator<Item = FurniturePart> {
-        self.pieces.iter().map(|piece| match piece {
-            Piece::Panel(_) | Piece::Text(_) => FurniturePart::Items,
-            Piece::Image(_) => FurniturePart::Picture,
-            Piece::Strip(strip) => strip_part(strip.skin),
+        use FurniturePart as P;
+        self.pieces.iter().flat_map(|piece| match piece {
+            Piece::Panel(_) => [Some(P::Items), Some(P::Solid)].into_iter().flatten(),
+            Piece::Text(_) => [Some(P::Items), None].into_iter().flatten(),
+            Piece::Image(_) => [Some(P::Picture), Some(P::OpaquePicture)].into_iter().flatten(),
+            Piece::Strip(strip) => [Some(strip_part(strip.skin)), None].into_iter().flatten(),
         })
     }
 }
 
 /// What is drawn at once.
 #[derive(Clone, Debug)]
-enum Batch {
-    /// Panels and texts.
-    Items(Range<u32>),
-    /// One image, an item of its own, and its mask.
-    Image { item: u32, image: u64, mask: Option<u64> },
-    /// Corners of a strip.
-    Strip { corners: Range<u32>, skin: Option<u64> },
+struct Batch {
+    part: FurniturePart,
+    /// Items; of strips, corners.
+    of: Range<u32>,
+    /// What it shows, and the mask of that.
+    image: Option<(u64, Option<u64>)>,
 }
 
 /// Furniture on the card.
@@ -141,6 +143,8 @@ pub struct FurnitureOnGpu {
     of: (Furniture, [u32; 2]),
     /// One per piece; panels and texts without a pixel have none.
     runs: Vec<Option<Run>>,
+    /// Per piece, whether it is an image without transparency.
+    opaque: Vec<bool>,
     /// The tile the buffers hold.
     tile: Option<PictureTile>,
     frame: Synced,
@@ -151,6 +155,17 @@ pub struct FurnitureOnGpu {
     group: Option<wgpu::BindGroup>,
     layer: Option<Layer>,
     triangles: u64,
+}
+
+/// What furniture stands over.
+#[derive(Clone, Copy, Debug)]
+pub struct Over {
+    /// Width and height of the picture.
+    pub whole: [u32; 2],
+    /// What of it is drawn.
+    pub tile: PictureTile,
+    /// Whether it is transparent.
+    pub layered: bool,
 }
 
 /// What a transparent picture takes.
@@ -170,6 +185,7 @@ impl FurnitureOnGpu {
             setter: Typesetter::default(),
             of: (Furniture::default(), [0, 0]),
             runs: Vec::new(),
+            opaque: Vec::new(),
             tile: None,
             frame: Synced::new(gpu, "furniture frame", U::UNIFORM)?,
             items: Synced::new(gpu, "furniture items", U::VERTEX)?,
@@ -182,15 +198,14 @@ impl FurnitureOnGpu {
         })
     }
 
-    /// Brings the buffers up to date for a tile of a picture of size `whole`.
+    /// Brings the buffers up to date for a tile of a picture.
     pub fn fit(
         &mut self,
         gpu: &Gpu,
         pipelines: &Pipelines,
+        images: &Images,
         furniture: &Furniture,
-        whole: [u32; 2],
-        tile: PictureTile,
-        layered: bool,
+        Over { whole, tile, layered }: Over,
     ) -> Result<(), GpuError> {
         if self.of.1 != whole || self.of.0 != *furniture {
             let set = |piece: &Piece| match piece {
@@ -201,8 +216,13 @@ impl FurnitureOnGpu {
             self.of = (furniture.clone(), whole);
             self.tile = None;
         }
+        let is_opaque = |piece: &Piece| matches!(piece, Piece::Image(image) if images.is_opaque(image.image));
+        if !self.opaque.iter().copied().eq(furniture.pieces.iter().map(is_opaque)) {
+            self.opaque = furniture.pieces.iter().map(is_opaque).collect();
+            self.tile = None;
+        }
         if self.tile != Some(tile) {
-            let Assembled { items, corners, coverage, batches } = assembled(furniture, &self.runs, tile);
+            let Assembled { items, corners, coverage, batches } = assembled(furniture, &self.runs, &self.opaque, tile);
             let size = tile.size.map(|side| side as f32);
             let mut stale = self.frame.sync(gpu, &[size])?;
             stale |= self.coverage.sync(gpu, &coverage)?;
@@ -242,20 +262,15 @@ impl FurnitureOnGpu {
     pub fn draw(&self, pass: &mut wgpu::RenderPass, gpu: &Gpu, pipelines: &Pipelines, images: &Images, layered: bool) {
         pass.set_bind_group(0, self.group.as_ref(), &[]);
         for batch in &self.batches {
-            let (part, bound, vertices, instances, buffer) = match batch {
-                Batch::Items(items) => (FurniturePart::Items, None, 0..6, items.clone(), &self.items),
-                Batch::Image { item, image, mask } => {
-                    (FurniturePart::Picture, Some((*image, *mask)), 0..6, *item..item + 1, &self.items)
-                }
-                Batch::Strip { corners, skin } => {
-                    (strip_part(*skin), skin.map(|skin| (skin, None)), corners.clone(), 0..1, &self.corners)
-                }
+            let (vertices, instances, buffer) = match batch.part {
+                FurniturePart::Strip | FurniturePart::Skin => (batch.of.clone(), 0..1, &self.corners),
+                _ => (0..6, batch.of.clone(), &self.items),
             };
-            if let Some((image, mask)) = bound {
+            if let Some((image, mask)) = batch.image {
                 let Some(group) = images.group(gpu, pipelines, image, mask) else { continue };
                 pass.set_bind_group(1, &group, &[]);
             }
-            pass.set_pipeline(pipelines.get(&Key::Furniture { layered, part }));
+            pass.set_pipeline(pipelines.get(&Key::Furniture { layered, part: batch.part }));
             pass.set_vertex_buffer(0, buffer.buffer().slice(..));
             pass.draw(vertices, instances);
         }
@@ -300,82 +315,146 @@ struct Assembled {
 }
 
 impl Assembled {
-    /// Puts the items from `first` on into a batch with those before them.
-    fn batch_items(&mut self, first: usize) {
-        let end = self.items.len() as u32;
+    /// Puts items or corners into a batch with those before them, if they are drawn alike.
+    fn batch(&mut self, part: FurniturePart, of: Range<usize>, image: Option<(u64, Option<u64>)>) {
+        let of = of.start as u32..of.end as u32;
         match self.batches.last_mut() {
-            Some(Batch::Items(items)) => items.end = end,
-            _ if first as u32 == end => {}
-            _ => self.batches.push(Batch::Items(first as u32..end)),
+            _ if of.is_empty() => {}
+            Some(last) if last.part == part && last.image == image => last.of.end = of.end,
+            _ => self.batches.push(Batch { part, of, image }),
         }
+    }
+
+    /// One item for each part of a piece.
+    fn put(
+        &mut self,
+        kind: FurniturePart,
+        item: FurnitureItem,
+        parts: impl Iterator<Item = Patch>,
+        image: Option<(u64, Option<u64>)>,
+    ) {
+        let first = self.items.len();
+        self.items.extend(parts.map(|part| FurnitureItem { part: part.corners(), ..item }));
+        self.batch(kind, first..self.items.len(), image);
+    }
+}
+
+/// How many pieces after it are asked whether they hide some of a piece: the shadow and the ground of an image lie just before it.
+const HIDING: usize = 3;
+/// Fewer pixels are not worth more items and draws.
+const WORTHWHILE: i64 = 2048;
+
+/// Of pieces in a tile: all that they may touch, and where they hide what is under them.
+fn extents(
+    furniture: &Furniture,
+    opaque: &[bool],
+    inside: impl Fn([f32; 2]) -> [f32; 2],
+) -> Vec<(Option<Patch>, Option<Patch>)> {
+    let of = |(piece, is_opaque): (&Piece, &bool)| match piece {
+        Piece::Panel(panel) => {
+            let (low, high) = (inside(panel.low), inside(panel.high));
+            let softness = panel.softness_px.max(1.0);
+            let margin = 0.5 * softness + 0.5;
+            let hides = panel.opacity >= 1.0 && !panel.ellipse;
+            (
+                Patch::around(low.map(|v| v - margin), high.map(|v| v + margin)),
+                hides.then(|| Patch::inside(low, high, panel.radius_px.max(0.0), softness)).flatten(),
+            )
+        }
+        Piece::Image(image) => {
+            let (low, high) = (inside(image.low), inside(image.high));
+            let softness = image.softness_px.max(1.0);
+            let inset = if softness > 1.0 { 0.5 * softness } else { 0.0 };
+            let hides = *is_opaque
+                && image.opacity >= 1.0
+                && image.mask.is_none()
+                && !image.ellipse
+                && image.magnification <= 1.0;
+            let border = (low.map(|v| v + inset), high.map(|v| v - inset));
+            let hidden = || Patch::inside(border.0, border.1, image.radius_px.max(0.0), softness);
+            (Patch::around(low, high), hides.then(hidden).flatten())
+        }
+        Piece::Text(_) | Piece::Strip(_) => (None, None),
+    };
+    let worth = |(all, hides): (_, Option<Patch>)| (all, hides.filter(|part| part.area() >= WORTHWHILE));
+    furniture.pieces.iter().zip(opaque).map(of).map(worth).collect()
+}
+
+/// What of the piece `i` is seen, in parts.
+fn seen(extents: &[(Option<Patch>, Option<Patch>)], i: usize, tile: Patch) -> Vec<Patch> {
+    let Some(all) = extents[i].0.and_then(|all| all.common(tile)) else { return Vec::new() };
+    let hidden = |&(_, hides): &(Option<Patch>, Option<Patch>)| hides.and_then(|part| part.common(all));
+    let after = &extents[i + 1..extents.len().min(i + 1 + HIDING)];
+    let hole = after.iter().filter_map(hidden).max_by_key(|part| part.area());
+    match hole {
+        Some(hole) => all.without(hole).collect(),
+        None => vec![all],
     }
 }
 
 /// The pieces that meet a tile.
-fn assembled(furniture: &Furniture, runs: &[Option<Run>], tile: PictureTile) -> Assembled {
+fn assembled(furniture: &Furniture, runs: &[Option<Run>], opaque: &[bool], tile: PictureTile) -> Assembled {
     let mut all = Assembled::default();
     let mut bytes = Vec::<[u8; 2]>::new();
     let origin = tile.origin.map(|o| o as f32);
-    let size = tile.size.map(|s| s as f32);
     let inside = |p: [f32; 2]| [p[0] - origin[0], p[1] - origin[1]];
-    for (piece, run) in furniture.pieces.iter().zip(runs) {
-        let first = all.items.len();
-        let items = &mut all.items;
-        match (piece, run) {
+    let extents = extents(furniture, opaque, inside);
+    let tile_patch = Patch { low: [0, 0], high: tile.size.map(|s| s as i32) };
+    let flag = |on: bool| f32::from(u8::from(on));
+    for (i, (piece, run)) in furniture.pieces.iter().zip(runs).enumerate() {
+        let (item, kinds, image) = match (piece, run) {
             (Piece::Image(image), _) => {
-                let (low, high) = (inside(image.low), inside(image.high));
-                if (0..2).all(|i| high[i] > low[i] && high[i] > 0.0 && low[i] < size[i]) {
-                    let flag = |on: bool| f32::from(u8::from(on));
-                    items.push(FurnitureItem {
-                        low,
-                        high,
-                        color: [0.0, 0.0, 0.0, image.opacity.clamp(0.0, 1.0)],
-                        halo: [flag(image.mirror), flag(image.ellipse), (image.magnification - 1.0).max(0.0), 0.0],
-                        radius: image.radius_px.max(0.0),
-                        softness: image.softness_px.max(1.0),
-                        ..Default::default()
-                    });
-                    all.batches.push(Batch::Image { item: first as u32, image: image.image, mask: image.mask });
-                }
-                continue;
-            }
-            (Piece::Strip(strip), _) => {
-                let first = all.corners.len() as u32;
-                all.corners.extend(strip_corners(strip, origin));
-                let end = all.corners.len() as u32;
-                match all.batches.last_mut() {
-                    Some(Batch::Strip { corners, skin }) if *skin == strip.skin => corners.end = end,
-                    _ => all.batches.push(Batch::Strip { corners: first..end, skin: strip.skin }),
-                }
-                continue;
+                let item = FurnitureItem {
+                    low: inside(image.low),
+                    high: inside(image.high),
+                    color: [0.0, 0.0, 0.0, image.opacity.clamp(0.0, 1.0)],
+                    halo: [flag(image.mirror), flag(image.ellipse), (image.magnification - 1.0).max(0.0), 0.0],
+                    radius: image.radius_px.max(0.0),
+                    softness: image.softness_px.max(1.0),
+                    ..Default::default()
+                };
+                let kinds = [FurniturePart::OpaquePicture, FurniturePart::Picture];
+                (item, kinds, Some((image.image, image.mask)))
             }
             (Piece::Panel(panel), _) => {
-                let (low, high) = (inside(panel.low), inside(panel.high));
-                let softness = panel.softness_px.max(1.0);
-                let seen = |i: usize| high[i] > low[i] && high[i] + softness > 0.0 && low[i] - softness < size[i];
-                if seen(0) && seen(1) {
-                    items.push(FurnitureItem {
-                        low,
-                        high,
-                        color: with_alpha(panel.color, panel.opacity),
-                        halo: [0.0, f32::from(u8::from(panel.ellipse)), 0.0, 0.0],
-                        radius: panel.radius_px.max(0.0),
-                        softness,
-                        ..Default::default()
-                    });
-                }
+                let item = FurnitureItem {
+                    low: inside(panel.low),
+                    high: inside(panel.high),
+                    color: with_alpha(panel.color, panel.opacity),
+                    halo: [0.0, flag(panel.ellipse), 0.0, 0.0],
+                    radius: panel.radius_px.max(0.0),
+                    softness: panel.softness_px.max(1.0),
+                    ..Default::default()
+                };
+                (item, [FurniturePart::Solid, FurniturePart::Items], None)
+            }
+            (Piece::Strip(strip), _) => {
+                let first = all.corners.len();
+                all.corners.extend(strip_corners(strip, origin));
+                let skin = strip.skin.map(|skin| (skin, None));
+                all.batch(strip_part(strip.skin), first..all.corners.len(), skin);
+                continue;
             }
             (Piece::Text(line), Some(run)) => {
                 let halo = line.halo.map_or([0.0; 4], |h| with_alpha(h.color, h.opacity));
-                items.extend(clipped(run, tile, &mut bytes).map(|item| FurnitureItem {
-                    color: with_alpha(line.color, 1.0),
-                    halo,
-                    ..item
-                }));
+                if let Some((item, part)) = clipped(run, tile, &mut bytes) {
+                    let item = FurnitureItem { color: with_alpha(line.color, 1.0), halo, ..item };
+                    all.put(FurniturePart::Items, item, [part].into_iter(), None);
+                }
+                continue;
             }
-            (Piece::Text(_), None) => {}
+            (Piece::Text(_), None) => continue,
+        };
+        if (0..2).any(|axis| item.high[axis] <= item.low[axis]) {
+            continue;
         }
-        all.batch_items(first);
+        let seen = seen(&extents, i, tile_patch);
+        let Some(solid) = extents[i].1 else {
+            all.put(kinds[1], item, seen.into_iter(), image);
+            continue;
+        };
+        all.put(kinds[0], item, seen.iter().filter_map(|part| part.common(solid)), image);
+        all.put(kinds[1], item, seen.iter().flat_map(|part| part.without(solid)), image);
     }
     if bytes.len() % 2 == 1 {
         bytes.push([0, 0]);
@@ -442,7 +521,7 @@ fn strip_corners(strip: &Strip, origin: [f32; 2]) -> Vec<StripVertex> {
 }
 
 /// The part of a run that is in a tile; its coverage is appended.
-fn clipped(run: &Run, tile: PictureTile, bytes: &mut Vec<[u8; 2]>) -> Option<FurnitureItem> {
+fn clipped(run: &Run, tile: PictureTile, bytes: &mut Vec<[u8; 2]>) -> Option<(FurnitureItem, Patch)> {
     let low: [u32; 2] = std::array::from_fn(|i| run.origin[i].max(tile.origin[i]));
     let high: [u32; 2] = std::array::from_fn(|i| (run.origin[i] + run.size[i]).min(tile.origin[i] + tile.size[i]));
     if low[0] >= high[0] || low[1] >= high[1] {
@@ -454,14 +533,77 @@ fn clipped(run: &Run, tile: PictureTile, bytes: &mut Vec<[u8; 2]>) -> Option<Fur
         let column = |x: u32| row + (x - run.origin[0]) as usize;
         bytes.extend(&run.texels[column(low[0])..column(high[0])]);
     }
-    let inside = |p: [u32; 2]| std::array::from_fn(|i| (p[i] - tile.origin[i]) as f32);
+    let [low, high]: [[u32; 2]; 2] = [low, high].map(|p| std::array::from_fn(|i| p[i] - tile.origin[i]));
     let row_texels = high[0] - low[0];
-    Some(FurnitureItem { low: inside(low), high: inside(high), first_texel, row_texels, ..Default::default() })
+    let [from, to] = [low, high].map(|p| p.map(|v| v as f32));
+    let item = FurnitureItem { low: from, high: to, first_texel, row_texels, ..Default::default() };
+    Some((item, Patch { low: low.map(|v| v as i32), high: high.map(|v| v as i32) }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A shadow, a ground with round corners, an image on it.
+    fn card(opacity: f32) -> Furniture {
+        let panel = |low, high, opacity, radius_px, softness_px| {
+            Piece::Panel(Panel { low, high, color: [1.0; 3], opacity, radius_px, softness_px, ellipse: false })
+        };
+        let image = ImagePiece {
+            image: 7,
+            mask: None,
+            low: [20.0, 20.0],
+            high: [180.0, 120.0],
+            mirror: false,
+            opacity,
+            ellipse: false,
+            radius_px: 4.0,
+            softness_px: 1.0,
+            magnification: 1.0,
+        };
+        let pieces = vec![
+            panel([10.0, 14.0], [190.0, 134.0], 0.3, 8.0, 12.0),
+            panel([10.0, 10.0], [190.0, 130.0], opacity, 8.0, 1.0),
+            Piece::Image(image),
+        ];
+        Furniture { pieces }
+    }
+
+    /// How many pixels of items meet each pixel of a tile of 200 × 150, of those drawn without blending and of the others.
+    fn drawn(furniture: &Furniture, opaque: bool) -> Vec<[u8; 2]> {
+        let tile = PictureTile { origin: [0, 0], size: [200, 150] };
+        let runs = vec![None; furniture.pieces.len()];
+        let all = assembled(furniture, &runs, &[false, false, opaque], tile);
+        let mut times = vec![[0; 2]; 200 * 150];
+        for batch in &all.batches {
+            let is_blended = !matches!(batch.part, FurniturePart::Solid | FurniturePart::OpaquePicture);
+            for item in &all.items[batch.of.start as usize..batch.of.end as usize] {
+                let [x0, y0, x1, y1] = item.part.map(|v| v as usize);
+                for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
+                    times[y * 200 + x][usize::from(is_blended)] += 1;
+                }
+            }
+        }
+        times
+    }
+
+    #[test]
+    fn what_lies_under_an_opaque_image_is_not_drawn() {
+        let times = drawn(&card(1.0), true);
+        let at = |x: usize, y: usize| times[y * 200 + x];
+        assert_eq!(at(100, 70), [1, 0], "the image alone");
+        assert_eq!(at(14, 70), [1, 0], "the ground alone");
+        assert_eq!(at(20, 20), [1, 1], "a corner of the image over the ground");
+        assert_eq!(at(10, 10), [0, 2], "a corner of the ground over the shadow");
+        assert_eq!(at(195, 139), [0, 1], "the shadow");
+        assert_eq!(at(199, 0), [0, 0]);
+    }
+
+    #[test]
+    fn what_shines_through_hides_nothing() {
+        assert_eq!(drawn(&card(0.99), true)[70 * 200 + 100], [0, 3]);
+        assert_eq!(drawn(&card(1.0), false)[70 * 200 + 100], [1, 1], "the ground hides the shadow");
+    }
 
     #[test]
     fn tiles_share_a_run_without_gap_or_overlap() {
@@ -471,7 +613,7 @@ mod tests {
         for (x, y) in [(0, 0), (5, 0), (10, 0), (0, 4), (5, 4), (10, 4)] {
             let tile = PictureTile { origin: [x, y], size: [5, if y == 0 { 4 } else { 5 }] };
             let mut bytes = vec![[99, 99]; 3];
-            let Some(item) = clipped(&run, tile, &mut bytes) else { continue };
+            let Some((item, _)) = clipped(&run, tile, &mut bytes) else { continue };
             assert_eq!(item.first_texel, 3);
             let [low, high] = [item.low, item.high].map(|p| p.map(|v| v as u32));
             for (i, (row, column)) in

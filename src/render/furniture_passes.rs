@@ -4,7 +4,7 @@ use crate::{
     gpu::GpuError,
     render::{
         frame::{FrameInput, Recorder, color_attachment},
-        furniture::FurnitureOnGpu,
+        furniture::{FurnitureOnGpu, Over},
         key::Key,
         renderer::Renderer,
     },
@@ -24,8 +24,9 @@ impl Renderer {
             Some(furniture) => furniture,
             none => none.insert(FurnitureOnGpu::new(&self.gpu)?),
         };
-        let whole = input.view.size;
-        furniture.fit(&self.gpu, &self.pipelines, input.furniture, whole, input.tile, input.transparent)?;
+        let over = Over { whole: input.view.size, tile: input.tile, layered: input.transparent };
+        let (gpu, pipelines, images) = (&self.gpu, &self.pipelines, &self.images);
+        furniture.fit(gpu, pipelines, images, input.furniture, over)?;
         if furniture.counts().0 == 0 {
             return Ok(());
         }

@@ -31,6 +31,7 @@ struct Image {
     /// The file that it shows, and the size that it was asked for in.
     of: Option<(PathBuf, Option<[u32; 2]>)>,
     size: [u32; 2],
+    is_opaque: bool,
     texture: wgpu::Texture,
     view: wgpu::TextureView,
 }
@@ -52,6 +53,11 @@ impl Images {
         self.kept.get(&number).map(|image| image.size)
     }
 
+    /// Whether there is such an image, and all of it has an alpha of one.
+    pub(super) fn is_opaque(&self, number: u64) -> bool {
+        self.kept.get(&number).is_some_and(|image| image.is_opaque)
+    }
+
     /// Forgets images.
     pub fn keep(&mut self, is_kept: impl Fn(u64) -> bool) {
         self.kept.retain(|number, _| is_kept(*number));
@@ -59,15 +65,15 @@ impl Images {
 
     /// Keeps sRGB texels, row 0 at the top.
     pub fn set(&mut self, gpu: &Gpu, number: u64, size: [u32; 2], rgba: &[[u8; 4]]) {
-        let texture = self.fitted(gpu, number, size);
+        let texture = self.fitted(gpu, number, size, rgba.iter().all(|texel| texel[3] == 255));
         gpu.write_texture_level(&texture, 0, bytemuck::cast_slice(rgba));
         self.white(gpu);
     }
 
-    /// Keeps what a target shows.
-    pub fn copy(&mut self, gpu: &Gpu, number: u64, picture: &wgpu::Texture) {
+    /// Keeps what a target shows, which has transparent pixels or none.
+    pub fn copy(&mut self, gpu: &Gpu, number: u64, picture: &wgpu::Texture, is_opaque: bool) {
         let size = [picture.width(), picture.height()];
-        let texture = self.fitted(gpu, number, size);
+        let texture = self.fitted(gpu, number, size, is_opaque);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_texture_to_texture(picture.as_image_copy(), texture.as_image_copy(), picture.size());
         gpu.queue.submit([encoder.finish()]);
@@ -95,14 +101,15 @@ impl Images {
         Ok(true)
     }
 
-    fn fitted(&mut self, gpu: &Gpu, number: u64, size: [u32; 2]) -> wgpu::Texture {
+    fn fitted(&mut self, gpu: &Gpu, number: u64, size: [u32; 2], is_opaque: bool) -> wgpu::Texture {
         use wgpu::TextureUsages as U;
-        if let Some(image) = self.kept.get(&number).filter(|image| image.size == size) {
+        if let Some(image) = self.kept.get_mut(&number).filter(|image| image.size == size) {
+            image.is_opaque = is_opaque;
             return image.texture.clone();
         }
         let texture = gpu.texture("image", [size[0], size[1], 1], 1, PICTURE, U::TEXTURE_BINDING | U::COPY_DST);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        self.kept.insert(number, Image { of: None, size, texture: texture.clone(), view });
+        self.kept.insert(number, Image { of: None, size, is_opaque, texture: texture.clone(), view });
         texture
     }
 

@@ -161,7 +161,8 @@ impl Studio {
         if drawn.is_ok()
             && let Some(targets) = &self.renderer.targets
         {
-            self.renderer.images.copy(&self.renderer.gpu, number, &targets.picture.texture);
+            let is_opaque = !request.transparent;
+            self.renderer.images.copy(&self.renderer.gpu, number, &targets.picture.texture, is_opaque);
             inset.of = Some((scene.clone(), *request, furniture.clone()));
         }
         inset.state.swap(&mut self.renderer);

@@ -21,8 +21,12 @@ use crate::{
 pub enum FurniturePart {
     /// Panels and text.
     Items,
+    /// Insides of opaque panels.
+    Solid,
     /// Pictures of overlays.
     Picture,
+    /// Insides of opaque pictures.
+    OpaquePicture,
     /// Context lines of one colour.
     Strip,
     /// Context lines with a skin.
@@ -33,16 +37,24 @@ impl FurniturePart {
     fn name(self) -> &'static str {
         match self {
             Self::Items => "furniture",
+            Self::Solid => "opaque panels",
             Self::Picture => "overlays",
+            Self::OpaquePicture => "opaque overlays",
             Self::Strip => "context lines",
             Self::Skin => "context lines with a skin",
         }
     }
 
+    fn is_opaque(self) -> bool {
+        matches!(self, Self::Solid | Self::OpaquePicture)
+    }
+
     fn entry_points(self) -> (&'static str, Option<&'static str>) {
         match self {
             Self::Items => ("vertex", Some("fragment")),
+            Self::Solid => ("vertex", Some("solid")),
             Self::Picture => ("vertex", Some("picture_fragment")),
+            Self::OpaquePicture => ("vertex", Some("opaque_picture")),
             Self::Strip => ("strip_vertex", Some("strip")),
             Self::Skin => ("strip_vertex", Some("strip_skin")),
         }
@@ -279,7 +291,7 @@ const PLANE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x3
 const SOLID_CORNER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Float32x3];
 const CORNER: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![0 => Float32x2];
 const FURNITURE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![
-    0 => Float32x2, 1 => Float32x2, 2 => Float32x4, 3 => Float32x4, 4 => Float32, 5 => Float32, 6 => Uint32, 7 => Uint32];
+    0 => Float32x2, 1 => Float32x2, 2 => Float32x4, 3 => Float32x4, 4 => Float32, 5 => Float32, 6 => Uint32, 7 => Uint32, 8 => Float32x4];
 
 const STRIP: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![
     0 => Float32x2, 1 => Float32, 2 => Float32, 3 => Float32, 4 => Float32, 5 => Float32x2, 6 => Float32x4, 7 => Float32x4];
@@ -635,9 +647,9 @@ impl Key {
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
-            Self::Furniture { layered, .. } => vec![Some(wgpu::ColorTargetState {
+            Self::Furniture { layered, part } => vec![Some(wgpu::ColorTargetState {
                 format: if *layered { FURNITURE_LAYER } else { PICTURE },
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                blend: (!part.is_opaque()).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
             Self::Shade { .. } | Self::Resolve | Self::FurnitureOver | Self::Bare => vec![Some(PICTURE.into())],

@@ -335,6 +335,7 @@ pub struct FurnitureItem {
     pub softness: f32,
     pub first_texel: u32,
     pub row_texels: u32,
+    pub part: [f32; 4],
 }
 
 /// A corner of a context line.
@@ -518,7 +519,7 @@ mod tests {
             (&Module::Furniture, host!(StripVertex { at, across, half_width, along, length, ends, color, fade })),
             (
                 &Module::Furniture,
-                host!(FurnitureItem { low, high, color, halo, radius, softness, first_texel, row_texels }),
+                host!(FurnitureItem { low, high, color, halo, radius, softness, first_texel, row_texels, part }),
             ),
         ];
         let wrong: Vec<String> = checks.into_iter().flat_map(|(module, fields)| differences(module, fields)).collect();

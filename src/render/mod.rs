@@ -45,6 +45,7 @@ mod own_sprites;
 mod page;
 pub mod palette;
 pub mod parts;
+mod patch;
 pub mod picture;
 pub mod pipelines;
 mod placement;

@@ -5,7 +5,7 @@ use crate::{
     lens::color::{Srgb, linear_from_srgb},
     render::{
         frame::color_attachment,
-        furniture::{Furniture, FurnitureOnGpu},
+        furniture::{Furniture, FurnitureOnGpu, Over},
         key::Key,
         parts::{parts, put},
         pipelines::PICTURE,
@@ -29,7 +29,8 @@ impl Renderer {
         let [r, g, b] = linear_from_srgb(ground).map(f64::from);
         for part in parts(size) {
             let [width, height] = part.drawn.size;
-            on_gpu.fit(&self.gpu, &self.pipelines, furniture, size, part.drawn, false)?;
+            let over = Over { whole: size, tile: part.drawn, layered: false };
+            on_gpu.fit(&self.gpu, &self.pipelines, &self.images, furniture, over)?;
             let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
             let target = self.gpu.texture("page", [width, height, 1], 1, PICTURE, usage);
             let view = target.create_view(&wgpu::TextureViewDescriptor::default());

@@ -369,7 +369,10 @@ impl Layouts {
             Key::Resolve => vec![Some(&self.resolve)],
             Key::StoredForm(_) | Key::StoredLayers(_) => vec![None, Some(&self.planes), Some(&self.stored)],
             Key::SpriteList => vec![None, None, Some(&self.stored)],
-            Key::Furniture { part: FurniturePart::Picture | FurniturePart::Skin, .. } => {
+            Key::Furniture {
+                part: FurniturePart::Picture | FurniturePart::OpaquePicture | FurniturePart::Skin,
+                ..
+            } => {
                 vec![Some(&self.furniture), Some(&self.furniture_picture)]
             }
             Key::Furniture { .. } => vec![Some(&self.furniture)],
