@@ -1,7 +1,7 @@
 //! The city on the graphics card: made once, then only read.
 //!
-//! Tiles are put in Morton order and cut into chunks of about [`CHUNK_TRIANGLES`] triangles; a view
-//! draws the chunks its frustum meets, near ones first. Textured faces stand apart by texture, and those that
+//! Tiles are put in the order of their cells ([`crate::render::cells`]) and cut into chunks of about [`CHUNK_TRIANGLES`] triangles; a
+//! view draws the chunks its frustum meets, near ones first. Block models, once small views ask for them, are chunks beside the others. Textured faces stand apart by texture, and those that
 //! overlap in exactly one plane by layer: one layer is drawn after the other.
 
 use std::ops::Range;
@@ -15,6 +15,7 @@ use crate::{
     geom::{Aabb, plane::Plane},
     gpu::{Gpu, GpuError},
     render::{
+        cells::{CellFigures, Cells, Detail, NO_CELL},
         layout::{self, CityVertex},
         shells::{Shells, closed_shells},
         surfaces::{self, SurfaceTable},
@@ -26,7 +27,7 @@ use crate::{
 
 /// Triangles per chunk: few enough to cull a street scene finely, many enough that a draw call's cost
 /// (some microseconds on a software adapter) vanishes beside them.
-const CHUNK_TRIANGLES: usize = 256;
+pub(super) const CHUNK_TRIANGLES: usize = 256;
 
 /// Visible chunks are drawn near to far in at most so many groups.
 const SORTED_GROUPS: usize = 512;
@@ -38,8 +39,17 @@ pub struct Chunk {
     pub range: Range<u32>,
     /// Box around it, metres.
     pub bounds: Aabb,
-    /// Whether terrain, or what lies flat on it, is among it: with nothing else then.
-    pub has_terrain: bool,
+    /// The cell that it is of; of terrain, or what lies flat on it, none.
+    pub cell: u32,
+    /// Bits of the details of that cell that it is drawn in.
+    pub details: u8,
+}
+
+impl Chunk {
+    /// Whether it is terrain, or what lies flat on it.
+    pub fn has_terrain(&self) -> bool {
+        self.cell == NO_CELL
+    }
 }
 
 /// One draw: part of a section.
@@ -89,6 +99,10 @@ pub struct CityBuffers {
     pub(super) shells: Shells,
     /// Textures by number.
     pub textures: Textures,
+    /// What its cells take.
+    pub(super) cells: Vec<CellFigures>,
+    /// Whether it has block models too.
+    pub has_blocks: bool,
     /// Whether some faces have smooth normals.
     pub smooth: bool,
     /// Drawn triangles, the plain ground included.
@@ -129,7 +143,8 @@ struct Run {
     /// Where it ends.
     end: usize,
     bounds: Aabb,
-    is_terrain: bool,
+    cell: u32,
+    details: u8,
 }
 
 impl Gathered {
@@ -137,60 +152,54 @@ impl Gathered {
         Self { weld: Weld::new(smooth, provoking), texcoords: Vec::new(), runs: Vec::new() }
     }
 
-    fn close_run(&mut self, bounds: Aabb, is_terrain: bool) {
+    fn close_run(&mut self, bounds: Aabb, cell: u32, details: u8) {
         let end = self.weld.indices.len();
         if end > self.runs.last().map_or(0, |run| run.end) {
-            self.runs.push(Run { end, bounds, is_terrain });
+            self.runs.push(Run { end, bounds, cell, details });
         }
     }
 
-    /// Cuts the runs into chunks; a run longer than a chunk is cut by triangles. Terrain shares none with anything else.
+    /// Cuts the runs into chunks: where another cell begins, and where one has more than a chunk; a run longer than that is cut by triangles.
     fn chunks(&self) -> Vec<Chunk> {
         let position = |i: u32| {
             let vertex = &self.weld.vertices[i as usize];
             IVec3::from(vertex.origin).as_dvec3() + Vec3::from(vertex.position).as_dvec3()
         };
         let step = CHUNK_TRIANGLES * 3;
-        let chunk = |from: usize, to: usize, bounds: Aabb, has_terrain: bool| Chunk {
+        let chunk = |(from, to): (usize, usize), bounds: Aabb, (cell, details): (u32, u8)| Chunk {
             range: from as u32..to as u32,
             bounds,
-            has_terrain,
+            cell,
+            details,
         };
         let mut chunks: Vec<Chunk> = Vec::new();
-        let (mut start, mut bounds, mut done, mut has_terrain) = (0, Aabb::EMPTY, 0, false);
+        let (mut start, mut bounds, mut done, mut of) = (0, Aabb::EMPTY, 0, (NO_CELL, 0));
         for run in &self.runs {
             let is_long = run.end - done > 2 * step;
-            if done > start && (is_long || run.is_terrain != has_terrain) {
-                chunks.push(chunk(start, done, bounds, has_terrain));
+            // Terrain is cut as soon as there is a chunk of it; cells are about that long.
+            let is_full = done - start >= if of.0 == NO_CELL { step } else { 2 * step };
+            if done > start && (is_long || is_full || (run.cell, run.details) != of) {
+                chunks.push(chunk((start, done), bounds, of));
                 (start, bounds) = (done, Aabb::EMPTY);
             }
-            has_terrain = run.is_terrain;
+            of = (run.cell, run.details);
             if is_long {
                 for from in (done..run.end).step_by(step) {
                     let to = (from + step).min(run.end);
                     let bounds = Aabb::from_points(self.weld.indices[from..to].iter().map(|&i| position(i)));
-                    chunks.push(chunk(from, to, bounds, has_terrain));
+                    chunks.push(chunk((from, to), bounds, of));
                 }
                 start = run.end;
             } else {
                 bounds = bounds.union(run.bounds);
-                if run.end - start >= step {
-                    chunks.push(chunk(start, run.end, bounds, has_terrain));
-                    (start, bounds) = (run.end, Aabb::EMPTY);
-                }
             }
             done = run.end;
         }
         if done > start {
-            chunks.push(chunk(start, done, bounds, has_terrain));
+            chunks.push(chunk((start, done), bounds, of));
         }
         chunks
     }
-}
-
-/// Interleaves the low 21 bits of x and y: near numbers are near places.
-fn morton(x: u32, y: u32) -> u64 {
-    (0..21).fold(0, |code, bit| code | u64::from(x >> bit & 1) << (2 * bit) | u64::from(y >> bit & 1) << (2 * bit + 1))
 }
 
 /// Box around what is shown but for the plain ground, metres.
@@ -198,39 +207,19 @@ pub(super) fn extent_of(shown: &Shown) -> Aabb {
     shown.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(shown.model.geometries[g as usize].bounds))
 }
 
-/// The shown tiles, those of terrain last, in Morton order of their centres.
-pub(super) fn ordered_tiles(shown: &Shown, extent: &Aabb) -> Vec<u32> {
-    let model = shown.model;
-    let scale = f64::from((1 << 21) - 1) / extent.size().x.max(extent.size().y).max(1.0);
-    let mut tiles: Vec<(bool, u64, u32)> = shown
-        .geometries
-        .iter()
-        .flat_map(|&g| model.geometries[g as usize].tiles.clone())
-        .map(|t| {
-            let at = (model.tiles[t as usize].bounds.center() - extent.min) * scale;
-            (is_terrain(model, t), morton(at.x.max(0.0) as u32, at.y.max(0.0) as u32), t)
-        })
-        .collect();
-    tiles.sort_unstable();
-    tiles.into_iter().map(|(.., t)| t).collect()
-}
-
-fn is_terrain(model: &CityModel, tile: u32) -> bool {
-    let geometry = &model.geometries[model.tiles[tile as usize].geometry as usize];
-    model.objects[geometry.object as usize].class.is_ground()
-}
-
 impl CityBuffers {
-    /// Uploads what is shown.
-    pub fn new(gpu: &Gpu, shown: &Shown) -> Result<Self, GpuError> {
+    /// Uploads what is shown, and the block models of its objects where there are some.
+    pub fn new(gpu: &Gpu, shown: &Shown, blocks: Option<&CityModel>) -> Result<Self, GpuError> {
         let textures = Textures::new(gpu, shown)?;
         let bytes_before = gpu.allocated_bytes();
         let extent = extent_of(shown);
-        let tiles = ordered_tiles(shown, &extent);
-        let mut shells = closed_shells(shown, &tiles, extent.center());
+        let cells = Cells::new(shown, &extent);
+        let tiles = &cells.tiles;
+        let tile_numbers = || tiles.iter().map(|(tile, _)| *tile);
+        let mut shells = closed_shells(shown, tile_numbers(), extent.center());
         if shown.is_lit_as_before {
             let objects =
-                tiles.iter().map(|&t| shown.model.geometries[shown.model.tiles[t as usize].geometry as usize].object);
+                tile_numbers().map(|t| shown.model.geometries[shown.model.tiles[t as usize].geometry as usize].object);
             objects.for_each(|object| *shells.entry(object).or_default() |= layout::SURFACE_LIT_AS_BEFORE);
         }
         let mut table = SurfaceTable::new(shown.model, &textures, &shells);
@@ -240,13 +229,14 @@ impl CityBuffers {
         let provoking = if gpu.info.backend == wgpu::Backend::Gl { 2 } else { 0 };
         let mut plain = Gathered::new(smooth, provoking);
         let mut textured: FxHashMap<(u32, u32), Gathered> = FxHashMap::default();
-        for &t in &tiles {
+        for &(t, cell) in tiles {
             let tile = &shown.model.tiles[t as usize];
+            let details = details_of(cell, Detail::Full);
             table.begin_tile();
             gather_tile(shown.model, tile, &apart, &mut table, &mut plain, &mut textured);
-            plain.close_run(tile.bounds, is_terrain(shown.model, t));
+            plain.close_run(tile.bounds, cell, details);
             for gathered in textured.values_mut() {
-                gathered.close_run(tile.bounds, is_terrain(shown.model, t));
+                gathered.close_run(tile.bounds, cell, details);
             }
         }
         let mut sections = Vec::new();
@@ -262,7 +252,10 @@ impl CityBuffers {
                 sections.push(section);
             }
         };
-        let layers = gather_layers(shown, &tiles, &mut table, (smooth, provoking));
+        let layers = gather_layers(shown, tiles, &mut table, (smooth, provoking));
+        let mut entries = table.entries;
+        let blocks =
+            blocks.map(|model| gather_blocks(model, &cells, &mut entries, extent.center(), (smooth, provoking)));
         push(upload(gpu, SectionKind::Plain, &plain, ("", &[0_u32; 0]))?);
         let mut by_texture: Vec<_> = textured.into_iter().collect();
         by_texture.sort_unstable_by_key(|(key, _)| *key);
@@ -273,10 +266,27 @@ impl CityBuffers {
         for layer in &layers {
             push(upload(gpu, SectionKind::Coplanar, &layer.gathered, ("planes", &layer.planes))?);
         }
-        let surfaces = surfaces::upload(gpu, &table.entries)?;
-        let surface_table = table.entries;
+        if let Some(blocks) = &blocks {
+            push(upload(gpu, SectionKind::Plain, blocks, ("", &[0_u32; 0]))?);
+        }
+        let surfaces = surfaces::upload(gpu, &entries)?;
+        let surface_table = entries;
+        let figures = CellFigures::of_all(cells.count, sections.iter().flat_map(|section| &section.chunks));
         let bytes = gpu.allocated_bytes() - bytes_before + textures.bytes();
-        Ok(Self { sections, surfaces, surface_table, shells, textures, smooth, triangles, vertices, bytes, bounds })
+        Ok(Self {
+            sections,
+            surfaces,
+            surface_table,
+            shells,
+            textures,
+            cells: figures,
+            has_blocks: blocks.is_some(),
+            smooth,
+            triangles,
+            vertices,
+            bytes,
+            bounds,
+        })
     }
 
     /// Those of the chunks of one section that a frustum may see, in drawing order.
@@ -390,10 +400,59 @@ fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered
             plain.weld.triangle(table.number(NONE, up), corners.map(|position| Corner { position, normal: up }));
         }
         plain.weld.end_tile();
-        plain.close_run(tile.bounds, true);
+        plain.close_run(tile.bounds, NO_CELL, details_of(NO_CELL, Detail::Full));
         all = all.union(tile.bounds);
     }
     all
+}
+
+/// Block models by cell, of each first what looks up, and what the table of surfaces says of them.
+fn gather_blocks(
+    model: &CityModel,
+    cells: &Cells,
+    entries: &mut Vec<layout::Surface>,
+    middle: DVec3,
+    (smooth, provoking): (bool, usize),
+) -> Gathered {
+    let mut tiles: Vec<(u32, u32)> = (0..model.tiles.len() as u32).map(|t| (cells.of(model, t), t)).collect();
+    tiles.retain(|(cell, _)| *cell != NO_CELL);
+    tiles.sort_unstable();
+    let all: Vec<u32> = (0..model.geometries.len() as u32).collect();
+    let shown = Shown { model, geometries: &all, coplanar: &[], ground: None, is_lit_as_before: false };
+    let shells = closed_shells(&shown, tiles.iter().map(|(_, tile)| *tile), middle);
+    let textures = Textures::none();
+    let mut table = SurfaceTable::new(model, &textures, &shells);
+    table.entries = std::mem::take(entries);
+    let mut gathered = Gathered::new(smooth, provoking);
+    for of_cell in tiles.chunk_by(|a, b| a.0 == b.0) {
+        for is_roof in [true, false] {
+            let details = Detail::Blocks.bit() | if is_roof { Detail::Roofs.bit() } else { 0 };
+            for &(cell, t) in of_cell {
+                let tile = &model.tiles[t as usize];
+                table.begin_tile();
+                gathered.weld.begin_tile(tile.origin);
+                for triangle in tile.indices.start / 3..tile.indices.end / 3 {
+                    let corners = corners_of(model, tile, triangle);
+                    let [first, ..] = corners;
+                    let [a, b, c] = corners.map(|v| Vec3::from(v.position));
+                    if ((b - a).cross(c - a).z > 0.0) == is_roof {
+                        let number = table.number(first.surface, first.normal);
+                        let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
+                        gathered.weld.triangle(number, corners);
+                    }
+                }
+                gathered.weld.end_tile();
+                gathered.close_run(tile.bounds, cell, details);
+            }
+        }
+    }
+    *entries = table.entries;
+    gathered
+}
+
+/// The details that a chunk of a cell is drawn in, which is of one of them; terrain is drawn in all.
+fn details_of(cell: u32, detail: Detail) -> u8 {
+    if cell == NO_CELL { Detail::ALL.iter().fold(0, |all, detail| all | detail.bit()) } else { detail.bit() }
 }
 
 /// Overlapping triangles of shared planes: those of one layer, which do not overlap each other.
@@ -427,7 +486,7 @@ impl Layer {
         self.gathered.weld.triangle(owner, corners);
     }
 
-    fn end_tile(&mut self, bounds: Aabb, is_terrain: bool) {
+    fn end_tile(&mut self, bounds: Aabb, cell: u32) {
         let Self { gathered, planes, owners, .. } = self;
         gathered.weld.end_tile();
         gathered.weld.rename_tile(|vertex| {
@@ -435,12 +494,12 @@ impl Layer {
             vertex.surface = surface;
             planes.push(plane);
         });
-        gathered.close_run(bounds, is_terrain);
+        gathered.close_run(bounds, cell, details_of(cell, Detail::Full));
     }
 }
 
 /// The overlapping triangles of all shared planes, lowest layer first.
-fn gather_layers(shown: &Shown, tiles: &[u32], table: &mut SurfaceTable, kind: (bool, usize)) -> Vec<Layer> {
+fn gather_layers(shown: &Shown, tiles: &[(u32, u32)], table: &mut SurfaceTable, kind: (bool, usize)) -> Vec<Layer> {
     let model = shown.model;
     let mut of_tile: FxHashMap<u32, Vec<&CoplanarTriangle>> = FxHashMap::default();
     for c in shown.coplanar {
@@ -450,7 +509,7 @@ fn gather_layers(shown: &Shown, tiles: &[u32], table: &mut SurfaceTable, kind: (
     let mut layers: Vec<Layer> = (0..count).map(|_| Layer::new(kind.0, kind.1)).collect();
     // All faces of a plane take their depth from the same numbers.
     let mut planes: FxHashMap<u32, layout::Plane> = FxHashMap::default();
-    for (&t, triangles) in tiles.iter().filter_map(|t| Some((t, of_tile.get(t)?))) {
+    for (t, cell, triangles) in tiles.iter().filter_map(|(t, cell)| Some((*t, *cell, of_tile.get(t)?))) {
         let tile = &model.tiles[t as usize];
         table.begin_tile();
         layers.iter_mut().for_each(|layer| layer.begin_tile(tile.origin));
@@ -462,7 +521,7 @@ fn gather_layers(shown: &Shown, tiles: &[u32], table: &mut SurfaceTable, kind: (
             let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
             layers[c.layer as usize].triangle(number, (c.group, plane), corners);
         }
-        layers.iter_mut().for_each(|layer| layer.end_tile(tile.bounds, is_terrain(model, t)));
+        layers.iter_mut().for_each(|layer| layer.end_tile(tile.bounds, cell));
     }
     layers
 }

@@ -36,6 +36,7 @@ impl Renderer {
             view: view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0),
             cut: cut.map(|(cut, program)| (program.clone(), cut.all_numbers(input, &self.own_sprites))),
             cities: self.city_uniforms(sun.camera.eye),
+            details: self.details.clone(),
         };
         if self.shadow_of.as_ref() == Some(&wanted) {
             return;
@@ -56,7 +57,7 @@ impl Renderer {
         let frustum = sun.frustum(1.0);
         let own_cut = cut.map(|(cut, _)| cut);
         for drawn in self.drawn_sections(own_cut).into_iter().filter(|drawn| drawn.has_shadow) {
-            let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, own_cut, &input.view));
+            let shown = drawn.chunks.iter().filter(|c| drawn.shows(c, own_cut, &input.view));
             let seen = CityBuffers::visible(shown, &frustum, sun.camera.eye);
             let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
             pass.set_vertex_buffer(0, drawn.section.vertices.slice(..));
@@ -95,7 +96,7 @@ impl Renderer {
         let sections = self.drawn_sections(own_cut);
         let mut seen: Vec<Vec<SeenChunk>> = Vec::new();
         for drawn in &sections {
-            let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, own_cut, &input.view));
+            let shown = drawn.chunks.iter().filter(|c| drawn.shows(c, own_cut, &input.view));
             seen.push(CityBuffers::visible(shown, &frustum, input.view.camera.eye));
         }
         let part = |keep: &dyn Fn(&DrawnSection, &SeenChunk) -> bool| -> Vec<Part> {

@@ -13,6 +13,7 @@ use crate::{
     geom::Aabb,
     gpu::GpuError,
     render::{
+        cells::Details,
         city::{Chunk, CityBuffers, Section, SectionKind, Shown},
         cut::Cut,
         eye::{padded, relative, split_eye},
@@ -174,12 +175,17 @@ pub(super) struct DrawnSection<'a> {
     pub has_shadow: bool,
     /// Which layer of their planes its faces are in, where they overlap others; the lowest is 0.
     pub layer: u32,
+    /// In which detail its cells are drawn, if it is the scene's own.
+    pub details: &'a Details,
 }
 
 impl DrawnSection<'_> {
     /// Whether a chunk of it may show something.
-    pub fn shows(&self, bounds: &Aabb, cut: Option<&Cut>, view: &View) -> bool {
-        self.content.is_none_or(|number| cut.is_some_and(|cut| cut.hiding.shows(number, bounds, view)))
+    pub fn shows(&self, chunk: &Chunk, cut: Option<&Cut>, view: &View) -> bool {
+        match self.content {
+            None => self.details.show(chunk),
+            Some(number) => cut.is_some_and(|cut| cut.hiding.shows(number, &chunk.bounds, view)),
+        }
     }
 }
 
@@ -206,7 +212,7 @@ impl Renderer {
             };
             if !self.contents.cities.iter().any(|(id, _)| *id == city.id) {
                 let coplanar = stacked_triangles(&city.model, &city.geometries, &city.heights);
-                let made = self.city_on_gpu(&Shown { coplanar: &coplanar, ..plain })?;
+                let made = self.city_on_gpu(&Shown { coplanar: &coplanar, ..plain }, None)?;
                 self.contents.cities.push((city.id, made));
             }
             let gpu = &self.gpu;
@@ -301,13 +307,13 @@ impl Renderer {
     pub(super) fn drawn_sections(&self, cut: Option<&Cut>) -> Vec<DrawnSection<'_>> {
         let Some(own) = &self.city else { return Vec::new() };
         let mut drawn = Vec::new();
-        add_sections(&mut drawn, own, (None, 0, true), &[]);
+        add_sections(&mut drawn, (own, &self.details), (None, 0, true), &[]);
         for (i, content) in self.contents.shown.iter().enumerate() {
             let is_asked = cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == content.number));
             let offset = (i as u32 + 1) * STAGE_STRIDE as u32;
             if let Some(city) = self.contents.city(own, content.id).filter(|_| is_asked) {
                 let which = (Some(content.number), offset, content.has_shadow);
-                add_sections(&mut drawn, city, which, &content.chunks);
+                add_sections(&mut drawn, (city, &self.details), which, &content.chunks);
             }
         }
         drawn
@@ -363,7 +369,7 @@ impl Renderer {
 
 fn add_sections<'a>(
     drawn: &mut Vec<DrawnSection<'a>>,
-    city: &'a CityOnGpu,
+    (city, details): (&'a CityOnGpu, &'a Details),
     (content, offset, has_shadow): (Option<u32>, u32, bool),
     chunks: &'a [Vec<Chunk>],
 ) {
@@ -375,7 +381,7 @@ fn add_sections<'a>(
         let layer = if is_coplanar { layers } else { 0 };
         layers += u32::from(is_coplanar);
         let chunks = chunks.get(i).unwrap_or(&section.chunks);
-        DrawnSection { city, section, image: image.as_ref(), chunks, content, offset, has_shadow, layer }
+        DrawnSection { city, section, image: image.as_ref(), chunks, content, offset, has_shadow, layer, details }
     }));
 }
 

@@ -58,7 +58,7 @@ pub fn reach<'a>(view: &View, seen: impl Iterator<Item = &'a SeenChunk<'a>>) -> 
 
 /// Box around a box's projection in a perspective picture, pixels, and its least distance along the view axis, metres;
 /// `None` where it reaches the near plane.
-fn projected(view: &View, bounds: &Aabb) -> Option<(DVec2, DVec2, f64)> {
+pub(super) fn projected(view: &View, bounds: &Aabb) -> Option<(DVec2, DVec2, f64)> {
     let (mut low, mut high, mut nearest) = (DVec2::INFINITY, DVec2::NEG_INFINITY, f64::INFINITY);
     for corner in bounds.corners() {
         let p = view.pixel(corner).filter(|p| p.z > view.camera.near_m)?;

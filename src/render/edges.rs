@@ -13,7 +13,8 @@ use crate::{
     geom::Aabb,
     gpu::{Gpu, GpuError},
     render::{
-        city::{CityBuffers, Draw, Shown, corners_of, extent_of, ordered_tiles},
+        cells::Cells,
+        city::{CityBuffers, Draw, Shown, corners_of, extent_of},
         layout, surfaces,
     },
     view::Frustum,
@@ -141,7 +142,7 @@ fn gather(shown: &Shown, city: &CityBuffers, angles: &CreaseAngles) -> Vec<Edge>
     let numbers = SurfaceNumbers::new(&city.surface_table);
     let mut gathered = Vec::with_capacity(found.len());
     let mut known: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-    for number in ordered_tiles(shown, &extent_of(shown)) {
+    for (number, _) in Cells::new(shown, &extent_of(shown)).tiles {
         let (tile, run) = (&model.tiles[number as usize], of_tile.get(&number).copied().unwrap_or_default());
         known.clear();
         gathered.extend(run.iter().map(|edge| {

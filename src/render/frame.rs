@@ -29,6 +29,7 @@ use crate::{
     geom::Aabb,
     gpu::{GpuError, Slot, Timer},
     render::{
+        cells::{Detail, Details},
         city::{CityBuffers, Section, SectionKind, draws_of},
         city_passes::draw_ranges,
         cut::Cuts,
@@ -105,6 +106,8 @@ pub struct FrameInput<'a> {
     pub samples: u32,
     /// What is drawn over the picture, after its last sample.
     pub furniture: &'a Furniture,
+    /// How many triangles the city may take, where it may be simplified to that: at least a quarter of it is for what is no terrain.
+    pub most_triangles: Option<u64>,
 }
 
 /// Modules that a scene's lenses have a part in.
@@ -201,6 +204,7 @@ impl Renderer {
         self.layer_figures = LayerFigures::default();
         self.method_figures = MethodFigures::default();
         let city = self.drawn_box();
+        self.details = self.details_for(input);
         self.own_sprites.plan(input, &city);
         let all_seen = seen_volumes(input, &city, self.own_sprites.room());
         let sun_view = self.sun_view(&input.view, &input.sun, |frustum| self.content_bounds(input, frustum));
@@ -337,9 +341,9 @@ impl Renderer {
         pass.set_pipeline(self.pipelines.get(&Key::Bare));
         pass.set_bind_group(0, &groups.view, &[]);
         pass.set_bind_group(1, &city.group, &[]);
-        let frustum = view.frustum(1.0);
+        let (frustum, whole) = (view.frustum(1.0), Details::default());
         for section in &city.buffers.sections {
-            let seen = CityBuffers::visible(&section.chunks, &frustum, view.camera.eye);
+            let seen = CityBuffers::visible(section.chunks.iter().filter(|c| whole.show(c)), &frustum, view.camera.eye);
             let (draws, _) = draws_of(seen.iter().map(|s| s.chunk));
             pass.set_vertex_buffer(0, section.vertices.slice(..));
             draw_ranges(&mut pass, &section.indices, &draws);
@@ -375,7 +379,7 @@ impl Renderer {
             .sections
             .iter()
             .flat_map(|s| &s.chunks)
-            .filter(|c| frustum.meets(&c.bounds))
+            .filter(|c| c.details & Detail::Full.bit() != 0 && frustum.meets(&c.bounds))
             .fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
         let [seen, all] = contents(&frustum);
         light::sun_view(sun, &receivers.union(seen), &city.bounds.union(all))

@@ -122,7 +122,7 @@ impl Clear {
     }
 
     fn holds(&self, chunk: &Chunk, view: &View) -> bool {
-        if chunk.has_terrain && !self.terrain {
+        if chunk.has_terrain() && !self.terrain {
             return false;
         }
         let Some((around, volume)) = &self.volume else { return true };
@@ -200,7 +200,7 @@ impl Hiding {
     /// Whether some fragment of a chunk may be translucent.
     pub fn may_clear(&self, chunk: &Chunk, view: &View) -> bool {
         let may =
-            |(reach, terrain): &(Reach, bool)| (*terrain || !chunk.has_terrain) && reach.meets(&chunk.bounds, view);
+            |(reach, terrain): &(Reach, bool)| (*terrain || !chunk.has_terrain()) && reach.meets(&chunk.bounds, view);
         self.translucent.iter().any(may)
     }
 
@@ -220,6 +220,7 @@ mod tests {
         geom::Shape,
         render::{
             body::{Body, Leaf},
+            cells::NO_CELL,
             operations::Operation,
         },
         view::Camera,
@@ -277,7 +278,8 @@ mod tests {
             let view = view();
             let hiding = hiding(&shape, terrain, &view);
             let bounds = Aabb { min: low, max: low + size.abs() };
-            let chunk = Chunk { range: 0..3, bounds, has_terrain };
+            let cell = if has_terrain { NO_CELL } else { 0 };
+            let chunk = Chunk { range: 0..3, bounds, cell, details: 1 };
             let volume = shape.volume().expect("a volume");
             let acts = terrain || !has_terrain;
             let corners = bounds.corners().into_iter();

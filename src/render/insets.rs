@@ -100,6 +100,9 @@ impl ViewState {
     }
 }
 
+/// How many triangles an inset may take for each of its pixels.
+pub const TRIANGLES_PER_PIXEL: u64 = 4;
+
 /// One inset.
 #[derive(Debug)]
 pub(super) struct Inset {
@@ -124,6 +127,8 @@ impl Studio {
         furniture: &Furniture,
         is_stale: bool,
     ) -> Result<bool, RenderError> {
+        let most = TRIANGLES_PER_PIXEL * request.size.iter().map(|&side| u64::from(side)).product::<u64>();
+        self.find_blocks(most)?;
         let mut inset = match self.insets.remove(&number) {
             Some(inset) => inset,
             None => Inset { state: ViewState::new(&self.renderer.gpu)?, occlusion: Mutex::default(), of: None },
@@ -131,7 +136,7 @@ impl Studio {
         let shows = !is_stale
             && self.renderer.images.size(number).is_some()
             && inset.of.as_ref().is_some_and(|(s, r, f)| s == scene && r == request && f == furniture);
-        let drawn = if shows { Ok(()) } else { self.draw_inset(&mut inset, number, scene, request, furniture) };
+        let drawn = if shows { Ok(()) } else { self.draw_inset(&mut inset, number, (scene, request, furniture), most) };
         if drawn.is_ok() {
             self.insets.insert(number, inset);
         }
@@ -142,9 +147,8 @@ impl Studio {
         &mut self,
         inset: &mut Inset,
         number: u64,
-        scene: &Scene,
-        request: &Request,
-        furniture: &Furniture,
+        (scene, request, furniture): (&Scene, &Request, &Furniture),
+        most: u64,
     ) -> Result<(), RenderError> {
         inset.of = None;
         let swap_occlusion = |a: &mut Mutex<Occlusion>, b: &mut Mutex<Occlusion>| {
@@ -153,10 +157,10 @@ impl Studio {
         };
         inset.state.swap(&mut self.renderer);
         swap_occlusion(&mut inset.occlusion, &mut self.occlusion);
-        let drawn = self.draw_with(scene, request, furniture).and_then(|()| {
+        let drawn = self.draw_with(scene, request, furniture, Some(most)).and_then(|()| {
             // Lists that were too short are long enough the second time.
             let grows = self.renderer.makes_room()? | self.renderer.sorts_longer()?;
-            if grows { self.draw_with(scene, request, furniture) } else { Ok(()) }
+            if grows { self.draw_with(scene, request, furniture, Some(most)) } else { Ok(()) }
         });
         if drawn.is_ok()
             && let Some(targets) = &self.renderer.targets

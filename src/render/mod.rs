@@ -6,6 +6,7 @@
 
 mod best_views;
 pub mod body;
+mod cells;
 pub mod city;
 mod city_passes;
 pub mod composited;

@@ -11,6 +11,7 @@ use crate::{
         CityModel, Lod,
         coplanar::coplanar_triangles,
         decode_normal,
+        derived::{Derive, Form, derive},
         ground::{Ground, plain_ground},
         load::LoadOptions,
         shown::shown_geometries,
@@ -199,7 +200,7 @@ impl Studio {
             ground: ground.as_ref(),
             is_lit_as_before: false,
         };
-        renderer.set_city(&shown)?;
+        renderer.set_city(&shown, None)?;
         let mut objects: Vec<u32> = geometries.iter().map(|&g| model.geometries[g as usize].object).collect();
         objects.sort_unstable();
         objects.dedup();
@@ -307,12 +308,12 @@ impl Studio {
             statistics: false,
             backend: self.backend,
         };
-        self.draw_with(scene, &request, furniture)
+        self.draw_with(scene, &request, furniture, None)
     }
 
     /// Draws all samples of a picture that fits one target, without reading anything back.
     pub fn draw(&mut self, scene: &Scene, request: &Request) -> Result<(), RenderError> {
-        self.draw_with(scene, request, &furniture::NONE)
+        self.draw_with(scene, request, &furniture::NONE, None)
     }
 
     pub(super) fn draw_with(
@@ -320,13 +321,15 @@ impl Studio {
         scene: &Scene,
         request: &Request,
         furniture: &Furniture,
+        most_triangles: Option<u64>,
     ) -> Result<(), RenderError> {
         let drawn = scene.drawn();
         let prepared = self.prepare(&drawn, request.size)?;
         let view = self.view(scene, request.size, &prepared)?;
         let whole = PictureTile::whole(request.size);
         self.find_cities(&prepared)?;
-        let mut input = FrameInput { furniture, ..input(&drawn.scene, request, &prepared, view, whole) };
+        let mut input =
+            FrameInput { furniture, most_triangles, ..input(&drawn.scene, request, &prepared, view, whole) };
         for sample in 0..input.samples {
             input.sample = sample;
             self.renderer.draw(&input, None)?;
@@ -353,6 +356,28 @@ impl Studio {
         }
         let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_ref());
         Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false })?)
+    }
+
+    /// Makes block models of all objects, once, for views that may show no more triangles than `most`, where
+    /// the city has more (B8). All insets are drawn again.
+    pub(super) fn find_blocks(&mut self, most: u64) -> Result<(), RenderError> {
+        if self.renderer.city().is_none_or(|city| city.has_blocks || city.triangles <= most) {
+            return Ok(());
+        }
+        let started = Instant::now();
+        let blocks = derive(&self.model, &self.geometries, &Derive { form: Form::Lod1, parts: true });
+        let coplanar = coplanar_triangles(&self.model, &self.geometries);
+        let shown = Shown {
+            model: &self.model,
+            geometries: &self.geometries,
+            coplanar: &coplanar,
+            ground: self.ground.as_ref(),
+            is_lit_as_before: false,
+        };
+        self.renderer.set_city(&shown, Some(&blocks.model))?;
+        self.insets.clear();
+        log::info!("block models of {} objects in {:.0} ms", self.objects, started.elapsed().as_secs_f64() * 1e3);
+        Ok(())
     }
 
     /// The WGSL of a module that runs where the scene's lenses are in the picture, or everywhere where none is (H4).
@@ -719,6 +744,7 @@ fn input<'a>(
         sample: 0,
         samples: request.samples.max(1),
         furniture: &furniture::NONE,
+        most_triangles: None,
     }
 }
 

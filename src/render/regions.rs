@@ -275,7 +275,8 @@ impl Renderer {
         let mut apart: Vec<(DrawnSection, Vec<&Chunk>)> = Vec::new();
         let mut reached: Vec<(DrawnSection, Vec<&Chunk>)> = Vec::new();
         for drawn in &sections {
-            let seen = CityBuffers::visible(drawn.chunks, &frustum, input.view.camera.eye);
+            let shown = drawn.chunks.iter().filter(|c| drawn.shows(c, None, &input.view));
+            let seen = CityBuffers::visible(shown, &frustum, input.view.camera.eye);
             // Layers of coplanar faces stay together: the later one wins where depths are equal.
             let is_layer = drawn.section.kind == SectionKind::Coplanar;
             let (own, others) =

@@ -6,8 +6,10 @@
 use std::{path::Path, sync::Arc};
 
 use crate::{
+    city::CityModel,
     gpu::{Gpu, GpuError},
     render::{
+        cells::Details,
         city::{CityBuffers, SectionKind, Shown},
         contents::Contents,
         curtain::Curtain,
@@ -98,7 +100,8 @@ pub struct Renderer {
     /// The picture is the same.
     pub shuffled: Option<u32>,
     /// Counts cities, so that the shadow of an old one is not taken for the new one's.
-    generation: u32,
+    /// In which detail the view that is drawn shows the city.
+    pub(super) details: Details,
 }
 
 /// The city's buffers and the groups that bind them.
@@ -204,6 +207,8 @@ pub(super) struct Shadow {
     pub cut: Option<(Program, Vec<u8>)>,
     /// Where contents stand.
     pub cities: Vec<u8>,
+    /// In which detail the city throws it.
+    pub details: Details,
 }
 
 /// Bind groups over buffers and targets; made anew when one of them was replaced.
@@ -273,28 +278,27 @@ impl Renderer {
             list_target: None,
             lists_crossings: false,
             crossing_room: 0,
-            generation: 0,
+            details: Details::default(),
             gpu,
         })
     }
 
     /// Puts a city on the card in place of the last one.
-    pub fn set_city(&mut self, shown: &Shown) -> Result<(), GpuError> {
+    pub fn set_city(&mut self, shown: &Shown, blocks: Option<&CityModel>) -> Result<(), GpuError> {
         self.city = None;
         (self.layers, self.longest_list) = (None, 0);
         self.slots = None;
         self.contents = Contents::default();
-        self.city = Some(self.city_on_gpu(shown)?);
+        self.city = Some(self.city_on_gpu(shown, blocks)?);
         self.groups = None;
         self.shadow_of = None;
-        self.generation += 1;
         Ok(())
     }
 
     /// The buffers of a city, and what binds them.
-    pub(super) fn city_on_gpu(&self, shown: &Shown) -> Result<CityOnGpu, GpuError> {
+    pub(super) fn city_on_gpu(&self, shown: &Shown, blocks: Option<&CityModel>) -> Result<CityOnGpu, GpuError> {
         let gpu = &self.gpu;
-        let buffers = CityBuffers::new(gpu, shown)?;
+        let buffers = CityBuffers::new(gpu, shown, blocks)?;
         let surfaces = wgpu::BindingResource::TextureView(&buffers.surfaces);
         let group = group(gpu, "city", &self.pipelines.layouts.city, &[(0, surfaces)]);
         let images = buffers.sections.iter().map(|section| match section.kind {

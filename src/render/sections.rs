@@ -171,7 +171,7 @@ impl Renderer {
             let mut counted = (1, 1);
             begin(&mut pass, &count);
             for drawn in &sections {
-                let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, Some(cut), &input.view));
+                let shown = drawn.chunks.iter().filter(|c| drawn.shows(c, Some(cut), &input.view));
                 let seen = CityBuffers::visible(shown, &frustum, input.view.camera.eye);
                 let chunks = seen.iter().map(|s| s.chunk).filter(|c| round.reach.touches(&c.bounds, &input.view));
                 let chunks: Vec<&Chunk> = chunks.collect();

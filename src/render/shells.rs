@@ -24,10 +24,10 @@ struct Sum {
 ///
 /// No edge is looked up: each adds a number made of its two ends, or takes it away in the other direction. An open object has
 /// the sum 0 with a probability of 2⁻⁶⁴.
-pub(super) fn closed_shells(shown: &Shown, tiles: &[u32], middle: glam::DVec3) -> Shells {
+pub(super) fn closed_shells(shown: &Shown, tiles: impl Iterator<Item = u32>, middle: glam::DVec3) -> Shells {
     let model = shown.model;
     let mut sums: FxHashMap<u32, Sum> = FxHashMap::default();
-    for &t in tiles {
+    for t in tiles {
         let tile = &model.tiles[t as usize];
         for triangle in tile.indices.start / 3..tile.indices.end / 3 {
             let corners = corners_of(model, tile, triangle);

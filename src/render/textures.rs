@@ -19,6 +19,11 @@ pub struct Textures {
 }
 
 impl Textures {
+    /// No textures.
+    pub fn none() -> Self {
+        Self { entries: Vec::new(), bytes: 0 }
+    }
+
     /// Decodes and uploads what the shown surfaces use; what cannot be read stays absent.
     pub fn new(gpu: &Gpu, shown: &Shown) -> Result<Self, GpuError> {
         let model = shown.model;

@@ -112,7 +112,7 @@ pub fn set_city(studio: &mut Studio, panes: &[Pane]) {
     let coplanar = coplanar_triangles(&model, &geometries);
     let shown =
         Shown { model: &model, geometries: &geometries, coplanar: &coplanar, ground: None, is_lit_as_before: false };
-    studio.renderer.set_city(&shown).expect("the city fits");
+    studio.renderer.set_city(&shown, None).expect("the city fits");
     (studio.model, studio.geometries) = (Arc::new(model), geometries);
 }
 

@@ -92,7 +92,7 @@ impl Bench {
         let geometries: Vec<u32> = (0..model.geometries.len() as u32).collect();
         let shown =
             Shown { model: &model, geometries: &geometries, coplanar: &[], ground: None, is_lit_as_before: false };
-        let city = CityBuffers::new(&gpu, &shown).expect("a city");
+        let city = CityBuffers::new(&gpu, &shown, None).expect("a city");
         let edges = EdgeBuffers::new(&gpu, &shown, &city, &CreaseAngles::default()).expect("edges");
         let all = super::gather(&shown, &city, &CreaseAngles::default());
         Self { gpu, city, edges, all, model }

@@ -33,7 +33,7 @@ impl Renderer {
             sections.reverse();
         }
         for drawn in sections {
-            let shown = drawn.chunks.iter().filter(|c| drawn.shows(&c.bounds, Some(cut), &input.view));
+            let shown = drawn.chunks.iter().filter(|c| drawn.shows(c, Some(cut), &input.view));
             let seen = CityBuffers::visible(shown, &frustum, input.view.camera.eye);
             let DrawnSection { city, section, image, content, offset, layer, .. } = drawn;
             let (all, some): (Vec<&Chunk>, Vec<&Chunk>) = seen
