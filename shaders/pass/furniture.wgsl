@@ -12,7 +12,7 @@ struct FurnitureItem {
     // Left, top and right, bottom; pixels of the target.
     @location(0) low: vec2f,
     @location(1) high: vec2f,
-    // Linear colour and alpha.
+    // Linear colour and alpha. A board has its own numbers in this and the next three.
     @location(2) color: vec4f,
     // The same for what surrounds letters; of a panel and of a picture y says whether it is an ellipse.
     @location(3) halo: vec4f,
@@ -101,22 +101,26 @@ fn ellipse(at: vec2f, low: vec2f, high: vec2f, softness: f32) -> f32 {
     return select(share, share * share * (3.0 - 2.0 * share), softness > 1.0);
 }
 
-// Taps on each side of a pixel of a fisheye: towards its border many texels share one.
-const FISHEYE_TAPS: i32 = 4;
+// Taps on each side of a pixel of what is not shown texel by texel: towards the border of a fisheye, and on a tilted board, many texels share one.
+const TAPS: i32 = 4;
+
+// The place of a tap, from the middle of its pixel.
+fn tap_offset(tap: i32) -> vec2f {
+    return (vec2f(f32(tap % TAPS), f32(tap / TAPS)) + 0.5) / f32(TAPS) - 0.5;
+}
 
 // What a fisheye shows at a place, of a picture that is 1 + d times as large as it; the middle is as much larger, the border stays where it is:
 // shares of the way to the corners, of an ellipse to its rim (view::local::unfisheye).
 fn fisheye(inside: vec2f, size: vec2f, d: f32, is_ellipse: bool) -> vec4f {
     let reach = 0.5 * size * select(1.4142135, 1.0, is_ellipse);
     var sum = vec4f(0.0);
-    for (var tap = 0; tap < FISHEYE_TAPS * FISHEYE_TAPS; tap++) {
-        let offset = (vec2f(f32(tap % FISHEYE_TAPS), f32(tap / FISHEYE_TAPS)) + 0.5) / f32(FISHEYE_TAPS) - 0.5;
-        let shown = (inside + offset - 0.5 * size) / reach;
+    for (var tap = 0; tap < TAPS * TAPS; tap++) {
+        let shown = (inside + tap_offset(tap) - 0.5 * size) / reach;
         let place = shown / (1.0 + d * (1.0 - min(length(shown), 1.0)));
         let uv = 0.5 + place * reach / size;
         sum += textureSampleLevel(picture, linear_sampler, uv, 0.0);
     }
-    return sum / f32(FISHEYE_TAPS * FISHEYE_TAPS);
+    return sum / f32(TAPS * TAPS);
 }
 
 // An overlay's picture. Its item has its opacity as alpha; its halo says whether left and right are exchanged, whether it is an ellipse, and
@@ -150,6 +154,21 @@ fn opaque_picture(shown: Shown) -> @location(0) vec4f {
     let across = select(inside.x, shown.high.x - shown.low.x - inside.x, shown.halo.x > 0.5);
     let place = vec2i(floor(vec2f(across, inside.y)));
     return vec4f(textureLoad(picture, clamp(place, vec2i(0), vec2i(textureDimensions(picture)) - 1), 0).rgb, 1.0);
+}
+
+// A board in the scene (B6): its picture, here premultiplied, mapped projectively. The rows by which a place of the target, from `low`, becomes (u w, v w, w) are
+// its colour without the alpha, its halo without the last, and that with radius and softness; w is positive before the eye.
+@fragment
+fn board(shown: Shown) -> @location(0) vec4f {
+    let rows = mat3x3f(shown.color.rgb, shown.halo.xyz, vec3f(shown.halo.w, shown.radius, shown.softness));
+    var sum = vec4f(0.0);
+    for (var tap = 0; tap < TAPS * TAPS; tap++) {
+        let place = vec3f(shown.at.xy - shown.low + tap_offset(tap), 1.0) * rows;
+        let uv = place.xy / place.z;
+        let is_on = place.z > 0.0 && all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
+        sum += select(vec4f(0.0), textureSampleLevel(picture, linear_sampler, uv, 0.0), is_on);
+    }
+    return sum / f32(TAPS * TAPS);
 }
 
 // A corner of a strip: a context line is a strip along its way, a pixel wider on both sides than what is seen.

@@ -68,6 +68,7 @@ fn draw_with(
     let overlays = overlays::overlays(studio, scene, request, &furniture::cards(&own), standing)?;
     let furniture = Furniture { pieces: overlays.furniture.pieces.into_iter().chain(own.pieces).collect() };
     let mut picture = studio.render_with(scene, request, &furniture)?;
+    picture.without_glyph.extend(&overlays.without_glyph);
     if request.statistics {
         let figures = overlays.figures.iter().map(|own| {
             let ([x, y], [width, height]) = (own.at, own.size);

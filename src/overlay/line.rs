@@ -67,6 +67,13 @@ pub fn way(rect: &Rect, side: Side, target: &Target, kind: LineKind) -> Option<W
     Way::new(cut(points, &target.outline))
 }
 
+/// The points of a straight line from a place in the picture to a focus, pixels; `None` where there is none.
+pub fn straight(from: DVec2, focus: &Focus) -> Option<Vec<DVec2>> {
+    let target = Target::new(focus)?;
+    let way = Way::new(cut(vec![lattice(from)?, target.at], &target.outline))?;
+    Some(way.points().iter().map(|p| pixels(*p)).collect())
+}
+
 /// Where a line to `focus` leaves an overlay that stands on `side`, and the axis that it leaves along (0 x, 1 y); `None` if the overlay covers the focus.
 ///
 /// It leaves through the inner edge if the focus is beyond that, otherwise through the edge that the focus is furthest beyond.

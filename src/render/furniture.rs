@@ -39,8 +39,24 @@ pub enum Piece {
     Text(TextLine),
     /// An image that the renderer keeps.
     Image(ImagePiece),
+    /// An overlay that stands in the scene.
+    Board(BoardPiece),
     /// A context line.
     Strip(Strip),
+}
+
+/// An image of [`Renderer::board`](crate::render::renderer::Renderer::board) on a rectangle in the scene, in perspective.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoardPiece {
+    /// Its number; alpha is premultiplied.
+    pub image: u64,
+    /// Left, top of what it may touch, whole pixels from the picture's top left.
+    pub low: [f32; 2],
+    /// Right, bottom.
+    pub high: [f32; 2],
+    /// Rows r for which the place (x, y), pixels from `low`, shows the image at (u, v) = (r₀·p, r₁·p) / r₂·p, p = (x, y, 1): shares of its width
+    /// and height from its top left. r₂·p is positive before the eye.
+    pub rows: [[f32; 3]; 3],
 }
 
 /// An image of [`Renderer::images`](crate::render::images::Images), texel by texel; what of it is missing there is not drawn.
@@ -120,6 +136,7 @@ impl Furniture {
             Piece::Panel(_) => [Some(P::Items), Some(P::Solid)].into_iter().flatten(),
             Piece::Text(_) => [Some(P::Items), None].into_iter().flatten(),
             Piece::Image(_) => [Some(P::Picture), Some(P::OpaquePicture)].into_iter().flatten(),
+            Piece::Board(_) => [Some(P::Board), None].into_iter().flatten(),
             Piece::Strip(strip) => [Some(strip_part(strip.skin)), None].into_iter().flatten(),
         })
     }
@@ -209,7 +226,7 @@ impl FurnitureOnGpu {
     ) -> Result<(), GpuError> {
         if self.of.1 != whole || self.of.0 != *furniture {
             let set = |piece: &Piece| match piece {
-                Piece::Panel(_) | Piece::Image(_) | Piece::Strip(_) => None,
+                Piece::Panel(_) | Piece::Image(_) | Piece::Board(_) | Piece::Strip(_) => None,
                 Piece::Text(line) => self.setter.rasterised(line, whole),
             };
             self.runs = furniture.pieces.iter().map(set).collect();
@@ -374,6 +391,7 @@ fn extents(
             let hidden = || Patch::inside(border.0, border.1, image.radius_px.max(0.0), softness);
             (Patch::around(low, high), hides.then(hidden).flatten())
         }
+        Piece::Board(board) => (Patch::around(inside(board.low), inside(board.high)), None),
         Piece::Text(_) | Piece::Strip(_) => (None, None),
     };
     let worth = |(all, hides): (_, Option<Patch>)| (all, hides.filter(|part| part.area() >= WORTHWHILE));
@@ -427,6 +445,19 @@ fn assembled(furniture: &Furniture, runs: &[Option<Run>], opaque: &[bool], tile:
                     ..Default::default()
                 };
                 (item, [FurniturePart::Solid, FurniturePart::Items], None)
+            }
+            (Piece::Board(board), _) => {
+                let [[a, b, c], [d, e, f], [g, h, i]] = board.rows;
+                let item = FurnitureItem {
+                    low: inside(board.low),
+                    high: inside(board.high),
+                    color: [a, b, c, 1.0],
+                    halo: [d, e, f, g],
+                    radius: h,
+                    softness: i,
+                    ..Default::default()
+                };
+                (item, [FurniturePart::Board; 2], Some((board.image, None)))
             }
             (Piece::Strip(strip), _) => {
                 let first = all.corners.len();

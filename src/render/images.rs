@@ -12,12 +12,13 @@ use crate::{
     },
     gpu::Gpu,
     render::{
+        furniture::Furniture,
         pipelines::{PICTURE, Pipelines},
         renderer::group,
     },
 };
 
-/// Images by number; straight alpha.
+/// Images by number; straight alpha, but for those of boards.
 #[derive(Debug)]
 pub struct Images {
     kept: FxHashMap<u64, Image>,
@@ -26,10 +27,18 @@ pub struct Images {
     sampler: wgpu::Sampler,
 }
 
+/// What an image shows, where that says all of it.
+#[derive(Debug, PartialEq)]
+pub(super) enum Of {
+    /// A file, and the size that it was asked for in.
+    File(PathBuf, Option<[u32; 2]>),
+    /// Furniture on nothing.
+    Furniture(Furniture),
+}
+
 #[derive(Debug)]
 struct Image {
-    /// The file that it shows, and the size that it was asked for in.
-    of: Option<(PathBuf, Option<[u32; 2]>)>,
+    of: Option<Of>,
     size: [u32; 2],
     is_opaque: bool,
     texture: wgpu::Texture,
@@ -85,8 +94,8 @@ impl Images {
     /// # Errors
     /// Why the file cannot be read.
     pub fn of_file(&mut self, gpu: &Gpu, number: u64, file: &Path, size: Option<[u32; 2]>) -> Result<bool, String> {
-        let is_of = |image: &Image| image.of.as_ref().is_some_and(|(own, wanted)| own == file && *wanted == size);
-        if self.kept.get(&number).is_some_and(is_of) {
+        let of = Of::File(file.to_owned(), size);
+        if self.of(number) == Some(&of) {
             return Ok(false);
         }
         let pixels = decode(&Texture { image: TextureImage::File(file.to_owned()), wrap: [Wrap::Repeat; 2] })?;
@@ -95,16 +104,26 @@ impl Images {
             Some(size) => (size, filling(&pixels, size)),
         };
         self.set(gpu, number, size_made, texels.as_chunks().0);
-        if let Some(image) = self.kept.get_mut(&number) {
-            image.of = Some((file.to_owned(), size));
-        }
+        self.note(number, of);
         Ok(true)
+    }
+
+    /// What an image shows, where that was noted.
+    pub(super) fn of(&self, number: u64) -> Option<&Of> {
+        self.kept.get(&number)?.of.as_ref()
+    }
+
+    /// Notes what an image shows from now on, until it is another.
+    pub(super) fn note(&mut self, number: u64, of: Of) {
+        if let Some(image) = self.kept.get_mut(&number) {
+            image.of = Some(of);
+        }
     }
 
     fn fitted(&mut self, gpu: &Gpu, number: u64, size: [u32; 2], is_opaque: bool) -> wgpu::Texture {
         use wgpu::TextureUsages as U;
         if let Some(image) = self.kept.get_mut(&number).filter(|image| image.size == size) {
-            image.is_opaque = is_opaque;
+            (image.of, image.is_opaque) = (None, is_opaque);
             return image.texture.clone();
         }
         let texture = gpu.texture("image", [size[0], size[1], 1], 1, PICTURE, U::TEXTURE_BINDING | U::COPY_DST);

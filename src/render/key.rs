@@ -27,6 +27,8 @@ pub enum FurniturePart {
     Picture,
     /// Insides of opaque pictures.
     OpaquePicture,
+    /// Overlays that stand in the scene.
+    Board,
     /// Context lines of one colour.
     Strip,
     /// Context lines with a skin.
@@ -40,6 +42,7 @@ impl FurniturePart {
             Self::Solid => "opaque panels",
             Self::Picture => "overlays",
             Self::OpaquePicture => "opaque overlays",
+            Self::Board => "call-outs",
             Self::Strip => "context lines",
             Self::Skin => "context lines with a skin",
         }
@@ -55,6 +58,7 @@ impl FurniturePart {
             Self::Solid => ("vertex", Some("solid")),
             Self::Picture => ("vertex", Some("picture_fragment")),
             Self::OpaquePicture => ("vertex", Some("opaque_picture")),
+            Self::Board => ("vertex", Some("board")),
             Self::Strip => ("strip_vertex", Some("strip")),
             Self::Skin => ("strip_vertex", Some("strip_skin")),
         }

@@ -127,7 +127,7 @@ pub struct Picture {
     /// Objects by lens that have no form that its content derives: shown as they are, left out, shown as something else.
     pub(super) not_derived: [BTreeMap<u32, u32>; 3],
     /// Characters of the furniture that no font has.
-    pub(super) without_glyph: BTreeSet<char>,
+    pub without_glyph: BTreeSet<char>,
     /// GPU allocations and uploads while drawing (reading back not counted).
     made: (u64, u64),
     /// What it cost.

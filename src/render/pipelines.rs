@@ -370,7 +370,7 @@ impl Layouts {
             Key::StoredForm(_) | Key::StoredLayers(_) => vec![None, Some(&self.planes), Some(&self.stored)],
             Key::SpriteList => vec![None, None, Some(&self.stored)],
             Key::Furniture {
-                part: FurniturePart::Picture | FurniturePart::OpaquePicture | FurniturePart::Skin,
+                part: FurniturePart::Picture | FurniturePart::OpaquePicture | FurniturePart::Board | FurniturePart::Skin,
                 ..
             } => {
                 vec![Some(&self.furniture), Some(&self.furniture_picture)]

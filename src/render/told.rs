@@ -50,10 +50,10 @@ const NO_GLYPH: &str = "no-glyph";
 const MOST_NAMED: usize = 5;
 
 /// The characters of `furniture` that no font has, each once.
-pub(super) fn without_glyph(furniture: &Furniture) -> BTreeSet<char> {
+pub fn without_glyph(furniture: &Furniture) -> BTreeSet<char> {
     let texts = furniture.pieces.iter().filter_map(|piece| match piece {
         Piece::Text(line) => Some(&line.text),
-        Piece::Panel(_) | Piece::Image(_) | Piece::Strip(_) => None,
+        Piece::Panel(_) | Piece::Image(_) | Piece::Board(_) | Piece::Strip(_) => None,
     });
     texts.flat_map(|text| cleaned(text).chars().collect::<Vec<_>>()).filter(|c| !has_glyph(*c)).collect()
 }

@@ -16,6 +16,8 @@ pub struct Overlay {
     pub priority: f64,
     /// Degree of interest, 0..1: how large it gets where the layout goes by interest.
     pub interest: f64,
+    /// Where it stands.
+    pub stand: Stand,
     /// Preferred size.
     pub size: [u32; 2],
     /// It is made no smaller; `None`: half its preferred size.
@@ -30,6 +32,35 @@ pub struct Overlay {
     pub caption: Option<String>,
     /// How it is tied to its points of interest; `None`: it is not.
     pub line: Option<ContextLine>,
+}
+
+/// Where an overlay stands (B6).
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Stand {
+    /// Where the layout puts it.
+    #[default]
+    Laid,
+    /// Its middle at these shares of the picture's width and height, 0..1 from the upper left; all of it within the margin.
+    At([f64; 2]),
+    /// In the scene, above its first point of interest.
+    Scene(CallOut),
+}
+
+/// A tilted board in the scene that shows an overlay (B6). Turned to the viewer about the vertical axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CallOut {
+    /// From the top of the object to the lower edge, metres; `None`: by the sizes of both.
+    pub height_m: Option<f64>,
+    /// Width, metres; `None`: as wide in the picture as the overlay's preferred size.
+    pub width_m: Option<f64>,
+    /// How far its upper edge is tilted away from the viewer, radians: 0 upright, π/2 lying flat; -π/2..π/2.
+    pub tilt: f64,
+}
+
+impl Default for CallOut {
+    fn default() -> Self {
+        Self { height_m: None, width_m: None, tilt: 20_f64.to_radians() }
+    }
 }
 
 /// Alpha mask and frame mask of an overlay.
@@ -193,6 +224,13 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
             Some(lens) if scene.overlays[..i].iter().any(|other| other.lens == lens.name) => {
                 note(table.clone(), "lens", format!("\"{}\" has an overlay already: a lens has one", lens.name));
             }
+            Some(lens)
+                if matches!(overlay.stand, Stand::Scene(_))
+                    && lens.best_view.as_ref().is_some_and(|shown| shown.pois.is_empty()) =>
+            {
+                let message = format!("stands above a point of interest, and lens \"{}\" has no poi", lens.name);
+                note(table.clone(), "call_out", message);
+            }
             Some(_) => {}
         }
         let is_over = |a: [u32; 2], b: [u32; 2]| a[0] > b[0] || a[1] > b[1];
@@ -279,6 +317,7 @@ impl Overlay {
             lens: lens.to_owned(),
             priority: 0.0,
             interest: 0.5,
+            stand: Stand::default(),
             size: Self::SIZE,
             min: None,
             max: None,

@@ -2,40 +2,46 @@
 //! below them markers and traces of what moves.
 //!
 //! ```text
-//! scene ── points of interest in the picture ── layout and lines (crate::overlay) ── pieces of furniture
+//! scene ── points of interest in the picture (places) ── where overlays stand, and lines (spots, crate::overlay) ── pieces of furniture
+//!   ├── for those that stand in the scene: a board (call_out), whose image is furniture by itself
 //!   └── for each lens with an overlay: a scene of its own (views) ── an inset of the studio, drawn where it is another
 //! ```
 
+mod call_out;
 mod moving;
 mod paint;
+mod places;
+mod spots;
 pub mod views;
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use crate::{
     figure::furniture::em_px,
-    geom::outline,
-    lens::{BestView, Lens, Placement, best_view::Depiction, color::Srgb},
-    overlay::{self, Focus, Placed, Rect, arrow::border_arrow},
+    lens::{Placement, best_view::Depiction},
+    overlay::{Placed, Rect, arrow::border_arrow},
     render::{
         furniture::{Furniture, Piece},
         picture::{Aovs, RenderError, Request, Studio},
+        told,
     },
     scene::{
-        Overlay, Poi, PoiPlace, Scene,
-        anchor::anchor,
-        overlay::{Along, LineEnd, LineKind, Outside, Sizes},
+        Scene,
+        overlay::{Outside, Stand},
     },
-    view::{Camera, View},
+    view::View,
 };
 
 use paint::{Content, Painter};
+use places::Shown;
+use spots::Spot;
 use views::Local;
 
-/// How far overlays stay from points of interest, pixels.
-const CLEARANCE_PX: f64 = 6.0;
 /// How many numbers of images one view has for those over it: so many that views three deep have all of 64 bits.
 const NUMBERS: u64 = 1 << 16;
 
@@ -46,6 +52,8 @@ pub struct Overlays {
     pub furniture: Furniture,
     /// What each overlay is, for statistics.
     pub figures: Vec<OverlayFigures>,
+    /// Characters of texts on boards that no font has.
+    pub without_glyph: BTreeSet<char>,
 }
 
 /// One overlay, for statistics.
@@ -53,9 +61,9 @@ pub struct Overlays {
 pub struct OverlayFigures {
     /// The number of its lens.
     pub lens: u32,
-    /// Left and top of what it shows, pixels of the picture.
+    /// Left and top of what it shows, pixels of the picture; of one that stands in the scene, of what its board may touch.
     pub at: [i32; 2],
-    /// Width and height of what it shows, pixels.
+    /// Width and height of the same, pixels.
     pub size: [u32; 2],
     /// Whether it was drawn for this picture.
     pub rendered: bool,
@@ -78,35 +86,16 @@ impl Standing {
     }
 }
 
-/// A lens with an overlay in one picture.
-struct Shown {
-    index: usize,
-    name: String,
-    color: Srgb,
-    best_view: BestView,
-    overlay: Overlay,
-    places: Vec<Place>,
-}
-
-/// A point of interest as an overlay is tied to it.
-#[derive(Clone, Debug)]
-struct Place {
-    /// Where it ends, if it is in the picture.
-    focus: Option<Focus>,
-    /// Where it is, in the plane of the picture from its middle: x right, y down.
-    direction: DVec2,
-    /// How far from the eye, metres.
-    distance: f64,
-}
-
 /// What stands where in a view.
 struct Plan {
     /// Numbers of its images come after this one.
     numbers: u64,
     size: [u32; 2],
-    camera: Camera,
+    view: View,
     em: f32,
     shown: Vec<Shown>,
+    /// In the order in which they are drawn.
+    spots: Vec<Spot>,
     placed: Placed,
     /// Markers and traces of what moves.
     moving: Vec<Piece>,
@@ -122,6 +111,15 @@ struct Inner {
     plan: Option<Plan>,
 }
 
+/// What is gathered of all overlays, also of those in them.
+#[derive(Default)]
+struct Gathered {
+    /// The numbers of images that are asked for.
+    images: Vec<u64>,
+    /// As in [`Overlays`].
+    without_glyph: BTreeSet<char>,
+}
+
 /// The overlays of a picture; the insets that they show are drawn where they are others than before. They leave `blocked` free, pixels: what is
 /// drawn over them.
 ///
@@ -135,10 +133,10 @@ pub fn overlays(
     standing: &mut Standing,
 ) -> Result<Overlays, RenderError> {
     let plan = stand(studio, scene, request.size, blocked, standing)?;
-    let mut kept = Vec::new();
-    let made = plan.map_or_else(|| Ok(Overlays::default()), |plan| plan.paint(studio, request, &mut kept))?;
-    studio.keep_insets(|number| kept.contains(&number));
-    Ok(made)
+    let mut gathered = Gathered::default();
+    let made = plan.map_or_else(|| Ok(Overlays::default()), |plan| plan.paint(studio, request, &mut gathered))?;
+    studio.keep_insets(|number| gathered.images.contains(&number));
+    Ok(Overlays { without_glyph: gathered.without_glyph, ..made })
 }
 
 /// Lets overlays take their places for a frame that is not drawn.
@@ -184,19 +182,18 @@ fn plan(
     let camera = studio.camera(scene, size);
     let view = View::new(camera, size, &studio.extent())?;
     let shown: Vec<Shown> =
-        scene.lenses.iter().enumerate().filter_map(|(i, lens)| seen(studio, scene, &view, i, lens)).collect();
+        scene.lenses.iter().enumerate().filter_map(|(i, lens)| places::seen(studio, scene, &view, i, lens)).collect();
     let em = em_px(&scene.figure, size);
-    let asked = layout_of(studio, scene, &view, &shown, blocked, em);
-    let placed = overlay::place(&asked, before.of_views.get(&numbers));
+    let (spots, placed) = spots::spots(studio, scene, &view, &shown, blocked, em, before.of_views.get(&numbers));
     now.of_views.insert(numbers, placed.clone());
     let mut ways = Painter::new(em);
     moving::paint(&mut ways, scene, &view);
     let moving = ways.into_pieces();
-    let mut plan = Plan { numbers, size, camera, em, shown, placed, moving, views: BTreeMap::new() };
-    for placement in &plan.placed.placements {
-        let Some(one) = plan.of(placement.id) else { continue };
+    let mut plan = Plan { numbers, size, view, em, shown, spots, placed, moving, views: BTreeMap::new() };
+    for spot in &plan.spots {
+        let Some(one) = plan.of(spot) else { continue };
         let Some(view) = one.best_view.view() else { continue };
-        let room = paint::picture_room(&one.overlay, placement.rect, em).size();
+        let room = paint::picture_room(&one.overlay, spot.rect, spot.em).size();
         let number = paint::number(numbers, one.index, paint::Part::Picture);
         let tracked = before.middles.get(&number).copied();
         let from = views::From { main: camera, size: room, tracked };
@@ -210,24 +207,43 @@ fn plan(
 }
 
 impl Plan {
-    fn of(&self, id: u32) -> Option<&Shown> {
-        self.shown.iter().find(|one| one.index as u32 == id)
+    fn of(&self, spot: &Spot) -> Option<&Shown> {
+        self.shown.iter().find(|one| one.index == spot.index)
     }
 
-    fn paint(&self, studio: &mut Studio, request: &Request, kept: &mut Vec<u64>) -> Result<Overlays, RenderError> {
+    fn paint(&self, studio: &mut Studio, request: &Request, gathered: &mut Gathered) -> Result<Overlays, RenderError> {
         let mut painter = Painter::new(self.em);
         painter.put(&self.moving);
-        self.lines(studio, &mut painter, kept)?;
-        let mut figures = Vec::new();
-        for placement in &self.placed.placements {
-            let Some(one) = self.of(placement.id) else { continue };
-            figures.push(self.overlay(studio, request, &mut painter, one, placement.rect, kept)?);
+        // Boards stand in the scene: their lines lie over what is farther away.
+        for spot in self.spots.iter().filter(|spot| spot.board.is_none()) {
+            self.lines(studio, &mut painter, spot, gathered)?;
         }
+        let mut figures = Vec::new();
+        for spot in &self.spots {
+            let Some(one) = self.of(spot) else { continue };
+            let Some(board) = &spot.board else {
+                figures.push(self.overlay(studio, request, &mut painter, one, spot, gathered)?);
+                continue;
+            };
+            self.lines(studio, &mut painter, spot, gathered)?;
+            let mut own = Painter::new(spot.em);
+            let mut of_board = self.overlay(studio, request, &mut own, one, spot, gathered)?;
+            let furniture = Furniture { pieces: own.into_pieces() };
+            gathered.without_glyph.extend(told::without_glyph(&furniture));
+            let number = paint::number(self.numbers, one.index, paint::Part::Board);
+            gathered.images.push(number);
+            of_board.rendered |= studio.renderer.board(number, board.image_size(), &furniture, of_board.rendered)?;
+            painter.put(&[Piece::Board(board.piece(number))]);
+            (of_board.at, of_board.size) = (board.seen.min, board.seen.size().map(|side| side.max(0) as u32));
+            figures.push(of_board);
+        }
+        figures.sort_by_key(|own| own.lens);
         for one in &self.shown {
             let style = one.overlay.line.as_ref().filter(|style| style.outside == Outside::Arrow);
             let Some(style) = style else { continue };
-            for place in one.places.iter().filter(|place| place.focus.is_none()) {
-                if let Some(arrow) = border_arrow(self.size, 0.4 * f64::from(self.em), place.direction) {
+            let outside = one.places.iter().filter(|place| place.focus.is_none()).map(|place| place.direction);
+            for direction in outside.chain(self.to_unseen_board(one)) {
+                if let Some(arrow) = border_arrow(self.size, 0.4 * f64::from(self.em), direction) {
                     painter.arrow(arrow.tip, arrow.direction, style.color.unwrap_or(one.color));
                 }
             }
@@ -235,17 +251,32 @@ impl Plan {
         for marker in &self.placed.markers {
             painter.marker(marker.at, marker.overlays.len());
         }
-        Ok(Overlays { furniture: Furniture { pieces: painter.into_pieces() }, figures })
+        Ok(Overlays { furniture: Furniture { pieces: painter.into_pieces() }, figures, ..Overlays::default() })
     }
 
-    fn lines(&self, studio: &mut Studio, painter: &mut Painter, kept: &mut Vec<u64>) -> Result<(), RenderError> {
-        for line in &self.placed.lines {
-            let Some(one) = self.of(line.overlay) else { continue };
-            let Some(style) = &one.overlay.line else { continue };
-            let place = one.places.iter().filter(|p| p.focus.is_some()).nth(line.anchor);
-            let skin = self.image(studio, one, paint::Part::Skin, style.skin.as_deref(), None, kept)?;
+    /// Where the board of a place in the picture is, if it is not seen: in the plane of the picture from its middle.
+    fn to_unseen_board(&self, one: &Shown) -> Option<DVec2> {
+        let first = one.places.first().filter(|place| place.focus.is_some())?;
+        let is_seen = || self.spots.iter().any(|spot| spot.index == one.index);
+        let stands = matches!(one.overlay.stand, Stand::Scene(_));
+        (stands && !is_seen()).then(|| places::direction(&self.view, first.at.with_z(first.heights_m[1])))
+    }
+
+    /// The context lines of an overlay.
+    fn lines(
+        &self,
+        studio: &mut Studio,
+        painter: &mut Painter,
+        spot: &Spot,
+        gathered: &mut Gathered,
+    ) -> Result<(), RenderError> {
+        let Some(one) = self.of(spot) else { return Ok(()) };
+        let Some(style) = &one.overlay.line else { return Ok(()) };
+        for (end, points) in &spot.lines {
+            let place = one.places.iter().filter(|p| p.focus.is_some()).nth(*end);
+            let skin = self.image(studio, one, paint::Part::Skin, style.skin.as_deref(), None, gathered)?;
             let is_far = place.is_some_and(|p| style.arrow_distance_m.is_some_and(|most| p.distance > most));
-            painter.line(&line.points, style, one.color, skin, is_far, self.size);
+            painter.line(points, style, one.color, skin, is_far, self.size);
             if let (false, Some(focus)) = (is_far, place.and_then(|p| p.focus.as_ref())) {
                 painter.focus(focus, style, one.color);
             }
@@ -261,25 +292,27 @@ impl Plan {
         part: paint::Part,
         file: Option<&Path>,
         size: Option<[u32; 2]>,
-        kept: &mut Vec<u64>,
+        gathered: &mut Gathered,
     ) -> Result<Option<u64>, RenderError> {
         let Some(file) = file else { return Ok(None) };
         let number = paint::number(self.numbers, one.index, part);
-        kept.push(number);
+        gathered.images.push(number);
         studio.renderer.image_of_file(number, file, size).map_err(|error| wrong(&one.name, &error))?;
         Ok(Some(number))
     }
 
+    /// An overlay in its frame.
     fn overlay(
         &self,
         studio: &mut Studio,
         request: &Request,
         painter: &mut Painter,
         one: &Shown,
-        rect: Rect,
-        kept: &mut Vec<u64>,
+        spot: &Spot,
+        gathered: &mut Gathered,
     ) -> Result<OverlayFigures, RenderError> {
-        let room = paint::picture_room(&one.overlay, rect, self.em);
+        let rect = spot.rect;
+        let room = paint::picture_room(&one.overlay, rect, spot.em);
         let number = paint::number(self.numbers, one.index, paint::Part::Picture);
         let inner = self.views.get(&one.index);
         let mut rendered = false;
@@ -289,13 +322,13 @@ impl Plan {
                 return Ok(OverlayFigures { lens: one.index as u32, at: room.low, size: room.size(), rendered });
             }
             (Depiction::Image(file), _) => {
-                kept.push(number);
+                gathered.images.push(number);
                 let read = studio.renderer.image_of_file(number, file, Some(room.size()));
                 rendered = read.map_err(|error| wrong(&one.name, &error))?;
             }
             (Depiction::View(_), None) => {}
             (Depiction::View(_), Some(inner)) => {
-                kept.push(number);
+                gathered.images.push(number);
                 let asked = Request {
                     size: inner.size,
                     transparent: inner.local.transparent,
@@ -304,7 +337,7 @@ impl Plan {
                     ..*request
                 };
                 let over = match &inner.plan {
-                    Some(plan) => plan.paint(studio, &asked, kept)?,
+                    Some(plan) => plan.paint(studio, &asked, gathered)?,
                     None => Overlays::default(),
                 };
                 let is_stale = over.figures.iter().any(|figures| figures.rendered);
@@ -314,15 +347,15 @@ impl Plan {
         }
         let [alpha, frame] = paint::masks(&one.overlay.frame);
         let masks = [
-            self.image(studio, one, paint::Part::Alpha, alpha, Some(room.size()), kept)?,
-            self.image(studio, one, paint::Part::Frame, frame, Some(room.size()), kept)?,
+            self.image(studio, one, paint::Part::Alpha, alpha, Some(room.size()), gathered)?,
+            self.image(studio, one, paint::Part::Frame, frame, Some(room.size()), gathered)?,
         ];
         let local = inner.map(|inner| &inner.local);
         let mirror = local.is_some_and(|local| local.mirror);
         let magnification = local.map_or(1.0, |local| local.magnification) as f32;
         painter.overlay(&one.overlay, rect, Content { image: number, mirror, magnification, masks });
         if let (Some(view), Some(local)) = (one.best_view.view(), local) {
-            painter.signs(&one.overlay, view, local, &self.camera, room);
+            painter.signs(&one.overlay, view, local, &self.view.camera, room);
         }
         Ok(OverlayFigures { lens: one.index as u32, at: room.low, size: room.size(), rendered })
     }
@@ -345,132 +378,6 @@ fn at_its_moment(scene: &Scene) -> Scene {
 
 fn wrong(lens: &str, message: &str) -> RenderError {
     RenderError::Scene(format!("lens \"{lens}\": {message}"))
-}
-
-/// What of a lens's overlay depends on the eye; `None`: it has no overlay.
-fn seen(studio: &Studio, scene: &Scene, view: &View, index: usize, lens: &Lens) -> Option<Shown> {
-    let best_view = lens.best_view.clone().filter(|_| lens.enabled)?;
-    let overlay =
-        scene.overlays.iter().find(|o| o.lens == lens.name).cloned().unwrap_or_else(|| Overlay::of(&lens.name));
-    let to_area = overlay.line.as_ref().is_some_and(|line| line.to == LineEnd::Area);
-    let pois = best_view.pois.iter().filter_map(|name| scene.pois.iter().find(|poi| poi.name == *name));
-    let places = pois.filter_map(|poi| place(studio, scene, view, poi, to_area)).collect();
-    Some(Shown { index, name: lens.name.clone(), color: lens.color, best_view, overlay, places })
-}
-
-fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_area: bool) -> Option<Place> {
-    let anchor = || anchor(&Placement::Poi(poi.name.clone()), scene, &studio.model).ok().flatten();
-    let at = match &poi.place {
-        PoiPlace::Object(id) => studio.middle(id).ok().or_else(anchor)?,
-        PoiPlace::At(_) | PoiPlace::On(_) => anchor()?,
-    };
-    let from_eye = at - view.camera.eye;
-    let direction = DVec2::new(from_eye.dot(view.basis.right), -from_eye.dot(view.basis.up));
-    let [w, h] = view.size.map(f64::from);
-    let is_seen = |p: &DVec3| p.z > view.camera.near_m && (0.0..=w).contains(&p.x) && (0.0..=h).contains(&p.y);
-    let pixel = view.pixel(at).filter(is_seen).map(|p| p.truncate());
-    let focus = pixel.map(|pixel| match &poi.place {
-        PoiPlace::Object(id) if to_area => area(studio, view, id).map_or(Focus::Point(pixel), Focus::Area),
-        _ => Focus::Point(pixel),
-    });
-    Some(Place { focus, direction, distance: from_eye.length() })
-}
-
-/// The outline of an object and its parts in the picture: the convex hull of their corners; `None` where some of it is not before the eye.
-fn area(studio: &Studio, view: &View, id: &str) -> Option<Vec<DVec2>> {
-    let model = &*studio.model;
-    let root = model.find_object(id)?;
-    let roots = model.roots();
-    let mut corners = Vec::new();
-    for &geometry in &studio.geometries {
-        let geometry = &model.geometries[geometry as usize];
-        let is_own = geometry.object == root || roots[geometry.object as usize] == root;
-        if !is_own {
-            continue;
-        }
-        for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
-            for vertex in tile.vertices.clone() {
-                let pixel = view.pixel(model.position(tile, vertex)).filter(|p| p.z > view.camera.near_m)?;
-                corners.push([pixel.x, pixel.y].map(|v| (v * 256.0).round().clamp(-1e8, 1e8) as i64));
-            }
-        }
-    }
-    let hull = outline::convex(corners);
-    (hull.len() >= 3).then(|| hull.into_iter().map(|[x, y]| DVec2::new(x as f64, y as f64) / 256.0).collect())
-}
-
-/// What an overlay prefers: a card is no higher than its text.
-fn preferred_size(one: &Shown, em: f32) -> [u32; 2] {
-    let [width, height] = one.overlay.size;
-    match &one.best_view.depiction {
-        Depiction::Text(text) => [width, height.min(paint::text_height(text, width, em))],
-        _ => [width, height],
-    }
-}
-
-/// What the layout is asked.
-fn layout_of(
-    studio: &Studio,
-    scene: &Scene,
-    view: &View,
-    shown: &[Shown],
-    blocked: &[Rect],
-    em: f32,
-) -> overlay::Request {
-    let layout = &scene.layout;
-    let size = |side: [u32; 2]| DVec2::new(side[0].into(), side[1].into());
-    let overlays = shown.iter().map(|one| {
-        let focuses: Vec<Focus> = one.places.iter().filter_map(|place| place.focus.clone()).collect();
-        let preferred = size(preferred_size(one, em));
-        overlay::Overlay {
-            id: one.index as u32,
-            priority: one.overlay.priority,
-            min: one.overlay.min.map_or(0.5 * preferred, size),
-            preferred,
-            max: one.overlay.max.map_or(1.5 * preferred, size),
-            anchors: if one.overlay.line.is_some() { focuses } else { Vec::new() },
-            lines: match one.overlay.line.as_ref().map(|line| line.kind).unwrap_or_default() {
-                LineKind::Straight => overlay::LineKind::Straight,
-                LineKind::Orthogonal => overlay::LineKind::Orthogonal,
-                LineKind::Curved => overlay::LineKind::Curved,
-            },
-            weight: one.overlay.interest,
-            distance: one.places.iter().map(|place| place.distance).fold(f64::INFINITY, f64::min).min(1e9),
-        }
-    });
-    let avoid = scene.pois.iter().filter_map(|poi| match place(studio, scene, view, poi, false)?.focus? {
-        Focus::Point(at) => Some(at),
-        Focus::Area(_) => None,
-    });
-    let (arrangement, along) = match layout.along {
-        Along::Top => (overlay::Arrangement::Horizontal(overlay::Align::First), overlay::Along::Even),
-        Along::Bottom => (overlay::Arrangement::Horizontal(overlay::Align::Last), overlay::Along::Even),
-        Along::Left => (overlay::Arrangement::Vertical(overlay::Align::First), overlay::Along::Even),
-        Along::Right => (overlay::Arrangement::Vertical(overlay::Align::Last), overlay::Along::Even),
-        Along::Sides => (overlay::Arrangement::Vertical(overlay::Align::Both), overlay::Along::Even),
-        Along::Border => (overlay::Arrangement::Border, overlay::Along::Even),
-    };
-    let [w, h] = view.size.map(f64::from);
-    overlay::Request {
-        picture: view.size,
-        overlays: overlays.collect(),
-        avoid: avoid.collect(),
-        clearance: CLEARANCE_PX * f64::from(em) / 13.0,
-        blocked: blocked.to_vec(),
-        layout: overlay::Layout {
-            arrangement,
-            along,
-            size: match layout.sizes {
-                Sizes::Preferred => overlay::SizeRule::Preferred,
-                Sizes::Distance => overlay::SizeRule::ByDistance,
-                Sizes::Interest => overlay::SizeRule::ByInterest,
-            },
-            margin: layout.margin_px.round() as u32,
-            gap: layout.gap_px.round() as u32,
-            centre_of_interest: layout.exploration_focus.then(|| 0.5 * DVec2::new(w, h)),
-            ..overlay::Layout::default()
-        },
-    }
 }
 
 /// A rectangle of whole pixels.

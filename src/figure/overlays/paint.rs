@@ -37,11 +37,13 @@ pub enum Part {
     Frame,
     /// The skin of its lines.
     Skin,
+    /// All of it, where it stands in the scene.
+    Board,
 }
 
 /// The number of an image of the overlay of a lens, in a view whose numbers begin after `numbers`.
 pub fn number(numbers: u64, lens: usize, part: Part) -> u64 {
-    numbers + 1 + 4 * lens as u64 + part as u64
+    numbers + 1 + 5 * lens as u64 + part as u64
 }
 
 /// Alpha mask and frame mask of a frame that is made of images.

@@ -214,6 +214,7 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         Kind::Points(least) => return wrong_rows::<3>(kind, node, *least, "point", &Kind::Point.describe(), FAR_M),
         Kind::PlanPoint => node.numbers::<2>().is_some_and(|v| v.iter().all(|c| c.abs() <= FAR_M)),
         Kind::PlanLengths => node.numbers::<2>().is_some_and(|v| v.iter().all(|c| (0.0..=FAR_M).contains(c))),
+        Kind::PicturePlace => node.numbers::<2>().is_some_and(|v| v.iter().all(|c| (0.0..=1.0).contains(c))),
         Kind::PlanPoints(least) => {
             return wrong_rows::<2>(kind, node, *least, "point", &Kind::PlanPoint.describe(), FAR_M);
         }

@@ -208,13 +208,17 @@ pub(in crate::figure) fn object(table: &Table) -> Map<String, Value> {
     if !one_of.is_empty() {
         map.insert("oneOf".into(), one_of.iter().map(|key| json!({ "required": [key] })).collect());
     }
+    if table.name == "overlay" {
+        map.insert("not".into(), json!({ "required": ["at", "call_out"] }));
+    }
     map.insert("additionalProperties".into(), false.into());
     map
 }
 
 fn of_kind(kind: &Kind) -> Value {
     let three = |min: f64, max: f64| json!({ "type": "array", "items": { "type": "number", "minimum": min, "maximum": max }, "minItems": 3, "maxItems": 3 });
-    let two = |min: f64| json!({ "type": "array", "items": { "type": "number", "minimum": min, "maximum": keys::FAR_M }, "minItems": 2, "maxItems": 2 });
+    let pair = |min: f64, max: f64| json!({ "type": "array", "items": { "type": "number", "minimum": min, "maximum": max }, "minItems": 2, "maxItems": 2 });
+    let two = |min: f64| pair(min, keys::FAR_M);
     match kind {
         Kind::Integer { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
         Kind::Number { min, max } if *min == f64::MIN && *max == f64::MAX => json!({ "type": "number" }),
@@ -231,6 +235,7 @@ fn of_kind(kind: &Kind) -> Value {
         }
         Kind::PlanPoint => two(-keys::FAR_M),
         Kind::PlanLengths => two(0.0),
+        Kind::PicturePlace => pair(0.0, 1.0),
         Kind::PlanPoints(least) => json!({ "type": "array", "items": two(-keys::FAR_M), "minItems": least }),
         Kind::Rings => {
             json!({ "type": "array", "items": { "type": "array", "items": two(-keys::FAR_M), "minItems": 3 } })

@@ -5,7 +5,7 @@ use crate::{
         animation::{self, ANIMATION},
         best_view::LOOK,
         content::CONTENT,
-        overlay::{FRAME, LAYOUT, LINE, OVERLAY},
+        overlay::{CALL_OUT, FRAME, LAYOUT, LINE, OVERLAY},
         sprite::{SPRITE, SPRITE_CAMERA},
         test_keys::CHOICE,
         trajectory::{TIME, TRAJECTORY},
@@ -59,6 +59,8 @@ pub enum Kind {
     PlanPoint,
     /// `[x, y]`, each 0 to [`FAR_M`].
     PlanLengths,
+    /// `[x, y]`, each 0 to 1: shares of a picture's width and height.
+    PicturePlace,
     /// At least so many points `[x, y]`.
     PlanPoints(usize),
     /// Lists of at least three points `[x, y]`.
@@ -767,6 +769,7 @@ impl Kind {
             Self::Angles => "[yaw, pitch, roll], three numbers -360 to 360".into(),
             Self::Points(least) => format!("a list of at least {least} points [x, y, z]"),
             Self::PlanPoint => format!("[x, y], two numbers from {:e} to {FAR_M:e}", -FAR_M),
+            Self::PicturePlace => "[x, y], two numbers 0 to 1".into(),
             Self::PlanLengths => format!("[width, height], two numbers from 0 to {FAR_M:e}"),
             Self::PlanPoints(least) => format!("a list of at least {least} points [x, y]"),
             Self::Rings => "a list of rings, each a list of at least 3 points [x, y]".into(),
@@ -828,6 +831,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("[[overlay]]", &OVERLAY),
     ("frame of an overlay", &FRAME),
     ("line of an overlay", &LINE),
+    ("call_out of an overlay", &CALL_OUT),
     ("[layout]", &LAYOUT),
     ("[figure]", &FIGURE),
     animation::TABLES[0],

@@ -6,9 +6,11 @@ use crate::{
         keys::{Kind, Table, key},
         node::{Data, Node},
         paths::Options,
-        write::{number, quoted, write_color},
+        write::{degrees, number, quoted, write_color},
     },
-    scene::overlay::{Along, BuiltInFrame, ContextLine, Frame, Layout, LineEnd, LineKind, Outside, Overlay, Sizes},
+    scene::overlay::{
+        Along, BuiltInFrame, CallOut, ContextLine, Frame, Layout, LineEnd, LineKind, Outside, Overlay, Sizes, Stand,
+    },
 };
 
 const fn words<T: Copy, const N: usize>(all: &[(&'static str, T); N]) -> [&'static str; N] {
@@ -51,6 +53,22 @@ pub const OVERLAY: Table = Table {
             "How large it gets where `[layout]` has `size = \"interest\"`: 0 the smallest, 1 the largest size.",
             "1.0",
         ),
+        key(
+            "at",
+            Kind::PicturePlace,
+            "where the layout puts it",
+            "",
+            "A place of its own: where its middle is, as shares of the picture's width and height from the upper left. It keeps its `size`, as far as the picture holds that, and the margin to the border; the others leave it free. Of two that overlap, the one whose lens comes later lies in front.",
+            "[0.5, 0.4]",
+        ),
+        key(
+            "call_out",
+            Kind::Table(&CALL_OUT),
+            "none: it lies in the plane of the picture",
+            "",
+            "Has it stand in the scene, as a tilted board above its first point of interest; see Best-view lenses. Either this or `at`.",
+            "{ tilt_deg = 30.0 }",
+        ),
         key("size", Kind::Size, "[240, 160]", "pixels", "Its preferred size.", "[320, 200]"),
         key("min", Kind::Size, "half of `size`", "pixels", "It is made no smaller.", "[120, 80]"),
         key("max", Kind::Size, "one and a half of `size`", "pixels", "It is made no larger.", "[480, 300]"),
@@ -78,6 +96,38 @@ pub const OVERLAY: Table = Table {
             "",
             "The context lines from it to its points of interest: how they run, or a table that says more; `none`: it has none.",
             "{ kind = \"curved\", to = \"area\" }",
+        ),
+    ],
+};
+
+/// `call_out` of an overlay.
+pub const CALL_OUT: Table = Table {
+    name: "call_out",
+    doc: "A board in the scene that shows an overlay, in perspective, turned to the viewer about the vertical axis. Its frame and its text are on it, as large           beside it as they are in an overlay of `size` pixels. Nothing of the city hides it.",
+    keys: &[
+        key(
+            "height_m",
+            Kind::Number { min: 0.0, max: 1e5 },
+            "a quarter of the heights of the object and of the board",
+            "m",
+            "From the top of the object, or from the point, to the lower edge.",
+            "15.0",
+        ),
+        key(
+            "width_m",
+            Kind::Number { min: 1e-3, max: 1e5 },
+            "as wide in the picture as `size`",
+            "m",
+            "How wide it is.",
+            "40.0",
+        ),
+        key(
+            "tilt_deg",
+            Kind::Number { min: -90.0, max: 90.0 },
+            "20.0",
+            "degrees",
+            "How far its upper edge is tilted away from the viewer: 0 stands upright, 90 lies flat.",
+            "45.0",
         ),
     ],
 };
@@ -243,6 +293,8 @@ pub struct Parts<'a> {
     pub frame: Option<Frame>,
     /// `line`, where it is a table, and its skin.
     pub line: Option<(Fields<'a>, Option<std::path::PathBuf>)>,
+    /// `call_out`.
+    pub call_out: Option<Fields<'a>>,
 }
 
 /// An overlay.
@@ -273,9 +325,11 @@ pub fn overlay(fields: &Fields, parts: Parts) -> Overlay {
             })
         }
     };
+    let at = fields.node("at").and_then(Node::numbers::<2>);
     Overlay {
         priority: number("priority", default.priority),
         interest: number("interest", default.interest),
+        stand: parts.call_out.as_ref().map_or(at.map_or(Stand::Laid, Stand::At), |own| Stand::Scene(call_out(own))),
         size: fields.node("size").and_then(size).unwrap_or(default.size),
         min: fields.node("min").and_then(size),
         max: fields.node("max").and_then(size),
@@ -284,6 +338,15 @@ pub fn overlay(fields: &Fields, parts: Parts) -> Overlay {
         caption: fields.text("caption").map(str::to_owned),
         line,
         ..default
+    }
+}
+
+fn call_out(own: &Fields) -> CallOut {
+    let default = CallOut::default();
+    CallOut {
+        height_m: own.number("height_m"),
+        width_m: own.number("width_m"),
+        tilt: own.number("tilt_deg").map_or(default.tilt, f64::to_radians),
     }
 }
 
@@ -322,12 +385,27 @@ pub(super) fn written(overlay: &Overlay, options: &Options) -> Vec<(&'static str
         }
     }
     keys.extend(overlay.caption.as_ref().map(|text| ("caption", quoted(text))));
+    match &overlay.stand {
+        Stand::Laid => {}
+        Stand::At([x, y]) => keys.push(("at", format!("[{}, {}]", number(*x), number(*y)))),
+        Stand::Scene(own) => keys.push(("call_out", call_out_table(own))),
+    }
     match &overlay.line {
         None => keys.push(("line", quoted("none"))),
         Some(line) if *line == ContextLine::default() => {}
         Some(line) => keys.push(("line", line_table(line, options))),
     }
     keys
+}
+
+fn call_out_table(call_out: &CallOut) -> String {
+    let mut own = Vec::new();
+    own.extend(call_out.height_m.map(|metres| format!("height_m = {}", number(metres))));
+    own.extend(call_out.width_m.map(|metres| format!("width_m = {}", number(metres))));
+    if call_out.tilt != CallOut::default().tilt {
+        own.push(format!("tilt_deg = {}", number(degrees(call_out.tilt))));
+    }
+    if own.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", own.join(", ")) }
 }
 
 fn line_table(line: &ContextLine, options: &Options) -> String {

@@ -401,7 +401,14 @@ impl<'o> SceneReader<'o> {
             let skin = self.file(&own, "skin");
             (own, skin)
         });
-        overlay::overlay(fields, overlay::Parts { frame, line })
+        let call_out = table("call_out").map(|node| {
+            if fields.given("at") {
+                let message = "is given together with at: an overlay stands in the scene or at a place in the picture";
+                self.checker.note(&fields.place, "call_out", node.line, message);
+            }
+            self.checker.fields(node, &overlay::CALL_OUT, &[], fields.place.within("call_out", node.line))
+        });
+        overlay::overlay(fields, overlay::Parts { frame, line, call_out })
     }
 
     /// The focus areas of an occlusion lens with these shapes.

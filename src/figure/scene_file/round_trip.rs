@@ -19,7 +19,7 @@ use crate::{
         Animation, Background, BaseStyle, Corner, Figure, Layout, LegendPlace, Overlay, Poi, PoiPlace, Style, Sun,
         Technique, TextSize, Transparency,
         animation::{Change, ChangeKey, Numbers},
-        overlay::{Along, BuiltInFrame, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes},
+        overlay::{Along, BuiltInFrame, CallOut, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes, Stand},
         trajectory::{Pace as WayPace, Trajectory},
         transparency::{MOST_PEELED, SLOTS},
     },
@@ -406,14 +406,25 @@ prop_compose! {
     }
 }
 
+fn stands() -> impl Strategy<Value = Stand> {
+    let call_out = (prop::option::of(0.0..1e5f64), prop::option::of(1e-3..1e5f64), -900..=900i32);
+    prop_oneof![
+        Just(Stand::Laid),
+        prop::array::uniform2(0.0..=1.0f64).prop_map(Stand::At),
+        call_out.prop_map(|(height_m, width_m, tenths)| {
+            Stand::Scene(CallOut { height_m, width_m, tilt: (f64::from(tenths) / 10.0).to_radians() })
+        }),
+    ]
+}
+
 prop_compose! {
     fn overlays()(priority in -1e3..1e3f64, interest in 0.0..=1.0f64, size in prop::array::uniform2(2..2000u32), has_sizes in any::<[bool; 2]>(),
         opacity in 0.0..=1.0f64, frame in prop::option::of(prop::sample::select(BuiltInFrame::WORDS.map(|(_, f)| f).to_vec())), masks in prop::array::uniform2(prop::option::of("[a-z]{1,4}")),
-        caption in prop::option::of(".{1,6}"), line in prop::option::of(lines())) -> Overlay {
+        caption in prop::option::of(".{1,6}"), line in prop::option::of(lines()), stand in stands()) -> Overlay {
         let masks = masks.map(|file| file.map(Into::into));
         let [alpha, images] = masks;
         Overlay {
-            lens: String::new(), priority, interest, size, opacity, caption, line,
+            lens: String::new(), priority, interest, stand, size, opacity, caption, line,
             min: has_sizes[0].then(|| size.map(|side| side / 2)),
             max: has_sizes[1].then(|| size.map(|side| side + 7)),
             frame: frame.map_or(Frame::Images { alpha, frame: images }, Frame::BuiltIn),
@@ -522,7 +533,10 @@ prop_compose! {
             }
             for ((kind, best_view), overlay) in shown {
                 let name = format!("n\"{}\\ü", lenses.len());
-                overlays.extend(overlay.map(|overlay| Overlay { lens: name.clone(), ..overlay }));
+                // A call-out stands above a place.
+                let has_ground = |stand: &Stand| !(best_view.pois.is_empty() && matches!(stand, Stand::Scene(_)));
+                let stand = overlay.as_ref().map(|own| own.stand).filter(has_ground).unwrap_or_default();
+                overlays.extend(overlay.map(|overlay| Overlay { lens: name.clone(), stand, ..overlay }));
                 lenses.push(Lens { name, kind, shapes: vec![], best_view: Some(best_view), ..plain.clone() });
             }
         }

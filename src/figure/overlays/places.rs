@@ -1,0 +1,114 @@
+//! Lenses with overlays in one picture, and where their points of interest are in it.
+
+use glam::{DVec2, DVec3};
+
+use crate::{
+    geom::outline,
+    lens::{BestView, Lens, Placement, color::Srgb},
+    overlay::Focus,
+    render::picture::Studio,
+    scene::{Overlay, Poi, PoiPlace, Scene, anchor::anchor, overlay::LineEnd},
+    view::View,
+};
+
+/// A lens with an overlay in one picture.
+pub(super) struct Shown {
+    /// The number of the lens.
+    pub index: usize,
+    /// Its name.
+    pub name: String,
+    /// Its colour.
+    pub color: Srgb,
+    /// What its overlay shows.
+    pub best_view: BestView,
+    /// How that stands over the picture.
+    pub overlay: Overlay,
+    /// Its points of interest that have a place.
+    pub places: Vec<Place>,
+}
+
+impl Shown {
+    /// The ends of its context lines that are in the picture; none where it has no lines.
+    pub fn focuses(&self) -> impl Iterator<Item = &Focus> {
+        let places = if self.overlay.line.is_some() { &self.places[..] } else { &[] };
+        places.iter().filter_map(|place| place.focus.as_ref())
+    }
+}
+
+/// A point of interest as an overlay is tied to it.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    /// Where it ends, if it is in the picture.
+    pub focus: Option<Focus>,
+    /// The middle of its object or itself, model coordinates.
+    pub at: DVec3,
+    /// From the lowest to the highest of its object, metres; both are those of `at` where it has none.
+    pub heights_m: [f64; 2],
+    /// Where it is, in the plane of the picture from its middle: x right, y down.
+    pub direction: DVec2,
+    /// How far from the eye, metres.
+    pub distance: f64,
+}
+
+/// In the plane of the picture from its middle, x right, y down.
+pub(super) fn direction(view: &View, at: DVec3) -> DVec2 {
+    let from_eye = at - view.camera.eye;
+    DVec2::new(from_eye.dot(view.basis.right), -from_eye.dot(view.basis.up))
+}
+
+/// What of a lens's overlay depends on the eye; `None`: it has no overlay.
+pub(super) fn seen(studio: &Studio, scene: &Scene, view: &View, index: usize, lens: &Lens) -> Option<Shown> {
+    let best_view = lens.best_view.clone().filter(|_| lens.enabled)?;
+    let overlay =
+        scene.overlays.iter().find(|o| o.lens == lens.name).cloned().unwrap_or_else(|| Overlay::of(&lens.name));
+    let to_area = overlay.line.as_ref().is_some_and(|line| line.to == LineEnd::Area);
+    let pois = best_view.pois.iter().filter_map(|name| scene.pois.iter().find(|poi| poi.name == *name));
+    let places = pois.filter_map(|poi| place(studio, scene, view, poi, to_area)).collect();
+    Some(Shown { index, name: lens.name.clone(), color: lens.color, best_view, overlay, places })
+}
+
+/// A point of interest of a view; `None`: it is nowhere.
+pub(super) fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_area: bool) -> Option<Place> {
+    let anchor = || anchor(&Placement::Poi(poi.name.clone()), scene, &studio.model).ok().flatten();
+    let at = match &poi.place {
+        PoiPlace::Object(id) => studio.middle(id).ok().or_else(anchor)?,
+        PoiPlace::At(_) | PoiPlace::On(_) => anchor()?,
+    };
+    let heights_m = match &poi.place {
+        PoiPlace::Object(id) => studio.model.find_object(id).map(|object| studio.model.family_bounds(object)),
+        PoiPlace::At(_) | PoiPlace::On(_) => None,
+    };
+    let heights_m = heights_m.filter(|bounds| !bounds.is_empty()).map_or([at.z; 2], |b| [b.min.z, b.max.z]);
+    let [w, h] = view.size.map(f64::from);
+    let is_seen = |p: &DVec3| p.z > view.camera.near_m && (0.0..=w).contains(&p.x) && (0.0..=h).contains(&p.y);
+    let pixel = view.pixel(at).filter(is_seen).map(|p| p.truncate());
+    let focus = pixel.map(|pixel| match &poi.place {
+        PoiPlace::Object(id) if to_area => area(studio, view, id).map_or(Focus::Point(pixel), Focus::Area),
+        _ => Focus::Point(pixel),
+    });
+    let distance = at.distance(view.camera.eye);
+    Some(Place { focus, at, heights_m, direction: direction(view, at), distance })
+}
+
+/// The outline of an object and its parts in the picture: the convex hull of their corners; `None` where some of it is not before the eye.
+fn area(studio: &Studio, view: &View, id: &str) -> Option<Vec<DVec2>> {
+    let model = &*studio.model;
+    let root = model.find_object(id)?;
+    let roots = model.roots();
+    let mut corners = Vec::new();
+    for &geometry in &studio.geometries {
+        let geometry = &model.geometries[geometry as usize];
+        let is_own = geometry.object == root || roots[geometry.object as usize] == root;
+        if !is_own {
+            continue;
+        }
+        for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
+            for vertex in tile.vertices.clone() {
+                let pixel = view.pixel(model.position(tile, vertex)).filter(|p| p.z > view.camera.near_m)?;
+                corners.push([pixel.x, pixel.y].map(|v| (v * 256.0).round().clamp(-1e8, 1e8) as i64));
+            }
+        }
+    }
+    let hull = outline::convex(corners);
+    (hull.len() >= 3).then(|| hull.into_iter().map(|[x, y]| DVec2::new(x as f64, y as f64) / 256.0).collect())
+}
