@@ -27,6 +27,7 @@ macro_rules! scenes {
 
 /// The scenes that ship with the program, by name; a test holds the list against the folder.
 pub const SCENES: &[(&str, &str)] = scenes! {
+    "call-outs"
     "delft-age"
     "delft-detail"
     "delft-route"

@@ -59,7 +59,7 @@ pub struct CallOut {
 
 impl Default for CallOut {
     fn default() -> Self {
-        Self { height_m: None, width_m: None, tilt: 20_f64.to_radians() }
+        Self { height_m: None, width_m: None, tilt: 30_f64.to_radians() }
     }
 }
 

@@ -20,6 +20,8 @@ use crate::{
 
 /// Steps of the size of a board's image per doubling: it is drawn again only when the eye has come nearer, or gone, by a fifth of the way.
 const STEPS: f64 = 4.0;
+/// Pixels of a board's image for each that it takes in the picture: its text is still sharp when it is turned.
+const DENSITY: f64 = 1.2;
 /// Longest side of a board's image, pixels; and as a multiple of the picture's: what is larger is not all seen.
 const MOST: [f64; 2] = [4096.0, 2.0];
 /// A board that is seen from its edge is thinner than this, pixels, and not drawn.
@@ -130,7 +132,7 @@ fn stand(view: &View, call_out: &CallOut, above: &Above, size_at: impl Fn(f64) -
         None => return None,
     };
     let high_m = width_m * height / width;
-    let foot = top + call_out.height_m.unwrap_or(0.25 * (highest - lowest + high_m)) * DVec3::Z;
+    let foot = top + call_out.height_m.unwrap_or(0.125 * (highest - lowest + high_m)) * DVec3::Z;
     // In plan, to the viewer.
     let to_eye = (view.camera.eye - foot).truncate();
     let is_level = !view.is_orthographic() && to_eye.length() > 1e-6 * view.camera.eye.distance(foot);
@@ -139,7 +141,7 @@ fn stand(view: &View, call_out: &CallOut, above: &Above, size_at: impl Fn(f64) -
     let up = call_out.tilt.cos() * DVec3::Z - call_out.tilt.sin() * facing.extend(0.0);
     let nearest = depth(foot).min(depth(foot + high_m * up));
     let wanted = width_m / view.pixel_m(nearest) / width;
-    let stepped = ((wanted.log2() * STEPS).round() / STEPS).exp2();
+    let stepped = (((wanted * DENSITY).log2() * STEPS).round() / STEPS).exp2();
     let most = MOST[0].min(MOST[1] * f64::from(view.size[0].max(view.size[1])));
     let scale = stepped.min(most / width.max(height));
     let [width, height] = side(size_at(scale));
@@ -226,3 +228,6 @@ impl Quad {
         rows.iter().flatten().all(|v| v.is_finite()).then_some(rows)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -108,7 +108,7 @@ pub const CALL_OUT: Table = Table {
         key(
             "height_m",
             Kind::Number { min: 0.0, max: 1e5 },
-            "a quarter of the heights of the object and of the board",
+            "an eighth of the heights of the object and of the board",
             "m",
             "From the top of the object, or from the point, to the lower edge.",
             "15.0",
@@ -124,7 +124,7 @@ pub const CALL_OUT: Table = Table {
         key(
             "tilt_deg",
             Kind::Number { min: -90.0, max: 90.0 },
-            "20.0",
+            "30.0",
             "degrees",
             "How far its upper edge is tilted away from the viewer: 0 stands upright, 90 lies flat.",
             "45.0",
