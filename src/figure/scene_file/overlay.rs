@@ -450,3 +450,33 @@ pub(super) fn layout_written(layout: &Layout) -> Vec<(&'static str, String)> {
     }
     keys
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::figure::scene_file::{Options, parse};
+
+    #[test]
+    fn places_that_are_none_are_told() {
+        let both = "is given together with at: an overlay stands in the scene or at a place in the picture";
+        for (lines, expected) in [
+            ("at = [0.5, 1.5]", "s.toml:8: [overlay.0] at: must be [x, y], two numbers 0 to 1, is [0.5, 1.5]"),
+            ("at = [320, 200]", "at: must be [x, y], two numbers 0 to 1, is [320, 200]"),
+            ("at = [0.5]", "at: must be [x, y], two numbers 0 to 1, is [0.5]"),
+            ("call_out = true", "call_out: must be a table"),
+            ("call_out = { tilt_deg = 91 }", "call_out.tilt_deg: must be a number -90 to 90, is 91"),
+            ("call_out = { width_m = 0 }", "call_out.width_m: must be a number 0.001 to 100000, is 0"),
+            ("call_out = { height = 3 }", "call_out.height: unknown key; did you mean \"height_m\"?"),
+            ("at = [0.5, 0.5]\ncall_out = {}", &format!("s.toml:9: [overlay.0] call_out: {both}")),
+            ("at = [2, 0.5]\ncall_out = {}", both),
+            (
+                "call_out = {}",
+                "s.toml:8: [overlay.0] call_out: stands above a point of interest, and lens \"a\" has no poi",
+            ),
+        ] {
+            let lens = "[[lens]]\nname = \"a\"\nkind = \"annotation\"\ntext = \"x\"\n";
+            let text = format!("veduta = 1\n{lens}[[overlay]]\nlens = \"a\"\n{lines}\n");
+            let message = parse(&text, "s.toml", &Options::default()).unwrap_err().to_string();
+            assert!(message.contains(expected), "{lines}\n  gave     {message}\n  expected {expected}");
+        }
+    }
+}
