@@ -1,4 +1,5 @@
-//! Overlays with places of their own (B6): on boards in the scene, in perspective, and where their author wants them in the picture.
+//! Overlays with places of their own (B6): on boards in the scene, in perspective, and where their author wants them in
+//! the picture.
 
 mod studio;
 
@@ -10,12 +11,8 @@ use veduta::{
         overlays::Standing,
         scene_file::{Options, parse},
     },
-    render::{
-        frame::Backend,
-        picture::{Aovs, Picture, Request, Studio},
-    },
+    render::picture::{Aovs, Picture, Request, Studio},
     scene::Scene,
-    view::{Camera, Projection},
 };
 
 const SIZE: [u32; 2] = [640, 360];
@@ -308,53 +305,18 @@ fn characters_that_no_font_has_are_told_of_boards_too() {
     assert!(picture.without_glyph.contains(&'\u{1cff}'), "{:?}", picture.without_glyph);
 }
 
-/// Both back ends, and each twice.
-fn always(studio: &mut Studio, scene: &Scene, size: [u32; 2], transparent: bool) -> Picture {
-    let pictures = [Backend::Specialised, Backend::Uber, Backend::Specialised].map(|backend| {
-        let asked = Request { backend, transparent, ..request(size) };
-        figure::draw(studio, scene, &asked).unwrap_or_else(|error| panic!("{error}"))
-    });
-    assert!(pictures[0].rgba == pictures[1].rgba, "both back ends draw the same bytes");
-    assert!(pictures[0].rgba == pictures[2].rgba, "and the same again");
-    let [one, ..] = pictures;
-    one
-}
-
 #[test]
-fn extreme_boards_have_a_defined_picture() {
-    let folder = Folder::new("hard");
-    let boards = [
-        ([8.0, 12.0, 4.0], "{}"),
-        ([8.0, 12.0, 4.0], "{ tilt_deg = 90 }"),
-        ([8.0, 12.0, 4.0], "{ tilt_deg = -90, height_m = 0 }"),
-        // Larger than the picture, and partly behind the eye.
-        ([-60.0, -90.0, 40.0], "{ width_m = 100000, height_m = 0, tilt_deg = 80 }"),
-        ([-75.0, -109.5, 61.5], "{ width_m = 0.001 }"),
-        ([-75.0, -110.0, 40.0], "{ width_m = 50, height_m = 22 }"),
-        ([1e9, -1e9, 1e9], "{ width_m = 100000, height_m = 100000 }"),
-    ];
-    let frames = ["rounded", "ellipse", "print", "vignette"];
-    let lenses = boards.iter().zip(frames.iter().cycle()).enumerate().map(|(i, ((at, call_out), frame))| {
-        let overlay = format!("frame = \"{frame}\"\ncaption = \"Caption\"\nline = \"curved\"\ncall_out = {call_out}");
-        four(&format!("n{i}"), *at, &overlay)
-    });
-    let scene = folder.scene(&lenses.collect::<String>());
+fn over_nothing_a_board_is_all_there_is() {
+    let folder = Folder::new("nothing");
+    let scene = folder.scene(&four("a", [8.0, 12.0, 4.0], &format!("{PLAIN}call_out = {{ height_m = 70 }}")));
     let mut studio = of_scene(&scene);
-    let down =
-        Camera { up: DVec3::Y, ..Camera::looking(DVec3::new(8.0, 12.0, 200.0), DVec3::new(8.0, 12.0, 0.0), 0.6) };
-    let flat = Camera { projection: Projection::Orthographic { height_m: 200.0 }, ..scene.camera.unwrap() };
-    for camera in [scene.camera.unwrap(), down, flat] {
-        let seen = Scene { camera: Some(camera), ..scene.clone() };
-        let bare = Scene { lenses: Vec::new(), overlays: Vec::new(), ..seen.clone() };
-        for size in [[1, 1], [5, 300], [320, 180]] {
-            let with = always(&mut studio, &seen, size, false);
-            let opaque = with.rgba.iter().all(|color| color[3] == 255);
-            assert!(opaque, "{size:?}");
-            let without = figure::draw(&mut studio, &bare, &request(size)).unwrap();
-            assert!(size[0] < 320 || with.rgba != without.rgba, "something is seen");
-        }
+    let asked = Request { transparent: true, ..request(SIZE) };
+    let picture = figure::draw(&mut studio, &scene, &asked).unwrap();
+    let [x, y, right, low] = told(&picture)[0].1;
+    let middle = DVec2::new((x + right) as f64, (y + low) as f64) * 0.5;
+    // Above the horizon nothing is behind it, and nothing around it.
+    for (dx, dy, color) in [(-20.0, -15.0, 0), (20.0, -15.0, 1), (-20.0, 15.0, 2), (20.0, 15.0, 3)] {
+        assert_eq!(pixel(&picture, middle + DVec2::new(dx, dy)), COLORS[color]);
     }
-    // Over nothing a board is all there is.
-    let alone = always(&mut studio, &scene, [320, 180], true);
-    assert!(alone.rgba.iter().any(|color| color[3] == 255));
+    assert_eq!(pixel(&picture, DVec2::new(x as f64 - 4.0, middle.y))[3], 0);
 }

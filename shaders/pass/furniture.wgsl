@@ -101,7 +101,8 @@ fn ellipse(at: vec2f, low: vec2f, high: vec2f, softness: f32) -> f32 {
     return select(share, share * share * (3.0 - 2.0 * share), softness > 1.0);
 }
 
-// Taps on each side of a pixel of what is not shown texel by texel: towards the border of a fisheye, and on a tilted board, many texels share one.
+// Taps on each side of a pixel of what is not shown texel by texel: towards the border of a fisheye, and on a tilted
+// board, many texels share one.
 const TAPS: i32 = 4;
 
 // The place of a tap, from the middle of its pixel.
@@ -156,8 +157,9 @@ fn opaque_picture(shown: Shown) -> @location(0) vec4f {
     return vec4f(textureLoad(picture, clamp(place, vec2i(0), vec2i(textureDimensions(picture)) - 1), 0).rgb, 1.0);
 }
 
-// A board in the scene (B6): its picture, here premultiplied, mapped projectively. The rows by which a place of the target, from `low`, becomes (u w, v w, w) are
-// its colour without the alpha, its halo without the last, and that with radius and softness; w is positive before the eye.
+// A board in the scene (B6): its picture, here premultiplied, mapped projectively. The rows by which a place of the
+// target, from `low`, becomes (u w, v w, w) are its colour without the alpha, its halo without the last, and that with
+// radius and softness; w is positive before the eye.
 @fragment
 fn board(shown: Shown) -> @location(0) vec4f {
     let rows = mat3x3f(shown.color.rgb, shown.halo.xyz, vec3f(shown.halo.w, shown.radius, shown.softness));

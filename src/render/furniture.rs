@@ -45,7 +45,8 @@ pub enum Piece {
     Strip(Strip),
 }
 
-/// An image of [`Renderer::board`](crate::render::renderer::Renderer::board) on a rectangle in the scene, in perspective.
+/// An image of [`Renderer::board`](crate::render::renderer::Renderer::board) on a rectangle in the scene, in
+/// perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardPiece {
     /// Its number; alpha is premultiplied.
@@ -54,8 +55,8 @@ pub struct BoardPiece {
     pub low: [f32; 2],
     /// Right, bottom.
     pub high: [f32; 2],
-    /// Rows r for which the place (x, y), pixels from `low`, shows the image at (u, v) = (r₀·p, r₁·p) / r₂·p, p = (x, y, 1): shares of its width
-    /// and height from its top left. r₂·p is positive before the eye.
+    /// Rows r for which the place (x, y), pixels from `low`, shows the image at (u, v) = (r₀·p, r₁·p) / r₂·p, p = (x,
+    /// y, 1): shares of its width and height from its top left. r₂·p is positive before the eye.
     pub rows: [[f32; 3]; 3],
 }
 

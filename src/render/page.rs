@@ -1,4 +1,5 @@
-//! Furniture by itself: pages, on a ground of one colour, on which sheets are set; and boards, on nothing, which stand in the scene.
+//! Furniture by itself: pages, on a ground of one colour, on which sheets are set; and boards, on nothing, which stand
+//! in the scene.
 
 use crate::{
     gpu::GpuError,
@@ -35,8 +36,9 @@ impl Renderer {
         Ok(rgba)
     }
 
-    /// Keeps furniture on nothing as the image `number` of `size` pixels, at most those of a texture; alpha is premultiplied. Whether it was drawn: not if
-    /// the image shows it already. `is_stale`: images of the furniture show something else than before.
+    /// Keeps furniture on nothing as the image `number` of `size` pixels, at most those of a texture; alpha is
+    /// premultiplied. Whether it was drawn: not if the image shows it already. `is_stale`: images of the furniture show
+    /// something else than before.
     ///
     /// # Errors
     /// Those of the graphics card.

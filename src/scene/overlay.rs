@@ -40,7 +40,8 @@ pub enum Stand {
     /// Where the layout puts it.
     #[default]
     Laid,
-    /// Its middle at these shares of the picture's width and height, 0..1 from the upper left; all of it within the margin.
+    /// Its middle at these shares of the picture's width and height, 0..1 from the upper left; all of it within the
+    /// margin.
     At([f64; 2]),
     /// In the scene, above its first point of interest.
     Scene(CallOut),

@@ -25,6 +25,7 @@ mod case_15_layer_room;
 mod case_16_translucency;
 mod case_20_coincident_anchors;
 mod case_20_identity_lens;
+mod case_21_call_outs;
 mod case_21_extreme_views;
 mod case_21_layers;
 mod case_21_overlays;

@@ -18,7 +18,8 @@ use crate::{
     view::{View, local},
 };
 
-/// Steps of the size of a board's image per doubling: it is drawn again only when the eye has come nearer, or gone, by a fifth of the way.
+/// Steps of the size of a board's image per doubling: it is drawn again only when the eye has come nearer, or gone, by
+/// a fifth of the way.
 const STEPS: f64 = 4.0;
 /// Pixels of a board's image for each that it takes in the picture: its text is still sharp when it is turned.
 const DENSITY: f64 = 1.2;
@@ -68,8 +69,9 @@ struct Quad {
     down: DVec3,
 }
 
-/// The board of a call-out; `None`: it is out of the picture, behind the eye, or seen from behind or from its edge. `size_at` is the size of the overlay
-/// when all of it is so many times as large, `em` of its text at once, pixels.
+/// The board of a call-out; `None`: it is out of the picture, behind the eye, or seen from behind or from its edge.
+/// `size_at` is the size of the overlay when all of it is so many times as large as in a picture, where its text has
+/// `em`; pixels.
 pub(super) fn board(
     view: &View,
     call_out: &CallOut,
@@ -77,10 +79,9 @@ pub(super) fn board(
     size_at: impl Fn(f64) -> [u32; 2],
     em: f32,
 ) -> Option<Board> {
-    let (quad, scale) = stand(view, call_out, above, &size_at)?;
+    let (quad, scale) = stand(view, call_out, above, &size_at, em)?;
     let size = size_at(scale);
-    // The shadow of a frame reaches so far beyond it.
-    let margin = (0.7 * f64::from(em) * scale).ceil() as i32 + 4;
+    let margin = (margin_px(em) * scale).ceil() as i32 + 4;
     let seen = quad.seen(view)?;
     let image = quad.grown(size.map(|side| f64::from(margin) / f64::from(side)));
     let (low, high) = image.bounds(view)?;
@@ -119,8 +120,20 @@ impl Board {
     }
 }
 
-/// Where a call-out stands, and how many times as large as in a picture its overlay is drawn for it: near to its largest size in the picture.
-fn stand(view: &View, call_out: &CallOut, above: &Above, size_at: impl Fn(f64) -> [u32; 2]) -> Option<(Quad, f64)> {
+/// How far the shadow of a frame reaches beyond it, pixels, where text has `em`.
+fn margin_px(em: f32) -> f64 {
+    0.7 * f64::from(em)
+}
+
+/// Where a call-out stands, and how many times as large as in a picture its overlay is drawn for it: near to its
+/// largest size in the picture.
+fn stand(
+    view: &View,
+    call_out: &CallOut,
+    above: &Above,
+    size_at: impl Fn(f64) -> [u32; 2],
+    em: f32,
+) -> Option<(Quad, f64)> {
     let [lowest, highest] = above.heights_m;
     let top = above.place.with_z(highest);
     let side = |size: [u32; 2]| size.map(f64::from);
@@ -143,7 +156,7 @@ fn stand(view: &View, call_out: &CallOut, above: &Above, size_at: impl Fn(f64) -
     let wanted = width_m / view.pixel_m(nearest) / width;
     let stepped = (((wanted * DENSITY).log2() * STEPS).round() / STEPS).exp2();
     let most = MOST[0].min(MOST[1] * f64::from(view.size[0].max(view.size[1])));
-    let scale = stepped.min(most / width.max(height));
+    let scale = stepped.min(most / (width.max(height) + 2.0 * margin_px(em)));
     let [width, height] = side(size_at(scale));
     let across = width_m * right;
     let down = -width_m * height / width * up;

@@ -2,7 +2,8 @@
 //! below them markers and traces of what moves.
 //!
 //! ```text
-//! scene ── points of interest in the picture (places) ── where overlays stand, and lines (spots, crate::overlay) ── pieces of furniture
+//! scene ── points of interest in the picture (places) ── where overlays stand, and lines (spots, crate::overlay) ──
+//! pieces of furniture
 //!   ├── for those that stand in the scene: a board (call_out), whose image is furniture by itself
 //!   └── for each lens with an overlay: a scene of its own (views) ── an inset of the studio, drawn where it is another
 //! ```
@@ -61,7 +62,8 @@ pub struct Overlays {
 pub struct OverlayFigures {
     /// The number of its lens.
     pub lens: u32,
-    /// Left and top of what it shows, pixels of the picture; of one that stands in the scene, of what its board may touch.
+    /// Left and top of what it shows, pixels of the picture; of one that stands in the scene, of what its board may
+    /// touch.
     pub at: [i32; 2],
     /// Width and height of the same, pixels.
     pub size: [u32; 2],
@@ -80,7 +82,7 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// Those of the picture itself; `None`: it has none.
+    /// Those of the picture itself that are laid out; `None`: it has no overlays.
     pub fn of_picture(&self) -> Option<&Placed> {
         self.of_views.get(&0)
     }

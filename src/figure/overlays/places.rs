@@ -90,7 +90,8 @@ pub(super) fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_a
     Some(Place { focus, at, heights_m, direction: direction(view, at), distance })
 }
 
-/// The outline of an object and its parts in the picture: the convex hull of their corners; `None` where some of it is not before the eye.
+/// The outline of an object and its parts in the picture: the convex hull of their corners; `None` where some of it is
+/// not before the eye.
 fn area(studio: &Studio, view: &View, id: &str) -> Option<Vec<DVec2>> {
     let model = &*studio.model;
     let root = model.find_object(id)?;

@@ -1,4 +1,5 @@
-//! Where the overlays of a picture stand: where the layout puts them, at places of their own, or on boards in the scene (B6).
+//! Where the overlays of a picture stand: where the layout puts them, at places of their own, or on boards in the scene
+//! (B6).
 
 use glam::DVec2;
 
@@ -40,7 +41,8 @@ pub(super) struct Spot {
     pub board: Option<Board>,
 }
 
-/// Where all stand, in the order in which they are drawn: boards, the farthest first; what is laid out; what has a place of its own.
+/// Where all stand, in the order in which they are drawn: boards, the farthest first; what is laid out; what has a
+/// place of its own.
 pub(super) fn spots(
     studio: &Studio,
     scene: &Scene,

@@ -225,7 +225,7 @@ pub const LINE: Table = Table {
 /// `[layout]`.
 pub const LAYOUT: Table = Table {
     name: "layout",
-    doc: "Where overlays stand. They never overlap, and leave free the points of interest that they can leave free.",
+    doc: "Where overlays stand that have no place of their own. They never overlap, and leave free the points of interest that they can leave free.",
     keys: &[
         key(
             "along",

@@ -144,7 +144,7 @@ proptest! {
         let above = Above { place: national, heights_m: [0.0, 10.0] };
         let size_at = |s: f64| [240.0, 160.0].map(|side: f64| (side * s).round().max(1.0) as u32);
         let Some(board) = board(&seen, &call_out, &above, size_at, EM) else { return Ok(()) };
-        let (quad, _) = stand(&seen, &call_out, &above, size_at).unwrap();
+        let (quad, _) = stand(&seen, &call_out, &above, size_at, EM).unwrap();
         prop_assert!((quad.across.length() - width_m).abs() < 1e-9 && quad.across.z == 0.0);
         prop_assert!(quad.across.dot(quad.down).abs() < 1e-6 * width_m * width_m, "a rectangle");
         let place = |at: DVec2| seen.pixel(quad.corner + at.x * quad.across + at.y * quad.down);
