@@ -308,13 +308,13 @@ fn characters_that_no_font_has_are_told_of_boards_too() {
 #[test]
 fn over_nothing_a_board_is_all_there_is() {
     let folder = Folder::new("nothing");
-    let scene = folder.scene(&four("a", [8.0, 12.0, 4.0], &format!("{PLAIN}call_out = {{ height_m = 70 }}")));
+    let scene = folder.scene(&four("a", [8.0, 12.0, 4.0], &format!("{PLAIN}call_out = {{ height_m = 30 }}")));
     let mut studio = of_scene(&scene);
     let asked = Request { transparent: true, ..request(SIZE) };
     let picture = figure::draw(&mut studio, &scene, &asked).unwrap();
     let [x, y, right, low] = told(&picture)[0].1;
     let middle = DVec2::new((x + right) as f64, (y + low) as f64) * 0.5;
-    // Above the horizon nothing is behind it, and nothing around it.
+    // The city ends below it.
     for (dx, dy, color) in [(-20.0, -15.0, 0), (20.0, -15.0, 1), (-20.0, 15.0, 2), (20.0, 15.0, 3)] {
         assert_eq!(pixel(&picture, middle + DVec2::new(dx, dy)), COLORS[color]);
     }
