@@ -1,7 +1,8 @@
 //! What overlays cost (B6, B7, B8), in parts of a plain frame of the same run: the layout of 200 labels, from nothing and from the frame before on a
-//! walk; and twelve overlays that show what they showed before, while the main view is drawn again.
+//! walk; twelve overlays that show what they showed before, while the main view is drawn again; and twelve that are drawn again, in parts of what a
+//! model says (so much for each view, each triangle and each pixel), whose constants are fitted in the same run.
 //!
-//! `cargo bench --bench overlays [-- --pairs N] [--only labels|unchanged]`: a frame is drawn, and one is laid out or drawn with overlays, in turn; the
+//! `cargo bench --bench overlays [-- --pairs N] [--only labels|unchanged|redrawn]`: a frame is drawn, and one is laid out or drawn with overlays, in turn; the
 //! median of their ratios is given with its 95 % interval. A target is met when the interval's upper end meets it.
 
 #![expect(clippy::print_stdout, reason = "a bench prints its table")]
@@ -43,7 +44,7 @@ fn main() {
         match (argument.as_str(), arguments.next()) {
             ("--pairs", Some(n)) => pairs = n.parse().expect("--pairs wants a number"),
             ("--only", Some(part)) => only = Some(part),
-            _ => panic!("{argument} is not --pairs N or --only labels|unchanged"),
+            _ => panic!("{argument} is not --pairs N or --only labels|unchanged|redrawn"),
         }
     }
     let model = load(&[bench_city::written(bench_city::BENCH_BUILDINGS)], &LoadOptions::default(), &Quiet)
@@ -58,12 +59,19 @@ fn main() {
     let model = Arc::new(model);
     let studio = |gpu| Studio::new(gpu, Arc::clone(&model), &spec).unwrap_or_else(|error| panic!("{error}"));
     let mut plain = studio(gpu);
-    if only.as_deref() != Some("unchanged") {
+    let is_asked = |part: &str| only.as_deref().is_none_or(|only| only == part);
+    if is_asked("labels") {
         labels(&mut plain, pairs);
     }
-    if only.as_deref() != Some("labels") {
+    if is_asked("unchanged") || is_asked("redrawn") {
         let gpu = Gpu::open().unwrap_or_else(|error| panic!("{error}"));
-        unchanged(&mut plain, &mut studio(gpu), pairs);
+        let mut own = studio(gpu);
+        if is_asked("unchanged") {
+            unchanged(&mut plain, &mut own, pairs);
+        }
+        if is_asked("redrawn") {
+            redrawn(&mut plain, &mut own, pairs);
+        }
     }
 }
 
@@ -83,7 +91,11 @@ fn row(name: &str, own: &[f64], frames: &[f64], target: f64) {
 }
 
 fn frame(studio: &mut Studio, scene: &Scene, furniture: &Furniture) {
-    studio.redraw_with(scene, SIZE, furniture).unwrap_or_else(|error| panic!("{error}"));
+    frame_of(studio, scene, SIZE, furniture);
+}
+
+fn frame_of(studio: &mut Studio, scene: &Scene, size: [u32; 2], furniture: &Furniture) {
+    studio.redraw_with(scene, size, furniture).unwrap_or_else(|error| panic!("{error}"));
     studio.renderer.gpu.wait().unwrap_or_else(|error| panic!("{error}"));
 }
 
@@ -99,9 +111,7 @@ fn unchanged(plain: &mut Studio, own: &mut Studio, pairs: usize) {
         )
     };
     let tables: String = chosen.iter().take(OVERLAYS).enumerate().map(table).collect();
-    let text = format!("veduta = 1\n[city]\nfiles = [\"any.city.json\"]\n{tables}");
-    let options = Options { allow_outside: true, ..Options::default() };
-    let mut scene = scene_file::parse(&text, "overlays", &options).unwrap_or_else(|error| panic!("{error}"));
+    let mut scene = with_tables(&tables);
     let mut standing = Standing::default();
     let (mut without, mut with) = (Vec::new(), Vec::new());
     let mut hosts = Vec::new();
@@ -112,15 +122,8 @@ fn unchanged(plain: &mut Studio, own: &mut Studio, pairs: usize) {
         without.push(time);
         scene = Scene { camera: alone.camera, style: alone.style, sun: alone.sun, ..scene };
         let start = Instant::now();
-        let request = Request {
-            size: SIZE,
-            samples: 1,
-            transparent: false,
-            aovs: Aovs::default(),
-            statistics: false,
-            backend: own.backend,
-        };
-        let overlays = overlays(own, &scene, &request, &[], &mut standing).unwrap_or_else(|error| panic!("{error}"));
+        let overlays =
+            overlays(own, &scene, &request(own), &[], &mut standing).unwrap_or_else(|error| panic!("{error}"));
         hosts.push(start.elapsed().as_secs_f64() * 1e3);
         frame(own, &scene, &overlays.furniture);
         with.push(start.elapsed().as_secs_f64() * 1e3);
@@ -132,6 +135,76 @@ fn unchanged(plain: &mut Studio, own: &mut Studio, pairs: usize) {
     let more: Vec<f64> = with.iter().zip(&without).map(|(with, without)| with - without).collect();
     row("12 unchanged overlays", &more[1..], &without[1..], 0.07);
     row("of that, until the frame is begun", &hosts[1..], &without[1..], 0.07);
+}
+
+fn with_tables(tables: &str) -> Scene {
+    let text = format!("veduta = 1\n[city]\nfiles = [\"any.city.json\"]\n{tables}");
+    let options = Options { allow_outside: true, ..Options::default() };
+    scene_file::parse(&text, "overlays", &options).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn request(studio: &Studio) -> Request {
+    Request {
+        size: SIZE,
+        samples: 1,
+        transparent: false,
+        aovs: Aovs::default(),
+        statistics: false,
+        backend: studio.backend,
+    }
+}
+
+/// Twelve views of 160 × 120 pixels that look at the main eye's surroundings from outside and are drawn again in every frame. The model's time for a view
+/// that shows nothing, for each triangle and for each pixel is that of plain frames of the same run: of the sky, of the whole city
+/// in so few pixels, and of the whole city in many.
+fn redrawn(plain: &mut Studio, own: &mut Studio, pairs: usize) {
+    let extent = plain.extent();
+    let reach = extent.size().truncate().length();
+    let table = |n: usize| {
+        let (turn, far) = (0.5 * n as f64, reach * (0.05 + 0.08 * n as f64));
+        let (x, y) = (turn.cos(), turn.sin());
+        format!(
+            "[[lens]]\nname = \"{n}\"\nkind = \"best-view\"\nview = {{ kind = \"mcop\", normal = [{x:.4}, {y:.4}, 1], distance = {far:.1} }}\n\
+             [[overlay]]\nlens = \"{n}\"\nsize = [160, 120]\nframe = \"none\"\n"
+        )
+    };
+    let mut scene = with_tables(&(0..OVERLAYS).map(table).collect::<String>());
+    let mut standing = Standing::default();
+    let small = [160, 120];
+    let pixels = |size: [u32; 2]| f64::from(size[0] * size[1]);
+    let all = plain.renderer.city().map_or(0, |city| city.triangles) as f64;
+    let (mut own_times, mut models, mut constants, mut most) = (Vec::new(), Vec::new(), [0.0; 3], 0.0_f64);
+    for n in 0..=pairs {
+        let alone = plain_scene(view(&extent, n).camera);
+        let mut sky = alone.clone();
+        if let Some(camera) = &mut sky.camera {
+            camera.target = camera.eye + (camera.eye - camera.target);
+        }
+        let mut timed_frame = |scene, size| timed(|| frame_of(plain, scene, size, &Furniture::default())).1;
+        let [fixed, few, many] = [(&sky, small), (&alone, small), (&alone, SIZE)].map(|(s, size)| timed_frame(s, size));
+        let per_pixel = (many - few) / (pixels(SIZE) - pixels(small));
+        let per_triangle = (few - fixed) / all;
+        let fixed = fixed - per_pixel * pixels(small);
+        scene = Scene { camera: alone.camera, style: alone.style, sun: alone.sun, ..scene };
+        let start = Instant::now();
+        let made = overlays(own, &scene, &request(own), &[], &mut standing).unwrap_or_else(|error| panic!("{error}"));
+        own.renderer.gpu.wait().unwrap_or_else(|error| panic!("{error}"));
+        let time = start.elapsed().as_secs_f64() * 1e3;
+        assert!(n == 0 || made.figures.iter().filter(|f| f.rendered).count() >= OVERLAYS - 1, "they are drawn again");
+        let model = made.figures.iter().filter(|figures| figures.rendered).map(|figures| {
+            let triangles = figures.triangles(&figures.lens.to_string(), 1) as f64;
+            most = most.max(triangles / pixels(figures.size));
+            fixed + per_triangle * triangles + per_pixel * pixels(figures.size)
+        });
+        models.push(model.sum::<f64>());
+        own_times.push(time);
+        constants = [fixed, per_triangle * 1e3, per_pixel * 1e6];
+    }
+    let [fixed, triangle, pixel] = constants;
+    println!(
+        "model: {fixed:.2} ms a view, {triangle:.3} µs a triangle, {pixel:.1} ns a pixel; {most:.2} triangles a pixel at most"
+    );
+    row("12 overlays drawn again / model", &own_times[1..], &models[1..], 1.3);
 }
 
 /// Layouts of 200 labels over the frame.

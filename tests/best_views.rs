@@ -616,3 +616,17 @@ fn what_goes_by_a_moving_point_moves_with_it() {
         assert!((step - metres * metre).abs() < 1.5 + 0.06 * metres * metre, "{steps:?} for {metre} pixels per metre");
     }
 }
+
+#[test]
+fn a_view_of_what_is_not_there_is_left_out() {
+    let lens = |name: &str, id: &str, kind: &str| {
+        format!(
+            "[[poi]]\nname = \"{name}\"\nobject = \"{id}\"\n[[lens]]\nname = \"{name}\"\nkind = \"{kind}\"\npoi = \"{name}\"\n"
+        )
+    };
+    for kind in ["best-view", "worldlet"] {
+        let scene = square(&format!("{}{}", lens("hall", "town-hall", kind), lens("gone", "town-hlal", kind)));
+        let picture = drawn(&mut of_scene(&scene), &scene);
+        assert_eq!(told(&picture).iter().map(|t| t.0).collect::<Vec<_>>(), [0], "{kind}: the other is drawn");
+    }
+}

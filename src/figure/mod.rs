@@ -72,9 +72,15 @@ fn draw_with(
     if request.statistics {
         let figures = overlays.figures.iter().map(|own| {
             let ([x, y], [width, height]) = (own.at, own.size);
-            serde_json::json!({ "lens": own.lens, "x": x, "y": y, "width": width, "height": height, "rendered": own.rendered })
+            let triangles = own.triangles(&scene.lenses[own.lens as usize].name, request.samples);
+            serde_json::json!({
+                "lens": own.lens, "x": x, "y": y, "width": width, "height": height,
+                "rendered": own.rendered, "triangles": triangles,
+            })
         });
-        picture.statistics.overlays = figures.collect();
+        let statistics = &mut picture.statistics;
+        statistics.overlays = figures.collect();
+        statistics.passes.splice(0..0, overlays.figures.iter().flat_map(|own| own.passes.iter().cloned()));
     }
     Ok(picture)
 }

@@ -113,6 +113,11 @@ pub enum LocalView {
 }
 
 impl LocalView {
+    /// Whether it is a view of a point of interest, which it cannot do without.
+    pub fn is_of_poi(&self) -> bool {
+        matches!(self, Self::Best { .. } | Self::Worldlet { .. } | Self::Follow { .. } | Self::Onboard { .. })
+    }
+
     /// How much a fisheye magnifies its middle; 1: there is none.
     pub fn magnification(&self) -> f64 {
         match self {

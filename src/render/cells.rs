@@ -158,30 +158,46 @@ impl Details {
         chunk.details & detail.bit() != 0
     }
 
-    /// For a view that draws at most `most` triangles of cells: all take the finest detail that has no more triangles per pixel that they
-    /// cover than they all may have. What is beside the picture, and may throw its shadow into it, is blocks.
+    /// For a view that draws at most `most` triangles of cells, casters of shadows included: all that is seen takes the finest detail that has
+    /// no more triangles per pixel that it covers than all of that may have. What is beside the picture, and may throw its shadow
+    /// into it, is blocks, as far as they go from the eye on.
     pub fn new(cells: &[CellFigures], view: &View, most: u64) -> Self {
         let frustum = view.frustum(1.0);
-        let seen: Vec<(usize, f64)> = (0..cells.len())
-            .filter(|&i| frustum.meets(&cells[i].bounds))
-            .map(|i| (i, covered(view, &cells[i].bounds)))
-            .collect();
+        let (seen, mut beside): (Vec<usize>, Vec<usize>) =
+            (0..cells.len()).partition(|&i| frustum.meets(&cells[i].bounds));
+        let seen: Vec<(usize, f64)> = seen.into_iter().map(|i| (i, covered(view, &cells[i].bounds))).collect();
         let sum = |density: f64| -> u64 {
             seen.iter().map(|&(i, area)| u64::from(cells[i].triangles(finest(&cells[i], area * density)))).sum()
         };
-        if sum(f64::INFINITY) <= most {
+        let all = sum(f64::INFINITY);
+        if all + beside.iter().map(|&i| u64::from(cells[i].triangles[0])).sum::<u64>() <= most {
             return Self::default();
         }
-        // From nothing to everything: `low` is never too much, and what is between the two in the end is less than a triangle in all.
-        let [mut low, mut high] = [-60.0_f64, 60.0];
-        for _ in 0..48 {
-            let middle = 0.5 * (low + high);
-            if sum(middle.exp2()) <= most { low = middle } else { high = middle }
+        let density = if all <= most { f64::INFINITY } else { densest(|density| sum(density) <= most) };
+        let mut details = vec![Detail::Nothing; cells.len()];
+        seen.iter().for_each(|&(i, area)| details[i] = finest(&cells[i], area * density));
+        let eye = view.camera.eye.truncate();
+        beside.sort_by_cached_key(|&i| {
+            let distance = cells[i].bounds.center().truncate().distance_squared(eye);
+            (distance.to_bits(), i)
+        });
+        let mut left = most - sum(density);
+        for i in beside {
+            let Some(rest) = left.checked_sub(cells[i].triangles(Detail::Blocks).into()) else { break };
+            (details[i], left) = (Detail::Blocks, rest);
         }
-        let mut details = vec![Detail::Blocks; cells.len()];
-        seen.iter().for_each(|&(i, area)| details[i] = finest(&cells[i], area * low.exp2()));
         Self(details)
     }
+}
+
+/// The largest triangles per pixel that fit: from nothing to everything, until what is between two is less than a triangle in all.
+fn densest(fits: impl Fn(f64) -> bool) -> f64 {
+    let [mut low, mut high] = [-60.0_f64, 60.0];
+    for _ in 0..48 {
+        let middle = 0.5 * (low + high);
+        if fits(middle.exp2()) { low = middle } else { high = middle }
+    }
+    low.exp2()
 }
 
 impl Renderer {
@@ -246,28 +262,29 @@ mod tests {
         })
     }
 
-    fn drawn(cells: &[CellFigures], details: &Details, view: &View) -> u64 {
-        let frustum = view.frustum(1.0);
-        let seen = cells.iter().zip(&details.0).filter(|(cell, _)| frustum.meets(&cell.bounds));
-        seen.map(|(cell, detail)| u64::from(cell.triangles(*detail))).sum()
-    }
-
     proptest! {
-        /// Never more than may be; nothing is simplified where all fits; and more room never makes a cell coarser.
+        /// Never more than may be, shadows included; nothing is simplified where all fits; more room never makes a cell coarser; and what is
+        /// beside the picture is there from the eye on.
         #[test]
         fn details_keep_within_their_triangles(cells in cells(), most in 0..40_000_u64) {
             let view = view();
             let frustum = view.frustum(1.0);
-            let all: u64 = cells.iter().filter(|c| frustum.meets(&c.bounds)).map(|c| u64::from(c.triangles[0])).sum();
+            let all: u64 = cells.iter().map(|c| u64::from(c.triangles[0])).sum();
             let details = Details::new(&cells, &view, most);
             prop_assert_eq!(details == Details::default(), all <= most);
             if all > most {
-                prop_assert!(drawn(&cells, &details, &view) <= most);
-                for (cell, detail) in cells.iter().zip(&details.0) {
-                    prop_assert!(frustum.meets(&cell.bounds) || *detail == Detail::Blocks, "what throws shadows is there");
-                }
+                let drawn = |d: &Details| -> u64 { cells.iter().zip(&d.0).map(|(c, d)| u64::from(c.triangles(*d))).sum() };
+                prop_assert!(drawn(&details) <= most);
+                let beside = |i: &usize| !frustum.meets(&cells[*i].bounds);
+                let distance = |i: usize| cells[i].bounds.center().truncate().distance(view.camera.eye.truncate());
+                let is_there = |i: &usize| details.0[*i] == Detail::Blocks;
+                let (there, gone): (Vec<_>, Vec<_>) = (0..cells.len()).filter(beside).partition(is_there);
+                prop_assert!(gone.iter().all(|&i| details.0[i] == Detail::Nothing));
+                let furthest = there.iter().map(|&i| distance(i)).fold(0.0, f64::max);
+                prop_assert!(gone.iter().all(|&i| distance(i) >= furthest));
                 let finer = Details::new(&cells, &view, most + most / 2);
-                prop_assert!(finer.0.iter().zip(&details.0).all(|(fine, coarse)| fine <= coarse));
+                let is_finer = |i: usize| finer == Details::default() || finer.0[i] <= details.0[i];
+                prop_assert!((0..cells.len()).all(is_finer));
             }
         }
     }

@@ -20,6 +20,7 @@ use crate::{
         renderer::{Buffers, Groups, Renderer, Shadow},
         sections::SectionsOnGpu,
         solids::SolidTable,
+        stats::Pass,
         stored::KeptSprite,
         targets::Targets,
         transparency::{MethodFigures, SlotsOnGpu},
@@ -114,8 +115,8 @@ pub(super) struct Inset {
 }
 
 impl Studio {
-    /// Draws `scene` and `furniture` over it into the image `number` ([`Renderer::images`]), unless that shows it already. Whether it was drawn.
-    /// `is_stale`: images of the furniture show something else than before.
+    /// Draws `scene` and `furniture` over it into the image `number` ([`Renderer::images`]), unless that shows it already. The passes that
+    /// ran; `None`: it was not drawn. `is_stale`: images of the furniture show something else than before.
     ///
     /// # Errors
     /// Those of a picture.
@@ -126,7 +127,7 @@ impl Studio {
         request: &Request,
         furniture: &Furniture,
         is_stale: bool,
-    ) -> Result<bool, RenderError> {
+    ) -> Result<Option<Vec<Pass>>, RenderError> {
         let most = TRIANGLES_PER_PIXEL * request.size.iter().map(|&side| u64::from(side)).product::<u64>();
         self.find_blocks(most)?;
         let mut inset = match self.insets.remove(&number) {
@@ -136,11 +137,14 @@ impl Studio {
         let shows = !is_stale
             && self.renderer.images.size(number).is_some()
             && inset.of.as_ref().is_some_and(|(s, r, f)| s == scene && r == request && f == furniture);
-        let drawn = if shows { Ok(()) } else { self.draw_inset(&mut inset, number, (scene, request, furniture), most) };
+        let drawn = match shows {
+            true => Ok(None),
+            false => self.draw_inset(&mut inset, number, (scene, request, furniture), most).map(Some),
+        };
         if drawn.is_ok() {
             self.insets.insert(number, inset);
         }
-        drawn.map(|()| !shows)
+        drawn
     }
 
     fn draw_inset(
@@ -149,7 +153,7 @@ impl Studio {
         number: u64,
         (scene, request, furniture): (&Scene, &Request, &Furniture),
         most: u64,
-    ) -> Result<(), RenderError> {
+    ) -> Result<Vec<Pass>, RenderError> {
         inset.of = None;
         let swap_occlusion = |a: &mut Mutex<Occlusion>, b: &mut Mutex<Occlusion>| {
             let [a, b] = [a, b].map(|m| m.get_mut().unwrap_or_else(PoisonError::into_inner));
@@ -157,10 +161,10 @@ impl Studio {
         };
         inset.state.swap(&mut self.renderer);
         swap_occlusion(&mut inset.occlusion, &mut self.occlusion);
-        let drawn = self.draw_with(scene, request, furniture, Some(most)).and_then(|()| {
+        let drawn = self.draw_with(scene, request, furniture, Some(most)).and_then(|passes| {
             // Lists that were too short are long enough the second time.
             let grows = self.renderer.makes_room()? | self.renderer.sorts_longer()?;
-            if grows { self.draw_with(scene, request, furniture, Some(most)) } else { Ok(()) }
+            if grows { self.draw_with(scene, request, furniture, Some(most)) } else { Ok(passes) }
         });
         if drawn.is_ok()
             && let Some(targets) = &self.renderer.targets

@@ -308,21 +308,22 @@ impl Studio {
             statistics: false,
             backend: self.backend,
         };
-        self.draw_with(scene, &request, furniture, None)
+        self.draw_with(scene, &request, furniture, None).map(|_| ())
     }
 
     /// Draws all samples of a picture that fits one target, without reading anything back.
     pub fn draw(&mut self, scene: &Scene, request: &Request) -> Result<(), RenderError> {
-        self.draw_with(scene, request, &furniture::NONE, None)
+        self.draw_with(scene, request, &furniture::NONE, None).map(|_| ())
     }
 
+    /// The passes that ran, of all samples.
     pub(super) fn draw_with(
         &mut self,
         scene: &Scene,
         request: &Request,
         furniture: &Furniture,
         most_triangles: Option<u64>,
-    ) -> Result<(), RenderError> {
+    ) -> Result<Vec<stats::Pass>, RenderError> {
         let drawn = scene.drawn();
         let prepared = self.prepare(&drawn, request.size)?;
         let view = self.view(scene, request.size, &prepared)?;
@@ -330,11 +331,13 @@ impl Studio {
         self.find_cities(&prepared)?;
         let mut input =
             FrameInput { furniture, most_triangles, ..input(&drawn.scene, request, &prepared, view, whole) };
+        let mut passes = Vec::new();
         for sample in 0..input.samples {
             input.sample = sample;
-            self.renderer.draw(&input, None)?;
+            let records = self.renderer.draw(&input, None)?;
+            collect(&mut passes, &records, &[], &drawn);
         }
-        Ok(())
+        Ok(passes)
     }
 
     /// The stored depth sprites of a lens in a picture of this size: none where it is not seen or not tested by one.

@@ -256,15 +256,7 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
                 note(table.clone(), "poi", format!("there is no point of interest \"{name}\"{hint}"));
             }
         }
-        let is_of_poi = matches!(
-            shown.view(),
-            Some(
-                LocalView::Best { .. }
-                    | LocalView::Worldlet { .. }
-                    | LocalView::Follow { .. }
-                    | LocalView::Onboard { .. }
-            )
-        );
+        let is_of_poi = shown.view().is_some_and(LocalView::is_of_poi);
         if shown.pois.is_empty() && is_of_poi {
             note(table.clone(), "poi", "is missing: this view is of a point of interest".to_owned());
         }

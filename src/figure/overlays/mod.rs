@@ -29,6 +29,7 @@ use crate::{
     render::{
         furniture::{Furniture, Piece},
         picture::{Aovs, RenderError, Request, Studio},
+        stats::Pass,
         told,
     },
     scene::{
@@ -58,7 +59,7 @@ pub struct Overlays {
 }
 
 /// One overlay, for statistics.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OverlayFigures {
     /// The number of its lens.
     pub lens: u32,
@@ -69,6 +70,17 @@ pub struct OverlayFigures {
     pub size: [u32; 2],
     /// Whether it was drawn for this picture.
     pub rendered: bool,
+    /// The passes that drew what it shows, if that is a view, and before them those of overlays in it; the view of each is the name of its lens.
+    pub passes: Vec<Pass>,
+}
+
+impl OverlayFigures {
+    /// Triangles of the city that were handed to the rasteriser for what is seen in it, of one of so many samples; not those that cast
+    /// shadows, nor those of overlays in it.
+    pub fn triangles(&self, lens: &str, samples: u32) -> u64 {
+        let own = self.passes.iter().filter(|pass| pass.view == lens && pass.name.starts_with("geometry"));
+        own.map(|pass| pass.triangles).sum::<u64>() / u64::from(samples.max(1))
+    }
 }
 
 /// Where the overlays of a picture, and those in them, stood last: from there they go on, so that they keep still while the eye moves (B6). An
@@ -317,11 +329,17 @@ impl Plan {
         let room = paint::picture_room(&one.overlay, rect, spot.em);
         let number = paint::number(self.numbers, one.index, paint::Part::Picture);
         let inner = self.views.get(&one.index);
-        let mut rendered = false;
+        let (mut rendered, mut passes) = (false, Vec::new());
         match (&one.best_view.depiction, inner) {
             (Depiction::Text(text), _) => {
                 painter.text(&one.overlay, rect, text);
-                return Ok(OverlayFigures { lens: one.index as u32, at: room.low, size: room.size(), rendered });
+                return Ok(OverlayFigures {
+                    lens: one.index as u32,
+                    at: room.low,
+                    size: room.size(),
+                    rendered,
+                    passes,
+                });
             }
             (Depiction::Image(file), _) => {
                 gathered.images.push(number);
@@ -343,8 +361,11 @@ impl Plan {
                     None => Overlays::default(),
                 };
                 let is_stale = over.figures.iter().any(|figures| figures.rendered);
-                rendered =
+                let drawn =
                     studio.inset(number, &at_its_moment(&inner.local.scene), &asked, &over.furniture, is_stale)?;
+                rendered = drawn.is_some();
+                passes.extend(over.figures.into_iter().flat_map(|figures| figures.passes));
+                passes.extend(drawn.into_iter().flatten().map(|pass| of_overlay(pass, &one.name)));
             }
         }
         let [alpha, frame] = paint::masks(&one.overlay.frame);
@@ -359,7 +380,7 @@ impl Plan {
         if let (Some(view), Some(local)) = (one.best_view.view(), local) {
             painter.signs(&one.overlay, view, local, &self.view.camera, room);
         }
-        Ok(OverlayFigures { lens: one.index as u32, at: room.low, size: room.size(), rendered })
+        Ok(OverlayFigures { lens: one.index as u32, at: room.low, size: room.size(), rendered, passes })
     }
 }
 
@@ -376,6 +397,12 @@ fn at_its_moment(scene: &Scene) -> Scene {
         })
     });
     own
+}
+
+/// A pass of the view of a lens, which tells it by its name.
+fn of_overlay(pass: Pass, lens: &str) -> Pass {
+    let view = if pass.view == "main" { lens.to_owned() } else { format!("{lens}: {}", pass.view) };
+    Pass { view, ..pass }
 }
 
 fn wrong(lens: &str, message: &str) -> RenderError {

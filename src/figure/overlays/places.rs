@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     geom::outline,
-    lens::{BestView, Lens, Placement, color::Srgb},
+    lens::{BestView, Lens, Placement, best_view::LocalView, color::Srgb},
     overlay::Focus,
     render::picture::Studio,
     scene::{Overlay, Poi, PoiPlace, Scene, anchor::anchor, overlay::LineEnd},
@@ -56,9 +56,16 @@ pub(super) fn direction(view: &View, at: DVec3) -> DVec2 {
     DVec2::new(from_eye.dot(view.basis.right), -from_eye.dot(view.basis.up))
 }
 
-/// What of a lens's overlay depends on the eye; `None`: it has no overlay.
+/// Whether a view is of an object that the city does not have; the scene's warnings tell so.
+fn is_of_nothing(studio: &Studio, scene: &Scene, best_view: &BestView) -> bool {
+    let first = best_view.pois.first().and_then(|name| scene.pois.iter().find(|poi| poi.name == *name));
+    let is_missing = |poi: &Poi| matches!(&poi.place, PoiPlace::Object(id) if studio.model.find_object(id).is_none());
+    best_view.view().is_some_and(LocalView::is_of_poi) && first.is_some_and(is_missing)
+}
+
+/// What of a lens's overlay depends on the eye; `None`: it has no overlay, or that would show nothing.
 pub(super) fn seen(studio: &Studio, scene: &Scene, view: &View, index: usize, lens: &Lens) -> Option<Shown> {
-    let best_view = lens.best_view.clone().filter(|_| lens.enabled)?;
+    let best_view = lens.best_view.clone().filter(|own| lens.enabled && !is_of_nothing(studio, scene, own))?;
     let overlay =
         scene.overlays.iter().find(|o| o.lens == lens.name).cloned().unwrap_or_else(|| Overlay::of(&lens.name));
     let to_area = overlay.line.as_ref().is_some_and(|line| line.to == LineEnd::Area);
