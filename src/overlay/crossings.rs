@@ -53,12 +53,6 @@ impl Way {
         &self.points
     }
 
-    /// The rectangle around it, pixels, rounded outwards.
-    pub fn around(&self) -> Rect {
-        let pixel = |v: i64| v.div_euclid(STEPS) as i32;
-        Rect { min: self.low.map(pixel), max: self.high.map(|v| pixel(v + STEPS - 1)) }
-    }
-
     /// Its length, lattice steps.
     pub fn length(&self) -> f64 {
         self.points
@@ -92,37 +86,58 @@ impl Way {
         if (0..2).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
             return false;
         }
-        let (ends, other_ends) = (self.points.len() - 2, other.points.len() - 2);
-        let same_focus = self.points.last() == other.points.last();
-        self.points.windows(2).enumerate().any(|(i, p)| {
-            other.points.windows(2).enumerate().any(|(j, q)| {
-                if same_focus && i == ends && j == other_ends {
-                    // Both end here: they share more than the end only where one lies along the other.
-                    let focus = p[1];
-                    let along = |a: Lattice| [a[0] - focus[0], a[1] - focus[1]];
-                    orient(p[0], focus, q[0]) == 0 && dot(along(p[0]), along(q[0])) > 0
-                } else {
-                    segments_meet(p[0], p[1], q[0], q[1])
-                }
-            })
-        })
+        let segments = 0..self.points.len() - 1;
+        let others = || 0..other.points.len() - 1;
+        segments.filter(|i| self.is_near(*i, other)).any(|i| others().any(|j| self.meets(i, other, j)))
+    }
+
+    /// Whether the box around a segment touches that around another line.
+    fn is_near(&self, segment: usize, other: &Self) -> bool {
+        let (p, q) = (self.points[segment], self.points[segment + 1]);
+        (0..2).all(|i| p[i].min(q[i]) <= other.high[i] && other.low[i] <= p[i].max(q[i]))
+    }
+
+    /// Whether its segment number `i` crosses segment number `j` of another.
+    pub fn meets(&self, i: usize, other: &Self, j: usize) -> bool {
+        let (p, q) = (&self.points[i..=i + 1], &other.points[j..=j + 1]);
+        let are_last = i + 2 == self.points.len() && j + 2 == other.points.len();
+        if are_last && p[1] == q[1] {
+            // Both end here: they share more than the end only where one lies along the other.
+            let focus = p[1];
+            let along = |a: Lattice| [a[0] - focus[0], a[1] - focus[1]];
+            orient(p[0], focus, q[0]) == 0 && dot(along(p[0]), along(q[0])) > 0
+        } else {
+            segments_meet(p[0], p[1], q[0], q[1])
+        }
     }
 
     /// Whether it crosses the rectangle of an overlay.
     pub fn crosses_overlay(&self, rect: &Rect) -> bool {
-        let low = [0, 1].map(|i| i64::from(rect.min[i]) * STEPS);
-        let high = [0, 1].map(|i| i64::from(rect.max[i]) * STEPS);
+        let [low, high] = on_lattice(rect);
         if (0..2).any(|i| self.high[i] < low[i] || high[i] < self.low[i]) {
             return false;
         }
-        self.points.windows(2).any(|p| {
-            // Two convex shapes are apart if an edge's normal parts them: x, y, or that of the segment.
-            let apart = |i: usize| p[0][i].max(p[1][i]) < low[i] || high[i] < p[0][i].min(p[1][i]);
-            let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
-            let sides = corners.map(|c| orient(p[0], p[1], c).signum());
-            !(apart(0) || apart(1) || sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0))
-        })
+        (0..self.points.len() - 1).any(|i| self.passes(i, rect))
     }
+
+    /// Whether its segment number `i` crosses the rectangle of an overlay.
+    pub fn passes(&self, i: usize, rect: &Rect) -> bool {
+        let [low, high] = on_lattice(rect);
+        let (p, q) = (self.points[i], self.points[i + 1]);
+        // Two convex shapes are apart if an edge's normal parts them: x, y, or that of the segment.
+        let apart = |i: usize| p[i].max(q[i]) < low[i] || high[i] < p[i].min(q[i]);
+        if apart(0) || apart(1) {
+            return false;
+        }
+        let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+        let sides = corners.map(|c| orient(p, q, c).signum());
+        !(sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0))
+    }
+}
+
+/// The corners of a rectangle, lattice steps.
+pub fn on_lattice(rect: &Rect) -> [Lattice; 2] {
+    [rect.min, rect.max].map(|corner| corner.map(|v| i64::from(v) * STEPS))
 }
 
 /// How many crossings there are between two overlays and their lines: pairs of lines, and lines over the other's rectangle.

@@ -3,14 +3,46 @@
 //! In the plane of depth and place along the side, each point and each overlay closes a rectangle of places to an overlay of a given size. A sweep over depth
 //! counts how many of them lie over each place along the side, in a segment tree: where the least count is 0, there is room. With n overlays and p points this
 //! takes O((n + p) log (n + p)) for each side.
+//!
+//! While overlays are added and none goes, room only becomes less: for an overlay as large as one before, the search begins at the depth where that one
+//! ended ([`Depths`]). It mostly ends soon after, so first those alone are swept over that are near.
+
+use glam::DVec2;
 
 use crate::overlay::{
     Rect,
     crossings::FURTHEST,
     fill::Problem,
-    lane::{Side, nearest},
+    lane::{Board, Side, Windows, nearest},
     rect::closed_by,
 };
+
+/// What is known of the room further inward: for overlays of a size, or of a larger one, the least depth at each side at which there may be some.
+///
+/// It holds for one board as long as obstacles are only added.
+#[derive(Clone, Debug, Default)]
+pub struct Depths {
+    /// Sizes, and depths in the order of the problem's sides.
+    known: Vec<([i32; 2], [i32; 4])>,
+}
+
+impl Depths {
+    /// Where to begin, for an overlay of `size`; pixels, [`NOWHERE`] where there is no room at a side.
+    fn of(&self, size: [i32; 2]) -> [i32; 4] {
+        let smaller = self.known.iter().filter(|(known, _)| known[0] <= size[0] && known[1] <= size[1]);
+        smaller.fold([0; 4], |least, (_, depths)| [0, 1, 2, 3].map(|k| least[k].max(depths[k])))
+    }
+
+    fn note(&mut self, size: [i32; 2], depths: [i32; 4]) {
+        match self.known.iter_mut().find(|(known, _)| *known == size) {
+            Some((_, known)) => *known = depths,
+            None => self.known.push((size, depths)),
+        }
+    }
+}
+
+/// A depth of which there is none.
+const NOWHERE: i32 = i32::MAX;
 
 /// Places that something closes: depths and places along the side, first and last of each.
 #[derive(Clone, Copy, Debug)]
@@ -20,61 +52,102 @@ struct Closed {
 }
 
 impl Problem<'_> {
-    /// The place that is least inward for an overlay of `size`, keeping the gap from `obstacles` and from what is blocked and covering no point.
-    pub fn place_inward(&self, item: usize, size: [i32; 2], obstacles: &[Rect]) -> Option<(Side, Rect)> {
-        let board = &self.board;
+    /// The place that is least inward for an overlay of `size`, keeping the gap from `obstacles` and from what is blocked on the `board`, and covering no
+    /// point of it. `depths`: what earlier calls with this board and some of these obstacles have found.
+    pub fn place_inward(
+        &self,
+        board: &Board,
+        item: usize,
+        size: [i32; 2],
+        obstacles: &[Rect],
+        depths: &mut Depths,
+    ) -> Option<(Side, Rect)> {
         let inner = board.inner.size();
         if size[0] > inner[0] || size[1] > inner[1] {
             return None;
         }
         let reach = self.request.layout.reach;
         let reach = if reach.is_nan() { 1.0 } else { reach.clamp(0.0, 1.0) };
-        let mut best: Option<(i32, i32, Side, Rect)> = None;
-        for &side in &self.sides {
+        let mut least = depths.of(size);
+        let mut order: Vec<usize> = (0..self.sides.len()).collect();
+        order.sort_by_key(|k| least[*k]);
+        // Depth, distance from the wish, and the number of the side: what is less is better.
+        let mut best: Option<((i32, i32, usize), Rect)> = None;
+        for k in order {
+            let side = self.sides[k];
             let (d, a) = (side.depth_axis(), side.along_axis());
             let deepest = (inner[d] - size[d]).min((f64::from(inner[d]) * reach) as i32 - size[d]).max(0);
-            let deepest = best.map_or(deepest, |best| deepest.min(best.0));
+            let limit = best.map_or(deepest, |best| deepest.min(best.0.0));
+            if least[k] > limit {
+                continue;
+            }
+            let Some((depth, windows)) = room(board, side, size, obstacles, (least[k], limit)) else {
+                least[k] = if limit < deepest { limit + 1 } else { NOWHERE };
+                continue;
+            };
+            least[k] = depth;
             let span = (board.inner.min[a], board.inner.max[a]);
-            let closed = self.closed(side, size, obstacles);
-            let Some(depth) = least_depth(&closed, (span.0, span.1 - size[a]), deepest) else { continue };
             let wish = (self.wish[item][a] - f64::from(size[a]) * 0.5).clamp(-FURTHEST, FURTHEST) as i32;
-            let windows = board.windows(side, depth, size, span, obstacles);
             if let Some(at) = nearest(&windows, wish, span.0, span.1) {
-                let found = (depth, (at - wish).abs(), side, board.rect(side, at, depth, size));
-                if best.is_none_or(|b| (found.0, found.1) < (b.0, b.1)) {
-                    best = Some(found);
+                let found = (depth, (at - wish).abs(), k);
+                if best.is_none_or(|best| found < best.0) {
+                    best = Some((found, board.rect(side, at, depth, size)));
                 }
             }
         }
-        best.map(|(.., side, rect)| (side, rect))
-    }
-
-    /// What is closed at a side to an overlay of `size`.
-    fn closed(&self, side: Side, size: [i32; 2], obstacles: &[Rect]) -> Vec<Closed> {
-        let board = &self.board;
-        let (d, a) = (side.depth_axis(), side.along_axis());
-        // Of places of the upper or left end, the depths.
-        let depths = |(first, last): (i32, i32)| {
-            if side.is_first() {
-                (first - board.inner.min[d], last - board.inner.min[d])
-            } else {
-                (board.inner.max[d] - size[d] - last, board.inner.max[d] - size[d] - first)
-            }
-        };
-        let beside = |o: &Rect, i: usize| (o.min[i] - board.gap - size[i] + 1, o.max[i] + board.gap - 1);
-        let of_obstacle = |o: &Rect| Closed { depth: depths(beside(o, d)), along: beside(o, a) };
-        let closes = |p: f64, i: usize| closed_by(p, board.clearance, size[i]);
-        let points = board.points.iter().map(|p| Closed { depth: depths(closes(p[d], d)), along: closes(p[a], a) });
-        points.chain(obstacles.iter().chain(&board.blocked).map(of_obstacle)).collect()
+        depths.note(size, least);
+        best.map(|((.., k), rect)| (self.sides[k], rect))
     }
 }
 
-/// The least depth from 0 to `deepest` at which not all places from `low` to `high` are closed.
-fn least_depth(closed: &[Closed], (low, high): (i32, i32), deepest: i32) -> Option<i32> {
+/// The least of the `depths` (first and last) at which an overlay of `size` has room at a side, and where along it.
+fn room(
+    board: &Board,
+    side: Side,
+    size: [i32; 2],
+    obstacles: &[Rect],
+    (first, last): (i32, i32),
+) -> Option<(i32, Windows)> {
+    let (d, a) = (side.depth_axis(), side.along_axis());
+    let span = (board.inner.min[a], board.inner.max[a]);
+    let windows = |depth: i32| board.windows(side, depth, size, span, obstacles);
+    let here = windows(first);
+    if !here.is_empty() {
+        return Some((first, here));
+    }
+    let near = last.min(first + size[d] + board.gap);
+    let found = [(first + 1, near), (near + 1, last)].into_iter().find_map(|depths| {
+        let closed = closed(board, side, size, obstacles, depths);
+        least_depth(&closed, (span.0, span.1 - size[a]), depths)
+    });
+    found.map(|depth| (depth, windows(depth)))
+}
+
+/// What is closed to an overlay of `size` at some of the `depths` of a side, first and last.
+fn closed(board: &Board, side: Side, size: [i32; 2], obstacles: &[Rect], (first, last): (i32, i32)) -> Vec<Closed> {
+    let (d, a) = (side.depth_axis(), side.along_axis());
+    // Of places of the upper or left end, the depths; `None` if they are others.
+    let depths = |(low, high): (i32, i32)| {
+        let depths = if side.is_first() {
+            (low - board.inner.min[d], high - board.inner.min[d])
+        } else {
+            (board.inner.max[d] - size[d] - high, board.inner.max[d] - size[d] - low)
+        };
+        (depths.0 <= last && first <= depths.1).then(|| (depths.0.max(first), depths.1.min(last)))
+    };
+    let beside = |o: &Rect, i: usize| (o.min[i] - board.gap - size[i] + 1, o.max[i] + board.gap - 1);
+    let of_obstacle = |o: &Rect| Some(Closed { depth: depths(beside(o, d))?, along: beside(o, a) });
+    let closes = |p: f64, i: usize| closed_by(p, board.clearance, size[i]);
+    let of_point = |p: &DVec2| Some(Closed { depth: depths(closes(p[d], d))?, along: closes(p[a], a) });
+    let points = board.points.iter().filter_map(of_point);
+    points.chain(obstacles.iter().chain(&board.blocked).filter_map(of_obstacle)).collect()
+}
+
+/// The least of the depths from `first` to `last` at which not all places from `low` to `high` are closed; nothing is closed beyond these depths.
+fn least_depth(closed: &[Closed], (low, high): (i32, i32), (first, last): (i32, i32)) -> Option<i32> {
     let clipped = |c: &Closed| {
         let along = (c.along.0.max(low), c.along.1.min(high));
-        let depth = (c.depth.0.max(0), c.depth.1.min(deepest));
-        (along.0 <= along.1 && depth.0 <= depth.1).then_some(Closed { depth, along })
+        (along.0 <= along.1).then_some(Closed { depth: c.depth, along })
     };
     let closed: Vec<Closed> = closed.iter().filter_map(clipped).collect();
     // Cells between the ends of what is closed: in one cell all places are as one.
@@ -92,7 +165,7 @@ fn least_depth(closed: &[Closed], (low, high): (i32, i32), deepest: i32) -> Opti
         events.push((c.depth.1 + 1, -1, from, to));
     }
     events.sort_unstable();
-    let mut depth = 0;
+    let mut depth = first;
     for (at, change, from, to) in events {
         if at > depth {
             if counts.least() == 0 {
@@ -102,7 +175,7 @@ fn least_depth(closed: &[Closed], (low, high): (i32, i32), deepest: i32) -> Opti
         }
         counts.add(from, to, change);
     }
-    (depth <= deepest && counts.least() == 0).then_some(depth)
+    (depth <= last && counts.least() == 0).then_some(depth)
 }
 
 /// A segment tree: counts of cells, of which ranges change and the least is known.
@@ -191,8 +264,15 @@ mod tests {
                 let over = |range: (i32, i32), v: i32| (range.0..=range.1).contains(&v);
                 !closed.iter().any(|c| over(c.depth, depth) && over(c.along, at))
             };
-            let tried = (0..=20).find(|depth| (3..=30).any(|at| is_open(*depth, at)));
-            assert_eq!(least_depth(&closed, (3, 30), 20), tried, "{closed:?}");
+            for first in [0, 7] {
+                let of_these = |c: &Closed| {
+                    let depth = (c.depth.0.max(first), c.depth.1.min(20));
+                    (depth.0 <= depth.1).then_some(Closed { depth, ..*c })
+                };
+                let clipped: Vec<Closed> = closed.iter().filter_map(of_these).collect();
+                let tried = (first..=20).find(|depth| (3..=30).any(|at| is_open(*depth, at)));
+                assert_eq!(least_depth(&clipped, (3, 30), (first, 20)), tried, "{closed:?}");
+            }
         }
     }
 }

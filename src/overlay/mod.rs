@@ -14,6 +14,7 @@
 pub mod arrow;
 pub mod crossings;
 pub mod fill;
+pub mod grid;
 pub mod inward;
 pub mod lane;
 pub mod line;

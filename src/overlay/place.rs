@@ -4,8 +4,9 @@ use glam::DVec2;
 
 use crate::overlay::{
     Rect, Request,
-    crossings::{Way, pixels},
+    crossings::pixels,
     fill::{Filled, Problem, fill},
+    grid::count,
     lane::Side,
     line::way,
     order::{Packer, packed, search, sides_of},
@@ -220,49 +221,6 @@ fn focused(problem: &Problem, before: Option<&Placed>) -> Option<usize> {
     })?;
     let last = before.and_then(|b| b.focused).and_then(|id| candidates().find(|&i| problem.overlays[i].id == id));
     last.filter(|&last| distance(last) <= distance(nearest) + dead_band(problem)).or(Some(nearest))
-}
-
-/// Crossings, and between which overlays they are.
-#[derive(Clone, Debug, Default)]
-pub struct Counted {
-    /// How many.
-    pub crossings: Crossings,
-    /// The numbers of two overlays between which there are some.
-    pub pairs: Vec<(usize, usize)>,
-}
-
-/// The crossings of all overlays and their lines.
-pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Counted {
-    let mut counted = Counted::default();
-    let present = |i: usize| Some((i, rects[i]?, &ways[i][..], hull(&rects[i]?, &ways[i])));
-    let present: Vec<_> = (0..rects.len()).filter_map(present).collect();
-    for (n, (i, rect, ways, hull)) in present.iter().enumerate() {
-        for (j, other_rect, other_ways, other_hull) in &present[..n] {
-            if !hull.within(other_hull, 1) {
-                continue;
-            }
-            let lines: usize = ways.iter().map(|way| other_ways.iter().filter(|w| way.crosses(w)).count()).sum();
-            let over = ways.iter().filter(|w| w.crosses_overlay(other_rect)).count()
-                + other_ways.iter().filter(|w| w.crosses_overlay(rect)).count();
-            if lines + over > 0 {
-                counted.crossings.lines += lines as u32;
-                counted.crossings.overlays += over as u32;
-                counted.pairs.push((*i, *j));
-            }
-        }
-    }
-    counted
-}
-
-/// The rectangle around an overlay and its lines, rounded outwards.
-fn hull(rect: &Rect, ways: &[Way]) -> Rect {
-    ways.iter().fold(*rect, |hull, way| {
-        let around = way.around();
-        Rect {
-            min: [0, 1].map(|i| hull.min[i].min(around.min[i])),
-            max: [0, 1].map(|i| hull.max[i].max(around.max[i])),
-        }
-    })
 }
 
 /// All that is told of a frame.

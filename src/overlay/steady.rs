@@ -11,11 +11,13 @@
 
 use crate::overlay::{
     Order, Placed, Rect, Request,
-    crossings::{Way, between},
+    crossings::Way,
     fill::{Filled, Problem, unease},
+    grid::{Counted, Pairs, count},
+    inward::Depths,
     lane::{Board, Side, Windows, fits},
     order::{Packer, packed, rects_of, search, sides_of, ways_of},
-    place::{Counted, Crossings, Jump, Seat, count},
+    place::{Crossings, Jump, Seat},
     size::{SHRINK_STEPS, Sizes},
 };
 
@@ -98,7 +100,7 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
             let is_helpless = || {
                 before.covers(problem.overlays[i].id)
                     && !problem.board.is_blocked(&rect)
-                    && problem.place_inward(i, size, &[]).is_none()
+                    && problem.place_inward(&problem.board, i, size, &[], &mut Depths::default()).is_none()
             };
             if is_good || is_helpless() {
                 filled.inward.push((i, *side, rect));
@@ -311,6 +313,7 @@ fn come(
         turns.last = Some(problem.overlays[waiting[(first + had - 1) % waiting.len()]].id);
     }
     let mut folded = too_large;
+    let mut depths = Depths::default();
     for (n, &item) in waiting.iter().enumerate() {
         let id = problem.overlays[item].id;
         let was_folded = before.folded.binary_search(&id).is_ok();
@@ -329,6 +332,7 @@ fn come(
             with.rows[k].insert(at, item);
             if let Some(rects) = packed(problem, &with, focused) {
                 (*filled, *ideal, any) = (with, rects, true);
+                depths = Depths::default();
                 continue;
             }
         }
@@ -336,12 +340,13 @@ fn come(
             continue;
         }
         let obstacles: Vec<Rect> = ideal.iter().flatten().copied().collect();
-        let board = Board {
-            clearance: problem.board.clearance + if was_folded { dead_band } else { 0.0 },
-            ..problem.board.clone()
+        let place = if was_folded {
+            let board = Board { clearance: problem.board.clearance + dead_band, ..problem.board.clone() };
+            problem.place_inward(&board, item, filled.sizes[item], &obstacles, &mut Depths::default())
+        } else {
+            problem.place_inward(&problem.board, item, filled.sizes[item], &obstacles, &mut depths)
         };
-        let wider = Problem { board, ..problem.clone() };
-        match wider.place_inward(item, filled.sizes[item], &obstacles) {
+        match place {
             Some((side, rect)) => {
                 filled.inward.push((item, side, rect));
                 ideal[item] = Some(rect);
@@ -425,18 +430,11 @@ fn deep_crossings(ways: &[Vec<Way>], rects: &[Option<Rect>], all: &Counted, dead
     if all.pairs.is_empty() || dead_band == 0.0 {
         return all.crossings.sum();
     }
-    let mut shortened: Vec<Option<Vec<Way>>> = vec![None; ways.len()];
-    let mut sum = 0;
-    for &(i, j) in &all.pairs {
-        for k in [i, j] {
-            let short = || ways[k].iter().filter_map(|w| w.shortened(dead_band)).collect();
-            shortened[k].get_or_insert_with(short);
-        }
-        if let (Some(a), Some(b), Some(of_a), Some(of_b)) = (rects[i], rects[j], &shortened[i], &shortened[j]) {
-            sum += between(&a, of_a, &b, of_b);
-        }
-    }
-    sum
+    let mut pairs = Pairs::new(ways.len(), ways.len());
+    all.pairs.iter().for_each(|(i, j)| pairs.add(*i, *j));
+    let shortened = |ways: &Vec<Way>| ways.iter().filter_map(|w| w.shortened(dead_band)).collect();
+    let shortened: Vec<Vec<Way>> = ways.iter().map(shortened).collect();
+    count(rects, &shortened).pairs.iter().filter(|(i, j)| pairs.has(*i, *j)).count() as u32
 }
 
 /// Whether an overlay moved further than it glides.
