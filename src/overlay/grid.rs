@@ -9,74 +9,105 @@ use crate::overlay::{
     place::Crossings,
 };
 
-/// Cells are 2 to the power of this lattice steps wide and high, or larger: 32 pixels, about as long as a segment of a curve.
-const LEAST_SHIFT: u32 = 13;
+/// Boxes are told in parts of cells, of which there are 2 to the power of this in a row.
+const PARTS: u32 = 8;
+
+/// Parts are 2 to the power of this lattice steps wide and high, or larger: with this, cells are 32 pixels wide, about as much as a segment of a curve.
+const LEAST_SHIFT: u32 = 5;
 
 /// The most columns, and the most rows.
 const MOST_CELLS: i64 = 64;
 
-/// Crossings, and between which overlays they are.
+/// Crossings, and where they are.
 #[derive(Clone, Debug, Default)]
 pub struct Counted {
     /// How many.
     pub crossings: Crossings,
-    /// For each of them the numbers of two overlays, the lower first.
-    pub pairs: Vec<(usize, usize)>,
+    /// Pairs of lines that cross: segments that meet.
+    pub lines: Vec<[Segment; 2]>,
+    /// Lines that cross overlays: segments that do, and the number of the overlay.
+    pub overlays: Vec<(Segment, usize)>,
+}
+
+/// A segment of a line.
+#[derive(Clone, Copy, Debug)]
+pub struct Segment {
+    /// The number of its overlay.
+    pub overlay: u32,
+    /// The number of its line, of those of the overlay.
+    pub line: u32,
+    /// Its number, from the overlay.
+    pub number: u32,
+}
+
+impl Counted {
+    /// For each crossing the numbers of two overlays between which it is.
+    pub fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        let lines = self.lines.iter().map(|both| both.map(|segment| segment.overlay as usize));
+        lines.chain(self.overlays.iter().map(|(segment, overlay)| [segment.overlay as usize, *overlay]))
+    }
 }
 
 /// The crossings of all overlays and their lines. Where there is no rectangle there are no lines.
 pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Counted {
     let mut counted = Counted::default();
     let present: Vec<(usize, Rect)> = rects.iter().enumerate().filter_map(|(i, r)| Some((i, (*r)?))).collect();
-    let lines: Vec<(usize, &Way)> = present.iter().flat_map(|&(i, _)| ways[i].iter().map(move |w| (i, w))).collect();
     let Some(grid) = Grid::around(&present) else { return counted };
-    let (mut segments, mut overlays) = (Vec::new(), Vec::new());
-    for (of, (_, way)) in (0..).zip(&lines) {
-        for (segment, ends) in (0..).zip(way.points().windows(2)) {
-            grid.add_segment(&mut segments, of, segment, ends[0], ends[1]);
+    let mut lines: Vec<&Way> = Vec::new();
+    // With the number of the line in `lines`.
+    let mut segments: Vec<(usize, Segment)> = Vec::new();
+    let mut pieces = Vec::new();
+    for &(i, _) in &present {
+        for (line, way) in (0..).zip(&ways[i]) {
+            for (number, ends) in (0..).zip(way.points().windows(2)) {
+                grid.add_segment(&mut pieces, segments.len() as u32, ends[0], ends[1]);
+                segments.push((lines.len(), Segment { overlay: i as u32, line, number }));
+            }
+            lines.push(way);
         }
     }
+    let mut overlays = Vec::new();
     for (of, (_, rect)) in (0..).zip(&present) {
-        let [low, high] = on_lattice(rect);
-        grid.add(&mut overlays, Piece { low: small(low), high: small(high), of, segment: 0 });
+        grid.add_overlay(&mut overlays, of, rect);
     }
-    let (segments, overlays) = (grid.sorted(&segments), grid.sorted(&overlays));
+    let (pieces, overlays) = (grid.sorted(&pieces), grid.sorted(&overlays));
     let mut met = Pairs::new(lines.len(), lines.len());
     let mut passed = Pairs::new(lines.len(), present.len());
-    for (segments, overlays) in segments.cells().zip(overlays.cells()) {
-        for (n, a) in segments.iter().enumerate() {
-            let (line, (i, way)) = (a.of as usize, lines[a.of as usize]);
+    for (pieces, overlays) in pieces.cells().zip(overlays.cells()) {
+        for (k, a) in pieces.iter().enumerate() {
+            let (line, segment) = segments[a.of as usize];
+            let (way, n) = (lines[line], segment.number as usize);
             // The pieces of a cell are in the order of their lines.
-            for b in segments[..n].iter().filter(|b| b.touches(a)) {
-                let (other, (j, other_way)) = (b.of as usize, lines[b.of as usize]);
-                if i != j && !met.has(line, other) && way.meets(a.segment as usize, other_way, b.segment as usize) {
+            for b in pieces[..k].iter().filter(|b| b.touches(a)) {
+                let (other, other_segment) = segments[b.of as usize];
+                let is_new = segment.overlay != other_segment.overlay && !met.has(line, other);
+                if is_new && way.meets(n, lines[other], other_segment.number as usize) {
                     met.add(line, other);
-                    counted.crossings.lines += 1;
-                    counted.pairs.push((i.min(j), i.max(j)));
+                    counted.lines.push([segment, other_segment]);
                 }
             }
             for b in overlays.iter().filter(|b| b.touches(a)) {
-                let (other, (j, rect)) = (b.of as usize, present[b.of as usize]);
-                if i != j && !passed.has(line, other) && way.passes(a.segment as usize, &rect) {
-                    passed.add(line, other);
-                    counted.crossings.overlays += 1;
-                    counted.pairs.push((i.min(j), i.max(j)));
+                let (overlay, rect) = &present[b.of as usize];
+                let is_new = segment.overlay as usize != *overlay && !passed.has(line, b.of as usize);
+                if is_new && way.passes(n, rect) {
+                    passed.add(line, b.of as usize);
+                    counted.overlays.push((segment, *overlay));
                 }
             }
         }
     }
+    counted.crossings = Crossings { lines: counted.lines.len() as u32, overlays: counted.overlays.len() as u32 };
     counted
 }
 
-/// What of a segment or of an overlay is in a cell: a box, lattice steps.
+/// What of a segment or of an overlay is in a cell.
 #[derive(Clone, Copy, Debug, Default)]
 struct Piece {
-    low: [i32; 2],
-    high: [i32; 2],
-    /// The number of the line or of the overlay.
+    /// A box: parts of a cell from the grid's corner on.
+    low: [u16; 2],
+    high: [u16; 2],
+    /// The number of the segment or of the overlay.
     of: u32,
-    /// The number of the segment.
-    segment: u32,
 }
 
 impl Piece {
@@ -89,18 +120,13 @@ impl Piece {
     }
 }
 
-/// Coordinates are at most 2²⁸.
-fn small(point: Lattice) -> [i32; 2] {
-    point.map(|v| v as i32)
-}
-
 /// Cells around what stands in a picture. Those along its border hold what is outside of it, too.
 struct Grid {
     /// Its upper left corner, lattice steps.
     origin: Lattice,
     /// Columns and rows.
-    count: [i64; 2],
-    /// The size of a cell is 2 to the power of this, lattice steps.
+    count: [u16; 2],
+    /// The size of a part of a cell is 2 to the power of this, lattice steps.
     shift: u32,
 }
 
@@ -114,63 +140,69 @@ impl Grid {
         let [origin, end] = on_lattice(&present.iter().map(|p| p.1).reduce(both)?);
         let extent = [0, 1].map(|i| end[i] - origin[i]);
         let mut shift = LEAST_SHIFT;
-        while extent.iter().any(|e| e >> shift >= MOST_CELLS) {
+        while extent.iter().any(|e| e >> (shift + PARTS) >= MOST_CELLS) {
             shift += 1;
         }
-        Some(Self { origin, count: extent.map(|e| (e >> shift) + 1), shift })
+        Some(Self { origin, count: extent.map(|e| (e >> (shift + PARTS)) as u16 + 1), shift })
     }
 
-    /// The column (axis 0) or the row of a coordinate.
-    fn cell(&self, axis: usize, at: i64) -> i64 {
-        ((at - self.origin[axis]) >> self.shift).clamp(0, self.count[axis] - 1)
+    /// In which part from the grid's corner on a coordinate of an axis is.
+    fn part(&self, axis: usize, at: i64) -> u16 {
+        ((at - self.origin[axis]) >> self.shift).clamp(0, (i64::from(self.count[axis]) << PARTS) - 1) as u16
     }
 
-    /// Adds a piece to all cells that its box touches.
-    fn add(&self, pieces: &mut Vec<(u32, Piece)>, piece: Piece) {
-        let range =
-            |axis: usize| self.cell(axis, i64::from(piece.low[axis]))..=self.cell(axis, i64::from(piece.high[axis]));
-        for row in range(1) {
-            for column in range(0) {
-                pieces.push(((row * self.count[0] + column) as u32, piece));
+    fn add(&self, pieces: &mut Vec<(u16, Piece)>, piece: Piece) {
+        for row in piece.low[1] >> PARTS..=piece.high[1] >> PARTS {
+            for column in piece.low[0] >> PARTS..=piece.high[0] >> PARTS {
+                pieces.push((row * self.count[0] + column, piece));
             }
         }
     }
 
-    /// Adds the pieces of a segment, column by column.
-    fn add_segment(&self, pieces: &mut Vec<(u32, Piece)>, of: u32, segment: u32, a: Lattice, b: Lattice) {
+    fn add_overlay(&self, pieces: &mut Vec<(u16, Piece)>, of: u32, rect: &Rect) {
+        let [low, high] = on_lattice(rect).map(|p| [self.part(0, p[0]), self.part(1, p[1])]);
+        self.add(pieces, Piece { low, high, of });
+    }
+
+    /// Column by column.
+    fn add_segment(&self, pieces: &mut Vec<(u16, Piece)>, of: u32, a: Lattice, b: Lattice) {
         let (from, to) = if a[0] <= b[0] { (a, b) } else { (b, a) };
-        let slope = (to[1] - from[1]) as f64 / (to[0] - from[0]) as f64;
         let (low, high) = (from[1].min(to[1]), from[1].max(to[1]));
-        let (first, last) = (self.cell(0, from[0]), self.cell(0, to[0]));
-        let mut left = from;
-        for column in first..=last {
-            let right = if column == last {
-                to
+        let slope = (to[1] - from[1]) as f64 / (to[0] - from[0]) as f64;
+        let (first, last) = (self.part(0, from[0]), self.part(0, to[0]));
+        let mut left = from[1];
+        for column in first >> PARTS..=last >> PARTS {
+            let border = (column + 1) << PARTS;
+            let right = if border > last {
+                to[1]
             } else {
-                let x = self.origin[0] + ((column + 1) << self.shift);
-                [x, from[1] + ((x - from[0]) as f64 * slope) as i64]
+                let x = self.origin[0] + (i64::from(border) << self.shift);
+                from[1] + ((x - from[0]) as f64 * slope) as i64
             };
             // The ordinate at a border between columns is less than two steps off.
-            let low = (left[1].min(right[1]) - 2).max(low);
-            let high = (left[1].max(right[1]) + 2).min(high);
-            for row in self.cell(1, low)..=self.cell(1, high) {
-                let piece = Piece { low: small([left[0], low]), high: small([right[0], high]), of, segment };
-                pieces.push(((row * self.count[0] + column) as u32, piece));
-            }
+            let rows = ((left.min(right) - 2).max(low), (left.max(right) + 2).min(high));
+            self.add(
+                pieces,
+                Piece {
+                    low: [first.max(column << PARTS), self.part(1, rows.0)],
+                    high: [last.min(border - 1), self.part(1, rows.1)],
+                    of,
+                },
+            );
             left = right;
         }
     }
 
     /// Pieces by their cells, otherwise in their order.
-    fn sorted(&self, pieces: &[(u32, Piece)]) -> Sorted {
-        let mut ends = vec![0_u32; (self.count[0] * self.count[1]) as usize + 1];
-        pieces.iter().for_each(|(cell, _)| ends[*cell as usize + 1] += 1);
+    fn sorted(&self, pieces: &[(u16, Piece)]) -> Sorted {
+        let mut ends = vec![0; usize::from(self.count[0]) * usize::from(self.count[1]) + 1];
+        pieces.iter().for_each(|(cell, _)| ends[usize::from(*cell) + 1] += 1);
         for cell in 1..ends.len() {
             ends[cell] += ends[cell - 1];
         }
         let mut sorted = vec![Piece::default(); pieces.len()];
         for (cell, piece) in pieces {
-            let at = &mut ends[*cell as usize];
+            let at = &mut ends[usize::from(*cell)];
             sorted[*at as usize] = *piece;
             *at += 1;
         }

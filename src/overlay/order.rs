@@ -203,7 +203,7 @@ impl<'p, 'a> State<'p, 'a> {
             .collect();
         let counted = count(&rects, &ways);
         let mut counts = vec![vec![0; n]; n];
-        for (i, j) in counted.pairs {
+        for [i, j] in counted.pairs() {
             counts[i][j] += 1;
             counts[j][i] += 1;
         }

@@ -13,7 +13,7 @@ use crate::overlay::{
     Order, Placed, Rect, Request,
     crossings::Way,
     fill::{Filled, Problem, unease},
-    grid::{Counted, Pairs, count},
+    grid::{Counted, Segment, count},
     inward::Depths,
     lane::{Board, Side, Windows, fits},
     order::{Packer, packed, rects_of, search, sides_of, ways_of},
@@ -425,16 +425,26 @@ fn stood(problem: &Problem, held: &[Option<Rect>], seats: &[Option<Seat>]) -> u3
     count(held, &(0..held.len()).map(|i| ways(i).unwrap_or_default()).collect::<Vec<_>>()).crossings.sum()
 }
 
-/// Crossings that stay when all lines end before their focus by the dead band; `all`: how many there are, and between whom.
+/// Crossings that stay when all lines end before their focus by the dead band; `all`: those that there are.
 fn deep_crossings(ways: &[Vec<Way>], rects: &[Option<Rect>], all: &Counted, dead_band: f64) -> u32 {
-    if all.pairs.is_empty() || dead_band == 0.0 {
+    if dead_band == 0.0 {
         return all.crossings.sum();
     }
-    let mut pairs = Pairs::new(ways.len(), ways.len());
-    all.pairs.iter().for_each(|(i, j)| pairs.add(*i, *j));
-    let shortened = |ways: &Vec<Way>| ways.iter().filter_map(|w| w.shortened(dead_band)).collect();
-    let shortened: Vec<Vec<Way>> = ways.iter().map(shortened).collect();
-    count(rects, &shortened).pairs.iter().filter(|(i, j)| pairs.has(*i, *j)).count() as u32
+    let shortened = |ways: &Vec<Way>| ways.iter().map(|w| w.shortened(dead_band)).collect();
+    let shortened: Vec<Vec<Option<Way>>> = ways.iter().map(shortened).collect();
+    let short = |s: Segment| shortened[s.overlay as usize][s.line as usize].as_ref();
+    // What meets before the last segments, which alone have become shorter, still does.
+    let is_whole = |s: Segment, way: &Way| s.number as usize + 2 < way.points().len();
+    let do_cross = |[a, b]: [Segment; 2]| {
+        let (Some(way), Some(other)) = (short(a), short(b)) else { return false };
+        is_whole(a, way) && is_whole(b, other) || way.crosses(other)
+    };
+    let does_pass = |(s, i): (Segment, usize)| {
+        let (Some(way), Some(rect)) = (short(s), rects[i]) else { return false };
+        is_whole(s, way) || way.crosses_overlay(&rect)
+    };
+    let lines = all.lines.iter().filter(|both| do_cross(**both)).count();
+    (lines + all.overlays.iter().filter(|one| does_pass(**one)).count()) as u32
 }
 
 /// Whether an overlay moved further than it glides.
