@@ -1,8 +1,8 @@
 //! Places further inward (B6): the least depth at a side at which an overlay has room.
 //!
 //! In the plane of depth and place along the side, each point and each overlay closes a rectangle of places to an overlay of a given size. A sweep over depth
-//! counts how many of them lie over each place along the side, in a segment tree: where the least count is 0, there is room. With n overlays and p points this
-//! takes O((n + p) log (n + p)) for each side.
+//! raises the depth at which each place along the side opens, by one rectangle after the other; where that is less than where the next one begins, there is
+//! room. With n overlays and p points this takes O((n + p) log (n + p)) for each side, and a pass over the places that each of them closes.
 //!
 //! While overlays are added and none goes, room only becomes less: for an overlay as large as one before, the search begins at the depth where that one
 //! ended ([`Depths`]). It mostly ends soon after, so first those alone are swept over that are near.
@@ -118,7 +118,7 @@ fn room(
     let near = last.min(first + size[d] + board.gap);
     let found = [(first + 1, near), (near + 1, last)].into_iter().find_map(|depths| {
         let closed = closed(board, side, size, obstacles, depths);
-        least_depth(&closed, (span.0, span.1 - size[a]), depths)
+        least_depth(closed, (span.0, span.1 - size[a]), depths)
     });
     found.map(|depth| (depth, windows(depth)))
 }
@@ -143,113 +143,33 @@ fn closed(board: &Board, side: Side, size: [i32; 2], obstacles: &[Rect], (first,
     points.chain(obstacles.iter().chain(&board.blocked).filter_map(of_obstacle)).collect()
 }
 
-/// The least of the depths from `first` to `last` at which not all places from `low` to `high` are closed; nothing is closed beyond these depths.
-fn least_depth(closed: &[Closed], (low, high): (i32, i32), (first, last): (i32, i32)) -> Option<i32> {
-    let clipped = |c: &Closed| {
-        let along = (c.along.0.max(low), c.along.1.min(high));
-        (along.0 <= along.1).then_some(Closed { depth: c.depth, along })
-    };
-    let closed: Vec<Closed> = closed.iter().filter_map(clipped).collect();
-    // Cells between the ends of what is closed: in one cell all places are as one.
-    let mut starts: Vec<i32> = closed.iter().flat_map(|c| [c.along.0, c.along.1 + 1]).chain([low]).collect();
-    starts.retain(|at| *at <= high);
-    starts.sort_unstable();
-    starts.dedup();
-    let cell = |at: i32| starts.partition_point(|s| *s < at);
-    let mut counts = Counts::new(starts.len());
-    // Opened before closed at one depth does not matter: it is asked when all of a depth are done.
-    let mut events: Vec<(i32, i32, usize, usize)> = Vec::with_capacity(2 * closed.len());
-    for c in &closed {
-        let (from, to) = (cell(c.along.0), cell(c.along.1 + 1));
-        events.push((c.depth.0, 1, from, to));
-        events.push((c.depth.1 + 1, -1, from, to));
+/// The least of the depths from `first` to `last` at which not all places from `low` to `high` are closed.
+fn least_depth(mut closed: Vec<Closed>, (low, high): (i32, i32), (first, last): (i32, i32)) -> Option<i32> {
+    if low > high {
+        return None;
     }
-    events.sort_unstable();
-    let mut depth = first;
-    for (at, change, from, to) in events {
-        if at > depth {
-            if counts.least() == 0 {
-                return Some(depth);
-            }
-            depth = at;
-        }
-        counts.add(from, to, change);
-    }
-    (depth <= last && counts.least() == 0).then_some(depth)
-}
-
-/// A segment tree: counts of cells, of which ranges change and the least is known.
-struct Counts {
-    /// The number of cells, a power of two; those that are too many count as closed.
-    size: usize,
-    /// By node (1 the root, 2n and 2n + 1 below n): the least count below it, without what was added above it.
-    least: Vec<i32>,
-    /// What was added to all of it.
-    added: Vec<i32>,
-}
-
-impl Counts {
-    fn new(cells: usize) -> Self {
-        let size = cells.next_power_of_two();
-        let mut counts = Self { size, least: vec![0; 2 * size], added: vec![0; 2 * size] };
-        counts.add(cells, size, 1);
-        counts
-    }
-
-    fn least(&self) -> i32 {
-        self.least[1]
-    }
-
-    /// Adds to cells `from` up to, not including, `to`.
-    fn add(&mut self, from: usize, to: usize, change: i32) {
-        if from >= to {
-            return;
-        }
-        let (first, last) = (from + self.size, to + self.size - 1);
-        let (mut l, mut r) = (first, last + 1);
-        while l < r {
-            if l % 2 == 1 {
-                self.apply(l, change);
-                l += 1;
-            }
-            if r % 2 == 1 {
-                r -= 1;
-                self.apply(r, change);
-            }
-            (l, r) = (l / 2, r / 2);
-        }
-        for end in [first, last] {
-            let mut node = end / 2;
-            while node > 0 {
-                self.least[node] = self.least[2 * node].min(self.least[2 * node + 1]) + self.added[node];
-                node /= 2;
+    closed.retain(|c| c.along.0 <= high && low <= c.along.1);
+    closed.sort_unstable_by_key(|c| c.depth.0);
+    // By place, the least depth that is open as far as has been looked; and the least of all, as it was last worked out.
+    let mut open = vec![first; (high - low) as usize + 1];
+    let mut least = first;
+    for c in closed {
+        // What comes now begins here or further inward, and closes nothing before.
+        if c.depth.0 > least {
+            least = open.iter().fold(i32::MAX, |a, b| a.min(*b));
+            if c.depth.0 > least {
+                break;
             }
         }
+        let along = (c.along.0.max(low) - low) as usize..=(c.along.1.min(high) - low) as usize;
+        open[along].iter_mut().for_each(|depth| *depth = (*depth).max(c.depth.1 + 1));
     }
-
-    fn apply(&mut self, node: usize, change: i32) {
-        self.least[node] += change;
-        self.added[node] += change;
-    }
+    open.into_iter().min().filter(|least| *least <= last)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn counts_know_their_least() {
-        let mut counts = Counts::new(5);
-        let mut plain = [0; 5];
-        for k in 0..200_usize {
-            let (from, to, change) = (k * 7 % 5, k * 7 % 5 + k * 3 % 4, if k % 3 == 2 { -1 } else { 1 });
-            let to = to.min(5);
-            counts.add(from, to, change);
-            plain[from..to.max(from)].iter_mut().for_each(|c| *c += change);
-            // The cells that are too many stay at 1.
-            assert_eq!(counts.least(), *plain.iter().chain([&1]).min().unwrap(), "{k}: {plain:?}");
-        }
-    }
 
     #[test]
     fn the_least_depth_is_that_of_all_tried() {
@@ -269,9 +189,9 @@ mod tests {
                     let depth = (c.depth.0.max(first), c.depth.1.min(20));
                     (depth.0 <= depth.1).then_some(Closed { depth, ..*c })
                 };
-                let clipped: Vec<Closed> = closed.iter().filter_map(of_these).collect();
+                let clipped = closed.iter().filter_map(of_these).collect();
                 let tried = (first..=20).find(|depth| (3..=30).any(|at| is_open(*depth, at)));
-                assert_eq!(least_depth(&clipped, (3, 30), (first, 20)), tried, "{closed:?}");
+                assert_eq!(least_depth(clipped, (3, 30), (first, 20)), tried, "{closed:?}");
             }
         }
     }

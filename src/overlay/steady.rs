@@ -37,6 +37,8 @@ pub struct Kept {
     pub filled: Filled,
     /// The rectangle of each overlay.
     pub rects: Vec<Option<Rect>>,
+    /// The ways of the lines of each.
+    pub ways: Vec<Vec<Way>>,
     /// What their lines cross.
     pub crossings: Crossings,
     /// The sides along which they are still on their way.
@@ -121,7 +123,7 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
         Advance { problem, filled, held: &held, ideal, was_gliding }.rects(&old_rows)
     };
     let (mut rects, mut gliding) = advance(&filled, &ideal);
-    let ways = all_ways(problem, &filled, &rects);
+    let mut ways = all_ways(problem, &filled, &rects);
     let mut counted = count(&rects, &ways);
     let (mut hopeless, mut is_least, mut has_order) = (0, None, false);
     if layout.order == Order::Anchors {
@@ -143,7 +145,7 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
             } else if crossings < stood(problem, &held, &seats) {
                 is_least = Some(ordered.is_least && other_rects == other_ideal);
                 (filled, rects, gliding) = (other, other_rects, other_gliding);
-                counted = other_counted;
+                (ways, counted) = (other_ways, other_counted);
                 (has_order, hopeless) = (true, 0);
             }
         }
@@ -158,7 +160,7 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
     turns.tried = if has_moved { 0 } else { turns.tried };
     let settled = !has_moved && was_gliding.is_empty() && gliding.is_empty() && turns.tried >= come.waiting;
     let crossings = counted.crossings;
-    Some(Kept { filled, rects, crossings, gliding, settled, jump, hopeless, turns, is_least })
+    Some(Kept { filled, rects, ways, crossings, gliding, settled, jump, hopeless, turns, is_least })
 }
 
 /// The dead band, pixels, finite.
@@ -485,9 +487,14 @@ impl Advance<'_> {
             gliding.extend(is_gliding.then_some(self.filled.lanes[k].side));
         }
         // Lanes do not meet, other than while they grow or shrink.
-        let all: Vec<Rect> = rects.iter().flatten().copied().collect();
+        let mut all: Vec<Rect> = rects.iter().flatten().copied().collect();
+        all.sort_unstable_by_key(|rect| rect.min[1]);
         let gap = self.problem.board.gap;
-        if all.iter().enumerate().any(|(n, a)| all[..n].iter().any(|b| a.within(b, gap))) {
+        let meets_next = |n: usize, a: &Rect| {
+            let mut next = all[n + 1..].iter().take_while(|b| b.min[1] < a.max[1].saturating_add(gap));
+            next.any(|b| a.within(b, gap))
+        };
+        if all.iter().enumerate().any(|(n, a)| meets_next(n, a)) {
             return (self.ideal.to_vec(), Vec::new());
         }
         (rects, gliding)
