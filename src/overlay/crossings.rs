@@ -86,29 +86,17 @@ impl Way {
         if (0..2).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
             return false;
         }
-        let segments = 0..self.points.len() - 1;
-        let others = || 0..other.points.len() - 1;
-        segments.filter(|i| self.is_near(*i, other)).any(|i| others().any(|j| self.meets(i, other, j)))
+        let (last, other_last) = (self.points.len() - 2, other.points.len() - 2);
+        self.points.windows(2).enumerate().filter(|(_, p)| other.is_near(p)).any(|(i, p)| {
+            let mut others = other.points.windows(2).enumerate();
+            others.any(|(j, q)| segments_cross([p[0], p[1]], [q[0], q[1]], i == last && j == other_last))
+        })
     }
 
-    /// Whether the box around a segment touches that around another line.
-    fn is_near(&self, segment: usize, other: &Self) -> bool {
-        let (p, q) = (self.points[segment], self.points[segment + 1]);
-        (0..2).all(|i| p[i].min(q[i]) <= other.high[i] && other.low[i] <= p[i].max(q[i]))
-    }
-
-    /// Whether its segment number `i` crosses segment number `j` of another.
-    pub fn meets(&self, i: usize, other: &Self, j: usize) -> bool {
-        let (p, q) = (&self.points[i..=i + 1], &other.points[j..=j + 1]);
-        let are_last = i + 2 == self.points.len() && j + 2 == other.points.len();
-        if are_last && p[1] == q[1] {
-            // Both end here: they share more than the end only where one lies along the other.
-            let focus = p[1];
-            let along = |a: Lattice| [a[0] - focus[0], a[1] - focus[1]];
-            orient(p[0], focus, q[0]) == 0 && dot(along(p[0]), along(q[0])) > 0
-        } else {
-            segments_meet(p[0], p[1], q[0], q[1])
-        }
+    /// Whether the box around it touches that around a segment.
+    fn is_near(&self, segment: &[Lattice]) -> bool {
+        let (p, q) = (segment[0], segment[1]);
+        (0..2).all(|i| p[i].min(q[i]) <= self.high[i] && self.low[i] <= p[i].max(q[i]))
     }
 
     /// Whether it crosses the rectangle of an overlay.
@@ -117,22 +105,34 @@ impl Way {
         if (0..2).any(|i| self.high[i] < low[i] || high[i] < self.low[i]) {
             return false;
         }
-        (0..self.points.len() - 1).any(|i| self.passes(i, rect))
+        self.points.windows(2).any(|p| segment_passes([p[0], p[1]], rect))
     }
+}
 
-    /// Whether its segment number `i` crosses the rectangle of an overlay.
-    pub fn passes(&self, i: usize, rect: &Rect) -> bool {
-        let [low, high] = on_lattice(rect);
-        let (p, q) = (self.points[i], self.points[i + 1]);
-        // Two convex shapes are apart if an edge's normal parts them: x, y, or that of the segment.
-        let apart = |i: usize| p[i].max(q[i]) < low[i] || high[i] < p[i].min(q[i]);
-        if apart(0) || apart(1) {
-            return false;
-        }
-        let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
-        let sides = corners.map(|c| orient(p, q, c).signum());
-        !(sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0))
+/// Whether two segments of lines cross; `are_last`: both are the last ones of their lines.
+#[inline]
+pub fn segments_cross(p: [Lattice; 2], q: [Lattice; 2], are_last: bool) -> bool {
+    if are_last && p[1] == q[1] {
+        // Both end here: they share more than the end only where one lies along the other.
+        let focus = p[1];
+        let along = |a: Lattice| [a[0] - focus[0], a[1] - focus[1]];
+        return orient(p[0], focus, q[0]) == 0 && dot(along(p[0]), along(q[0])) > 0;
     }
+    segments_meet(p[0], p[1], q[0], q[1])
+}
+
+/// Whether a segment of a line crosses the rectangle of an overlay.
+#[inline]
+pub fn segment_passes([p, q]: [Lattice; 2], rect: &Rect) -> bool {
+    let [low, high] = on_lattice(rect);
+    // Two convex shapes are apart if an edge's normal parts them: x, y, or that of the segment.
+    let apart = |i: usize| p[i].max(q[i]) < low[i] || high[i] < p[i].min(q[i]);
+    if apart(0) || apart(1) {
+        return false;
+    }
+    let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+    let sides = corners.map(|c| orient(p, q, c).signum());
+    !(sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0))
 }
 
 /// The corners of a rectangle, lattice steps.
@@ -159,16 +159,13 @@ fn dot(u: Lattice, v: Lattice) -> i64 {
     u[0] * v[0] + u[1] * v[1]
 }
 
-/// Whether the closed segments `a b` and `c d` share any point.
+/// Whether the closed segments `a b` and `c d` share any point. It takes no branch: which way it went could not be foretold.
 #[inline]
 fn segments_meet(a: Lattice, b: Lattice, c: Lattice, d: Lattice) -> bool {
-    let apart = |i: usize| a[i].max(b[i]) < c[i].min(d[i]) || c[i].max(d[i]) < a[i].min(b[i]);
-    if apart(0) || apart(1) {
-        return false;
-    }
+    let apart = |i: usize| (a[i].max(b[i]) < c[i].min(d[i])) | (c[i].max(d[i]) < a[i].min(b[i]));
     let sides = |p, q, r, s| orient(p, q, r).signum() * orient(p, q, s).signum();
     // Collinear segments whose boxes meet do meet; for all others both tests must straddle or touch.
-    sides(a, b, c, d) <= 0 && sides(c, d, a, b) <= 0
+    !(apart(0) | apart(1)) & (sides(a, b, c, d) <= 0) & (sides(c, d, a, b) <= 0)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 use crate::overlay::{
     Rect,
-    crossings::{Lattice, Way, on_lattice},
+    crossings::{Lattice, Way, on_lattice, segment_passes, segments_cross},
     place::Crossings,
 };
 
@@ -34,7 +34,7 @@ pub struct Counted {
 pub struct Segment {
     /// The number of its overlay.
     pub overlay: u32,
-    /// The number of its line, of those of the overlay.
+    /// The number of its line: of all, overlay by overlay.
     pub line: u32,
     /// Its number, from the overlay.
     pub number: u32,
@@ -53,17 +53,19 @@ pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Counted {
     let mut counted = Counted::default();
     let present: Vec<(usize, Rect)> = rects.iter().enumerate().filter_map(|(i, r)| Some((i, (*r)?))).collect();
     let Some(grid) = Grid::around(&present) else { return counted };
-    let mut lines: Vec<&Way> = Vec::new();
-    // With the number of the line in `lines`.
-    let mut segments: Vec<(usize, Segment)> = Vec::new();
-    let mut pieces = Vec::new();
-    for &(i, _) in &present {
-        for (line, way) in (0..).zip(&ways[i]) {
-            for (number, ends) in (0..).zip(way.points().windows(2)) {
-                grid.add_segment(&mut pieces, segments.len() as u32, ends[0], ends[1]);
-                segments.push((lines.len(), Segment { overlay: i as u32, line, number }));
-            }
-            lines.push(way);
+    let lines: Vec<(usize, &Way)> = ways.iter().enumerate().flat_map(|(i, w)| w.iter().map(move |w| (i, w))).collect();
+    let segment_count = lines.iter().map(|(_, way)| way.points().len() - 1).sum();
+    let (mut segments, mut pieces) = (Vec::with_capacity(segment_count), Vec::with_capacity(3 * segment_count));
+    for (line, (i, way)) in (0..).zip(&lines) {
+        let points = way.points();
+        for (number, ends) in (0..).zip(points.windows(2)) {
+            grid.add_segment(&mut pieces, segments.len() as u32, ends[0], ends[1]);
+            let is_last = number as usize + 2 == points.len();
+            segments.push(Known {
+                ends: [ends[0], ends[1]],
+                is_last,
+                name: Segment { overlay: *i as u32, line, number },
+            });
         }
     }
     let mut overlays = Vec::new();
@@ -71,33 +73,65 @@ pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Counted {
         grid.add_overlay(&mut overlays, of, rect);
     }
     let (pieces, overlays) = (grid.sorted(&pieces), grid.sorted(&overlays));
-    let mut met = Pairs::new(lines.len(), lines.len());
-    let mut passed = Pairs::new(lines.len(), present.len());
+    let (mut near, mut near_overlays) = (Chosen::default(), Chosen::default());
     for (pieces, overlays) in pieces.cells().zip(overlays.cells()) {
         for (k, a) in pieces.iter().enumerate() {
-            let (line, segment) = segments[a.of as usize];
-            let (way, n) = (lines[line], segment.number as usize);
-            // The pieces of a cell are in the order of their lines.
-            for b in pieces[..k].iter().filter(|b| b.touches(a)) {
-                let (other, other_segment) = segments[b.of as usize];
-                let is_new = segment.overlay != other_segment.overlay && !met.has(line, other);
-                if is_new && way.meets(n, lines[other], other_segment.number as usize) {
-                    met.add(line, other);
-                    counted.lines.push([segment, other_segment]);
-                }
-            }
-            for b in overlays.iter().filter(|b| b.touches(a)) {
-                let (overlay, rect) = &present[b.of as usize];
-                let is_new = segment.overlay as usize != *overlay && !passed.has(line, b.of as usize);
-                if is_new && way.passes(n, rect) {
-                    passed.add(line, b.of as usize);
-                    counted.overlays.push((segment, *overlay));
-                }
-            }
+            near.add(pieces[..k].iter().map(|b| ([a.of, b.of], b.touches(a))));
+            near_overlays.add(overlays.iter().map(|b| ([a.of, b.of], b.touches(a))));
+        }
+    }
+    let mut crossing = Chosen::default();
+    crossing.add(near.pairs().iter().map(|pair| {
+        let [a, b] = pair.map(|n| &segments[n as usize]);
+        (*pair, (a.name.overlay != b.name.overlay) & segments_cross(a.ends, b.ends, a.is_last & b.is_last))
+    }));
+    let mut met = Pairs::new(lines.len(), lines.len());
+    for [a, b] in crossing.pairs().iter().map(|pair| pair.map(|n| &segments[n as usize])) {
+        // The pieces of a cell are in the order of their lines.
+        if met.add(a.name.line, b.name.line) {
+            counted.lines.push([a.name, b.name]);
+        }
+    }
+    let mut passed = Pairs::new(lines.len(), present.len());
+    for [n, of] in near_overlays.pairs() {
+        let (a, (overlay, rect)) = (&segments[*n as usize], &present[*of as usize]);
+        if a.name.overlay as usize != *overlay && segment_passes(a.ends, rect) && passed.add(a.name.line, *of) {
+            counted.overlays.push((a.name, *overlay));
         }
     }
     counted.crossings = Crossings { lines: counted.lines.len() as u32, overlays: counted.overlays.len() as u32 };
     counted
+}
+
+/// What is to know of a segment.
+struct Known {
+    ends: [Lattice; 2],
+    /// Whether its line ends with it.
+    is_last: bool,
+    name: Segment,
+}
+
+/// Pairs that were chosen of many, without a branch for each: which one is, nobody could foretell.
+#[derive(Default)]
+struct Chosen {
+    pairs: Vec<[u32; 2]>,
+    count: usize,
+}
+
+impl Chosen {
+    fn add(&mut self, all: impl ExactSizeIterator<Item = ([u32; 2], bool)>) {
+        if self.pairs.len() < self.count + all.len() {
+            self.pairs.resize(2 * self.count + all.len(), [0; 2]);
+        }
+        for (pair, is_chosen) in all {
+            self.pairs[self.count] = pair;
+            self.count += usize::from(is_chosen);
+        }
+    }
+
+    fn pairs(&self) -> &[[u32; 2]] {
+        &self.pairs[..self.count]
+    }
 }
 
 /// What of a segment or of an overlay is in a cell.
@@ -168,7 +202,6 @@ impl Grid {
     fn add_segment(&self, pieces: &mut Vec<(u16, Piece)>, of: u32, a: Lattice, b: Lattice) {
         let (from, to) = if a[0] <= b[0] { (a, b) } else { (b, a) };
         let (low, high) = (from[1].min(to[1]), from[1].max(to[1]));
-        let slope = (to[1] - from[1]) as f64 / (to[0] - from[0]) as f64;
         let (first, last) = (self.part(0, from[0]), self.part(0, to[0]));
         let mut left = from[1];
         for column in first >> PARTS..=last >> PARTS {
@@ -177,7 +210,7 @@ impl Grid {
                 to[1]
             } else {
                 let x = self.origin[0] + (i64::from(border) << self.shift);
-                from[1] + ((x - from[0]) as f64 * slope) as i64
+                from[1] + ((x - from[0]) as f64 * ((to[1] - from[1]) as f64 / (to[0] - from[0]) as f64)) as i64
             };
             // The ordinate at a border between columns is less than two steps off.
             let rows = ((left.min(right) - 2).max(low), (left.max(right) + 2).min(high));
@@ -228,26 +261,23 @@ impl Sorted {
 }
 
 /// A set of pairs of numbers.
-pub struct Pairs {
+struct Pairs {
     columns: usize,
     bits: Vec<u64>,
 }
 
 impl Pairs {
     /// Of numbers below `rows` and below `columns`.
-    pub fn new(rows: usize, columns: usize) -> Self {
+    fn new(rows: usize, columns: usize) -> Self {
         Self { columns, bits: vec![0; (rows * columns).div_ceil(64)] }
     }
 
-    /// Whether it holds a pair.
-    pub fn has(&self, a: usize, b: usize) -> bool {
-        let at = a * self.columns + b;
-        self.bits[at / 64] >> (at % 64) & 1 == 1
-    }
-
-    /// Adds one.
-    pub fn add(&mut self, a: usize, b: usize) {
-        let at = a * self.columns + b;
-        self.bits[at / 64] |= 1 << (at % 64);
+    /// Adds one; whether it was not there.
+    fn add(&mut self, a: u32, b: u32) -> bool {
+        let at = a as usize * self.columns + b as usize;
+        let (word, bit) = (&mut self.bits[at / 64], 1 << (at % 64));
+        let is_new = *word & bit == 0;
+        *word |= bit;
+        is_new
     }
 }

@@ -432,21 +432,19 @@ fn deep_crossings(ways: &[Vec<Way>], rects: &[Option<Rect>], all: &Counted, dead
     if dead_band == 0.0 {
         return all.crossings.sum();
     }
-    let shortened = |ways: &Vec<Way>| ways.iter().map(|w| w.shortened(dead_band)).collect();
-    let shortened: Vec<Vec<Option<Way>>> = ways.iter().map(shortened).collect();
-    let short = |s: Segment| shortened[s.overlay as usize][s.line as usize].as_ref();
-    // What meets before the last segments, which alone have become shorter, still does.
-    let is_whole = |s: Segment, way: &Way| s.number as usize + 2 < way.points().len();
-    let do_cross = |[a, b]: [Segment; 2]| {
-        let (Some(way), Some(other)) = (short(a), short(b)) else { return false };
-        is_whole(a, way) && is_whole(b, other) || way.crosses(other)
+    let shortened: Vec<Option<Way>> = ways.iter().flatten().map(|way| way.shortened(dead_band)).collect();
+    // Of each its segments less the last, which alone has become shorter: where they met something they still do.
+    let whole: Vec<u32> = shortened.iter().map(|way| way.as_ref().map_or(0, |w| w.points().len() as u32 - 2)).collect();
+    let is_whole = |s: &Segment| s.number < whole[s.line as usize];
+    let short = |s: &Segment| shortened[s.line as usize].as_ref();
+    let do_cross = |[a, b]: &[Segment; 2]| {
+        is_whole(a) & is_whole(b) || short(a).zip(short(b)).is_some_and(|(way, other)| way.crosses(other))
     };
-    let does_pass = |(s, i): (Segment, usize)| {
-        let (Some(way), Some(rect)) = (short(s), rects[i]) else { return false };
-        is_whole(s, way) || way.crosses_overlay(&rect)
+    let does_pass = |(s, i): &(Segment, usize)| {
+        is_whole(s) || short(s).zip(rects[*i].as_ref()).is_some_and(|(way, rect)| way.crosses_overlay(rect))
     };
-    let lines = all.lines.iter().filter(|both| do_cross(**both)).count();
-    (lines + all.overlays.iter().filter(|one| does_pass(**one)).count()) as u32
+    let lines = all.lines.iter().filter(|both| do_cross(both)).count();
+    (lines + all.overlays.iter().filter(|one| does_pass(one)).count()) as u32
 }
 
 /// Whether an overlay moved further than it glides.
