@@ -3,8 +3,8 @@
 //! Overlays are placed by priority, the higher first. All shrink together, by eighths of the way from the size that they want to their smallest, until the
 //! lanes hold all of them; if that is not enough, again until all find a place on the lanes or further inward; at their smallest size, who finds no place is
 //! folded. An overlay stands as little inward as it can: no place in the whole picture is missed, as one that touches nothing could be pushed outwards until
-//! it does. With n overlays and p points this takes O(n² + n p) where lanes hold all, and O((n + p) log (n + p)) for each overlay
-//! that stands further inward.
+//! it does. With n overlays and p points this takes O(n² + n p) where lanes hold all, and for each overlay that stands
+//! further inward a sweep over what is near ([`crate::overlay::inward`]).
 
 use glam::DVec2;
 

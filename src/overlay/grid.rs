@@ -1,7 +1,9 @@
-//! All crossings of a picture at once: lines and overlays are sorted into the cells of a grid, and only those that share a cell are compared.
+//! All crossings of a picture at once: lines and overlays are sorted into the cells of a grid, and only those that share
+//! a cell are compared.
 //!
-//! A cell holds a piece of each segment that passes it: a box around that part of it, rounded outwards. Where two segments share a point, they share the
-//! cell of that point, and their boxes there overlap. Whether they do share one is told by the exact predicates of [`crate::overlay::crossings`].
+//! A cell holds a piece of each segment that passes it: a box around that part of it, rounded outwards. Where two segments
+//! share a point, they share the cell of that point, and their boxes there overlap. Whether they do share one is told by
+//! the exact predicates of [`crate::overlay::crossings`].
 
 use crate::overlay::{
     Rect,
@@ -12,7 +14,8 @@ use crate::overlay::{
 /// Boxes are told in parts of cells, of which there are 2 to the power of this in a row.
 const PARTS: u32 = 8;
 
-/// Parts are 2 to the power of this lattice steps wide and high, or larger: with this, cells are 32 pixels wide, about as much as a segment of a curve.
+/// Parts are 2 to the power of this lattice steps wide and high, or larger: with this, cells are 32 pixels wide, about as
+/// much as a segment of a curve.
 const LEAST_SHIFT: u32 = 5;
 
 /// The most columns, and the most rows.
@@ -279,5 +282,53 @@ impl Pairs {
         let is_new = *word & bit == 0;
         *word |= bit;
         is_new
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::overlay::crossings::{STEPS, between};
+
+    #[test]
+    fn all_crossings_are_those_of_all_pairs() {
+        let mut state = 1_u64;
+        let mut number = |most: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 33) % most) as i64
+        };
+        let mut sum = 0;
+        for round in 0..300 {
+            // Every third picture is so large that cells have to grow, and some lines lead far out of it.
+            let scale = if round % 3 == 0 { 50 } else { 1 };
+            let mut rects = Vec::new();
+            let mut ways = Vec::new();
+            for n in 0..12 {
+                let min = [number(500) as i32 * scale, number(300) as i32 * scale];
+                rects.push((n % 5 < 4).then(|| Rect::new(min, [20 + 2 * n, 30 - n])));
+                // Places on few points, so that lines touch, lie along each other and end together.
+                let unit = if n % 2 == 0 { 20 * STEPS } else { 1 };
+                let mut point = || match number(30) {
+                    0 => [-(1 << 28), number(1 << 20)],
+                    _ => [number(600 * STEPS as u64), number(400 * STEPS as u64)]
+                        .map(|v| v / unit * unit * i64::from(scale)),
+                };
+                let mut way = || Way::new((0..2 + n % 4).map(|_| point()).collect());
+                ways.push(if n % 5 < 4 { [way(), way()].into_iter().flatten().collect() } else { Vec::new() });
+            }
+            let counted = count(&rects, &ways);
+            let mut pairs = vec![0; 144];
+            counted.pairs().for_each(|[i, j]| pairs[i.max(j) * 12 + i.min(j)] += 1);
+            for i in 0..12 {
+                for j in 0..i {
+                    let both = rects[i].zip(rects[j]);
+                    let expected = both.map_or(0, |(a, b)| between(&a, &ways[i], &b, &ways[j]));
+                    assert_eq!(pairs[i * 12 + j], expected, "round {round}, {i} and {j}");
+                }
+            }
+            assert_eq!(counted.crossings.sum(), pairs.iter().sum::<u32>());
+            sum += counted.crossings.sum();
+        }
+        assert!(sum > 10_000, "{sum}");
     }
 }

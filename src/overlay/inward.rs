@@ -1,11 +1,12 @@
 //! Places further inward (B6): the least depth at a side at which an overlay has room.
 //!
-//! In the plane of depth and place along the side, each point and each overlay closes a rectangle of places to an overlay of a given size. A sweep over depth
-//! raises the depth at which each place along the side opens, by one rectangle after the other; where that is less than where the next one begins, there is
-//! room. With n overlays and p points this takes O((n + p) log (n + p)) for each side, and a pass over the places that each of them closes.
+//! In the plane of depth and place along the side, each point and each overlay closes a rectangle of places to an overlay
+//! of a given size. A sweep over depth raises the depth at which each place along the side opens, by one rectangle after
+//! the other; where that is less than where the next one begins, there is room. With n overlays and p points this takes
+//! O((n + p) (log (n + p) + w)) at most, for a side of w pixels, and of w mostly no more than what a rectangle closes.
 //!
-//! While overlays are added and none goes, room only becomes less: for an overlay as large as one before, the search begins at the depth where that one
-//! ended ([`Depths`]). It mostly ends soon after, so first those alone are swept over that are near.
+//! While overlays are added and none goes, room only becomes less: for an overlay as large as one before, the search begins
+//! at the depth where that one ended ([`Depths`]). It mostly ends soon after, so first what is near is swept over alone.
 
 use glam::DVec2;
 
@@ -17,7 +18,8 @@ use crate::overlay::{
     rect::closed_by,
 };
 
-/// What is known of the room further inward: for overlays of a size, or of a larger one, the least depth at each side at which there may be some.
+/// What is known of the room further inward: for overlays of a size, or of a larger one, the least depth at each side at
+/// which there may be some.
 ///
 /// It holds for one board as long as obstacles are only added.
 #[derive(Clone, Debug, Default)]
@@ -52,8 +54,8 @@ struct Closed {
 }
 
 impl Problem<'_> {
-    /// The place that is least inward for an overlay of `size`, keeping the gap from `obstacles` and from what is blocked on the `board`, and covering no
-    /// point of it. `depths`: what earlier calls with this board and some of these obstacles have found.
+    /// The place that is least inward for an overlay of `size`, keeping the gap from `obstacles` and from what is blocked on
+    /// the `board`, and covering no point of it. `depths`: what calls with this board and less obstacles have found.
     pub fn place_inward(
         &self,
         board: &Board,
@@ -170,6 +172,10 @@ fn least_depth(mut closed: Vec<Closed>, (low, high): (i32, i32), (first, last): 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::overlay::{
+        Arrangement,
+        tests::{overlay, request},
+    };
 
     #[test]
     fn the_least_depth_is_that_of_all_tried() {
@@ -193,6 +199,33 @@ mod tests {
                 let tried = (first..=20).find(|depth| (3..=30).any(|at| is_open(*depth, at)));
                 assert_eq!(least_depth(clipped, (3, 30), (first, 20)), tried, "{closed:?}");
             }
+        }
+    }
+
+    #[test]
+    fn what_is_known_changes_no_place() {
+        for (round, reach) in (0..40_u32).zip([1.0, 0.4].into_iter().cycle()) {
+            let at = |k: u32| {
+                DVec2::new(f64::from((round * 131 + k * k * 37) % 400), f64::from((round * 71 + k * k * 29 + k) % 300))
+            };
+            let overlays = (0..40).map(|id| {
+                let size = if id % 3 == 0 { [60.0, 30.0] } else { [40.0, 20.0] };
+                overlay(id, size, at(id).to_array())
+            });
+            let mut asked = request(overlays.collect(), Arrangement::Border);
+            (asked.picture, asked.layout.reach) = ([400, 300], reach);
+            let problem = Problem::new(&asked);
+            let mut depths = Depths::default();
+            let mut obstacles = Vec::new();
+            for item in 0..40 {
+                let mut place = |depths: &mut Depths| {
+                    problem.place_inward(&problem.board, item, problem.sizes[item].min, &obstacles, depths)
+                };
+                let found = place(&mut depths);
+                assert_eq!(found, place(&mut Depths::default()), "round {round}, overlay {item}");
+                obstacles.extend(found.map(|found| found.1));
+            }
+            assert!(obstacles.len() < 40, "some have no place");
         }
     }
 }

@@ -181,8 +181,8 @@ impl Placed {
 /// Overlays keep the gap between each other and the margin to the border, and cover no point that they could avoid. With a frame before they keep still
 /// ([`crate::overlay::steady`]), but never at the price of these promises.
 ///
-/// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, O((n + p) log (n + p)) for each that
-/// stands further inward, and a bounded search for the order. With a frame before O(n² + n p), all of it comparisons of boxes.
+/// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, for each that stands further inward a sweep over what is near
+/// ([`crate::overlay::inward`]), and a bounded search for the order. With a frame before O(n² + n p), all of it comparisons of boxes.
 pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
     if let Some(before) = before.filter(|before| before.settled && before.request == *request) {
         return before.clone();
