@@ -208,7 +208,7 @@ mod tests {
             let at = |k: u32| {
                 DVec2::new(f64::from((round * 131 + k * k * 37) % 400), f64::from((round * 71 + k * k * 29 + k) % 300))
             };
-            let overlays = (0..40).map(|id| {
+            let overlays = (0..80).map(|id| {
                 let size = if id % 3 == 0 { [60.0, 30.0] } else { [40.0, 20.0] };
                 overlay(id, size, at(id).to_array())
             });
@@ -217,15 +217,15 @@ mod tests {
             let problem = Problem::new(&asked);
             let mut depths = Depths::default();
             let mut obstacles = Vec::new();
-            for item in 0..40 {
-                let mut place = |depths: &mut Depths| {
+            for item in 0..80 {
+                let place = |depths: &mut Depths| {
                     problem.place_inward(&problem.board, item, problem.sizes[item].min, &obstacles, depths)
                 };
                 let found = place(&mut depths);
                 assert_eq!(found, place(&mut Depths::default()), "round {round}, overlay {item}");
                 obstacles.extend(found.map(|found| found.1));
             }
-            assert!(obstacles.len() < 40, "some have no place");
+            assert!(obstacles.len() < 80, "some have no place");
         }
     }
 }
