@@ -159,13 +159,17 @@ fn dot(u: Lattice, v: Lattice) -> i64 {
     u[0] * v[0] + u[1] * v[1]
 }
 
-/// Whether the closed segments `a b` and `c d` share any point. It takes no branch: which way it went could not be foretold.
+/// Whether the closed segments `a b` and `c d` share any point.
 #[inline]
 fn segments_meet(a: Lattice, b: Lattice, c: Lattice, d: Lattice) -> bool {
     let apart = |i: usize| (a[i].max(b[i]) < c[i].min(d[i])) | (c[i].max(d[i]) < a[i].min(b[i]));
+    if apart(0) | apart(1) {
+        return false;
+    }
     let sides = |p, q, r, s| orient(p, q, r).signum() * orient(p, q, s).signum();
-    // Collinear segments whose boxes meet do meet; for all others both tests must straddle or touch.
-    !(apart(0) | apart(1)) & (sides(a, b, c, d) <= 0) & (sides(c, d, a, b) <= 0)
+    // Collinear segments whose boxes meet do meet; for all others both tests must straddle or touch: both are made, as which
+    // one of them decides could not be foretold.
+    (sides(a, b, c, d) <= 0) & (sides(c, d, a, b) <= 0)
 }
 
 #[cfg(test)]
