@@ -53,12 +53,6 @@ impl Way {
         &self.points
     }
 
-    /// The rectangle around it, pixels, rounded outwards.
-    pub fn around(&self) -> Rect {
-        let pixel = |v: i64| v.div_euclid(STEPS) as i32;
-        Rect { min: self.low.map(pixel), max: self.high.map(|v| pixel(v + STEPS - 1)) }
-    }
-
     /// Its length, lattice steps.
     pub fn length(&self) -> f64 {
         self.points
@@ -92,37 +86,58 @@ impl Way {
         if (0..2).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
             return false;
         }
-        let (ends, other_ends) = (self.points.len() - 2, other.points.len() - 2);
-        let same_focus = self.points.last() == other.points.last();
-        self.points.windows(2).enumerate().any(|(i, p)| {
-            other.points.windows(2).enumerate().any(|(j, q)| {
-                if same_focus && i == ends && j == other_ends {
-                    // Both end here: they share more than the end only where one lies along the other.
-                    let focus = p[1];
-                    let along = |a: Lattice| [a[0] - focus[0], a[1] - focus[1]];
-                    orient(p[0], focus, q[0]) == 0 && dot(along(p[0]), along(q[0])) > 0
-                } else {
-                    segments_meet(p[0], p[1], q[0], q[1])
-                }
-            })
+        let (last, other_last) = (self.points.len() - 2, other.points.len() - 2);
+        self.points.windows(2).enumerate().filter(|(_, p)| other.is_near(p)).any(|(i, p)| {
+            let mut others = other.points.windows(2).enumerate();
+            others.any(|(j, q)| segments_cross([p[0], p[1]], [q[0], q[1]], i == last && j == other_last))
         })
+    }
+
+    /// Whether the box around it touches that around a segment.
+    fn is_near(&self, segment: &[Lattice]) -> bool {
+        let (p, q) = (segment[0], segment[1]);
+        (0..2).all(|i| p[i].min(q[i]) <= self.high[i] && self.low[i] <= p[i].max(q[i]))
     }
 
     /// Whether it crosses the rectangle of an overlay.
     pub fn crosses_overlay(&self, rect: &Rect) -> bool {
-        let low = [0, 1].map(|i| i64::from(rect.min[i]) * STEPS);
-        let high = [0, 1].map(|i| i64::from(rect.max[i]) * STEPS);
+        let [low, high] = on_lattice(rect);
         if (0..2).any(|i| self.high[i] < low[i] || high[i] < self.low[i]) {
             return false;
         }
-        self.points.windows(2).any(|p| {
-            // Two convex shapes are apart if an edge's normal parts them: x, y, or that of the segment.
-            let apart = |i: usize| p[0][i].max(p[1][i]) < low[i] || high[i] < p[0][i].min(p[1][i]);
-            let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
-            let sides = corners.map(|c| orient(p[0], p[1], c).signum());
-            !(apart(0) || apart(1) || sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0))
-        })
+        self.points.windows(2).any(|p| segment_passes([p[0], p[1]], rect))
     }
+}
+
+/// Whether two segments of lines cross; `are_last`: both are the last ones of their lines.
+#[inline]
+pub fn segments_cross(p: [Lattice; 2], q: [Lattice; 2], are_last: bool) -> bool {
+    if are_last && p[1] == q[1] {
+        // Both end here: they share more than the end only where one lies along the other.
+        let focus = p[1];
+        let along = |a: Lattice| [a[0] - focus[0], a[1] - focus[1]];
+        return orient(p[0], focus, q[0]) == 0 && dot(along(p[0]), along(q[0])) > 0;
+    }
+    segments_meet(p[0], p[1], q[0], q[1])
+}
+
+/// Whether a segment of a line crosses the rectangle of an overlay.
+#[inline]
+pub fn segment_passes([p, q]: [Lattice; 2], rect: &Rect) -> bool {
+    let [low, high] = on_lattice(rect);
+    // Two convex shapes are apart if an edge's normal parts them: x, y, or that of the segment.
+    let apart = |i: usize| p[i].max(q[i]) < low[i] || high[i] < p[i].min(q[i]);
+    if apart(0) || apart(1) {
+        return false;
+    }
+    let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+    let sides = corners.map(|c| orient(p, q, c).signum());
+    !(sides.iter().all(|s| *s > 0) || sides.iter().all(|s| *s < 0))
+}
+
+/// The corners of a rectangle, lattice steps.
+pub fn on_lattice(rect: &Rect) -> [Lattice; 2] {
+    [rect.min, rect.max].map(|corner| corner.map(|v| i64::from(v) * STEPS))
 }
 
 /// How many crossings there are between two overlays and their lines: pairs of lines, and lines over the other's rectangle.
@@ -147,13 +162,14 @@ fn dot(u: Lattice, v: Lattice) -> i64 {
 /// Whether the closed segments `a b` and `c d` share any point.
 #[inline]
 fn segments_meet(a: Lattice, b: Lattice, c: Lattice, d: Lattice) -> bool {
-    let apart = |i: usize| a[i].max(b[i]) < c[i].min(d[i]) || c[i].max(d[i]) < a[i].min(b[i]);
-    if apart(0) || apart(1) {
+    let apart = |i: usize| (a[i].max(b[i]) < c[i].min(d[i])) | (c[i].max(d[i]) < a[i].min(b[i]));
+    if apart(0) | apart(1) {
         return false;
     }
     let sides = |p, q, r, s| orient(p, q, r).signum() * orient(p, q, s).signum();
-    // Collinear segments whose boxes meet do meet; for all others both tests must straddle or touch.
-    sides(a, b, c, d) <= 0 && sides(c, d, a, b) <= 0
+    // Collinear segments whose boxes meet do meet; for all others both tests must straddle or touch: both are made, as which
+    // one of them decides could not be foretold.
+    (sides(a, b, c, d) <= 0) & (sides(c, d, a, b) <= 0)
 }
 
 #[cfg(test)]

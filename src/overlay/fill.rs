@@ -3,14 +3,15 @@
 //! Overlays are placed by priority, the higher first. All shrink together, by eighths of the way from the size that they want to their smallest, until the
 //! lanes hold all of them; if that is not enough, again until all find a place on the lanes or further inward; at their smallest size, who finds no place is
 //! folded. An overlay stands as little inward as it can: no place in the whole picture is missed, as one that touches nothing could be pushed outwards until
-//! it does. With n overlays and p points this takes O(n² + n p) where lanes hold all, and O((n + p) log (n + p)) for each overlay
-//! that stands further inward.
+//! it does. With n overlays and p points this takes O(n² + n p) where lanes hold all, and for each overlay that stands
+//! further inward a sweep over what is near ([`crate::overlay::inward`]).
 
 use glam::DVec2;
 
 use crate::overlay::{
     Align, Arrangement, Order, Overlay, Rect, Request,
     crossings::{FURTHEST, pixels},
+    inward::Depths,
     lane::{Board, Side, Windows, fits, nearest},
     line::Target,
     size::{SHRINK_STEPS, Sizes, sizes_of},
@@ -185,24 +186,6 @@ fn aligned(align: Align, first: Side, last: Side) -> Vec<Side> {
     }
 }
 
-/// Sizes for which there was no room: where more stand, there is none for larger ones either.
-#[derive(Default)]
-struct Full(Vec<[i32; 2]>);
-
-impl Full {
-    /// A place for an overlay of `size`, looked for where that has a chance.
-    fn unless<T>(&mut self, size: [i32; 2], look: impl FnOnce() -> Option<T>) -> Option<T> {
-        if self.0.iter().any(|s| s[0] <= size[0] && s[1] <= size[1]) {
-            return None;
-        }
-        let place = look();
-        if place.is_none() {
-            self.0.push(size);
-        }
-        place
-    }
-}
-
 /// Who stands where.
 #[derive(Clone, Debug)]
 pub struct Filled {
@@ -278,13 +261,12 @@ fn fill_at(problem: &Problem, step: u32, inward: bool, folds: bool) -> Option<Fi
     }
     let packed = crate::overlay::order::packed(problem, &filled, None)?;
     let mut obstacles: Vec<Rect> = packed.into_iter().flatten().collect();
-    let mut full = Full::default();
-    let mut hopeless = Full::default();
+    let (mut depths, mut empty_depths) = (Depths::default(), Depths::default());
     for item in left {
         let size = filled.sizes[item];
-        let place = full.unless(size, || problem.place_inward(item, size, &obstacles)).or_else(|| {
-            let mut free = || hopeless.unless(size, || problem.place_inward(item, size, &[]));
-            if folds && free().is_none() { problem.place_covering(item, size, &obstacles) } else { None }
+        let place = problem.place_inward(board, item, size, &obstacles, &mut depths).or_else(|| {
+            let mut is_helpless = || problem.place_inward(board, item, size, &[], &mut empty_depths).is_none();
+            if folds && is_helpless() { problem.place_covering(item, size, &obstacles) } else { None }
         });
         match place {
             Some((side, rect)) => {

@@ -1,16 +1,50 @@
 //! Places further inward (B6): the least depth at a side at which an overlay has room.
 //!
-//! In the plane of depth and place along the side, each point and each overlay closes a rectangle of places to an overlay of a given size. A sweep over depth
-//! counts how many of them lie over each place along the side, in a segment tree: where the least count is 0, there is room. With n overlays and p points this
-//! takes O((n + p) log (n + p)) for each side.
+//! In the plane of depth and place along the side, each point and each overlay closes a rectangle of places to an overlay
+//! of a given size. A sweep over depth raises the depth at which each place along the side opens, by one rectangle after
+//! the other; where that is less than where the next one begins, there is room. With n overlays and p points this takes
+//! O((n + p) (log (n + p) + w)) at most, for a side of w pixels, and of w mostly no more than what a rectangle closes.
+//!
+//! While overlays are added and none goes, room only becomes less: for an overlay as large as one before, the search begins
+//! at the depth where that one ended ([`Depths`]). It mostly ends soon after, so first what is near is swept over alone.
+
+use glam::DVec2;
 
 use crate::overlay::{
     Rect,
     crossings::FURTHEST,
     fill::Problem,
-    lane::{Side, nearest},
+    lane::{Board, Side, Windows, nearest},
     rect::closed_by,
 };
+
+/// What is known of the room further inward: for overlays of a size, or of a larger one, the least depth at each side at
+/// which there may be some.
+///
+/// It holds for one board as long as obstacles are only added.
+#[derive(Clone, Debug, Default)]
+pub struct Depths {
+    /// Sizes, and depths in the order of the problem's sides.
+    known: Vec<([i32; 2], [i32; 4])>,
+}
+
+impl Depths {
+    /// Where to begin, for an overlay of `size`; pixels, [`NOWHERE`] where there is no room at a side.
+    fn of(&self, size: [i32; 2]) -> [i32; 4] {
+        let smaller = self.known.iter().filter(|(known, _)| known[0] <= size[0] && known[1] <= size[1]);
+        smaller.fold([0; 4], |least, (_, depths)| [0, 1, 2, 3].map(|k| least[k].max(depths[k])))
+    }
+
+    fn note(&mut self, size: [i32; 2], depths: [i32; 4]) {
+        match self.known.iter_mut().find(|(known, _)| *known == size) {
+            Some((_, known)) => *known = depths,
+            None => self.known.push((size, depths)),
+        }
+    }
+}
+
+/// A depth of which there is none.
+const NOWHERE: i32 = i32::MAX;
 
 /// Places that something closes: depths and places along the side, first and last of each.
 #[derive(Clone, Copy, Debug)]
@@ -20,163 +54,128 @@ struct Closed {
 }
 
 impl Problem<'_> {
-    /// The place that is least inward for an overlay of `size`, keeping the gap from `obstacles` and from what is blocked and covering no point.
-    pub fn place_inward(&self, item: usize, size: [i32; 2], obstacles: &[Rect]) -> Option<(Side, Rect)> {
-        let board = &self.board;
+    /// The place that is least inward for an overlay of `size`, keeping the gap from `obstacles` and from what is blocked on
+    /// the `board`, and covering no point of it. `depths`: what calls with this board and less obstacles have found.
+    pub fn place_inward(
+        &self,
+        board: &Board,
+        item: usize,
+        size: [i32; 2],
+        obstacles: &[Rect],
+        depths: &mut Depths,
+    ) -> Option<(Side, Rect)> {
         let inner = board.inner.size();
         if size[0] > inner[0] || size[1] > inner[1] {
             return None;
         }
         let reach = self.request.layout.reach;
         let reach = if reach.is_nan() { 1.0 } else { reach.clamp(0.0, 1.0) };
-        let mut best: Option<(i32, i32, Side, Rect)> = None;
-        for &side in &self.sides {
+        let mut least = depths.of(size);
+        let mut order: Vec<usize> = (0..self.sides.len()).collect();
+        order.sort_by_key(|k| least[*k]);
+        // Depth, distance from the wish, and the number of the side: what is less is better.
+        let mut best: Option<((i32, i32, usize), Rect)> = None;
+        for k in order {
+            let side = self.sides[k];
             let (d, a) = (side.depth_axis(), side.along_axis());
             let deepest = (inner[d] - size[d]).min((f64::from(inner[d]) * reach) as i32 - size[d]).max(0);
-            let deepest = best.map_or(deepest, |best| deepest.min(best.0));
+            let limit = best.map_or(deepest, |best| deepest.min(best.0.0));
+            if least[k] > limit {
+                continue;
+            }
+            let Some((depth, windows)) = room(board, side, size, obstacles, (least[k], limit)) else {
+                least[k] = if limit < deepest { limit + 1 } else { NOWHERE };
+                continue;
+            };
+            least[k] = depth;
             let span = (board.inner.min[a], board.inner.max[a]);
-            let closed = self.closed(side, size, obstacles);
-            let Some(depth) = least_depth(&closed, (span.0, span.1 - size[a]), deepest) else { continue };
             let wish = (self.wish[item][a] - f64::from(size[a]) * 0.5).clamp(-FURTHEST, FURTHEST) as i32;
-            let windows = board.windows(side, depth, size, span, obstacles);
             if let Some(at) = nearest(&windows, wish, span.0, span.1) {
-                let found = (depth, (at - wish).abs(), side, board.rect(side, at, depth, size));
-                if best.is_none_or(|b| (found.0, found.1) < (b.0, b.1)) {
-                    best = Some(found);
+                let found = (depth, (at - wish).abs(), k);
+                if best.is_none_or(|best| found < best.0) {
+                    best = Some((found, board.rect(side, at, depth, size)));
                 }
             }
         }
-        best.map(|(.., side, rect)| (side, rect))
+        depths.note(size, least);
+        best.map(|((.., k), rect)| (self.sides[k], rect))
     }
+}
 
-    /// What is closed at a side to an overlay of `size`.
-    fn closed(&self, side: Side, size: [i32; 2], obstacles: &[Rect]) -> Vec<Closed> {
-        let board = &self.board;
-        let (d, a) = (side.depth_axis(), side.along_axis());
-        // Of places of the upper or left end, the depths.
-        let depths = |(first, last): (i32, i32)| {
-            if side.is_first() {
-                (first - board.inner.min[d], last - board.inner.min[d])
-            } else {
-                (board.inner.max[d] - size[d] - last, board.inner.max[d] - size[d] - first)
-            }
+/// The least of the `depths` (first and last) at which an overlay of `size` has room at a side, and where along it.
+fn room(
+    board: &Board,
+    side: Side,
+    size: [i32; 2],
+    obstacles: &[Rect],
+    (first, last): (i32, i32),
+) -> Option<(i32, Windows)> {
+    let (d, a) = (side.depth_axis(), side.along_axis());
+    let span = (board.inner.min[a], board.inner.max[a]);
+    let windows = |depth: i32| board.windows(side, depth, size, span, obstacles);
+    let here = windows(first);
+    if !here.is_empty() {
+        return Some((first, here));
+    }
+    let near = last.min(first + size[d] + board.gap);
+    let found = [(first + 1, near), (near + 1, last)].into_iter().find_map(|depths| {
+        let closed = closed(board, side, size, obstacles, depths);
+        least_depth(closed, (span.0, span.1 - size[a]), depths)
+    });
+    found.map(|depth| (depth, windows(depth)))
+}
+
+/// What is closed to an overlay of `size` at some of the `depths` of a side, first and last.
+fn closed(board: &Board, side: Side, size: [i32; 2], obstacles: &[Rect], (first, last): (i32, i32)) -> Vec<Closed> {
+    let (d, a) = (side.depth_axis(), side.along_axis());
+    // Of places of the upper or left end, the depths; `None` if they are others.
+    let depths = |(low, high): (i32, i32)| {
+        let depths = if side.is_first() {
+            (low - board.inner.min[d], high - board.inner.min[d])
+        } else {
+            (board.inner.max[d] - size[d] - high, board.inner.max[d] - size[d] - low)
         };
-        let beside = |o: &Rect, i: usize| (o.min[i] - board.gap - size[i] + 1, o.max[i] + board.gap - 1);
-        let of_obstacle = |o: &Rect| Closed { depth: depths(beside(o, d)), along: beside(o, a) };
-        let closes = |p: f64, i: usize| closed_by(p, board.clearance, size[i]);
-        let points = board.points.iter().map(|p| Closed { depth: depths(closes(p[d], d)), along: closes(p[a], a) });
-        points.chain(obstacles.iter().chain(&board.blocked).map(of_obstacle)).collect()
-    }
-}
-
-/// The least depth from 0 to `deepest` at which not all places from `low` to `high` are closed.
-fn least_depth(closed: &[Closed], (low, high): (i32, i32), deepest: i32) -> Option<i32> {
-    let clipped = |c: &Closed| {
-        let along = (c.along.0.max(low), c.along.1.min(high));
-        let depth = (c.depth.0.max(0), c.depth.1.min(deepest));
-        (along.0 <= along.1 && depth.0 <= depth.1).then_some(Closed { depth, along })
+        (depths.0 <= last && first <= depths.1).then(|| (depths.0.max(first), depths.1.min(last)))
     };
-    let closed: Vec<Closed> = closed.iter().filter_map(clipped).collect();
-    // Cells between the ends of what is closed: in one cell all places are as one.
-    let mut starts: Vec<i32> = closed.iter().flat_map(|c| [c.along.0, c.along.1 + 1]).chain([low]).collect();
-    starts.retain(|at| *at <= high);
-    starts.sort_unstable();
-    starts.dedup();
-    let cell = |at: i32| starts.partition_point(|s| *s < at);
-    let mut counts = Counts::new(starts.len());
-    // Opened before closed at one depth does not matter: it is asked when all of a depth are done.
-    let mut events: Vec<(i32, i32, usize, usize)> = Vec::with_capacity(2 * closed.len());
-    for c in &closed {
-        let (from, to) = (cell(c.along.0), cell(c.along.1 + 1));
-        events.push((c.depth.0, 1, from, to));
-        events.push((c.depth.1 + 1, -1, from, to));
-    }
-    events.sort_unstable();
-    let mut depth = 0;
-    for (at, change, from, to) in events {
-        if at > depth {
-            if counts.least() == 0 {
-                return Some(depth);
-            }
-            depth = at;
-        }
-        counts.add(from, to, change);
-    }
-    (depth <= deepest && counts.least() == 0).then_some(depth)
+    let beside = |o: &Rect, i: usize| (o.min[i] - board.gap - size[i] + 1, o.max[i] + board.gap - 1);
+    let of_obstacle = |o: &Rect| Some(Closed { depth: depths(beside(o, d))?, along: beside(o, a) });
+    let closes = |p: f64, i: usize| closed_by(p, board.clearance, size[i]);
+    let of_point = |p: &DVec2| Some(Closed { depth: depths(closes(p[d], d))?, along: closes(p[a], a) });
+    let points = board.points.iter().filter_map(of_point);
+    points.chain(obstacles.iter().chain(&board.blocked).filter_map(of_obstacle)).collect()
 }
 
-/// A segment tree: counts of cells, of which ranges change and the least is known.
-struct Counts {
-    /// The number of cells, a power of two; those that are too many count as closed.
-    size: usize,
-    /// By node (1 the root, 2n and 2n + 1 below n): the least count below it, without what was added above it.
-    least: Vec<i32>,
-    /// What was added to all of it.
-    added: Vec<i32>,
-}
-
-impl Counts {
-    fn new(cells: usize) -> Self {
-        let size = cells.next_power_of_two();
-        let mut counts = Self { size, least: vec![0; 2 * size], added: vec![0; 2 * size] };
-        counts.add(cells, size, 1);
-        counts
+/// The least of the depths from `first` to `last` at which not all places from `low` to `high` are closed.
+fn least_depth(mut closed: Vec<Closed>, (low, high): (i32, i32), (first, last): (i32, i32)) -> Option<i32> {
+    if low > high {
+        return None;
     }
-
-    fn least(&self) -> i32 {
-        self.least[1]
-    }
-
-    /// Adds to cells `from` up to, not including, `to`.
-    fn add(&mut self, from: usize, to: usize, change: i32) {
-        if from >= to {
-            return;
-        }
-        let (first, last) = (from + self.size, to + self.size - 1);
-        let (mut l, mut r) = (first, last + 1);
-        while l < r {
-            if l % 2 == 1 {
-                self.apply(l, change);
-                l += 1;
-            }
-            if r % 2 == 1 {
-                r -= 1;
-                self.apply(r, change);
-            }
-            (l, r) = (l / 2, r / 2);
-        }
-        for end in [first, last] {
-            let mut node = end / 2;
-            while node > 0 {
-                self.least[node] = self.least[2 * node].min(self.least[2 * node + 1]) + self.added[node];
-                node /= 2;
+    closed.retain(|c| c.along.0 <= high && low <= c.along.1);
+    closed.sort_unstable_by_key(|c| c.depth.0);
+    // By place, the least depth that is open as far as has been looked; and the least of all, as it was last worked out.
+    let mut open = vec![first; (high - low) as usize + 1];
+    let mut least = first;
+    for c in closed {
+        // What comes now begins here or further inward, and closes nothing before.
+        if c.depth.0 > least {
+            least = open.iter().fold(i32::MAX, |a, b| a.min(*b));
+            if c.depth.0 > least {
+                break;
             }
         }
+        let along = (c.along.0.max(low) - low) as usize..=(c.along.1.min(high) - low) as usize;
+        open[along].iter_mut().for_each(|depth| *depth = (*depth).max(c.depth.1 + 1));
     }
-
-    fn apply(&mut self, node: usize, change: i32) {
-        self.least[node] += change;
-        self.added[node] += change;
-    }
+    open.into_iter().min().filter(|least| *least <= last)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn counts_know_their_least() {
-        let mut counts = Counts::new(5);
-        let mut plain = [0; 5];
-        for k in 0..200_usize {
-            let (from, to, change) = (k * 7 % 5, k * 7 % 5 + k * 3 % 4, if k % 3 == 2 { -1 } else { 1 });
-            let to = to.min(5);
-            counts.add(from, to, change);
-            plain[from..to.max(from)].iter_mut().for_each(|c| *c += change);
-            // The cells that are too many stay at 1.
-            assert_eq!(counts.least(), *plain.iter().chain([&1]).min().unwrap(), "{k}: {plain:?}");
-        }
-    }
+    use crate::overlay::{
+        Arrangement,
+        tests::{overlay, request},
+    };
 
     #[test]
     fn the_least_depth_is_that_of_all_tried() {
@@ -191,8 +190,42 @@ mod tests {
                 let over = |range: (i32, i32), v: i32| (range.0..=range.1).contains(&v);
                 !closed.iter().any(|c| over(c.depth, depth) && over(c.along, at))
             };
-            let tried = (0..=20).find(|depth| (3..=30).any(|at| is_open(*depth, at)));
-            assert_eq!(least_depth(&closed, (3, 30), 20), tried, "{closed:?}");
+            for first in [0, 7] {
+                let of_these = |c: &Closed| {
+                    let depth = (c.depth.0.max(first), c.depth.1.min(20));
+                    (depth.0 <= depth.1).then_some(Closed { depth, ..*c })
+                };
+                let clipped = closed.iter().filter_map(of_these).collect();
+                let tried = (first..=20).find(|depth| (3..=30).any(|at| is_open(*depth, at)));
+                assert_eq!(least_depth(clipped, (3, 30), (first, 20)), tried, "{closed:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_known_changes_no_place() {
+        for (round, reach) in (0..40_u32).zip([1.0, 0.4].into_iter().cycle()) {
+            let at = |k: u32| {
+                DVec2::new(f64::from((round * 131 + k * k * 37) % 400), f64::from((round * 71 + k * k * 29 + k) % 300))
+            };
+            let overlays = (0..80).map(|id| {
+                let size = if id % 3 == 0 { [60.0, 30.0] } else { [40.0, 20.0] };
+                overlay(id, size, at(id).to_array())
+            });
+            let mut asked = request(overlays.collect(), Arrangement::Border);
+            (asked.picture, asked.layout.reach) = ([400, 300], reach);
+            let problem = Problem::new(&asked);
+            let mut depths = Depths::default();
+            let mut obstacles = Vec::new();
+            for item in 0..80 {
+                let place = |depths: &mut Depths| {
+                    problem.place_inward(&problem.board, item, problem.sizes[item].min, &obstacles, depths)
+                };
+                let found = place(&mut depths);
+                assert_eq!(found, place(&mut Depths::default()), "round {round}, overlay {item}");
+                obstacles.extend(found.map(|found| found.1));
+            }
+            assert!(obstacles.len() < 80, "some have no place");
         }
     }
 }

@@ -98,6 +98,9 @@ fn port(rect: &Rect, side: Side, focus: Lattice) -> Option<(Lattice, usize)> {
 
 /// `points` up to where they first meet `outline`; all of them if they do not.
 fn cut(points: Vec<Lattice>, outline: &[DVec2]) -> Vec<Lattice> {
+    if outline.is_empty() {
+        return points;
+    }
     for i in 1..points.len() {
         let (from, to) = (pixels(points[i - 1]), pixels(points[i]));
         let along = to - from;

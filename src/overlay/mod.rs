@@ -6,7 +6,7 @@
 //! 1. [`size`]: each overlay gets a size; all shrink together until there is room.
 //! 2. [`lane`]: a side of the picture is a lane, along which overlays stand in a row, past the points that they must not cover.
 //! 3. [`fill`]: who stands on which lane, by priority; who finds no room there stands further inward, or is folded to a marker.
-//! 4. [`order`]: the order on the lanes that makes least lines cross, told by exact predicates ([`crossings`]).
+//! 4. [`order`]: the order on the lanes that makes least lines cross, told by exact predicates ([`crossings`], [`grid`]).
 //! 5. [`steady`]: with the frame before, overlays keep still, or glide.
 //!
 //! Beside it the geometry of drawing: [`mod@line`] (the ways of lines), [`ribbon`] (their skins), [`arrow`] (for points outside of the picture).
@@ -14,6 +14,7 @@
 pub mod arrow;
 pub mod crossings;
 pub mod fill;
+pub mod grid;
 pub mod inward;
 pub mod lane;
 pub mod line;

@@ -14,6 +14,7 @@ use crate::overlay::{
     Order, Rect,
     crossings::{Way, between},
     fill::{Filled, Lane, Problem},
+    grid::count,
     lane::{Seat, Side, Windows, pack, wishes},
     line::way,
 };
@@ -200,16 +201,11 @@ impl<'p, 'a> State<'p, 'a> {
         let ways: Vec<Vec<Way>> = (0..n)
             .map(|i| rects[i].zip(sides[i]).map_or(Vec::new(), |(rect, side)| ways_of(packer.problem, i, &rect, side)))
             .collect();
+        let counted = count(&rects, &ways);
         let mut counts = vec![vec![0; n]; n];
-        let mut crossings = 0;
-        for i in 0..n {
-            for j in 0..i {
-                if let (Some(a), Some(b)) = (rects[i], rects[j]) {
-                    let count = between(&a, &ways[i], &b, &ways[j]);
-                    (counts[i][j], counts[j][i]) = (count, count);
-                    crossings += count;
-                }
-            }
+        for [i, j] in counted.pairs() {
+            counts[i][j] += 1;
+            counts[j][i] += 1;
         }
         Some(Self {
             packer,
@@ -218,7 +214,7 @@ impl<'p, 'a> State<'p, 'a> {
             rects,
             ways,
             counts,
-            crossings,
+            crossings: counted.crossings.sum(),
             work: Cell::new(0),
         })
     }

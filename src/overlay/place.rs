@@ -6,6 +6,7 @@ use crate::overlay::{
     Rect, Request,
     crossings::{Way, pixels},
     fill::{Filled, Problem, fill},
+    grid::count,
     lane::Side,
     line::way,
     order::{Packer, packed, search, sides_of},
@@ -180,8 +181,8 @@ impl Placed {
 /// Overlays keep the gap between each other and the margin to the border, and cover no point that they could avoid. With a frame before they keep still
 /// ([`crate::overlay::steady`]), but never at the price of these promises.
 ///
-/// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, O((n + p) log (n + p)) for each that
-/// stands further inward, and a bounded search for the order. With a frame before O(n² + n p), all of it comparisons of boxes.
+/// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, for each that stands further inward a sweep over what is near
+/// ([`crate::overlay::inward`]), and a bounded search for the order. With a frame before O(n² + n p), all of it comparisons of boxes.
 pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
     if let Some(before) = before.filter(|before| before.settled && before.request == *request) {
         return before.clone();
@@ -205,7 +206,18 @@ pub fn place(request: &Request, before: Option<&Placed>) -> Placed {
     let jump = Some(Jump::Anew);
     finished(
         &problem,
-        Kept { filled, rects, crossings, gliding: Vec::new(), settled: false, jump, hopeless: 0, turns, is_least },
+        Kept {
+            filled,
+            rects,
+            ways,
+            crossings,
+            gliding: Vec::new(),
+            settled: false,
+            jump,
+            hopeless: 0,
+            turns,
+            is_least,
+        },
         focused,
     )
 }
@@ -222,52 +234,9 @@ fn focused(problem: &Problem, before: Option<&Placed>) -> Option<usize> {
     last.filter(|&last| distance(last) <= distance(nearest) + dead_band(problem)).or(Some(nearest))
 }
 
-/// Crossings, and between which overlays they are.
-#[derive(Clone, Debug, Default)]
-pub struct Counted {
-    /// How many.
-    pub crossings: Crossings,
-    /// The numbers of two overlays between which there are some.
-    pub pairs: Vec<(usize, usize)>,
-}
-
-/// The crossings of all overlays and their lines.
-pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Counted {
-    let mut counted = Counted::default();
-    let present = |i: usize| Some((i, rects[i]?, &ways[i][..], hull(&rects[i]?, &ways[i])));
-    let present: Vec<_> = (0..rects.len()).filter_map(present).collect();
-    for (n, (i, rect, ways, hull)) in present.iter().enumerate() {
-        for (j, other_rect, other_ways, other_hull) in &present[..n] {
-            if !hull.within(other_hull, 1) {
-                continue;
-            }
-            let lines: usize = ways.iter().map(|way| other_ways.iter().filter(|w| way.crosses(w)).count()).sum();
-            let over = ways.iter().filter(|w| w.crosses_overlay(other_rect)).count()
-                + other_ways.iter().filter(|w| w.crosses_overlay(rect)).count();
-            if lines + over > 0 {
-                counted.crossings.lines += lines as u32;
-                counted.crossings.overlays += over as u32;
-                counted.pairs.push((*i, *j));
-            }
-        }
-    }
-    counted
-}
-
-/// The rectangle around an overlay and its lines, rounded outwards.
-fn hull(rect: &Rect, ways: &[Way]) -> Rect {
-    ways.iter().fold(*rect, |hull, way| {
-        let around = way.around();
-        Rect {
-            min: [0, 1].map(|i| hull.min[i].min(around.min[i])),
-            max: [0, 1].map(|i| hull.max[i].max(around.max[i])),
-        }
-    })
-}
-
 /// All that is told of a frame.
 fn finished(problem: &Problem, kept: Kept, focused: Option<usize>) -> Placed {
-    let Kept { filled, rects, crossings, gliding, settled, jump, hopeless, turns, is_least } = kept;
+    let Kept { filled, rects, ways, crossings, gliding, settled, jump, hopeless, turns, is_least } = kept;
     let mut placed = Placed {
         placements: placements(problem, &filled, &rects),
         folded: (0..rects.len()).filter(|&i| rects[i].is_none()).map(|i| problem.overlays[i].id).collect(),
@@ -290,20 +259,24 @@ fn finished(problem: &Problem, kept: Kept, focused: Option<usize>) -> Placed {
     let sides = sides_of(&filled);
     let mut by_id: Vec<usize> = (0..rects.len()).collect();
     by_id.sort_by_key(|i| problem.overlays[*i].id);
+    let points = Points::new(&problem.request.avoid);
     for i in by_id {
         let id = problem.overlays[i].id;
-        for (target, anchor) in &problem.targets[i] {
+        // The ways do not tell whose focus has none.
+        let all_have_one = ways[i].len() == problem.targets[i].len();
+        for (n, (target, anchor)) in problem.targets[i].iter().enumerate() {
             let (Some(rect), Some(side)) = (rects[i], sides[i]) else { break };
-            match way(&rect, side, target, problem.overlays[i].lines) {
-                Some(way) => placed.lines.push(ContextLine {
-                    overlay: id,
-                    anchor: *anchor,
-                    points: way.points().iter().map(|p| pixels(*p)).collect(),
-                }),
+            let points = |way: &Way| way.points().iter().map(|p| pixels(*p)).collect();
+            let line = match ways[i].get(n).filter(|_| all_have_one) {
+                Some(way) => Some(points(way)),
+                None => way(&rect, side, target, problem.overlays[i].lines).as_ref().map(points),
+            };
+            match line {
+                Some(points) => placed.lines.push(ContextLine { overlay: id, anchor: *anchor, points }),
                 None => placed.facts.push(Fact::OnItsFocus { overlay: id, anchor: *anchor }),
             }
         }
-        placed.facts.extend(facts(problem, i, rects[i].as_ref()));
+        placed.facts.extend(facts(problem, i, rects[i].as_ref(), &points));
     }
     placed
 }
@@ -336,7 +309,32 @@ fn markers(problem: &Problem, rects: &[Option<Rect>]) -> Vec<Marker> {
     markers
 }
 
-fn facts(problem: &Problem, i: usize, rect: Option<&Rect>) -> Vec<Fact> {
+/// Points by their height.
+struct Points {
+    /// The place, and the number.
+    by_height: Vec<(DVec2, usize)>,
+}
+
+impl Points {
+    /// Those that are finite.
+    fn new(points: &[DVec2]) -> Self {
+        let mut by_height: Vec<_> =
+            points.iter().enumerate().filter(|(_, p)| p.is_finite()).map(|(n, p)| (*p, n)).collect();
+        by_height.sort_unstable_by(|a, b| a.0.y.total_cmp(&b.0.y));
+        Self { by_height }
+    }
+
+    /// The numbers of those that an overlay covers.
+    fn covered(&self, rect: &Rect, clearance: f64) -> Vec<usize> {
+        let from = self.by_height.partition_point(|p| p.0.y < f64::from(rect.min[1]) - clearance);
+        let near = self.by_height[from..].iter().take_while(|p| p.0.y <= f64::from(rect.max[1]) + clearance);
+        let mut covered: Vec<usize> = near.filter(|p| rect.covers(p.0, clearance)).map(|p| p.1).collect();
+        covered.sort_unstable();
+        covered
+    }
+}
+
+fn facts(problem: &Problem, i: usize, rect: Option<&Rect>, points: &Points) -> Vec<Fact> {
     let overlay = problem.overlays[i].id;
     let mut facts = Vec::new();
     for anchor in 0..problem.overlays[i].anchors.len() {
@@ -346,9 +344,7 @@ fn facts(problem: &Problem, i: usize, rect: Option<&Rect>) -> Vec<Fact> {
     }
     match rect {
         Some(rect) => {
-            let covered = |p: &DVec2| p.is_finite() && rect.covers(*p, problem.board.clearance);
-            let points: Vec<usize> =
-                problem.request.avoid.iter().enumerate().filter(|(_, p)| covered(p)).map(|(n, _)| n).collect();
+            let points = points.covered(rect, problem.board.clearance);
             if !points.is_empty() {
                 facts.push(Fact::Covers { overlay, points });
             }

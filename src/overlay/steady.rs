@@ -11,11 +11,13 @@
 
 use crate::overlay::{
     Order, Placed, Rect, Request,
-    crossings::{Way, between},
+    crossings::Way,
     fill::{Filled, Problem, unease},
+    grid::{Counted, Segment, count},
+    inward::Depths,
     lane::{Board, Side, Windows, fits},
     order::{Packer, packed, rects_of, search, sides_of, ways_of},
-    place::{Counted, Crossings, Jump, Seat, count},
+    place::{Crossings, Jump, Seat},
     size::{SHRINK_STEPS, Sizes},
 };
 
@@ -35,6 +37,8 @@ pub struct Kept {
     pub filled: Filled,
     /// The rectangle of each overlay.
     pub rects: Vec<Option<Rect>>,
+    /// The ways of the lines of each.
+    pub ways: Vec<Vec<Way>>,
     /// What their lines cross.
     pub crossings: Crossings,
     /// The sides along which they are still on their way.
@@ -98,7 +102,7 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
             let is_helpless = || {
                 before.covers(problem.overlays[i].id)
                     && !problem.board.is_blocked(&rect)
-                    && problem.place_inward(i, size, &[]).is_none()
+                    && problem.place_inward(&problem.board, i, size, &[], &mut Depths::default()).is_none()
             };
             if is_good || is_helpless() {
                 filled.inward.push((i, *side, rect));
@@ -119,7 +123,7 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
         Advance { problem, filled, held: &held, ideal, was_gliding }.rects(&old_rows)
     };
     let (mut rects, mut gliding) = advance(&filled, &ideal);
-    let ways = all_ways(problem, &filled, &rects);
+    let mut ways = all_ways(problem, &filled, &rects);
     let mut counted = count(&rects, &ways);
     let (mut hopeless, mut is_least, mut has_order) = (0, None, false);
     if layout.order == Order::Anchors {
@@ -141,7 +145,7 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
             } else if crossings < stood(problem, &held, &seats) {
                 is_least = Some(ordered.is_least && other_rects == other_ideal);
                 (filled, rects, gliding) = (other, other_rects, other_gliding);
-                counted = other_counted;
+                (ways, counted) = (other_ways, other_counted);
                 (has_order, hopeless) = (true, 0);
             }
         }
@@ -156,7 +160,7 @@ pub fn keep(problem: &Problem, before: &Placed, focused: Option<usize>) -> Optio
     turns.tried = if has_moved { 0 } else { turns.tried };
     let settled = !has_moved && was_gliding.is_empty() && gliding.is_empty() && turns.tried >= come.waiting;
     let crossings = counted.crossings;
-    Some(Kept { filled, rects, crossings, gliding, settled, jump, hopeless, turns, is_least })
+    Some(Kept { filled, rects, ways, crossings, gliding, settled, jump, hopeless, turns, is_least })
 }
 
 /// The dead band, pixels, finite.
@@ -311,6 +315,7 @@ fn come(
         turns.last = Some(problem.overlays[waiting[(first + had - 1) % waiting.len()]].id);
     }
     let mut folded = too_large;
+    let mut depths = Depths::default();
     for (n, &item) in waiting.iter().enumerate() {
         let id = problem.overlays[item].id;
         let was_folded = before.folded.binary_search(&id).is_ok();
@@ -329,6 +334,7 @@ fn come(
             with.rows[k].insert(at, item);
             if let Some(rects) = packed(problem, &with, focused) {
                 (*filled, *ideal, any) = (with, rects, true);
+                depths = Depths::default();
                 continue;
             }
         }
@@ -336,12 +342,13 @@ fn come(
             continue;
         }
         let obstacles: Vec<Rect> = ideal.iter().flatten().copied().collect();
-        let board = Board {
-            clearance: problem.board.clearance + if was_folded { dead_band } else { 0.0 },
-            ..problem.board.clone()
+        let place = if was_folded {
+            let board = Board { clearance: problem.board.clearance + dead_band, ..problem.board.clone() };
+            problem.place_inward(&board, item, filled.sizes[item], &obstacles, &mut Depths::default())
+        } else {
+            problem.place_inward(&problem.board, item, filled.sizes[item], &obstacles, &mut depths)
         };
-        let wider = Problem { board, ..problem.clone() };
-        match wider.place_inward(item, filled.sizes[item], &obstacles) {
+        match place {
             Some((side, rect)) => {
                 filled.inward.push((item, side, rect));
                 ideal[item] = Some(rect);
@@ -420,23 +427,24 @@ fn stood(problem: &Problem, held: &[Option<Rect>], seats: &[Option<Seat>]) -> u3
     count(held, &(0..held.len()).map(|i| ways(i).unwrap_or_default()).collect::<Vec<_>>()).crossings.sum()
 }
 
-/// Crossings that stay when all lines end before their focus by the dead band; `all`: how many there are, and between whom.
+/// Crossings that stay when all lines end before their focus by the dead band; `all`: those that there are.
 fn deep_crossings(ways: &[Vec<Way>], rects: &[Option<Rect>], all: &Counted, dead_band: f64) -> u32 {
-    if all.pairs.is_empty() || dead_band == 0.0 {
+    if dead_band == 0.0 {
         return all.crossings.sum();
     }
-    let mut shortened: Vec<Option<Vec<Way>>> = vec![None; ways.len()];
-    let mut sum = 0;
-    for &(i, j) in &all.pairs {
-        for k in [i, j] {
-            let short = || ways[k].iter().filter_map(|w| w.shortened(dead_band)).collect();
-            shortened[k].get_or_insert_with(short);
-        }
-        if let (Some(a), Some(b), Some(of_a), Some(of_b)) = (rects[i], rects[j], &shortened[i], &shortened[j]) {
-            sum += between(&a, of_a, &b, of_b);
-        }
-    }
-    sum
+    let shortened: Vec<Option<Way>> = ways.iter().flatten().map(|way| way.shortened(dead_band)).collect();
+    // Of each its segments less the last, which alone has become shorter: where they met something they still do.
+    let whole: Vec<u32> = shortened.iter().map(|way| way.as_ref().map_or(0, |w| w.points().len() as u32 - 2)).collect();
+    let is_whole = |s: &Segment| s.number < whole[s.line as usize];
+    let short = |s: &Segment| shortened[s.line as usize].as_ref();
+    let do_cross = |[a, b]: &[Segment; 2]| {
+        is_whole(a) & is_whole(b) || short(a).zip(short(b)).is_some_and(|(way, other)| way.crosses(other))
+    };
+    let does_pass = |(s, i): &(Segment, usize)| {
+        is_whole(s) || short(s).zip(rects[*i].as_ref()).is_some_and(|(way, rect)| way.crosses_overlay(rect))
+    };
+    let lines = all.lines.iter().filter(|both| do_cross(both)).count();
+    (lines + all.overlays.iter().filter(|one| does_pass(one)).count()) as u32
 }
 
 /// Whether an overlay moved further than it glides.
@@ -477,9 +485,14 @@ impl Advance<'_> {
             gliding.extend(is_gliding.then_some(self.filled.lanes[k].side));
         }
         // Lanes do not meet, other than while they grow or shrink.
-        let all: Vec<Rect> = rects.iter().flatten().copied().collect();
+        let mut all: Vec<Rect> = rects.iter().flatten().copied().collect();
+        all.sort_unstable_by_key(|rect| rect.min[1]);
         let gap = self.problem.board.gap;
-        if all.iter().enumerate().any(|(n, a)| all[..n].iter().any(|b| a.within(b, gap))) {
+        let meets_next = |n: usize, a: &Rect| {
+            let mut next = all[n + 1..].iter().take_while(|b| b.min[1] < a.max[1].saturating_add(gap));
+            next.any(|b| a.within(b, gap))
+        };
+        if all.iter().enumerate().any(|(n, a)| meets_next(n, a)) {
             return (self.ideal.to_vec(), Vec::new());
         }
         (rects, gliding)

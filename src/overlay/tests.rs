@@ -8,9 +8,10 @@ use proptest::prelude::*;
 use crate::overlay::{
     Align, Along, Arrangement, Fact, Focus, Layout, LineKind, Order, Overlay, Placed, Rect, Request, SizeRule,
     fill::{Problem, fill},
+    grid::count,
     lane::Side,
     order::{MOST_PROVEN, Packer, ways_of},
-    place::{Crossings, Seat, count, place},
+    place::{Crossings, Seat, place},
 };
 
 pub(super) fn overlay(id: u32, size: [f64; 2], at: [f64; 2]) -> Overlay {

@@ -6,10 +6,11 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 use veduta::overlay::{
     Fact, Focus, Placed, Rect, Request,
+    grid::count,
     lane::Side,
     line::{Target, way},
     place,
-    place::{Crossings, Jump, Seat, count},
+    place::{Crossings, Jump, Seat},
 };
 
 /// Frames within which no two overlays change their order back.
