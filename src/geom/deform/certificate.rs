@@ -19,6 +19,9 @@ const BOXES: usize = 1 << 12;
 /// Halvings of the range in which the largest safe strength is searched: to a part in a thousand.
 const HALVINGS: usize = 10;
 
+/// det J of what is taken for not folded without a proof.
+pub const CLEAR: f64 = 0.25;
+
 /// What is known of det J over a box of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Proof {
@@ -31,8 +34,11 @@ pub enum Proof {
         /// det J there, ≤ 0.
         determinant: f64,
     },
-    /// Neither was found out in as many boxes as may be looked at: as good as folded.
-    Unknown,
+    /// Neither was found out in as many boxes as may be looked at.
+    Unknown {
+        /// The smallest det J in the middles of those boxes, the most doubtful ones of all; 0 in a box without end.
+        least: f64,
+    },
 }
 
 /// How much of a deformation is used.
@@ -40,9 +46,12 @@ pub enum Proof {
 pub struct Strength {
     /// The part of its strength that is proven to fold nothing, 0..=1.
     pub used: f64,
+    /// The part at which nothing was seen to fold, at least `used`: no proof, but det J was at least [`CLEAR`] in thousands of places. Long
+    /// openings are seldom proven as far as they go.
+    pub seen: f64,
     /// Why it is not used as it was asked for; `None`: it is.
     pub reason: Option<Proof>,
-    /// The deformation at that strength.
+    /// The deformation at the strength `used`.
     pub deformer: Deformer,
 }
 
@@ -80,6 +89,7 @@ impl Deformer {
             return Proof::Proven;
         }
         let mut doubts = BinaryHeap::new();
+        let mut least_seen = f64::INFINITY;
         let mut looked_at = 0;
         let mut note = |doubts: &mut BinaryHeap<Doubt>, sides: Vector<Interval>| {
             looked_at += 1;
@@ -93,7 +103,7 @@ impl Deformer {
         note(&mut doubts, intervals(&part));
         while let Some(Doubt { sides, .. }) = doubts.pop() {
             if sides.iter().any(|side| !side.width().is_finite()) {
-                return Proof::Unknown;
+                return Proof::Unknown { least: 0.0 };
             }
             let middle = DVec3::from(sides.map(Interval::middle));
             let at = self.support().frame.to_world(middle);
@@ -101,12 +111,13 @@ impl Deformer {
             if determinant <= 0.0 {
                 return Proof::Folds { at, determinant };
             }
+            least_seen = least_seen.min(determinant);
             let axis = self.axis_to_halve(&sides);
             for half in halves(sides[axis]) {
                 let mut sides = sides;
                 sides[axis] = half;
                 if note(&mut doubts, sides) >= BOXES {
-                    return Proof::Unknown;
+                    return Proof::Unknown { least: least_seen };
                 }
             }
         }
@@ -147,25 +158,37 @@ impl Deformation {
     /// The largest part of its strength ([`Deformation::at_strength`]) that halving finds to fold nothing in a box of the world, and
     /// proves: to a part in a thousand, if what is weaker than a safe one is safe.
     pub fn safe_strength(&self, bounds: &Aabb) -> Result<Strength, Fault> {
-        let at = |strength: f64| Deformer::new(self.at_strength(strength));
-        let asked = at(1.0)?;
-        let reason = match asked.prove(bounds) {
-            Proof::Proven => return Ok(Strength { used: 1.0, reason: None, deformer: asked }),
+        let prove = |strength: f64| Deformer::new(self.at_strength(strength)).map(|deformer| deformer.prove(bounds));
+        let reason = match prove(1.0)? {
+            Proof::Proven => None,
             reason => Some(reason),
         };
-        let (mut safe, mut unsafe_from) = (0.0, 1.0);
-        let mut deformer = at(0.0)?;
-        for _ in 0..HALVINGS {
-            let strength = 0.5 * (safe + unsafe_from);
-            let next = at(strength)?;
-            if next.prove(bounds) == Proof::Proven {
-                (safe, deformer) = (strength, next);
-            } else {
-                unsafe_from = strength;
-            }
-        }
-        Ok(Strength { used: safe, reason, deformer })
+        let is_clear = |proof: &Proof| match proof {
+            Proof::Proven => true,
+            Proof::Unknown { least } => *least >= CLEAR,
+            Proof::Folds { .. } => false,
+        };
+        let used = if reason.is_none() { 1.0 } else { largest(0.0, |strength| Ok(prove(strength)? == Proof::Proven))? };
+        let seen = match &reason {
+            Some(proof) if !is_clear(proof) => largest(used, |strength| Ok(is_clear(&prove(strength)?)))?,
+            _ => 1.0,
+        };
+        Ok(Strength { used, seen, reason, deformer: Deformer::new(self.at_strength(used))? })
     }
+}
+
+/// The largest strength that halving finds between one that is good and 1, which is not.
+fn largest(mut good: f64, is_good: impl Fn(f64) -> Result<bool, Fault>) -> Result<f64, Fault> {
+    let mut bad = 1.0;
+    for _ in 0..HALVINGS {
+        let strength = 0.5 * (good + bad);
+        if is_good(strength)? {
+            good = strength;
+        } else {
+            bad = strength;
+        }
+    }
+    Ok(good)
 }
 
 fn halves(side: Interval) -> [Interval; 2] {

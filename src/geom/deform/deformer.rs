@@ -105,11 +105,14 @@ impl Deformer {
     }
 
     /// The same; `visit` is told each step's place in the frame and how far apart places may be there (operators in order, the control
-    /// with the first).
+    /// with the first); a NaN where that does not matter.
     pub(super) fn traced(&self, place: DVec3, visit: &mut impl FnMut(DVec3, DVec3)) -> DVec3 {
         let p = self.support.frame.from_world(place);
         if !self.support.holds(p) {
-            self.spacing.iter().for_each(|spacing| visit(p, *spacing));
+            // Only the first step is continuous across the border of the support, where κ is 0.
+            for (step, spacing) in self.spacing.iter().enumerate() {
+                visit(if step == 0 { p } else { DVec3::NAN }, *spacing);
+            }
             return place;
         }
         let Moved { kappa, way } = self.moved(p, visit);

@@ -29,7 +29,7 @@ mod tests;
 
 use glam::{DMat3, DVec3};
 
-pub use certificate::{Proof, Strength};
+pub use certificate::{CLEAR, Proof, Strength};
 pub use control::{Band, Control, ControlPlane, Profile, Texels};
 pub use deformer::{Deformer, Deformers, Support};
 pub use interval::Interval;

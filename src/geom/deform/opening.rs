@@ -191,8 +191,9 @@ impl Opening {
         let q = weight.plus(-NO_TRUST).times(1.0 / (FULL_TRUST - NO_TRUST));
         let trust_rate =
             q.clamp(0.0, 1.0).smooth_slope() * q.clamp_slope(0.0, 1.0).times(unit / (FULL_TRUST - NO_TRUST));
-        let scale = weight.inverse();
-        let way = mean.map(|v| -(v * scale));
+        // What is not moved says nothing about the rest of an interval: where it counts, W is at least this, and |o| at most R.
+        let scale = weight.larger(S::from(NO_TRUST)).inverse();
+        let way = mean.map(|v| -(v * scale).clamp(-1.0, 1.0));
         // ∂o = −(∂V + o ⊗ ∂W)/W.
         let slope = [0, 1].map(|i| [0, 1].map(|j| -((mean_slope[i][j] + way[i] * weight_slope[j]) * scale)));
         let way = way.map(|w| w.times(self.radius()));

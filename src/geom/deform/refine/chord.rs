@@ -6,11 +6,13 @@ use glam::DVec3;
 
 use crate::geom::deform::{Deformers, Support};
 
-/// Parts in which an edge is looked at: as many as it takes to see all that deforms it, four at least. With more than these it is halved.
-const PARTS: usize = 4;
+/// Parts in which an edge is looked at: as many as it takes to see all that deforms it, six at least. With more than these it is halved.
+const PARTS: usize = 6;
 const MOST_PARTS: usize = 64;
 /// What the second differences next to a part count for: a kink within it is off by no more than a quarter of both; two of them, by more.
-const KINK: f64 = 0.5;
+const KINK: f64 = 0.75;
+/// What may be between all samples (an edge that cuts a corner of the control), by the tolerance.
+const UNSEEN: f64 = 0.1;
 /// How far the inside of a triangle may be off, by the tolerance.
 const INSIDE: f64 = 2.0;
 
@@ -39,7 +41,7 @@ pub struct Chord {
 
 impl Chord {
     const NONE: Self = Self { metres: 0.0, pixels: 0.0 };
-    const UNSEEN: Self = Self { metres: f64::INFINITY, pixels: f64::INFINITY };
+    const TOO_LONG: Self = Self { metres: f64::INFINITY, pixels: f64::INFINITY };
 }
 
 impl Refiner<'_> {
@@ -65,10 +67,11 @@ impl Refiner<'_> {
         self.deformers.supports().any(|support| support.meets(a, b))
     }
 
-    /// The predicted chord error of an edge: not less than 1/1.05 of the true one, and as a rule not more than twice.
+    /// The predicted chord error of an edge: not less than 1/1.05 of the true one, and as a rule not more than twice as much where
+    /// that is near the tolerance.
     ///
     /// Between two samples the deformed edge is at most as far off as the farther of both, and what a kink between them adds, which the
-    /// second differences of both show.
+    /// second differences of both show; and a tenth of the tolerance more, for what is between them.
     pub fn chord(&self, a: DVec3, b: DVec3) -> Chord {
         let (a, b) = in_order(a, b);
         let mut trace = Trace::default();
@@ -76,16 +79,16 @@ impl Refiner<'_> {
         let (end, mut step) = trace.place(self.deformers, b);
         let mut parts = PARTS;
         loop {
-            // A step of ∞ or NaN is more than all.
-            parts = parts.max((step * parts as f64).ceil().min(1e9) as usize);
-            if parts > MOST_PARTS || step.is_nan() {
-                return Chord::UNSEEN;
+            // A step of ∞ is more than all.
+            parts = parts.max(step.ceil().min(1e9) as usize);
+            if parts > MOST_PARTS {
+                return Chord::TOO_LONG;
             }
             let samples = self.samples(&mut trace, [a, b], [start - a, end - b], parts);
             if samples.step <= 1.0 + 1e-9 {
-                return samples.chord();
+                return samples.chord(UNSEEN * self.tolerance_px);
             }
-            step = samples.step;
+            step = samples.step * parts as f64;
             parts += 1;
         }
     }
@@ -117,7 +120,7 @@ impl Refiner<'_> {
             trace.place(self.deformers, corners[j]).1
         });
         let step = edges.into_iter().fold(0.0, f64::max);
-        if step.is_nan() || step > MOST_PARTS as f64 {
+        if step > MOST_PARTS as f64 {
             return self.middle_of_support(corners);
         }
         let parts = PARTS.max(step.ceil() as usize);
@@ -174,6 +177,7 @@ impl Trace {
         let shown = deformers.traced(place, &mut |p, spacing| {
             match self.last.get_mut(i) {
                 Some(last) => {
+                    // Numbers that are none are left out of it.
                     step = step.max(2.0 * ((p - *last).abs() / spacing).max_element());
                     *last = p;
                 }
@@ -195,7 +199,8 @@ struct Samples {
 }
 
 impl Samples {
-    fn chord(&self) -> Chord {
+    /// With so many pixels for what no sample sees.
+    fn chord(&self, unseen_px: f64) -> Chord {
         let bend = |i: usize| match (i.checked_sub(1).map(|i| self.off[i]), self.off.get(i + 1)) {
             (Some(before), Some(after)) => (before + *after - 2.0 * self.off[i]).length(),
             _ => 0.0,
@@ -204,8 +209,9 @@ impl Samples {
         for i in 0..self.off.len() - 1 {
             let off = self.off[i].length().max(self.off[i + 1].length());
             let metres = off + KINK * (bend(i) + bend(i + 1));
-            worst.metres = worst.metres.max(metres);
-            worst.pixels = worst.pixels.max(metres * self.scale[i].max(self.scale[i + 1]));
+            let scale = self.scale[i].max(self.scale[i + 1]);
+            worst.metres = worst.metres.max(metres + unseen_px / scale);
+            worst.pixels = worst.pixels.max(metres * scale + unseen_px);
         }
         worst
     }

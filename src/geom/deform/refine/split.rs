@@ -6,7 +6,7 @@ use crate::geom::deform::refine::{Refiner, chord::order};
 
 /// How many edges inside triangles may follow from each other. Each should leave less to be done, but beside an edge that just keeps the
 /// tolerance two others may be halved in turns, and come ever nearer to it.
-const GENERATIONS: u32 = 40;
+const GENERATIONS: u32 = 64;
 
 /// A corner of what a triangle becomes.
 pub(super) struct Corner {
@@ -30,7 +30,8 @@ pub(super) struct Split<'a> {
 /// What is known of an edge, once for both triangles beside it.
 #[derive(Clone, Copy)]
 struct Edge {
-    /// How many edges inside triangles led to it; 0 along the triangle's own. Its halves have its own, so both sides know the same.
+    /// How many edges inside triangles whose longest edge was not halved led to it; 0 along the triangle's own. Its halves have its own, so
+    /// both sides know the same.
     generation: u32,
     /// The vertex in its middle, if it is halved.
     middle: Option<u32>,
@@ -94,15 +95,17 @@ impl<'a> Split<'a> {
         }
         // Turned so that the edges that are halved come first, of three the longest.
         let count = edges.iter().filter(|edge| edge.middle.is_some()).count();
+        let longest =
+            (0..3).max_by(|&i, &j| self.squared(corners, i).total_cmp(&self.squared(corners, j))).unwrap_or(0);
         let first = match count {
-            1 => edges.iter().position(|edge| edge.middle.is_some()),
-            2 => edges.iter().position(|edge| edge.middle.is_none()).map(|i| (i + 1) % 3),
-            _ => (0..3).max_by(|&i, &j| self.squared(corners, i).total_cmp(&self.squared(corners, j))),
+            1 => edges.iter().position(|edge| edge.middle.is_some()).unwrap_or(0),
+            2 => edges.iter().position(|edge| edge.middle.is_none()).map_or(0, |i| (i + 1) % 3),
+            _ => longest,
         };
-        let first = first.unwrap_or(0);
         let [a, b, c] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
         let [ab, bc, ca] = [0, 1, 2].map(|i| edges[(first + i) % 3]);
-        let inside = 1 + edges.iter().map(|edge| edge.generation).max().unwrap_or(0);
+        let inside =
+            edges.iter().map(|edge| edge.generation).fold(0, u32::max) + u32::from(edges[longest].middle.is_none());
         match [ab.middle, bc.middle, ca.middle] {
             [Some(m), Some(n), Some(k)] => {
                 let [am, mb] = self.halves([a, b], ab, m);

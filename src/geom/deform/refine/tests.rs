@@ -91,8 +91,8 @@ fn chord_error(deformers: &Deformers, a: DVec3, b: DVec3) -> f64 {
     (0..=256).map(off).fold(0.0, f64::max)
 }
 
-/// True by predicted error of every edge of what was refined that meets a support and is bent by more than rounding.
-fn ratios(refined: &Refined, refiner: &Refiner<'_>) -> Vec<f64> {
+/// True and predicted error, metres, of every edge of what was refined that meets a support and is bent by more than rounding.
+fn chords(refined: &Refined, refiner: &Refiner<'_>) -> Vec<(f64, Chord)> {
     let corners = refined.triangles.iter().map(|corners| corners.map(|i| refined.vertices[i as usize].rest));
     let edges: BTreeMap<_, _> = corners
         .flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
@@ -100,8 +100,7 @@ fn ratios(refined: &Refined, refiner: &Refiner<'_>) -> Vec<f64> {
         .map(|(a, b)| ((bits(a).min(bits(b)), bits(a).max(bits(b))), (a, b)))
         .collect();
     let both = edges.values().map(|(a, b)| (chord_error(refiner.deformers, *a, *b), refiner.chord(*a, *b)));
-    let both = both.inspect(|(_, chord)| assert!(chord.pixels <= refiner.tolerance_px, "{chord:?}"));
-    both.filter(|(truth, _)| *truth > 1e-7).map(|(truth, chord)| truth / chord.metres).collect()
+    both.filter(|(truth, _)| *truth > 1e-7).collect()
 }
 
 /// A level square around zero, as two triangles with one diagonal.
@@ -212,7 +211,7 @@ fn what_is_far_is_coarser() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
     #[test]
     fn neighbours_meet_whatever_the_order(
@@ -278,11 +277,16 @@ proptest! {
         prop_assume!(refined.report.too_coarse == 0);
         let tolerance_px = refined.report.tolerance_px;
         let refiner = Refiner { deformers: &deformers, pixels_per_m: &even, tolerance_px, shortest_m: limits.shortest_m };
-        let mut ratios = ratios(&refined, &refiner);
+        let chords = chords(&refined, &refiner);
+        for (truth, chord) in &chords {
+            prop_assert!(chord.pixels <= tolerance_px && *truth <= 1.05 * chord.metres, "{} {:?}", truth, chord);
+        }
+        // Where the tolerance decides, and not only the size of what is to be seen.
+        let near = chords.iter().filter(|(_, chord)| chord.pixels >= 0.3 * tolerance_px);
+        let mut ratios: Vec<f64> = near.map(|(truth, chord)| truth / chord.metres).collect();
         ratios.sort_by(f64::total_cmp);
-        if let (Some(most), Some(median)) = (ratios.last(), ratios.get(ratios.len() / 2)) {
-            prop_assert!(*most <= 1.05, "{}", most);
-            prop_assert!(ratios.len() < 30 || *median >= 0.5, "{}", median);
+        if ratios.len() >= 30 {
+            prop_assert!(ratios[ratios.len() / 2] >= 0.5, "{}", ratios[ratios.len() / 2]);
         }
     }
 }

@@ -68,29 +68,34 @@ fn streets_open_as_far_as_they_can() {
     let line = vec![DVec2::new(-60.0, 0.0), DVec2::new(60.0, 0.0)];
     let open = |aside: f64| everywhere(vec![Operator::Open(Opening { line: line.clone(), aside, ..street() })]);
     is_found(&open(20.0), &around(DVec3::ZERO, 20.0), 0.5, 0.9);
-    is_found(&everywhere(vec![Operator::Open(street())]), &around(DVec3::ZERO, 80.0), 1.0, 1.0);
+    // With its ends, or with corners, less is proven; what is seen is between that and what folds.
+    let with_ends = open(20.0).safe_strength(&around(DVec3::ZERO, 80.0)).unwrap();
+    assert!(with_ends.used > 0.02 && with_ends.used <= with_ends.seen && with_ends.seen <= 0.5, "{with_ends:?}");
+    let corners = everywhere(vec![Operator::Open(street())]).safe_strength(&around(DVec3::ZERO, 80.0)).unwrap();
+    assert!(corners.used <= corners.seen && corners.seen > 0.5, "{corners:?}");
+    assert!(matches!(corners.reason, Some(Proof::Unknown { .. })), "{corners:?}");
 }
 
 #[test]
 fn what_is_unbounded_is_not_proven_by_chance() {
     let endless = Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
     let bend = everywhere(vec![Operator::Bend { curvature: 0.1, y: [0.0, 9.0], about: 0.0, base: 0.0 }]);
-    assert_eq!(ready(bend).prove(&endless), Proof::Unknown);
+    assert_eq!(ready(bend).prove(&endless), Proof::Unknown { least: 0.0 });
     assert_eq!(ready(everywhere(vec![Operator::Translate(DVec3::X)])).prove(&endless), Proof::Proven);
     let nowhere = Deformation { chain: vec![Operator::Translate(DVec3::NAN)], ..everywhere(Vec::new()) };
     assert!(nowhere.safe_strength(&endless).is_err());
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
     #[test]
     fn what_is_proven_folds_nowhere_and_goes_back(
         deformation in deformation(300.0), places in prop::collection::vec(vector(30.0), 40),
     ) {
         let bounds = around(deformation.frame.pivot, 30.0);
-        let Strength { deformer, used, .. } = deformation.safe_strength(&bounds).unwrap();
-        prop_assert!(used > 0.0);
+        let Strength { deformer, used, seen, .. } = deformation.safe_strength(&bounds).unwrap();
+        prop_assert!(used > 0.0 && seen >= used);
         for shift in places {
             let place = bounds.center() + shift;
             let shown = deformer.value(place);
