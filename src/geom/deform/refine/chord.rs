@@ -64,7 +64,7 @@ impl Refiner<'_> {
     /// Whether an edge meets the support of a deformation.
     pub fn meets(&self, a: DVec3, b: DVec3) -> bool {
         let (a, b) = in_order(a, b);
-        self.deformers.supports().any(|support| support.meets(a, b))
+        self.deformers.supports().any(|support| support.range(a, b).is_some())
     }
 
     /// The predicted chord error of an edge: not less than 1/1.05 of the true one, and as a rule not more than twice as much where
@@ -77,6 +77,12 @@ impl Refiner<'_> {
         let mut trace = Trace::default();
         let start = trace.place(self.deformers, a).0;
         let (end, mut step) = trace.place(self.deformers, b);
+        // Beyond the supports nothing moves: it is enough to look at what is in them.
+        let ranges = self.deformers.supports().filter_map(|support| support.range(a, b));
+        let Some([from, to]) = ranges.reduce(|all, one| [all[0].min(one[0]), all[1].max(one[1])]) else {
+            return Chord::NONE;
+        };
+        step *= to - from;
         let mut parts = PARTS;
         loop {
             // A step of ∞ is more than all.
@@ -84,7 +90,7 @@ impl Refiner<'_> {
             if parts > MOST_PARTS {
                 return Chord::TOO_LONG;
             }
-            let samples = self.samples(&mut trace, [a, b], [start - a, end - b], parts);
+            let samples = self.samples(&mut trace, [a, b], [start - a, end - b], [from, to], parts);
             if samples.step <= 1.0 + 1e-9 {
                 return samples.chord(UNSEEN * self.tolerance_px);
             }
@@ -93,18 +99,26 @@ impl Refiner<'_> {
         }
     }
 
-    fn samples(&self, trace: &mut Trace, [a, b]: [DVec3; 2], ways: [DVec3; 2], parts: usize) -> Samples {
+    /// Looks at an edge between two parts of its way, of which the ends go `ways`.
+    fn samples(
+        &self,
+        trace: &mut Trace,
+        [a, b]: [DVec3; 2],
+        ways: [DVec3; 2],
+        [from, to]: [f64; 2],
+        parts: usize,
+    ) -> Samples {
         let mut samples =
             Samples { off: Vec::with_capacity(parts + 1), scale: Vec::with_capacity(parts + 1), step: 0.0 };
         for i in 0..=parts {
-            let t = i as f64 / parts as f64;
+            let t = if i == parts { to } else { from + (to - from) * i as f64 / parts as f64 };
             let rest = a.lerp(b, t);
             let (shown, step) = trace.place(self.deformers, rest);
             if i > 0 {
                 samples.step = samples.step.max(step);
             }
             // By ways rather than places: where nothing moves, nothing is off.
-            let off = if i == 0 || i == parts { DVec3::ZERO } else { (shown - rest) - ways[0].lerp(ways[1], t) };
+            let off = if t == 0.0 || t == 1.0 { DVec3::ZERO } else { (shown - rest) - ways[0].lerp(ways[1], t) };
             samples.off.push(off);
             samples.scale.push((self.pixels_per_m)(shown));
         }
@@ -113,45 +127,46 @@ impl Refiner<'_> {
 
     /// Where the inside of a triangle is off by more than twice the tolerance, as weights of its corners; `None`: nowhere.
     pub(super) fn worst_inside(&self, corners: &[DVec3; 3]) -> Option<DVec3> {
-        let mut trace = Trace::default();
-        let ways = corners.map(|p| trace.place(self.deformers, p).0 - p);
-        let edges = [[0, 1], [1, 2], [2, 0]].map(|[i, j]| {
-            trace.place(self.deformers, corners[i]);
-            trace.place(self.deformers, corners[j]).1
-        });
-        let step = edges.into_iter().fold(0.0, f64::max);
-        if step > MOST_PARTS as f64 {
-            return self.middle_of_support(corners);
-        }
-        let parts = PARTS.max(step.ceil() as usize);
-        let mixed = |of: &[DVec3; 3], w: DVec3| of[0] * w.x + of[1] * w.y + of[2] * w.z;
+        let ways = corners.map(|p| self.deformers.value(p) - p);
         let mut worst = (INSIDE * self.tolerance_px, None);
-        for i in 1..parts {
-            for j in 1..parts - i {
-                let weights = DVec3::new(i as f64, j as f64, (parts - i - j) as f64) / parts as f64;
-                let rest = mixed(corners, weights);
-                let shown = self.deformers.value(rest);
-                let off = (shown - rest).distance(mixed(&ways, weights));
-                let pixels = off * (self.pixels_per_m)(shown);
-                if pixels > worst.0 {
-                    worst = (pixels, Some(weights));
-                }
+        for support in self.deformers.supports() {
+            // Only what the support has of it can be off, as a fan of triangles.
+            let part = support.part_of_triangle(corners);
+            for pair in part.windows(2).skip(1) {
+                self.look_inside(corners, &ways, [part[0], pair[0], pair[1]], &mut worst);
             }
         }
         worst.1
     }
 
-    /// The middle of what the first support that a triangle meets has of it, as weights of the corners; `None` where that is at its border.
-    fn middle_of_support(&self, corners: &[DVec3; 3]) -> Option<DVec3> {
-        let part =
-            self.deformers.supports().map(|support| support.part_of_triangle(corners)).find(|part| !part.is_empty())?;
-        let middle = part.iter().sum::<DVec3>() / part.len() as f64;
-        let [a, b, c] = *corners;
-        let normal = (b - a).cross(c - a);
-        let area = |p: DVec3, q: DVec3| (p - middle).cross(q - middle).dot(normal);
-        let areas = DVec3::new(area(b, c), area(c, a), area(a, b));
-        let weights = areas / areas.element_sum();
-        (weights.min_element() > 1e-9).then_some(weights)
+    /// Looks at a piece of a triangle whose corners go `ways`.
+    fn look_inside(
+        &self,
+        corners: &[DVec3; 3],
+        ways: &[DVec3; 3],
+        piece: [DVec3; 3],
+        worst: &mut (f64, Option<DVec3>),
+    ) {
+        let mut trace = Trace::default();
+        let [a, b, c] = piece;
+        let steps = [a, b, c, a].map(|p| trace.place(self.deformers, p).1);
+        let step = steps.into_iter().fold(0.0, f64::max);
+        let is_large = step > MOST_PARTS as f64;
+        let parts = if is_large { 3 } else { PARTS.max(step.ceil() as usize) };
+        let mixed = |of: &[DVec3; 3], w: DVec3| of[0] * w.x + of[1] * w.y + of[2] * w.z;
+        for i in 1..parts {
+            for j in 1..parts - i {
+                let rest = mixed(&piece, DVec3::new(i as f64, j as f64, (parts - i - j) as f64) / parts as f64);
+                let Some(weights) = weights(corners, rest) else { continue };
+                let shown = self.deformers.value(rest);
+                let off = (shown - rest).distance(mixed(ways, weights));
+                // What is too large to see all in it is as bad as can be.
+                let pixels = if is_large { f64::MAX } else { off * (self.pixels_per_m)(shown) };
+                if pixels > worst.0 {
+                    *worst = (pixels, Some(weights));
+                }
+            }
+        }
     }
 
     /// Whether a triangle meets the support of a deformation; it does if one of its edges does.
@@ -218,19 +233,16 @@ impl Samples {
 }
 
 impl Support {
-    /// Whether a segment meets it.
-    fn meets(&self, a: DVec3, b: DVec3) -> bool {
+    /// From which to which part of the way a segment is in it; `None`: nowhere.
+    fn range(&self, a: DVec3, b: DVec3) -> Option<[f64; 2]> {
         let (a, b) = (self.frame.from_world(a), self.frame.from_world(b));
-        if self.holds(a) || self.holds(b) {
-            return true;
-        }
         let way = (b - a).to_array();
         let (from, low, high) = (a.to_array(), self.bounds.min.to_array(), self.bounds.max.to_array());
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
         for i in 0..3 {
             if way[i] == 0.0 {
                 if from[i] < low[i] || from[i] > high[i] {
-                    return false;
+                    return None;
                 }
                 continue;
             }
@@ -238,7 +250,12 @@ impl Support {
             enter = enter.max(t0.min(t1));
             leave = leave.min(t0.max(t1));
         }
-        enter <= leave
+        // An end that is in it is so whatever rounding says.
+        let [enter, leave] = [if self.holds(a) { 0.0 } else { enter }, if self.holds(b) { 1.0 } else { leave }];
+        match enter <= leave {
+            true => Some([enter, leave]),
+            false => (self.holds(a) || self.holds(b)).then_some([0.0, 1.0]),
+        }
     }
 
     /// What it has of a triangle of the world, as a convex polygon of the world.
@@ -253,6 +270,15 @@ impl Support {
         });
         crate::geom::clipped(&local, sides).into_iter().map(|p| self.frame.to_world(p)).collect()
     }
+}
+
+/// What the corners of a triangle count for at a place inside it; `None` on its border.
+fn weights([a, b, c]: &[DVec3; 3], place: DVec3) -> Option<DVec3> {
+    let normal = (*b - *a).cross(*c - *a);
+    let area = |p: &DVec3, q: &DVec3| (*p - place).cross(*q - place).dot(normal);
+    let areas = DVec3::new(area(b, c), area(c, a), area(a, b));
+    let weights = areas / areas.element_sum();
+    (weights.is_finite() && weights.min_element() > 1e-9).then_some(weights)
 }
 
 /// Both ends of an edge, in the order of their coordinates.

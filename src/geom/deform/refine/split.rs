@@ -6,7 +6,7 @@ use crate::geom::deform::refine::{Refiner, chord::order};
 
 /// How many edges inside triangles may follow from each other. Each should leave less to be done, but beside an edge that just keeps the
 /// tolerance two others may be halved in turns, and come ever nearer to it.
-const GENERATIONS: u32 = 64;
+const GENERATIONS: u32 = 32;
 
 /// A corner of what a triangle becomes.
 pub(super) struct Corner {
