@@ -3,6 +3,7 @@
 pub mod aabb;
 pub mod bvh;
 pub mod combination;
+pub mod deform;
 pub mod exact;
 mod meets;
 pub mod outline;
