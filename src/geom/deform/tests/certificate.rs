@@ -87,7 +87,7 @@ fn what_is_unbounded_is_not_proven_by_chance() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
 
     #[test]
     fn what_is_proven_folds_nowhere_and_goes_back(
@@ -95,7 +95,9 @@ proptest! {
     ) {
         let bounds = around(deformation.frame.pivot, 30.0);
         let Strength { deformer, used, seen, .. } = deformation.safe_strength(&bounds).unwrap();
-        prop_assert!(used > 0.0 && seen >= used);
+        // Of openings with corners nothing may be proven; of all else something is.
+        let opens = deformation.chain.iter().any(|operator| matches!(operator, Operator::Open(_)));
+        prop_assert!((used > 0.0 || opens) && seen >= used);
         for shift in places {
             let place = bounds.center() + shift;
             let shown = deformer.value(place);
