@@ -10,14 +10,47 @@
 //! offset; the origin depends on the object alone, so the same object from two files gives the same
 //! floats (architecture, decision 1).
 
-use std::{ops::Range, path::PathBuf, sync::Arc};
+use std::{
+    hash::BuildHasher,
+    ops::Range,
+    path::PathBuf,
+    sync::{Arc, OnceLock},
+};
 
 use glam::{DVec3, IVec3};
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::{
     city::{strings::Strings, warning::Warnings},
     geom::{Aabb, plane::Plane},
 };
+
+/// Where objects stand by the hash of their id: made when first asked for, and taken for no more than a hint, since objects may be
+/// added or taken away.
+#[derive(Debug, Default)]
+pub struct Ids(OnceLock<FxHashMap<u64, u32>>);
+
+impl Clone for Ids {
+    /// That of another model, which may change: made anew.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Ids {
+    fn hash(id: &str) -> u64 {
+        FxBuildHasher.hash_one(id)
+    }
+
+    /// Where an object of this id may stand.
+    fn hint(&self, objects: &[CityObject], id: &str) -> Option<u32> {
+        let map = self.0.get_or_init(|| {
+            // Of equal hashes the first.
+            objects.iter().enumerate().rev().map(|(i, object)| (Self::hash(&object.id), i as u32)).collect()
+        });
+        map.get(&Self::hash(id)).copied()
+    }
+}
 
 /// Index into [`CityModel::strings`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -39,6 +72,8 @@ pub struct CityModel {
     pub strings: Strings,
     /// City objects in byte order of the files; the position is the object index of the contract.
     pub objects: Vec<CityObject>,
+    /// Finds them by their ids.
+    pub ids: Ids,
     /// Attributes of objects and semantic surfaces; ranges of it belong to them.
     pub attributes: Vec<Attribute>,
     /// Geometries, grouped by object in object order, LoD ascending as read.
@@ -457,13 +492,37 @@ impl CityModel {
 
     /// The object of this id.
     pub fn find_object(&self, id: &str) -> Option<u32> {
-        self.objects.iter().position(|o| &*o.id == id).map(|i| i as u32)
+        let is_it = |index: &u32| self.objects.get(*index as usize).is_some_and(|object| &*object.id == id);
+        let hint = self.ids.hint(&self.objects, id).filter(is_it);
+        hint.or_else(|| self.objects.iter().position(|o| &*o.id == id).map(|i| i as u32))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn objects_are_found_by_their_ids_when_some_come_and_go() {
+        let object = |id: &str| CityObject {
+            id: id.into(),
+            kind: StringId(0),
+            class: ObjectClass::default(),
+            parents: vec![],
+            children: vec![],
+            attributes: 0..0,
+            geometries: 0..0,
+        };
+        let mut model = CityModel { objects: ["a", "b", "a"].map(object).to_vec(), ..CityModel::default() };
+        let found = |model: &CityModel| ["a", "b", "c", ""].map(|id| model.find_object(id));
+        assert_eq!(found(&model), [Some(0), Some(1), None, None]);
+        model.objects.push(object("c"));
+        assert_eq!(found(&model), [Some(0), Some(1), Some(3), None]);
+        model.objects.remove(0);
+        assert_eq!(found(&model), [Some(1), Some(0), Some(2), None]);
+        assert_eq!(found(&model.clone()), found(&model));
+        assert_eq!(found(&CityModel::default()), [None; 4]);
+    }
 
     #[test]
     fn lods_are_canonical_and_ordered() {
