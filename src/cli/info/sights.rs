@@ -18,7 +18,8 @@ use crate::{
 };
 
 /// Colours of context lines, told apart by people who do not see all colours (Okabe and Ito), the darker ones.
-const LINE_COLORS: [&str; 5] = ["#d55e00", "#0072b2", "#009e73", "#882255", "#332288"];
+const LINE_COLORS: [&str; 10] =
+    ["#d55e00", "#0072b2", "#009e73", "#882255", "#332288", "#999933", "#aa4499", "#117733", "#6b4c2a", "#44aa99"];
 
 /// A view of an object. `eye`, `target`, `up`, `fov_deg` and `near_m` are those of a scene's camera.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -13,7 +13,7 @@ use crate::{
     overlay::{Focus, Rect},
     render::{
         furniture::{ImagePiece, Panel, Piece, Strip},
-        text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter, Weight},
+        text::{CAP_HEIGHT, Halo, TextLine, TextStyle, Typesetter, Weight},
     },
     scene::{
         Overlay,
@@ -202,6 +202,11 @@ impl Painter {
             Frame::BuiltIn(BuiltInFrame::Thin) => {
                 let (low, high) = (rect.min.map(|v| v as f32), rect.max.map(|v| v as f32));
                 self.panel(low, high, INK, opacity, 0.0, 1.0);
+                if overlay.caption.is_some() {
+                    let line = self.px(1.0) as f32;
+                    let (band_low, band_high) = ([low[0] + line, room.high[1] as f32 + line], high.map(|v| v - line));
+                    self.panel(band_low, band_high, WHITE, opacity, 0.0, 1.0);
+                }
             }
             Frame::BuiltIn(BuiltInFrame::Print) => self.ground(overlay, rect, self.px(1.0) as f32),
             Frame::BuiltIn(BuiltInFrame::Ellipse) => {
@@ -234,17 +239,30 @@ impl Painter {
         }
         if let Some(caption) = &overlay.caption {
             let band = [high[1], rect.max[1] as f32];
-            self.centred(caption, [rect.min[0] as f32, rect.max[0] as f32], band, self.caption_style());
+            // Where there is no card below it, it is read over the city.
+            let has_card = matches!(
+                overlay.frame,
+                Frame::BuiltIn(BuiltInFrame::Rounded | BuiltInFrame::Thin | BuiltInFrame::Print)
+            );
+            let halo = (!has_card).then_some(Halo { color: WHITE, width_px: 0.2 * self.em, opacity: 0.85 });
+            self.centred(caption, [rect.min[0] as f32, rect.max[0] as f32], band, self.caption_style(), halo);
         }
     }
 
-    fn centred(&mut self, text: &str, [left, right]: [f32; 2], [top, bottom]: [f32; 2], style: TextStyle) {
+    fn centred(
+        &mut self,
+        text: &str,
+        [left, right]: [f32; 2],
+        [top, bottom]: [f32; 2],
+        style: TextStyle,
+        halo: Option<Halo>,
+    ) {
         let room = (right - left - self.em).max(0.0);
         let Some(text) = self.setter.wrapped(text, style, room, 1).into_iter().next() else { return };
         let width = self.setter.width(&text, style);
         let base = (0.5 * (top + bottom + CAP_HEIGHT * style.size_px)).round();
         let at = [0.5 * (left + right - width), base];
-        self.pieces.push(Piece::Text(TextLine { text, at, style, color: INK, halo: None }));
+        self.pieces.push(Piece::Text(TextLine { text, at, style, color: INK, halo }));
     }
 
     /// An overlay of text.

@@ -86,7 +86,7 @@ fn at_its_place(scene: &Scene, view: &View, one: &Shown, em: f32) -> Option<Spot
     let mut rect = Rect::default();
     for i in 0..2 {
         let room = view.size[i] as i32 - 2 * margin;
-        let min = one.overlay.min.map_or((preferred[i] / 2).max(1), |min| min[i].min(preferred[i])) as i32;
+        let min = least_size(one, preferred)[i].min(preferred[i]) as i32;
         let size = (preferred[i] as i32).min(room);
         if size < min {
             return None;
@@ -143,6 +143,15 @@ fn preferred_size(one: &Shown, scale: f64, em: f32) -> [u32; 2] {
     }
 }
 
+/// It is made no smaller: by half where nobody says so, and a card not at all, which would lose its text.
+fn least_size(one: &Shown, preferred: [u32; 2]) -> [u32; 2] {
+    match (&one.overlay.min, &one.best_view.depiction) {
+        (Some(min), _) => *min,
+        (None, Depiction::Text(_)) => preferred,
+        (None, _) => preferred.map(|side| (side / 2).max(1)),
+    }
+}
+
 /// What the layout is asked.
 fn layout_of(
     studio: &Studio,
@@ -155,11 +164,13 @@ fn layout_of(
     let layout = &scene.layout;
     let size = |side: [u32; 2]| DVec2::new(side[0].into(), side[1].into());
     let overlays = shown.iter().map(|one| {
-        let preferred = size(preferred_size(one, 1.0, em));
+        let preferred = preferred_size(one, 1.0, em);
+        let least = size(least_size(one, preferred));
+        let preferred = size(preferred);
         overlay::Overlay {
             id: one.index as u32,
             priority: one.overlay.priority,
-            min: one.overlay.min.map_or(0.5 * preferred, size),
+            min: least,
             preferred,
             max: one.overlay.max.map_or(1.5 * preferred, size),
             anchors: one.focuses().cloned().collect(),
