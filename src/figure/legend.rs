@@ -139,6 +139,7 @@ mod tests {
             effects,
             render: None,
             best_view: None,
+            deform: None,
             content: None,
             body: Default::default(),
             sprite: None,

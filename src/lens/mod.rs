@@ -6,6 +6,7 @@ pub mod chosen;
 pub mod classify;
 pub mod color;
 pub mod content;
+pub mod deform;
 pub mod dither;
 pub mod effect;
 pub mod focus;
@@ -26,6 +27,7 @@ pub use best_view::BestView;
 pub use border::{Border, BorderUnit, Discrete};
 pub use classify::classify;
 pub use content::{Content, ContentSource, Copied};
+pub use deform::Deform;
 pub use focus::Focus;
 pub use occluders::Occluders;
 pub use rendering::Rendering;
@@ -55,6 +57,8 @@ pub struct Lens {
     pub effects: Vec<EffectUse>,
     /// What its overlay shows, if it has one (B1 to B5).
     pub best_view: Option<BestView>,
+    /// What it does with space, if it is a deformation lens (D1).
+    pub deform: Option<Deform>,
     /// What it shows in place of what is below it (C6); `None`: it acts on that.
     pub content: Option<Content>,
     /// How the lens body itself is drawn (L5).
@@ -82,6 +86,7 @@ impl Lens {
             render: None,
             effects: Vec::new(),
             best_view: None,
+            deform: None,
             content: None,
             body: LensBody::of_kind(kind),
             sprite: None,
@@ -142,6 +147,8 @@ pub enum LensKind {
     Content,
     /// Draws what hides a point of interest so that it can be seen (O2, O3).
     Occlusion,
+    /// Moves what is in it (D1).
+    Deformation,
     /// Shows an image or a text (B1).
     Annotation,
     /// Shows the city from an eye of its own (B2, B3).
@@ -158,10 +165,11 @@ pub enum LensKind {
 
 impl LensKind {
     /// All, with their words in scene files.
-    pub const WORDS: [(&str, Self); 9] = [
+    pub const WORDS: [(&str, Self); 10] = [
         ("color", Self::Color),
         ("content", Self::Content),
         ("occlusion", Self::Occlusion),
+        ("deformation", Self::Deformation),
         ("annotation", Self::Annotation),
         ("best-view", Self::BestView),
         ("map-view", Self::MapView),
@@ -182,7 +190,7 @@ impl LensKind {
 
     /// Whether its lenses have an overlay in place of a focus area (V §3.4).
     pub fn has_overlay(self) -> bool {
-        !matches!(self, Self::Color | Self::Content | Self::Occlusion)
+        !matches!(self, Self::Color | Self::Content | Self::Occlusion | Self::Deformation)
     }
 }
 

@@ -126,6 +126,7 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
         effects: effects.iter().map(use_of).collect(),
         render: None,
         best_view: None,
+        deform: None,
         content: None,
         body: LensBody::None,
         sprite: None,

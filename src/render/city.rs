@@ -202,6 +202,11 @@ impl Gathered {
     }
 }
 
+/// The corner of a triangle that flat values come from: the first, in OpenGL the last.
+pub(super) fn provoking_corner(gpu: &Gpu) -> usize {
+    if gpu.info.backend == wgpu::Backend::Gl { 2 } else { 0 }
+}
+
 /// Box around what is shown but for the plain ground, metres.
 pub(super) fn extent_of(shown: &Shown) -> Aabb {
     shown.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(shown.model.geometries[g as usize].bounds))
@@ -225,8 +230,7 @@ impl CityBuffers {
         let mut table = SurfaceTable::new(shown.model, &textures, &shells);
         let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
         let smooth = is_smooth(shown, &apart);
-        // Flat values come from the first corner of a triangle, in OpenGL from the last.
-        let provoking = if gpu.info.backend == wgpu::Backend::Gl { 2 } else { 0 };
+        let provoking = provoking_corner(gpu);
         let mut plain = Gathered::new(smooth, provoking);
         let mut textured: FxHashMap<(u32, u32), Gathered> = FxHashMap::default();
         for &(t, cell) in tiles {
@@ -287,6 +291,24 @@ impl CityBuffers {
             bytes,
             bounds,
         })
+    }
+
+    /// Sections with a normal per vertex, whose surfaces and textures are those of another city.
+    pub(super) fn of_sections(sections: Vec<Section>, surfaces: wgpu::TextureView, bounds: Aabb) -> Self {
+        Self {
+            sections,
+            surfaces,
+            surface_table: Vec::new(),
+            shells: Shells::default(),
+            textures: Textures::none(),
+            cells: Vec::new(),
+            has_blocks: false,
+            smooth: true,
+            triangles: 0,
+            vertices: 0,
+            bytes: 0,
+            bounds,
+        }
     }
 
     /// Those of the chunks of one section that a frustum may see, in drawing order.
@@ -545,17 +567,19 @@ fn upload<T: bytemuck::NoUninit>(
     gathered: &Gathered,
     (extra_name, extra): (&str, &[T]),
 ) -> Result<Option<(Section, usize, usize)>, GpuError> {
+    // What deforms it reads it back.
+    use wgpu::BufferUsages as U;
     let Weld { vertices, indices, .. } = &gathered.weld;
     if indices.is_empty() {
         return Ok(None);
     }
     let section = Section {
         kind,
-        vertices: gpu.buffer("vertices", wgpu::BufferUsages::VERTEX, vertices)?,
-        indices: gpu.buffer("indices", wgpu::BufferUsages::INDEX, indices)?,
+        vertices: gpu.buffer("vertices", U::VERTEX | U::COPY_SRC, vertices)?,
+        indices: gpu.buffer("indices", U::INDEX | U::COPY_SRC, indices)?,
         extra: match extra {
             [] => None,
-            extra => Some(gpu.buffer(extra_name, wgpu::BufferUsages::VERTEX, extra)?),
+            extra => Some(gpu.buffer(extra_name, U::VERTEX | U::COPY_SRC, extra)?),
         },
         chunks: gathered.chunks(),
     };

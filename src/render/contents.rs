@@ -300,14 +300,22 @@ impl Renderer {
 
     /// All cities that the card holds.
     pub(super) fn cities(&self) -> impl Iterator<Item = &CityOnGpu> {
-        self.city.iter().chain(self.contents.cities.iter().map(|(_, city)| city))
+        let deformed = self.deformed.iter().map(|deformed| &deformed.city);
+        self.city.iter().chain(deformed).chain(self.contents.cities.iter().map(|(_, city)| city))
     }
 
     /// What is drawn where this is hidden and shown.
     pub(super) fn drawn_sections(&self, cut: Option<&Cut>) -> Vec<DrawnSection<'_>> {
         let Some(own) = &self.city else { return Vec::new() };
         let mut drawn = Vec::new();
-        add_sections(&mut drawn, (own, &self.details), (None, 0, true), &[]);
+        let which = (None, 0, true);
+        match &self.deformed {
+            None => add_sections(&mut drawn, (own, &self.details), which, &[]),
+            Some(deformed) => {
+                add_sections(&mut drawn, (own, &self.details), which, &deformed.left);
+                add_sections(&mut drawn, (&deformed.city, &self.details), which, &[]);
+            }
+        }
         for (i, content) in self.contents.shown.iter().enumerate() {
             let is_asked = cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == content.number));
             let offset = (i as u32 + 1) * STAGE_STRIDE as u32;

@@ -80,13 +80,18 @@ impl Edge {
 }
 
 /// The half float nearest to a length: below 2⁻¹⁴ m zero, at most 65504 m.
-fn half(metres: f32) -> u16 {
+pub(super) fn half(metres: f32) -> u16 {
     let metres = metres.clamp(0.0, 65_504.0);
     if metres < 1.0 / 16_384.0 {
         return 0;
     }
     // f32: 8 bits of exponent (bias 127), 23 of mantissa; f16: 5 (bias 15), 10.
     (((metres.to_bits() + (1 << 12)) >> 13) - ((127 - 15) << 10)).min(0x7bff) as u16
+}
+
+/// The length that a half float says.
+pub(super) fn metres_of(half: u16) -> f32 {
+    if half == 0 { 0.0 } else { f32::from_bits((u32::from(half) << 13) + ((127 - 15) << 23)) }
 }
 
 /// The edges of what is shown of a city.
@@ -105,11 +110,17 @@ pub struct EdgeBuffers {
 impl EdgeBuffers {
     /// Finds the edges of what is shown, whose triangles are in `city`, and uploads them.
     pub fn new(gpu: &Gpu, shown: &Shown, city: &CityBuffers, angles: &CreaseAngles) -> Result<Self, GpuError> {
-        let edges = gather(shown, city, angles);
+        Self::of_edges(gpu, &gather(shown, city, angles))
+    }
+
+    /// Uploads edges.
+    pub(super) fn of_edges(gpu: &Gpu, edges: &[Edge]) -> Result<Self, GpuError> {
         let before = gpu.allocated_bytes();
-        let instances = gpu.buffer("edges", wgpu::BufferUsages::VERTEX, &edges)?;
+        // What deforms them reads them back.
+        let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC;
+        let instances = gpu.buffer("edges", usage, edges)?;
         let count = edges.len() as u32;
-        Ok(Self { instances, chunks: chunks(&edges), count, bytes: gpu.allocated_bytes() - before })
+        Ok(Self { instances, chunks: chunks(edges), count, bytes: gpu.allocated_bytes() - before })
     }
 
     /// Instances to draw: those of chunks that the frustum may see and whose box `is_wanted`.

@@ -26,7 +26,7 @@ use std::{ops::Range, sync::Arc};
 use glam::DVec2;
 
 use crate::{
-    geom::Aabb,
+    geom::{Aabb, deform::Deformers},
     gpu::{GpuError, Slot, Timer},
     render::{
         cells::{Detail, Details},
@@ -104,6 +104,8 @@ pub struct FrameInput<'a> {
     pub sample: u32,
     /// How many there will be.
     pub samples: u32,
+    /// What moves the city.
+    pub deformers: &'a Arc<Deformers>,
     /// What is drawn over the picture, after its last sample.
     pub furniture: &'a Furniture,
     /// How many triangles the city may take, where it may be simplified to that: at least a quarter of it is for what is no terrain.
@@ -203,6 +205,7 @@ impl Renderer {
         let mut recorder = Recorder { timer, passes: Vec::new() };
         self.layer_figures = LayerFigures::default();
         self.method_figures = MethodFigures::default();
+        self.fit_deformed(input)?;
         let city = self.drawn_box();
         self.details = self.details_for(input);
         self.own_sprites.plan(input, &city);
@@ -382,7 +385,9 @@ impl Renderer {
             .filter(|c| c.details & Detail::Full.bit() != 0 && frustum.meets(&c.bounds))
             .fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
         let [seen, all] = contents(&frustum);
-        light::sun_view(sun, &receivers.union(seen), &city.bounds.union(all))
+        let moved = self.deformed.as_ref().map_or(Aabb::EMPTY, |deformed| deformed.city.buffers.bounds);
+        let seen = if frustum.meets(&moved) { seen.union(moved) } else { seen };
+        light::sun_view(sun, &receivers.union(seen), &city.bounds.union(all).union(moved))
     }
 
     /// Brings the small buffers up to date; on the uber back end with the invoker table of the plans.

@@ -62,10 +62,12 @@ impl Renderer {
         if shadows {
             keys.push(Key::Shadow(None));
         }
-        let whole_key = |section: &Section| {
-            geometry_key(section.kind, colored, [smooth, city.buffers.smooth], input.measured, None)
-        };
-        keys.extend(city.buffers.sections.iter().map(whole_key));
+        for own in std::iter::once(city).chain(self.deformed.iter().map(|deformed| &deformed.city)) {
+            let whole_key = |section: &Section| {
+                geometry_key(section.kind, colored, [smooth, own.buffers.smooth], input.measured, None)
+            };
+            keys.extend(own.buffers.sections.iter().map(whole_key));
+        }
         // For all sections, contents' too: a lens that moves compiles nothing.
         let of_city = |city: &CityOnGpu| -> Vec<_> {
             city.buffers.sections.iter().map(|s| (s.kind, city.buffers.smooth)).collect()

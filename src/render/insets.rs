@@ -10,6 +10,7 @@ use crate::{
     render::{
         contents::Contents,
         curtain::Curtain,
+        deformed::Deformed,
         furniture::{Furniture, FurnitureOnGpu},
         layers::{LayerFigures, LayersOnGpu},
         narrow::Narrowing,
@@ -55,6 +56,7 @@ view_state! {
     binds_narrowed: bool,
     solids_of: Option<std::sync::Arc<SolidTable>>,
     curtain: Option<Curtain>,
+    deformed: Option<Deformed>,
     regions: Option<RegionsOnGpu>,
     sections: Option<SectionsOnGpu>,
     has_sections: bool,
@@ -83,6 +85,7 @@ impl ViewState {
             binds_narrowed: false,
             solids_of: None,
             curtain: None,
+            deformed: None,
             regions: None,
             sections: None,
             has_sections: false,

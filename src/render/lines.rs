@@ -125,12 +125,16 @@ impl Renderer {
         pass.set_bind_group(0, &groups.view, &[]);
         pass.set_bind_group(1, &groups.shade, &[]);
         pass.set_bind_group(2, &groups.lenses, &[]);
-        let own = (edges, &Placement::NONE, None, 0);
+        let own: Vec<&EdgeBuffers> = match self.deformed.as_ref().and_then(|deformed| deformed.edges.as_ref()) {
+            Some(parts) => parts.iter().collect(),
+            None => vec![edges],
+        };
+        let own = own.into_iter().map(|edges| (edges, &Placement::NONE, None, 0));
         let contents = self.content_edges().filter_map(|(city, number, placement, offset)| {
             let is_asked = cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
             Some((city.edges.as_ref().filter(|_| is_asked)?, placement, Some(number), offset))
         });
-        let drawn: Vec<_> = std::iter::once(own).chain(contents).collect();
+        let drawn: Vec<_> = own.chain(contents).collect();
         let frustum = input.view.frustum(1.0);
         let (mut count, mut triangles) = (0, 0);
         for (i, draw) in draws.iter().enumerate() {

@@ -17,7 +17,7 @@ use crate::{
         shown::shown_geometries,
         spatial::SpatialIndex,
     },
-    geom::Aabb,
+    geom::{Aabb, deform::Deformers},
     gpu::{Gpu, GpuError, Timer},
     lens::solids::{ShownCity, Solids},
     render::{
@@ -26,6 +26,8 @@ use crate::{
         body::Leaf,
         city::Shown,
         content_cities::{self, ContentCities, SceneContents},
+        deformations::{self, KnownDeformations, SceneDeformations},
+        deformed::DeformedFigures,
         eye::PictureTile,
         footprints::{self, OwnFootprints},
         frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
@@ -126,6 +128,10 @@ pub struct Picture {
     pub(super) method: MethodFigures,
     /// Objects by lens that have no form that its content derives: shown as they are, left out, shown as something else.
     pub(super) not_derived: [BTreeMap<u32, u32>; 3],
+    /// By lens the thousandths of its strength at which its deformation is used, where it would fold space.
+    pub(super) weakened: BTreeMap<u32, u32>,
+    /// What deformations took.
+    pub(super) deformed: Option<DeformedFigures>,
     /// Characters of the furniture that no font has.
     pub without_glyph: BTreeSet<char>,
     /// GPU allocations and uploads while drawing (reading back not counted).
@@ -162,6 +168,7 @@ pub struct Studio {
     content_cities: Mutex<ContentCities>,
     /// From where objects are seen best, by object and field of view.
     pub(super) known_views: Mutex<KnownViews>,
+    known_deformations: Mutex<KnownDeformations>,
     /// Pictures from other eyes, by number.
     pub(super) insets: BTreeMap<u64, Inset>,
     /// Where the shown triangles are, made for the first picture whose lenses are counted.
@@ -176,6 +183,7 @@ struct Prepared {
     solids: Arc<SolidTable>,
     operations: Operations,
     contents: SceneContents,
+    deformations: SceneDeformations,
 }
 
 impl Studio {
@@ -218,6 +226,7 @@ impl Studio {
             reading: LoadOptions::default(),
             content_cities: Mutex::default(),
             known_views: Mutex::default(),
+            known_deformations: Mutex::default(),
             insets: BTreeMap::new(),
             index: OnceLock::new(),
             footprints: OnceLock::new(),
@@ -278,6 +287,8 @@ impl Studio {
         }
         picture.open = told::open_shells(self, &prepared.volumes, &prepared.operations);
         picture.not_derived = told::not_derived(&prepared.contents);
+        picture.weakened = prepared.deformations.weakened.clone();
+        picture.deformed = self.renderer.deformed_figures();
         picture.without_glyph = told::without_glyph(furniture);
         picture.fold(&drawn, scene.lenses.len());
         told::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
@@ -402,6 +413,7 @@ impl Studio {
 
     fn view(&self, scene: &Scene, size: [u32; 2], prepared: &Prepared) -> Result<View, CameraError> {
         let own = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
+        let own = prepared.deformations.deformers.deformed_bounds(&own);
         let drawn = own.union(prepared.contents.bounds(&own, &prepared.volumes));
         View::new(self.camera(scene, size), size, &drawn)
     }
@@ -454,6 +466,7 @@ impl Studio {
             *kept = found.place_solids(&kept).map_err(RenderError::Scene)?;
             kept.clone()
         };
+        let deformations = self.deformations(scene, size)?;
         let LensVolumes { mut volumes, tests } = found;
         let contents = self.contents(drawn, size, &volumes)?;
         let models: Vec<&CityModel> = std::iter::once(&self.model).chain(&contents.models).map(|m| &**m).collect();
@@ -490,7 +503,27 @@ impl Studio {
                 return Err(RenderError::Scene(message));
             }
         }
-        Ok(Prepared { volumes, solids, operations, contents })
+        Ok(Prepared { volumes, solids, operations, contents, deformations })
+    }
+
+    /// What moves the city in a picture of a scene of this size, in the world; none where nothing does.
+    ///
+    /// # Errors
+    /// What a deformation lens cannot do.
+    pub fn deformers(&self, scene: &Scene, size: [u32; 2]) -> Result<Arc<Deformers>, RenderError> {
+        self.deformations(scene, size).map(|found| found.deformers)
+    }
+
+    /// What the scene's lenses move, in a picture of this size.
+    fn deformations(&self, scene: &Scene, size: [u32; 2]) -> Result<SceneDeformations, RenderError> {
+        if scene.lenses.iter().all(|lens| lens.deform.is_none()) {
+            return Ok(SceneDeformations::default());
+        }
+        let camera = self.camera(scene, size);
+        let bounds = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
+        let stage = deformations::Stage { scene, model: &self.model, bounds, camera, eye: &Eye::new(&camera)? };
+        let mut known = self.known_deformations.lock().unwrap_or_else(PoisonError::into_inner);
+        known.of_scene(&stage).map_err(RenderError::Scene)
     }
 
     /// What lenses show in themselves, in a picture of this size.
@@ -688,6 +721,12 @@ impl Studio {
                     merged: picture.method.merged,
                     dropped: picture.method.dropped,
                 }),
+                deformed: picture.deformed.map(|of| stats::Deformed {
+                    met: of.met,
+                    triangles: of.triangles,
+                    tolerance_px: of.report.tolerance_px,
+                    coarse: of.report.too_coarse as u64,
+                }),
                 ..Default::default()
             },
             pipelines: stats::Pipelines { compiled, reused: names.len() as u32 - compiled, names },
@@ -746,6 +785,7 @@ fn input<'a>(
         masks: request.statistics || request.aovs.lens_mask,
         sample: 0,
         samples: request.samples.max(1),
+        deformers: &prepared.deformations.deformers,
         furniture: &furniture::NONE,
         most_triangles: None,
     }
@@ -770,6 +810,8 @@ impl Picture {
             layers: LayerFigures::default(),
             method: MethodFigures::default(),
             not_derived: Default::default(),
+            weakened: BTreeMap::new(),
+            deformed: None,
             without_glyph: Default::default(),
             made: (0, 0),
             statistics: Statistics::default(),

@@ -13,7 +13,8 @@ use crate::{
         city::{CityBuffers, SectionKind, Shown},
         contents::Contents,
         curtain::Curtain,
-        edges::EdgeBuffers,
+        deformed::{Deformed, Source},
+        edges::{Edge, EdgeBuffers},
         furniture::FurnitureOnGpu,
         images::Images,
         layers::{LayerFigures, LayersOnGpu},
@@ -64,6 +65,10 @@ pub struct Renderer {
     pub(super) solids_of: Option<Arc<SolidTable>>,
     /// The near depth of the last frame that culled by it.
     pub(super) curtain: Option<Curtain>,
+    /// What deformations make of the city in this view.
+    pub(super) deformed: Option<Deformed>,
+    /// Cities that were put on the card so far.
+    pub(super) city_number: u64,
     /// Of techniques that draw the city by regions, once there was one.
     pub(super) regions: Option<RegionsOnGpu>,
     pub(super) sections: Option<SectionsOnGpu>,
@@ -113,6 +118,10 @@ pub(super) struct CityOnGpu {
     pub edges: Option<EdgeBuffers>,
     /// One per section: its texture's group.
     pub images: Vec<Option<wgpu::BindGroup>>,
+    /// One per section: its corners on the host, once something deformed it.
+    pub sources: Option<Vec<Source>>,
+    /// Its edges on the host, once something deformed them.
+    pub edge_sources: Option<Vec<Edge>>,
 }
 
 /// Small buffers that follow the scene.
@@ -258,6 +267,8 @@ impl Renderer {
             narrowing: None,
             binds_narrowed: false,
             curtain: None,
+            deformed: None,
+            city_number: 0,
             regions: None,
             sections: None,
             has_sections: false,
@@ -286,6 +297,8 @@ impl Renderer {
     /// Puts a city on the card in place of the last one.
     pub fn set_city(&mut self, shown: &Shown, blocks: Option<&CityModel>) -> Result<(), GpuError> {
         self.city = None;
+        self.deformed = None;
+        self.city_number += 1;
         (self.layers, self.longest_list) = (None, 0);
         self.slots = None;
         self.contents = Contents::default();
@@ -301,16 +314,16 @@ impl Renderer {
         let buffers = CityBuffers::new(gpu, shown, blocks)?;
         let surfaces = wgpu::BindingResource::TextureView(&buffers.surfaces);
         let group = group(gpu, "city", &self.pipelines.layouts.city, &[(0, surfaces)]);
-        let images = buffers.sections.iter().map(|section| match section.kind {
-            SectionKind::Textured { texture, .. } => buffers.textures.get(texture).map(|(view, sampler)| {
-                let entries =
-                    [(0, wgpu::BindingResource::TextureView(view)), (1, wgpu::BindingResource::Sampler(sampler))];
-                self::group(gpu, "image", &self.pipelines.layouts.image, &entries)
-            }),
-            _ => None,
-        });
-        let images = images.collect();
-        Ok(CityOnGpu { group, images, buffers, edges: None })
+        let images = buffers.sections.iter().map(|section| self.image_of(&buffers, section.kind)).collect();
+        Ok(CityOnGpu { group, images, buffers, edges: None, sources: None, edge_sources: None })
+    }
+
+    /// What binds the texture of a section.
+    pub(super) fn image_of(&self, buffers: &CityBuffers, kind: SectionKind) -> Option<wgpu::BindGroup> {
+        let SectionKind::Textured { texture, .. } = kind else { return None };
+        let (view, sampler) = buffers.textures.get(texture)?;
+        let entries = [(0, wgpu::BindingResource::TextureView(view)), (1, wgpu::BindingResource::Sampler(sampler))];
+        Some(group(&self.gpu, "image", &self.pipelines.layouts.image, &entries))
     }
 
     /// The city's buffers.

@@ -92,8 +92,23 @@ pub struct Frame {
     pub allocations: u64,
     /// GPU uploads while drawing.
     pub uploads: u64,
+    /// What deformation lenses move; `null` where none does.
+    pub deformed: Option<Deformed>,
     /// Translucent layers of all samples; `null` where nothing is seen through.
     pub layers: Option<Layers>,
+}
+
+/// What deformation lenses move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Deformed {
+    /// Triangles of the city that meet a deformation.
+    pub met: u64,
+    /// Triangles that they became.
+    pub triangles: u64,
+    /// How far edges may be from where they should be, pixels.
+    pub tolerance_px: f64,
+    /// Places that are less exact.
+    pub coarse: u64,
 }
 
 /// Translucent layers.

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::{
     render::{
         content_cities::SceneContents,
+        deformed::TOLERANCE_PX,
         enclosed::{areas, objects_meeting, with_corners_outside},
         furniture::{Furniture, Piece},
         operations::Operations,
@@ -17,8 +18,8 @@ use crate::{
 };
 
 /// The codes.
-pub const CODES: [&str; 7] =
-    [SPRITE_LAYERS, OPEN_SHELLS, NOT_DERIVED, NOTHING_DERIVED, DERIVED_INSTEAD, LAYER_ROOM, NO_GLYPH];
+pub const CODES: [&str; 9] =
+    [SPRITE_LAYERS, OPEN_SHELLS, NOT_DERIVED, NOTHING_DERIVED, DERIVED_INSTEAD, WEAKENED, LAYER_ROOM, COARSE, NO_GLYPH];
 
 /// Rays have more intervals than a sprite has layers.
 const SPRITE_LAYERS: &str = "sprite-layers";
@@ -30,6 +31,11 @@ const NOT_DERIVED: &str = "not-derived";
 const NOTHING_DERIVED: &str = "nothing-derived";
 /// What a content was to show has no such geometry, and something else stands for it.
 const DERIVED_INSTEAD: &str = "derived-instead";
+
+/// A deformation would fold space as it was asked for.
+const WEAKENED: &str = "deformation-weakened";
+/// What is deformed has more triangles than there is room for.
+const COARSE: &str = "deformation-coarse";
 
 /// City objects by lens that its content shows as they are, such that it leaves out, and such that it shows as something else, since
 /// they have no form that it derives.
@@ -75,6 +81,18 @@ fn missing_layers(picture: &Picture) -> Option<(u64, String)> {
     (count > 0).then(|| (count, format!("{count} of {all} translucent fragments found no room and are missing")))
 }
 
+/// Triangles that a deformation bends more than they follow, for want of room.
+fn coarse(picture: &Picture) -> Option<(u64, String)> {
+    let report = picture.deformed?.report;
+    let count = report.too_coarse as u64;
+    let message = || {
+        format!(
+            "{count} places of what is deformed are less exact than {TOLERANCE_PX} pixels, for want of room for triangles"
+        )
+    };
+    (count > 0 || report.tolerance_px > TOLERANCE_PX).then(|| (count.max(1), message()))
+}
+
 /// City objects by lens that are cut by it and would have a section, were they closed shells: some of their triangles meet it,
 /// and some of their corners lie outside.
 pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &Operations) -> BTreeMap<u32, u32> {
@@ -99,7 +117,7 @@ pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &
 
 type Told = (&'static str, fn(&Picture) -> &BTreeMap<u32, u32>, fn(&str, u32) -> String);
 
-const TOLD: [Told; 5] = [
+const TOLD: [Told; 6] = [
     (
         SPRITE_LAYERS,
         |picture| &picture.excess,
@@ -145,6 +163,14 @@ const TOLD: [Told; 5] = [
             )
         },
     ),
+    (
+        WEAKENED,
+        |picture| &picture.weakened,
+        |lens, permille| {
+            let percent = f64::from(permille) / 10.0;
+            format!("lens \"{lens}\" would fold space: used at {percent} % of its strength")
+        },
+    ),
 ];
 
 fn each<'a>(scene: &'a Scene, picture: &'a Picture, (_, counts, message): Told) -> Vec<(&'a str, u32, String)> {
@@ -157,7 +183,8 @@ fn each<'a>(scene: &'a Scene, picture: &'a Picture, (_, counts, message): Told) 
 
 /// What is told of no lens: code, count, message.
 fn of_pictures(picture: &Picture) -> impl Iterator<Item = (&'static str, u64, String)> {
-    let told = [(LAYER_ROOM, missing_layers(picture)), (NO_GLYPH, boxes(&picture.without_glyph))];
+    let told =
+        [(LAYER_ROOM, missing_layers(picture)), (COARSE, coarse(picture)), (NO_GLYPH, boxes(&picture.without_glyph))];
     told.into_iter().filter_map(|(code, found)| found.map(|(count, message)| (code, count, message)))
 }
 

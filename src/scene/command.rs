@@ -225,6 +225,7 @@ mod tests {
             effects: vec![],
             render: None,
             best_view: None,
+            deform: None,
             content: None,
             body: Default::default(),
             sprite: None,

@@ -102,6 +102,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         effects: vec![used(effect)],
         render: None,
         best_view: None,
+        deform: None,
         content: None,
         body: LensBody::None,
         sprite: None,

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    geom::outline,
+    geom::{deform::Deformers, outline},
     lens::{BestView, Lens, Placement, best_view::LocalView, color::Srgb},
     overlay::Focus,
     render::picture::Studio,
@@ -81,16 +81,20 @@ pub(super) fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_a
         PoiPlace::Object(id) => studio.middle(id).ok().or_else(anchor)?,
         PoiPlace::At(_) | PoiPlace::On(_) => anchor()?,
     };
+    let deformers = studio.deformers(scene, view.size).ok()?;
     let heights_m = match &poi.place {
         PoiPlace::Object(id) => studio.model.find_object(id).map(|object| studio.model.family_bounds(object)),
         PoiPlace::At(_) | PoiPlace::On(_) => None,
     };
     let heights_m = heights_m.filter(|bounds| !bounds.is_empty()).map_or([at.z; 2], |b| [b.min.z, b.max.z]);
+    // Where they are shown.
+    let heights_m = heights_m.map(|z| deformers.value(at.truncate().extend(z)).z);
+    let at = deformers.value(at);
     let [w, h] = view.size.map(f64::from);
     let is_seen = |p: &DVec3| p.z > view.camera.near_m && (0.0..=w).contains(&p.x) && (0.0..=h).contains(&p.y);
     let pixel = view.pixel(at).filter(is_seen).map(|p| p.truncate());
     let focus = pixel.map(|pixel| match &poi.place {
-        PoiPlace::Object(id) if to_area => area(studio, view, id).map_or(Focus::Point(pixel), Focus::Area),
+        PoiPlace::Object(id) if to_area => area(studio, view, &deformers, id).map_or(Focus::Point(pixel), Focus::Area),
         _ => Focus::Point(pixel),
     });
     let distance = at.distance(view.camera.eye);
@@ -99,7 +103,7 @@ pub(super) fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_a
 
 /// The outline of an object and its parts in the picture: the convex hull of their corners; `None` where some of it is
 /// not before the eye.
-fn area(studio: &Studio, view: &View, id: &str) -> Option<Vec<DVec2>> {
+fn area(studio: &Studio, view: &View, deformers: &Deformers, id: &str) -> Option<Vec<DVec2>> {
     let model = &*studio.model;
     let root = model.find_object(id)?;
     let roots = model.roots();
@@ -112,7 +116,8 @@ fn area(studio: &Studio, view: &View, id: &str) -> Option<Vec<DVec2>> {
         }
         for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
             for vertex in tile.vertices.clone() {
-                let pixel = view.pixel(model.position(tile, vertex)).filter(|p| p.z > view.camera.near_m)?;
+                let shown = deformers.value(model.position(tile, vertex));
+                let pixel = view.pixel(shown).filter(|p| p.z > view.camera.near_m)?;
                 corners.push([pixel.x, pixel.y].map(|v| (v * 256.0).round().clamp(-1e8, 1e8) as i64));
             }
         }

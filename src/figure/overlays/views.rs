@@ -84,6 +84,8 @@ pub fn local(
         let ahead = scene.moving(poi).and_then(|moving| moving.direction).and_then(local::level_heading);
         let standing = Poi { name: poi.name.clone(), place: scene.place(poi) };
         let ball = ball(studio, &standing).map_err(of_lens)?;
+        // Where it is shown: what moves it here moves it in its view, too, as far as that has the lens.
+        let ball = Sphere { center: studio.deformers(&seen_through(scene, shown), size)?.value(ball.center), ..ball };
         Ok::<_, RenderError>((standing, ball, ahead.unwrap_or_else(|| local::heading(main))))
     };
     let aspect = f64::from(size[0]) / f64::from(size[1]);

@@ -257,7 +257,7 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
             let of = if matches!(kind, Kind::Shares) { ParameterKind::Shares } else { ParameterKind::Colors };
             parameter(node).is_some_and(|value| problem_with(&of, &value).is_none())
         }
-        Kind::Tests => node.list().is_some_and(|l| !l.is_empty()),
+        Kind::Tests | Kind::Steps => node.list().is_some_and(|l| !l.is_empty()),
         Kind::Rendering => return wrong_rendering(kind, node),
         Kind::WordOrTable(words, _) => match &node.data {
             Data::Table(_) => true,

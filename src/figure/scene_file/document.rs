@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::{
     figure::scene_file::{
         best_view::VIEWS,
+        deformation::STEPS,
         keys::{self, CLASSES, Key, Kind, TABLES, Table},
         rendering::{AS, BY_EFFECTS, WORDS},
         shape_keys::SHAPES,
@@ -33,6 +34,12 @@ pub fn reference() -> String {
     out += "## Views\n\nThe table `view` of a lens with an overlay. `best-view` lenses have any of them but `map` and `worldlet`, `best` without being told; \
             `map-view` and `worldlet` lenses have theirs, `see-through` and `portal` lenses a `camera`.\n\n";
     for table in VIEWS {
+        let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
+        rows(&mut out, table.keys);
+    }
+    out += "## Steps of deformations\n\nThe tables in `deform` of a deformation lens. Lengths and angles are in the frame of its shape: from the middle of its base, along its own axes; `open-street` needs a \
+            corridor, `panorama` no shape, the others a box, a cylinder or a sphere.\n\n";
+    for table in STEPS {
         let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
         rows(&mut out, table.keys);
     }
@@ -273,6 +280,7 @@ fn of_kind(kind: &Kind) -> Value {
         }
         Kind::Test => json!({ "$ref": TEST }),
         Kind::View => by(VIEWS, "kind"),
+        Kind::Steps => json!({ "type": "array", "items": by(STEPS, "kind"), "minItems": 1 }),
         Kind::Tests => json!({ "type": "array", "items": { "$ref": TEST }, "minItems": 1 }),
         Kind::Rendering => {
             let words: Vec<&str> = ROWS.iter().map(|row| row.word).collect();
@@ -436,7 +444,9 @@ pub(in crate::figure) mod tests {
     #[test]
     fn every_key_is_documented_with_an_example_that_is_right() {
         let text = reference();
-        for (_, table) in TABLES.iter().copied().chain(SHAPES.iter().chain(TESTS).chain(VIEWS).map(|s| ("", s))) {
+        for (_, table) in
+            TABLES.iter().copied().chain(SHAPES.iter().chain(TESTS).chain(VIEWS).chain(STEPS).map(|s| ("", s)))
+        {
             check_examples(table, &text);
         }
         for effect in all_effects() {

@@ -5,6 +5,7 @@ use crate::{
         animation::{self, ANIMATION},
         best_view::LOOK,
         content::CONTENT,
+        deformation::{CONTROL, CONTROL_WORDS},
         overlay::{CALL_OUT, FRAME, LAYOUT, LINE, OVERLAY},
         sprite::{SPRITE, SPRITE_CAMERA},
         test_keys::CHOICE,
@@ -101,6 +102,8 @@ pub enum Kind {
     View,
     /// Detection tests.
     Tests,
+    /// Steps of a deformation: tables of [`super::deformation::STEPS`].
+    Steps,
     /// A word of [`crate::lens::rendering::ROWS`], or effects.
     Rendering,
     /// One of the first words, or a table that says more.
@@ -381,6 +384,7 @@ pub const LENS: Table = Table {
                     "color",
                     "content",
                     "occlusion",
+                    "deformation",
                     "annotation",
                     "best-view",
                     "map-view",
@@ -388,11 +392,11 @@ pub const LENS: Table = Table {
                     "see-through",
                     "portal",
                 ],
-                later: &["deformation", "time", "magnifier", "feature", "sampling", "fisheye"],
+                later: &["time", "magnifier", "feature", "sampling", "fisheye"],
             },
             "\"color\"",
             "",
-            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
+            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses, `deformation` moves what is in it, see Deformation lenses. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
             "\"color\"",
         ),
         key(
@@ -554,6 +558,30 @@ pub const LENS: Table = Table {
             "",
             "Of an occlusion lens: effects on the points of interest that are city objects, parts included, after all else.",
             "[{ effect = \"overlay\", color = \"#e08a3c\", opacity = 0.4 }]",
+        ),
+        key(
+            "deform",
+            Kind::Steps,
+            "must be given for a deformation lens",
+            "",
+            "Of a deformation lens: what it does with space, one step after the other; see Deformation lenses.",
+            "[{ kind = \"twist\", angle_deg = 90.0 }, { kind = \"taper\", factor = 0.5 }]",
+        ),
+        key(
+            "control",
+            Kind::WordOrTable(CONTROL_WORDS, &CONTROL),
+            "\"smooth\"; over a cylinder or a sphere \"bump\"",
+            "",
+            "Of a deformation lens: how strong it is over the base of its focus area; along the border it is 0.",
+            "{ profile = \"smooth\", border = 0.1 }",
+        ),
+        key(
+            "strength",
+            Kind::Number { min: 0.0, max: 1.0 },
+            "1.0",
+            "",
+            "Of a deformation lens: how much of it; ways, angles and factors are that much of what is given.",
+            "0.5",
         ),
         key(
             "content",
@@ -793,6 +821,7 @@ impl Kind {
             Self::Shares => ParameterKind::Shares.describe(),
             Self::Colors => ParameterKind::Colors.describe(),
             Self::Tests => "a list of at least one test".into(),
+            Self::Steps => "a list of at least one step { kind = ..., ... }".into(),
             Self::Rendering => {
                 let words: Vec<String> = Rendering::words().map(|word| format!("\"{word}\"")).collect();
                 format!(
@@ -828,6 +857,7 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("border of a lens", &BORDER),
     ("force and forbid of a lens", &CHOICE),
     ("look of a lens", &LOOK),
+    ("control of a lens", &CONTROL),
     ("[[overlay]]", &OVERLAY),
     ("frame of an overlay", &FRAME),
     ("line of an overlay", &LINE),

@@ -7,6 +7,7 @@ pub mod animation;
 mod best_view;
 pub mod check;
 mod content;
+mod deformation;
 pub mod document;
 mod figure;
 mod focus;

@@ -70,7 +70,14 @@ pub const OVERLAY: Table = Table {
             "{ tilt_deg = 30.0 }",
         ),
         key("size", Kind::Size, "[240, 160]", "pixels", "Its preferred size.", "[320, 200]"),
-        key("min", Kind::Size, "half of `size`", "pixels", "It is made no smaller.", "[120, 80]"),
+        key(
+            "min",
+            Kind::Size,
+            "half of `size`; a card of text keeps its size",
+            "pixels",
+            "It is made no smaller.",
+            "[120, 80]",
+        ),
         key("max", Kind::Size, "one and a half of `size`", "pixels", "It is made no larger.", "[480, 300]"),
         key(
             "opacity",
@@ -103,7 +110,7 @@ pub const OVERLAY: Table = Table {
 /// `call_out` of an overlay.
 pub const CALL_OUT: Table = Table {
     name: "call_out",
-    doc: "A board in the scene that shows an overlay, in perspective, turned to the viewer about the vertical axis. Its frame and its text are on it, as large           beside it as they are in an overlay of `size` pixels. Nothing of the city hides it.",
+    doc: "A board in the scene that shows an overlay, in perspective, turned to the viewer about the vertical axis. Its frame and its text are on it, as large beside what it shows as they are in an overlay of `size` pixels. Nothing of the city hides it.",
     keys: &[
         key(
             "height_m",

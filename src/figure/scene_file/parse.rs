@@ -15,7 +15,7 @@ use crate::{
     figure::scene_file::{
         animation, best_view,
         check::{Checker, Fields, Place, lod},
-        content, figure,
+        content, deformation, figure,
         focus::Reader,
         keys::{self, CLASSES, Kind},
         node::{Data, Node},
@@ -25,9 +25,10 @@ use crate::{
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        BestView, Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind,
-        Parameter, Placement,
+        BestView, Border, BorderUnit, Class, Content, Copied, Deform, Discrete, EffectUse, Focus, Lens, LensBody,
+        LensKind, Parameter, Placement,
         best_view::Depiction,
+        deform::ControlProfile,
         effect,
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category},
@@ -246,7 +247,9 @@ impl<'o> SceneReader<'o> {
         let kind = fields.text("kind").and_then(LensKind::of_word).unwrap_or_default();
         let is_occlusion = kind == LensKind::Occlusion;
         let best_view = self.best_view(fields, kind);
-        let mut shapes = self.shapes(fields, !is_occlusion && !kind.has_overlay());
+        let deform = self.deform(fields, kind);
+        let needs_shape = deform.as_ref().is_none_or(|deform| !deform.is_of_viewer());
+        let mut shapes = self.shapes(fields, needs_shape && !is_occlusion && !kind.has_overlay());
         let (effects, of_effects) = self.effects(fields, "effects", true);
         let render = is_occlusion.then(|| self.rendering(fields, &effects));
         if !is_occlusion {
@@ -291,6 +294,7 @@ impl<'o> SceneReader<'o> {
             render,
             effects,
             best_view,
+            deform,
             content,
             body: LensBody::WORDS
                 .iter()
@@ -388,6 +392,33 @@ impl<'o> SceneReader<'o> {
             Err(PathProblem::Wrong(message)) => self.checker.note(&fields.place, key, node.line, message),
         }
         None
+    }
+
+    /// What a deformation lens does, if it is one.
+    fn deform(&mut self, fields: &Fields, kind: LensKind) -> Option<Deform> {
+        if kind != LensKind::Deformation {
+            for key in deformation::OWN.into_iter().filter(|key| fields.given(key)) {
+                let message = "has a meaning only for a lens of kind = \"deformation\"";
+                self.checker.note(&fields.place, key, fields.line(key), message);
+            }
+            return None;
+        }
+        let steps = deformation::steps(&mut self.checker, fields);
+        let control = fields.node("control").and_then(|node| {
+            let empty = Node::empty_table(node.line);
+            let table = if node.text().is_some() { &empty } else { node };
+            let place = fields.place.within("control", node.line);
+            let own = self.checker.fields(table, &deformation::CONTROL, &[], place);
+            if !own.given("image") {
+                return deformation::profile(&mut self.checker, &own, node.text());
+            }
+            if own.given("profile") {
+                let message = "is given together with profile: a control is one of them";
+                self.checker.note(&own.place, "image", own.line("image"), message);
+            }
+            self.file(&own, "image").map(ControlProfile::Image)
+        });
+        Some(Deform { steps, control, strength: fields.number("strength").unwrap_or(1.0) })
     }
 
     fn overlay(&mut self, fields: &Fields) -> scene::Overlay {

@@ -8,10 +8,11 @@ use crate::{
     city::derived::{Derive, Form, Height},
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        BestView, Border, BorderUnit, Class, Content, Copied, Discrete, EffectUse, Focus, Lens, LensBody, LensKind,
-        LensSprite, Occluders, OwnEye, Parameter, Placement, Rendering,
+        BestView, Border, BorderUnit, Class, Content, Copied, Deform, Discrete, EffectUse, Focus, Lens, LensBody,
+        LensKind, LensSprite, Occluders, OwnEye, Parameter, Placement, Rendering,
         best_view::{Depiction, LocalView, Look, MapMode},
         chosen::Choice,
+        deform::{BORDER, ControlProfile, Step},
         rendering::{Case, ROWS, When},
         sprite::{Format, Mapping},
     },
@@ -307,12 +308,46 @@ fn occluded() -> impl Strategy<Value = (Occluders, Rendering, bool)> {
     )
 }
 
+fn deforms() -> impl Strategy<Value = Deform> {
+    let angle = || (-9000..9000i32).prop_map(|tenths| (f64::from(tenths) / 10.0).to_radians());
+    let factor = || 0.01..=100.0f64;
+    let step = prop_oneof![
+        point().prop_map(|by| Step::Translate { by }),
+        prop::array::uniform3(factor()).prop_map(|f| Step::Scale { factors: f.into() }),
+        (-9.0..9.0f64, -9.0..9.0f64).prop_map(|(x, y)| Step::Shear { slope: DVec2::new(x, y) }),
+        factor().prop_map(|factor| Step::Taper { factor }),
+        angle().prop_map(|angle| Step::Twist { angle }),
+        angle().prop_map(|angle| Step::Bend { angle }),
+        (0.1..1e4f64, 0.0..1e4f64, factor()).prop_map(|(width, aside, height)| Step::OpenStreet {
+            width,
+            aside,
+            height
+        }),
+        (0.0..100.0f64, 101.0..1e6f64, -1800..1800i32).prop_map(|(near, far, tenths)| Step::Panorama {
+            near,
+            far,
+            angle: (f64::from(tenths) / 10.0).to_radians()
+        }),
+    ];
+    let control = prop_oneof![
+        (0.01..=0.5f64).prop_map(|border| ControlProfile::Linear { border }),
+        Just(ControlProfile::Smooth { border: BORDER }),
+        (0.01..=0.5f64).prop_map(|border| ControlProfile::Smooth { border }),
+        Just(ControlProfile::Bump),
+        (0.0..0.5f64, 0.51..=1.0f64).prop_map(|(inner, outer)| ControlProfile::Ring { inner, outer }),
+        "[a-zß]{1,6}[.]png".prop_map(|file| ControlProfile::Image(file.into())),
+    ];
+    (prop::collection::vec(step, 1..4), prop::option::of(control), prop_oneof![Just(1.0), 0.0..=1.0f64])
+        .prop_map(|(steps, control, strength)| Deform { steps, control, strength })
+}
+
 prop_compose! {
     fn lenses()(occluded in prop::option::weighted(0.3, occluded()),
         shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
-        section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>()) -> Lens {
+        section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>(),
+        deform in prop::option::weighted(0.3, deforms())) -> Lens {
         // A soft border needs shapes that have a distance; what shapes of files have, `sprite` does not give.
         let is_saved = |s: &Focus| matches!(s, Focus::Sprite { .. });
         let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
@@ -324,7 +359,11 @@ prop_compose! {
             (kind, render) = (LensKind::Occlusion, Some(drawn));
             shapes = occlusion::areas(of, if has_shape { shapes } else { vec![] });
         }
-        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, best_view: None, content, body, sprite, border, keeps_shadows, section }
+        let deform = deform.filter(|_| kind == LensKind::Color);
+        if deform.is_some() {
+            kind = LensKind::Deformation;
+        }
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, best_view: None, deform, content, body, sprite, border, keeps_shadows, section }
     }
 }
 
@@ -527,7 +566,7 @@ prop_compose! {
         let mut overlays = Vec::new();
         if !shown.is_empty() {
             pois.resize(2, ("o".into(), DVec3::ONE, true));
-            let plain = Lens { name: String::new(), kind: LensKind::Color, enabled: true, color: [0.5; 3], placement: Placement::World, shapes: vec![Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }.into()], render: None, effects: vec![], best_view: None, content: None, body: LensBody::Outline, sprite: None, border: None, keeps_shadows: false, section: None };
+            let plain = Lens { name: String::new(), kind: LensKind::Color, enabled: true, color: [0.5; 3], placement: Placement::World, shapes: vec![Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }.into()], render: None, effects: vec![], best_view: None, deform: None, content: None, body: LensBody::Outline, sprite: None, border: None, keeps_shadows: false, section: None };
             while lenses.len() < 2 {
                 lenses.push(Lens { name: format!("n\"{}\\ü", lenses.len()), ..plain.clone() });
             }

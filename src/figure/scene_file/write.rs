@@ -8,7 +8,7 @@ use crate::{
     figure::scene_file::{
         animation, best_view,
         content::derive_keys,
-        occlusion, overlay,
+        deformation, occlusion, overlay,
         parse::{lens_color, rotation},
         paths::Options,
         rendering, sprite, trajectory,
@@ -161,10 +161,12 @@ impl Toml {
         }
         let shown = lens.best_view.iter().flat_map(|shown| best_view::written(lens.kind, shown, options));
         shown.for_each(|(key, value)| self.key(key, &value));
+        let deform = lens.deform.iter().flat_map(|deform| deformation::written(deform, options));
+        deform.for_each(|(key, value)| self.key(key, &value));
         occlusion::written(lens).into_iter().for_each(|(key, value)| self.key(key, &value));
         let shapes: Vec<&Focus> = lens.shapes.iter().filter_map(Focus::own_shape).collect();
         match &shapes[..] {
-            [] if lens.occluders().is_some() || lens.best_view.is_some() => {}
+            [] if lens.occluders().is_some() || lens.best_view.is_some() || lens.deform.is_some() => {}
             [one] => self.key("shape", &focus(one, options)),
             many => self.key("shapes", &list(many.iter().map(|one| focus(one, options)))),
         }

@@ -47,6 +47,7 @@ pub fn alone(scene: &Scene, model: &CityModel, id: &str) -> Scene {
             parameters: Default::default(),
         }],
         best_view: None,
+        deform: None,
         content: None,
         body: LensBody::None,
         sprite: None,

@@ -34,6 +34,11 @@ impl Support {
         p.cmpge(self.bounds.min).all() && p.cmple(self.bounds.max).all()
     }
 
+    /// Whether it has something of a box of the world.
+    pub fn reaches(&self, bounds: &Aabb) -> bool {
+        !self.part_of(bounds).is_empty()
+    }
+
     /// A box of the world around it.
     pub fn in_world(&self) -> Aabb {
         if self.bounds.is_empty() {

@@ -61,6 +61,23 @@ impl Refiner<'_> {
         0.5 * (a + b)
     }
 
+    /// Where an edge is halved, from one end to the other, both among them: the corners that triangles beside it have on it.
+    pub fn halved(&self, a: DVec3, b: DVec3) -> Vec<DVec3> {
+        let mut places = vec![a];
+        self.halve(a, b, &mut places);
+        places
+    }
+
+    fn halve(&self, a: DVec3, b: DVec3, places: &mut Vec<DVec3>) {
+        if self.is_short(a, b) || !self.halves(a, b) {
+            places.push(b);
+            return;
+        }
+        let middle = Self::middle(a, b);
+        self.halve(a, middle, places);
+        self.halve(middle, b, places);
+    }
+
     /// Whether an edge meets the support of a deformation.
     pub fn meets(&self, a: DVec3, b: DVec3) -> bool {
         let (a, b) = in_order(a, b);

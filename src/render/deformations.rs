@@ -1,0 +1,150 @@
+//! The deformations of a scene's lenses, in the world and safe (D1): where they stand in a picture, and at which part of their strength they
+//! fold nothing.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use crate::{
+    city::CityModel,
+    geom::{
+        Aabb, Shape,
+        deform::{CLEAR, Deformation, Deformer, Deformers, Fault, Frame, Proof, Texels},
+    },
+    lens::{Deform, Focus, Lens, Placement, deform::Viewer},
+    render::placement::Eye,
+    scene::Scene,
+    view::Camera,
+};
+
+/// Beyond this an image of a control is made smaller: a deformation is as smooth as its texels are few.
+const MOST_TEXELS: u32 = 512;
+
+/// What is known of deformations that were asked for: proofs take longer than frames.
+#[derive(Debug, Default)]
+pub(super) struct KnownDeformations {
+    strengths: Vec<(Deformation, Aabb, Used)>,
+    images: Vec<(PathBuf, Texels)>,
+}
+
+/// A deformation as it is used.
+#[derive(Clone, Debug)]
+struct Used {
+    /// The part of its strength.
+    strength: f64,
+    deformer: Deformer,
+}
+
+/// The deformations of a picture, bottom first.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SceneDeformations {
+    /// What they do.
+    pub deformers: Arc<Deformers>,
+    /// Of those that would fold space, by lens: thousandths of its strength that are used.
+    pub weakened: BTreeMap<u32, u32>,
+}
+
+/// What a picture's deformations are found in.
+pub(super) struct Stage<'a> {
+    pub scene: &'a Scene,
+    pub model: &'a CityModel,
+    /// Box around what is drawn at rest.
+    pub bounds: Aabb,
+    pub camera: Camera,
+    pub eye: &'a Eye,
+}
+
+impl KnownDeformations {
+    /// The deformations of a scene's enabled lenses.
+    ///
+    /// # Errors
+    /// What a lens cannot do, with its place in the scene file.
+    pub fn of_scene(&mut self, stage: &Stage) -> Result<SceneDeformations, String> {
+        let mut found = SceneDeformations::default();
+        let mut deformers = Deformers::default();
+        let mut used: Vec<(Deformation, Aabb)> = Vec::new();
+        for (i, lens) in stage.scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
+            let Some(deform) = &lens.deform else { continue };
+            let wrong = |message: String| format!("[lens.{i}] {message}");
+            let Some(deformation) = self.placed(stage, lens, deform).map_err(wrong)? else { continue };
+            let own = self.strength(&deformation, &stage.bounds).map_err(wrong)?;
+            if own.strength < 1.0 {
+                found.weakened.insert(i as u32, (1000.0 * own.strength).floor() as u32);
+            }
+            // What moves nothing costs nothing.
+            if own.deformer.deformation().chain != deformation.at_strength(0.0).chain {
+                deformers.0.push(own.deformer);
+            }
+            used.push((deformation, stage.bounds));
+        }
+        self.strengths.retain(|(of, bounds, _)| used.contains(&(of.clone(), *bounds)));
+        found.deformers = Arc::new(deformers);
+        Ok(found)
+    }
+
+    /// A lens' deformation in the world; `None`: what it is attached to is not there.
+    fn placed(&mut self, stage: &Stage, lens: &Lens, deform: &Deform) -> Result<Option<Deformation>, String> {
+        let viewer = Viewer {
+            eye: stage.camera.eye,
+            forward: stage.camera.target - stage.camera.eye,
+            ground: stage.bounds.min.z,
+        };
+        let area: Option<&Shape> = match &lens.shapes[..] {
+            [] => None,
+            [Focus::Shape(shape)] => Some(shape),
+            _ => return Err("shape: a deformation has one: a box, a cylinder, a sphere or a corridor".into()),
+        };
+        let mut made =
+            deform.deformation(area, &viewer, |file| self.image(file)).map_err(|e| format!("deform: {e}"))?;
+        if area.is_some() || lens.placement != Placement::World {
+            let Some(motion) = stage.eye.motion(lens, stage.scene, stage.model) else { return Ok(None) };
+            if area.is_some() {
+                let axes = glam::DMat3::from_quat(motion.rotation) * made.frame.axes;
+                made.frame = Frame { pivot: motion.point(made.frame.pivot), axes };
+            }
+        }
+        Ok(Some(made))
+    }
+
+    /// At all of its strength, if that is proven to fold nothing, or seen not to: there is no proof of long openings that takes less than
+    /// seconds. Otherwise at as much as is.
+    fn strength(&mut self, deformation: &Deformation, bounds: &Aabb) -> Result<Used, String> {
+        if let Some((.., known)) = self.strengths.iter().find(|(of, own, _)| of == deformation && own == bounds) {
+            return Ok(known.clone());
+        }
+        let wrong = |fault: Fault| format!("deform: {fault}");
+        let asked = Deformer::new(deformation.clone()).map_err(wrong)?;
+        let used = match asked.prove(bounds) {
+            Proof::Proven => Used { strength: 1.0, deformer: asked },
+            Proof::Unknown { least } if least >= CLEAR => Used { strength: 1.0, deformer: asked },
+            Proof::Unknown { .. } | Proof::Folds { .. } => {
+                let strength = deformation.safe_strength(bounds).map_err(wrong)?.seen;
+                Used { strength, deformer: Deformer::new(deformation.at_strength(strength)).map_err(wrong)? }
+            }
+        };
+        self.strengths.push((deformation.clone(), *bounds, used.clone()));
+        Ok(used)
+    }
+
+    /// The lightness of an image, its lower edge first.
+    fn image(&mut self, file: &Path) -> Result<Texels, String> {
+        if let Some((_, known)) = self.images.iter().find(|(of, _)| of == file) {
+            return Ok(known.clone());
+        }
+        let wrong = |message: String| format!("{}: {message}", file.display());
+        let image = image::open(file).map_err(|error| wrong(error.to_string()))?;
+        let small = match image.width().max(image.height()) > MOST_TEXELS {
+            true => image.thumbnail(MOST_TEXELS, MOST_TEXELS),
+            false => image,
+        };
+        let grey = small.to_luma32f();
+        let (width, height) = (grey.width() as usize, grey.height() as usize);
+        let rows = grey.as_raw().chunks(width.max(1)).rev();
+        let values = rows.flatten().map(|v| v.clamp(0.0, 1.0)).collect();
+        let texels = Texels::new(width, height, values).ok_or_else(|| wrong("the image is empty".into()))?;
+        self.images.push((file.to_owned(), texels.clone()));
+        Ok(texels)
+    }
+}
