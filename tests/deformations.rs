@@ -6,7 +6,11 @@ mod studio;
 use glam::{DVec2, DVec3};
 use studio::*;
 use veduta::{
-    figure::scene_file::{Options, parse},
+    figure::{
+        self,
+        overlays::Standing,
+        scene_file::{Options, parse},
+    },
     geom::deform::Deformers,
     render::{
         frame::Backend,
@@ -296,4 +300,20 @@ fn what_would_fold_is_weakened_and_told() {
     let asked = Aovs { depth: true, ..Aovs::default() };
     let again = studio.render(&scene, &Request { aovs: asked, ..request(Backend::default()) }).unwrap();
     assert!(again.depth.unwrap().iter().all(|depth| !depth.is_nan()));
+}
+
+#[test]
+fn lines_of_overlays_end_where_their_places_are_shown() {
+    let place = DVec3::new(12.0, -5.0, 24.0);
+    let overlay = "[[poi]]\nname = \"p\"\nat = [12, -5, 24]\n[[lens]]\nname = \"note\"\nkind = \"annotation\"\ntext = \"here\"\npoi = \"p\"\n";
+    let scene = town(&format!("{}{overlay}", lens("{ kind = \"translate\", by = [0, 6, 20] }", "")));
+    let mut studio = of_scene(&scene);
+    let mut standing = Standing::default();
+    figure::draw_next(&mut studio, &scene, &request(Backend::default()), &mut standing).unwrap();
+    let view = View::new(scene.camera.unwrap(), SIZE, &studio.extent()).unwrap();
+    let shown = studio.deformers(&scene, SIZE).unwrap().value(place);
+    assert!(shown.distance(place) > 15.0, "it is moved");
+    let line = &standing.of_picture().unwrap().lines[0];
+    let end = *line.points.last().unwrap();
+    assert!(end.distance(view.pixel(shown).unwrap().truncate()) < 0.01, "{end}");
 }

@@ -41,9 +41,11 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "in-the-way"
     "market-square"
     "near-and-far"
+    "one-house"
     "out-of-sight"
     "planned-quarter"
     "rooms"
+    "panorama"
     "ropinski-1"
     "ropinski-3"
     "ropinski-5"
@@ -56,6 +58,8 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "shown-as"
     "sights"
     "sights-of-the-hague"
+    "street-in-the-hague"
+    "street-in-vienna"
     "three-lenses"
     "tiesel-3-12-a"
     "tiesel-3-12-b"
@@ -96,12 +100,14 @@ pub const SCENES: &[(&str, &str)] = scenes! {
 pub const SHEETS: &[(&str, &str)] = &[
     ("colour-styles", include_str!("../../scenes/colour-styles.sheet.toml")),
     ("occlusion-styles", include_str!("../../scenes/occlusion-styles.sheet.toml")),
+    ("opened", include_str!("../../scenes/opened.sheet.toml")),
     ("trapp-3-3-3", include_str!("../../scenes/trapp-3-3-3.sheet.toml")),
     ("trapp-3-3-4", include_str!("../../scenes/trapp-3-3-4.sheet.toml")),
     ("trapp-3-3-5", include_str!("../../scenes/trapp-3-3-5.sheet.toml")),
     ("trapp-3-3-6", include_str!("../../scenes/trapp-3-3-6.sheet.toml")),
     ("trapp-3-4-5", include_str!("../../scenes/trapp-3-4-5.sheet.toml")),
     ("trapp-3-4-8", include_str!("../../scenes/trapp-3-4-8.sheet.toml")),
+    ("trapp-3-6-1", include_str!("../../scenes/trapp-3-6-1.sheet.toml")),
     ("trapp-5-3-2", include_str!("../../scenes/trapp-5-3-2.sheet.toml")),
 ];
 

@@ -23,9 +23,11 @@ pub struct Deform {
     pub strength: f64,
 }
 
-/// How strong a deformation is over the base of its focus area (S6): 0 along its border.
+/// How strong a deformation is over the base of its focus area (S6): 0 along its border, but for the first.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ControlProfile {
+    /// All of it everywhere, far beyond the focus area, too.
+    Everywhere,
     /// Rises from the border, straight, over a part of the sides: 0 to ½.
     Linear {
         /// The part.
@@ -224,6 +226,10 @@ impl Deform {
         let chain = self.steps.iter().map(operator).collect::<Result<_, String>>()?;
         let own = self.control.clone().unwrap_or_else(|| Self::default_profile(area));
         let profile = match &own {
+            ControlProfile::Everywhere => {
+                let frame = Frame { pivot, axes };
+                return Ok(Deformation { frame, space: Space::World, chain, control: Control::Everywhere });
+            }
             ControlProfile::Linear { border } => Profile::Linear { border: *border },
             ControlProfile::Smooth { border } => Profile::Smooth { border: *border },
             ControlProfile::Bump => Profile::Bump,

@@ -112,19 +112,19 @@ pub const STEPS: &[Table] = &[
 const RING: [f64; 2] = [0.3, 1.0];
 
 /// Words of controls.
-pub const CONTROL_WORDS: &[&str] = &["linear", "smooth", "bump", "ring"];
+pub const CONTROL_WORDS: &[&str] = &["linear", "smooth", "bump", "ring", "everywhere"];
 
 /// `control` of a lens.
 pub const CONTROL: Table = Table {
     name: "control",
-    doc: "How strong a deformation is over the base of its focus area; along the border it is 0.",
+    doc: "How strong a deformation is over the base of its focus area; along the border it is 0, but for `everywhere`.",
     keys: &[
         key(
             "profile",
             Kind::Word { now: CONTROL_WORDS, later: &[] },
             "by the other keys",
             "",
-            "Rises from the border `linear` or `smooth`, is a round `bump`, or a round wall, a `ring`.",
+            "Rises from the border `linear` or `smooth`, is a round `bump`, or a round wall, a `ring`; `everywhere` it is all there, beyond the shape, too.",
             "\"smooth\"",
         ),
         key(
@@ -226,6 +226,7 @@ pub(super) fn profile(checker: &mut Checker, own: &Fields, word: Option<&str>) -
     match word.or_else(|| own.text("profile")) {
         Some("linear") => Some(ControlProfile::Linear { border }),
         Some("bump") => Some(ControlProfile::Bump),
+        Some("everywhere") => Some(ControlProfile::Everywhere),
         Some("ring") => {
             let (inner, outer) = (own.number("inner").unwrap_or(RING[0]), own.number("outer").unwrap_or(RING[1]));
             if outer <= inner {
@@ -281,6 +282,7 @@ fn control_written(control: &ControlProfile, options: &Options) -> String {
         ControlProfile::Linear { border } => with_border("linear", *border),
         ControlProfile::Smooth { border } => with_border("smooth", *border),
         ControlProfile::Bump => quoted("bump"),
+        ControlProfile::Everywhere => quoted("everywhere"),
         ControlProfile::Ring { inner, outer } => {
             format!("{{ profile = \"ring\", inner = {}, outer = {} }}", number(*inner), number(*outer))
         }

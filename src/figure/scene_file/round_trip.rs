@@ -334,6 +334,7 @@ fn deforms() -> impl Strategy<Value = Deform> {
         Just(ControlProfile::Smooth { border: BORDER }),
         (0.01..=0.5f64).prop_map(|border| ControlProfile::Smooth { border }),
         Just(ControlProfile::Bump),
+        Just(ControlProfile::Everywhere),
         (0.0..0.5f64, 0.51..=1.0f64).prop_map(|(inner, outer)| ControlProfile::Ring { inner, outer }),
         "[a-zß]{1,6}[.]png".prop_map(|file| ControlProfile::Image(file.into())),
     ];
