@@ -13,7 +13,6 @@ use crate::{
     render::{
         Renderer,
         city::{CHUNK_TRIANGLES, Chunk, Section, Shown},
-        curtain::projected,
         frame::FrameInput,
     },
     view::{Frustum, View},
@@ -242,11 +241,14 @@ fn finest(cell: &CellFigures, area: f64, density: f64) -> Detail {
     Detail::ALL.into_iter().find(fits).unwrap_or(Detail::Nothing)
 }
 
-/// Pixels that a box covers at most, of those that a view has; at least one.
+/// Pixels of a view's that a box covers at most: of the square around the ball around it. At least one.
 fn covered(view: &View, bounds: &Aabb) -> f64 {
     let size = DVec2::new(view.size[0].into(), view.size[1].into());
-    let Some((low, high, _)) = projected(view, bounds) else { return size.x * size.y };
-    let part = high.min(size) - low.max(DVec2::ZERO);
+    let radius = 0.5 * bounds.size().length();
+    let Some(center) = view.pixel(bounds.center()).filter(|center| center.z > radius) else { return size.x * size.y };
+    let per_metre = 0.5 * size.y / view.half_extent().y;
+    let reach = radius * if view.is_orthographic() { per_metre } else { per_metre / center.z };
+    let part = (center.truncate() + reach).min(size) - (center.truncate() - reach).max(DVec2::ZERO);
     (part.x.max(0.0) * part.y.max(0.0)).max(1.0)
 }
 
