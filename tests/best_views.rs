@@ -120,6 +120,7 @@ fn an_overlay_is_drawn_again_only_when_what_it_shows_changed() {
     let scene = square(
         "[[poi]]\nname = \"hall\"\nobject = \"town-hall\"\n[[lens]]\nname = \"hall\"\nkind = \"best-view\"\npoi = \"hall\"\n\
          [[lens]]\nname = \"map\"\nkind = \"map-view\"\n[[lens]]\nname = \"note\"\nkind = \"annotation\"\ntext = \"x\"\npoi = \"hall\"\n\
+         [[overlay]]\nlens = \"hall\"\nsize = [160, 100]\n[[overlay]]\nlens = \"map\"\nsize = [160, 100]\n\
          [[lens]]\nname = \"old\"\nshape = { kind = \"sphere\", center = [44, -7, 10], radius = 15 }\neffects = [\"sepia\"]\n",
     );
     let mut studio = of_scene(&scene);

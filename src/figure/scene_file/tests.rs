@@ -320,12 +320,34 @@ fn every_mistake_in_a_lens_is_named() {
     }
     for (lines, expected) in [
         (
-            "kind = \"deformation\"",
-            "s.toml:4: [lens.0] kind: \"deformation\" is not available yet; available: color, content, occlusion",
+            "kind = \"time\"",
+            "s.toml:4: [lens.0] kind: \"time\" is not available yet; available: color, content, occlusion, deformation",
+        ),
+        ("kind = \"deformation\"", "[lens.0] deform: is missing: what the lens does with space; for example deform ="),
+        (
+            "kind = \"deformation\"\ndeform = [{ kind = \"twsit\", angle_deg = 3 }]",
+            "[lens.0] deform.0.kind: must be one of translate, scale, shear, taper, twist, bend, open-street, panorama, is \"twsit\"; did you mean \"twist\"?",
+        ),
+        (
+            "kind = \"deformation\"\ndeform = [{ kind = \"scale\", factors = [1, 0, 1] }]",
+            "[lens.0] deform.0.factors: must be three numbers from 0.01 to 100, is [1.0, 0.0, 1.0]",
+        ),
+        (
+            "kind = \"deformation\"\ndeform = [{ kind = \"panorama\", near = 9, far = 5, angle_deg = 30 }]",
+            "[lens.0] deform.0.far: must be above near, 9, is 5",
+        ),
+        (
+            "kind = \"deformation\"\ndeform = [{ kind = \"twist\", angle_deg = 3 }]\ncontrol = { image = \"k.png\", profile = \"bump\" }",
+            "[lens.0] control.image: is given together with profile: a control is one of them",
+        ),
+        ("strength = 0.5", "[lens.0] strength: has a meaning only for a lens of kind = \"deformation\""),
+        (
+            "kind = \"deformation\"\ndeform = []",
+            "[lens.0] deform: must be a list of at least one step { kind = ..., ... }, is []",
         ),
         (
             "kind = \"colour\"",
-            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"colour\"; did you mean \"color\"?",
+            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"colour\"; did you mean \"color\"?",
         ),
         (
             "placement = \"camara\"",
@@ -442,11 +464,11 @@ fn of_a_lens_of_a_wrong_kind_only_that_is_told() {
     for (kind, expected) in [
         (
             "occlusionn",
-            "must be \"color\" or \"content\" or \"occlusion\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?",
+            "must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?",
         ),
         (
             "magnifier",
-            "\"magnifier\" is not available yet; available: color, content, occlusion, annotation, best-view, map-view, worldlet, see-through, portal",
+            "\"magnifier\" is not available yet; available: color, content, occlusion, deformation, annotation, best-view, map-view, worldlet, see-through, portal",
         ),
     ] {
         let message = read_text(&lens_text(&format!("{rest}\nkind = \"{kind}\""))).unwrap_err();
