@@ -99,7 +99,10 @@ impl Renderer {
     pub(super) fn fit_deformed(&mut self, input: &FrameInput) -> Result<(), GpuError> {
         let Some(city) = &mut self.city else { return Ok(()) };
         if input.deformers.0.is_empty() {
-            self.deformed = None;
+            // What was moved cast another shadow.
+            if self.deformed.take().is_some() {
+                self.shadow_of = None;
+            }
             return Ok(());
         }
         let of = Of {
