@@ -112,7 +112,7 @@ impl Gpu {
     async fn on(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let limits = adapter.limits();
-        let is_too_small = limits.max_storage_buffers_per_shader_stage < 6
+        let is_too_small = limits.max_storage_buffers_per_shader_stage < 8
             || limits.max_compute_workgroups_per_dimension == 0
             || limits.max_color_attachment_bytes_per_sample < 64;
         if is_too_small {

@@ -1,16 +1,16 @@
-//! The deformed city (D1, D2): what deformation lenses move, made fine enough and moved on the host, as sections beside those of what
+//! The deformed city (D1, D2): what deformation lenses move, made fine enough and moved on the card, as sections beside those of what
 //! they leave.
 //!
 //! ```text
 //!   chunks of the city ──── meet no support ─────────────────────── drawn as they are
 //!        │
 //!        └ meet one: each triangle ── meets none ───────────────── drawn from its own section, in runs
-//!                          └ refined and moved (geom::deform) ──── sections of a city of its own, with a normal per vertex
+//!                          └ refined and moved (render::refinery) ─ sections of a city of its own, with a normal per vertex
 //! ```
 //!
 //! Whatever draws the city asks [`Renderer::drawn_sections`] and so draws this too: shadows, translucent layers, sections and sprites know
-//! nothing of deformations. Kept while nothing that it was made of changes: the view is part of that, since edges are as fine as their error
-//! in pixels asks for.
+//! nothing of deformations. Which triangles are met is found on the host, once for deformations that stay; what they become, anew for every
+//! view, since edges are as fine as their error in pixels asks for.
 
 use std::{ops::Range, sync::Arc};
 
@@ -18,21 +18,22 @@ use glam::{DVec3, IVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::{
-    city::{decode_normal, encode_normal},
     geom::{
         Aabb,
         deform::{
-            Deformers,
-            refine::{Limits, RefinedVertex, Refiner, Report, refined},
+            Deformers, Support,
+            refine::{Limits, Refiner, Report, order},
         },
     },
     gpu::{Gpu, GpuError},
     render::{
         city::{Chunk, CityBuffers, Section, SectionKind, provoking_corner},
+        deform_words::{DeformNumbers, Lattice, plan_of},
         deformed_edges::deformed_edges,
         edges::EdgeBuffers,
         frame::FrameInput,
-        layout::CityVertex,
+        layout::{self, CityVertex},
+        refinery::{LAYER_SHIFT, Made, Refinery, Rest, TURNED},
         renderer::{CityOnGpu, Renderer},
     },
     view::View,
@@ -40,6 +41,8 @@ use crate::{
 
 /// How far the edges of what is shown may be from where they should be, pixels.
 pub const TOLERANCE_PX: f64 = 0.25;
+/// Chunks that a thread looks at at a time.
+const CHUNKS_PER_PART: usize = 16;
 /// Whole metres that origins of moved vertices are multiples of: offsets up to this are rounded by 2 µm at most.
 const ORIGIN_STEP_M: f64 = 32.0;
 /// Of the angle between the view's axis and what is refined for it.
@@ -47,11 +50,14 @@ const LEAST_COSINE: f64 = 0.25;
 /// How far a layer of coplanar faces is lifted off the one below, pixels: two chords of one curved plane are no further apart.
 const LIFT_PX: f64 = 2.0 * TOLERANCE_PX;
 
+/// By how much supports are taken to be wider where triangles are found: what the card's numbers may be off, of the way to the pivot, and
+/// at least.
+const SUPPORT_ERROR: f64 = 4.0 / (1 << 23) as f64;
+const LEAST_SUPPORT_ERROR_M: f64 = 1e-3;
+
 /// The corners of a section, on the host.
 #[derive(Debug)]
 pub(super) struct Source {
-    /// Whether each vertex has a normal of its own.
-    is_smooth: bool,
     /// Which corner of a triangle flat values come from.
     provoking: usize,
     vertices: Vec<CityVertex>,
@@ -69,12 +75,26 @@ struct Of {
     edges: bool,
 }
 
+/// What deformations meet of the city, whatever the view.
+#[derive(Debug)]
+pub(super) struct Met {
+    deformers: Arc<Deformers>,
+    city: u64,
+    /// What each section of the city still draws.
+    left: Arc<Vec<Vec<Chunk>>>,
+    /// Sections that are met, and which of the chunks are theirs.
+    sections: Vec<(SectionKind, Range<usize>)>,
+    /// Whose triangles are met; without bounds of what they become.
+    chunks: Vec<Chunk>,
+    rest: Rest,
+}
+
 /// What deformations make of the city in a view.
 #[derive(Debug)]
 pub(super) struct Deformed {
     of: Of,
     /// What each section of the city still draws.
-    pub left: Vec<Vec<Chunk>>,
+    pub left: Arc<Vec<Vec<Chunk>>>,
     /// What is moved.
     pub city: CityOnGpu,
     /// The edges that stay as they are, and those that are moved.
@@ -90,7 +110,7 @@ pub struct DeformedFigures {
     pub met: u64,
     /// What they became.
     pub triangles: u64,
-    /// The least exact part.
+    /// How exact that is.
     pub report: Report,
 }
 
@@ -116,15 +136,26 @@ impl Renderer {
         }
         self.shadow_of = None;
         if city.sources.is_none() {
-            let sources =
-                city.buffers.sections.iter().map(|section| Source::read(&self.gpu, section, city.buffers.smooth));
+            let sources = city.buffers.sections.iter().map(|section| Source::read(&self.gpu, section));
             city.sources = Some(sources.collect::<Result<_, _>>()?);
         }
         if let (None, Some(edges)) = (&city.edge_sources, &city.edges) {
             city.edge_sources = Some(bytemuck::pod_collect_to_vec(&self.gpu.read_buffer(&edges.instances)?));
         }
-        let Some(city) = &self.city else { return Ok(()) };
-        self.deformed = Some(self.deform(city, of)?);
+        let is_met = |met: &Met| met.deformers == of.deformers && met.city == of.city;
+        let met = match self.met.take().filter(is_met) {
+            Some(met) => met,
+            None => Met::new(&self.gpu, city, &of)?,
+        };
+        let mut refinery = match self.refinery.take() {
+            Some(refinery) => refinery,
+            None => Refinery::new(&self.gpu)?,
+        };
+        let stage = stage_of(&of.view, &met.rest.lattice, city.buffers.smooth);
+        let made = refinery.refined(&self.gpu, &met.rest, &stage)?;
+        self.refinery = Some(refinery);
+        self.deformed = self.deformed_of(&met, made, of)?;
+        self.met = Some(met);
         Ok(())
     }
 
@@ -133,24 +164,35 @@ impl Renderer {
         self.deformed.as_ref().map(|deformed| deformed.figures)
     }
 
-    fn deform(&self, city: &CityOnGpu, of: Of) -> Result<Deformed, GpuError> {
-        let view = &of.view;
-        let pixels_per_m = move |place: DVec3| pixels_per_m(view, place);
-        let work = Work { deformers: &of.deformers, pixels_per_m: &pixels_per_m };
-        let (mut left, mut sections) = (Vec::new(), Vec::new());
-        let mut figures = DeformedFigures::default();
-        let (mut bounds, mut layer) = (Aabb::EMPTY, 0);
-        for (section, source) in city.buffers.sections.iter().zip(city.sources.iter().flatten()) {
-            let lift = if section.kind == SectionKind::Coplanar { f64::from(layer) * LIFT_PX } else { 0.0 };
-            layer += u32::from(section.kind == SectionKind::Coplanar);
-            let made = work.section(section, source, lift);
-            figures.add(&made);
-            bounds = made.chunks.iter().fold(bounds, |all, chunk| all.union(chunk.bounds));
-            if !made.indices.is_empty() {
-                sections.push((section.kind, made.upload(&self.gpu, section.kind)?));
-            }
-            left.push(made.left);
-        }
+    fn deformed_of(&self, met: &Met, made: Made, of: Of) -> Result<Option<Deformed>, GpuError> {
+        let Some(city) = &self.city else { return Ok(None) };
+        let figures = DeformedFigures {
+            met: u64::from(met.rest.triangles),
+            triangles: u64::from(made.triangles),
+            report: made.report,
+        };
+        let bounds = made.chunks.iter().fold(Aabb::EMPTY, |all, (_, bounds)| all.union(*bounds));
+        let sections = met.sections.iter().map(|(kind, chunks)| Section {
+            // What is bent is in no plane.
+            kind: if *kind == SectionKind::Coplanar { SectionKind::Plain } else { *kind },
+            vertices: made.vertices.clone(),
+            indices: made.indices.clone(),
+            extra: made.texcoords.clone().filter(|_| matches!(kind, SectionKind::Textured { .. })),
+            chunks: met.chunks[chunks.clone()]
+                .iter()
+                .zip(&made.chunks[chunks.clone()])
+                .map(|(chunk, (range, bounds))| Chunk {
+                    range: 3 * range.start..3 * range.end,
+                    bounds: *bounds,
+                    ..chunk.clone()
+                })
+                .collect(),
+        });
+        let sections: Vec<Section> = sections.collect();
+        let images = met.sections.iter().map(|(kind, _)| self.image_of(&city.buffers, *kind)).collect();
+        let buffers = CityBuffers::of_sections(sections, city.buffers.surfaces.clone(), bounds);
+        let view = of.view;
+        let pixels_per_m = move |place: DVec3| pixels_per_m(&view, place);
         let refiner = Refiner {
             deformers: &of.deformers,
             pixels_per_m: &pixels_per_m,
@@ -159,15 +201,27 @@ impl Renderer {
         };
         let of_city = city.edges.as_ref().zip(city.edge_sources.as_ref());
         let edges = of_city.map(|(edges, all)| deformed_edges(&self.gpu, edges, all, &refiner)).transpose()?;
-        let images = sections.iter().map(|(kind, _)| self.image_of(&city.buffers, *kind)).collect();
-        let buffers = CityBuffers::of_sections(
-            sections.into_iter().map(|(_, section)| section).collect(),
-            city.buffers.surfaces.clone(),
-            bounds,
-        );
         let city =
             CityOnGpu { group: city.group.clone(), images, buffers, edges: None, sources: None, edge_sources: None };
-        Ok(Deformed { of, left, city, edges, figures })
+        Ok(Some(Deformed { of, left: met.left.clone(), city, edges, figures }))
+    }
+}
+
+/// The view as what is refined is seen in it.
+fn stage_of(view: &View, lattice: &Lattice, is_smooth: bool) -> layout::Refinement {
+    let (eye, offset) = lattice.cell_of(view.camera.eye);
+    layout::Refinement {
+        eye: eye.to_array(),
+        eye_offset: offset.to_array(),
+        forward: view.basis.forward.as_vec3().to_array(),
+        pixels: (0.5 * f64::from(view.size[1]) / view.half_extent().y) as f32,
+        near: view.camera.near_m as f32,
+        orthographic: u32::from(view.is_orthographic()),
+        tolerance: TOLERANCE_PX as f32,
+        shortest: Limits::default().shortest_m as f32,
+        lift: LIFT_PX as f32,
+        is_smooth: u32::from(is_smooth),
+        ..layout::Refinement::new()
     }
 }
 
@@ -184,118 +238,131 @@ fn pixels_per_m(view: &View, place: DVec3) -> f64 {
     px * distance / (depth * depth)
 }
 
-/// How a section is deformed.
-struct Work<'a> {
-    deformers: &'a Deformers,
-    pixels_per_m: &'a (dyn Fn(DVec3) -> f64 + Sync),
-}
-
-/// What a section becomes.
+/// What is met of some chunks of one section.
 #[derive(Default)]
-struct Made {
+struct MetPart {
     left: Vec<Chunk>,
-    vertices: Vec<CityVertex>,
+    /// With the number of triangles that are met of each.
+    chunks: Vec<(Chunk, u32)>,
+    corners: Vec<CityVertex>,
     texcoords: Vec<[f32; 2]>,
-    indices: Vec<u32>,
-    chunks: Vec<Chunk>,
-    met: u64,
-    report: Report,
+    bits: Vec<u32>,
 }
 
-impl Work<'_> {
-    fn section(&self, section: &Section, source: &Source, lift_px: f64) -> Made {
-        let mut made = Made::default();
-        let is_met = |chunk: &Chunk| self.deformers.supports().any(|support| support.reaches(&chunk.bounds));
-        let (met, left): (Vec<&Chunk>, Vec<&Chunk>) = section.chunks.iter().partition(|chunk| is_met(chunk));
-        if met.is_empty() {
-            made.left = section.chunks.clone();
-            return made;
-        }
-        made.left = left.into_iter().cloned().collect();
-        let (mut positions, mut triangles, mut corners) = (Vec::new(), Vec::new(), Vec::new());
-        for chunk in &met {
-            for triangle in source.indices[range_of(chunk)].chunks_exact(3) {
-                let first = positions.len() as u32;
-                positions.extend(triangle.iter().map(|&i| source.place(i)));
-                triangles.push([first, first + 1, first + 2]);
-                corners.push([triangle[0], triangle[1], triangle[2]]);
-            }
-        }
-        let refined =
-            refined(&positions, &triangles, self.deformers, self.pixels_per_m, TOLERANCE_PX, Limits::default());
-        made.report = refined.report;
-        made.met = (triangles.len() - refined.kept.len()) as u64;
-        let moved: Vec<Moved> =
-            refined.vertices.par_iter().map(|vertex| self.vertex(source, &corners, vertex, lift_px)).collect();
-        made.vertices = moved.iter().map(|moved| moved.vertex).collect();
-        if !source.texcoords.is_empty() {
-            made.texcoords = moved.iter().map(|moved| moved.texcoord).collect();
-        }
-        made.indices = refined.triangles.iter().flatten().copied().collect();
-        // Both kept and refined triangles stand in the order of those given.
-        let mut kept = refined.kept.iter().copied().peekable();
-        let mut next = 0;
-        let source_of = |triangle: &[u32; 3]| refined.vertices[triangle[0] as usize].source;
-        let mut number = 0;
-        for chunk in met {
-            let (mut run, from, mut bounds) = (None, next, Aabb::EMPTY);
-            for start in chunk.range.clone().step_by(3) {
-                if kept.next_if_eq(&number).is_some() {
-                    run = Some(run.map_or(start, |run: Range<u32>| run.start)..start + 3);
-                } else {
-                    close(&mut run, chunk, source, &mut made.left);
-                    while refined.triangles.get(next).is_some_and(|triangle| source_of(triangle) == number) {
-                        bounds =
-                            bounds.union(Aabb::from_points(refined.triangles[next].map(|i| moved[i as usize].place)));
-                        next += 1;
-                    }
+impl Met {
+    fn new(gpu: &Gpu, city: &CityOnGpu, of: &Of) -> Result<Self, GpuError> {
+        let sections = || city.buffers.sections.iter().zip(city.sources.iter().flatten());
+        let bounds = city.buffers.bounds;
+        let supports: Vec<Support> = of
+            .deformers
+            .supports()
+            .map(|support| {
+                let farthest = bounds.grown(support.frame.pivot).size().length();
+                support.grown((SUPPORT_ERROR * farthest).max(LEAST_SUPPORT_ERROR_M))
+            })
+            .collect();
+        let has_textures = sections().any(|(section, _)| matches!(section.kind, SectionKind::Textured { .. }));
+        let (mut left, mut met, mut chunks) = (Vec::new(), Vec::new(), Vec::new());
+        let mut all = MetPart::default();
+        let (mut firsts, mut layer) = (vec![0], 0);
+        for (section, source) in sections() {
+            let is_coplanar = section.kind == SectionKind::Coplanar;
+            let own_layer = if is_coplanar { layer } else { 0 };
+            layer += u32::from(is_coplanar);
+            // In parts that keep their order.
+            let parts: Vec<MetPart> = section
+                .chunks
+                .par_chunks(CHUNKS_PER_PART)
+                .map(|chunks| MetPart::of(chunks, source, &supports, own_layer, has_textures))
+                .collect();
+            let first = chunks.len();
+            let mut own_left = Vec::new();
+            for part in parts {
+                own_left.extend(part.left);
+                for (chunk, triangles) in part.chunks {
+                    firsts.push(firsts.last().copied().unwrap_or(0) + triangles);
+                    chunks.push(chunk);
                 }
-                number += 1;
+                all.corners.extend(part.corners);
+                all.texcoords.extend(part.texcoords);
+                all.bits.extend(part.bits);
             }
-            close(&mut run, chunk, source, &mut made.left);
-            if next > from {
-                made.chunks.push(Chunk { range: 3 * from as u32..3 * next as u32, bounds, ..chunk.clone() });
+            left.push(own_left);
+            if chunks.len() > first {
+                met.push((section.kind, first..chunks.len()));
             }
         }
-        made
-    }
-
-    /// A corner of what a triangle became, as the card reads it; `corners`: of the triangles that were given.
-    fn vertex(&self, source: &Source, corners: &[[u32; 3]], vertex: &RefinedVertex, lift_px: f64) -> Moved {
-        let corners = corners[vertex.source as usize];
-        let own = corners.map(|i| &source.vertices[i as usize]);
-        let weights = vertex.weights.to_array();
-        // What is flat is that of the provoking corner.
-        let flat = own[source.provoking];
-        let normal = match source.is_smooth {
-            true => (0..3).map(|i| weights[i] * decode_normal(own[i].normal)).sum(),
-            false => decode_normal(flat.normal),
+        use wgpu::BufferUsages as U;
+        let reach = bounds.union(of.deformers.deformed_bounds(&bounds));
+        let lattice = Lattice::around(&reach);
+        let is_textured = met.iter().any(|(kind, _)| matches!(kind, SectionKind::Textured { .. }));
+        let texcoords = is_textured.then(|| gpu.buffer("texture coordinates at rest", U::STORAGE, &all.texcoords));
+        let plan = plan_of(&of.deformers);
+        let DeformNumbers { numbers, tables } = DeformNumbers::new(&of.deformers, &plan, &lattice);
+        let rest = Rest {
+            corners: gpu.buffer("corners at rest", U::STORAGE, &all.corners)?,
+            bits: gpu.buffer("triangles at rest", U::STORAGE, &all.bits)?,
+            texcoords: texcoords.transpose()?,
+            triangles: all.bits.len() as u32,
+            firsts,
+            lattice,
+            numbers: gpu.buffer("numbers of deformations", U::UNIFORM, &numbers)?,
+            tables: gpu.buffer("tables of deformations", U::STORAGE, &tables)?,
+            plan,
         };
-        let normal = (vertex.normals * normal).try_normalize().unwrap_or(DVec3::Z);
-        let lift = if lift_px == 0.0 { 0.0 } else { lift_px / (self.pixels_per_m)(vertex.shown) };
-        let place = vertex.shown + lift * normal;
-        let origin = origin_of(place);
-        let offset = (place - origin).as_vec3().to_array();
-        let texcoord = [0, 1].map(|axis| {
-            let of = |i: usize| source.texcoords.get(corners[i] as usize).map_or(0.0, |t| f64::from(t[axis]));
-            (0..3).map(|i| weights[i] * of(i)).sum::<f64>() as f32
-        });
-        let vertex = CityVertex::new(origin.as_ivec3(), flat.surface, offset, encode_normal(normal));
-        Moved { vertex, texcoord, place }
+        Ok(Self { deformers: of.deformers.clone(), city: of.city, left: Arc::new(left), sections: met, chunks, rest })
     }
 }
 
-/// A moved corner.
-struct Moved {
-    vertex: CityVertex,
-    texcoord: [f32; 2],
-    /// Where it is shown, metres.
-    place: DVec3,
+impl MetPart {
+    fn of(chunks: &[Chunk], source: &Source, supports: &[Support], layer: u32, has_textures: bool) -> Self {
+        let mut part = Self::default();
+        for chunk in chunks {
+            let near: Vec<&Support> = supports.iter().filter(|support| support.reaches(&chunk.bounds)).collect();
+            if near.is_empty() {
+                part.left.push(chunk.clone());
+                continue;
+            }
+            let before = part.bits.len();
+            let mut run = None;
+            for start in chunk.range.clone().step_by(3) {
+                let at = start as usize;
+                let corners = [source.indices[at], source.indices[at + 1], source.indices[at + 2]];
+                let places = corners.map(|i| source.place(i));
+                if near.iter().any(|support| support.meets_triangle(&places)) {
+                    close(&mut run, chunk, source, &mut part.left);
+                    part.add(source, corners, &places, layer, has_textures);
+                } else {
+                    run = Some(run.map_or(start, |run: Range<u32>| run.start)..start + 3);
+                }
+            }
+            close(&mut run, chunk, source, &mut part.left);
+            let count = (part.bits.len() - before) as u32;
+            if count > 0 {
+                part.chunks.push((chunk.clone(), count));
+            }
+        }
+        part
+    }
+
+    fn add(&mut self, source: &Source, corners: [u32; 3], places: &[DVec3; 3], layer: u32, has_textures: bool) {
+        let mut sorted = [0, 1, 2];
+        sorted.sort_by(|&i, &j| order(places[i], places[j]));
+        let is_turned = matches!(sorted, [0, 2, 1] | [1, 0, 2] | [2, 1, 0]);
+        let provoking = sorted.iter().position(|&i| i == source.provoking).unwrap_or(0) as u32;
+        self.bits.push(provoking | if is_turned { TURNED } else { 0 } | layer << LAYER_SHIFT);
+        for i in sorted.map(|i| corners[i] as usize) {
+            self.corners.push(source.vertices[i]);
+            if has_textures {
+                self.texcoords.push(source.texcoords.get(i).copied().unwrap_or_default());
+            }
+        }
+    }
 }
 
 impl Source {
     /// What the card has of a section.
-    fn read(gpu: &Gpu, section: &Section, is_smooth: bool) -> Result<Self, GpuError> {
+    fn read(gpu: &Gpu, section: &Section) -> Result<Self, GpuError> {
         let of = |buffer: &wgpu::Buffer| gpu.read_buffer(buffer);
         let texcoords = match (section.kind, &section.extra) {
             (SectionKind::Textured { .. }, Some(extra)) => bytemuck::pod_collect_to_vec(&of(extra)?),
@@ -303,13 +370,7 @@ impl Source {
         };
         let vertices = bytemuck::pod_collect_to_vec(&of(&section.vertices)?);
         let provoking = provoking_corner(gpu);
-        Ok(Self {
-            is_smooth,
-            provoking,
-            vertices,
-            indices: bytemuck::pod_collect_to_vec(&of(&section.indices)?),
-            texcoords,
-        })
+        Ok(Self { provoking, vertices, indices: bytemuck::pod_collect_to_vec(&of(&section.indices)?), texcoords })
     }
 
     /// Where a vertex is, exactly.
@@ -324,43 +385,10 @@ pub(super) fn origin_of(place: DVec3) -> DVec3 {
     (place / ORIGIN_STEP_M).floor() * ORIGIN_STEP_M
 }
 
-fn range_of(chunk: &Chunk) -> Range<usize> {
-    chunk.range.start as usize..chunk.range.end as usize
-}
-
 /// Ends a run of triangles that stay: a chunk of them.
 fn close(run: &mut Option<Range<u32>>, chunk: &Chunk, source: &Source, left: &mut Vec<Chunk>) {
     let Some(range) = run.take() else { return };
     let indices = &source.indices[range.start as usize..range.end as usize];
     let bounds = Aabb::from_points(indices.iter().map(|&i| source.place(i)));
     left.push(Chunk { range, bounds, ..chunk.clone() });
-}
-
-impl Made {
-    fn upload(&self, gpu: &Gpu, kind: SectionKind) -> Result<Section, GpuError> {
-        let extra = match self.texcoords.is_empty() {
-            true => None,
-            false => Some(gpu.buffer("deformed texture coordinates", wgpu::BufferUsages::VERTEX, &self.texcoords)?),
-        };
-        Ok(Section {
-            // What is bent is in no plane.
-            kind: if kind == SectionKind::Coplanar { SectionKind::Plain } else { kind },
-            vertices: gpu.buffer("deformed vertices", wgpu::BufferUsages::VERTEX, &self.vertices)?,
-            indices: gpu.buffer("deformed indices", wgpu::BufferUsages::INDEX, &self.indices)?,
-            extra,
-            chunks: self.chunks.clone(),
-        })
-    }
-}
-
-impl DeformedFigures {
-    fn add(&mut self, made: &Made) {
-        self.met += made.met;
-        self.triangles += made.indices.len() as u64 / 3;
-        let (all, own) = (&mut self.report, &made.report);
-        all.tolerance_px = all.tolerance_px.max(own.tolerance_px);
-        all.shortest_m = all.shortest_m.max(own.shortest_m);
-        all.too_coarse += own.too_coarse;
-        all.unusable += own.unusable;
-    }
 }

@@ -99,6 +99,51 @@ pub struct Plane {
     pub offset: f32,
 }
 
+/// `pass/refine.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Refinement {
+    pub eye: [i32; 3],
+    pub items: u32,
+    pub eye_offset: [f32; 3],
+    pub corners: u32,
+    pub forward: [f32; 3],
+    pub pixels: f32,
+    pub near: f32,
+    pub orthographic: u32,
+    pub tolerance: f32,
+    pub shortest: f32,
+    pub anchor: [i32; 3],
+    pub shift: u32,
+    pub met: u32,
+    pub chunks: u32,
+    pub lift: f32,
+    pub is_smooth: u32,
+    pub asked: u32,
+    pub pad_0: [u32; 3],
+}
+
+/// `pass/refine.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Corner {
+    pub cell: [i32; 3],
+    pub source: u32,
+    pub weights: [f32; 2],
+    pub pad_0: [u32; 2],
+}
+
+/// `pass/refine.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Triangle {
+    pub a: u32,
+    pub b: u32,
+    pub c: u32,
+    pub source: u32,
+    pub edges: u32,
+}
+
 /// `lib/shape.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -355,7 +400,7 @@ pub struct StripVertex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::{Module, Plan, PlanLens, Program, Uber, VolumeTest};
+    use crate::shader::{DeformPlan, Module, Plan, PlanLens, Program, Uber, VolumeTest};
 
     type Fields = Vec<(&'static str, usize)>;
 
@@ -475,6 +520,31 @@ mod tests {
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, length, layers, layer, pad_0 })),
             (&uber, host!(PackedInvoker { place, call, slots, number })),
             (&Module::Narrow, host!(Reach { x, y, distance })),
+            (&Module::Refine(DeformPlan::default()), host!(Corner { cell, source, weights, pad_0 })),
+            (&Module::Refine(DeformPlan::default()), host!(Triangle { a, b, c, source, edges })),
+            (
+                &Module::Refine(DeformPlan::default()),
+                host!(Refinement {
+                    eye,
+                    items,
+                    eye_offset,
+                    corners,
+                    forward,
+                    pixels,
+                    near,
+                    orthographic,
+                    tolerance,
+                    shortest,
+                    anchor,
+                    shift,
+                    met,
+                    chunks,
+                    lift,
+                    is_smooth,
+                    asked,
+                    pad_0,
+                }),
+            ),
             (&cut, host!(City { linear, from_whole, number, from_fraction, first_surface, to, scale })),
             (
                 &shade,

@@ -13,7 +13,7 @@ use crate::{
         city::{CityBuffers, SectionKind, Shown},
         contents::Contents,
         curtain::Curtain,
-        deformed::{Deformed, Source},
+        deformed::{Deformed, Met, Source},
         edges::{Edge, EdgeBuffers},
         furniture::FurnitureOnGpu,
         images::Images,
@@ -22,6 +22,7 @@ use crate::{
         narrow::Narrowing,
         own_sprites::OwnSprites,
         pipelines::{Layouts, Pipelines},
+        refinery::Refinery,
         regions::RegionsOnGpu,
         sections::SectionsOnGpu,
         solids::SolidTable,
@@ -67,6 +68,10 @@ pub struct Renderer {
     pub(super) curtain: Option<Curtain>,
     /// What deformations make of the city in this view.
     pub(super) deformed: Option<Deformed>,
+    /// What they meet, whatever the view.
+    pub(super) met: Option<Met>,
+    /// What refines it.
+    pub(super) refinery: Option<Refinery>,
     /// Cities that were put on the card so far.
     pub(super) city_number: u64,
     /// Of techniques that draw the city by regions, once there was one.
@@ -268,6 +273,8 @@ impl Renderer {
             binds_narrowed: false,
             curtain: None,
             deformed: None,
+            met: None,
+            refinery: None,
             city_number: 0,
             regions: None,
             sections: None,
@@ -297,7 +304,7 @@ impl Renderer {
     /// Puts a city on the card in place of the last one.
     pub fn set_city(&mut self, shown: &Shown, blocks: Option<&CityModel>) -> Result<(), GpuError> {
         self.city = None;
-        self.deformed = None;
+        (self.deformed, self.met) = (None, None);
         self.city_number += 1;
         (self.layers, self.longest_list) = (None, 0);
         self.slots = None;

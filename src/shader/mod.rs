@@ -5,6 +5,7 @@
 
 mod carried;
 mod contents;
+mod deforming;
 pub mod effect;
 pub mod effect_file;
 mod forward;
@@ -20,6 +21,7 @@ mod uber;
 pub mod wgsl;
 
 pub use carried::LEAST_CARRIED;
+pub use deforming::{DEFORMER_NUMBERS, DeformPlan, PlanControl, PlanDeformer, PlanStep, STEP_NUMBERS};
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
 pub use forward::{Forward, ForwardKind};
 pub use plan::{
@@ -111,6 +113,8 @@ files! {
     FILTER = "pass/filter.wgsl";
     RESOLVE = "pass/resolve.wgsl";
     NARROW = "pass/narrow.wgsl";
+    DEFORM = "lib/deform.wgsl";
+    REFINE = "pass/refine.wgsl";
     REGIONS = "pass/regions.wgsl";
     SECTIONS = "pass/sections.wgsl";
     FURNITURE = "pass/furniture.wgsl";
@@ -165,6 +169,8 @@ pub enum Module {
     Resolve,
     /// Lists of invokers narrowed to what tiles show.
     Narrow,
+    /// What deformations meet, refined and moved, and what they do.
+    Refine(DeformPlan),
     /// Titles, captions and legends.
     Furniture,
     /// Furniture over a transparent picture.
@@ -213,6 +219,7 @@ impl Module {
             Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
             Self::Resolve => "resolve".to_owned(),
             Self::Narrow => "narrow".to_owned(),
+            Self::Refine(_) => "refine".to_owned(),
             Self::Furniture => "furniture".to_owned(),
             Self::FurnitureOver => "furniture over".to_owned(),
             Self::Bare => "bare".to_owned(),
@@ -293,6 +300,7 @@ impl Module {
             Self::Filter(_) => &[PACKED, FILTER],
             Self::Resolve => &[RESOLVE],
             Self::Narrow => &[VIEW, VIEW_UNIFORM, NARROW],
+            Self::Refine(_) => &[SURFACE, DEFORM, REFINE],
             Self::Furniture => &[FURNITURE],
             Self::FurnitureOver => &[FURNITURE_OVER],
             Self::Bare => &[VIEW, VIEW_UNIFORM, SURFACE, BARE],
@@ -336,6 +344,7 @@ impl Module {
                 text.replace("//@handlers\n", &own).replace(" //@early", early).replace("    //@behind\n", &behind)
             }
             Self::Lines(program) => text.replace("//@handlers\n", &lining::source(program, handlers, lenses)),
+            Self::Refine(plan) => text.replace("//@deformers\n", &plan.shown()).replace("//@traced\n", &plan.traced()),
             Self::Geometry(None) => text.replace("//@handlers\n", NOTHING_CUT),
             Self::Geometry(Some(program)) => {
                 let text = if program.regions().is_some() { regions::geometry(&text) } else { text };

@@ -145,6 +145,22 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
     modules
 }
 
+/// All controls with all steps, with and without a band.
+fn every_deformer() -> DeformPlan {
+    use PlanStep::{Bend, Open, Scale, Shear, Taper, Translate, Twist};
+    let controls = [
+        PlanControl::Everywhere,
+        PlanControl::Linear,
+        PlanControl::Smooth,
+        PlanControl::Bump,
+        PlanControl::Ring,
+        PlanControl::Texels,
+    ];
+    let steps = vec![Translate, Scale, Shear, Taper, Twist, Bend, Open];
+    let deformer = |control| [false, true].map(|has_band| PlanDeformer { control, has_band, steps: steps.clone() });
+    DeformPlan(controls.into_iter().flat_map(deformer).collect())
+}
+
 fn all_modules() -> Vec<Module> {
     let plain = [Program::Specialised(Plan::default()), Program::Uber(Uber::default())];
     let mut modules = vec![
@@ -154,6 +170,8 @@ fn all_modules() -> Vec<Module> {
         Module::StoredForm,
         Module::Resolve,
         Module::Narrow,
+        Module::Refine(DeformPlan::default()),
+        Module::Refine(every_deformer()),
         Module::Bare,
     ];
     modules.extend(plain.map(Module::Shade));

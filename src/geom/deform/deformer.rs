@@ -34,6 +34,15 @@ impl Support {
         p.cmpge(self.bounds.min).all() && p.cmple(self.bounds.max).all()
     }
 
+    /// The same, wider by some metres on every side; what is empty stays so.
+    #[must_use]
+    pub fn grown(&self, metres: f64) -> Self {
+        match self.bounds.is_empty() {
+            true => *self,
+            false => Self { bounds: Aabb { min: self.bounds.min - metres, max: self.bounds.max + metres }, ..*self },
+        }
+    }
+
     /// Whether it has something of a box of the world.
     pub fn reaches(&self, bounds: &Aabb) -> bool {
         !self.part_of(bounds).is_empty()
@@ -102,6 +111,12 @@ impl Deformer {
     /// Where it may move something.
     pub fn support(&self) -> &Support {
         &self.support
+    }
+
+    /// How far apart samples may be before each operator to see all that it does (and, before the first, all of the control), metres of
+    /// the frame; ∞ where it is linear.
+    pub fn spacing(&self) -> &[DVec3] {
+        &self.spacing
     }
 
     /// θ of a place of the world. Outside the support, and wherever nothing moves, the same bits.

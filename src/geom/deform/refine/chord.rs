@@ -16,6 +16,9 @@ const UNSEEN: f64 = 0.1;
 /// How far the inside of a triangle may be off, by the tolerance.
 const INSIDE: f64 = 2.0;
 
+/// Triangles whose corners are no farther apart, by what samples may be, are not looked into: as many parts are looked at of an edge.
+const CLOSE: f64 = PARTS as f64;
+
 /// What decides about halving; the same for all edges.
 #[derive(Clone, Copy)]
 pub struct Refiner<'a> {
@@ -144,6 +147,12 @@ impl Refiner<'_> {
 
     /// Where the inside of a triangle is off by more than twice the tolerance, as weights of its corners; `None`: nowhere.
     pub(super) fn worst_inside(&self, corners: &[DVec3; 3]) -> Option<DVec3> {
+        let mut trace = Trace::default();
+        let steps = [0, 1, 2, 0].map(|i| trace.place(self.deformers, corners[i]).1);
+        // Then edges see all that there is.
+        if steps.into_iter().fold(0.0, f64::max) <= CLOSE {
+            return None;
+        }
         let ways = corners.map(|p| self.deformers.value(p) - p);
         let mut worst = (INSIDE * self.tolerance_px, None);
         for support in self.deformers.supports() {
@@ -168,8 +177,11 @@ impl Refiner<'_> {
         let [a, b, c] = piece;
         let steps = [a, b, c, a].map(|p| trace.place(self.deformers, p).1);
         let step = steps.into_iter().fold(0.0, f64::max);
+        if step <= CLOSE {
+            return;
+        }
         let is_large = step > MOST_PARTS as f64;
-        let parts = if is_large { 3 } else { PARTS.max(step.ceil() as usize) };
+        let parts = if is_large { 3 } else { step.ceil() as usize };
         let mixed = |of: &[DVec3; 3], w: DVec3| of[0] * w.x + of[1] * w.y + of[2] * w.z;
         for i in 1..parts {
             for j in 1..parts - i {
@@ -186,13 +198,9 @@ impl Refiner<'_> {
         }
     }
 
-    /// Whether a triangle meets the support of a deformation; it does if one of its edges does.
+    /// Whether a triangle meets the support of a deformation.
     pub(super) fn meets_triangle(&self, corners: &[DVec3; 3]) -> bool {
-        let [a, b, c] = *corners;
-        self.meets(a, b)
-            || self.meets(b, c)
-            || self.meets(c, a)
-            || self.deformers.supports().any(|support| !support.part_of_triangle(corners).is_empty())
+        self.deformers.supports().any(|support| support.meets_triangle(corners))
     }
 }
 
@@ -250,6 +258,17 @@ impl Samples {
 }
 
 impl Support {
+    /// Whether a triangle of the world meets it; it does if one of its edges does.
+    pub fn meets_triangle(&self, corners: &[DVec3; 3]) -> bool {
+        let [a, b, c] = *corners;
+        // An edge's ends are taken in their order: whoever asks about it gets the same answer.
+        let meets = |a, b| {
+            let (a, b) = in_order(a, b);
+            self.range(a, b).is_some()
+        };
+        meets(a, b) || meets(b, c) || meets(c, a) || !self.part_of_triangle(corners).is_empty()
+    }
+
     /// From which to which part of the way a segment is in it; `None`: nowhere.
     fn range(&self, a: DVec3, b: DVec3) -> Option<[f64; 2]> {
         let (a, b) = (self.frame.from_world(a), self.frame.from_world(b));
@@ -304,6 +323,6 @@ fn in_order(a: DVec3, b: DVec3) -> (DVec3, DVec3) {
 }
 
 /// The order of places: by x, then y, then z.
-pub(super) fn order(a: DVec3, b: DVec3) -> Ordering {
+pub fn order(a: DVec3, b: DVec3) -> Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
 }

@@ -26,7 +26,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-pub use chord::{Chord, Refiner};
+pub use chord::{Chord, Refiner, order};
 
 use crate::geom::deform::{Deformers, cofactor, refine::split::Split};
 
