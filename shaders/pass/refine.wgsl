@@ -47,11 +47,15 @@ struct Corner {
     weights: vec2f,
 }
 
-// Bits of an edge: how many edges inside triangles led to it, and whether it is fine enough.
+// Bits of an edge: how many edges inside triangles led to it, whether it is fine enough, and whether its ends see all that there is between
+// them.
 const GENERATION: u32 = 63u;
 const IS_FINE: u32 = 64u;
-const EDGE_BITS: u32 = 7u;
-const EDGE: u32 = 127u;
+const IS_CLOSE: u32 = 128u;
+const EDGE_BITS: u32 = 8u;
+const EDGE: u32 = 255u;
+// Of an answer.
+const HALVED: u32 = 1u;
 // Of a triangle: nothing is to be asked any more.
 const IS_DONE: u32 = 1u << 31u;
 
@@ -68,7 +72,7 @@ struct Triangle {
 @group(0) @binding(1) var<uniform> numbers: array<vec4f, NUMBERS>;
 @group(0) @binding(2) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(3) var<storage, read_write> corners: array<Corner>;
-// Per triangle: whether each edge is halved, and the weights of a corner inside, or zeros.
+// Per triangle: of each edge whether it is halved, and whether it is close; and the weights of a corner inside, or zeros.
 @group(0) @binding(4) var<storage, read_write> answers: array<u32>;
 // Per triangle: triangles and corners that those before it in its group become, and how many of these triangles are not done; then per
 // group, those of the groups before; then of all.
@@ -187,11 +191,12 @@ fn middle_of(a: vec3i, b: vec3i) -> vec3i {
     return (a >> vec3u(1u)) + (b >> vec3u(1u)) + (a & b & vec3i(1));
 }
 
-// Whether an edge is farther from where it should be than the tolerance; its first end is the one before the other.
+// Whether an edge is farther from where it should be than the tolerance, and whether it is close; its first end is the one before the
+// other.
 //
 // First both ends are looked at, to see in how many parts the rest is to be; then the ends of these. That all are looked at in one place
 // keeps the shader small: software adapters take seconds for what stands in it often.
-fn is_too_far(a: vec3i, b: vec3i) -> bool {
+fn answer_of(a: vec3i, b: vec3i) -> u32 {
     let whole = vec3f(b - a) * cell_size();
     var range = vec2f(2.0, -1.0);
     for (var i = 0u; i < DEFORMERS; i++) {
@@ -203,8 +208,9 @@ fn is_too_far(a: vec3i, b: vec3i) -> bool {
     }
     // Beyond the supports nothing moves.
     if range.x > range.y {
-        return false;
+        return 0u;
     }
+    var close = 0u;
     var start = vec3f(0.0);     // how far the ends are moved
     var end = vec3f(0.0);
     var parts = 1.0;
@@ -224,6 +230,7 @@ fn is_too_far(a: vec3i, b: vec3i) -> bool {
             end = way;
         } else if i == -1.0 {
             start = way;
+            close = select(0u, IS_CLOSE, stride <= CLOSE);
             parts = max(f32(PARTS), ceil(min(stride * (range.y - range.x), 1e9)));
             stride = 0.0;
             if range.x == 0.0 {
@@ -237,7 +244,7 @@ fn is_too_far(a: vec3i, b: vec3i) -> bool {
             let off = select(way - (start + (end - start) * t), vec3f(0.0), is_end);
             let scale = pixels_per_m(a, rest + way);
             if length(off) * scale > refinement.tolerance {
-                return true;
+                return HALVED | close;
             }
             let next = select(length(before + off - 2.0 * here), 0.0, i < 2.0);
             if i >= 2.0 {
@@ -250,7 +257,8 @@ fn is_too_far(a: vec3i, b: vec3i) -> bool {
             if i == parts {
                 worst = max(worst, (max(length(before), length(here)) + KINK * bend) * max(scales.x, scales.y));
                 if stride <= 1.00001 {
-                    return worst + UNSEEN * refinement.tolerance > refinement.tolerance;
+                    let is_off = worst + UNSEEN * refinement.tolerance > refinement.tolerance;
+                    return select(0u, HALVED, is_off) | close;
                 }
                 // Not all was seen.
                 parts = max(parts + 1.0, ceil(min(stride * parts, 1e9)));
@@ -263,11 +271,11 @@ fn is_too_far(a: vec3i, b: vec3i) -> bool {
             }
         }
         if parts > f32(MOST_PARTS) {
-            return true;
+            return HALVED;
         }
         i += 1.0;
     }
-    return true;
+    return HALVED;
 }
 
 fn edge_of(edges: u32, i: u32) -> u32 {
@@ -294,13 +302,18 @@ fn ask(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) loc
         let a = select(q, p, is_ordered);
         let b = select(p, q, is_ordered);
         let middle = middle_of(a, b);
-        if any(middle != a) && any(middle != b) && is_too_far(a, b) {
+        if any(middle != a) && any(middle != b) {
+            answer = answer_of(a, b);
+        }
+        if (answer & HALVED) != 0u {
             let is_short = length(vec3f(b - a) * cell_size()) < refinement.shortest;
-            answer = select(1u, 0u, is_short || (edge & GENERATION) > GENERATIONS);
-            if answer == 0u {
+            if is_short || (edge & GENERATION) > GENERATIONS {
+                answer = answer & ~HALVED;
                 atomicAdd(&coarse, 1u);
             }
         }
+    } else {
+        answer = edge & IS_CLOSE;
     }
     answers[ANSWER_WORDS * i + k] = answer;
 }
@@ -455,7 +468,9 @@ fn look_inside(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     let own = triangles[i];
     let at = ANSWER_WORDS * i;
     var weights = vec2f(0.0);
-    if (answers[at] | answers[at + 1u] | answers[at + 2u]) == 0u {
+    let edges = vec3u(answers[at], answers[at + 1u], answers[at + 2u]);
+    let is_close = all((edges & vec3u(IS_CLOSE)) != vec3u(0u));
+    if !is_close && all((edges & vec3u(HALVED)) == vec3u(0u)) {
         let a = corners[own.a].cell;
         let ab = vec3f(corners[own.b].cell - a) * cell_size();
         let ac = vec3f(corners[own.c].cell - a) * cell_size();
@@ -500,7 +515,7 @@ fn becomes(i: u32) -> vec3u {
         return vec3u(1u, 0u, 0u);
     }
     let at = ANSWER_WORDS * i;
-    let halved = answers[at] + answers[at + 1u] + answers[at + 2u];
+    let halved = (answers[at] & HALVED) + (answers[at + 1u] & HALVED) + (answers[at + 2u] & HALVED);
     let is_pierced = halved == 0u && (answers[at + 3u] | answers[at + 4u]) != 0u;
     let count = select(1u + halved, 3u, is_pierced);
     return vec3u(count, select(halved, 1u, is_pierced), select(count, 0u, count == 1u));
@@ -582,7 +597,11 @@ fn split(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     }
     var fresh = refinement.corners + sum.y;
     let at = ANSWER_WORDS * i;
-    let halved = vec3u(answers[at], answers[at + 1u], answers[at + 2u]) != vec3u(0u);
+    let own_answers = vec3u(answers[at], answers[at + 1u], answers[at + 2u]);
+    let halved = (own_answers & vec3u(HALVED)) != vec3u(0u);
+    // What is known of edges that stay.
+    let kept = (vec3u(edge_of(own.edges, 0u), edge_of(own.edges, 1u), edge_of(own.edges, 2u)) & vec3u(GENERATION)) |
+        vec3u(IS_FINE) | (own_answers & vec3u(IS_CLOSE));
     let count = u32(halved.x) + u32(halved.y) + u32(halved.z);
     let longest = longest_of(own);
     if count == 0u {
@@ -598,10 +617,9 @@ fn split(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
         let mixed = a.weights + (b.weights - a.weights) * weights.x + (c.weights - a.weights) * weights.y;
         corners[fresh] = Corner(a.cell + vec3i(round(way)), a.source, mixed);
         let inside = generation_inside(own);
-        let fine = vec3u(edge_of(own.edges, 0u), edge_of(own.edges, 1u), edge_of(own.edges, 2u)) | vec3u(IS_FINE);
-        split_triangles[to] = with_edges(own.a, own.b, fresh, own.source, fine.x, inside, inside);
-        split_triangles[to + 1u] = with_edges(own.b, own.c, fresh, own.source, fine.y, inside, inside);
-        split_triangles[to + 2u] = with_edges(own.c, own.a, fresh, own.source, fine.z, inside, inside);
+        split_triangles[to] = with_edges(own.a, own.b, fresh, own.source, kept.x, inside, inside);
+        split_triangles[to + 1u] = with_edges(own.b, own.c, fresh, own.source, kept.y, inside, inside);
+        split_triangles[to + 2u] = with_edges(own.c, own.a, fresh, own.source, kept.z, inside, inside);
         return;
     }
     // Turned so that the edges that are halved come first, of three the longest.
@@ -618,9 +636,11 @@ fn split(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     let is_longest_halved = halved[longest];
     let inside = generation_inside(own) - u32(is_longest_halved);
     // Halves have the generation of their edge; what is not halved is fine enough.
-    let ab = edge_of(own.edges, first);
-    let bc = edge_of(own.edges, (first + 1u) % 3u) | select(IS_FINE, 0u, count > 1u);
-    let ca = edge_of(own.edges, (first + 2u) % 3u) | select(IS_FINE, 0u, count > 2u);
+    let next = (first + 1u) % 3u;
+    let last_edge = (first + 2u) % 3u;
+    let ab = edge_of(own.edges, first) & GENERATION;
+    let bc = select(kept[next], edge_of(own.edges, next) & GENERATION, count > 1u);
+    let ca = select(kept[last_edge], edge_of(own.edges, last_edge) & GENERATION, count > 2u);
     let source = own.source;
     let m = fresh;
     add_middle(m, a, b);
