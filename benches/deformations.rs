@@ -34,7 +34,10 @@ const STEPS: [(&str, &str); 4] = [
     ("heights", "{ kind = \"scale\", factors = [1, 1, 2.0] }"),
     ("twist", "{ kind = \"twist\", angle_deg = 40.0 }"),
     ("bend", "{ kind = \"bend\", angle_deg = 30.0 }"),
-    ("chain", "{ kind = \"taper\", factor = 0.7 }, { kind = \"twist\", angle_deg = 30.0 }, { kind = \"bend\", angle_deg = 20.0 }"),
+    (
+        "chain",
+        "{ kind = \"taper\", factor = 0.7 }, { kind = \"twist\", angle_deg = 30.0 }, { kind = \"bend\", angle_deg = 20.0 }",
+    ),
 ];
 
 #[derive(Clone, Copy, PartialEq)]
@@ -67,7 +70,10 @@ fn main() {
             frame(&mut studio, &scene(&extent, n, Some((*steps, 0))));
         }
     }
-    println!("{:<24} {:>9} {:>9} {:>24} {:>8}", "lens / plain frame", "ms", "plain ms", "ratio (95 % interval)", "target");
+    println!(
+        "{:<24} {:>9} {:>9} {:>24} {:>8}",
+        "lens / plain frame", "ms", "plain ms", "ratio (95 % interval)", "target"
+    );
     for (name, steps) in STEPS {
         for (what, moving) in
             [("", Moving::Nothing), (", camera moves", Moving::Camera), (", lens moves", Moving::Lens)]

@@ -28,7 +28,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         city::{Chunk, CityBuffers, Section, SectionKind, provoking_corner},
-        deform_words::{DeformNumbers, Lattice, plan_of},
+        deform_words::Lattice,
         deformed_edges::deformed_edges,
         edges::EdgeBuffers,
         frame::FrameInput,
@@ -292,24 +292,10 @@ impl Met {
                 met.push((section.kind, first..chunks.len()));
             }
         }
-        use wgpu::BufferUsages as U;
         let reach = bounds.union(of.deformers.deformed_bounds(&bounds));
-        let lattice = Lattice::around(&reach);
         let is_textured = met.iter().any(|(kind, _)| matches!(kind, SectionKind::Textured { .. }));
-        let texcoords = is_textured.then(|| gpu.buffer("texture coordinates at rest", U::STORAGE, &all.texcoords));
-        let plan = plan_of(&of.deformers);
-        let DeformNumbers { numbers, tables } = DeformNumbers::new(&of.deformers, &plan, &lattice);
-        let rest = Rest {
-            corners: gpu.buffer("corners at rest", U::STORAGE, &all.corners)?,
-            bits: gpu.buffer("triangles at rest", U::STORAGE, &all.bits)?,
-            texcoords: texcoords.transpose()?,
-            triangles: all.bits.len() as u32,
-            firsts,
-            lattice,
-            numbers: gpu.buffer("numbers of deformations", U::UNIFORM, &numbers)?,
-            tables: gpu.buffer("tables of deformations", U::STORAGE, &tables)?,
-            plan,
-        };
+        let texcoords = is_textured.then_some(&all.texcoords[..]);
+        let rest = Rest::new(gpu, (&all.corners, &all.bits), texcoords, firsts, &of.deformers, &reach)?;
         Ok(Self { deformers: of.deformers.clone(), city: of.city, left: Arc::new(left), sections: met, chunks, rest })
     }
 }

@@ -19,11 +19,14 @@ use glam::IVec3;
 use crate::{
     geom::{
         Aabb,
-        deform::refine::{Limits, Report},
+        deform::{
+            Deformers,
+            refine::{Limits, Report},
+        },
     },
     gpu::{Gpu, GpuError},
     render::{
-        deform_words::Lattice,
+        deform_words::{DeformNumbers, Lattice, plan_of},
         layout::{self, CityVertex},
         renderer::{group, whole},
         synced::{Room, Synced},
@@ -79,6 +82,33 @@ pub(super) struct Rest {
     pub plan: DeformPlan,
     pub numbers: wgpu::Buffer,
     pub tables: wgpu::Buffer,
+}
+
+impl Rest {
+    /// Triangles that are in `reach` at rest and where deformers take them.
+    pub fn new(
+        gpu: &Gpu,
+        (corners, bits): (&[CityVertex], &[u32]),
+        texcoords: Option<&[[f32; 2]]>,
+        firsts: Vec<u32>,
+        deformers: &Deformers,
+        reach: &Aabb,
+    ) -> Result<Self, GpuError> {
+        use wgpu::BufferUsages as U;
+        let (plan, lattice) = (plan_of(deformers), Lattice::around(reach));
+        let DeformNumbers { numbers, tables } = DeformNumbers::new(deformers, &plan, &lattice);
+        Ok(Self {
+            corners: gpu.buffer("corners at rest", U::STORAGE, corners)?,
+            bits: gpu.buffer("triangles at rest", U::STORAGE, bits)?,
+            texcoords: texcoords.map(|all| gpu.buffer("texture coordinates at rest", U::STORAGE, all)).transpose()?,
+            triangles: bits.len() as u32,
+            firsts,
+            lattice,
+            numbers: gpu.buffer("numbers of deformations", U::UNIFORM, &numbers)?,
+            tables: gpu.buffer("tables of deformations", U::STORAGE, &tables)?,
+            plan,
+        })
+    }
 }
 
 /// What they become.
@@ -268,7 +298,9 @@ impl Refinery {
         let ends = found.iter().skip(1).map(|words| words[0]).chain([stage.items]);
         let chunks = found.iter().zip(ends).map(|(words, end)| {
             let place = |k: usize| rest.lattice.place(IVec3::from([0, 1, 2].map(|axis| words[k + axis] as i32)));
-            (words[0]..end, Aabb { min: place(1), max: place(4) })
+            // What was not moved is where it was, next to a cell.
+            let cell = rest.lattice.cell_m();
+            (words[0]..end, Aabb { min: place(1) - cell, max: place(4) + cell })
         });
         let (tolerance_px, shortest_m) = (f64::from(stage.tolerance), f64::from(stage.shortest));
         Ok(Made {
@@ -369,3 +401,6 @@ impl layout::Refinement {
         Self::zeroed()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -25,7 +25,7 @@ mod opening;
 mod operator;
 pub mod refine;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use glam::{DMat3, DVec3};
 

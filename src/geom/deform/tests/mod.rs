@@ -12,7 +12,7 @@ use crate::geom::deform::{
 };
 
 /// A street with two corners, some 90 m.
-pub(super) fn street() -> Opening {
+pub(crate) fn street() -> Opening {
     let line = [(-30.0, -10.0), (0.0, 0.0), (14.0, 20.0), (40.0, 24.0)];
     Opening {
         line: line.map(|(x, y)| DVec2::new(x, y)).to_vec(),
@@ -24,12 +24,12 @@ pub(super) fn street() -> Opening {
     }
 }
 
-pub(super) fn vector(size: f64) -> impl Strategy<Value = DVec3> {
+pub(crate) fn vector(size: f64) -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-size..size).prop_map(DVec3::from)
 }
 
 /// Any operator, mild over some 20 m around zero.
-pub(super) fn operator() -> impl Strategy<Value = Operator> {
+pub(crate) fn operator() -> impl Strategy<Value = Operator> {
     let ends = || (-20.0..0.0, 2.0..20.0).prop_map(|(low, length): (f64, f64)| [low, low + length]);
     let factors = || prop::array::uniform2(0.4..1.8);
     prop_oneof![
@@ -50,14 +50,14 @@ pub(super) fn operator() -> impl Strategy<Value = Operator> {
     ]
 }
 
-pub(super) fn frame(far: f64) -> impl Strategy<Value = Frame> {
+pub(crate) fn frame(far: f64) -> impl Strategy<Value = Frame> {
     (vector(far), vector(1.0), -3.0..3.0).prop_map(|(pivot, axis, angle)| Frame {
         pivot,
         axes: DMat3::from_quat(DQuat::from_axis_angle(axis.normalize_or(DVec3::Z), angle)),
     })
 }
 
-pub(super) fn profile() -> impl Strategy<Value = Profile> {
+pub(crate) fn profile() -> impl Strategy<Value = Profile> {
     prop_oneof![
         (0.1..=0.5).prop_map(|border| Profile::Linear { border }),
         (0.1..=0.5).prop_map(|border| Profile::Smooth { border }),
@@ -70,7 +70,7 @@ pub(super) fn profile() -> impl Strategy<Value = Profile> {
     ]
 }
 
-pub(super) fn control() -> impl Strategy<Value = Control> {
+pub(crate) fn control() -> impl Strategy<Value = Control> {
     let band = (-30.0..0.0, 10.0..40.0, 1.0..9.0).prop_map(|(low, length, fade): (f64, f64, f64)| Band {
         low,
         high: low + length,
@@ -85,7 +85,7 @@ pub(super) fn control() -> impl Strategy<Value = Control> {
     prop_oneof![1 => Just(Control::Everywhere), 4 => plane]
 }
 
-pub(super) fn deformation(far: f64) -> impl Strategy<Value = Deformation> {
+pub(crate) fn deformation(far: f64) -> impl Strategy<Value = Deformation> {
     (frame(far), prop::collection::vec(operator(), 0..4), control()).prop_map(|(frame, chain, control)| Deformation {
         frame,
         space: Space::World,
@@ -94,12 +94,12 @@ pub(super) fn deformation(far: f64) -> impl Strategy<Value = Deformation> {
     })
 }
 
-pub(super) fn ready(deformation: Deformation) -> Deformer {
+pub(crate) fn ready(deformation: Deformation) -> Deformer {
     Deformer::new(deformation).expect("numbers that can be used")
 }
 
 /// Central differences; `None` at a kink, where two steps disagree.
-pub(super) fn difference(value: impl Fn(DVec3) -> DVec3, at: DVec3) -> Option<DMat3> {
+pub(crate) fn difference(value: impl Fn(DVec3) -> DVec3, at: DVec3) -> Option<DMat3> {
     let by = |step: f64| {
         let column = |axis: DVec3| (value(at + step * axis) - value(at - step * axis)) / (2.0 * step);
         DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
@@ -108,7 +108,7 @@ pub(super) fn difference(value: impl Fn(DVec3) -> DVec3, at: DVec3) -> Option<DM
     is_near(&fine, &coarse, 1e-5).then_some(fine)
 }
 
-pub(super) fn is_near(a: &DMat3, b: &DMat3, error: f64) -> bool {
+pub(crate) fn is_near(a: &DMat3, b: &DMat3, error: f64) -> bool {
     let size = 1.0 + b.to_cols_array().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
     (*a - *b).to_cols_array().iter().all(|d| d.abs() <= error * size)
 }
