@@ -4,9 +4,12 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::geom::{
-    Shape,
-    deform::{Control, ControlPlane, Deformation, Frame, Opening, Operator, Profile, Space, Texels},
+use crate::{
+    geom::{
+        Shape,
+        deform::{Control, ControlPlane, Deformation, Frame, Opening, Operator, Profile, Space, Texels},
+    },
+    lens::Occluders,
 };
 
 /// A corridor's half width over the reach of what opens it: all that it moves is in the corridor.
@@ -50,6 +53,10 @@ pub enum ControlProfile {
     /// The lightness of an image; its lower edge is where y begins.
     Image(PathBuf),
 }
+
+/// Why steps of city objects do not stand among others.
+pub const OBJECTS_ALONE: &str =
+    "heights and lower are about city objects: their lens has no shape, and no other kinds of steps";
 
 /// Of a rising border that nobody gave.
 pub const BORDER: f64 = 0.25;
@@ -96,6 +103,22 @@ pub enum Step {
         /// How many times as high houses along it are, > 0.
         height: f64,
     },
+    /// City objects as many times as high as a number of theirs says; those without it stay.
+    Heights {
+        /// The attribute that has the number; an object without it takes its parent's.
+        attribute: String,
+        /// Two numbers, ascending: what is below the first or above the last counts as that.
+        from: [f64; 2],
+        /// What heights are multiplied with there, > 0; between them as much in between.
+        to: [f64; 2],
+    },
+    /// Makes city objects lower that hide a point of interest, so that they do not (D4).
+    Lower {
+        /// Whom.
+        of: Occluders,
+        /// What their heights are multiplied with, > 0.
+        factor: f64,
+    },
     /// Raises what is far, as panoramas do; seen from the eye.
     Panorama {
         /// What is nearer stays.
@@ -127,9 +150,19 @@ impl Deform {
         }
     }
 
-    /// Whether it is about the eye and needs no focus area.
-    pub fn is_of_viewer(&self) -> bool {
-        self.steps.iter().any(|step| matches!(step, Step::Panorama { .. }))
+    /// Whether it is about the eye or about city objects, and needs no focus area.
+    pub fn needs_no_area(&self) -> bool {
+        self.is_of_objects() || self.steps.iter().any(|step| matches!(step, Step::Panorama { .. }))
+    }
+
+    /// Whether it changes the heights of city objects.
+    pub fn is_of_objects(&self) -> bool {
+        self.steps.iter().any(|step| matches!(step, Step::Heights { .. } | Step::Lower { .. }))
+    }
+
+    /// Whom it makes lower; of several steps, the first ones.
+    pub fn occluders(&self) -> Option<&Occluders> {
+        self.steps.iter().find_map(|step| if let Step::Lower { of, .. } = step { Some(of) } else { None })
     }
 
     /// What it is in the world; `area`: its focus area there; `image`: the texels of its control's image.
@@ -221,6 +254,7 @@ impl Deform {
                 },
                 Step::OpenStreet { .. } => return Err("open-street needs a corridor as its shape".to_owned()),
                 Step::Panorama { .. } => return Err("panorama is about the eye: it has no shape".to_owned()),
+                Step::Heights { .. } | Step::Lower { .. } => return Err(OBJECTS_ALONE.to_owned()),
             })
         };
         let chain = self.steps.iter().map(operator).collect::<Result<_, String>>()?;

@@ -214,7 +214,8 @@ impl Lens {
 
     /// Whom it looks for, if it is an occlusion lens.
     pub fn occluders(&self) -> Option<&Occluders> {
-        self.shapes.first().and_then(Focus::occluders)
+        let of_deform = || self.deform.as_ref().and_then(Deform::occluders);
+        self.shapes.first().and_then(Focus::occluders).or_else(of_deform)
     }
 }
 

@@ -7,14 +7,20 @@ use std::{
     sync::Arc,
 };
 
+use glam::DVec3;
+
 use crate::{
     city::CityModel,
     geom::{
         Aabb, Shape,
         deform::{CLEAR, Deformation, Deformer, Deformers, Fault, Frame, Proof, Texels},
     },
-    lens::{Deform, Focus, Lens, Placement, deform::Viewer},
-    render::placement::Eye,
+    lens::{Deform, Focus, Lens, Placement, deform::Viewer, solids::ShownCity},
+    render::{
+        heights::{Asked, Heights, Rule},
+        occlusion::Occlusion,
+        placement::Eye,
+    },
     scene::Scene,
     view::Camera,
 };
@@ -27,6 +33,8 @@ const MOST_TEXELS: u32 = 512;
 pub(super) struct KnownDeformations {
     strengths: Vec<(Deformation, Aabb, Used)>,
     images: Vec<(PathBuf, Texels)>,
+    /// The last rules of heights, and what they made of the city's.
+    heights: (Vec<Rule>, Arc<Heights>),
 }
 
 /// A deformation as it is used.
@@ -40,10 +48,36 @@ struct Used {
 /// The deformations of a picture, bottom first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SceneDeformations {
-    /// What they do.
-    pub deformers: Arc<Deformers>,
+    /// What they do to heights of objects, and then to all there is.
+    pub moved: Moved,
     /// Of those that would fold space, by lens: thousandths of its strength that are used.
     pub weakened: BTreeMap<u32, u32>,
+}
+
+/// How a city is shown: with other heights of objects, and then moved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Moved {
+    /// First.
+    pub heights: Arc<Heights>,
+    /// Then.
+    pub deformers: Arc<Deformers>,
+}
+
+impl Moved {
+    /// Whether all is where it was.
+    pub fn is_nothing(&self) -> bool {
+        self.heights.is_empty() && self.deformers.0.is_empty()
+    }
+
+    /// Where a place is shown; of an object's, given that object.
+    pub fn place(&self, object: Option<u32>, place: DVec3) -> DVec3 {
+        self.deformers.value(object.map_or(place, |object| self.heights.place(object, place)))
+    }
+
+    /// A box around all that a box of the city becomes.
+    pub fn bounds(&self, bounds: &Aabb) -> Aabb {
+        self.deformers.deformed_bounds(&self.heights.changed_bounds(bounds))
+    }
 }
 
 /// What a picture's deformations are found in.
@@ -54,6 +88,8 @@ pub(super) struct Stage<'a> {
     pub bounds: Aabb,
     pub camera: Camera,
     pub eye: &'a Eye,
+    pub city: ShownCity<'a>,
+    pub occlusion: &'a mut Occlusion,
 }
 
 impl KnownDeformations {
@@ -61,13 +97,24 @@ impl KnownDeformations {
     ///
     /// # Errors
     /// What a lens cannot do, with its place in the scene file.
-    pub fn of_scene(&mut self, stage: &Stage) -> Result<SceneDeformations, String> {
+    pub fn of_scene(&mut self, stage: &mut Stage) -> Result<SceneDeformations, String> {
         let mut found = SceneDeformations::default();
         let mut deformers = Deformers::default();
+        let mut rules = Vec::new();
         let mut used: Vec<(Deformation, Aabb)> = Vec::new();
         for (i, lens) in stage.scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
             let Some(deform) = &lens.deform else { continue };
             let wrong = |message: String| format!("[lens.{i}] {message}");
+            if deform.is_of_objects() {
+                let mut asked = Asked {
+                    city: stage.city,
+                    occlusion: &mut *stage.occlusion,
+                    pois: &stage.scene.pois,
+                    viewer: stage.eye.viewer(),
+                };
+                rules.extend(Rule::of_lens(i, &lens.name, deform, &mut asked));
+                continue;
+            }
             let Some(deformation) = self.placed(stage, lens, deform).map_err(wrong)? else { continue };
             let own = self.strength(&deformation, &stage.bounds).map_err(wrong)?;
             if own.strength < 1.0 {
@@ -80,7 +127,10 @@ impl KnownDeformations {
             used.push((deformation, stage.bounds));
         }
         self.strengths.retain(|(of, bounds, _)| used.contains(&(of.clone(), *bounds)));
-        found.deformers = Arc::new(deformers);
+        if self.heights.0 != rules {
+            self.heights = (rules.clone(), Arc::new(Heights::of_rules(&rules, stage.city)?));
+        }
+        found.moved = Moved { heights: self.heights.1.clone(), deformers: Arc::new(deformers) };
         Ok(found)
     }
 

@@ -18,10 +18,11 @@ use glam::{DVec3, IVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::{
+    city::{decode_normal, encode_normal},
     geom::{
         Aabb,
         deform::{
-            Deformers, Support,
+            Support,
             refine::{Limits, Refiner, Report, order},
         },
     },
@@ -29,9 +30,11 @@ use crate::{
     render::{
         city::{Chunk, CityBuffers, Section, SectionKind, provoking_corner},
         deform_words::Lattice,
+        deformations::Moved,
         deformed_edges::deformed_edges,
         edges::EdgeBuffers,
         frame::FrameInput,
+        heights::{Height, Heights},
         layout::{self, CityVertex},
         refinery::{LAYER_SHIFT, Made, Refinery, Rest, TURNED},
         renderer::{CityOnGpu, Renderer},
@@ -68,7 +71,7 @@ pub(super) struct Source {
 /// What a deformed city was made of.
 #[derive(Clone, Debug, PartialEq)]
 struct Of {
-    deformers: Arc<Deformers>,
+    moved: Moved,
     view: View,
     city: u64,
     /// Whether its edges are there.
@@ -78,7 +81,7 @@ struct Of {
 /// What deformations meet of the city, whatever the view.
 #[derive(Debug)]
 pub(super) struct Met {
-    deformers: Arc<Deformers>,
+    moved: Moved,
     city: u64,
     /// What each section of the city still draws.
     left: Arc<Vec<Vec<Chunk>>>,
@@ -118,19 +121,15 @@ impl Renderer {
     /// Makes the deformed city fit a frame; nothing is made where it does.
     pub(super) fn fit_deformed(&mut self, input: &FrameInput) -> Result<(), GpuError> {
         let Some(city) = &mut self.city else { return Ok(()) };
-        if input.deformers.0.is_empty() {
+        if input.moved.is_nothing() {
             // What was moved cast another shadow.
             if self.deformed.take().is_some() {
                 self.shadow_of = None;
             }
             return Ok(());
         }
-        let of = Of {
-            deformers: input.deformers.clone(),
-            view: input.view,
-            city: self.city_number,
-            edges: city.edges.is_some(),
-        };
+        let of =
+            Of { moved: input.moved.clone(), view: input.view, city: self.city_number, edges: city.edges.is_some() };
         if self.deformed.as_ref().is_some_and(|deformed| deformed.of == of) {
             return Ok(());
         }
@@ -142,7 +141,7 @@ impl Renderer {
         if let (None, Some(edges)) = (&city.edge_sources, &city.edges) {
             city.edge_sources = Some(bytemuck::pod_collect_to_vec(&self.gpu.read_buffer(&edges.instances)?));
         }
-        let is_met = |met: &Met| met.deformers == of.deformers && met.city == of.city;
+        let is_met = |met: &Met| met.moved == of.moved && met.city == of.city;
         let met = match self.met.take().filter(is_met) {
             Some(met) => met,
             None => Met::new(&self.gpu, city, &of)?,
@@ -194,13 +193,17 @@ impl Renderer {
         let view = of.view;
         let pixels_per_m = move |place: DVec3| pixels_per_m(&view, place);
         let refiner = Refiner {
-            deformers: &of.deformers,
+            deformers: &of.moved.deformers,
             pixels_per_m: &pixels_per_m,
             tolerance_px: TOLERANCE_PX,
             shortest_m: Limits::default().shortest_m,
         };
         let of_city = city.edges.as_ref().zip(city.edge_sources.as_ref());
-        let edges = of_city.map(|(edges, all)| deformed_edges(&self.gpu, edges, all, &refiner)).transpose()?;
+        let edges = of_city
+            .map(|(edges, all)| {
+                deformed_edges(&self.gpu, (edges, all), &refiner, &raised_of(&city.buffers, &of.moved.heights))
+            })
+            .transpose()?;
         let city =
             CityOnGpu { group: city.group.clone(), images, buffers, edges: None, sources: None, edge_sources: None };
         Ok(Some(Deformed { of, left: met.left.clone(), city, edges, figures }))
@@ -254,6 +257,7 @@ impl Met {
         let sections = || city.buffers.sections.iter().zip(city.sources.iter().flatten());
         let bounds = city.buffers.bounds;
         let supports: Vec<Support> = of
+            .moved
             .deformers
             .supports()
             .map(|support| {
@@ -261,6 +265,8 @@ impl Met {
                 support.grown((SUPPORT_ERROR * farthest).max(LEAST_SUPPORT_ERROR_M))
             })
             .collect();
+        let raised = raised_of(&city.buffers, &of.moved.heights);
+        let reach = Reach { supports: &supports, heights: &of.moved.heights, raised: &raised };
         let has_textures = sections().any(|(section, _)| matches!(section.kind, SectionKind::Textured { .. }));
         let (mut left, mut met, mut chunks) = (Vec::new(), Vec::new(), Vec::new());
         let mut all = MetPart::default();
@@ -273,7 +279,7 @@ impl Met {
             let parts: Vec<MetPart> = section
                 .chunks
                 .par_chunks(CHUNKS_PER_PART)
-                .map(|chunks| MetPart::of(chunks, source, &supports, own_layer, has_textures))
+                .map(|chunks| MetPart::of(chunks, source, &reach, own_layer, has_textures))
                 .collect();
             let first = chunks.len();
             let mut own_left = Vec::new();
@@ -292,20 +298,37 @@ impl Met {
                 met.push((section.kind, first..chunks.len()));
             }
         }
-        let reach = bounds.union(of.deformers.deformed_bounds(&bounds));
+        let reach = bounds.union(of.moved.bounds(&bounds));
         let is_textured = met.iter().any(|(kind, _)| matches!(kind, SectionKind::Textured { .. }));
         let texcoords = is_textured.then_some(&all.texcoords[..]);
-        let rest = Rest::new(gpu, (&all.corners, &all.bits), texcoords, firsts, &of.deformers, &reach)?;
-        Ok(Self { deformers: of.deformers.clone(), city: of.city, left: Arc::new(left), sections: met, chunks, rest })
+        let rest = Rest::new(gpu, (&all.corners, &all.bits), texcoords, firsts, &of.moved.deformers, &reach)?;
+        Ok(Self { moved: of.moved.clone(), city: of.city, left: Arc::new(left), sections: met, chunks, rest })
     }
 }
 
+/// What is met: what a support reaches, and objects of another height.
+struct Reach<'a> {
+    supports: &'a [Support],
+    heights: &'a Heights,
+    raised: &'a [Option<Height>],
+}
+
+/// Of each surface of the table what its object's height becomes; none where no height does.
+fn raised_of(city: &CityBuffers, heights: &Heights) -> Vec<Option<Height>> {
+    if heights.is_empty() {
+        return Vec::new();
+    }
+    city.surface_table.iter().map(|surface| heights.of(surface.object).copied()).collect()
+}
+
 impl MetPart {
-    fn of(chunks: &[Chunk], source: &Source, supports: &[Support], layer: u32, has_textures: bool) -> Self {
+    fn of(chunks: &[Chunk], source: &Source, reach: &Reach, layer: u32, has_textures: bool) -> Self {
         let mut part = Self::default();
         for chunk in chunks {
-            let near: Vec<&Support> = supports.iter().filter(|support| support.reaches(&chunk.bounds)).collect();
-            if near.is_empty() {
+            let may_be_raised = reach.heights.reaches(&chunk.bounds);
+            let box_of_all = if may_be_raised { reach.heights.changed_bounds(&chunk.bounds) } else { chunk.bounds };
+            let near: Vec<&Support> = reach.supports.iter().filter(|support| support.reaches(&box_of_all)).collect();
+            if near.is_empty() && !may_be_raised {
                 part.left.push(chunk.clone());
                 continue;
             }
@@ -314,10 +337,12 @@ impl MetPart {
             for start in chunk.range.clone().step_by(3) {
                 let at = start as usize;
                 let corners = [source.indices[at], source.indices[at + 1], source.indices[at + 2]];
-                let places = corners.map(|i| source.place(i));
-                if near.iter().any(|support| support.meets_triangle(&places)) {
+                let surface = source.vertices[corners[source.provoking] as usize].surface as usize;
+                let raised = reach.raised.get(surface).copied().flatten();
+                let places = corners.map(|i| raised.map_or(source.place(i), |height| height.place(source.place(i))));
+                if raised.is_some() || near.iter().any(|support| support.meets_triangle(&places)) {
                     close(&mut run, chunk, source, &mut part.left);
-                    part.add(source, corners, &places, layer, has_textures);
+                    part.add(source, corners, &places, raised, (layer, has_textures));
                 } else {
                     run = Some(run.map_or(start, |run: Range<u32>| run.start)..start + 3);
                 }
@@ -331,14 +356,30 @@ impl MetPart {
         part
     }
 
-    fn add(&mut self, source: &Source, corners: [u32; 3], places: &[DVec3; 3], layer: u32, has_textures: bool) {
+    fn add(
+        &mut self,
+        source: &Source,
+        corners: [u32; 3],
+        places: &[DVec3; 3],
+        raised: Option<Height>,
+        (layer, has_textures): (u32, bool),
+    ) {
         let mut sorted = [0, 1, 2];
         sorted.sort_by(|&i, &j| order(places[i], places[j]));
         let is_turned = matches!(sorted, [0, 2, 1] | [1, 0, 2] | [2, 1, 0]);
         let provoking = sorted.iter().position(|&i| i == source.provoking).unwrap_or(0) as u32;
         self.bits.push(provoking | if is_turned { TURNED } else { 0 } | layer << LAYER_SHIFT);
-        for i in sorted.map(|i| corners[i] as usize) {
-            self.corners.push(source.vertices[i]);
+        for (i, place) in sorted.map(|i| (corners[i] as usize, places[i])) {
+            let own = source.vertices[i];
+            self.corners.push(match raised {
+                None => own,
+                Some(height) => {
+                    let origin = origin_of(place);
+                    let offset = (place - origin).as_vec3().to_array();
+                    let normal = encode_normal(height.normal(decode_normal(own.normal)));
+                    CityVertex::new(origin.as_ivec3(), own.surface, offset, normal)
+                }
+            });
             if has_textures {
                 self.texcoords.push(source.texcoords.get(i).copied().unwrap_or_default());
             }

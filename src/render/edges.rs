@@ -57,6 +57,11 @@ impl Edge {
         ],
     };
 
+    /// The number of the surface that it is drawn for, in the table; [`NO_SURFACE`] for none.
+    pub(super) fn surface_number(&self) -> u32 {
+        self.surface & NO_SURFACE
+    }
+
     /// An edge of a tile at `origin`, whole metres, where the table of surfaces has its faces under `surfaces`.
     pub fn new(edge: &edges::Edge, origin: IVec3, surfaces: [u32; 2]) -> Self {
         Self {

@@ -26,13 +26,14 @@ use std::{ops::Range, sync::Arc};
 use glam::DVec2;
 
 use crate::{
-    geom::{Aabb, deform::Deformers},
+    geom::Aabb,
     gpu::{GpuError, Slot, Timer},
     render::{
         cells::{Detail, Details},
         city::{CityBuffers, Section, SectionKind, draws_of},
         city_passes::draw_ranges,
         cut::Cuts,
+        deformations::Moved,
         eye::{PictureTile, view_uniform},
         filters,
         frame_keys::ShadeKeys,
@@ -105,7 +106,7 @@ pub struct FrameInput<'a> {
     /// How many there will be.
     pub samples: u32,
     /// What moves the city.
-    pub deformers: &'a Arc<Deformers>,
+    pub moved: &'a Moved,
     /// What is drawn over the picture, after its last sample.
     pub furniture: &'a Furniture,
     /// How many triangles the city may take, where it may be simplified to that: at least a quarter of it is for what is no terrain.

@@ -26,7 +26,7 @@ use crate::{
         body::Leaf,
         city::Shown,
         content_cities::{self, ContentCities, SceneContents},
-        deformations::{self, KnownDeformations, SceneDeformations},
+        deformations::{self, KnownDeformations, Moved, SceneDeformations},
         deformed::DeformedFigures,
         eye::PictureTile,
         footprints::{self, OwnFootprints},
@@ -413,7 +413,7 @@ impl Studio {
 
     fn view(&self, scene: &Scene, size: [u32; 2], prepared: &Prepared) -> Result<View, CameraError> {
         let own = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let own = prepared.deformations.deformers.deformed_bounds(&own);
+        let own = prepared.deformations.moved.bounds(&own);
         let drawn = own.union(prepared.contents.bounds(&own, &prepared.volumes));
         View::new(self.camera(scene, size), size, &drawn)
     }
@@ -506,12 +506,20 @@ impl Studio {
         Ok(Prepared { volumes, solids, operations, contents, deformations })
     }
 
+    /// How the city is shown in a picture of a scene of this size, in the world.
+    ///
+    /// # Errors
+    /// What a deformation lens cannot do.
+    pub fn moved(&self, scene: &Scene, size: [u32; 2]) -> Result<Moved, RenderError> {
+        self.deformations(&scene.drawn().scene, size).map(|found| found.moved)
+    }
+
     /// What moves the city in a picture of a scene of this size, in the world; none where nothing does.
     ///
     /// # Errors
     /// What a deformation lens cannot do.
     pub fn deformers(&self, scene: &Scene, size: [u32; 2]) -> Result<Arc<Deformers>, RenderError> {
-        self.deformations(scene, size).map(|found| found.deformers)
+        self.moved(scene, size).map(|moved| moved.deformers)
     }
 
     /// What the scene's lenses move, in a picture of this size.
@@ -521,9 +529,18 @@ impl Studio {
         }
         let camera = self.camera(scene, size);
         let bounds = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let stage = deformations::Stage { scene, model: &self.model, bounds, camera, eye: &Eye::new(&camera)? };
+        let mut occlusion = self.occlusion();
+        let mut stage = deformations::Stage {
+            scene,
+            model: &self.model,
+            bounds,
+            camera,
+            eye: &Eye::new(&camera)?,
+            city: self.shown(),
+            occlusion: &mut occlusion,
+        };
         let mut known = self.known_deformations.lock().unwrap_or_else(PoisonError::into_inner);
-        known.of_scene(&stage).map_err(RenderError::Scene)
+        known.of_scene(&mut stage).map_err(RenderError::Scene)
     }
 
     /// What lenses show in themselves, in a picture of this size.
@@ -785,7 +802,7 @@ fn input<'a>(
         masks: request.statistics || request.aovs.lens_mask,
         sample: 0,
         samples: request.samples.max(1),
-        deformers: &prepared.deformations.deformers,
+        moved: &prepared.deformations.moved,
         furniture: &furniture::NONE,
         most_triangles: None,
     }

@@ -3,10 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    geom::{deform::Deformers, outline},
+    geom::outline,
     lens::{BestView, Lens, Placement, best_view::LocalView, color::Srgb},
     overlay::Focus,
-    render::picture::Studio,
+    render::{deformations::Moved, picture::Studio},
     scene::{Overlay, Poi, PoiPlace, Scene, anchor::anchor, overlay::LineEnd},
     view::View,
 };
@@ -81,29 +81,46 @@ pub(super) fn place(studio: &Studio, scene: &Scene, view: &View, poi: &Poi, to_a
         PoiPlace::Object(id) => studio.middle(id).ok().or_else(anchor)?,
         PoiPlace::At(_) | PoiPlace::On(_) => anchor()?,
     };
-    let deformers = studio.deformers(scene, view.size).ok()?;
+    let moved = studio.moved(scene, view.size).ok()?;
     let heights_m = match &poi.place {
         PoiPlace::Object(id) => studio.model.find_object(id).map(|object| studio.model.family_bounds(object)),
         PoiPlace::At(_) | PoiPlace::On(_) => None,
     };
     let heights_m = heights_m.filter(|bounds| !bounds.is_empty()).map_or([at.z; 2], |b| [b.min.z, b.max.z]);
-    // Where they are shown.
-    let heights_m = heights_m.map(|z| deformers.value(at.truncate().extend(z)).z);
-    let at = deformers.value(at);
+    // Where they are shown; a middle of several parts goes with the first that has a height of its own.
+    let object = match &poi.place {
+        PoiPlace::Object(id) => studio.model.find_object(id).map(|object| raised_part(studio, &moved, object)),
+        PoiPlace::At(_) | PoiPlace::On(_) => None,
+    };
+    let heights_m = heights_m.map(|z| moved.place(object, at.truncate().extend(z)).z);
+    let at = moved.place(object, at);
     let [w, h] = view.size.map(f64::from);
     let is_seen = |p: &DVec3| p.z > view.camera.near_m && (0.0..=w).contains(&p.x) && (0.0..=h).contains(&p.y);
     let pixel = view.pixel(at).filter(is_seen).map(|p| p.truncate());
     let focus = pixel.map(|pixel| match &poi.place {
-        PoiPlace::Object(id) if to_area => area(studio, view, &deformers, id).map_or(Focus::Point(pixel), Focus::Area),
+        PoiPlace::Object(id) if to_area => area(studio, view, &moved, id).map_or(Focus::Point(pixel), Focus::Area),
         _ => Focus::Point(pixel),
     });
     let distance = at.distance(view.camera.eye);
     Some(Place { focus, at, heights_m, direction: direction(view, at), distance })
 }
 
+/// The part of an object whose height is changed, or the object.
+fn raised_part(studio: &Studio, moved: &Moved, object: u32) -> u32 {
+    let mut left = vec![object];
+    while let Some(part) = left.pop() {
+        if moved.heights.of(part).is_some() {
+            return part;
+        }
+        // Children follow their parents in every city that is loaded.
+        left.extend(studio.model.objects[part as usize].children.iter().copied().filter(|child| *child > part));
+    }
+    object
+}
+
 /// The outline of an object and its parts in the picture: the convex hull of their corners; `None` where some of it is
 /// not before the eye.
-fn area(studio: &Studio, view: &View, deformers: &Deformers, id: &str) -> Option<Vec<DVec2>> {
+fn area(studio: &Studio, view: &View, moved: &Moved, id: &str) -> Option<Vec<DVec2>> {
     let model = &*studio.model;
     let root = model.find_object(id)?;
     let roots = model.roots();
@@ -116,7 +133,7 @@ fn area(studio: &Studio, view: &View, deformers: &Deformers, id: &str) -> Option
         }
         for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
             for vertex in tile.vertices.clone() {
-                let shown = deformers.value(model.position(tile, vertex));
+                let shown = moved.place(Some(geometry.object), model.position(tile, vertex));
                 let pixel = view.pixel(shown).filter(|p| p.z > view.camera.near_m)?;
                 corners.push([pixel.x, pixel.y].map(|v| (v * 256.0).round().clamp(-1e8, 1e8) as i64));
             }

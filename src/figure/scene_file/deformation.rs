@@ -5,13 +5,16 @@ use glam::DVec2;
 use crate::{
     figure::scene_file::{
         check::{Checker, Fields},
+        focus::Reader,
         keys::{FAR_M, Key, Kind, Table, key},
         node::Node,
+        occlusion,
         paths::Options,
+        test_keys::CHOICE,
         write::{degrees, list, number, point, quoted},
     },
     lens::{
-        deform::{BORDER, ControlProfile, Deform, Step},
+        deform::{BORDER, ControlProfile, Deform, OBJECTS_ALONE, Step},
         nearest::did_you_mean,
     },
 };
@@ -90,6 +93,86 @@ pub const STEPS: &[Table] = &[
         ],
     },
     Table {
+        name: "heights",
+        doc: "Of city objects, without a shape: each is as many times as high as a number of its says; those without it stay.",
+        keys: &[
+            step_kind("\"heights\""),
+            key(
+                "attribute",
+                Kind::Text,
+                "",
+                "",
+                "The attribute that has the number; an object without it takes its parent's.",
+                "\"yearOfConstruction\"",
+            ),
+            key(
+                "from",
+                Kind::PlanPoint,
+                "",
+                "",
+                "Two numbers, ascending; what is beyond them counts as they do.",
+                "[1900.0, 2020.0]",
+            ),
+            key(
+                "to",
+                Kind::PlanPoint,
+                "",
+                "",
+                "How many times as high objects with these numbers are, 0.01 to 100; between them as much in between.",
+                "[1.0, 4.0]",
+            ),
+        ],
+    },
+    Table {
+        name: "lower",
+        doc: "Of city objects, without a shape: those that hide a point of interest are made lower. Who hides it is asked of the city as it is.",
+        keys: &[
+            step_kind("\"lower\""),
+            key("factor", FACTOR, "0.15", "", "How many times as high they are.", "0.1"),
+            key("poi", Kind::Names, "none", "", "As of an occlusion lens: what shall be seen.", "\"hall\""),
+            key(
+                "test",
+                Kind::Test,
+                "{ kind = \"exact\" }",
+                "",
+                "Who hides something; see Detection tests.",
+                "{ kind = \"exact\", coverage = 0.05 }",
+            ),
+            key(
+                "force",
+                Kind::Table(&CHOICE),
+                "none",
+                "",
+                "City objects that are lowered whatever the test says.",
+                "{ ids = [\"shed\"] }",
+            ),
+            key(
+                "forbid",
+                Kind::Table(&CHOICE),
+                "none",
+                "",
+                "City objects that stay as they are.",
+                "{ ids = [\"town-hall\"] }",
+            ),
+            key(
+                "margin",
+                Kind::Number { min: 0.0, max: 1000.0 },
+                "1.0",
+                "metres",
+                "In animations, as of an occlusion lens.",
+                "5.0",
+            ),
+            key(
+                "fade",
+                Kind::Number { min: 0.0, max: 60.0 },
+                "0.3",
+                "seconds",
+                "In animations: how long it takes to sink or to rise.",
+                "1.0",
+            ),
+        ],
+    },
+    Table {
         name: "panorama",
         doc: "Of the eye, without a shape: raises what is far, so that it is seen as on a map.",
         keys: &[
@@ -159,11 +242,11 @@ pub const CONTROL: Table = Table {
 pub(super) const OWN: [&str; 3] = ["deform", "control", "strength"];
 
 /// The steps of a deformation; what is wrong is noted.
-pub(super) fn steps(checker: &mut Checker, fields: &Fields) -> Vec<Step> {
+pub(super) fn steps(reader: &mut Reader, fields: &Fields) -> Vec<Step> {
     let Some(nodes) = fields.node("deform").and_then(Node::list) else {
         if !fields.given("deform") {
             let message = "is missing: what the lens does with space; for example deform = [{ kind = \"twist\", angle_deg = 90.0 }]";
-            checker.note(&fields.place, "deform", fields.place.line, message);
+            reader.checker.note(&fields.place, "deform", fields.place.line, message);
         }
         return Vec::new();
     };
@@ -177,13 +260,47 @@ pub(super) fn steps(checker: &mut Checker, fields: &Fields) -> Vec<Step> {
             let hint = did_you_mean(word.unwrap_or_default(), all.clone());
             let line = node.entry("kind").map_or(node.line, |kind| kind.line);
             let message = format!("must be one of {}, is {what}{hint}", all.collect::<Vec<_>>().join(", "));
-            checker.note(&place, "kind", line, message);
+            reader.checker.note(&place, "kind", line, message);
             continue;
         };
-        let own = checker.fields(node, table, &[], place);
-        steps.extend(step(checker, table.name, &own));
+        let own = reader.checker.fields(node, table, &[], place);
+        if table.name == "lower" {
+            let factor = own.number("factor").unwrap_or(LOWERED);
+            steps.push(Step::Lower { of: occlusion::read(reader, &own), factor });
+        } else {
+            steps.extend(step(reader.checker, table.name, &own));
+        }
+    }
+    let of_objects = |step: &&Step| matches!(step, Step::Heights { .. } | Step::Lower { .. });
+    let count = steps.iter().filter(of_objects).count();
+    if count > 0 && (count < steps.len() || fields.given("shape") || fields.given("shapes")) {
+        reader.checker.note(&fields.place, "deform", fields.line("deform"), OBJECTS_ALONE.to_owned());
     }
     steps
+}
+
+/// How many times as high occluders are, where nobody says so.
+const LOWERED: f64 = 0.15;
+
+/// What heights are multiplied with between two numbers.
+fn heights(checker: &mut Checker, own: &Fields) -> Option<Step> {
+    let pair = |key: &str| own.node(key).and_then(Node::numbers::<2>);
+    let (attribute, from, to) = (own.text("attribute")?.to_owned(), pair("from")?, pair("to")?);
+    let shown = |pair: [f64; 2]| format!("[{}, {}]", number(pair[0]), number(pair[1]));
+    let range = 1.0 / MOST_STRETCHED..=MOST_STRETCHED;
+    let is_fine = |f: &f64| range.contains(f);
+    let wrong = if from[0] >= from[1] {
+        Some(("from", format!("must be two numbers, ascending, is {}", shown(from))))
+    } else if !to.iter().all(is_fine) {
+        Some(("to", format!("must be two numbers from 0.01 to 100, is {}", shown(to))))
+    } else {
+        None
+    };
+    if let Some((key, message)) = wrong {
+        checker.note(&own.place, key, own.line(key), message);
+        return None;
+    }
+    Some(Step::Heights { attribute, from, to })
 }
 
 fn step(checker: &mut Checker, word: &str, own: &Fields) -> Option<Step> {
@@ -209,6 +326,7 @@ fn step(checker: &mut Checker, word: &str, own: &Fields) -> Option<Step> {
             aside: own.number("aside").unwrap_or(0.0),
             height: own.number("height").unwrap_or(1.0),
         },
+        "heights" => heights(checker, own)?,
         _ => {
             let (near, far, angle) = (own.number("near")?, own.number("far")?, angle()?);
             if far <= near {
@@ -263,6 +381,18 @@ fn step_written(step: &Step) -> String {
             number(*aside),
             number(*height)
         ),
+        Step::Heights { attribute, from, to } => format!(
+            "kind = \"heights\", attribute = {}, from = [{}, {}], to = [{}, {}]",
+            quoted(attribute),
+            number(from[0]),
+            number(from[1]),
+            number(to[0]),
+            number(to[1])
+        ),
+        Step::Lower { of, factor } => {
+            let own = occlusion::occluders_written(of).into_iter().map(|(key, value)| format!(", {key} = {value}"));
+            format!("kind = \"lower\", factor = {}{}", number(*factor), own.collect::<String>())
+        }
         Step::Panorama { near, far, angle } => format!(
             "kind = \"panorama\", near = {}, far = {}, angle_deg = {}",
             number(*near),

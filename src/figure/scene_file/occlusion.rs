@@ -141,7 +141,11 @@ fn unit(v: DVec3) -> Option<DVec3> {
 
 /// The keys of a lens that looks for occluders, but for its rendering.
 pub(super) fn written(lens: &Lens) -> Vec<(&'static str, String)> {
-    let Some(of) = lens.occluders() else { return Vec::new() };
+    lens.shapes.first().and_then(Focus::occluders).map_or_else(Vec::new, occluders_written)
+}
+
+/// The keys of whom to look for.
+pub(super) fn occluders_written(of: &Occluders) -> Vec<(&'static str, String)> {
     let mut keys = Vec::new();
     match &of.pois[..] {
         [] => {}

@@ -248,7 +248,7 @@ impl<'o> SceneReader<'o> {
         let is_occlusion = kind == LensKind::Occlusion;
         let best_view = self.best_view(fields, kind);
         let deform = self.deform(fields, kind);
-        let needs_shape = deform.as_ref().is_none_or(|deform| !deform.is_of_viewer());
+        let needs_shape = deform.as_ref().is_none_or(|deform| !deform.needs_no_area());
         let mut shapes = self.shapes(fields, needs_shape && !is_occlusion && !kind.has_overlay());
         let (effects, of_effects) = self.effects(fields, "effects", true);
         let render = is_occlusion.then(|| self.rendering(fields, &effects));
@@ -403,7 +403,8 @@ impl<'o> SceneReader<'o> {
             }
             return None;
         }
-        let steps = deformation::steps(&mut self.checker, fields);
+        let (checker, options, lacks_data) = (&mut self.checker, self.options, &mut self.lacks_data);
+        let steps = deformation::steps(&mut Reader { checker, options, lacks_data }, fields);
         let control = fields.node("control").and_then(|node| {
             let empty = Node::empty_table(node.line);
             let table = if node.text().is_some() { &empty } else { node };

@@ -329,6 +329,9 @@ fn deforms() -> impl Strategy<Value = Deform> {
             angle: (f64::from(tenths) / 10.0).to_radians()
         }),
     ];
+    let heights = ("[a-z]{1,5}", -9.0..9.0f64, 0.1..9.0f64, factor(), factor())
+        .prop_map(|(attribute, low, more, a, b)| Step::Heights { attribute, from: [low, low + more], to: [a, b] });
+    let lower = (occluded(), factor()).prop_map(|((of, ..), factor)| Step::Lower { of, factor });
     let control = prop_oneof![
         (0.01..=0.5f64).prop_map(|border| ControlProfile::Linear { border }),
         Just(ControlProfile::Smooth { border: BORDER }),
@@ -338,7 +341,11 @@ fn deforms() -> impl Strategy<Value = Deform> {
         (0.0..0.5f64, 0.51..=1.0f64).prop_map(|(inner, outer)| ControlProfile::Ring { inner, outer }),
         "[a-zß]{1,6}[.]png".prop_map(|file| ControlProfile::Image(file.into())),
     ];
-    (prop::collection::vec(step, 1..4), prop::option::of(control), prop_oneof![Just(1.0), 0.0..=1.0f64])
+    let steps = prop_oneof![
+        4 => prop::collection::vec(step, 1..4),
+        1 => prop::collection::vec(prop_oneof![heights, lower], 1..3),
+    ];
+    (steps, prop::option::of(control), prop_oneof![Just(1.0), 0.0..=1.0f64])
         .prop_map(|(steps, control, strength)| Deform { steps, control, strength })
 }
 
