@@ -145,6 +145,7 @@ mod tests {
             sprite: None,
             border: None,
             keeps_shadows: false,
+            at_rest: false,
             section: None,
         }
     }

@@ -69,6 +69,8 @@ pub struct Lens {
     pub border: Option<Border>,
     /// Whether what it takes away, sees through or replaces still casts the shadow that it has without the lens.
     pub keeps_shadows: bool,
+    /// Whether its focus area is of the city at rest and goes with what deformations move, or stands where it is (L10).
+    pub at_rest: bool,
     /// The colour, sRGB 0..1, of the sections through closed shells where it ends; `None`: what is cut is hollow.
     pub section: Option<[f32; 3]>,
 }
@@ -92,6 +94,7 @@ impl Lens {
             sprite: None,
             border: None,
             keeps_shadows: false,
+            at_rest: false,
             section: None,
         }
     }

@@ -19,6 +19,10 @@ use crate::{
     },
     geom::{
         Aabb, Volume,
+        deform::{
+            Deformers,
+            refine::{Limits, refined},
+        },
         shape::{
             Hull, Mesh, Motion, PlacedSolid, ShapeError, Sightlines, Solid,
             solid::{self, Bitmap},
@@ -41,6 +45,7 @@ const SAME_M: f64 = 1.0 / 2048.0;
 pub struct Solids {
     made: Vec<Made>,
     hulls: Vec<MadeOfHull>,
+    moved: Vec<MadeByMoving>,
     sprites: Vec<ReadSprite>,
 }
 
@@ -60,6 +65,23 @@ struct MadeOfHull {
     solid: Arc<Solid>,
     is_wanted: bool,
 }
+
+/// A volume that deformations moved.
+#[derive(Debug)]
+struct MadeByMoving {
+    from: Volume,
+    deformers: Arc<Deformers>,
+    /// `None`: rounding leaves nothing of it.
+    placed: Option<PlacedSolid>,
+    is_wanted: bool,
+}
+
+/// How far the surface of a moved volume may be from where it should be, by its largest side.
+const MOVED_ERROR: f64 = 1.0 / 1024.0;
+/// Sides of round volumes that are moved.
+const MOVED_SEGMENTS: u32 = 96;
+/// Faces of one.
+const MOVED_FACES: usize = 1 << 17;
 
 #[derive(Debug)]
 struct Made {
@@ -184,8 +206,31 @@ impl Solids {
         Some(PlacedSolid { solid: made.solid.clone(), rotation: DQuat::IDENTITY, at })
     }
 
+    /// A volume where deformations take it, as a solid; `None` where rounding leaves nothing of it.
+    ///
+    /// # Errors
+    /// A volume without an end, or without an inside.
+    pub fn moved(&mut self, volume: &Volume, deformers: &Arc<Deformers>) -> Result<Option<PlacedSolid>, &'static str> {
+        if !volume.is_bounded() || matches!(volume, Volume::Flat(_)) {
+            return Err(
+                "a focus area of the city at rest (space = \"rest\") needs an inside with an end: flat ones have none",
+            );
+        }
+        let is_same = |made: &MadeByMoving| made.from == *volume && made.deformers == *deformers;
+        let at = self.moved.iter().position(is_same).unwrap_or_else(|| {
+            let placed = moved_solid(volume, deformers);
+            let made = MadeByMoving { from: volume.clone(), deformers: deformers.clone(), placed, is_wanted: true };
+            self.moved.push(made);
+            self.moved.len() - 1
+        });
+        self.moved[at].is_wanted = true;
+        Ok(self.moved[at].placed.clone())
+    }
+
     /// Drops what was not asked for since the last time.
     pub fn forget_others(&mut self) {
+        self.moved.retain(|m| m.is_wanted);
+        self.moved.iter_mut().for_each(|m| m.is_wanted = false);
         self.hulls.retain(|m| m.is_wanted);
         self.hulls.iter_mut().for_each(|m| m.is_wanted = false);
         self.sprites.retain(|s| s.is_wanted);
@@ -193,6 +238,21 @@ impl Solids {
         self.made.retain(|m| m.is_wanted);
         self.made.iter_mut().for_each(|m| m.is_wanted = false);
     }
+}
+
+/// The surface of a volume, fine enough to follow deformations, where they take it.
+fn moved_solid(volume: &Volume, deformers: &Deformers) -> Option<PlacedSolid> {
+    let Mesh { points, triangles } = volume.surface_mesh(MOVED_SEGMENTS);
+    let tolerance_m = MOVED_ERROR * volume.bounds().size().max_element();
+    let limits = Limits { triangles: MOVED_FACES, ..Limits::default() };
+    let fine = refined(&points, &triangles, deformers, &|_| 1.0, tolerance_m, limits);
+    let kept = fine.kept.iter().map(|&i| triangles[i as usize].map(|k| points[k as usize]));
+    let moved = fine.triangles.iter().map(|corners| corners.map(|i| fine.vertices[i as usize].shown));
+    let corners: Vec<DVec3> = kept.chain(moved).flatten().collect();
+    let indices = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let at = Aabb::from_points(corners.iter().copied()).center().round();
+    let solid = Solid::new(&[Mesh { points: corners, triangles: indices }], at).ok()?;
+    Some(PlacedSolid { solid: Arc::new(solid), rotation: DQuat::IDENTITY, at })
 }
 
 /// The solid of a focus area, and where its origin is; `None` where it has no body.

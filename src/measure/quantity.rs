@@ -33,6 +33,12 @@ pub enum Quantity {
     StartMs,
     /// Graphics memory beside the city, MiB.
     Memory,
+    /// Triangles of what is deformed.
+    Triangles,
+    /// How far its edges are from where they should be at worst, pixels.
+    Chord,
+    /// The same in the median of those that are bent.
+    MedianChord,
 }
 
 impl Quantity {
@@ -55,6 +61,9 @@ impl Quantity {
             Self::Ms => "time (ms)".into(),
             Self::StartMs => "start-up (ms)".into(),
             Self::Memory => "graphics memory (MiB)".into(),
+            Self::Triangles => "triangles of what is deformed".into(),
+            Self::Chord => "largest chord error (px)".into(),
+            Self::MedianChord => "median chord error (px)".into(),
         }
     }
 
@@ -75,6 +84,9 @@ impl Quantity {
             Self::MeanError => row.difference.against_f64.map_or(f64::NAN, |against| against.mean),
             Self::Ratio | Self::Ms | Self::StartMs => self.estimate(row).map_or(f64::NAN, |e| e.median),
             Self::Memory => row.gpu_bytes as f64 / f64::from(1 << 20),
+            Self::Triangles => row.refined.map_or(f64::NAN, |refined| refined.triangles as f64),
+            Self::Chord => row.refined.map_or(f64::NAN, |refined| refined.chords_px[1]),
+            Self::MedianChord => row.refined.map_or(f64::NAN, |refined| refined.chords_px[0]),
         }
     }
 

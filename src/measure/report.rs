@@ -132,6 +132,11 @@ fn columns(measured: &Measurement) -> Vec<Column> {
             columns.push((heading.to_owned(), Box::new(move |row: &Row| small(quantity.of(row))), false));
         }
     }
+    if measured.rows.iter().any(|row| row.refined.is_some()) {
+        columns.push(figure("triangles", Quantity::Triangles));
+        columns.push(figure("chord, median px", Quantity::MedianChord));
+        columns.push(figure("chord, largest px", Quantity::Chord));
+    }
     columns.push(estimate("time, ms", Quantity::Ms));
     columns.push(estimate("time / plain frame", Quantity::Ratio));
     if measured.topic.restarts {

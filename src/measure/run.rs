@@ -85,8 +85,19 @@ pub struct Row {
     pub start_ms: Option<Estimate>,
     /// What its first frame allocated on the graphics card, bytes; all of it is held at once.
     pub gpu_bytes: u64,
+    /// What deformations made of the city.
+    pub refined: Option<Refined>,
     /// Whether nothing it may be compared with beats it.
     pub is_pareto: bool,
+}
+
+/// What deformations made of the city in a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refined {
+    /// How many.
+    pub triangles: u64,
+    /// How far its edges are from where they should be, pixels: the median of those that are bent, and the largest.
+    pub chords_px: [f64; 2],
 }
 
 /// Measures a topic; `watch` hears how many of how many steps are done.
@@ -121,7 +132,8 @@ pub fn measure(
         rows.push(Row {
             label,
             knobs,
-            difference: differences[i],
+            difference: differences[i].0,
+            refined: differences[i].1,
             ms,
             ratio: estimate(&ratios(&times[i + 1], &times[0]))?,
             start_ms: Some(estimate(&start_ms)?).filter(|_| topic.restarts),
@@ -206,7 +218,7 @@ fn compare(
     studio: &mut Studio,
     trial: &Trial,
     watch: &mut dyn FnMut(Step, usize, usize),
-) -> Result<Vec<Difference>, RenderError> {
+) -> Result<Vec<(Difference, Option<Refined>)>, RenderError> {
     let mut reference: Option<(&Shot, Picture)> = None;
     let mut differences = Vec::with_capacity(trial.variants.len());
     for (i, variant) in trial.variants.iter().enumerate() {
@@ -228,7 +240,12 @@ fn compare(
                 _ => Against::veil(&studio.veil(scene, request.size)?, &veil.veil),
             });
         }
-        differences.push(difference);
+        let figures = studio.renderer.deformed_figures();
+        let refined = figures.map(|figures| -> Result<Refined, RenderError> {
+            let chords_px = studio.renderer.chords()?.unwrap_or_default();
+            Ok(Refined { triangles: figures.triangles, chords_px })
+        });
+        differences.push((difference, refined.transpose()?));
         reference = Some((wanted, right));
     }
     Ok(differences)
@@ -314,6 +331,7 @@ mod tests {
             ratio: at(ratio),
             start_ms: Some(at(1.0)),
             gpu_bytes: 1,
+            refined: None,
             is_pareto: false,
         }
     }

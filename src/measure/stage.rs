@@ -132,6 +132,7 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
         sprite: None,
         border: None,
         keeps_shadows: false,
+        at_rest: false,
         section: None,
     }
 }

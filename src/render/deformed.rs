@@ -42,16 +42,18 @@ use crate::{
     view::View,
 };
 
-/// How far the edges of what is shown may be from where they should be, pixels.
-pub const TOLERANCE_PX: f64 = 0.25;
 /// Chunks that a thread looks at at a time.
 const CHUNKS_PER_PART: usize = 16;
 /// Whole metres that origins of moved vertices are multiples of: offsets up to this are rounded by 2 µm at most.
 const ORIGIN_STEP_M: f64 = 32.0;
+/// Places at which an edge is looked at where it is measured.
+const CHORD_SAMPLES: u32 = 32;
+/// Less than this is rounding, pixels.
+const LEAST_CHORD_PX: f64 = 1e-4;
 /// Of the angle between the view's axis and what is refined for it.
 const LEAST_COSINE: f64 = 0.25;
-/// How far a layer of coplanar faces is lifted off the one below, pixels: two chords of one curved plane are no further apart.
-const LIFT_PX: f64 = 2.0 * TOLERANCE_PX;
+/// How far a layer of coplanar faces is lifted off the one below, by the tolerance: two chords of one curved plane are no further apart.
+const LIFT: f64 = 2.0;
 
 /// By how much supports are taken to be wider where triangles are found: what the card's numbers may be off, of the way to the pivot, and
 /// at least.
@@ -73,6 +75,7 @@ pub(super) struct Source {
 struct Of {
     moved: Moved,
     view: View,
+    chord_px: f64,
     city: u64,
     /// Whether its edges are there.
     edges: bool,
@@ -113,7 +116,9 @@ pub struct DeformedFigures {
     pub met: u64,
     /// What they became.
     pub triangles: u64,
-    /// How exact that is.
+    /// How far edges might be off, pixels.
+    pub asked_px: f64,
+    /// How exact it is.
     pub report: Report,
 }
 
@@ -128,8 +133,13 @@ impl Renderer {
             }
             return Ok(());
         }
-        let of =
-            Of { moved: input.moved.clone(), view: input.view, city: self.city_number, edges: city.edges.is_some() };
+        let of = Of {
+            moved: input.moved.clone(),
+            view: input.view,
+            chord_px: input.chord_px,
+            city: self.city_number,
+            edges: city.edges.is_some(),
+        };
         if self.deformed.as_ref().is_some_and(|deformed| deformed.of == of) {
             return Ok(());
         }
@@ -150,7 +160,7 @@ impl Renderer {
             Some(refinery) => refinery,
             None => Refinery::new(&self.gpu)?,
         };
-        let stage = stage_of(&of.view, &met.rest.lattice, city.buffers.smooth);
+        let stage = stage_of(&of.view, &met.rest.lattice, (of.chord_px, city.buffers.smooth));
         let made = refinery.refined(&self.gpu, &met.rest, &stage)?;
         self.refinery = Some(refinery);
         self.deformed = self.deformed_of(&met, made, of)?;
@@ -163,12 +173,42 @@ impl Renderer {
         self.deformed.as_ref().map(|deformed| deformed.figures)
     }
 
+    /// How far the bent edges of the last frame are from where they should be, by brute force in f64, pixels: the median of those that are
+    /// off at all, and the farthest. `None`: nothing is refined.
+    ///
+    /// # Errors
+    /// What the card cannot read back.
+    pub fn chords(&self) -> Result<Option<[f64; 2]>, GpuError> {
+        let (Some(refinery), Some(met), Some(deformed)) = (&self.refinery, &self.met, &self.deformed) else {
+            return Ok(None);
+        };
+        let Of { moved, view, .. } = &deformed.of;
+        let edges = refinery.edges(&self.gpu, &met.rest, deformed.figures.triangles as u32)?;
+        let off = |[a, b]: &[DVec3; 2]| {
+            let [start, end] = [*a, *b].map(|place| moved.deformers.value(place));
+            let at = |i: u32| {
+                let t = f64::from(i) / f64::from(CHORD_SAMPLES);
+                let shown = moved.deformers.value(a.lerp(*b, t));
+                shown.distance(start.lerp(end, t)) * pixels_per_m(view, shown)
+            };
+            (1..CHORD_SAMPLES).map(at).fold(0.0, f64::max)
+        };
+        let mut all: Vec<f64> = edges.par_iter().map(off).filter(|px| *px > LEAST_CHORD_PX).collect();
+        all.sort_by(f64::total_cmp);
+        Ok(all.last().map(|worst| [all[all.len() / 2], *worst]))
+    }
+
     fn deformed_of(&self, met: &Met, made: Made, of: Of) -> Result<Option<Deformed>, GpuError> {
         let Some(city) = &self.city else { return Ok(None) };
         let figures = DeformedFigures {
             met: u64::from(met.rest.triangles),
             triangles: u64::from(made.triangles),
-            report: made.report,
+            asked_px: of.chord_px,
+            // As it was asked for, but for rounding.
+            report: match made.report.tolerance_px > of.chord_px * (1.0 + 1e-6) {
+                true => made.report,
+                false => Report { tolerance_px: of.chord_px, ..made.report },
+            },
         };
         let bounds = made.chunks.iter().fold(Aabb::EMPTY, |all, (_, bounds)| all.union(*bounds));
         let sections = met.sections.iter().map(|(kind, chunks)| Section {
@@ -195,7 +235,7 @@ impl Renderer {
         let refiner = Refiner {
             deformers: &of.moved.deformers,
             pixels_per_m: &pixels_per_m,
-            tolerance_px: TOLERANCE_PX,
+            tolerance_px: of.chord_px,
             shortest_m: Limits::default().shortest_m,
         };
         let of_city = city.edges.as_ref().zip(city.edge_sources.as_ref());
@@ -211,7 +251,7 @@ impl Renderer {
 }
 
 /// The view as what is refined is seen in it.
-fn stage_of(view: &View, lattice: &Lattice, is_smooth: bool) -> layout::Refinement {
+fn stage_of(view: &View, lattice: &Lattice, (chord_px, is_smooth): (f64, bool)) -> layout::Refinement {
     let (eye, offset) = lattice.cell_of(view.camera.eye);
     layout::Refinement {
         eye: eye.to_array(),
@@ -220,9 +260,9 @@ fn stage_of(view: &View, lattice: &Lattice, is_smooth: bool) -> layout::Refineme
         pixels: (0.5 * f64::from(view.size[1]) / view.half_extent().y) as f32,
         near: view.camera.near_m as f32,
         orthographic: u32::from(view.is_orthographic()),
-        tolerance: TOLERANCE_PX as f32,
+        tolerance: chord_px as f32,
         shortest: Limits::default().shortest_m as f32,
-        lift: LIFT_PX as f32,
+        lift: (LIFT * chord_px) as f32,
         is_smooth: u32::from(is_smooth),
         ..layout::Refinement::new()
     }

@@ -107,6 +107,8 @@ pub struct FrameInput<'a> {
     pub samples: u32,
     /// What moves the city.
     pub moved: &'a Moved,
+    /// How far edges that it bends may be from where they should be, pixels.
+    pub chord_px: f64,
     /// What is drawn over the picture, after its last sample.
     pub furniture: &'a Furniture,
     /// How many triangles the city may take, where it may be simplified to that: at least a quarter of it is for what is no terrain.

@@ -16,6 +16,7 @@ use crate::{
     },
     render::{
         body::{Body, Leaf, Members, PlacedLeaf, too_large},
+        deformations::Moved,
         enclosed::enclosed,
         occlusion::Occlusion,
         own_sprites,
@@ -48,6 +49,8 @@ pub(super) struct Tools<'a> {
     pub pois: &'a [Poi],
     /// From where.
     pub viewer: Viewer,
+    /// How the city is shown.
+    pub moved: &'a Moved,
     /// The name of the lens.
     pub lens: &'a str,
     /// Whether it acts: of one that does not nobody is looked for.
@@ -88,6 +91,11 @@ pub(super) fn volumes_of<'a>(
                 }
             }
         }
+        for leaf in of_lens.iter_mut().flat_map(Body::leaves_mut) {
+            move_leaf(&mut leaf.leaf, lens, tools)
+                .map_err(|message| format!("[lens.{}] space: {message}", drawn.owner(i as u32)))?;
+        }
+        of_lens.retain(|body| !body.is_empty());
         // One sprite for all of a lens (S3).
         if lens.sprite.is_some() {
             // Those of files stay as they are.
@@ -114,6 +122,27 @@ pub(super) fn volumes_of<'a>(
     tools.solids.forget_others();
     tools.occlusion.forget_others();
     Ok(all)
+}
+
+/// Puts what a lens acts on where deformations take it: the box around objects, and, of a lens of the city at rest, its volumes.
+fn move_leaf(leaf: &mut Leaf, lens: &Lens, tools: &mut Tools) -> Result<(), String> {
+    if tools.moved.is_nothing() {
+        return Ok(());
+    }
+    match leaf {
+        Leaf::Members(members) => members.bounds = tools.moved.bounds(&members.bounds),
+        Leaf::Volume(volume) if lens.at_rest && lens.deform.is_none() => {
+            match tools.solids.moved(volume, &tools.moved.deformers)? {
+                Some(placed) => *volume = Volume::Solid(placed),
+                None => *volume = Volume::Sphere { center: volume.bounds().center(), radius: 0.0 },
+            }
+        }
+        Leaf::Sprite(_) if lens.at_rest => {
+            return Err("a saved sprite stands where it is; \"displayed\" would be right".into());
+        }
+        Leaf::Volume(_) | Leaf::Sprite(_) => {}
+    }
+    Ok(())
 }
 
 /// Makes a polytope a solid, which knows how far away it is.

@@ -439,6 +439,7 @@ impl Studio {
 
     fn volumes_of(&self, drawn: &Drawn, size: [u32; 2]) -> Result<LensVolumes, RenderError> {
         let (city, scene) = (self.shown(), &*drawn.scene);
+        let moved = self.deformations(scene, size)?.moved;
         let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
         let mut occlusion = self.occlusion();
         let eye = Eye::new(&self.camera(scene, size))?;
@@ -447,6 +448,7 @@ impl Studio {
             occlusion: &mut occlusion,
             pois: &scene.pois,
             viewer: eye.viewer(),
+            moved: &moved,
             lens: "",
             is_enabled: true,
         };
@@ -803,6 +805,7 @@ fn input<'a>(
         sample: 0,
         samples: request.samples.max(1),
         moved: &prepared.deformations.moved,
+        chord_px: scene.style.chord_px,
         furniture: &furniture::NONE,
         most_triangles: None,
     }

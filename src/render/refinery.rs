@@ -14,7 +14,7 @@
 use std::ops::Range;
 
 use bytemuck::Zeroable;
-use glam::IVec3;
+use glam::{DVec3, IVec3};
 
 use crate::{
     geom::{
@@ -311,6 +311,24 @@ impl Refinery {
             triangles: stage.items,
             report: Report { tolerance_px, shortest_m, too_coarse, unusable: 0 },
         })
+    }
+
+    /// The edges of what was refined last, by their ends at rest, metres; each once for every triangle beside it. For measurements.
+    pub fn edges(&self, gpu: &Gpu, rest: &Rest, triangles: u32) -> Result<Vec<[DVec3; 2]>, GpuError> {
+        let words = |room: &Room| -> Result<Vec<u32>, GpuError> {
+            Ok(bytemuck::pod_collect_to_vec(&gpu.read_buffer(room.buffer())?))
+        };
+        let (corners, triangle_words) = (words(&self.corners[0])?, words(&self.triangles[0])?);
+        let place = |i: u32| {
+            let at = i as usize * (CORNER_BYTES as usize / 4);
+            rest.lattice.place(IVec3::from([0, 1, 2].map(|axis| corners[at + axis] as i32)))
+        };
+        let of_triangle = |words: &[u32]| {
+            let [a, b, c] = [0, 1, 2].map(|i| place(words[i]));
+            [[a, b], [b, c], [c, a]]
+        };
+        let all = triangle_words.chunks_exact(TRIANGLE_BYTES as usize / 4).take(triangles as usize);
+        Ok(all.flat_map(of_triangle).collect())
     }
 
     /// Makes room for more corners, beside those that are there.

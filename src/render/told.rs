@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::{
     render::{
         content_cities::SceneContents,
-        deformed::TOLERANCE_PX,
+        deformed::DeformedFigures,
         enclosed::{areas, objects_meeting, with_corners_outside},
         furniture::{Furniture, Piece},
         operations::Operations,
@@ -81,16 +81,22 @@ fn missing_layers(picture: &Picture) -> Option<(u64, String)> {
     (count > 0).then(|| (count, format!("{count} of {all} translucent fragments found no room and are missing")))
 }
 
-/// Triangles that a deformation bends more than they follow, for want of room.
+/// What a deformation bends more than triangles follow.
 fn coarse(picture: &Picture) -> Option<(u64, String)> {
-    let report = picture.deformed?.report;
+    let DeformedFigures { report, asked_px, .. } = picture.deformed?;
     let count = report.too_coarse as u64;
-    let message = || {
+    let message = if report.tolerance_px > asked_px {
         format!(
-            "{count} places of what is deformed are less exact than {TOLERANCE_PX} pixels, for want of room for triangles"
+            "what is deformed is {} pixels from where it should be at most, not {asked_px}: else it had too many triangles",
+            report.tolerance_px
+        )
+    } else {
+        let places = if count == 1 { "place" } else { "places" };
+        format!(
+            "{count} {places} of what is deformed stay more than {asked_px} pixels off: edges there are too short to split"
         )
     };
-    (count > 0 || report.tolerance_px > TOLERANCE_PX).then(|| (count.max(1), message()))
+    (count > 0 || report.tolerance_px > asked_px).then(|| (count.max(1), message))
 }
 
 /// City objects by lens that are cut by it and would have a section, were they closed shells: some of their triangles meet it,

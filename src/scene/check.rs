@@ -231,6 +231,7 @@ mod tests {
             sprite: None,
             border: None,
             keeps_shadows: false,
+            at_rest: false,
             section: None,
         };
         let attached = [

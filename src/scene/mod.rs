@@ -95,7 +95,7 @@ impl Default for Sun {
 }
 
 /// How the context looks.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Style {
     /// The colours surfaces start from.
     pub base: BaseStyle,
@@ -107,6 +107,24 @@ pub struct Style {
     pub technique: Technique,
     /// How translucent layers are laid one over the other.
     pub transparency: Transparency,
+    /// How far edges that a deformation bends may be from where they should be, pixels, > 0 (D2).
+    pub chord_px: f64,
+}
+
+/// Where nobody says how far bent edges may be off, pixels.
+pub const CHORD_PX: f64 = 0.25;
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            base: BaseStyle::default(),
+            effects: Vec::new(),
+            background: Background::default(),
+            technique: Technique::default(),
+            transparency: Transparency::default(),
+            chord_px: CHORD_PX,
+        }
+    }
 }
 
 /// A point of interest.

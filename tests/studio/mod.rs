@@ -108,6 +108,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effe
         sprite: None,
         border: None,
         keeps_shadows: false,
+        at_rest: false,
         section: None,
     }
 }

@@ -332,6 +332,14 @@ pub const STYLE: Table = Table {
             "How translucent layers are laid one over the other: a method, or a method and how far it goes; see Transparency.",
             "{ method = \"k-buffer\", layers = 8 }",
         ),
+        key(
+            "chord_px",
+            Kind::Number { min: 0.02, max: 100.0 },
+            "0.25",
+            "pixels",
+            "How far edges that a deformation bends may be from where they should be: what is moved is split until they are nearer.",
+            "1.0",
+        ),
     ],
 };
 
@@ -601,11 +609,11 @@ pub const LENS: Table = Table {
         ),
         key(
             "space",
-            Kind::Word { now: &["displayed"], later: &["rest"] },
+            Kind::Word { now: &["displayed", "rest"], later: &[] },
             "\"displayed\"",
             "",
-            "Which position of a surface counts.",
-            "\"displayed\"",
+            "Which position of a surface counts where a deformation moves it: that at which it is shown, or with `rest` that of the city as it is. Then the lens goes with the houses: its body is moved as they are, to a thousandth of its size. Changed heights of objects (`heights`, `lower`) do not move it.",
+            "\"rest\"",
         ),
         key(
             "body",

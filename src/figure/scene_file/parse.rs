@@ -34,7 +34,7 @@ use crate::{
         ramp::{MAX_CATEGORIES, category},
     },
     scene::{
-        self, Background, BaseStyle, CitySpec, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency,
+        self, Background, BaseStyle, CHORD_PX, CitySpec, Poi, PoiPlace, Scene, Style, Sun, Technique, Transparency,
         overlay::Frame,
     },
     shader::{
@@ -203,7 +203,8 @@ impl<'o> SceneReader<'o> {
         let background = fields.color("background").map_or(Background::Sky, Background::Color);
         let technique = fields.text("technique").and_then(Technique::of_word).unwrap_or_default();
         let transparency = self.transparency(fields).unwrap_or_default();
-        Style { base, effects, background, technique, transparency }
+        let chord_px = fields.number("chord_px").unwrap_or(CHORD_PX);
+        Style { base, effects, background, technique, transparency, chord_px }
     }
 
     fn transparency(&mut self, fields: &Fields) -> Option<Transparency> {
@@ -310,6 +311,7 @@ impl<'o> SceneReader<'o> {
                 },
                 discrete: if b.text("discrete") == Some("dither") { Discrete::Dither } else { Discrete::Threshold },
             }),
+            at_rest: fields.text("space") == Some("rest"),
             keeps_shadows: fields.boolean("shadows").unwrap_or(false),
             section: fields.color("section"),
         }

@@ -354,7 +354,7 @@ prop_compose! {
         shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
-        section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>(),
+        section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>(), at_rest in any::<bool>(),
         deform in prop::option::weighted(0.3, deforms())) -> Lens {
         // A soft border needs shapes that have a distance; what shapes of files have, `sprite` does not give.
         let is_saved = |s: &Focus| matches!(s, Focus::Sprite { .. });
@@ -371,7 +371,7 @@ prop_compose! {
         if deform.is_some() {
             kind = LensKind::Deformation;
         }
-        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, best_view: None, deform, content, body, sprite, border, keeps_shadows, section }
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, best_view: None, deform, content, body, sprite, border, keeps_shadows, at_rest, section }
     }
 }
 
@@ -552,7 +552,7 @@ prop_compose! {
         near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
-        shown in prop::collection::vec((shown(), prop::option::of(overlays())), 0..3), layout in prop::option::of(layouts()), figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
+        shown in prop::collection::vec((shown(), prop::option::of(overlays())), 0..3), layout in prop::option::of(layouts()), figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), chord_px in prop_oneof![Just(0.25), 0.02..=100.0f64], ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
         (animation, ways, time_s) in (prop::option::of(animations()), prop::collection::vec(ways(), 0..3), -1e6..1e6f64)) -> Scene {
         let projection_of = |tenths: u32, ortho: bool| match ortho {
             true => Projection::Orthographic { height_m: f64::from(tenths) },
@@ -574,7 +574,7 @@ prop_compose! {
         let mut overlays = Vec::new();
         if !shown.is_empty() {
             pois.resize(2, ("o".into(), DVec3::ONE, true));
-            let plain = Lens { name: String::new(), kind: LensKind::Color, enabled: true, color: [0.5; 3], placement: Placement::World, shapes: vec![Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }.into()], render: None, effects: vec![], best_view: None, deform: None, content: None, body: LensBody::Outline, sprite: None, border: None, keeps_shadows: false, section: None };
+            let plain = Lens { name: String::new(), kind: LensKind::Color, enabled: true, color: [0.5; 3], placement: Placement::World, shapes: vec![Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }.into()], render: None, effects: vec![], best_view: None, deform: None, content: None, body: LensBody::Outline, sprite: None, border: None, keeps_shadows: false, at_rest: false, section: None };
             while lenses.len() < 2 {
                 lenses.push(Lens { name: format!("n\"{}\\ü", lenses.len()), ..plain.clone() });
             }
@@ -596,7 +596,7 @@ prop_compose! {
             layout: layout.unwrap_or_default(),
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
             sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2 },
-            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency },
+            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency, chord_px },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).chain(moving).collect(),
             lenses,
             figure: Figure { size, samples, ..figure },

@@ -19,7 +19,8 @@ use crate::{
         color::{parse_hex, to_hex},
     },
     scene::{
-        Background, BaseStyle, Figure, Layout, Poi, PoiPlace, Scene, Style, Sun, Technique, TextSize, Transparency,
+        Background, BaseStyle, CHORD_PX, Figure, Layout, Poi, PoiPlace, Scene, Style, Sun, Technique, TextSize,
+        Transparency,
     },
     shader::Clip,
     view::{Camera, Projection, default_near_m},
@@ -135,6 +136,7 @@ impl Toml {
             None => self.key_if(method != Transparency::default(), "transparency", &word),
             Some(layers) => self.key("transparency", &format!("{{ method = {word}, layers = {layers} }}")),
         }
+        self.key_if(style.chord_px != CHORD_PX, "chord_px", &number(style.chord_px));
     }
 
     fn poi(&mut self, poi: &Poi) {
@@ -191,6 +193,7 @@ impl Toml {
             self.key("border", &format!("{{ width = {}{unit}{discrete} }}", number(border.width)));
         }
         self.key_if(lens.keeps_shadows, "shadows", "true");
+        self.key_if(lens.at_rest, "space", "\"rest\"");
         if let Some(section) = lens.section {
             self.key("section", &write_color(section));
         }

@@ -53,6 +53,7 @@ pub fn alone(scene: &Scene, model: &CityModel, id: &str) -> Scene {
         sprite: None,
         border: None,
         keeps_shadows: false,
+        at_rest: false,
         section: None,
         render: None,
     }];

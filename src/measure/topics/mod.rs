@@ -2,6 +2,7 @@
 
 mod handlers;
 mod lens_tests;
+mod refinement;
 mod samples;
 mod sprites;
 mod transparency;
@@ -9,7 +10,8 @@ mod transparency;
 use crate::measure::topic::Topic;
 
 /// All topics, as they are listed.
-pub const TOPICS: &[Topic] = &[handlers::TOPIC, lens_tests::TOPIC, samples::TOPIC, sprites::TOPIC, transparency::TOPIC];
+pub const TOPICS: &[Topic] =
+    &[handlers::TOPIC, lens_tests::TOPIC, refinement::TOPIC, samples::TOPIC, sprites::TOPIC, transparency::TOPIC];
 
 #[cfg(test)]
 mod tests {
