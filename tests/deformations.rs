@@ -317,3 +317,152 @@ fn lines_of_overlays_end_where_their_places_are_shown() {
     let end = *line.points.last().unwrap();
     assert!(end.distance(view.pixel(shown).unwrap().truncate()) < 0.01, "{end}");
 }
+
+#[test]
+fn lenses_of_the_city_at_rest_go_with_the_houses() {
+    let others = "[[lens]]\nname = \"ball\"\nspace = \"rest\"\nshape = { kind = \"sphere\", center = [10, 5, 10], radius = 22 }\neffects = [\"sepia\"]\n\
+                  [[lens]]\nname = \"box\"\nspace = \"rest\"\nshape = { kind = \"box\", center = [-25, -15, 20], size = [20, 30, 50] }\neffects = [\"invert\"]\n";
+    let scene = town(&format!("{}{others}", lens(STEPS[6], "")));
+    let mut studio = of_scene(&scene);
+    let picture = drawn(&mut studio, &scene);
+    let view = View::new(scene.camera.unwrap(), SIZE, &studio.extent()).unwrap();
+    let deformers = studio.deformers(&scene, SIZE).unwrap();
+    let depths = picture.depth.as_ref().unwrap();
+    for (index, size_m) in [(1, 44.0), (2, 50.0)] {
+        let volume = scene.lenses[index].shapes[0].volumes().unwrap().remove(0);
+        let bits = bits(&picture, index);
+        let (mut inside, mut moved, mut wrong) = (0, 0, 0);
+        for (i, depth) in depths.iter().enumerate().filter(|(_, depth)| depth.is_finite()) {
+            let ray = view.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]);
+            let place = ray.origin + ray.direction * (f64::from(*depth) / ray.direction.dot(view.basis.forward));
+            let rest = deformers.inverse(place).unwrap();
+            // The moved body is right to a thousandth of its size, and round ones have 96 sides; as these steps stretch.
+            let away = volume.signed_distance(rest);
+            if away.abs() < 4.0 * size_m / 1000.0 {
+                continue;
+            }
+            inside += u32::from(away < 0.0);
+            moved += u32::from(away < 0.0 && volume.signed_distance(place) > 0.5);
+            wrong += u32::from(bits[i] != (away < 0.0));
+        }
+        assert_eq!(wrong, 0, "lens {index}");
+        assert!(inside > 400 && moved > 60, "lens {index}: {inside} pixels inside, {moved} of them only at rest");
+    }
+    // Without a deformation it is as it was.
+    let still = town(others);
+    let displayed = town(&others.replace("space = \"rest\"\n", ""));
+    assert_eq!(drawn(&mut studio, &still).rgba, drawn(&mut studio, &displayed).rgba);
+}
+
+/// How far what is shown of each object is from its faces of another height, at worst, pixels; each object's factor.
+fn farthest_raised(studio: &Studio, scene: &Scene, view: &View, shown: &[(DVec3, u32)]) -> f64 {
+    let moved = studio.moved(scene, SIZE).unwrap();
+    let all = triangles(studio);
+    let pixel_m = |place: DVec3| view.depth(place) * 2.0 * view.half_extent().y / f64::from(SIZE[1]);
+    let off = |(place, object): &(DVec3, u32)| {
+        let own = all.iter().filter(|triangle| triangle.object == *object);
+        let raised = own.map(|triangle| triangle.corners.map(|corner| moved.place(Some(*object), corner)));
+        let off = raised.map(|corners| nearest(*place, corners).distance(*place)).fold(f64::INFINITY, f64::min);
+        off / pixel_m(*place)
+    };
+    shown.iter().map(off).fold(0.0, f64::max)
+}
+
+#[test]
+fn heights_go_by_a_number_of_objects() {
+    let scene = town(
+        "[[lens]]\nname = \"young\"\nkind = \"deformation\"\nstrength = 0.5\n\
+         deform = [{ kind = \"heights\", attribute = \"yearOfConstruction\", from = [1950, 2000], to = [0.5, 3.0] }]\n",
+    );
+    let mut studio = of_scene(&scene);
+    let picture = drawn(&mut studio, &scene);
+    let view = View::new(scene.camera.unwrap(), SIZE, &studio.extent()).unwrap();
+    let moved = studio.moved(&scene, SIZE).unwrap();
+    let model = studio.model.clone();
+    let name = model.strings.find("yearOfConstruction").unwrap();
+    let mut changed = 0;
+    for object in 0..model.objects.len() as u32 {
+        let year = match model.attribute(object, name) {
+            Some(veduta::city::Value::Integer(year)) => Some(year as f64),
+            _ => None,
+        };
+        let full = year.map_or(1.0, |year| 0.5 + 2.5 * ((year - 1950.0) / 50.0).clamp(0.0, 1.0));
+        let factor = moved.heights.of(object).map_or(1.0, |height| height.factor);
+        assert!((factor - (1.0 + 0.5 * (full - 1.0))).abs() < 1e-12, "{object}: {year:?} {factor}");
+        changed += u32::from(factor != 1.0);
+    }
+    assert!(changed > 300, "{changed}");
+    let places = shown(&picture, &view, 17);
+    assert!(farthest_raised(&studio, &scene, &view, &places) < OFF_PX);
+    let figures = picture.statistics.frame.deformed.unwrap();
+    assert_eq!(figures.met, figures.triangles, "what is only stretched is not split");
+    let wrong = town(
+        "[[lens]]\nkind = \"deformation\"\ndeform = [{ kind = \"heights\", attribute = \"yearOfConstruktion\", from = [0, 1], to = [1, 2] }]\n",
+    );
+    let error = studio.render(&wrong, &request(Backend::default())).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("lens.0") && error.contains("did you mean \"yearOfConstruction\""), "{error}");
+}
+
+#[test]
+fn who_hides_a_point_of_interest_is_lowered_and_nobody_else() {
+    let text = |lens: &str| {
+        format!(
+            "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [14, -112, 15]\ntarget = [-56, -14, 13]\nfov_deg = 44\n\
+             [sun]\nshadows = false\n[[poi]]\nname = \"church\"\nobject = \"church\"\n{lens}"
+        )
+    };
+    let of = |text: String| parse(&text, "s.toml", &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    let scene = of(text(
+        "[[lens]]\nname = \"low\"\nkind = \"deformation\"\ndeform = [{ kind = \"lower\", poi = \"church\", factor = 0.1 }]\n",
+    ));
+    let plain = of(text(""));
+    let mut studio = of_scene(&scene);
+    let [lowered, before] = [&scene, &plain].map(|scene| drawn(&mut studio, scene));
+    let model = studio.model.clone();
+    let roots = model.roots();
+    let church = model.find_object("church").unwrap();
+    let is_church = |id: &&u32| **id > 0 && (**id - 1 == church || roots[(**id - 1) as usize] == church);
+    let count = |picture: &Picture| picture.object_id.as_ref().unwrap().iter().filter(is_church).count();
+    let [seen, was] = [&lowered, &before].map(count);
+    // Were nothing in the way: the reference takes it away.
+    let alone = of(text(
+        "[[lens]]\nname = \"gone\"\nkind = \"occlusion\"\npoi = \"church\"\ntest = { kind = \"exact\" }\nrender = \"discard\"\n",
+    ));
+    let whole = count(&drawn(&mut studio, &alone));
+    assert!(was < seen && seen as f64 > 0.9 * whole as f64, "{was} of {whole} pixels before, {seen} now");
+    // Whom the test finds in the city at rest, and no other.
+    let found: Vec<String> =
+        lowered.statistics.lenses[0].occluders.clone().unwrap().into_iter().map(|o| o.id).collect();
+    let moved = studio.moved(&scene, SIZE).unwrap();
+    let mut lower = 0;
+    for object in 0..model.objects.len() as u32 {
+        let is_found = found.iter().any(|id| **id == *model.objects[roots[object as usize] as usize].id);
+        match moved.heights.of(object) {
+            Some(height) => {
+                assert!(is_found && (height.factor - 0.1).abs() < 1e-12, "{}", model.objects[object as usize].id);
+                lower += 1;
+            }
+            None => assert!(!is_found || model.objects[object as usize].geometries.is_empty()),
+        }
+    }
+    assert!(lower >= 5, "{lower}");
+    let view = View::new(scene.camera.unwrap(), SIZE, &studio.extent()).unwrap();
+    assert!(farthest_raised(&studio, &scene, &view, &shown(&lowered, &view, 31)) < OFF_PX);
+}
+
+#[test]
+fn edges_are_as_near_as_is_asked_for() {
+    let mut studio = of_scene(&town(""));
+    let mut triangles = Vec::new();
+    for chord_px in [2.0, 0.5, 0.125] {
+        let mut scene = town(&lens(STEPS[6], ""));
+        scene.style.chord_px = chord_px;
+        let picture = drawn(&mut studio, &scene);
+        let deformed = picture.statistics.frame.deformed.unwrap();
+        assert_eq!((deformed.tolerance_px, deformed.coarse), (chord_px, 0));
+        let [median, worst] = studio.renderer.chords().unwrap().unwrap();
+        assert!(worst <= 1.05 * chord_px && median > 0.05 * worst, "{chord_px}: {median} {worst}");
+        triangles.push(deformed.triangles);
+    }
+    assert!(triangles[0] < triangles[1] && triangles[1] < triangles[2], "{triangles:?}");
+}

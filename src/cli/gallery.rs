@@ -27,9 +27,11 @@ macro_rules! scenes {
 
 /// The scenes that ship with the program, by name; a test holds the list against the folder.
 pub const SCENES: &[(&str, &str)] = scenes! {
+    "bent-city"
     "call-outs"
     "delft-age"
     "delft-detail"
+    "delft-heights"
     "delft-route"
     "delft-streets"
     "den-haag-district"
@@ -39,6 +41,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "flattened"
     "houses-on-the-way"
     "in-the-way"
+    "lowered"
     "market-square"
     "near-and-far"
     "one-house"
@@ -88,7 +91,10 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "trapp-3-5-3-a"
     "trapp-3-5-3-b"
     "trapp-3-5-3-c"
+    "trapp-3-6-3-a"
+    "trapp-3-6-3-b"
     "trapp-5-3-1"
+    "trapp-5-3-3"
     "vienna-roofs"
     "vienna-shapes"
     "visitor"
@@ -108,8 +114,47 @@ pub const SHEETS: &[(&str, &str)] = &[
     ("trapp-3-4-5", include_str!("../../scenes/trapp-3-4-5.sheet.toml")),
     ("trapp-3-4-8", include_str!("../../scenes/trapp-3-4-8.sheet.toml")),
     ("trapp-3-6-1", include_str!("../../scenes/trapp-3-6-1.sheet.toml")),
+    ("trapp-3-6-2", include_str!("../../scenes/trapp-3-6-2.sheet.toml")),
     ("trapp-5-3-2", include_str!("../../scenes/trapp-5-3-2.sheet.toml")),
 ];
+
+/// Images that scenes show or deform by, by their names in the folder.
+pub const IMAGES: &[(&str, &[u8])] = &[
+    ("trapp-3-6-3-b.png", include_bytes!("../../scenes/trapp-3-6-3-b.png")),
+    ("trapp-5-3-3-a.png", include_bytes!("../../scenes/trapp-5-3-3-a.png")),
+    ("trapp-5-3-3-b.png", include_bytes!("../../scenes/trapp-5-3-3-b.png")),
+];
+
+/// The folder that scenes find their images in: where the program was cloned, that of the scenes; else one for now.
+struct Shelf {
+    folder: PathBuf,
+    is_own: bool,
+}
+
+impl Shelf {
+    fn new() -> Outcome<Self> {
+        let scenes = PathBuf::from("scenes");
+        if IMAGES.iter().all(|(name, _)| scenes.join(name).is_file()) {
+            return Ok(Self { folder: scenes, is_own: false });
+        }
+        let folder = std::env::temp_dir().join(format!("veduta-gallery-{}", std::process::id()));
+        let failed = |error| Failure::io(&folder.display().to_string(), &error);
+        std::fs::create_dir_all(&folder).map_err(failed)?;
+        for (name, bytes) in IMAGES {
+            std::fs::write(folder.join(name), bytes).map_err(failed)?;
+        }
+        Ok(Self { folder, is_own: true })
+    }
+}
+
+impl Drop for Shelf {
+    fn drop(&mut self) {
+        if self.is_own {
+            // What is left there the system clears.
+            let _ = std::fs::remove_dir_all(&self.folder);
+        }
+    }
+}
 
 /// Arguments of `veduta gallery`.
 #[derive(Args, Clone, Debug)]
@@ -134,9 +179,10 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let folder = &arguments.output;
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
     let is_asked = |name: &str| arguments.names.is_empty() || arguments.names.iter().any(|asked| asked == name);
+    let shelf = Shelf::new()?;
     let mut scenes = Vec::new();
     for (name, text) in SCENES.iter().filter(|(name, _)| is_asked(name)) {
-        let options = Options::for_file(&PathBuf::from("scenes").join(name));
+        let options = Options::for_file(&shelf.folder.join(name));
         scenes.extend(parsed(name, name, text, &options)?.map(|scene| (name, scene, options)));
     }
     // Scenes of one city follow each other: it is loaded once.
@@ -166,7 +212,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         last = Some((scene.city, studio));
     }
     for (name, text) in SHEETS.iter().filter(|(name, _)| is_asked(name)) {
-        let Some(task) = task_of(name, text)? else { continue };
+        let Some(task) = task_of(name, text, &shelf)? else { continue };
         let file = folder.join(format!("{name}.png"));
         sheet::save(&file, &sheet::draw(&task, &mut last, global)?)?;
         output::print(&format!("{}\n", file.display()))?;
@@ -187,14 +233,14 @@ fn parsed(name: &str, scene: &str, text: &str, options: &Options) -> Outcome<Opt
 }
 
 /// A sheet that ships, with its scene.
-fn task_of(name: &str, text: &str) -> Outcome<Option<sheet::Task>> {
+fn task_of(name: &str, text: &str, shelf: &Shelf) -> Outcome<Option<sheet::Task>> {
     let file = format!("scenes/{name}.sheet.toml");
     let sheet = figure::sheet::file::parse(text, &file).map_err(Failure::failed)?;
     let stem = sheet.scene.trim_end_matches(".toml");
     let Some((known, text)) = SCENES.iter().find(|(known, _)| *known == stem) else {
         return Err(Failure::failed(format!("{file}: scene: there is no {} in the gallery", sheet.scene)));
     };
-    let options = Options::for_file(&PathBuf::from("scenes").join(known));
+    let options = Options::for_file(&shelf.folder.join(known));
     let scene = parsed(name, known, text, &options)?;
     Ok(scene.map(|scene| sheet::Task { name: file, sheet, scene, options }))
 }

@@ -41,10 +41,10 @@ pub const TOPIC: Topic = Topic {
 
 /// What is done to the middle of the city.
 fn kinds() -> Vec<(&'static str, Vec<Step>)> {
-    let taper = Step::Taper { factor: 0.6 };
+    let taper = Step::Taper { factor: 0.8 };
     let twist = |degrees: f64| Step::Twist { angle: degrees.to_radians() };
-    let bend = Step::Bend { angle: 50_f64.to_radians() };
-    vec![("twist", vec![twist(60.0)]), ("bend", vec![bend.clone()]), ("chain", vec![taper, twist(30.0), bend])]
+    let bend = Step::Bend { angle: 30_f64.to_radians() };
+    vec![("twist", vec![twist(25.0)]), ("bend", vec![bend.clone()]), ("chain", vec![taper, twist(12.0), bend])]
 }
 
 fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
