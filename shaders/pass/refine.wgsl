@@ -135,6 +135,16 @@ fn pixels_per_m(cell: vec3i, offset: vec3f) -> f32 {
     return refinement.pixels * distance / (depth * depth);
 }
 
+// Unit, from a place to the eye.
+fn towards_eye(cell: vec3i, offset: vec3f) -> vec3f {
+    if refinement.orthographic == 1u {
+        return -refinement.forward;
+    }
+    let way = vec3f(refinement.eye - cell) * cell_size() + (refinement.eye_offset - offset);
+    let distance = length(way);
+    return select(-refinement.forward, way / distance, distance > 0.0);
+}
+
 // Where the last sample was before each step, and the longest way from one sample to the next, by what it may be.
 const NOWHERE: f32 = 1e30;
 var<private> last: array<vec3f, STEPS>;
@@ -661,6 +671,8 @@ fn split(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
 // Whole metres that origins of moved vertices are multiples of, as a power of two: offsets from them are exact.
 const ORIGIN_SHIFT: u32 = 5u;
 const VERTEX_WORDS: u32 = 8u;
+// Of the angle between the normal of a layer and the way to the eye: what is seen more edge on is lifted less than it should be.
+const LEAST_LIFT_COSINE: f32 = 0.1;
 
 fn weights_of(own: Corner) -> vec3f {
     return vec3f(1.0 - own.weights.x - own.weights.y, own.weights);
@@ -692,16 +704,19 @@ fn place(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     normal = select(vec3f(0.0, 0.0, 1.0), shown.normal / size, size > 0.0);
     var way = shown.way;
     let layer = bits >> LAYER_SHIFT;
+    var lift = vec3f(0.0);
     if layer > 0u {
-        way += normal * (f32(layer) * refinement.lift / pixels_per_m(own.cell, way));
+        // Towards the eye, so that it stays where it is in the picture: its neighbours are not lifted.
+        let back = towards_eye(own.cell, way);
+        lift = back * (f32(layer) * refinement.lift / (pixels_per_m(own.cell, way) * max(abs(dot(normal, back)), LEAST_LIFT_COSINE)));
     }
     let moved = vec3i(round(way * f32(1u << refinement.shift)));
     let cell = own.cell + moved;
     let shift = refinement.shift + ORIGIN_SHIFT;
     let whole = cell >> vec3u(shift);
     var origin = refinement.anchor + whole * i32(1u << ORIGIN_SHIFT);
-    var position = vec3f(cell - whole * i32(1u << shift)) * cell_size();
-    if i < 3u * refinement.met && all(moved == vec3i(0)) {
+    var position = vec3f(cell - whole * i32(1u << shift)) * cell_size() + lift;
+    if i < 3u * refinement.met && layer == 0u && all(moved == vec3i(0)) {
         // What is not moved stays to the bit.
         let at = rest_corners[i];
         origin = at.origin;

@@ -47,7 +47,8 @@ const CHUNKS_PER_PART: usize = 16;
 const ORIGIN_STEP_M: f64 = 32.0;
 /// Of the angle between the view's axis and what is refined for it.
 const LEAST_COSINE: f64 = 0.25;
-/// How far a layer of coplanar faces is lifted off the one below, pixels: two chords of one curved plane are no further apart.
+/// How far a layer of coplanar faces is lifted off the one below, pixels across their plane: two chords of one curved plane are no further
+/// apart. Towards the eye, so that it stays where it is in the picture.
 const LIFT_PX: f64 = 2.0 * TOLERANCE_PX;
 
 /// By how much supports are taken to be wider where triangles are found: what the card's numbers may be off, of the way to the pivot, and
