@@ -103,6 +103,9 @@ const KINK: f32 = 0.75;
 const UNSEEN: f32 = 0.1;
 const INSIDE: f32 = 2.0;
 const CLOSE: f32 = 6.0;
+// What ways that are computed in the frame of a lens may be off, of the distance from its pivot: some units in the last place. Finer edges
+// would not be nearer to where they should be.
+const NOISE: f32 = 5e-7;
 
 fn number_of(group: vec3u, local: u32) -> u32 {
     return (group.y * ROW + group.x) * GROUP + local;
@@ -137,6 +140,16 @@ fn pixels_per_m(cell: vec3i, offset: vec3f) -> f32 {
     // What is further aside than any picture reaches counts as if it were nearer to its middle.
     let depth = max(max(dot(way, refinement.forward), 0.25 * distance), refinement.near);
     return refinement.pixels * distance / (depth * depth);
+}
+
+// Unit, from a place to the eye.
+fn towards_eye(cell: vec3i, offset: vec3f) -> vec3f {
+    if refinement.orthographic == 1u {
+        return -refinement.forward;
+    }
+    let way = vec3f(refinement.eye - cell) * cell_size() + (refinement.eye_offset - offset);
+    let distance = length(way);
+    return select(-refinement.forward, way / distance, distance > 0.0);
 }
 
 // Where the last sample was before each step, and the longest way from one sample to the next, by what it may be.
@@ -191,6 +204,12 @@ fn middle_of(a: vec3i, b: vec3i) -> vec3i {
     return (a >> vec3u(1u)) + (b >> vec3u(1u)) + (a & b & vec3i(1));
 }
 
+// What a way is longer than noise.
+fn beyond(way: vec3f, noise: f32) -> vec3f {
+    let size = length(way);
+    return way * select(0.0, (size - noise) / size, size > noise);
+}
+
 // Whether an edge is farther from where it should be than the tolerance, and whether it is close; its first end is the one before the
 // other.
 //
@@ -199,11 +218,15 @@ fn middle_of(a: vec3i, b: vec3i) -> vec3i {
 fn answer_of(a: vec3i, b: vec3i) -> u32 {
     let whole = vec3f(b - a) * cell_size();
     var range = vec2f(2.0, -1.0);
+    var noise = 0.0;            // metres
     for (var i = 0u; i < DEFORMERS; i++) {
         let lens = deformer_at(i);
-        let own = range_of(lens, in_frame(lens, a, vec3f(0.0)), in_frame(lens, a, whole));
+        let p = in_frame(lens, a, vec3f(0.0));
+        let q = in_frame(lens, a, whole);
+        let own = range_of(lens, p, q);
         if own.x <= own.y {
             range = vec2f(min(range.x, own.x), max(range.y, own.y));
+            noise = max(noise, NOISE * max(length(p), length(q)));
         }
     }
     // Beyond the supports nothing moves.
@@ -241,7 +264,7 @@ fn answer_of(a: vec3i, b: vec3i) -> u32 {
         } else {
             // By ways rather than places: where nothing moves, nothing is off.
             let is_end = t == 0.0 || t == 1.0;
-            let off = select(way - (start + (end - start) * t), vec3f(0.0), is_end);
+            let off = select(beyond(way - (start + (end - start) * t), noise + NOISE * length(way)), vec3f(0.0), is_end);
             let scale = pixels_per_m(a, rest + way);
             if length(off) * scale > refinement.tolerance {
                 return HALVED | close;
@@ -681,6 +704,8 @@ fn split(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
 // Whole metres that origins of moved vertices are multiples of, as a power of two: offsets from them are exact.
 const ORIGIN_SHIFT: u32 = 5u;
 const VERTEX_WORDS: u32 = 8u;
+// Of the angle between the normal of a layer and the way to the eye: what is seen more edge on is lifted less than it should be.
+const LEAST_LIFT_COSINE: f32 = 0.1;
 
 fn weights_of(own: Corner) -> vec3f {
     return vec3f(1.0 - own.weights.x - own.weights.y, own.weights);
@@ -712,16 +737,19 @@ fn place(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     normal = select(vec3f(0.0, 0.0, 1.0), shown.normal / size, size > 0.0);
     var way = shown.way;
     let layer = bits >> LAYER_SHIFT;
+    var lift = vec3f(0.0);
     if layer > 0u {
-        way += normal * (f32(layer) * refinement.lift / pixels_per_m(own.cell, way));
+        // Towards the eye, so that it stays where it is in the picture: its neighbours are not lifted.
+        let back = towards_eye(own.cell, way);
+        lift = back * (f32(layer) * refinement.lift / (pixels_per_m(own.cell, way) * max(abs(dot(normal, back)), LEAST_LIFT_COSINE)));
     }
     let moved = vec3i(round(way * f32(1u << refinement.shift)));
     let cell = own.cell + moved;
     let shift = refinement.shift + ORIGIN_SHIFT;
     let whole = cell >> vec3u(shift);
     var origin = refinement.anchor + whole * i32(1u << ORIGIN_SHIFT);
-    var position = vec3f(cell - whole * i32(1u << shift)) * cell_size();
-    if i < 3u * refinement.met && all(moved == vec3i(0)) {
+    var position = vec3f(cell - whole * i32(1u << shift)) * cell_size() + lift;
+    if i < 3u * refinement.met && layer == 0u && all(moved == vec3i(0)) {
         // What is not moved stays to the bit.
         let at = rest_corners[i];
         origin = at.origin;

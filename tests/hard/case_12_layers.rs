@@ -15,7 +15,7 @@ use crate::{
 const KILOMETRE: i64 = 1_000_000;
 
 /// A beam 1 km long whose roof and floor are `count` slivers of 1 mm: their corners are those of the faces at its ends.
-fn beam(count: i64, height: i64) -> Body {
+pub fn beam(count: i64, height: i64) -> Body {
     let at = |x: i64, y: i64, z: i64| [x, y * KILOMETRE / 2, z * height];
     let mut faces: Body = Vec::new();
     for i in 0..count {

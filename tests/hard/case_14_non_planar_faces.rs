@@ -32,7 +32,7 @@ fn triangles(rings: &[Vec<P3>]) -> Result<BTreeSet<[P3; 3]>, Refusal> {
 }
 
 /// A bumpy star with up to three bumpy holes, given by heights and radii.
-fn face(radii: &[i64], heights: &[i64], holes: usize) -> Vec<Vec<P3>> {
+pub fn face(radii: &[i64], heights: &[i64], holes: usize) -> Vec<Vec<P3>> {
     let n = radii.len();
     let ring = |center: [i64; 2], scale: f64, count: usize| -> Vec<P3> {
         (0..count)
