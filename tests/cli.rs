@@ -443,9 +443,17 @@ fn every_scene_ships_and_reads() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let mut files: Vec<String> = std::fs::read_dir(&folder)
         .unwrap()
-        .map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
         .collect();
     files.sort();
+    let images = |path: std::fs::DirEntry| path.file_name().into_string().unwrap();
+    let mut images: Vec<String> = std::fs::read_dir(&folder).unwrap().map(|entry| images(entry.unwrap())).collect();
+    images.retain(|name| !name.ends_with(".toml"));
+    images.sort();
+    let known: Vec<&str> = veduta::cli::gallery::IMAGES.iter().map(|(name, _)| *name).collect();
+    assert_eq!(known, images, "images that ship");
     let (sheets, files): (Vec<String>, Vec<String>) = files.into_iter().partition(|name| name.ends_with(".sheet"));
     assert_eq!(listed, files);
     let named: Vec<String> = veduta::cli::gallery::SHEETS.iter().map(|(name, _)| format!("{name}.sheet")).collect();

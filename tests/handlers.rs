@@ -79,9 +79,12 @@ fn the_shipped_scenes_of_built_in_cities_are_the_same_on_both() {
     let mut drawn = 0;
     for entry in std::fs::read_dir(folder).expect("the scenes") {
         let path = entry.expect("a file").path();
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue; // an image
+        }
         let text = std::fs::read_to_string(&path).expect("a scene");
         let is_sheet = path.to_string_lossy().ends_with(".sheet.toml");
-        if text.contains("VEDUTA_DATA") || is_sheet || path.extension().is_none_or(|e| e != "toml") {
+        if text.contains("VEDUTA_DATA") || is_sheet {
             continue; // tests/data draws those, and sheets are tests/sheets'
         }
         let scene = scene_file::read(&path, &Options::for_file(&path)).expect("a scene");

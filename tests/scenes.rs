@@ -14,6 +14,7 @@ use veduta::{
 fn scenes() -> Vec<(PathBuf, Scene)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "toml"));
     paths.retain(|path| !path.to_str().unwrap().ends_with(".sheet.toml"));
     paths.sort();
     let read = |path: PathBuf| {

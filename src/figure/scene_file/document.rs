@@ -38,7 +38,7 @@ pub fn reference() -> String {
         rows(&mut out, table.keys);
     }
     out += "## Steps of deformations\n\nThe tables in `deform` of a deformation lens. Lengths and angles are in the frame of its shape: from the middle of its base, along its own axes; `open-street` needs a \
-            corridor, `panorama` no shape, the others a box, a cylinder or a sphere.\n\n";
+            corridor, `panorama`, `heights` and `lower` no shape, the others a box, a cylinder or a sphere.\n\n";
     for table in STEPS {
         let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
         rows(&mut out, table.keys);

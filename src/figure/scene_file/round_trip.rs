@@ -368,8 +368,9 @@ prop_compose! {
             shapes = occlusion::areas(of, if has_shape { shapes } else { vec![] });
         }
         let deform = deform.filter(|_| kind == LensKind::Color);
-        if deform.is_some() {
+        if let Some(deform) = &deform {
             kind = LensKind::Deformation;
+            shapes = if deform.is_of_objects() { vec![] } else { shapes };
         }
         Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, best_view: None, deform, content, body, sprite, border, keeps_shadows, at_rest, section }
     }

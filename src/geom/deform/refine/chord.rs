@@ -13,6 +13,8 @@ const MOST_PARTS: usize = 64;
 const KINK: f64 = 0.75;
 /// What may be between all samples (an edge that cuts a corner of the control), by the tolerance.
 const UNSEEN: f64 = 0.1;
+/// No edge that meets a support is said to be nearer than this, by the tolerance: one may cut a corner of the control between two samples.
+const LEAST_SAID: f64 = 0.25;
 /// How far the inside of a triangle may be off, by the tolerance.
 const INSIDE: f64 = 2.0;
 
@@ -112,7 +114,7 @@ impl Refiner<'_> {
             }
             let samples = self.samples(&mut trace, [a, b], [start - a, end - b], [from, to], parts);
             if samples.step <= 1.0 + 1e-9 {
-                return samples.chord(UNSEEN * self.tolerance_px);
+                return samples.chord(self.tolerance_px);
             }
             step = samples.step * parts as f64;
             parts += 1;
@@ -239,8 +241,9 @@ struct Samples {
 }
 
 impl Samples {
-    /// With so many pixels for what no sample sees.
-    fn chord(&self, unseen_px: f64) -> Chord {
+    /// With something for what no sample sees.
+    fn chord(&self, tolerance_px: f64) -> Chord {
+        let (unseen_px, least_px) = (UNSEEN * tolerance_px, LEAST_SAID * tolerance_px);
         let bend = |i: usize| match (i.checked_sub(1).map(|i| self.off[i]), self.off.get(i + 1)) {
             (Some(before), Some(after)) => (before + *after - 2.0 * self.off[i]).length(),
             _ => 0.0,
@@ -250,8 +253,8 @@ impl Samples {
             let off = self.off[i].length().max(self.off[i + 1].length());
             let metres = off + KINK * (bend(i) + bend(i + 1));
             let scale = self.scale[i].max(self.scale[i + 1]);
-            worst.metres = worst.metres.max(metres + unseen_px / scale);
-            worst.pixels = worst.pixels.max(metres * scale + unseen_px);
+            worst.metres = worst.metres.max(metres + unseen_px / scale).max(least_px / scale);
+            worst.pixels = worst.pixels.max(metres * scale + unseen_px).max(least_px);
         }
         worst
     }
