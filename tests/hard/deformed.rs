@@ -96,7 +96,7 @@ pub fn stepped(step: &Step, size: DVec3, p: DVec3) -> DVec3 {
         Step::Shear { slope } => p + (slope * p.z).extend(0.0),
         Step::Taper { factor } => (p.truncate() * (1.0 + (factor - 1.0) * part)).extend(p.z),
         Step::Twist { angle } => DVec2::from_angle(angle * part).rotate(p.truncate()).extend(p.z),
-        Step::Bend { angle } if angle == 0.0 => p,
+        Step::Bend { angle: 0.0 } => p,
         Step::Bend { angle } => {
             // On circles about the line y = 0, z = r; straight beyond both ends.
             let r = size.y / angle;
@@ -154,7 +154,7 @@ pub fn is_weakened(picture: &Picture) -> bool {
 /// The distances of a picture; none is NaN, and none is behind the eye.
 pub fn distances(picture: &Picture) -> &[f32] {
     let depth = picture.depth.as_ref().expect("depth was asked for");
-    let wrong = depth.iter().position(|d| !(*d > 0.0));
+    let wrong = depth.iter().position(|d| d.is_nan() || *d <= 0.0);
     assert!(wrong.is_none(), "pixel {wrong:?} has a distance that is none: {:?}", wrong.map(|i| depth[i]));
     let normals = picture.normal.as_ref().expect("normals were asked for");
     assert!(normals.iter().flatten().all(|n| n.is_finite() && n.abs() <= 1.01), "a normal that is none");
@@ -266,7 +266,7 @@ impl Mesh {
             let mut middles = std::collections::BTreeMap::new();
             let mut middle = |a: usize, b: usize| {
                 *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                    corners.push((corners[a] + corners[b]).normalize());
+                    corners.push((corners[a] + corners[b]).normalize_or(DVec3::X));
                     corners.len() - 1
                 })
             };
