@@ -819,24 +819,36 @@ fn placed_cell(i: u32) -> vec3i {
     return whole + vec3i(round(at.position * f32(1u << refinement.shift)));
 }
 
+var<workgroup> shared_low: array<vec3i, GROUP>;
+var<workgroup> shared_high: array<vec3i, GROUP>;
+
+// By one group for each chunk: software adapters end what an invocation repeats more than 65,535 times.
 @compute @workgroup_size(GROUP)
 fn find_chunks(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
-    let i = number_of(group, local);
-    if i >= refinement.chunks {
-        return;
-    }
-    let at = CHUNK_WORDS * i;
+    let i = group.y * ROW + group.x;
+    let is_chunk = i < refinement.chunks;
+    let at = CHUNK_WORDS * select(0u, i, is_chunk);
     let start = first_of(made[at]);
+    let end = select(start, first_of(made[at + 7u]), is_chunk);
     var low = vec3i(0x7fffffff);
     var high = -low;
-    let end = first_of(made[at + 7u]);
-    for (var t = start; t < end; t++) {
+    for (var t = start + local; t < end; t += GROUP) {
         let own = triangles[t];
         let a = placed_cell(own.a);
         let b = placed_cell(own.b);
         let c = placed_cell(own.c);
         low = min(low, min(a, min(b, c)));
         high = max(high, max(a, max(b, c)));
+    }
+    shared_low[local] = low;
+    shared_high[local] = high;
+    workgroupBarrier();
+    if local != 0u || !is_chunk {
+        return;
+    }
+    for (var k = 1u; k < GROUP; k++) {
+        low = min(low, shared_low[k]);
+        high = max(high, shared_high[k]);
     }
     made[at] = start;
     for (var k = 0u; k < 3u; k++) {

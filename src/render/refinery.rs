@@ -278,7 +278,8 @@ impl Refinery {
             (6, corners, Some(&vertices)),
             (7, corners, texcoords.as_ref()),
             (8, items, Some(&indices)),
-            (9, u64::from(stage.chunks), Some(&chunks)),
+            // A group for each.
+            (9, GROUP * u64::from(stage.chunks), Some(&chunks)),
         ];
         for (kernel, items, buffer) in own {
             let Some(buffer) = buffer else { continue };
