@@ -157,7 +157,7 @@ fn from_within_closed_bodies_no_background_is_seen() {
             break;
         }
         let which = i % 3;
-        let lenses = strong(i / 12, middle, 18.0, &mut numbers);
+        let lenses = strong(i / 3, middle, 18.0, &mut numbers);
         let faces = meshes[which].places([0; 3], 1.0);
         let half = [DVec3::splat(5.0), DVec3::new(6.0, 9.0, 12.0), DVec3::new(25.0, 1.5, 16.0)][which];
         let eye = shown(&lenses, middle + half * in_cube(&mut numbers));
@@ -187,7 +187,7 @@ fn before_the_background_no_body_has_a_hole() {
             break;
         }
         let which = i % 3;
-        let lenses = strong(i / 12, middle, 18.0, &mut numbers);
+        let lenses = strong(i / 3, middle, 18.0, &mut numbers);
         // A look from outside at a place in it, from near and far.
         let about = middle + [5.0, 8.0, 15.0][which] * DVec3::new(1.0, 0.1, 1.0) * in_cube(&mut numbers);
         let away = 3.0 + 60.0 * share(&mut numbers).powi(2);
@@ -315,7 +315,7 @@ fn walls_that_share_a_plane_leave_no_gap() {
         if tested >= budget {
             break;
         }
-        let lenses = strong(i / 8, center, 16.0, &mut numbers);
+        let lenses = strong(i / 2, center, 16.0, &mut numbers);
         let inside = [place([-5_000, 0, 6_000]), place([4_500, 3_000, 5_000])][i % 2];
         let eye = shown(&lenses, inside + DVec3::new(3.5, 6.5, 3.5) * in_cube(&mut numbers));
         if clearance(eye, &faces, &lenses) < 0.7 {
