@@ -367,7 +367,7 @@ fn farthest_raised(studio: &Studio, scene: &Scene, view: &View, shown: &[(DVec3,
     let pixel_m = |place: DVec3| view.depth(place) * 2.0 * view.half_extent().y / f64::from(SIZE[1]);
     let off = |(place, object): &(DVec3, u32)| {
         let pixel = pixel_m(*place);
-        let back = (*place - view.camera.eye).normalize();
+        let back = (*place - view.camera.eye).normalize_or(DVec3::Z);
         // What lies over something in its plane is lifted towards the eye.
         let off_at = |px: f64| {
             let place = *place + px * pixel * back;

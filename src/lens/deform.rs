@@ -115,7 +115,7 @@ pub enum Step {
     /// Makes city objects lower that hide a point of interest, so that they do not (D4).
     Lower {
         /// Whom.
-        of: Occluders,
+        of: Box<Occluders>,
         /// What their heights are multiplied with, > 0.
         factor: f64,
     },
@@ -162,7 +162,7 @@ impl Deform {
 
     /// Whom it makes lower; of several steps, the first ones.
     pub fn occluders(&self) -> Option<&Occluders> {
-        self.steps.iter().find_map(|step| if let Step::Lower { of, .. } = step { Some(of) } else { None })
+        self.steps.iter().find_map(|step| if let Step::Lower { of, .. } = step { Some(&**of) } else { None })
     }
 
     /// What it is in the world; `area`: its focus area there; `image`: the texels of its control's image.

@@ -14,6 +14,7 @@
 
 use std::{ops::Range, sync::Arc};
 
+use bytemuck::Zeroable;
 use glam::{DVec3, IVec3, Vec3};
 use rayon::prelude::*;
 
@@ -265,7 +266,7 @@ fn stage_of(view: &View, lattice: &Lattice, (chord_px, is_smooth): (f64, bool)) 
         shortest: Limits::default().shortest_m as f32,
         lift: (LIFT * chord_px) as f32,
         is_smooth: u32::from(is_smooth),
-        ..layout::Refinement::new()
+        ..layout::Refinement::zeroed()
     }
 }
 

@@ -13,7 +13,6 @@
 
 use std::ops::Range;
 
-use bytemuck::Zeroable;
 use glam::{DVec3, IVec3};
 
 use crate::{
@@ -412,13 +411,6 @@ fn pipelines_of(gpu: &Gpu, plan: &DeformPlan) -> Vec<wgpu::ComputePipeline> {
         })
     };
     KERNELS.iter().map(pipeline).collect()
-}
-
-impl layout::Refinement {
-    /// Of no view yet.
-    pub fn new() -> Self {
-        Self::zeroed()
-    }
 }
 
 #[cfg(test)]

@@ -266,7 +266,7 @@ pub(super) fn steps(reader: &mut Reader, fields: &Fields) -> Vec<Step> {
         let own = reader.checker.fields(node, table, &[], place);
         if table.name == "lower" {
             let factor = own.number("factor").unwrap_or(LOWERED);
-            steps.push(Step::Lower { of: occlusion::read(reader, &own), factor });
+            steps.push(Step::Lower { of: Box::new(occlusion::read(reader, &own)), factor });
         } else {
             steps.extend(step(reader.checker, table.name, &own));
         }

@@ -331,7 +331,7 @@ fn deforms() -> impl Strategy<Value = Deform> {
     ];
     let heights = ("[a-z]{1,5}", -9.0..9.0f64, 0.1..9.0f64, factor(), factor())
         .prop_map(|(attribute, low, more, a, b)| Step::Heights { attribute, from: [low, low + more], to: [a, b] });
-    let lower = (occluded(), factor()).prop_map(|((of, ..), factor)| Step::Lower { of, factor });
+    let lower = (occluded(), factor()).prop_map(|((of, ..), factor)| Step::Lower { of: of.into(), factor });
     let control = prop_oneof![
         (0.01..=0.5f64).prop_map(|border| ControlProfile::Linear { border }),
         Just(ControlProfile::Smooth { border: BORDER }),

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use bytemuck::Zeroable;
 use glam::{DMat3, DVec2, DVec3, IVec3};
 use proptest::prelude::*;
 
@@ -88,7 +89,7 @@ fn read(gpu: &Gpu, refinery: &mut Refinery, rest: &Rest, tolerance: f32, shortes
         forward: [0.0, 0.0, -1.0],
         tolerance,
         shortest,
-        ..layout::Refinement::new()
+        ..layout::Refinement::zeroed()
     };
     let made = refinery.refined(gpu, rest, &stage).expect("room");
     let triangles: Vec<[u32; 3]> = words(gpu, &made.indices, 3 * made.triangles as usize).as_chunks::<3>().0.to_vec();
