@@ -17,6 +17,7 @@ use veduta::{
         scene_file::{self, Options},
     },
     gpu::Gpu,
+    lens::Lens,
     render::{
         frame::Backend,
         picture::{Aovs, Request, Studio},
@@ -42,8 +43,9 @@ fn check(path: &Path) -> Result<(), Failed> {
     let model = Arc::new(model);
     let mut studio = Studio::new(Gpu::open()?, model.clone(), &scene.city)?;
     let volumes = studio.lens_volumes(&scene, scene.figure.size)?;
-    // Those with an overlay have no focus area.
-    for (i, lens) in scene.lenses.iter().enumerate().filter(|(_, lens)| lens.best_view.is_none()) {
+    // Those with an overlay have no focus area, nor those about the eye or about objects.
+    let has_area = |lens: &Lens| lens.best_view.is_none() && lens.deform.as_ref().is_none_or(|d| !d.needs_no_area());
+    for (i, lens) in scene.lenses.iter().enumerate().filter(|(_, lens)| has_area(lens)) {
         let own = volumes.iter().filter(|v| v.lens as usize == i);
         let bounds: Vec<_> = own.map(|v| v.bounds).collect();
         let meets = |g: &&Geometry| bounds.iter().any(|b| g.bounds.meets(b));

@@ -326,7 +326,7 @@ fn every_mistake_in_a_lens_is_named() {
         ("kind = \"deformation\"", "[lens.0] deform: is missing: what the lens does with space; for example deform ="),
         (
             "kind = \"deformation\"\ndeform = [{ kind = \"twsit\", angle_deg = 3 }]",
-            "[lens.0] deform.0.kind: must be one of translate, scale, shear, taper, twist, bend, open-street, panorama, is \"twsit\"; did you mean \"twist\"?",
+            "[lens.0] deform.0.kind: must be one of translate, scale, shear, taper, twist, bend, open-street, heights, lower, panorama, is \"twsit\"; did you mean \"twist\"?",
         ),
         (
             "kind = \"deformation\"\ndeform = [{ kind = \"scale\", factors = [1, 0, 1] }]",
@@ -339,6 +339,22 @@ fn every_mistake_in_a_lens_is_named() {
         (
             "kind = \"deformation\"\ndeform = [{ kind = \"twist\", angle_deg = 3 }]\ncontrol = { image = \"k.png\", profile = \"bump\" }",
             "[lens.0] control.image: is given together with profile: a control is one of them",
+        ),
+        (
+            "kind = \"deformation\"\ndeform = [{ kind = \"heights\", attribute = \"a\", from = [9, 5], to = [1, 2] }]",
+            "[lens.0] deform.0.from: must be two numbers, ascending, is [9.0, 5.0]",
+        ),
+        (
+            "kind = \"deformation\"\ndeform = [{ kind = \"heights\", attribute = \"a\", from = [5, 9], to = [0, 2] }]",
+            "[lens.0] deform.0.to: must be two numbers from 0.01 to 100, is [0.0, 2.0]",
+        ),
+        (
+            "kind = \"deformation\"\ndeform = [{ kind = \"lower\" }]",
+            "[lens.0] deform.0.poi: is missing: the test asks what hides a point of interest",
+        ),
+        (
+            "kind = \"deformation\"\ndeform = [{ kind = \"heights\", attribute = \"a\", from = [5, 9], to = [1, 2] }, { kind = \"twist\", angle_deg = 3 }]",
+            "[lens.0] deform: heights and lower are about city objects: their lens has no shape, and no other kinds of steps",
         ),
         ("strength = 0.5", "[lens.0] strength: has a meaning only for a lens of kind = \"deformation\""),
         (
@@ -364,7 +380,7 @@ fn every_mistake_in_a_lens_is_named() {
         ("attached_to = {}", "[lens.0] attached_to: is empty: give object = \"ID\" or poi = \"NAME\""),
         ("attached_to = { objekt = \"a\" }", "attached_to.objekt: unknown key; did you mean \"object\"?"),
         ("attached_to = \"a\"", "attached_to: must be a table, is \"a\""),
-        ("space = \"rest\"", "space: \"rest\" is not available yet"),
+        ("space = \"west\"", "space: must be \"displayed\" or \"rest\", is \"west\"; did you mean \"rest\"?"),
         ("color = \"red\"", "color: must be a colour: \"#rrggbb\" or [r, g, b] of 0 to 1, is \"red\""),
         (
             "effects = [\"sepai\"]",
