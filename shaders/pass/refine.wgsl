@@ -704,8 +704,6 @@ fn split(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
 // Whole metres that origins of moved vertices are multiples of, as a power of two: offsets from them are exact.
 const ORIGIN_SHIFT: u32 = 5u;
 const VERTEX_WORDS: u32 = 8u;
-// Of the angle between the normal of a layer and the way to the eye: what is seen more edge on is lifted less than it should be.
-const LEAST_LIFT_COSINE: f32 = 0.1;
 
 fn weights_of(own: Corner) -> vec3f {
     return vec3f(1.0 - own.weights.x - own.weights.y, own.weights);
@@ -741,7 +739,7 @@ fn place(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) l
     if layer > 0u {
         // Towards the eye, so that it stays where it is in the picture: its neighbours are not lifted.
         let back = towards_eye(own.cell, way);
-        lift = back * (f32(layer) * refinement.lift / (pixels_per_m(own.cell, way) * max(abs(dot(normal, back)), LEAST_LIFT_COSINE)));
+        lift = back * (f32(layer) * refinement.lift / pixels_per_m(own.cell, way));
     }
     let moved = vec3i(round(way * f32(1u << refinement.shift)));
     let cell = own.cell + moved;

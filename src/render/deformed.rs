@@ -53,9 +53,9 @@ const CHORD_SAMPLES: u32 = 32;
 const LEAST_CHORD_PX: f64 = 1e-4;
 /// Of the angle between the view's axis and what is refined for it.
 const LEAST_COSINE: f64 = 0.25;
-/// How far a layer of coplanar faces is lifted off the one below, across their plane, by the tolerance: two chords of one curved plane are
-/// no further apart. Towards the eye, so that it stays where it is in the picture.
-const LIFT: f64 = 2.0;
+/// How far a layer of coplanar faces is lifted off the one below, towards the eye, by the tolerance: it stays where it is in the picture. Two
+/// chords of one curved plane may be twice the tolerance apart, but walls between houses that are lifted by so much come through the roofs.
+const LIFT: f64 = 0.5;
 
 /// By how much supports are taken to be wider where triangles are found: what the card's numbers may be off, of the way to the pivot, and
 /// at least.
