@@ -111,16 +111,10 @@ fn farthest(studio: &Studio, deformers: &Deformers, view: &View, shown: &[(DVec3
     let all = triangles(studio);
     let pixel_m = |place: DVec3| view.depth(place) * 2.0 * view.half_extent().y / f64::from(SIZE[1]);
     let off = |(place, object): &(DVec3, u32)| {
-        let pixel = pixel_m(*place);
-        let back = (*place - view.camera.eye).normalize_or(view.basis.forward);
-        // What lies over something in its plane is lifted towards the eye.
-        let off_at = |px: f64| {
-            let place = *place + px * pixel * back;
-            let rest = deformers.inverse(place).unwrap_or_else(|| panic!("{place} has a place at rest"));
-            let own = all.iter().filter(|triangle| triangle.object == *object);
-            own.map(|triangle| nearest(rest, triangle.corners).distance(rest)).fold(f64::INFINITY, f64::min)
-        };
-        [0.0, 0.5, 1.0, 2.0, 4.0].map(off_at).into_iter().fold(f64::INFINITY, f64::min) / pixel
+        let rest = deformers.inverse(*place).unwrap_or_else(|| panic!("{place} has a place at rest"));
+        let own = all.iter().filter(|triangle| triangle.object == *object);
+        let off = own.map(|triangle| nearest(rest, triangle.corners).distance(rest)).fold(f64::INFINITY, f64::min);
+        off / pixel_m(*place)
     };
     shown.iter().map(off).fold(0.0, f64::max)
 }
@@ -366,16 +360,10 @@ fn farthest_raised(studio: &Studio, scene: &Scene, view: &View, shown: &[(DVec3,
     let all = triangles(studio);
     let pixel_m = |place: DVec3| view.depth(place) * 2.0 * view.half_extent().y / f64::from(SIZE[1]);
     let off = |(place, object): &(DVec3, u32)| {
-        let pixel = pixel_m(*place);
-        let back = (*place - view.camera.eye).normalize_or(DVec3::Z);
-        // What lies over something in its plane is lifted towards the eye.
-        let off_at = |px: f64| {
-            let place = *place + px * pixel * back;
-            let own = all.iter().filter(|triangle| triangle.object == *object);
-            let raised = own.map(|triangle| triangle.corners.map(|corner| moved.place(Some(*object), corner)));
-            raised.map(|corners| nearest(place, corners).distance(place)).fold(f64::INFINITY, f64::min)
-        };
-        [0.0, 0.5, 1.0, 2.0, 4.0].map(off_at).into_iter().fold(f64::INFINITY, f64::min) / pixel
+        let own = all.iter().filter(|triangle| triangle.object == *object);
+        let raised = own.map(|triangle| triangle.corners.map(|corner| moved.place(Some(*object), corner)));
+        let off = raised.map(|corners| nearest(*place, corners).distance(*place)).fold(f64::INFINITY, f64::min);
+        off / pixel_m(*place)
     };
     shown.iter().map(off).fold(0.0, f64::max)
 }
