@@ -192,9 +192,9 @@ fn redrawn(plain: &mut Studio, own: &mut Studio, pairs: usize) {
         let time = start.elapsed().as_secs_f64() * 1e3;
         assert!(n == 0 || made.figures.iter().filter(|f| f.rendered).count() >= OVERLAYS - 1, "they are drawn again");
         let model = made.figures.iter().filter(|figures| figures.rendered).map(|figures| {
-            let triangles = figures.triangles(&figures.lens.to_string(), 1) as f64;
-            most = most.max(triangles / pixels(figures.size));
-            fixed + per_triangle * triangles + per_pixel * pixels(figures.size)
+            let triangles = figures.triangles(&figures.shown.lens.to_string(), 1) as f64;
+            most = most.max(triangles / pixels(figures.shown.size));
+            fixed + per_triangle * triangles + per_pixel * pixels(figures.shown.size)
         });
         models.push(model.sum::<f64>());
         own_times.push(time);

@@ -3,7 +3,7 @@
 //! A city is looked at through lenses; a lens is made of handlers; handlers become one shader;
 //! passes draw the frame; a figure is a frame written down; measurement compares figures.
 //!
-//! The way of a picture, from the ground floor up (imports go down only, `tests/floors.rs`):
+//! The way of a picture, from the ground floor up (imports go down only, `tests/features/floors.rs`):
 //!
 //! 1. [`geom`]: shapes and numbers; exact predicates, triangulation, the BVH.
 //! 2. [`city`]: files become one plain [`city::CityModel`] and a list of warnings.
@@ -16,6 +16,7 @@
 //! 9. [`measure`]: what accuracy costs in time.
 //! 10. [`cli`]: what people type.
 
+pub mod app;
 pub mod city;
 pub mod cli;
 pub mod figure;

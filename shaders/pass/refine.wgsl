@@ -22,6 +22,7 @@ struct Refinement {
     met: u32,               // triangles of the city
     chunks: u32,
     lift: f32,              // of a layer over the one below, pixels
+    narrowest: f32,         // what is narrower is not drawn, pixels
     is_smooth: u32,
     asked: u32,             // of the triangles of this round, those that are not done
 }
@@ -99,6 +100,7 @@ const ROW: u32 = 32768u;
 const GENERATIONS: u32 = 32u;
 const PARTS: u32 = 6u;
 const MOST_PARTS: u32 = 64u;
+const FEWEST_PARTS: f32 = 3.0;
 const KINK: f32 = 0.75;
 const UNSEEN: f32 = 0.1;
 const INSIDE: f32 = 2.0;
@@ -106,6 +108,8 @@ const CLOSE: f32 = 6.0;
 // What ways that are computed in the frame of a lens may be off, of the distance from its pivot: some units in the last place. Finer edges
 // would not be nearer to where they should be.
 const NOISE: f32 = 5e-7;
+// How exact corners are that rasterisers find where they cut triangles off, of the distance of the farthest corner.
+const CUT_NOISE: f32 = 1e-6;
 
 fn number_of(group: vec3u, local: u32) -> u32 {
     return (group.y * ROW + group.x) * GROUP + local;
@@ -254,7 +258,8 @@ fn answer_of(a: vec3i, b: vec3i) -> u32 {
         } else if i == -1.0 {
             start = way;
             close = select(0u, IS_CLOSE, stride <= CLOSE);
-            parts = max(f32(PARTS), ceil(min(stride * (range.y - range.x), 1e9)));
+            let strides = stride * (range.y - range.x);
+            parts = select(max(f32(PARTS), ceil(min(strides, 1e9))), FEWEST_PARTS, strides <= 1.0);
             stride = 0.0;
             if range.x == 0.0 {
                 // This is the first of the parts' ends, too.
@@ -279,12 +284,13 @@ fn answer_of(a: vec3i, b: vec3i) -> u32 {
             here = off;
             if i == parts {
                 worst = max(worst, (max(length(before), length(here)) + KINK * bend) * max(scales.x, scales.y));
-                if stride <= 1.00001 {
-                    let is_off = worst + UNSEEN * refinement.tolerance > refinement.tolerance;
+                let is_off = worst + UNSEEN * refinement.tolerance > refinement.tolerance;
+                // A few say that it is near; that it is not, only PARTS and more.
+                if stride <= 1.00001 && (!is_off || parts >= f32(PARTS)) {
                     return select(0u, HALVED, is_off) | close;
                 }
                 // Not all was seen.
-                parts = max(parts + 1.0, ceil(min(stride * parts, 1e9)));
+                parts = max(max(parts + 1.0, f32(PARTS)), ceil(min(stride * parts, 1e9)));
                 stride = 0.0;
                 worst = 0.0;
                 before = vec3f(0.0);
@@ -779,7 +785,60 @@ fn mix_texcoords(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_
     made[2u * i + 1u] = bitcast<u32>(mixed.y);
 }
 
-// Triangles as indices, turned as their sources were.
+// From the eye to a corner that was placed, metres. `rest_corners` has what was placed.
+fn from_eye(at: RestCorner) -> vec3f {
+    let whole = (at.origin - refinement.anchor) * i32(1u << refinement.shift);
+    return vec3f(whole - refinement.eye) * cell_size() + (at.position - refinement.eye_offset);
+}
+
+fn between(start: RestCorner, end: RestCorner) -> vec3f {
+    return vec3f(end.origin - start.origin) + (end.position - start.position);
+}
+
+// Whether a triangle is narrower in the picture than rasterisers can tell its slope from: some take it from corners that are not on
+// their grid, and what they cover from corners that are. Its depths would be no numbers, or far beside.
+fn is_line(a: RestCorner, b: RestCorner, c: RestCorner) -> bool {
+    let forward = refinement.forward;
+    let first = from_eye(a);
+    var places = array<vec3f, 3>(first, first + between(a, b), first + between(a, c));
+    var sides = array<vec3f, 3>(between(a, b), between(b, c), between(c, a));
+    let turn = cross(sides[0], sides[1]);
+    if refinement.orthographic == 1u {
+        var longest = 0.0;
+        for (var k = 0u; k < 3u; k++) {
+            longest = max(longest, length(sides[k] - dot(sides[k], forward) * forward));
+        }
+        return refinement.pixels * abs(dot(forward, turn)) <= refinement.narrowest * longest;
+    }
+    // The volume between it and the eye.
+    let volume = abs(dot(first, turn));
+    var farthest = 0.0;
+    var along = vec2f(0.0);     // lengths of the longest side and of its cross product with a way from the eye to it, metres
+    var depths = vec3f(0.0);
+    for (var k = 0u; k < 3u; k++) {
+        farthest = max(farthest, length(places[k]));
+        depths[k] = dot(places[k], forward);
+        let size = length(sides[k]);
+        if size >= along.x {
+            along = vec2f(size, length(cross(places[k], sides[k])));
+        }
+    }
+    // Corners of what is cut off at the edges of the picture are this much off.
+    if volume <= CUT_NOISE * farthest * along.y {
+        return true;
+    }
+    if any(depths < vec3f(refinement.near)) {
+        return false;
+    }
+    var longest = 0.0;
+    for (var k = 0u; k < 3u; k++) {
+        let next = (k + 1u) % 3u;
+        longest = max(longest, length(places[k] / depths[k] - places[next] / depths[next]));
+    }
+    return refinement.pixels * volume <= refinement.narrowest * longest * depths.x * depths.y * depths.z;
+}
+
+// Triangles as indices, turned as their sources were. What is too narrow is none.
 @compute @workgroup_size(GROUP)
 fn draw(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let i = number_of(group, local);
@@ -788,9 +847,12 @@ fn draw(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lo
     }
     let own = triangles[i];
     let is_turned = (rest_bits[own.source] & TURNED) != 0u;
+    let is_drawn = !is_line(rest_corners[own.a], rest_corners[own.b], rest_corners[own.c]);
+    let second = select(own.b, own.c, is_turned);
+    let third = select(own.c, own.b, is_turned);
     made[3u * i] = own.a;
-    made[3u * i + 1u] = select(own.b, own.c, is_turned);
-    made[3u * i + 2u] = select(own.c, own.b, is_turned);
+    made[3u * i + 1u] = select(own.a, second, is_drawn);
+    made[3u * i + 2u] = select(own.a, third, is_drawn);
 }
 
 // The triangles of each chunk: where they begin, and the cells that they are between. `made` has words for each: the number of its first

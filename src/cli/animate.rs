@@ -172,7 +172,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             serde_json::to_writer(&mut lines, &told).map_err(|error| at_frame(error.to_string()))?;
             lines.push(b'\n');
         }
-        let notes = render::notes(&scene, &options);
+        let notes = picture::notes_of(&scene, &options);
         picture::save_picture(&folder.file(frame), drawn.size, &drawn.rgba, true, &notes).map_err(output::unwritten)?;
         progress.at(u64::from(frame - first) + 1);
     }

@@ -206,7 +206,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             figure::draw(&mut studio, &scene, &request).map_err(|error| Failure::failed(format!("{name}: {error}")))?;
         drop(progress);
         let file = folder.join(format!("{name}.png"));
-        picture::save_picture(&file, drawn.size, &drawn.rgba, true, &render::notes(&scene, &options))
+        picture::save_picture(&file, drawn.size, &drawn.rgba, true, &picture::notes_of(&scene, &options))
             .map_err(output::unwritten)?;
         output::print(&format!("{}\n", file.display()))?;
         last = Some((scene.city, studio));

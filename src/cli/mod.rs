@@ -24,6 +24,8 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 
 pub use failure::{Failure, Outcome};
 
+use crate::{app, city::builtin};
+
 /// The command line.
 #[derive(Debug, Parser)]
 #[command(
@@ -137,7 +139,7 @@ fn run(cli: Cli) -> Outcome {
     let global = &cli.global;
     effects::add_folders(&global.effects, global)?;
     match cli.command {
-        Some(Command::View(arguments)) => view(&arguments),
+        Some(Command::View(arguments)) => view(&arguments, global),
         Some(Command::Render(arguments)) => render::run(&arguments, global),
         Some(Command::Sheet(arguments)) => sheet::run(&arguments, global),
         Some(Command::Animate(arguments)) => animate::run(&arguments, global),
@@ -147,26 +149,47 @@ fn run(cli: Cli) -> Outcome {
         Some(Command::Measure(arguments)) => measure::run(&arguments, global),
         Some(Command::Effects(arguments)) => effects::run(&arguments, global),
         Some(Command::Shader(arguments)) => shader::run(&arguments, global),
-        Some(Command::Other(words)) => other(&words),
-        None => view(&ViewArguments { files: Vec::new(), scene: cli.scene }),
+        Some(Command::Other(words)) => other(&words, global),
+        None => view(&ViewArguments { files: Vec::new(), scene: cli.scene.clone() }, global),
     }
 }
 
-fn view(arguments: &ViewArguments) -> Outcome {
-    let file = match (&arguments.scene, arguments.files.first()) {
-        (Some(file), _) | (None, Some(file)) => file.display().to_string(),
-        _ => "FILE".to_owned(),
-    };
-    Err(Failure::failed(format!(
-        "view: this version ({VERSION}) has no window yet; `veduta render {file} -o picture.png` makes a picture"
-    )))
+fn view(arguments: &ViewArguments, global: &GlobalArguments) -> Outcome {
+    let files: Vec<PathBuf> = arguments.scene.iter().chain(&arguments.files).cloned().collect();
+    let is_scene = |path: &&PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+    if files.iter().any(|path| is_scene(&path)) && files.len() > 1 {
+        return Err(Failure::usage(
+            "view: one scene (.toml) or any number of city files; a scene names its files itself",
+        ));
+    }
+    for file in &files {
+        let is_builtin = file.to_string_lossy().starts_with(builtin::PREFIX);
+        match is_builtin {
+            true => builtin::check(&file.to_string_lossy()).map_err(Failure::failed)?,
+            false if !file.exists() => {
+                return Err(Failure::failed(format!("{}: there is no such file", file.display())));
+            }
+            false => {}
+        }
+    }
+    if !app::has_display() {
+        let file = files.first().map_or_else(|| app::BUILTIN.to_owned(), |file| file.display().to_string());
+        return Err(Failure::failed(format!(
+            "view: there is no display to open a window on; `veduta render {file} -o picture.png` makes a picture without one"
+        )));
+    }
+    let memory = app::Start::user_memory();
+    let effects = global.effects.clone();
+    app::run(app::Start { files, allow_outside: global.allow_outside, memory, effects }).map_err(Failure::failed)
 }
 
 /// `veduta WORD...`: files to view, or a command that is spelt wrong or that this version lacks.
-fn other(words: &[OsString]) -> Outcome {
-    let Some(first) = words.first().map(PathBuf::from) else { return view(&ViewArguments::default()) };
-    if first.exists() || first.extension().is_some() || first.as_os_str() == "-" {
-        return view(&ViewArguments { files: vec![first], scene: None });
+fn other(words: &[OsString], global: &GlobalArguments) -> Outcome {
+    let Some(first) = words.first().map(PathBuf::from) else { return view(&ViewArguments::default(), global) };
+    let is_builtin = first.to_string_lossy().starts_with(builtin::PREFIX);
+    if is_builtin || first.exists() || first.extension().is_some() || first.as_os_str() == "-" {
+        let files = words.iter().map(PathBuf::from).collect();
+        return view(&ViewArguments { files, scene: None }, global);
     }
     let word = first.display().to_string();
     let command = Cli::command();

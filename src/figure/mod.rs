@@ -14,7 +14,7 @@ use crate::{
     figure::overlays::Standing,
     render::{
         furniture::Furniture,
-        picture::{Picture, RenderError, Request, Studio},
+        picture::{Picture, RenderError, Request, ShownOverlay, Studio},
     },
     scene::Scene,
 };
@@ -69,12 +69,13 @@ fn draw_with(
     let furniture = Furniture { pieces: overlays.furniture.pieces.into_iter().chain(own.pieces).collect() };
     let mut picture = studio.render_with(scene, request, &furniture)?;
     picture.without_glyph.extend(&overlays.without_glyph);
+    picture.overlays = overlays.figures.iter().map(|own| own.shown).collect();
     if request.statistics {
         let figures = overlays.figures.iter().map(|own| {
-            let ([x, y], [width, height]) = (own.at, own.size);
-            let triangles = own.triangles(&scene.lenses[own.lens as usize].name, request.samples);
+            let ShownOverlay { lens, at: [x, y], size: [width, height], .. } = own.shown;
+            let triangles = own.triangles(&scene.lenses[lens as usize].name, request.samples);
             serde_json::json!({
-                "lens": own.lens, "x": x, "y": y, "width": width, "height": height,
+                "lens": lens, "x": x, "y": y, "width": width, "height": height,
                 "rendered": own.rendered, "triangles": triangles,
             })
         });

@@ -2,7 +2,13 @@
 
 use std::{io, path::Path};
 
-use crate::figure::file::{WriteError, write_whole};
+use crate::{
+    figure::{
+        file::{WriteError, write_whole},
+        scene_file::{self, Options},
+    },
+    scene::Scene,
+};
 
 /// Text that goes into a picture: keyword and value.
 pub type Note = (&'static str, String);
@@ -23,6 +29,14 @@ pub fn notes(scene_hash: Option<u64>) -> Notes {
         texts.push(("veduta:scene", format!("{hash:016x}")));
     }
     Notes { texts, dpi: None }
+}
+
+/// What a picture of a scene says about itself: the program's version, its dots per inch where the scene has them, and a hash of the
+/// scene, paths relative to its file. An animation is no part of a picture.
+pub fn notes_of(scene: &Scene, options: &Options) -> Notes {
+    let still = Scene { animation: None, ..scene.clone() };
+    let hash = hash(&scene_file::to_toml_for(&still, options));
+    Notes { dpi: scene.figure.dpi, ..notes(Some(hash)) }
 }
 
 /// FNV-1a of a text: names a scene; not a defence against anybody.

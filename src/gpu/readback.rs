@@ -22,21 +22,22 @@ impl Gpu {
             wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             u64::from(pitch) * u64::from(height),
         )?;
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_texture_to_buffer(
-            wgpu::TexelCopyTextureInfo {
-                texture,
-                mip_level: 0,
-                origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
-                aspect,
-            },
-            wgpu::TexelCopyBufferInfo {
-                buffer: &staging,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None },
-            },
-            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        );
-        self.queue.submit([encoder.finish()]);
+        let from = wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
+            aspect,
+        };
+        let to = wgpu::TexelCopyBufferInfo {
+            buffer: &staging,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None },
+        };
+        self.guarded(|| {
+            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            encoder.copy_texture_to_buffer(from, to, wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
+            self.queue.submit([encoder.finish()]);
+            Ok(())
+        })?;
         self.mapped(&staging, |mapped| {
             let mut packed = Vec::with_capacity(row as usize * height as usize);
             for line in mapped.chunks(pitch as usize).take(height as usize) {
@@ -50,9 +51,12 @@ impl Gpu {
     pub fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
         let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
         let staging = self.empty_buffer("read-back", usage, buffer.size())?;
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
-        self.queue.submit([encoder.finish()]);
+        self.guarded(|| {
+            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
+            self.queue.submit([encoder.finish()]);
+            Ok(())
+        })?;
         self.mapped(&staging, <[u8]>::to_vec)
     }
 
@@ -60,7 +64,11 @@ impl Gpu {
     pub fn mapped<T>(&self, staging: &wgpu::Buffer, read: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
         let failed = Arc::new(AtomicBool::new(false));
         let flag = failed.clone();
-        staging.slice(..).map_async(wgpu::MapMode::Read, move |result| flag.store(result.is_err(), Relaxed));
+        // Of a device that is gone there is no buffer.
+        self.guarded(|| {
+            staging.slice(..).map_async(wgpu::MapMode::Read, move |result| flag.store(result.is_err(), Relaxed));
+            Ok(())
+        })?;
         self.wait()?;
         let failure = || GpuError::Failed { adapter: self.name(), message: "a read-back was refused".to_owned() };
         if failed.load(Relaxed) {

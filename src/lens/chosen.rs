@@ -1,11 +1,11 @@
-//! Objects chosen by their ids or by an attribute: which of them an effect or a lens means.
+//! Objects chosen by their ids, their types or an attribute: which of them an effect or a lens means.
 
 use std::collections::BTreeSet;
 
 use rustc_hash::FxHashSet;
 
 use crate::{
-    city::{CityModel, Value},
+    city::{CityModel, StringId, Value},
     lens::{
         EffectUse, Parameter,
         nearest::did_you_mean,
@@ -21,7 +21,9 @@ const SHOWN_VALUES: usize = 8;
 pub struct Choice {
     /// These objects and their parts; empty: the attribute chooses.
     pub ids: Vec<String>,
-    /// Objects that have this attribute; one without it takes its parent's. `None` and no ids: all objects.
+    /// Objects of these types, as their files call them, and their parts.
+    pub types: Vec<String>,
+    /// Objects that have this attribute; one without it takes its parent's. `None`, no ids and no types: all objects.
     pub attribute: Option<String>,
     /// Only where the attribute is one of these.
     pub values: Option<Vec<String>>,
@@ -34,6 +36,20 @@ pub struct Choice {
 }
 
 impl Choice {
+    /// Whether it names objects, or their types: no attribute chooses.
+    fn names(&self) -> bool {
+        !(self.ids.is_empty() && self.types.is_empty())
+    }
+
+    /// The key by which it chooses.
+    pub fn key(&self) -> &'static str {
+        match (self.ids.is_empty(), self.types.is_empty()) {
+            (false, _) => "ids",
+            (true, false) => "types",
+            (true, true) => "attribute",
+        }
+    }
+
     /// The choice that the parameters of an effect make.
     pub fn of_effect(used: &EffectUse) -> Self {
         let values = match used.parameters.get("values") {
@@ -42,6 +58,7 @@ impl Choice {
         };
         Self {
             ids: Vec::new(),
+            types: Vec::new(),
             attribute: used.text("attribute").map(str::to_owned),
             values,
             min: used.number("min"),
@@ -71,7 +88,7 @@ pub enum ChoiceError {
     Id(String, String),
 }
 
-/// The objects that a choice means. Without ids and attribute all; with `values` those whose value is one of them, with `min`
+/// The objects that a choice means. Without ids, types and attribute all; with `values` those whose value is one of them, with `min`
 /// and `max` those whose number lies between, both included; with neither those that have a value. `except` turns it round,
 /// among objects and never for what belongs to none.
 pub fn chosen(model: &CityModel, choice: &Choice) -> Result<Chosen, ChoiceError> {
@@ -83,7 +100,7 @@ pub fn chosen(model: &CityModel, choice: &Choice) -> Result<Chosen, ChoiceError>
         let hint = did_you_mean(name, attribute_names(model));
         return Err(ThematicError::UnknownAttribute(name.to_owned(), hint).into());
     }
-    let without_object = choice.ids.is_empty() && choice.attribute.is_none();
+    let without_object = !choice.names() && choice.attribute.is_none();
     Ok(Chosen { without_object, objects: members(model, choice) })
 }
 
@@ -91,11 +108,15 @@ pub fn chosen(model: &CityModel, choice: &Choice) -> Result<Chosen, ChoiceError>
 /// ([`crate::scene::check_against`] says so).
 pub fn members(model: &CityModel, choice: &Choice) -> Vec<bool> {
     let count = model.objects.len();
-    if !choice.ids.is_empty() {
+    if choice.names() {
         let mut objects = vec![choice.except; count];
         // In one go over the city, however many are named.
         let named: FxHashSet<&str> = choice.ids.iter().map(String::as_str).collect();
-        let is_named = |object: &u32| named.contains(&*model.objects[*object as usize].id);
+        let kinds: Vec<StringId> = choice.types.iter().filter_map(|name| model.strings.find(name)).collect();
+        let is_named = |object: &u32| {
+            let own = &model.objects[*object as usize];
+            named.contains(&*own.id) || kinds.contains(&own.kind)
+        };
         let mut next: Vec<u32> = (0..count as u32).filter(is_named).collect();
         while let Some(object) = next.pop() {
             // Each once: parts may be named by several objects.
@@ -128,6 +149,7 @@ pub fn absent(model: &CityModel, choice: &Choice) -> Vec<(String, String)> {
         let hint = did_you_mean(id, model.objects.iter().map(|o| &*o.id));
         found.push((format!("ids.{i}"), ChoiceError::Id(id.clone(), hint).to_string()));
     }
+    found.extend(absent_types(model, &choice.types).into_iter().map(|(i, message)| (format!("types.{i}"), message)));
     let names = attribute_names(model);
     if let Some(name) = choice.attribute.as_deref().filter(|name| !names.contains(name)) {
         let hint = did_you_mean(name, names);
@@ -137,6 +159,17 @@ pub fn absent(model: &CityModel, choice: &Choice) -> Vec<(String, String)> {
         found.push(nobody(model, choice));
     }
     found
+}
+
+/// Types that no object of the city has: their places, and messages.
+pub fn absent_types(model: &CityModel, types: &[String]) -> Vec<(usize, String)> {
+    let known: BTreeSet<&str> = model.objects.iter().map(|o| model.strings.get(o.kind)).collect();
+    let absent = types.iter().enumerate().filter(|(_, name)| !known.contains(name.as_str()));
+    let told = absent.map(|(i, name)| {
+        let hint = did_you_mean(name, known.iter().copied());
+        (i, format!("no object of the city is of the type \"{name}\"{hint}"))
+    });
+    told.collect()
 }
 
 /// Why a choice of known names means nobody, and what would mean somebody.
@@ -226,6 +259,33 @@ mod tests {
             let found = choose(&years, &parameters);
             assert_eq!(found, Ok(Chosen { without_object: false, objects: expected.to_vec() }), "{parameters:?}");
         }
+    }
+
+    #[test]
+    fn types_choose_with_parts_and_never_what_belongs_to_none() {
+        let mut model = city(&[None, None, None]);
+        let part = model.strings.intern("BuildingPart");
+        let road = model.strings.intern("Road");
+        (model.objects[1].kind, model.objects[2].kind) = (part, road);
+        model.objects[0].children = vec![1];
+        model.objects[1].parents = vec![0];
+        let of = |types: &[&str], except: bool| {
+            let types = types.iter().map(|name| (*name).to_owned()).collect();
+            chosen(&model, &Choice { types, except, ..Choice::default() }).unwrap()
+        };
+        for (types, except, expected) in [
+            (&["Building"][..], false, [true, true, false]),
+            (&["BuildingPart"], false, [false, true, false]),
+            (&["Road", "Bridge"], false, [false, false, true]),
+            (&["Building"], true, [false, false, true]),
+        ] {
+            let expected = Chosen { without_object: false, objects: expected.to_vec() };
+            assert_eq!(of(types, except), expected, "{types:?} {except}");
+        }
+        let wrong = Choice { types: vec!["Building".into(), "building".into()], ..Choice::default() };
+        let told = absent(&model, &wrong);
+        assert_eq!(told.len(), 1);
+        assert!(told[0].0 == "types.1" && told[0].1.contains("did you mean \"Building\"?"), "{told:?}");
     }
 
     #[test]

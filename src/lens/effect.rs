@@ -149,7 +149,8 @@ pub fn in_floats(parameter: &ParameterDefinition, value: &Parameter) -> Vec<f32>
             vec![words.iter().position(|w| w == text).unwrap_or(0) as f32]
         }
         (ParameterKind::Color, value) => linear_from_srgb(color_of(value).unwrap_or_default()).to_vec(),
-        _ => Vec::new(),
+        // What a scene gave to an effect that is another one now.
+        (kind, _) => vec![0.0; kind.in_shader().map_or(0, |(_, floats)| floats)],
     }
 }
 

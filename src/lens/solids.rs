@@ -29,7 +29,7 @@ use crate::{
         },
     },
     lens::{
-        chosen::{Choice, members},
+        chosen::members,
         focus::Focus,
         sprite_file,
         sprite_volume::{PlacedSprite, SpriteVolume},
@@ -330,7 +330,7 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
             // Of faces that enclose nothing, as streets are: nothing is in them.
             let solid = match Solid::new(&bodies, origin) {
                 Err(ShapeError::NoBody) => None,
-                made => Some(made.map_err(|e| (key_of(choice).to_owned(), e.to_string()))?),
+                made => Some(made.map_err(|e| (choice.key().to_owned(), e.to_string()))?),
             };
             Ok((solid, origin))
         }
@@ -351,11 +351,6 @@ fn wrong_mask(key: &str, image: &Path, error: &ShapeError) -> FocusError {
         ShapeError::ManyFaces(_) => (key.into(), format!("{}: {error}; fewer pixels would be right", image.display())),
         _ => (key.into(), format!("{}: {error}", image.display())),
     }
-}
-
-/// The key by which a choice chooses.
-fn key_of(choice: &Choice) -> &'static str {
-    if choice.ids.is_empty() { "attribute" } else { "ids" }
 }
 
 /// The bodies of the shown geometries whose object is wanted, each closed by itself.

@@ -51,7 +51,7 @@ impl Stage<'_> {
     /// Whether the shown place of each pixel of a picture of `scene`, which has no lenses, is in a focus area: by its definition,
     /// in f64, from the depth that the picture has. Nothing of the lens tests on the card has a part in it.
     pub fn mask_in_f64(&mut self, scene: &Scene, focus: &Focus) -> Result<Vec<bool>, RenderError> {
-        let mut request = request(self.size);
+        let mut request = Request::plain(self.size);
         request.aovs.depth = true;
         let depth = self.studio.render(scene, &request)?.depth.unwrap_or_default();
         let view = View::new(self.studio.camera(scene, self.size), self.size, &Aabb::EMPTY)?;
@@ -139,7 +139,7 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
 
 /// See [`Stage::sphere_covering`]; `scene` has a camera and no lenses.
 pub fn sphere_covering(studio: &mut Studio, scene: &Scene, size: [u32; 2], share: f64) -> Result<Shape, RenderError> {
-    let mut request = request(size);
+    let mut request = Request::plain(size);
     request.aovs.depth = true;
     let depth = studio.render(scene, &request)?.depth.unwrap_or_default();
     let nothing =
@@ -160,7 +160,7 @@ pub fn sphere_around(
     center: DVec3,
     most: f64,
 ) -> Result<Shape, RenderError> {
-    let mut request = request(size);
+    let mut request = Request::plain(size);
     request.aovs.lens_mask = true;
     let mut share_of = |radius: f64| -> Result<f64, RenderError> {
         let mut lensed = scene.clone();
@@ -176,18 +176,6 @@ pub fn sphere_around(
         if share_of(middle)? < share { low = middle } else { high = middle }
     }
     Ok(Shape::Sphere { center, radius: high })
-}
-
-/// One sample and no AOV.
-fn request(size: [u32; 2]) -> Request {
-    Request {
-        size,
-        samples: 1,
-        transparent: false,
-        aovs: Aovs::default(),
-        statistics: false,
-        backend: Backend::default(),
-    }
 }
 
 /// The pixel nearest to the middle that shows something, and its depth in metres.

@@ -31,10 +31,24 @@ const MOST_TEXELS: u32 = 512;
 /// What is known of deformations that were asked for: proofs take longer than frames.
 #[derive(Debug, Default)]
 pub(super) struct KnownDeformations {
-    strengths: Vec<(Deformation, Aabb, Used)>,
+    strengths: Vec<KnownStrength>,
     images: Vec<(PathBuf, Texels)>,
     /// The last rules of heights, and what they made of the city's.
     heights: (Vec<Rule>, Arc<Heights>),
+}
+
+/// How much of a deformation is used, wherever it stands.
+#[derive(Debug)]
+struct KnownStrength {
+    /// In its own frame.
+    of: Deformation,
+    /// The part of that frame in which it shall fold nothing.
+    part: Aabb,
+    /// The part of its strength.
+    strength: f64,
+    /// Whether all of it is proven: what is part of that part is so, too.
+    is_proven: bool,
+    is_wanted: bool,
 }
 
 /// A deformation as it is used.
@@ -101,7 +115,6 @@ impl KnownDeformations {
         let mut found = SceneDeformations::default();
         let mut deformers = Deformers::default();
         let mut rules = Vec::new();
-        let mut used: Vec<(Deformation, Aabb)> = Vec::new();
         for (i, lens) in stage.scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
             let Some(deform) = &lens.deform else { continue };
             let wrong = |message: String| format!("[lens.{i}] {message}");
@@ -124,9 +137,9 @@ impl KnownDeformations {
             if own.deformer.deformation().chain != deformation.at_strength(0.0).chain {
                 deformers.0.push(own.deformer);
             }
-            used.push((deformation, stage.bounds));
         }
-        self.strengths.retain(|(of, bounds, _)| used.contains(&(of.clone(), *bounds)));
+        self.strengths.retain(|known| known.is_wanted);
+        self.strengths.iter_mut().for_each(|known| known.is_wanted = false);
         if self.heights.0 != rules {
             self.heights = (rules.clone(), Arc::new(Heights::of_rules(&rules, stage.city)?));
         }
@@ -159,23 +172,34 @@ impl KnownDeformations {
     }
 
     /// At all of its strength, if that is proven to fold nothing, or seen not to: there is no proof of long openings that takes less than
-    /// seconds. Otherwise at as much as is.
+    /// seconds. Otherwise at as much as is. A lens that moves is not asked again for what it has in its own frame.
     fn strength(&mut self, deformation: &Deformation, bounds: &Aabb) -> Result<Used, String> {
-        if let Some((.., known)) = self.strengths.iter().find(|(of, own, _)| of == deformation && own == bounds) {
-            return Ok(known.clone());
-        }
         let wrong = |fault: Fault| format!("deform: {fault}");
         let asked = Deformer::new(deformation.clone()).map_err(wrong)?;
-        let used = match asked.prove(bounds) {
-            Proof::Proven => Used { strength: 1.0, deformer: asked },
-            Proof::Unknown { least } if least >= CLEAR => Used { strength: 1.0, deformer: asked },
-            Proof::Unknown { .. } | Proof::Folds { .. } => {
-                let strength = deformation.safe_strength(bounds).map_err(wrong)?.seen;
-                Used { strength, deformer: Deformer::new(deformation.at_strength(strength)).map_err(wrong)? }
-            }
+        let part = asked.support().part_of(bounds);
+        let of = Deformation { frame: Frame::WORLD, ..deformation.clone() };
+        let serves = |known: &&mut KnownStrength| {
+            known.of == of && (known.part == part || (known.is_proven && known.part.union(part) == known.part))
         };
-        self.strengths.push((deformation.clone(), *bounds, used.clone()));
-        Ok(used)
+        let strength = if let Some(known) = self.strengths.iter_mut().find(serves) {
+            known.is_wanted = true;
+            known.strength
+        } else {
+            let proof = asked.prove(bounds);
+            let is_proven = proof == Proof::Proven;
+            let strength = match proof {
+                Proof::Proven => 1.0,
+                Proof::Unknown { least } if least >= CLEAR => 1.0,
+                Proof::Unknown { .. } | Proof::Folds { .. } => deformation.safe_strength(bounds).map_err(wrong)?.seen,
+            };
+            self.strengths.push(KnownStrength { of, part, strength, is_proven, is_wanted: true });
+            strength
+        };
+        let deformer = match strength {
+            1.0 => asked,
+            part => Deformer::new(deformation.at_strength(part)).map_err(wrong)?,
+        };
+        Ok(Used { strength, deformer })
     }
 
     /// The lightness of an image, its lower edge first.

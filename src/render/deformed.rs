@@ -57,6 +57,9 @@ const LEAST_COSINE: f64 = 0.25;
 /// chords of one curved plane may be twice the tolerance apart, but walls between houses that are lifted by so much come through the roofs.
 const LIFT: f64 = 0.5;
 
+/// What is narrower in the picture, of its longest side, is not drawn: corners are rounded to f32 before slopes are told from them.
+const NARROWEST: f64 = 4.0 / (1 << 23) as f64;
+
 /// By how much supports are taken to be wider where triangles are found: what the card's numbers may be off, of the way to the pivot, and
 /// at least.
 const SUPPORT_ERROR: f64 = 4.0 / (1 << 23) as f64;
@@ -265,6 +268,7 @@ fn stage_of(view: &View, lattice: &Lattice, (chord_px, is_smooth): (f64, bool)) 
         tolerance: chord_px as f32,
         shortest: Limits::default().shortest_m as f32,
         lift: (LIFT * chord_px) as f32,
+        narrowest: (NARROWEST * f64::from(view.size[0].max(view.size[1]))) as f32,
         is_smooth: u32::from(is_smooth),
         ..layout::Refinement::zeroed()
     }

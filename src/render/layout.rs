@@ -118,9 +118,10 @@ pub struct Refinement {
     pub met: u32,
     pub chunks: u32,
     pub lift: f32,
+    pub narrowest: f32,
     pub is_smooth: u32,
     pub asked: u32,
-    pub pad_0: [u32; 3],
+    pub pad_0: [u32; 2],
 }
 
 /// `pass/refine.wgsl`.
@@ -540,6 +541,7 @@ mod tests {
                     met,
                     chunks,
                     lift,
+                    narrowest,
                     is_smooth,
                     asked,
                     pad_0,

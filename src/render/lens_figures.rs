@@ -56,6 +56,7 @@ pub(super) fn lens_figures(
             stats::Classified { front: side(front), inside: Some(inside), behind: side(behind), rest: Some(rest) }
         },
         occluders: None,
+        seen: None,
         over_time: None,
     }
 }

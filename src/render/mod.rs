@@ -77,6 +77,7 @@ mod textures;
 pub mod told;
 pub mod transmittance;
 pub mod transparency;
+pub mod visible_share;
 pub mod volume;
 mod weld;
 mod worker;

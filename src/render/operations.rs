@@ -344,14 +344,14 @@ impl Operations {
         let definition = &shader::handlers()[number as usize];
         let first = self.parameters.len() as u32;
         let mut floats = Vec::new();
-        for (parameter, ..) in definition.shader_parameters() {
+        for (parameter, _, count) in definition.shader_parameters() {
             let value = effect.parameters.get(&parameter.name).cloned().or_else(|| default_of(parameter));
             if parameter.kind.is_ramp() {
                 floats.push(self.object_values.len() as f32);
                 self.object_values.extend(value.iter().flat_map(ramp));
                 continue;
             }
-            floats.extend(value.map_or_else(Vec::new, |value| in_floats(parameter, &value)));
+            floats.extend(value.map_or_else(|| vec![0.0; count], |value| in_floats(parameter, &value)));
         }
         let first_value = self.object_values.len() as f32;
         match definition.objects {

@@ -2,7 +2,10 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    sync::{Arc, Mutex, OnceLock, PoisonError},
+    sync::{
+        Arc, Mutex, OnceLock, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
     time::Instant,
 };
 
@@ -47,6 +50,7 @@ use crate::{
         stored::SpriteTexels,
         told,
         transparency::MethodFigures,
+        visible_share,
         volume::LensVolume,
     },
     scene::{CitySpec, Drawn, Scene},
@@ -69,6 +73,9 @@ pub enum RenderError {
     /// Something a scene says that the city cannot answer.
     #[error("{0}")]
     Scene(String),
+    /// [`Studio::interrupt`] said so.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// Which AOVs a picture brings along; all of the unjittered sample at the pixel's centre.
@@ -99,6 +106,33 @@ pub struct Request {
     pub statistics: bool,
     /// How shaders are made.
     pub backend: Backend,
+}
+
+impl Request {
+    /// One sample of a picture of this size, and nothing beside it.
+    pub fn plain(size: [u32; 2]) -> Self {
+        Self {
+            size,
+            samples: 1,
+            transparent: false,
+            aovs: Aovs::default(),
+            statistics: false,
+            backend: Backend::default(),
+        }
+    }
+}
+
+/// An overlay as it lies over a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShownOverlay {
+    /// The number of its lens.
+    pub lens: u32,
+    /// Left and top of what it shows, pixels of the picture; of one that stands in the scene, of what its board may touch.
+    pub at: [i32; 2],
+    /// Width and height of the same, pixels.
+    pub size: [u32; 2],
+    /// The eye of what it shows, where that is a view.
+    pub camera: Option<Camera>,
 }
 
 /// A finished picture; row 0 at the top.
@@ -132,6 +166,8 @@ pub struct Picture {
     pub(super) weakened: BTreeMap<u32, u32>,
     /// What deformations took.
     pub(super) deformed: Option<DeformedFigures>,
+    /// The overlays that lie over it, by their lenses.
+    pub overlays: Vec<ShownOverlay>,
     /// Characters of the furniture that no font has.
     pub without_glyph: BTreeSet<char>,
     /// GPU allocations and uploads while drawing (reading back not counted).
@@ -162,6 +198,8 @@ pub struct Studio {
     solid_table: Mutex<Arc<SolidTable>>,
     /// Whom occlusion lenses found last.
     pub(super) occlusion: Mutex<Occlusion>,
+    /// Where it is `true`, a picture of several samples ends after the one that is being drawn, as [`RenderError::Interrupted`].
+    pub interrupt: Arc<AtomicBool>,
     /// How contents of lenses are loaded.
     pub reading: LoadOptions,
     /// Those loaded so far.
@@ -172,7 +210,7 @@ pub struct Studio {
     /// Pictures from other eyes, by number.
     pub(super) insets: BTreeMap<u64, Inset>,
     /// Where the shown triangles are, made for the first picture whose lenses are counted.
-    index: OnceLock<SpatialIndex>,
+    index: Arc<OnceLock<SpatialIndex>>,
     /// What its objects cover of the ground, once an effect asks for it.
     footprints: OwnFootprints,
 }
@@ -227,8 +265,9 @@ impl Studio {
             content_cities: Mutex::default(),
             known_views: Mutex::default(),
             known_deformations: Mutex::default(),
+            interrupt: Arc::default(),
             insets: BTreeMap::new(),
-            index: OnceLock::new(),
+            index: Arc::default(),
             footprints: OnceLock::new(),
         })
     }
@@ -236,6 +275,17 @@ impl Studio {
     /// The city, and what is shown of it.
     pub(super) fn shown(&self) -> ShownCity<'_> {
         ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index }
+    }
+
+    /// What finds the triangles that are shown, as soon as that is known: [`Self::find_triangles`], or a picture whose lenses are counted,
+    /// finds it out.
+    pub fn index(&self) -> &Arc<OnceLock<SpatialIndex>> {
+        &self.index
+    }
+
+    /// Finds out where the triangles are that are shown.
+    pub fn find_triangles(&self) {
+        self.shown().index();
     }
 
     /// Box around the shown city, without the plain ground; empty for an empty city.
@@ -297,6 +347,8 @@ impl Studio {
             let frame = &mut picture.statistics.frame;
             frame.cpu_ms = started.elapsed().as_secs_f64() * 1e3;
             (frame.allocations, frame.uploads) = picture.made;
+            let seen = visible_share::of_lenses(self, scene, request.size)?;
+            picture.statistics.lenses.iter_mut().zip(seen).for_each(|(lens, seen)| lens.seen = seen);
         }
         let per_word = if request.statistics { 3 } else { 1 };
         let inside = std::mem::take(&mut picture.classes).into_iter().step_by(per_word);
@@ -311,14 +363,7 @@ impl Studio {
 
     /// The same with `furniture` over it. As long as that stays equal, nothing is set, allocated or uploaded again.
     pub fn redraw_with(&mut self, scene: &Scene, size: [u32; 2], furniture: &Furniture) -> Result<(), RenderError> {
-        let request = Request {
-            size,
-            samples: 1,
-            transparent: false,
-            aovs: Aovs::default(),
-            statistics: false,
-            backend: self.backend,
-        };
+        let request = Request { backend: self.backend, ..Request::plain(size) };
         self.draw_with(scene, &request, furniture, None).map(|_| ())
     }
 
@@ -405,8 +450,7 @@ impl Studio {
         let drawn = scene.drawn();
         let prepared = self.prepare(&drawn, size)?;
         let view = self.view(scene, size, &prepared)?;
-        let request =
-            Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: false, backend };
+        let request = Request { backend, ..Request::plain(size) };
         let input = input(&drawn.scene, &request, &prepared, view, whole(size));
         Ok(self.renderer.shader(&input, &drawn.scene.lenses, part))
     }
@@ -586,6 +630,9 @@ impl Studio {
     ) -> Result<(), RenderError> {
         let mut input = FrameInput { furniture, ..input(&drawn.scene, request, prepared, *view, part.drawn) };
         for sample in 0..input.samples {
+            if sample > 0 && self.interrupt.load(Ordering::Relaxed) {
+                return Err(RenderError::Interrupted);
+            }
             input.sample = sample;
             let mut timer =
                 if request.statistics && sample == 0 { Some(Timer::new(&self.renderer.gpu)?) } else { None };
@@ -832,6 +879,7 @@ impl Picture {
             not_derived: Default::default(),
             weakened: BTreeMap::new(),
             deformed: None,
+            overlays: Vec::new(),
             without_glyph: Default::default(),
             made: (0, 0),
             statistics: Statistics::default(),

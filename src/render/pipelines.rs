@@ -439,6 +439,14 @@ impl Pipelines {
         }
     }
 
+    /// All are made anew: effects have other WGSL now.
+    pub fn forget(&mut self) {
+        self.worker = None;
+        self.modules.clear();
+        self.made.clear();
+        self.asked.clear();
+    }
+
     /// Starts counting anew.
     pub fn begin_picture(&mut self) {
         (self.compiled, self.arrived) = (0, 0);

@@ -61,7 +61,7 @@ const KERNELS: [(&str, &[u32]); 10] = [
     ("split", &[0, 1, 2, 3, 4, 5, 6, 14]),
     ("place", &[0, 1, 3, 7, 8, 10, 12]),
     ("mix_texcoords", &[0, 3, 9, 10]),
-    ("draw", &[0, 2, 8, 10]),
+    ("draw", &[0, 1, 2, 7, 8, 10]),
     ("find_chunks", &[0, 2, 7, 10]),
 ];
 
@@ -98,7 +98,7 @@ impl Rest {
         let DeformNumbers { numbers, tables } = DeformNumbers::new(deformers, &plan, &lattice);
         Ok(Self {
             corners: gpu.buffer("corners at rest", U::STORAGE, corners)?,
-            bits: gpu.buffer("triangles at rest", U::STORAGE, bits)?,
+            bits: gpu.buffer("triangles at rest", U::STORAGE | U::COPY_SRC, bits)?,
             texcoords: texcoords.map(|all| gpu.buffer("texture coordinates at rest", U::STORAGE, all)).transpose()?,
             triangles: bits.len() as u32,
             firsts,
@@ -282,9 +282,9 @@ impl Refinery {
         ];
         for (kernel, items, buffer) in own {
             let Some(buffer) = buffer else { continue };
-            // The last one looks at what the first one placed.
+            // The last two look at what the first one placed.
             let seen: &[(u32, &wgpu::Buffer)] =
-                if kernel == 9 { &[(10, buffer), (7, &vertices)] } else { &[(10, buffer)] };
+                if kernel >= 8 { &[(10, buffer), (7, &vertices)] } else { &[(10, buffer)] };
             self.run(gpu, &mut encoder, rest, now, seen, &[Task { kernel, items }]);
         }
         let bytes = 4 * words.len() as u64;

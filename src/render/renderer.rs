@@ -373,6 +373,12 @@ impl Renderer {
         self.images.of_file(&self.gpu, number, file, size)
     }
 
+    /// All pipelines are made anew: a user's effect is another now ([`crate::shader::effect::replace`]).
+    pub fn forget_shaders(&mut self) {
+        self.pipelines.forget();
+        self.ran.clear();
+    }
+
     /// The pipelines.
     pub fn pipelines(&self) -> &Pipelines {
         &self.pipelines

@@ -186,9 +186,23 @@ pub struct LensFigures {
     /// Of an occlusion lens, whom it found (O2).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub occluders: Option<Vec<Occluder>>,
+    /// Of a lens that makes occluders lower, how much of its points of interest is seen (D4); those that are points have no share.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seen: Option<Vec<Visible>>,
     /// Of an occlusion lens in a frame of an animation, how many come and go (O6).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over_time: Option<OverTime>,
+}
+
+/// How much of a point of interest is seen, of what would be seen were there nothing but terrain.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Visible {
+    /// Its name.
+    pub poi: String,
+    /// As the picture shows it, 0 to 1; `null` where nothing of it is in the picture.
+    pub share: Option<f64>,
+    /// The same without deformations.
+    pub at_rest: Option<f64>,
 }
 
 /// Occluders over time, counted.

@@ -1,11 +1,12 @@
 //! What a scene names in its city and is not there.
 
-use std::collections::BTreeSet;
-
 use crate::{
     city::CityModel,
     lens::{
-        EffectUse, Focus, Occluders, Placement, Rendering, chosen::absent, nearest::did_you_mean, rendering::Case,
+        EffectUse, Focus, Occluders, Placement, Rendering,
+        chosen::{absent, absent_types},
+        nearest::did_you_mean,
+        rendering::Case,
         thematic::attribute_names,
     },
     scene::{
@@ -167,17 +168,6 @@ fn check_focus(focus: &Focus, table: &str, at: &str, model: &CityModel, problems
         }
         _ => {}
     }
-}
-
-/// Types that no object of the city has: their places, and messages.
-fn absent_types(model: &CityModel, types: &[String]) -> Vec<(usize, String)> {
-    let known: BTreeSet<&str> = model.objects.iter().map(|o| model.strings.get(o.kind)).collect();
-    let absent = types.iter().enumerate().filter(|(_, name)| !known.contains(name.as_str()));
-    let told = absent.map(|(i, name)| {
-        let hint = did_you_mean(name, known.iter().copied());
-        (i, format!("no object of the city is of the type \"{name}\"{hint}"))
-    });
-    told.collect()
 }
 
 #[cfg(test)]

@@ -15,12 +15,14 @@ pub struct Command {
     name: String,
     before: Scene,
     after: Scene,
+    /// Several in a row are one edit.
+    goes_on: bool,
 }
 
 impl Command {
     /// The edit that turns `before` into `after`.
     pub fn new(name: impl Into<String>, before: Scene, after: Scene) -> Self {
-        Self { name: name.into(), before, after }
+        Self { name: name.into(), before, after, goes_on: false }
     }
 
     /// The edit that `change` makes.
@@ -30,9 +32,9 @@ impl Command {
         Self::new(name, scene.clone(), after)
     }
 
-    /// Moves the eye.
+    /// Moves the eye; several such moves in a row are one edit.
     pub fn look(scene: &Scene, camera: Camera) -> Self {
-        Self::of("move camera", scene, |s| s.camera = Some(camera))
+        Self { goes_on: true, ..Self::of("move camera", scene, |s| s.camera = Some(camera)) }
     }
 
     /// Puts a lens on top.
@@ -122,12 +124,22 @@ impl History {
         if command.is_effective() {
             command.redo(&mut self.scene);
             self.undone.clear();
-            if self.done.len() == DEPTH {
-                self.done.remove(0);
+            match self.done.last_mut().filter(|last| last.goes_on && command.goes_on && last.name == command.name) {
+                Some(last) => last.after = command.after,
+                None => {
+                    if self.done.len() == DEPTH {
+                        self.done.remove(0);
+                    }
+                    self.done.push(command);
+                }
             }
-            self.done.push(command);
         }
         true
+    }
+
+    /// The edits that would be taken back, and done again.
+    pub fn next(&self) -> [Option<&Command>; 2] {
+        [self.done.last(), self.undone.last()]
     }
 
     /// Takes the last edit back; its name, if there was one.

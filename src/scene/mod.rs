@@ -8,6 +8,7 @@ pub mod check;
 pub mod command;
 pub mod drawn;
 pub mod overlay;
+mod sized;
 pub mod technique;
 pub mod trajectory;
 pub mod transparency;

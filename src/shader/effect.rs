@@ -409,19 +409,41 @@ pub fn number_of(name: &str) -> Option<u32> {
 }
 
 /// Adds a user's effect file; its name must be new.
+///
+/// # Errors
+/// What is wrong with the file, or with its name.
 pub fn add(path: &str, text: &str) -> Result<(), FileError> {
+    put(path, text, false).map(drop)
+}
+
+/// Takes a user's effect file that may be another version of one that is there, and says how the effect is called. It keeps its number;
+/// pipelines that have the version before in them stay until they are forgotten ([`crate::render::Renderer::forget_shaders`]). Not while a
+/// picture is drawn: that would mix both versions.
+///
+/// # Errors
+/// What is wrong with the file, or with its name; what was there before stays.
+pub fn replace(path: &str, text: &str) -> Result<String, FileError> {
+    put(path, text, true)
+}
+
+fn put(path: &str, text: &str, may_replace: bool) -> Result<String, FileError> {
     let effect = effect_file::checked(path, text)?;
+    let name = effect.name.clone();
     let mut all = EFFECTS.write().unwrap_or_else(std::sync::PoisonError::into_inner);
-    if all.iter().any(|e| e.name == effect.name) {
-        let message = format!("there is an effect \"{}\" already; expected another name", effect.name);
+    let at = all.iter().position(|e| e.name == name);
+    if at.is_some_and(|at| !(may_replace && all[at].is_users)) {
+        let message = format!("there is an effect \"{name}\" already; expected another name");
         return Err(FileError { path: path.to_owned(), line: 1, column: 1, message });
     }
-    if all.len() == MOST_HANDLERS {
+    if at.is_none() && all.len() == MOST_HANDLERS {
         let message = format!("there are {MOST_HANDLERS} effects already; expected no more");
         return Err(FileError { path: path.to_owned(), line: 1, column: 1, message });
     }
     let mut more = all.to_vec();
-    more.push(effect);
+    match at {
+        Some(at) => more[at] = effect,
+        None => more.push(effect),
+    }
     *all = Vec::leak(more);
-    Ok(())
+    Ok(name)
 }

@@ -235,6 +235,14 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
     let Some(main) = declared.iter().find(|d| (d.keyword, d.name) == ("fn", "effect")) else {
         return Err(file.error(text.len(), format!("expected `{}`", signature(&effect))));
     };
+    let is_parameters = |t: &&Token| t.kind == TokenKind::Word && &text[t.span.clone()] == "Parameters";
+    if effect.slots() == 0
+        && !declared.iter().any(|d| d.name == "Parameters")
+        && let Some(token) = tokens.iter().find(is_parameters)
+    {
+        let message = format!("the header gives no [[parameter]] for WGSL; expected `{}`", signature(&effect));
+        return Err(file.error(token.span.start, message));
+    }
     effect.reads_below = reads_first_argument(text, &tokens, main);
     let renamed = qualified(&effect, text, &tokens, &declared);
     effect.source = parameters_source(&effect);

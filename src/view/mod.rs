@@ -14,6 +14,7 @@ pub mod framing;
 pub mod frustum;
 pub mod jitter;
 pub mod local;
+pub mod navigate;
 pub mod path;
 pub mod project;
 

@@ -35,6 +35,7 @@ mod case_21_deformed_terrain;
 mod case_21_extreme_views;
 mod case_21_layers;
 mod case_21_overlays;
+mod case_21_zero_size_window;
 mod case_22_points_of_interest;
 mod case_23_jitter;
 mod deformed;

@@ -138,6 +138,11 @@ impl Stage {
 pub trait Progress: Sync {
     /// `file` (0-based) of `files` entered `stage`; for [`Stage::Build`] `file == files`.
     fn enter(&self, stage: Stage, file: usize, files: usize, path: &Path);
+
+    /// Whether nobody wants the city any more: asked before each stage.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
 }
 
 /// No progress bar.
@@ -173,11 +178,19 @@ pub fn load_with_stats(
     progress: &dyn Progress,
 ) -> Result<(CityModel, LoadStats), LoadError> {
     let (builder, mut stats) = load_raw(paths, options, progress)?;
+    still_wanted(progress, paths)?;
     progress.enter(Stage::Build, paths.len(), paths.len(), Path::new(""));
     let start = Instant::now();
     let model = builder.finish();
     stats.build = start.elapsed();
     Ok((model, stats))
+}
+
+fn still_wanted(progress: &dyn Progress, paths: &[PathBuf]) -> Result<(), LoadError> {
+    match progress.is_cancelled() {
+        true => Err(LoadError::new(paths.first().map_or(Path::new(""), PathBuf::as_path), "loading was cancelled")),
+        false => Ok(()),
+    }
 }
 
 /// Everything up to [`ModelBuilder::finish`].
@@ -196,6 +209,7 @@ pub fn load_raw(
     let mut stats = LoadStats::default();
     let mut refusals = Vec::new();
     for (i, file) in files.iter().enumerate() {
+        still_wanted(progress, paths)?;
         let enter = |stage| progress.enter(stage, i, files.len(), &file.path);
         match read_file(&mut builder, &file.path, &options, &enter, &mut stats) {
             Ok(()) => {}

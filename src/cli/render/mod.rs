@@ -72,7 +72,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             _ => Failure::failed(error),
         })?;
     drop(progress);
-    let notes = notes(&scene, &options);
+    let notes = picture::notes_of(&scene, &options);
     for aov in &arguments.aovs {
         write_aov(aov, &picture, scene.lenses.len(), &notes)?;
     }
@@ -107,14 +107,6 @@ pub fn with_warnings(statistics: &mut stats::Statistics, warnings: &[serde_json:
     let is_of_picture = |w: &serde_json::Value| w["code"].as_str().is_some_and(|code| told::CODES.contains(&code));
     let of_picture = std::mem::take(&mut statistics.warnings).into_iter().filter(is_of_picture);
     statistics.warnings = warnings.iter().cloned().chain(of_picture).collect();
-}
-
-/// What a picture says about itself: the program's version, its dots per inch where the scene has them, and a hash of the scene, paths relative to its file. An animation is no
-/// part of a picture.
-pub fn notes(scene: &Scene, options: &Options) -> Notes {
-    let still = Scene { animation: None, ..scene.clone() };
-    let hash = picture::hash(&scene_file::to_toml_for(&still, options));
-    Notes { dpi: scene.figure.dpi, ..picture::notes(Some(hash)) }
 }
 
 /// How paths of a scene file, or of the command line, are read.

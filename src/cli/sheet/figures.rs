@@ -3,9 +3,12 @@
 use serde_json::json;
 
 use crate::{
-    figure::sheet::{Cell, CellFigure, Sheet, share::share_in},
+    figure::sheet::{Cell, CellFigure, Sheet},
     measure::{ratio::Estimate, run::frame_ratio},
-    render::picture::{RenderError, Request, Studio},
+    render::{
+        picture::{RenderError, Request, Studio},
+        visible_share::share_in,
+    },
     scene::Scene,
 };
 
@@ -34,10 +37,10 @@ pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, Re
     let wants = |figure| sheet.figures.contains(&figure);
     let mut found = Figures::default();
     if let (true, Some(id)) = (wants(CellFigure::VisibleShare), &cell.poi) {
-        found.share = Some(share_in(studio, &cell.scene, id)?);
+        found.share = Some(share_in(studio, &cell.scene, cell.scene.figure.size, id)?);
     }
     if wants(CellFigure::Occluders) {
-        let asked = Request { statistics: true, ..one_sample(&cell.scene) };
+        let asked = Request { statistics: true, ..Request::plain(cell.scene.figure.size) };
         let statistics = studio.render(&cell.scene, &asked)?.statistics;
         let occluders = statistics.lenses.iter().filter_map(|lens| lens.occluders.as_ref());
         let found_by_each: Vec<u64> = occluders.map(|list| list.len() as u64).collect();
@@ -51,17 +54,6 @@ pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, Re
         found.ratio = Some(frame_ratio(studio, &cell.scene, &plain, cell.scene.figure.size, sheet.pairs)?);
     }
     Ok(found)
-}
-
-fn one_sample(scene: &Scene) -> Request {
-    Request {
-        size: scene.figure.size,
-        samples: 1,
-        transparent: false,
-        aovs: Default::default(),
-        statistics: false,
-        backend: Default::default(),
-    }
 }
 
 impl Figures {

@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         std::fs::create_dir_all(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
     }
     for (file, (cell, rgba)) in cells.iter().zip(&drawn.cells) {
-        let notes = render::notes(&cell.scene, &options);
+        let notes = picture::notes_of(&cell.scene, &options);
         picture::save_picture(file, drawn.layout.cell_size, rgba, true, &notes).map_err(output::unwritten)?;
     }
     if let Some(file) = &arguments.figures {

@@ -28,7 +28,7 @@ use crate::{
     overlay::{Placed, Rect, arrow::border_arrow},
     render::{
         furniture::{Furniture, Piece},
-        picture::{Aovs, RenderError, Request, Studio},
+        picture::{Aovs, RenderError, Request, ShownOverlay, Studio},
         stats::Pass,
         told,
     },
@@ -61,13 +61,8 @@ pub struct Overlays {
 /// One overlay, for statistics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlayFigures {
-    /// The number of its lens.
-    pub lens: u32,
-    /// Left and top of what it shows, pixels of the picture; of one that stands in the scene, of what its board may
-    /// touch.
-    pub at: [i32; 2],
-    /// Width and height of the same, pixels.
-    pub size: [u32; 2],
+    /// Where it is.
+    pub shown: ShownOverlay,
     /// Whether it was drawn for this picture.
     pub rendered: bool,
     /// The passes that drew what it shows, if that is a view, and before them those of overlays in it; the view of each is the name of its lens.
@@ -248,10 +243,11 @@ impl Plan {
             gathered.images.push(number);
             of_board.rendered |= studio.renderer.board(number, board.image_size(), &furniture, of_board.rendered)?;
             painter.put(&[Piece::Board(board.piece(number))]);
-            (of_board.at, of_board.size) = (board.seen.min, board.seen.size().map(|side| side.max(0) as u32));
+            (of_board.shown.at, of_board.shown.size) =
+                (board.seen.min, board.seen.size().map(|side| side.max(0) as u32));
             figures.push(of_board);
         }
-        figures.sort_by_key(|own| own.lens);
+        figures.sort_by_key(|own| own.shown.lens);
         for one in &self.shown {
             let style = one.overlay.line.as_ref().filter(|style| style.outside == Outside::Arrow);
             let Some(style) = style else { continue };
@@ -330,16 +326,12 @@ impl Plan {
         let number = paint::number(self.numbers, one.index, paint::Part::Picture);
         let inner = self.views.get(&one.index);
         let (mut rendered, mut passes) = (false, Vec::new());
+        let camera = inner.and_then(|inner| inner.local.scene.camera);
+        let shown = ShownOverlay { lens: one.index as u32, at: room.low, size: room.size(), camera };
         match (&one.best_view.depiction, inner) {
             (Depiction::Text(text), _) => {
                 painter.text(&one.overlay, rect, text);
-                return Ok(OverlayFigures {
-                    lens: one.index as u32,
-                    at: room.low,
-                    size: room.size(),
-                    rendered,
-                    passes,
-                });
+                return Ok(OverlayFigures { shown, rendered, passes });
             }
             (Depiction::Image(file), _) => {
                 gathered.images.push(number);
@@ -380,7 +372,7 @@ impl Plan {
         if let (Some(view), Some(local)) = (one.best_view.view(), local) {
             painter.signs(&one.overlay, view, local, &self.view.camera, room);
         }
-        Ok(OverlayFigures { lens: one.index as u32, at: room.low, size: room.size(), rendered, passes })
+        Ok(OverlayFigures { shown, rendered, passes })
     }
 }
 

@@ -122,25 +122,24 @@ impl Reader<'_> {
             let list = fields.node(key).and_then(Node::list)?;
             Some(list.iter().filter_map(|n| n.text().map(str::to_owned)).collect::<Vec<_>>())
         };
-        match (fields.given("ids"), fields.given("attribute")) {
-            (true, true) => {
-                let message = "is given together with ids: objects are chosen by one of them";
-                self.checker.note(&fields.place, "attribute", fields.line("attribute"), message);
-            }
-            (false, false) => {
-                let message = "is missing: give ids = [\"ID\", ...] or attribute = \"NAME\"";
+        let given: Vec<&str> = ["ids", "types", "attribute"].into_iter().filter(|key| fields.given(key)).collect();
+        match given[..] {
+            [] => {
+                let message = "is missing: give ids = [\"ID\", ...], types = [\"TYPE\", ...] or attribute = \"NAME\"";
                 self.checker.note(&fields.place, "ids", fields.place.line, message);
             }
-            (true, false) => {
-                self.refuse(fields, &["values", "min", "max"], "has a meaning only with attribute");
-                if fields.node("ids").and_then(Node::list).is_some_and(<[Node]>::is_empty) {
-                    self.checker.note(&fields.place, "ids", fields.line("ids"), "must name at least one object");
+            ["attribute"] => {}
+            [_] => self.refuse(fields, &["values", "min", "max"], "has a meaning only with attribute"),
+            [first, ..] => {
+                let message = format!("is given together with {first}: objects are chosen by one of them");
+                for other in &given[1..] {
+                    self.checker.note(&fields.place, other, fields.line(other), message.clone());
                 }
             }
-            (false, true) => {
-                if fields.node("values").and_then(Node::list).is_some_and(<[Node]>::is_empty) {
-                    self.checker.note(&fields.place, "values", fields.line("values"), "must name at least one value");
-                }
+        }
+        for (key, what) in [("ids", "object"), ("types", "type"), ("values", "value")] {
+            if fields.node(key).and_then(Node::list).is_some_and(<[Node]>::is_empty) {
+                self.checker.note(&fields.place, key, fields.line(key), format!("must name at least one {what}"));
             }
         }
         if let (Some(min), Some(max)) = (fields.number("min"), fields.number("max"))
@@ -151,6 +150,7 @@ impl Reader<'_> {
         }
         Some(Choice {
             ids: texts("ids").unwrap_or_default(),
+            types: texts("types").unwrap_or_default(),
             attribute: fields.text("attribute").map(str::to_owned),
             values: texts("values"),
             min: fields.number("min"),
@@ -240,6 +240,9 @@ pub(super) fn choice_written(kind: &str, choice: &Choice) -> String {
     };
     if !choice.ids.is_empty() {
         let _ = write!(out, ", ids = {}", texts(&choice.ids));
+    }
+    if !choice.types.is_empty() {
+        let _ = write!(out, ", types = {}", texts(&choice.types));
     }
     if let Some(attribute) = &choice.attribute {
         let _ = write!(out, ", attribute = {}", quoted(attribute));

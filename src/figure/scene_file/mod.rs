@@ -4,17 +4,17 @@
 //! makes a [`Scene`], `write` the file again, `set` applies `PATH=VALUE`, `document` makes the docs and the schema.
 
 pub mod animation;
-mod best_view;
+pub mod best_view;
 pub mod check;
 mod content;
-mod deformation;
+pub mod deformation;
 pub mod document;
 mod figure;
 mod focus;
 pub mod keys;
 pub(in crate::figure) mod node;
 mod occlusion;
-mod overlay;
+pub mod overlay;
 mod parse;
 mod paths;
 mod rendering;
@@ -29,9 +29,9 @@ use std::{fmt, io::Read, path::Path};
 
 pub use check::Problem;
 pub(in crate::figure) use figure::text_size;
-pub use parse::rotation;
+pub use parse::{lens_color, rotation};
 pub use paths::{Options, PathProblem};
-pub use set::{set, set_within};
+pub use set::{rename_lens, set, set_within};
 
 use crate::scene::Scene;
 

@@ -100,13 +100,15 @@ fn plan() -> impl Strategy<Value = DVec2> {
 }
 
 fn choices() -> impl Strategy<Value = Choice> {
-    let ids = prop::collection::vec("[a-z\"]{1,5}", 1..3).prop_map(|ids| (ids, None));
+    let ids = prop::collection::vec("[a-z\"]{1,5}", 1..3).prop_map(|ids| (ids, Vec::new(), None));
+    let types = prop::collection::vec("[A-Z\"]{1,5}", 1..3).prop_map(|types| (Vec::new(), types, None));
     let attribute = (".{1,5}", prop::option::of(prop::collection::vec(".{1,4}", 1..3)))
-        .prop_map(|(name, values)| (Vec::new(), Some((name, values))));
-    (prop_oneof![ids, attribute], prop::option::of(-1e3..1e3f64), any::<bool>()).prop_map(|((ids, of), min, except)| {
+        .prop_map(|(name, values)| (Vec::new(), Vec::new(), Some((name, values))));
+    let all = (prop_oneof![ids, types, attribute], prop::option::of(-1e3..1e3f64), any::<bool>());
+    all.prop_map(|((ids, types, of), min, except)| {
         let (attribute, values) = of.map_or((None, None), |(name, values)| (Some(name), values));
         let min = min.filter(|_| attribute.is_some());
-        Choice { ids, attribute, values, min, max: min.map(|m| m + 1.0), except }
+        Choice { ids, types, attribute, values, min, max: min.map(|m| m + 1.0), except }
     })
 }
 

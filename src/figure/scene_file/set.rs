@@ -34,6 +34,45 @@ pub fn set_within(scene: &Scene, assignment: &str, options: &Options) -> Result<
     set_by(scene, assignment, options, options)
 }
 
+/// Gives a lens another name, wherever the scene names it: in its overlay, in views that show it, in what changes over time.
+///
+/// # Errors
+/// The name is another lens', or empty; there is no lens at `index`.
+pub fn rename_lens(scene: &Scene, index: usize, name: &str, options: &Options) -> Result<Command, SceneFileError> {
+    let mut after = scene.clone();
+    let title = "rename lens";
+    if let Some(lens) = after.lenses.get_mut(index) {
+        let old = std::mem::replace(&mut lens.name, name.to_owned());
+        let renamed = |own: &mut String| {
+            if *own == old {
+                name.clone_into(own);
+            }
+        };
+        after.overlays.iter_mut().for_each(|overlay| renamed(&mut overlay.lens));
+        let shown = after.lenses.iter_mut().filter_map(|lens| lens.best_view.as_mut()?.lenses.as_mut());
+        shown.flatten().for_each(renamed);
+        for change in after.animation.iter_mut().flat_map(|animation| &mut animation.changes) {
+            let Ok(mut way) = segments(&change.path) else { continue };
+            if way.len() > 1 && way[0] == "lens" && way[1] == old {
+                way[1] = name.to_owned();
+                change.path = path_of(&way);
+            }
+        }
+    }
+    let after = parse(&to_toml_for(&after, options), title, options)
+        .map_err(|error| SceneFileError { has_lines: false, ..error })?;
+    Ok(Command::new(title, scene.clone(), after))
+}
+
+/// Of segments the path.
+fn path_of(segments: &[String]) -> String {
+    let quoted = |segment: &String| match segment.contains(['.', '=']) {
+        true => format!("\"{segment}\""),
+        false => segment.clone(),
+    };
+    segments.iter().map(quoted).collect::<Vec<_>>().join(".")
+}
+
 fn set_by(scene: &Scene, assignment: &str, written: &Options, read: &Options) -> Result<Command, SceneFileError> {
     let name = format!("--set {assignment}");
     let fail = |key: &str, message: String| SceneFileError {
@@ -125,7 +164,7 @@ fn in_table(table: &mut Table, key: &str, rest: &[String], value: Option<Value>)
         table.insert("shapes".into(), Value::Array(vec![one]));
     }
     // Giving the one form takes the other away.
-    for forms in [["shape", "shapes"], ["text_px", "text_pt"]] {
+    for forms in [&["shape", "shapes"][..], &["text_px", "text_pt"], &["ids", "types", "attribute"]] {
         if rest.is_empty() && value.is_some() && forms.contains(&key) {
             forms.iter().for_each(|form| drop(table.remove(*form)));
         }
@@ -230,6 +269,31 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
         let command = set(&scene, assignment).map_err(|e| e.to_string())?;
         command.redo(&mut scene);
         Ok(scene)
+    }
+
+    #[test]
+    fn a_lens_is_renamed_wherever_the_scene_names_it() {
+        let text = format!(
+            "{SCENE}\n[[poi]]\nname = \"p\"\nat = [0, 0, 0]\n\
+             [[lens]]\nname = \"v\"\nkind = \"best-view\"\npoi = \"p\"\nlenses = [\"b\", \"old town\"]\n\
+             [[overlay]]\nlens = \"v\"\ncaption = \"old town\"\n\
+             [animation]\nframes = 3\nchange = [{{ path = \"lens.old town.shape.radius\", keys = [{{ at = 0, value = 1 }}, {{ at = 1, value = 2 }}] }}]\n"
+        );
+        let options = Options::for_command_line();
+        let mut scene = parse(&text, "s", &options).unwrap_or_else(|error| panic!("{error}"));
+        for (index, name) in [(0, "a.b"), (2, "view")] {
+            rename_lens(&scene, index, name, &options).unwrap_or_else(|error| panic!("{error}")).redo(&mut scene);
+        }
+        assert_eq!(scene.lenses.iter().map(|lens| lens.name.as_str()).collect::<Vec<_>>(), ["a.b", "b", "view"]);
+        assert_eq!(scene.overlays[0].lens, "view");
+        let shown = scene.lenses[2].best_view.as_ref().and_then(|shown| shown.lenses.clone());
+        assert_eq!(shown, Some(vec!["b".to_owned(), "a.b".to_owned()]));
+        assert_eq!(scene.animation.as_ref().unwrap().changes[0].path, "lens.\"a.b\".shape.radius");
+        // It is the same scene, written and read.
+        assert_eq!(parse(&to_toml_for(&scene, &options), "again", &options).unwrap(), scene);
+        for (index, wrong) in [(0, "b"), (0, ""), (1, "view")] {
+            assert!(rename_lens(&scene, index, wrong, &options).is_err(), "{wrong}");
+        }
     }
 
     #[test]

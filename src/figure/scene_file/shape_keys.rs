@@ -27,15 +27,23 @@ const HIGH: Key =
 pub(super) const IDS: Key = key(
     "ids",
     Kind::Texts,
-    "none: `attribute`",
+    "none: `types` or `attribute`",
     "",
     "Ids of city objects; their parts belong to them.",
     "[\"town-hall\"]",
 );
+pub(super) const TYPES: Key = key(
+    "types",
+    Kind::Texts,
+    "none: `ids` or `attribute`",
+    "",
+    "Types of city objects, as their files call them; their parts belong to them.",
+    "[\"Bridge\"]",
+);
 pub(super) const ATTRIBUTE: Key = key(
     "attribute",
     Kind::Text,
-    "none: `ids`",
+    "none: `ids` or `types`",
     "",
     "Objects that have this attribute; one without it takes its parent's.",
     "\"yearOfConstruction\"",
@@ -290,12 +298,12 @@ pub const SHAPES: &[Table] = &[
     Table {
         name: "objects",
         doc: "The union of the volumes of city objects, as they are shown; open ones are closed.",
-        keys: &[shape_kind("\"objects\""), IDS, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
+        keys: &[shape_kind("\"objects\""), IDS, TYPES, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
     },
     Table {
         name: "thematic",
         doc: "Everything that belongs to city objects, wherever it is: membership by object, not by place. Nothing is in front of it or behind it.",
-        keys: &[shape_kind("\"thematic\""), IDS, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
+        keys: &[shape_kind("\"thematic\""), IDS, TYPES, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
     },
     Table {
         name: "enclosed",

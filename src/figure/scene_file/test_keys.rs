@@ -2,7 +2,7 @@
 
 use crate::figure::scene_file::{
     keys::{FAR_M, Key, Kind, Table, key},
-    shape_keys::{ATTRIBUTE, EXCEPT, IDS, MAX, MIN, VALUES},
+    shape_keys::{ATTRIBUTE, EXCEPT, IDS, MAX, MIN, TYPES, VALUES},
 };
 
 /// The key that says which test it is; `name` in quotes.
@@ -122,6 +122,6 @@ pub const TESTS: &[Table] = &[
 /// `force` and `forbid` of a lens.
 pub const CHOICE: Table = Table {
     name: "choice",
-    doc: "City objects chosen by their ids, or by an attribute: one of `ids` and `attribute`. Of an object that has parts one chosen part is enough.",
-    keys: &[IDS, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
+    doc: "City objects chosen by their ids, their types or an attribute: one of `ids`, `types` and `attribute`. Of an object that has parts one chosen part is enough.",
+    keys: &[IDS, TYPES, ATTRIBUTE, VALUES, MIN, MAX, EXCEPT],
 };

@@ -218,7 +218,10 @@ fn every_mistake_in_a_lens_is_named() {
             "shape = { kind = \"mask3d\", images = [], corner = [0,0,0], size = [1,1,1] }",
             "shape.images: must name at least one image",
         ),
-        ("shape = { kind = \"objects\" }", "shape.ids: is missing: give ids = [\"ID\", ...] or attribute = \"NAME\""),
+        (
+            "shape = { kind = \"objects\" }",
+            "shape.ids: is missing: give ids = [\"ID\", ...], types = [\"TYPE\", ...] or attribute = \"NAME\"",
+        ),
         (
             "shape = { kind = \"thematic\", ids = [\"a\"], attribute = \"b\" }",
             "shape.attribute: is given together with ids",

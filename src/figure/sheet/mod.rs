@@ -10,7 +10,6 @@ pub mod document;
 pub mod file;
 pub mod keys;
 pub mod layout;
-pub mod share;
 
 use crate::scene::TextSize;
 

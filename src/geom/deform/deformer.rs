@@ -59,7 +59,7 @@ impl Support {
     }
 
     /// What it has of a box of the world, as a box of the frame; maybe empty.
-    pub(super) fn part_of(&self, bounds: &Aabb) -> Aabb {
+    pub fn part_of(&self, bounds: &Aabb) -> Aabb {
         if bounds.is_empty() {
             return Aabb::EMPTY;
         }

@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use glam::DVec2;
 
 use super::*;
-use crate::geom::combination::Operation;
+use crate::{geom::combination::Operation, lens::chosen::Choice};
 
 /// A folder of its own, gone at the end.
 struct Folder(PathBuf);

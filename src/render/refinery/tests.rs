@@ -92,7 +92,18 @@ fn read(gpu: &Gpu, refinery: &mut Refinery, rest: &Rest, tolerance: f32, shortes
         ..layout::Refinement::zeroed()
     };
     let made = refinery.refined(gpu, rest, &stage).expect("room");
-    let triangles: Vec<[u32; 3]> = words(gpu, &made.indices, 3 * made.triangles as usize).as_chunks::<3>().0.to_vec();
+    let indices = words(gpu, &made.indices, 3 * made.triangles as usize);
+    let all = words(gpu, refinery.triangles[0].buffer(), 5 * made.triangles as usize);
+    let bits = words(gpu, &rest.bits, rest.triangles as usize);
+    let triangle = |(drawn, &[a, b, c, source, _]): (&[u32; 3], &[u32; 5])| {
+        // As they are, or turned back to what their sources were.
+        let own = if bits[source as usize] & 4 == 0 { [a, b, c] } else { [a, c, b] };
+        // What is too narrow to be drawn is still part of the body.
+        assert!([own, [a; 3]].contains(drawn), "{drawn:?} is not {own:?}");
+        own
+    };
+    let triangles: Vec<[u32; 3]> =
+        indices.as_chunks::<3>().0.iter().zip(all.as_chunks::<5>().0).map(triangle).collect();
     let count = triangles.iter().flatten().max().map_or(0, |most| *most as usize + 1);
     let corners = words(gpu, refinery.corners[0].buffer(), 8 * count);
     let vertices = words(gpu, &made.vertices, 8 * count);

@@ -54,6 +54,11 @@ fn what_is_wrong_is_named_with_its_place() {
             "my.wgsl:5:4: expected `fn effect(color: vec3f, point: Point) -> vec3f`",
         ),
         (
+            format!("{HEADER}fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {{ return color; }}"),
+            "my.wgsl:5:42: the header gives no [[parameter]] for WGSL; expected `fn effect(color: vec3f, point: Point) -> \
+             vec3f`",
+        ),
+        (
             format!(
                 "{HEADER}fn effect(color: vec3f, point: Point) -> vec3f {{\n    return vec3f(1.0, 2.0) + color;\n}}"
             ),

@@ -9,6 +9,8 @@ use crate::geom::deform::{Deformers, Support};
 /// Parts in which an edge is looked at: as many as it takes to see all that deforms it, six at least. With more than these it is halved.
 const PARTS: usize = 6;
 const MOST_PARTS: usize = 64;
+/// Where so many see all, and already say that an edge is near enough, no more are looked at to decide about halving.
+const FEWEST_PARTS: usize = 3;
 /// What the second differences next to a part count for: a kink within it is off by no more than a quarter of both; two of them, by more.
 const KINK: f64 = 0.75;
 /// What may be between all samples (an edge that cuts a corner of the control), by the tolerance.
@@ -52,7 +54,7 @@ impl Chord {
 impl Refiner<'_> {
     /// Whether an edge is to be halved.
     pub fn halves(&self, a: DVec3, b: DVec3) -> bool {
-        self.meets(a, b) && self.chord(a, b).pixels > self.tolerance_px
+        self.meets(a, b) && self.chord_in(FEWEST_PARTS, a, b).pixels > self.tolerance_px
     }
 
     /// Whether an edge is too short to be halved; the same from both ends.
@@ -95,6 +97,11 @@ impl Refiner<'_> {
     /// Between two samples the deformed edge is at most as far off as the farther of both, and what a kink between them adds, which the
     /// second differences of both show; and a tenth of the tolerance more, for what is between them.
     pub fn chord(&self, a: DVec3, b: DVec3) -> Chord {
+        self.chord_in(PARTS, a, b)
+    }
+
+    /// The same, where `fewest` parts that see all suffice if they say that the edge is near enough.
+    fn chord_in(&self, fewest: usize, a: DVec3, b: DVec3) -> Chord {
         let (a, b) = in_order(a, b);
         let mut trace = Trace::default();
         let start = trace.place(self.deformers, a).0;
@@ -105,7 +112,7 @@ impl Refiner<'_> {
             return Chord::NONE;
         };
         step *= to - from;
-        let mut parts = PARTS;
+        let mut parts = if step <= 1.0 { fewest } else { PARTS };
         loop {
             // A step of ∞ is more than all.
             parts = parts.max(step.ceil().min(1e9) as usize);
@@ -114,10 +121,13 @@ impl Refiner<'_> {
             }
             let samples = self.samples(&mut trace, [a, b], [start - a, end - b], [from, to], parts);
             if samples.step <= 1.0 + 1e-9 {
-                return samples.chord(self.tolerance_px);
+                let chord = samples.chord(self.tolerance_px);
+                if parts >= PARTS || chord.pixels <= self.tolerance_px {
+                    return chord;
+                }
             }
             step = samples.step * parts as f64;
-            parts += 1;
+            parts = PARTS.max(parts + 1);
         }
     }
 

@@ -12,7 +12,7 @@
 //!   a-------b      a---m---b      a----`--b      a---k---b     in the order of their places, should they be alike
 //! ```
 //!
-//! An edge is halved iff it meets the support of a deformation and its predicted chord error ([`Refiner::chord`]) is more than the
+//! An edge is halved iff it meets the support of a deformation and its predicted chord error ([`Refiner::halves`]) is more than the
 //! tolerance, in pixels. A triangle none of whose edges is halved, but in the middle of which the deformation bends it (a small lens on a
 //! large triangle), gets a point inside if that is off by more than twice the tolerance (where edges just keep it, the inside may be 4/3 of it off). What does not meet a support is left as it is.
 

@@ -1,0 +1,733 @@
+//! The picture in the window: it is looked at, moved around in, and its lenses have handles.
+
+use std::{sync::Arc, time::Instant};
+
+use eframe::egui::{
+    self, Align2, Color32, ColorImage, Context, CursorIcon, Key, Mesh, PointerButton, Pos2, Rect, Response, Sense,
+    Shape, Stroke, TextureHandle, TextureOptions, Ui, Vec2, pos2, vec2,
+};
+use glam::{DVec2, DVec3};
+
+use crate::{
+    app::{
+        artist::Frame,
+        landing::EYE_HEIGHT_M,
+        lens_list::{self, Handle, State},
+        new_lens::quoted,
+        window::{Window, caption, color_of, step_of},
+    },
+    figure::overlays::views::POINT_RADIUS_M,
+    geom::Aabb,
+    render::picture::ShownOverlay,
+    scene::{Command, PoiPlace},
+    view::{
+        Camera, View, default_near_m,
+        navigate::{self, Flight},
+    },
+};
+
+/// Radians that a drag over a point of the window turns.
+const TURN: f64 = 0.006;
+/// What a point of the wheel makes distances smaller by.
+const ZOOM: f64 = 0.0025;
+/// What arrows turn in a second, radians; what they move along in it, heights of the picture; what + makes distances smaller by.
+const KEY_TURN: f64 = 1.2;
+const KEY_PAN: f64 = 0.6;
+const KEY_ZOOM: f64 = 1.2;
+/// How much nearer a double click goes.
+const NEARER: f64 = 0.5;
+/// Half the size of a handle, points.
+const HANDLE: f32 = 7.0;
+/// Within so many points of a handle it is meant.
+const REACH: f32 = 11.0;
+/// A brisk walk, and a ride.
+const WALK_M_S: f64 = 3.0;
+const FAST_WALK_M_S: f64 = 12.0;
+/// The longest side of a picture, pixels: what one target takes.
+const MOST_PIXELS: f32 = 4096.0;
+
+/// What a drag does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Drag {
+    Orbit {
+        pivot: DVec3,
+    },
+    Pan {
+        at: DVec3,
+    },
+    Look,
+    /// The middle of the chosen lens: what is held of it is so far from its middle.
+    Move {
+        lens: usize,
+        off: Vec2,
+    },
+    /// Its ring.
+    Size {
+        lens: usize,
+    },
+    /// An overlay: what is held of it is so far from its middle.
+    Overlay {
+        lens: usize,
+        off: Vec2,
+    },
+}
+
+/// What the picture in the window knows.
+#[derive(Default)]
+pub struct Canvas {
+    texture: Option<TextureHandle>,
+    rect: Option<Rect>,
+    drag: Option<Drag>,
+    flight: Option<(Flight, Instant)>,
+    last_step: Option<Instant>,
+    /// Whether the eye moved in the last frames: pictures are to be quick until it rests.
+    moved_at: Option<Instant>,
+    hovered: Option<Hovered>,
+    /// The next move is down to the ground.
+    pub(super) step_down: bool,
+    outline: Option<(Arc<Mesh>, OutlineOf)>,
+}
+
+/// What is under the pointer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hovered {
+    /// The object, by index; `None`: the plain ground, or a part that no object has.
+    pub object: Option<u32>,
+    /// Where it is, metres.
+    pub at: DVec3,
+}
+
+/// What an outline was made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct OutlineOf {
+    objects: [Option<u32>; 2],
+    rect: Rect,
+}
+
+/// How long after the last move the eye rests, seconds.
+const REST_S: f64 = 0.15;
+
+impl Canvas {
+    /// Another city is shown.
+    pub fn forget(&mut self) {
+        (self.drag, self.flight, self.hovered, self.outline) = (None, None, None, None);
+    }
+
+    /// Takes a picture.
+    pub fn show(&mut self, context: &Context, frame: &Frame) {
+        let size = frame.view.size.map(|side| side as usize);
+        if size[0] * size[1] != frame.rgba.len() || frame.rgba.is_empty() {
+            return;
+        }
+        let image = ColorImage::from_rgba_unmultiplied(size, frame.rgba.as_flattened());
+        if frame.shown.is_some() {
+            // Outlines are of what it shows; a better picture of the same shows the same.
+            self.outline = None;
+        }
+        // A coarse picture is smoothed; one of the window's own pixels stays as it is.
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::LINEAR),
+            None => self.texture = Some(context.load_texture("city", image, TextureOptions::LINEAR)),
+        }
+    }
+
+    /// Width by height.
+    pub fn aspect(&self) -> f64 {
+        self.rect.map_or(1.6, |rect| f64::from(rect.width() / rect.height().max(1.0)))
+    }
+
+    /// Lets the eye fly.
+    pub fn fly(&mut self, from: Camera, to: Camera) {
+        self.flight = Some((Flight { from, to }, Instant::now()));
+    }
+
+    /// What is in the middle of the picture, metres.
+    pub fn middle(&self, frame: Option<&Frame>) -> Option<DVec3> {
+        let frame = frame?;
+        pick(frame, frame.view.size.map(|side| f64::from(side) / 2.0).into()).map(|hovered| hovered.at)
+    }
+
+    /// What the pointer is on, metres.
+    pub fn pointed(&self) -> Option<DVec3> {
+        self.hovered.map(|hovered| hovered.at)
+    }
+
+    /// What is under the pointer, in words.
+    pub fn place_text(&self) -> Option<String> {
+        let Hovered { at, .. } = self.hovered?;
+        Some(format!("{:.2}  {:.2}  {:.2} m", at.x, at.y, at.z))
+    }
+
+    fn is_resting(&self) -> bool {
+        self.drag.is_none()
+            && self.flight.is_none()
+            && self.moved_at.is_none_or(|moved| moved.elapsed().as_secs_f64() > REST_S)
+    }
+}
+
+/// What a picture shows at a place of it, pixels from its upper left corner; `None`: nothing, or it is not known yet.
+pub fn pick(frame: &Frame, at: DVec2) -> Option<Hovered> {
+    let (ids, depths) = frame.shown.as_ref()?;
+    let [w, h] = frame.view.size;
+    let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < f64::from(w) && at.y < f64::from(h);
+    let (x, y) = (at.x as u32, at.y as u32);
+    let i = inside.then(|| y as usize * w as usize + x as usize)?;
+    let depth = f64::from(*depths.get(i)?);
+    if !depth.is_finite() {
+        return None;
+    }
+    let ray = frame.view.pixel_ray(x, y);
+    let along = ray.direction.dot(frame.view.basis.forward);
+    // Metres along the view axis from the eye's plane.
+    let start = frame.view.depth(ray.origin);
+    let place = ray.at((depth - start) / along);
+    Some(Hovered { object: ids.get(i)?.checked_sub(1), at: place })
+}
+
+impl Window {
+    /// Draws the picture and does what pointer and keys ask of it.
+    pub(super) fn draw_canvas(&mut self, ui: &mut Ui) {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "City"));
+        let arrows = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+        let context = ui.ctx().clone();
+        let rect = if self.previews { self.figure_part(rect) } else { rect };
+        self.canvas.rect = Some(rect);
+        ui.painter().rect_filled(response.rect, 0.0, ui.visuals().extreme_bg_color);
+        if let Some(texture) = &self.canvas.texture {
+            let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter().image(texture.id(), rect, uv, Color32::WHITE);
+        }
+        if self.city.is_none() {
+            let text =
+                self.loading.clone().unwrap_or_else(|| "Open a city: File ▸ Open, or drop files here.".to_owned());
+            ui.painter().text(
+                rect.center(),
+                Align2::CENTER_CENTER,
+                text,
+                egui::FontId::proportional(16.0),
+                ui.visuals().text_color(),
+            );
+            return;
+        }
+        let before = self.document.scene().camera;
+        self.move_eye(ui, &response, rect);
+        if self.document.scene().camera != before {
+            self.canvas.moved_at = Some(Instant::now());
+        }
+        self.look_up(&response, rect);
+        self.draw_outlines(ui, rect);
+        self.draw_handles(ui, rect);
+        self.go_on_drawing(ui);
+        if let Some(view) = self.view_in(rect) {
+            self.show_drawing(ui, &view, rect);
+        }
+        let is_moving = !self.canvas.is_resting();
+        if is_moving {
+            context.request_repaint_after(std::time::Duration::from_millis(15));
+        }
+        let pixels = rect.size() * context.pixels_per_point();
+        let shrink = (MOST_PIXELS / pixels.max_elem()).min(1.0);
+        let size = [pixels.x, pixels.y].map(|side| (side * shrink).round().max(0.0) as u32);
+        let points = rect.size();
+        // A figure's pixels are its own; the window's are points, however many pixels these have.
+        let meant_for = match self.previews {
+            true => self.document.scene().figure.size,
+            false => [points.x, points.y].map(|side| side.round().max(1.0) as u32),
+        };
+        self.want(size, meant_for, is_moving);
+    }
+
+    /// The part of the window that has the shape of the figure.
+    fn figure_part(&self, rect: Rect) -> Rect {
+        let [w, h] = self.document.scene().figure.size.map(|side| side as f32);
+        let scale = (rect.width() / w).min(rect.height() / h);
+        Rect::from_center_size(rect.center(), vec2(w, h) * scale)
+    }
+
+    /// The view that the window shows now: the picture may be of the one before.
+    pub(super) fn view_in(&self, rect: Rect) -> Option<View> {
+        let size = [rect.width(), rect.height()].map(|side| side.round().max(1.0) as u32);
+        View::new(self.camera()?, size, &Aabb::EMPTY).ok()
+    }
+
+    /// What is at a place of the window, from the last picture that tells.
+    fn pick_at(&self, rect: Rect, at: Pos2) -> Option<Hovered> {
+        let frame = self.frame.as_deref()?;
+        let [w, h] = frame.view.size.map(f64::from);
+        let share = (at - rect.min) / rect.size();
+        pick(frame, DVec2::new(f64::from(share.x) * w, f64::from(share.y) * h))
+    }
+
+    /// A place to turn around, or to come nearer to: what is shown there, else what is as far as the target.
+    fn place_at(&self, rect: Rect, at: Pos2) -> Option<DVec3> {
+        let camera = self.camera()?;
+        // Only a picture of this very eye tells what is at a place of the window.
+        let is_of_now = self.frame.as_ref().is_some_and(|frame| frame.view.camera == camera);
+        if let Some(found) = self.pick_at(rect, at).filter(|_| is_of_now) {
+            return Some(found.at);
+        }
+        let view = self.view_in(rect)?;
+        let ray = view.ray(in_rect(rect, at));
+        let depth = view.depth(camera.target).max(camera.near_m);
+        let along = ray.direction.dot(view.basis.forward);
+        Some(ray.at((depth - view.depth(ray.origin)) / along))
+    }
+
+    fn move_eye(&mut self, ui: &Ui, response: &Response, rect: Rect) {
+        let Some(camera) = self.camera() else { return };
+        let step = step_of(&mut self.canvas.last_step);
+        if response.hovered() || response.clicked() {
+            let scroll = ui.input(|input| input.smooth_scroll_delta().y + 400.0 * (input.zoom_delta() - 1.0));
+            if let (true, Some(at)) = (scroll != 0.0, ui.input(|input| input.pointer.hover_pos())) {
+                if let Some(place) = self.place_at(rect, at) {
+                    self.canvas.flight = None;
+                    self.document.look(navigate::zoom(&camera, place, (-ZOOM * f64::from(scroll)).exp()));
+                }
+                return;
+            }
+        }
+        if response.double_clicked()
+            && let Some(place) = response.interact_pointer_pos().and_then(|at| self.place_at(rect, at))
+        {
+            let way = camera.eye - place;
+            let eye = place + NEARER * way;
+            let to = Camera { eye, target: place, ..navigate::zoom(&camera, place, NEARER) };
+            self.canvas.fly(camera, to);
+            return;
+        }
+        if response.drag_started() {
+            self.begin_drag(ui, response, rect);
+        }
+        if let (Some(drag), true) = (self.canvas.drag, response.dragged()) {
+            self.canvas.flight = None;
+            self.go_on_dragging(ui, response, rect, drag);
+        }
+        if response.drag_stopped() {
+            self.canvas.drag = None;
+            self.canvas.moved_at = Some(Instant::now());
+        }
+        self.fly_on();
+        self.travel(ui, response, rect, step);
+    }
+
+    fn begin_drag(&mut self, ui: &Ui, response: &Response, rect: Rect) {
+        let at = ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
+        let (Some(at), Some(camera)) = (at, self.camera()) else { return };
+        let (modifiers, primary) =
+            ui.input(|input| (input.modifiers, input.pointer.button_down(PointerButton::Primary)));
+        if let (true, Some((lens, handle))) = (primary, self.chosen_handle()) {
+            let spots = self.view_in(rect).map(|view| handle_spots(&view, rect, &handle));
+            if let Some((middle, ring)) = spots.flatten() {
+                if middle.distance(at) <= REACH {
+                    self.canvas.drag = Some(Drag::Move { lens, off: at - middle });
+                    return;
+                }
+                if ring.is_some_and(|ring| ring.distance(at) <= REACH) {
+                    self.canvas.drag = Some(Drag::Size { lens });
+                    return;
+                }
+            }
+        }
+        if let (true, Some((overlay, own))) = (primary, self.overlay_at(rect, at)) {
+            let lens = overlay.lens as usize;
+            self.chosen.lens = Some(lens);
+            let is_locked = self.document.scene().lenses.get(lens).is_none_or(|lens| self.is_locked(lens));
+            if !is_locked {
+                self.canvas.drag = Some(Drag::Overlay { lens, off: at - own.center() });
+                return;
+            }
+        }
+        let place = self.place_at(rect, at).unwrap_or(camera.target);
+        self.canvas.drag = Some(match (primary, modifiers) {
+            (true, m) if m.command => Drag::Look,
+            (true, m) if !m.shift => Drag::Orbit { pivot: place },
+            _ => Drag::Pan { at: place },
+        });
+    }
+
+    fn go_on_dragging(&mut self, ui: &Ui, response: &Response, rect: Rect, drag: Drag) {
+        let Some(camera) = self.camera() else { return };
+        let delta = response.drag_delta();
+        let Some(now) = response.interact_pointer_pos() else { return };
+        let turn = -TURN * DVec2::new(f64::from(delta.x), f64::from(delta.y));
+        match drag {
+            _ if delta == Vec2::ZERO => {}
+            Drag::Orbit { pivot } => self.document.look(navigate::orbit(&camera, pivot, turn)),
+            // The picture goes with the pointer.
+            Drag::Look => self.document.look(navigate::look_around(&camera, DVec2::new(turn.x, -turn.y))),
+            Drag::Pan { at } => {
+                if let Some(view) = self.view_in(rect) {
+                    let to = navigate::pan(&view, at, in_rect(rect, now - delta), in_rect(rect, now));
+                    self.document.look(to);
+                }
+            }
+            Drag::Move { lens, off } => {
+                let shift = ui.input(|input| input.modifiers.shift);
+                let handle = lens_list::handle_of(&self.document, lens);
+                if let (Some(view), Some(handle)) = (self.view_in(rect), handle) {
+                    let to = dragged_to(&view, rect, now - off, handle.center, shift);
+                    if let Some(to) = to {
+                        self.set_handle(lens, Some(handle.moved(to)));
+                    }
+                }
+            }
+            Drag::Overlay { lens, off } => {
+                let share = ((now - off) - rect.min) / rect.size();
+                let [x, y] = [share.x, share.y].map(|c| c.clamp(0.0, 1.0));
+                let scene = self.document.scene();
+                let Some(name) = scene.lenses.get(lens).map(|lens| lens.name.clone()) else { return };
+                let at = scene.overlays.iter().position(|overlay| overlay.lens == name);
+                let assignment = match at {
+                    Some(i) => format!("overlay.{i}.at=[{x:.4}, {y:.4}]"),
+                    None => {
+                        let i = scene.overlays.len();
+                        format!("overlay.{i}={{ lens = {}, at = [{x:.4}, {y:.4}] }}", quoted(&name))
+                    }
+                };
+                if let Err(error) = self.document.preview_set(&assignment) {
+                    self.fail(error);
+                }
+            }
+            Drag::Size { lens } => {
+                let handle = lens_list::handle_of(&self.document, lens);
+                if let (Some(view), Some(handle)) = (self.view_in(rect), handle)
+                    && let Some((middle, _)) = handle_spots(&view, rect, &handle)
+                {
+                    if ui.input(|input| input.modifiers.shift) {
+                        // To where the pointer is on the ground, as seen from its middle.
+                        let to = dragged_to(&view, rect, now, handle.center, false);
+                        let way = to.map(|to| to - handle.center).filter(|way| way.truncate().length() > 1e-6);
+                        self.set_handle(lens, way.and_then(|way| handle.turned(way.y.atan2(way.x).to_degrees())));
+                    } else {
+                        let metres = view.pixel_m(view.depth(handle.center)) * f64::from(middle.distance(now));
+                        self.set_handle(lens, handle.sized(metres.max(0.1)));
+                    }
+                }
+            }
+        }
+    }
+
+    fn set_handle(&mut self, lens: usize, assignment: Option<String>) {
+        let Some(assignment) = assignment else { return };
+        if let Err(error) = self.document.preview_set(&format!("lens.{lens}.{assignment}")) {
+            self.fail(error);
+        }
+    }
+
+    fn fly_on(&mut self) {
+        let Some((flight, started)) = self.canvas.flight else { return };
+        let t = started.elapsed().as_secs_f64() / flight.duration_s().max(1e-3);
+        self.document.look(flight.at(t.min(1.0)));
+        if t >= 1.0 {
+            self.canvas.flight = None;
+            self.canvas.moved_at = Some(Instant::now());
+        }
+    }
+
+    fn travel(&mut self, ui: &Ui, response: &Response, rect: Rect, step: f64) {
+        let Some(camera) = self.camera() else { return };
+        if self.canvas.step_down {
+            // The ground is known soon after the first picture.
+            if self.city.as_ref().is_some_and(|city| city.index.get().is_some()) {
+                self.canvas.step_down = false;
+                self.canvas.fly(camera, self.landing(&camera));
+                ui.ctx().request_repaint();
+                return;
+            }
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+        }
+        let is_asked = self.dialog.is_some() || self.asking.is_some() || self.shows_shortcuts;
+        // Keys are for the picture unless something else has the focus.
+        let is_elsewhere = !response.has_focus() && ui.memory(|memory| memory.focused().is_some());
+        if is_asked || ui.ctx().text_edit_focused() || is_elsewhere && !response.hovered() {
+            return;
+        }
+        let (way, fast) = ui.input(|input| {
+            // With Ctrl they are something else.
+            let is_down = |key| if input.modifiers.command { 0.0 } else { f64::from(u8::from(input.key_down(key))) };
+            let way = DVec3::new(
+                is_down(Key::D) - is_down(Key::A),
+                is_down(Key::W) - is_down(Key::S),
+                is_down(Key::E) - is_down(Key::Q),
+            );
+            (way, input.modifiers.shift)
+        });
+        if way == DVec3::ZERO {
+            return self.turn_by_keys(ui, response, rect, step);
+        }
+        self.canvas.flight = None;
+        if self.walks {
+            let speed = if fast { FAST_WALK_M_S } else { WALK_M_S };
+            let steps = DVec2::new(way.x, way.y) * speed * step.max(1e-3);
+            let to = navigate::walk(&camera, steps, |at| self.ground_at(at, camera.eye.z), EYE_HEIGHT_M);
+            self.document.look(to);
+            ui.ctx().request_repaint();
+            return;
+        }
+        let speed = (0.6 * camera.eye.distance(camera.target)).clamp(3.0, 2_000.0) * if fast { 4.0 } else { 1.0 };
+        self.document.look(navigate::travel(&camera, way * speed * step.max(1e-3), false));
+        ui.ctx().request_repaint();
+    }
+
+    /// Arrows go around what the eye looks at, with Shift along; + and - come nearer and go away.
+    fn turn_by_keys(&mut self, ui: &Ui, response: &Response, rect: Rect, step: f64) {
+        // Where a button has the focus, arrows go on to the next one.
+        if !response.has_focus() && ui.memory(|memory| memory.focused().is_some()) {
+            return;
+        }
+        let (turn, nearer, shift) = ui.input(|input| {
+            let is_down = |key| if input.modifiers.command { 0.0 } else { f64::from(u8::from(input.key_down(key))) };
+            let turn = DVec2::new(
+                is_down(Key::ArrowRight) - is_down(Key::ArrowLeft),
+                is_down(Key::ArrowDown) - is_down(Key::ArrowUp),
+            );
+            let nearer = is_down(Key::Plus) + is_down(Key::Equals) - is_down(Key::Minus);
+            (turn, nearer, input.modifiers.shift)
+        });
+        let Some(camera) = self.camera().filter(|_| turn != DVec2::ZERO || nearer != 0.0) else { return };
+        self.canvas.flight = None;
+        let step = step.max(1e-3);
+        if nearer != 0.0 {
+            self.document.look(navigate::zoom(&camera, camera.target, (-KEY_ZOOM * nearer.signum() * step).exp()));
+        } else if shift {
+            if let Some(view) = self.view_in(rect) {
+                let middle = in_rect(rect, rect.center());
+                let to = middle - turn * KEY_PAN * f64::from(rect.height()) * step;
+                self.document.look(navigate::pan(&view, camera.target, middle, to));
+            }
+        } else {
+            self.document.look(navigate::orbit(&camera, camera.target, KEY_TURN * step * turn));
+        }
+        ui.ctx().request_repaint();
+    }
+
+    /// Finds what is under the pointer, and takes clicks.
+    fn look_up(&mut self, response: &Response, rect: Rect) {
+        let is_known = self.canvas.is_resting()
+            && self
+                .frame
+                .as_ref()
+                .is_some_and(|frame| frame.shown.is_some() && Some(frame.view.camera) == self.camera());
+        let at = response.hover_pos().filter(|_| is_known);
+        self.canvas.hovered = at.and_then(|at| self.pick_at(rect, at));
+        if let Some(at) = response.hover_pos() {
+            self.roll_over(response, rect, at);
+        }
+        if response.clicked()
+            && let Some(at) = response.interact_pointer_pos()
+        {
+            response.request_focus();
+            if let Some(drawing) = &mut self.drawing {
+                drawing.points.extend(self.canvas.hovered.map(|hovered| hovered.at));
+                return;
+            }
+            if let Some(lens) = self.lens_at(rect, at) {
+                self.chosen.lens = Some(lens);
+                return;
+            }
+            if let Some((overlay, _)) = self.overlay_at(rect, at) {
+                self.chosen.lens = Some(overlay.lens as usize);
+                self.enter(&overlay);
+                return;
+            }
+            self.chosen.object = self.pick_at(rect, at).and_then(|hovered| hovered.object);
+        }
+    }
+
+    /// What the pointer is on of lenses, and what could be done there.
+    fn roll_over(&mut self, response: &Response, rect: Rect, at: Pos2) {
+        let ring = || {
+            let (lens, handle) = self.chosen_handle()?;
+            let (_, ring) = handle_spots(&self.view_in(rect)?, rect, &handle)?;
+            ring.filter(|ring| ring.distance(at) <= REACH).map(|_| (lens, CursorIcon::ResizeHorizontal))
+        };
+        let handle = || self.lens_at(rect, at).map(|lens| (lens, CursorIcon::Grab));
+        let overlay =
+            || self.overlay_at(rect, at).map(|(overlay, _)| (overlay.lens as usize, CursorIcon::PointingHand));
+        if let Some((lens, icon)) = ring().or_else(handle).or_else(overlay) {
+            self.rolls_over = Some(lens);
+            response.ctx.set_cursor_icon(if self.canvas.drag.is_some() { CursorIcon::Grabbing } else { icon });
+        }
+    }
+
+    /// Goes to what an overlay shows: through a portal at once, to where the eye of a view is, to what a text or an image is about.
+    fn enter(&mut self, overlay: &ShownOverlay) {
+        let (index, Some(from)) = (overlay.lens as usize, self.camera()) else { return };
+        if let Some(command) = Command::step_through(self.document.scene(), index, from) {
+            self.canvas.flight = None;
+            self.document.apply(command);
+        } else if let Some(camera) = overlay.camera {
+            // What a view cuts away in front of it stays in the way of who goes there: it is a near plane of its own.
+            let near_m = default_near_m(camera.eye.distance(camera.target));
+            self.canvas.fly(from, Camera { near_m, ..camera });
+        } else {
+            let bounds = self.about(index);
+            self.frame_box(&bounds);
+        }
+    }
+
+    /// Around the first point of interest of a lens, metres; empty: it has none, or none that stands in the city.
+    fn about(&self, lens: usize) -> Aabb {
+        let scene = self.document.scene();
+        let shown = scene.lenses.get(lens).and_then(|lens| lens.best_view.as_ref());
+        let name = shown.and_then(|shown| shown.pois.first());
+        let poi = name.and_then(|name| scene.pois.iter().find(|poi| poi.name == *name));
+        match poi.map(|poi| scene.place(poi)) {
+            Some(PoiPlace::Object(id)) => self.city.as_ref().map_or(Aabb::EMPTY, |city| {
+                city.model.find_object(&id).map_or(Aabb::EMPTY, |object| city.model.family_bounds(object))
+            }),
+            Some(PoiPlace::At(at)) => Aabb { min: at - POINT_RADIUS_M, max: at + POINT_RADIUS_M },
+            _ => Aabb::EMPTY,
+        }
+    }
+
+    /// The lens whose handle is at a place.
+    fn lens_at(&self, rect: Rect, at: Pos2) -> Option<usize> {
+        let view = self.view_in(rect)?;
+        let count = self.document.scene().lenses.len();
+        // Those of lenses that are off are not shown, but for the chosen one's.
+        let is_shown = |index: &usize| self.chosen.lens == Some(*index) || self.state_of(*index) != State::Disabled;
+        (0..count).rev().filter(is_shown).find(|&index| {
+            let spots =
+                lens_list::handle_of(&self.document, index).and_then(|handle| handle_spots(&view, rect, &handle));
+            spots.is_some_and(|(middle, _)| middle.distance(at) <= REACH)
+        })
+    }
+
+    /// The overlay at a place of the window, and where it is: of several the last, which lies in front.
+    fn overlay_at(&self, rect: Rect, at: Pos2) -> Option<(ShownOverlay, Rect)> {
+        let frame = self.frame.as_deref()?;
+        let scale = rect.size() / vec2(frame.view.size[0] as f32, frame.view.size[1] as f32);
+        let place = |own: &ShownOverlay| {
+            let ([x, y], [w, h]) = (own.at.map(|c| c as f32), own.size.map(|c| c as f32));
+            (*own, Rect::from_min_size(rect.min + vec2(x, y) * scale, vec2(w, h) * scale))
+        };
+        frame.overlays.iter().rev().map(place).find(|(_, own)| own.contains(at))
+    }
+
+    fn chosen_handle(&self) -> Option<(usize, Handle)> {
+        let index = self.chosen.lens?;
+        let lens = self.document.scene().lenses.get(index)?;
+        if self.is_locked(lens) {
+            return None;
+        }
+        lens_list::handle_of(&self.document, index).map(|handle| (index, handle))
+    }
+
+    fn draw_handles(&self, ui: &Ui, rect: Rect) {
+        let Some(view) = self.view_in(rect) else { return };
+        let painter = ui.painter_at(rect);
+        for (index, lens) in self.document.scene().lenses.iter().enumerate() {
+            let state = self.state_of(index);
+            let is_chosen = self.chosen.lens == Some(index);
+            // One that is off shows where it is only to who chose it.
+            if state == State::Disabled && !is_chosen {
+                continue;
+            }
+            let handle = lens_list::handle_of(&self.document, index);
+            let Some((middle, ring)) = handle.and_then(|handle| handle_spots(&view, rect, &handle)) else { continue };
+            let color = if state == State::Disabled { Color32::from_gray(128) } else { color_of(lens.color) };
+            let size = if state == State::Normal { 0.6 * HANDLE } else { HANDLE };
+            painter.circle(middle, size, color, Stroke::new(2.0, Color32::WHITE));
+            if state == State::Normal {
+                continue;
+            }
+            if let Some(ring) = ring.filter(|_| is_chosen && !self.is_locked(lens)) {
+                painter.line_segment([middle, ring], Stroke::new(1.5, Color32::from_white_alpha(200)));
+                painter.circle(ring, 0.8 * HANDLE, Color32::WHITE, Stroke::new(2.5, color));
+            }
+            caption(&painter, middle - vec2(0.0, size + 4.0), Align2::CENTER_BOTTOM, &lens.name, 13.0);
+        }
+    }
+
+    /// The outlines of what is hovered and what is chosen.
+    fn draw_outlines(&mut self, ui: &Ui, rect: Rect) {
+        let (Some(frame), Some(city)) = (self.frame.as_deref(), &self.city) else { return };
+        let (Some((ids, _)), true) = (&frame.shown, Some(frame.view.camera) == self.document.scene().camera) else {
+            return;
+        };
+        // What all stands on is around everything.
+        let is_ground = |object: &u32| city.model.objects.get(*object as usize).is_none_or(|own| own.class.is_ground());
+        let hovered = self.canvas.hovered.and_then(|hovered| hovered.object).filter(|object| !is_ground(object));
+        let objects = [hovered, self.chosen.object];
+        if objects == [None; 2] {
+            self.canvas.outline = None;
+            return;
+        }
+        let of = OutlineOf { objects, rect };
+        let mesh = match &self.canvas.outline {
+            Some((mesh, known)) if *known == of => mesh.clone(),
+            _ => {
+                let mesh = Arc::new(outline(ids, frame.view.size, rect, &city.roots, objects));
+                self.canvas.outline = Some((mesh.clone(), of));
+                mesh
+            }
+        };
+        ui.painter_at(rect).add(Shape::Mesh(mesh));
+    }
+}
+
+/// Pixels of a picture where one of two families of objects ends: of the first thin, of the second thick.
+fn outline(ids: &[u32], [w, h]: [u32; 2], rect: Rect, roots: &[u32], objects: [Option<u32>; 2]) -> Mesh {
+    let root = |object: u32| roots.get(object as usize).copied();
+    let [hovered, chosen] = objects.map(|object| object.and_then(root));
+    let own: Vec<Option<u32>> = ids.iter().map(|id| id.checked_sub(1).and_then(root)).collect();
+    let (w, h) = (w as usize, h as usize);
+    let scale = rect.size() / vec2(w as f32, h as f32);
+    let mut mesh = Mesh::default();
+    for (wanted, reach, color) in [
+        (hovered.filter(|_| hovered != chosen), 1, Color32::from_rgb(255, 255, 255)),
+        (chosen, 2, Color32::from_rgb(255, 140, 0)),
+    ] {
+        let Some(wanted) = wanted else { continue };
+        for (i, of_pixel) in own.iter().enumerate() {
+            if *of_pixel != Some(wanted) {
+                continue;
+            }
+            let (x, y) = (i % w, i / w);
+            let is_border = x < reach
+                || y < reach
+                || x + reach >= w
+                || y + reach >= h
+                || [i - reach, i + reach, i - reach * w, i + reach * w].iter().any(|&j| own[j] != Some(wanted));
+            if is_border {
+                let at = rect.min + vec2(x as f32, y as f32) * scale;
+                mesh.add_colored_rect(Rect::from_min_size(at, scale), color);
+            }
+        }
+    }
+    mesh
+}
+
+/// A place of the window in its picture, points from the upper left.
+fn in_rect(rect: Rect, at: Pos2) -> DVec2 {
+    let off = at - rect.min;
+    DVec2::new(f64::from(off.x), f64::from(off.y))
+}
+
+/// Where a lens' handle and its ring are in the window; `None`: behind the eye.
+fn handle_spots(view: &View, rect: Rect, handle: &Handle) -> Option<(Pos2, Option<Pos2>)> {
+    let to_window = |place: DVec3| view.pixel(place).map(|pixel| rect.min + vec2(pixel.x as f32, pixel.y as f32));
+    let middle = to_window(handle.center)?;
+    let ring =
+        handle.radius.map(|radius| middle + vec2((radius / view.pixel_m(view.depth(handle.center))) as f32, 0.0));
+    Some((middle, ring))
+}
+
+/// Where a place goes that is dragged to a place of the window: along the ground, or up and down.
+fn dragged_to(view: &View, rect: Rect, at: Pos2, from: DVec3, is_vertical: bool) -> Option<DVec3> {
+    let ray = view.ray(in_rect(rect, at));
+    if is_vertical {
+        // In the upright plane that faces the eye.
+        let normal = view.basis.forward.with_z(0.0).try_normalize()?;
+        let along = ray.direction.dot(normal);
+        let t = (along.abs() > 1e-6).then(|| (from - ray.origin).dot(normal) / along)?;
+        return Some(from.with_z(ray.at(t).z));
+    }
+    let t = (ray.direction.z.abs() > 1e-4).then(|| (from.z - ray.origin.z) / ray.direction.z)?;
+    let to = ray.at(t);
+    // Beyond the horizon there is no ground, and next to it too much.
+    (t > 0.0 && to.distance(from) < 20.0 * view.camera.eye.distance(from).max(1.0)).then_some(to)
+}

@@ -1,0 +1,417 @@
+//! Dialogs: which file, and whether edits may be lost. They are the window's own: they need no desktop portal, and keys alone will do.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Context, Key, Modal, Ui};
+
+use crate::app::window::Window;
+
+/// What waits until edits may be lost.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Purpose {
+    /// The window closes.
+    Quit,
+    /// These files are opened.
+    OpenThese(Vec<PathBuf>),
+}
+
+/// A question.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Asking {
+    /// Edits would be lost.
+    Lose(Purpose),
+    /// A file would be written over.
+    Replace(PathBuf, Writing),
+    /// A scene among these files reads what is outside its folder: what was said of it.
+    Outside(Vec<PathBuf>, String),
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Writing {
+    /// The scene.
+    Scene,
+    /// The figure.
+    Figure,
+}
+
+/// What a file is chosen for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wanted {
+    Read,
+    /// For the city that is shown.
+    Add,
+    Write(Writing),
+}
+
+/// Endings of what can be opened.
+const READABLE: &[&str] = &["toml", "json", "jsonl", "gz", "gltf", "glb", "obj", "wgsl"];
+
+/// A folder that is looked into, for a file.
+#[derive(Clone, Debug)]
+pub struct FileDialog {
+    wanted: Wanted,
+    folder: PathBuf,
+    /// What is typed: a name, or a path.
+    typed: String,
+    /// Files that are chosen together.
+    chosen: Vec<PathBuf>,
+    /// What the folder has, folders first.
+    entries: Vec<(PathBuf, bool)>,
+    problem: Option<String>,
+    is_fresh: bool,
+}
+
+impl FileDialog {
+    fn new(wanted: Wanted, folder: PathBuf, typed: &str) -> Self {
+        let mut dialog = Self {
+            wanted,
+            folder: PathBuf::new(),
+            typed: typed.to_owned(),
+            chosen: Vec::new(),
+            entries: Vec::new(),
+            problem: None,
+            is_fresh: true,
+        };
+        dialog.enter(folder);
+        dialog
+    }
+
+    /// For files to open.
+    pub fn open(folder: PathBuf) -> Self {
+        Self::new(Wanted::Read, folder, "")
+    }
+
+    /// For city files to add.
+    pub fn add(folder: PathBuf) -> Self {
+        Self::new(Wanted::Add, folder, "")
+    }
+
+    fn reads(&self) -> bool {
+        matches!(self.wanted, Wanted::Read | Wanted::Add)
+    }
+
+    /// For a scene to write.
+    pub fn save(folder: PathBuf) -> Self {
+        Self::new(Wanted::Write(Writing::Scene), folder, "scene.toml")
+    }
+
+    /// For a figure to write.
+    pub fn export(folder: PathBuf) -> Self {
+        Self::new(Wanted::Write(Writing::Figure), folder, "figure.png")
+    }
+
+    fn ending(&self) -> Option<&'static str> {
+        match self.wanted {
+            Wanted::Read | Wanted::Add => None,
+            Wanted::Write(Writing::Scene) => Some("toml"),
+            Wanted::Write(Writing::Figure) => Some("png"),
+        }
+    }
+
+    fn enter(&mut self, folder: PathBuf) {
+        let folder = std::path::absolute(&folder).unwrap_or(folder);
+        match std::fs::read_dir(&folder) {
+            Ok(entries) => {
+                let ending = self.ending();
+                let is_meant = |path: &Path| {
+                    let own = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+                    ending.map_or_else(|| READABLE.contains(&&*own), |ending| ending == own)
+                };
+                let is_hidden =
+                    |path: &Path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+                let all = entries.filter_map(Result::ok).map(|entry| entry.path()).filter(|path| !is_hidden(path));
+                let all = all.map(|path| (path.is_dir(), path)).map(|(is_folder, path)| (path, is_folder));
+                self.entries = all.filter(|(path, is_folder)| *is_folder || is_meant(path)).collect();
+                self.entries.sort_by(|a, b| (!a.1, &a.0).cmp(&(!b.1, &b.0)));
+                (self.folder, self.problem) = (folder, None);
+                self.chosen.clear();
+                if self.reads() {
+                    self.typed.clear();
+                }
+            }
+            Err(error) => self.problem = Some(format!("{}: {error}", folder.display())),
+        }
+    }
+
+    /// What is meant by what is typed or chosen; empty: nothing yet.
+    fn meant(&self) -> Vec<PathBuf> {
+        let typed = self.typed.trim();
+        if typed.is_empty() {
+            return self.chosen.clone();
+        }
+        if typed.starts_with("builtin:") {
+            return vec![typed.into()];
+        }
+        let mut path = self.folder.join(typed);
+        if let (Some(ending), None) = (self.ending(), path.extension()) {
+            path.set_extension(ending);
+        }
+        vec![path]
+    }
+
+    /// What it is for.
+    pub fn title(&self) -> &'static str {
+        match self.wanted {
+            Wanted::Read => "Open city files, a scene or effects",
+            Wanted::Add => "Add files to the city",
+            Wanted::Write(Writing::Scene) => "Save the scene",
+            Wanted::Write(Writing::Figure) => "Export the figure",
+        }
+    }
+
+    fn button(&self) -> &'static str {
+        match self.wanted {
+            Wanted::Read => "Open",
+            Wanted::Add => "Add",
+            Wanted::Write(Writing::Scene) => "Save",
+            Wanted::Write(Writing::Figure) => "Export",
+        }
+    }
+}
+
+/// What became of a dialog.
+enum End {
+    Goes,
+    Done(Vec<PathBuf>),
+    Cancelled,
+}
+
+/// Shows what is open.
+pub fn show(window: &mut Window, context: &Context) {
+    if let Some(mut dialog) = window.dialog.take() {
+        let note = figure_note(window, &dialog);
+        let response = Modal::new(egui::Id::unique("files")).show(context, |ui| body(&mut dialog, note.as_deref(), ui));
+        match (response.should_close(), response.inner) {
+            (true, _) | (_, End::Cancelled) => {}
+            (_, End::Goes) => window.dialog = Some(dialog),
+            (_, End::Done(files)) => match dialog.wanted {
+                Wanted::Read => window.guarded(Purpose::OpenThese(files)),
+                Wanted::Add => window.add_files(&files),
+                Wanted::Write(what) => {
+                    let Some(file) = files.into_iter().next() else { return };
+                    let is_own = what == Writing::Scene && window.document.file() == Some(&*file);
+                    match file.exists() && !is_own {
+                        true => window.asking = Some(Asking::Replace(file, what)),
+                        false => write(window, &file, what),
+                    }
+                }
+            },
+        }
+    }
+    ask(window, context);
+}
+
+/// What the figure will be.
+fn figure_note(window: &Window, dialog: &FileDialog) -> Option<String> {
+    let figure = &window.document.scene().figure;
+    let [w, h] = figure.size;
+    let samples = figure.samples;
+    (dialog.wanted == Wanted::Write(Writing::Figure)).then(|| {
+        format!(
+            "{w} × {h} pixels, {samples} {} each; see Figure in the panel on the left.",
+            if samples == 1 { "sample" } else { "samples" }
+        )
+    })
+}
+
+fn body(dialog: &mut FileDialog, note: Option<&str>, ui: &mut Ui) -> End {
+    ui.set_width(520.0);
+    ui.heading(dialog.title());
+    if let Some(note) = note {
+        ui.weak(note);
+    }
+    ui.add_space(4.0);
+    let mut goes_to = None;
+    ui.horizontal(|ui| {
+        if let Some(parent) = dialog.folder.parent()
+            && ui.button("Up").clicked()
+        {
+            goes_to = Some(parent.to_owned());
+        }
+        ui.add(egui::Label::new(dialog.folder.display().to_string()).truncate());
+    });
+    let mut is_done = false;
+    egui::ScrollArea::vertical().max_height(300.0).min_scrolled_height(200.0).auto_shrink([false, false]).show(
+        ui,
+        |ui| {
+            if dialog.entries.is_empty() {
+                match dialog.ending() {
+                    Some(ending) => ui.weak(format!("No .{ending} file is here yet.")),
+                    None => ui.weak("Nothing here that can be opened."),
+                };
+            }
+            for (path, is_folder) in dialog.entries.clone() {
+                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let is_chosen = dialog.chosen.contains(&path);
+                let text = if is_folder { format!("{name}/") } else { name };
+                let response = ui.selectable_label(is_chosen, text);
+                if response.clicked() && is_folder {
+                    goes_to = Some(path);
+                } else if response.clicked() || response.double_clicked() {
+                    let adds = dialog.wanted == Wanted::Read
+                        && ui.input(|input| input.modifiers.command || input.modifiers.shift);
+                    match (adds, is_chosen) {
+                        (true, true) => dialog.chosen.retain(|own| *own != path),
+                        (true, false) => dialog.chosen.push(path),
+                        (false, _) => dialog.chosen = vec![path],
+                    }
+                    dialog.typed = match &dialog.chosen[..] {
+                        [only] => only.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+                        _ => String::new(),
+                    };
+                    is_done |= response.double_clicked();
+                }
+            }
+        },
+    );
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let label = ui.label("File");
+        let field =
+            ui.add(egui::TextEdit::singleline(&mut dialog.typed).desired_width(f32::INFINITY)).labelled_by(label.id);
+        if std::mem::take(&mut dialog.is_fresh) {
+            field.request_focus();
+        }
+        if field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
+            is_done = true;
+        }
+    });
+    if dialog.chosen.len() > 1 {
+        ui.weak(format!("{} files, opened as one city", dialog.chosen.len()));
+    } else if dialog.reads() {
+        ui.weak("With Ctrl several files are chosen, and opened as one city.");
+    }
+    if let Some(problem) = &dialog.problem {
+        ui.colored_label(ui.visuals().error_fg_color, problem);
+    }
+    ui.add_space(4.0);
+    let mut end = End::Goes;
+    ui.horizontal(|ui| {
+        let is_meant = !dialog.meant().is_empty();
+        if ui.add_enabled(is_meant, egui::Button::new(dialog.button())).clicked() {
+            is_done = true;
+        }
+        if ui.button("Cancel").clicked() {
+            end = End::Cancelled;
+        }
+    });
+    if let Some(folder) = goes_to {
+        dialog.enter(folder);
+    } else if is_done {
+        end = finished(dialog);
+    }
+    end
+}
+
+/// What is meant, if that can be: folders that are typed are entered.
+fn finished(dialog: &mut FileDialog) -> End {
+    let meant = dialog.meant();
+    match &meta(&meant) {
+        Meta::Nothing => return End::Goes,
+        Meta::Folder(folder) => {
+            dialog.enter(folder.clone());
+            dialog.typed.clear();
+            return End::Goes;
+        }
+        Meta::Missing(file) if dialog.reads() => {
+            dialog.problem = Some(format!("{}: there is no such file.", file.display()));
+            return End::Goes;
+        }
+        _ => {}
+    }
+    if let (Some(ending), Some(file)) = (dialog.ending(), meant.first()) {
+        let is_right = file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending));
+        if !is_right {
+            dialog.problem = Some(format!("{}: the name must end in .{ending}.", file.display()));
+            return End::Goes;
+        }
+    }
+    End::Done(meant)
+}
+
+enum Meta {
+    Nothing,
+    Folder(PathBuf),
+    Missing(PathBuf),
+    Fine,
+}
+
+fn meta(files: &[PathBuf]) -> Meta {
+    let is_builtin = |file: &Path| file.to_string_lossy().starts_with("builtin:");
+    match files {
+        [] => Meta::Nothing,
+        [folder] if folder.is_dir() => Meta::Folder(folder.clone()),
+        files => files
+            .iter()
+            .find(|file| !file.exists() && !is_builtin(file))
+            .map_or(Meta::Fine, |file| Meta::Missing(file.clone())),
+    }
+}
+
+fn write(window: &mut Window, file: &Path, what: Writing) {
+    match what {
+        Writing::Scene => window.save(file),
+        Writing::Figure => window.export(file),
+    }
+}
+
+fn ask(window: &mut Window, context: &Context) {
+    let Some(asking) = window.asking.clone() else { return };
+    let response = Modal::new(egui::Id::unique("question")).show(context, |ui| {
+        ui.set_width(380.0);
+        match &asking {
+            Asking::Lose(_) => {
+                ui.heading("The scene has edits that are not saved");
+                ui.label(format!("{} would lose them.", window.document.title()));
+            }
+            Asking::Replace(file, _) => {
+                ui.heading("The file is there already");
+                ui.label(format!("{} would be written over.", file.display()));
+            }
+            Asking::Outside(_, what) => {
+                ui.heading("The scene reads files outside its folder");
+                ui.label(what);
+                ui.label("Allow it where you know who made the scene.");
+            }
+        }
+        ui.add_space(8.0);
+        let mut answer = None;
+        ui.horizontal(|ui| {
+            let names: &[&str] = match &asking {
+                Asking::Lose(_) => &["Save", "Lose them", "Cancel"],
+                Asking::Replace(..) => &["Replace", "Cancel"],
+                Asking::Outside(..) => &["Allow", "Cancel"],
+            };
+            for (i, name) in names.iter().enumerate() {
+                let button = ui.button(*name);
+                // Keys alone will do: Enter takes the first, Tab goes on.
+                if i == 0 && ui.memory(|memory| memory.focused().is_none()) {
+                    button.request_focus();
+                }
+                if button.clicked() {
+                    answer = Some(*name);
+                }
+            }
+        });
+        answer
+    });
+    let answer = if response.should_close() { Some("Cancel") } else { response.inner };
+    let Some(answer) = answer else { return };
+    window.asking = None;
+    match (asking, answer) {
+        (Asking::Lose(purpose), "Lose them") => window.go_on(purpose),
+        (Asking::Lose(purpose), "Save") => match window.document.file().map(Path::to_owned) {
+            Some(file) => {
+                window.save(&file);
+                if !window.document.is_changed() {
+                    window.go_on(purpose);
+                }
+            }
+            None => window.dialog = Some(FileDialog::save(std::env::current_dir().unwrap_or_default())),
+        },
+        (Asking::Replace(file, what), "Replace") => write(window, &file, what),
+        (Asking::Outside(files, _), "Allow") => window.open_allowing(&files, true),
+        _ => {}
+    }
+}

@@ -1,0 +1,295 @@
+//! The scene that is edited: what it is, what it was, and which file it has.
+
+use std::path::{Path, PathBuf};
+
+use crate::{
+    figure::{
+        file::write_whole,
+        scene_file::{self, Options},
+    },
+    scene::{Command, History, Scene},
+    view::Camera,
+};
+
+/// A scene with its edits.
+#[derive(Debug, Default)]
+pub struct Document {
+    history: History,
+    /// As the file has it.
+    saved: Scene,
+    file: Option<PathBuf>,
+    /// Whether that file names files outside its folder.
+    leads_outside: bool,
+    /// An edit that goes on: a handle or a slider that is held.
+    live: Option<(String, Scene)>,
+}
+
+impl Document {
+    /// A scene without a past; `file`: where it is from.
+    pub fn new(scene: Scene, file: Option<PathBuf>) -> Self {
+        let leads_outside = file.as_ref().is_some_and(|file| leads_outside(&scene, file));
+        Self { history: History::new(scene.clone()), saved: scene, file, leads_outside, live: None }
+    }
+
+    /// The scene as it is shown.
+    pub fn scene(&self) -> &Scene {
+        self.live.as_ref().map_or_else(|| self.history.scene(), |(_, scene)| scene)
+    }
+
+    /// Its file.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    /// What it is called.
+    pub fn title(&self) -> String {
+        let name = self.file.as_ref().or(self.scene().city.files.first());
+        let name = name.and_then(|file| file.file_name()).map(|name| name.to_string_lossy().into_owned());
+        name.unwrap_or_else(|| "Untitled".to_owned())
+    }
+
+    /// Whether something would be lost: looking around is nothing that is.
+    pub fn is_changed(&self) -> bool {
+        let still = |scene: &Scene| Scene { camera: None, ..scene.clone() };
+        still(self.scene()) != still(&self.saved)
+    }
+
+    /// How its paths are read and written: relative to its file, and free to lead anywhere, as who edits it says where.
+    pub fn options(&self) -> Options {
+        match &self.file {
+            Some(file) => Options { allow_outside: true, ..Options::for_file(file) },
+            None => Options::for_command_line(),
+        }
+    }
+
+    /// Whether its file, as it was opened or saved last, names files outside its folder: who reads it has to allow that.
+    pub fn leads_outside(&self) -> bool {
+        self.leads_outside
+    }
+
+    /// Does an edit.
+    pub fn apply(&mut self, command: Command) {
+        self.settle();
+        self.history.apply(command);
+    }
+
+    /// Changes the scene.
+    pub fn edit(&mut self, name: impl Into<String>, change: impl FnOnce(&mut Scene)) {
+        self.settle();
+        let command = Command::of(name, self.history.scene(), change);
+        self.history.apply(command);
+    }
+
+    /// Where the eye is at first: nothing that could be undone.
+    pub fn begin_at(&mut self, camera: Camera) {
+        let scene = Scene { camera: Some(camera), ..self.history.scene().clone() };
+        self.history = History::new(scene);
+    }
+
+    /// Moves the eye.
+    pub fn look(&mut self, camera: Camera) {
+        self.settle();
+        let command = Command::look(self.history.scene(), camera);
+        self.history.apply(command);
+    }
+
+    /// Shows an edit that goes on; [`Self::settle`] does it.
+    pub fn preview(&mut self, name: impl Into<String>, scene: Scene) {
+        self.live = Some((name.into(), scene));
+    }
+
+    /// Whether an edit goes on.
+    pub fn is_live(&self) -> bool {
+        self.live.is_some()
+    }
+
+    /// Ends an edit that goes on.
+    pub fn settle(&mut self) {
+        if let Some((name, after)) = self.live.take() {
+            let command = Command::new(name, self.history.scene().clone(), after);
+            self.history.apply(command);
+        }
+    }
+
+    /// Takes the last edit back; what it was.
+    pub fn undo(&mut self) -> Option<String> {
+        self.settle();
+        self.history.undo().map(str::to_owned)
+    }
+
+    /// Does it again.
+    pub fn redo(&mut self) -> Option<String> {
+        self.settle();
+        self.history.redo().map(str::to_owned)
+    }
+
+    /// What would be taken back, and done again.
+    pub fn names(&self) -> [Option<&str>; 2] {
+        self.history.next().map(|command| command.map(Command::name))
+    }
+
+    /// Sets one value as `--set` does: `lens.0.shape.radius=80`.
+    ///
+    /// # Errors
+    /// What is wrong with it, in one message.
+    pub fn set(&mut self, assignment: &str) -> Result<(), String> {
+        let command = scene_file::set_within(self.scene(), assignment, &self.options()).map_err(message)?;
+        self.apply(command);
+        Ok(())
+    }
+
+    /// Shows what that would make; [`Self::settle`] does it.
+    ///
+    /// # Errors
+    /// What is wrong with it, in one message.
+    pub fn preview_set(&mut self, assignment: &str) -> Result<(), String> {
+        let base = self.history.scene().clone();
+        // Several values may be held at once: each goes on from what is shown.
+        let command = scene_file::set_within(self.scene(), assignment, &self.options()).map_err(message)?;
+        let mut after = base;
+        command.redo(&mut after);
+        self.preview(command.name().to_owned(), after);
+        Ok(())
+    }
+
+    /// Gives a lens another name, wherever the scene names it.
+    ///
+    /// # Errors
+    /// What is wrong with the name, in one message.
+    pub fn rename_lens(&mut self, index: usize, name: &str) -> Result<(), String> {
+        self.settle();
+        let command = scene_file::rename_lens(self.scene(), index, name, &self.options()).map_err(message)?;
+        self.apply(command);
+        Ok(())
+    }
+
+    /// The scene as whoever reads its file gets it.
+    ///
+    /// # Errors
+    /// What cannot be written.
+    pub fn as_written(&self) -> Result<Scene, String> {
+        let options = self.options();
+        scene_file::parse(&scene_file::to_toml_for(self.scene(), &options), &self.title(), &options).map_err(message)
+    }
+
+    /// Writes the scene; it has this file from now on.
+    ///
+    /// # Errors
+    /// What the system says, with the file.
+    pub fn save(&mut self, file: &Path) -> Result<(), String> {
+        self.settle();
+        let text = scene_file::to_toml_for(self.scene(), &Options::for_file(file));
+        write_whole(file, |out| out.write_all(text.as_bytes())).map_err(|error| error.to_string())?;
+        self.file = Some(file.to_owned());
+        self.saved = self.scene().clone();
+        self.leads_outside = leads_outside(&self.saved, file);
+        Ok(())
+    }
+}
+
+/// Whether a scene, written to `file`, can only be read by who lets it lead out of that file's folder.
+fn leads_outside(scene: &Scene, file: &Path) -> bool {
+    let strict = Options::for_file(file);
+    let text = scene_file::to_toml_for(scene, &strict);
+    let is_read = |options: &Options| scene_file::parse(&text, "", options).is_ok();
+    !is_read(&strict) && is_read(&Options { allow_outside: true, ..strict.clone() })
+}
+
+/// The first problem, as the window says it: it knows where it is.
+fn message(error: scene_file::SceneFileError) -> String {
+    error.problems.first().map_or_else(|| error.to_string(), |problem| format!("{}: {}", problem.key, problem.message))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    fn camera(x: f64) -> Camera {
+        Camera::looking(DVec3::new(x, 0.0, 10.0), DVec3::Y * 50.0, 0.8)
+    }
+
+    #[test]
+    fn moves_of_the_eye_in_a_row_are_one_edit() {
+        let mut document = Document::default();
+        document.edit("wider", |scene| scene.figure.size[0] = 900);
+        for x in 0..5 {
+            document.look(camera(f64::from(x)));
+        }
+        assert_eq!(document.names()[0], Some("move camera"));
+        assert_eq!(document.undo().as_deref(), Some("move camera"));
+        assert_eq!(document.scene().camera, None);
+        assert_eq!(document.redo().as_deref(), Some("move camera"));
+        assert_eq!(document.scene().camera, Some(camera(4.0)));
+        assert_eq!((document.undo(), document.undo().as_deref()), (Some("move camera".into()), Some("wider")));
+        assert_eq!(document.undo(), None);
+    }
+
+    #[test]
+    fn what_is_held_is_one_edit_when_it_is_let_go() {
+        let mut document = Document::default();
+        let lens = "lens.0={ name = \"a\", shape = { kind = \"sphere\", center = [0, 0, 0], radius = 10 }, effects = [\"sepia\"] }";
+        document.set(lens).unwrap();
+        for radius in [20, 30, 40] {
+            document.preview_set(&format!("lens.0.shape.radius={radius}")).unwrap();
+        }
+        assert!(document.preview_set("lens.0.shape.radius=-1").unwrap_err().contains("radius"));
+        let held = document.scene().clone();
+        document.settle();
+        assert_eq!(*document.scene(), held);
+        document.undo();
+        assert!(document.scene().lenses.len() == 1 && *document.scene() != held);
+        document.undo();
+        assert!(document.scene().lenses.is_empty());
+    }
+
+    #[test]
+    fn looking_around_is_nothing_to_be_lost() {
+        let mut document = Document::new(Scene::default(), None);
+        document.look(camera(1.0));
+        assert!(!document.is_changed());
+        document.edit("wider", |scene| scene.figure.size[0] = 900);
+        assert!(document.is_changed());
+        document.undo();
+        assert!(!document.is_changed());
+    }
+
+    #[test]
+    fn a_scene_comes_back_as_it_was_saved() {
+        let folder = std::env::temp_dir().join(format!("veduta-document-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let file = folder.join("s.toml");
+        let mut document = Document::default();
+        document.set("city.files=[\"builtin:square\"]").unwrap();
+        document.look(camera(3.0));
+        document.save(&file).unwrap();
+        assert!(!document.is_changed() && document.title() == "s.toml");
+        let again = scene_file::read(&file, &document.options()).unwrap();
+        assert_eq!(again, document.as_written().unwrap());
+        let [own, read] = [document.scene(), &again].map(|scene| scene.camera.unwrap());
+        assert!(own.eye == read.eye && own.target == read.target && again.city == document.scene().city);
+        assert!(document.save(&folder.join("no/where.toml")).unwrap_err().contains("where.toml"));
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_scene_that_is_saved_beside_its_city_or_elsewhere_can_be_edited_on() {
+        let folder = std::env::temp_dir().join(format!("veduta-outside-{}", std::process::id()));
+        std::fs::create_dir_all(folder.join("scenes")).unwrap();
+        let city = folder.join("a.city.json");
+        std::fs::write(&city, "{}").unwrap();
+        for (file, is_outside) in [("s.toml", false), ("scenes/s.toml", true)] {
+            let mut document = Document::default();
+            document.edit("open", |scene| scene.city.files = vec![city.clone()]);
+            assert!(!document.leads_outside(), "it has no file");
+            document.save(&folder.join(file)).unwrap();
+            assert_eq!(document.leads_outside(), is_outside);
+            document.set("figure.size=[800, 500]").unwrap();
+            assert_eq!(document.as_written().unwrap().city.files, std::slice::from_ref(&city));
+            let opened = Document::new(document.scene().clone(), Some(folder.join(file)));
+            assert_eq!(opened.leads_outside(), is_outside);
+        }
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,0 +1,130 @@
+//! Coming down to the ground: where a person can stand, and what they look at.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+
+use crate::{
+    app::window::Window,
+    geom::Ray,
+    view::{Camera, navigate},
+};
+
+/// How high eyes are, metres.
+pub const EYE_HEIGHT_M: f64 = 1.7;
+/// An eye higher than this above the ground comes down where it looks, else where it is, metres.
+const LOW_M: f64 = 10.0;
+/// What is free around a place to stand, metres.
+const ROOM_M: f64 = 1.0;
+/// How far around a place a free one is looked for, metres, and how far apart: metres, and that share of how far it is
+/// already, so that where nothing is free some 1,400 places are tried.
+const REACH_M: f64 = 100.0;
+const APART_M: f64 = 2.0;
+const APART_SHARE: f64 = 0.1;
+/// How far from an object one stands to look at it: so many of its heights, at least and at most so many metres.
+const HEIGHTS_AWAY: f64 = 1.5;
+const AWAY_M: (f64, f64) = (20.0, 80.0);
+
+impl Window {
+    /// The camera of who comes down to the ground: before the chosen object, on the side of the eye, looking at it; without
+    /// one where the eye looks; an eye that is low already where it is. Nobody lands in a building where there is room
+    /// beside it.
+    pub(super) fn landing(&self, camera: &Camera) -> Camera {
+        let Some(city) = &self.city else { return *camera };
+        let here = camera.eye.truncate();
+        let is_low = self.ground_at(here, camera.eye.z).is_none_or(|ground| camera.eye.z - ground < LOW_M);
+        let bounds = self.chosen.object.map(|object| city.model.family_bounds(object));
+        let (wanted, at) = match bounds.filter(|bounds| !bounds.is_empty()) {
+            _ if is_low => (here, None),
+            Some(bounds) => {
+                let (center, size) = (bounds.center(), bounds.size());
+                let away = 0.5 * size.truncate().length() + (HEIGHTS_AWAY * size.z).clamp(AWAY_M.0, AWAY_M.1);
+                let side = (here - center.truncate()).try_normalize().unwrap_or(DVec2::NEG_Y);
+                (center.truncate() + away * side, Some(center))
+            }
+            None => (self.canvas.middle(self.frame.as_deref()).unwrap_or(camera.target).truncate(), None),
+        };
+        let place = free_near(wanted, |place| self.is_free(place));
+        match self.ground_at(place, camera.eye.z) {
+            Some(ground) => navigate::landed(camera, place.extend(ground + EYE_HEIGHT_M), at),
+            None => *camera,
+        }
+    }
+
+    /// The height of the ground at a place in plan, metres: of terrain, roads and the like, else of the lowest place of the city.
+    pub(super) fn ground_at(&self, at: DVec2, eye_z: f64) -> Option<f64> {
+        let city = self.city.as_ref()?;
+        let top = city.extent.max.z.max(eye_z) + 1.0;
+        let ray = Ray { origin: at.extend(top), direction: DVec3::NEG_Z };
+        let mut nearest = f64::INFINITY;
+        city.index.get()?.hits(&city.model, &ray, f64::INFINITY, |hit| {
+            if self.is_ground(hit.object) {
+                nearest = nearest.min(hit.t);
+            }
+        });
+        Some(if nearest.is_finite() { top - nearest } else { city.extent.min.z })
+    }
+
+    fn is_ground(&self, object: u32) -> bool {
+        let objects = self.city.as_ref().map(|city| &city.model.objects);
+        objects.and_then(|objects| objects.get(object as usize)).is_some_and(|own| own.class.is_ground())
+    }
+
+    /// Whether nothing but ground is at a place and a metre around it, whatever the height.
+    fn is_free(&self, place: DVec2) -> bool {
+        let Some((city, index)) = self.city.as_ref().and_then(|city| Some((city, city.index.get()?))) else {
+            return true;
+        };
+        let is_open = |at: DVec2| {
+            let ray = Ray { origin: at.extend(city.extent.max.z + 1.0), direction: DVec3::NEG_Z };
+            let mut is_open = true;
+            index.hits_until(&city.model, &ray, f64::INFINITY, |hit| {
+                is_open = self.is_ground(hit.object);
+                !is_open
+            });
+            is_open
+        };
+        is_open(place) && (0..8).all(|i| is_open(place + ROOM_M * DVec2::from_angle(TAU * f64::from(i) / 8.0)))
+    }
+}
+
+/// The free place nearest to `at`, of places 2 to 10 m apart on circles up to 100 m around it; `at` itself where none is free.
+fn free_near(at: DVec2, is_free: impl Fn(DVec2) -> bool) -> DVec2 {
+    let apart = |radius: f64| APART_M.max(APART_SHARE * radius);
+    let circles =
+        std::iter::successors(Some(0.0), |radius| Some(radius + apart(*radius))).take_while(|r| *r <= REACH_M);
+    let mut places = circles.flat_map(|radius| {
+        let count = (TAU * radius / apart(radius)).ceil().max(1.0);
+        (0..count as u32).map(move |i| at + radius * DVec2::from_angle(TAU * f64::from(i) / count))
+    });
+    places.find(|place| is_free(*place)).unwrap_or(at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_free_place_is_taken() {
+        let at = DVec2::new(85_000.0, 447_000.0);
+        assert_eq!(free_near(at, |_| true), at);
+        // A house of 30 by 12 m around it: beside its nearer walls, at most one circle farther than need be.
+        let is_free = |place: DVec2| (place - at).abs().cmpgt(DVec2::new(15.0, 6.0)).any();
+        let place = free_near(at, is_free);
+        assert!(is_free(place) && (6.0..8.5).contains(&place.distance(at)), "{place}");
+        // A way out on one side only, as of a court with a gate.
+        let gate = |place: DVec2| (place - at).x > 40.0 && (place - at).y.abs() < 3.0;
+        let place = free_near(at, gate);
+        assert!(gate(place) && (40.0..45.0).contains(&place.distance(at)), "{place}");
+        // None: where it was.
+        assert_eq!(free_near(at, |_| false), at);
+        assert_eq!(free_near(at, |place| place.distance(at) > 101.0), at);
+        // Far places are farther apart.
+        let tried = std::cell::Cell::new(0);
+        free_near(at, |_| {
+            tried.set(tried.get() + 1);
+            false
+        });
+        assert!((1_200..1_600).contains(&tried.get()), "{}", tried.get());
+    }
+}

@@ -1,0 +1,122 @@
+//! A scene for a picture of another size: what it gives in pixels keeps its share of the picture.
+
+use crate::{
+    lens::{EffectUse, Lens, Parameter, border::BorderUnit},
+    scene::{Overlay, Scene, TextSize, overlay::ContextLine},
+    shader::effect::{DefaultValue, Fallback, ParameterKind, find},
+};
+
+/// The unit of effects' parameters that are lengths in the picture.
+const PIXELS: &str = "pixels";
+
+impl Scene {
+    /// The scene for a picture that is `factor` > 0 times as wide and high as the one that its lengths in pixels are meant for, and whose text
+    /// is so large there (`em_px`): overlays, their lines, the layout, text, borders and lines of effects, and how fine meshes are.
+    #[must_use]
+    pub fn sized(&self, factor: f64, em_px: f64) -> Self {
+        let mut scene = self.clone();
+        for lens in self.lenses.iter().filter(|lens| lens.best_view.is_some()) {
+            if !scene.overlays.iter().any(|overlay| overlay.lens == lens.name) {
+                scene.overlays.push(Overlay::of(&lens.name));
+            }
+        }
+        scene.overlays.iter_mut().for_each(|overlay| size_overlay(overlay, factor));
+        scene.layout.margin_px *= factor;
+        scene.layout.gap_px *= factor;
+        scene.figure.text = Some(TextSize::Pixels(em_px * factor));
+        scene.style.chord_px *= factor;
+        scene.style.effects.iter_mut().for_each(|used| size_effect(used, factor));
+        scene.lenses.iter_mut().for_each(|lens| size_lens(lens, factor));
+        scene
+    }
+}
+
+fn size_overlay(overlay: &mut Overlay, factor: f64) {
+    let sizes = [Some(&mut overlay.size), overlay.min.as_mut(), overlay.max.as_mut()];
+    for side in sizes.into_iter().flatten().flatten() {
+        *side = ((f64::from(*side) * factor).round() as u32).max(1);
+    }
+    if let Some(ContextLine { widths, fade, .. }) = &mut overlay.line {
+        *widths = widths.map(|width| width * factor);
+        *fade = fade.map(|radii| radii.map(|radius| radius * factor));
+    }
+}
+
+fn size_lens(lens: &mut Lens, factor: f64) {
+    if let Some(border) = lens.border.as_mut().filter(|border| border.unit == BorderUnit::Pixels) {
+        border.width *= factor;
+    }
+    let look = lens.best_view.as_mut().and_then(|shown| shown.look.as_mut());
+    let of_view = look.into_iter().flat_map(|look| &mut look.effects);
+    lens.effects.iter_mut().chain(of_view).for_each(|used| size_effect(used, factor));
+    if let Some(render) = &mut lens.render {
+        let of_cases = render.cases.iter_mut().flat_map(|case| &mut case.effects);
+        of_cases.chain(&mut render.poi_effects).for_each(|used| size_effect(used, factor));
+    }
+}
+
+fn size_effect(used: &mut EffectUse, factor: f64) {
+    let Some(definition) = find(&used.effect) else { return };
+    for parameter in definition.parameters.iter().filter(|parameter| parameter.unit == PIXELS) {
+        let ParameterKind::Number { min, max } = parameter.kind else { continue };
+        let given = used.number(&parameter.name);
+        let number = given.or(match parameter.fallback {
+            Fallback::Value(DefaultValue::Number(number)) => Some(number),
+            _ => None,
+        });
+        if let Some(number) = number {
+            used.parameters.insert(parameter.name.clone(), Parameter::Number((number * factor).clamp(min, max)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lens::{Class, LensKind};
+
+    fn used(effect: &str, parameters: &[(&str, f64)]) -> EffectUse {
+        let parameters = parameters.iter().map(|(name, number)| ((*name).to_owned(), Parameter::Number(*number)));
+        EffectUse {
+            effect: effect.to_owned(),
+            class: Class::Inside,
+            blend: None,
+            weight: None,
+            parameters: parameters.collect(),
+        }
+    }
+
+    #[test]
+    fn what_is_given_in_pixels_keeps_its_share_of_the_picture() {
+        let mut scene = Scene::default();
+        let mut view = Lens::plain("view", LensKind::BestView, [0.0; 3]);
+        view.best_view = Some(crate::lens::BestView {
+            pois: Vec::new(),
+            depiction: crate::lens::best_view::Depiction::Text("a".to_owned()),
+            lenses: None,
+            look: None,
+        });
+        let mut lines = Lens::plain("lines", LensKind::Color, [0.0; 3]);
+        let width = find("wireframe").unwrap().parameters.iter().find(|own| own.unit == PIXELS).unwrap().name.clone();
+        lines.effects = vec![used("wireframe", &[]), used("wireframe", &[(&width, 2.0)]), used("sepia", &[])];
+        scene.lenses = vec![view, lines];
+        let half = scene.sized(0.5, 14.0);
+        assert_eq!(half.overlays[0].size, Overlay::SIZE.map(|side| side / 2));
+        assert_eq!(half.overlays[0].line.as_ref().unwrap().widths, [3.0, 0.75]);
+        assert_eq!(half.layout.margin_px, 0.5 * scene.layout.margin_px);
+        assert_eq!(half.figure.text_px(), Some(7.0));
+        let effects = &half.lenses[1].effects;
+        let default =
+            match find("wireframe").unwrap().parameters.iter().find(|own| own.unit == PIXELS).unwrap().fallback {
+                Fallback::Value(DefaultValue::Number(number)) => number,
+                _ => panic!("a width has a default"),
+            };
+        assert_eq!(effects[0].number(&width), Some(0.5 * default));
+        assert_eq!(effects[1].number(&width), Some(1.0));
+        assert_eq!(effects[2], scene.lenses[1].effects[2], "what is not in pixels stays");
+        // There and back; and at its own size nothing is another but for what was left to defaults.
+        let back = half.sized(2.0, 7.0);
+        assert_eq!(back.overlays[0], Overlay::of("view"));
+        assert_eq!(back.lenses[1].effects[1], scene.lenses[1].effects[1]);
+    }
+}

@@ -1,0 +1,160 @@
+//! Bodies of lenses as tinted glass and as a glow (L5).
+
+use crate::studio::*;
+use glam::{DVec2, DVec3};
+use veduta::{
+    geom::{Aabb, Shape},
+    lens::{Focus, Lens, LensBody, chosen::Choice},
+    render::{
+        frame::Backend,
+        picture::{Picture, Request, Studio},
+    },
+    scene::Scene,
+    view::{Camera, View},
+};
+
+const SIZE: [u32; 2] = [320, 200];
+const BACKENDS: [Backend; 2] = [Backend::Specialised, Backend::Uber];
+
+fn draw(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
+    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    studio.render(scene, &request).expect("a picture")
+}
+
+fn view_of(camera: Camera) -> View {
+    View::new(camera, SIZE, &Aabb { min: DVec3::splat(-2e4), max: DVec3::splat(2e4) }).expect("a view")
+}
+
+fn pixels() -> impl Iterator<Item = (usize, u32, u32)> {
+    (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate().map(|(i, (x, y))| (i, x, y))
+}
+
+/// A lens that is nothing but a body.
+fn body_of(body: LensBody, focus: impl Into<Focus>) -> Lens {
+    Lens { body, effects: vec![], ..lens("a", [focus], "sepia") }
+}
+
+fn difference(a: [u8; 4], b: [u8; 4]) -> u8 {
+    (0..3).map(|i| a[i].abs_diff(b[i])).max().unwrap_or(0)
+}
+
+#[test]
+fn glass_is_where_rays_meet_the_lens_and_nothing_stands_before() {
+    let mut studio = synthetic(60);
+    let middle = studio.extent().center();
+    let eye = middle + DVec3::new(60.0, -110.0, 80.0);
+    for camera in [Camera::looking(eye, middle, 0.8), orthographic(eye, middle, 150.0)] {
+        let view = view_of(camera);
+        let plain = draw(&mut studio, &scene(camera, vec![]), Backend::Specialised);
+        let depth = plain.depth.as_ref().expect("depth");
+        for (i, focus) in shapes(middle + DVec3::new(0.0, 0.0, 2.0), 26.0).into_iter().enumerate() {
+            let reference = Reference::of(&focus);
+            let scene = scene(camera, vec![body_of(LensBody::Shell, focus)]);
+            let glass = draw(&mut studio, &scene, Backend::Specialised);
+            // Where the first and the last of the ray are, and how far away nothing is to be told.
+            let ends = |x, y| {
+                let spans = reference.intervals(&view.pixel_ray(x, y));
+                spans.first().zip(spans.last()).map(|((enter, _), (_, exit))| (*enter, *exit))
+            };
+            let (mut tinted, mut wrong) = (0, 0);
+            for (k, x, y) in
+                pixels().step_by(7).filter(|(_, x, y)| (2..SIZE[0] - 2).contains(x) && (2..SIZE[1] - 2).contains(y))
+            {
+                let beside = [(0, 0), (2, 0), (0, 2), (2, 2), (1, 0), (0, 1), (2, 1), (1, 2)]
+                    .map(|(dx, dy)| ends(x + dx - 1, y + dy - 1).is_some());
+                if beside.contains(&true) != beside.iter().all(|b| *b) {
+                    continue; // The line around it.
+                }
+                let shown = f64::from(depth[k]);
+                let seen = ends(x, y).map(|(enter, exit)| [enter, exit]).map(|e| e.map(|t| shown / t - 1.0));
+                let is_near = |e: &f64| e.abs() < 1e-3;
+                if seen.is_some_and(|ends| ends.iter().any(is_near)) {
+                    continue;
+                }
+                let wanted = seen.is_some_and(|ends| ends[0] > 0.0);
+                let is_tinted = difference(glass.rgba[k], plain.rgba[k]) > 0;
+                tinted += usize::from(is_tinted);
+                // A tint may be the colour that it lies on.
+                wrong += usize::from(is_tinted && !wanted) + usize::from(!is_tinted && wanted);
+            }
+            assert!(tinted > 14 && wrong <= tinted / 100, "shape {i}: {wrong} wrong, {tinted} tinted");
+            assert!(glass.object_id == plain.object_id, "bodies are not what is shown");
+        }
+    }
+}
+
+#[test]
+fn a_glow_fades_away_from_the_silhouette() {
+    let mut studio = synthetic(60);
+    let middle = studio.extent().center();
+    let camera = Camera::looking(middle + DVec3::new(60.0, -110.0, 80.0), middle, 0.8);
+    let view = view_of(camera);
+    let mut plain = scene(camera, vec![]);
+    plain.style.effects = vec![used("clay")];
+    let without = draw(&mut studio, &plain, Backend::Specialised);
+    for (i, focus) in shapes(middle + DVec3::new(0.0, 0.0, 2.0), 30.0).into_iter().enumerate() {
+        let reference = Reference::of(&focus);
+        let met: Vec<bool> = pixels().map(|(_, x, y)| !reference.intervals(&view.pixel_ray(x, y)).is_empty()).collect();
+        let scene = Scene { lenses: vec![body_of(LensBody::Halo, focus)], ..plain.clone() };
+        let glowing = draw(&mut studio, &scene, Backend::Specialised);
+        let mut by_distance = vec![Vec::new(); 40];
+        for (k, x, y) in pixels().step_by(43) {
+            let at = DVec2::new(f64::from(x), f64::from(y));
+            let nearest = pixels()
+                .filter(|(j, ..)| met[*j] != met[k])
+                .map(|(_, a, b)| at.distance(DVec2::new(f64::from(a), f64::from(b))));
+            let nearest = nearest.fold(f64::INFINITY, f64::min);
+            let change = difference(glowing.rgba[k], without.rgba[k]);
+            if met[k] {
+                assert!(change == 0 || nearest < 2.0, "shape {i}: pixel {x}, {y} of the lens glows");
+            } else if nearest < 40.0 {
+                by_distance[nearest as usize].push(f64::from(change));
+            } else {
+                assert_eq!(change, 0, "shape {i}: pixel {x}, {y} is far away");
+            }
+        }
+        let mean = |list: &[f64]| list.iter().sum::<f64>() / list.len().max(1) as f64;
+        let [near, halfway, beyond] = [mean(&by_distance[1]), mean(&by_distance[9]), mean(&by_distance[20..].concat())];
+        assert!(near > 3.0 * halfway && halfway > 1.0 && beyond < 0.5, "shape {i}: {near} {halfway} {beyond}");
+    }
+}
+
+#[test]
+fn both_back_ends_draw_the_same_bodies_and_moving_them_compiles_nothing() {
+    let mut studio = synthetic(60);
+    let middle = studio.extent().center();
+    let camera = Camera::looking(middle + DVec3::new(60.0, -110.0, 80.0), middle, 0.8);
+    let bodies = [LensBody::Shell, LensBody::Halo, LensBody::Outline];
+    let all: Vec<Lens> = shapes(middle + DVec3::new(0.0, 0.0, 2.0), 30.0)
+        .into_iter()
+        .enumerate()
+        .map(|(i, focus)| Lens { name: format!("lens {i}"), ..body_of(bodies[i % 3], focus) })
+        .collect();
+    for part in all.chunks(4).step_by(2) {
+        let scene = scene(camera, part.to_vec());
+        let [one, other] = BACKENDS.map(|backend| draw(&mut studio, &scene, backend));
+        assert!(one.rgba == other.rgba);
+    }
+    let ball = |x: f64| Shape::Sphere { center: middle + DVec3::X * x, radius: 20.0 };
+    for body in bodies {
+        let first = draw(&mut studio, &scene(camera, vec![body_of(body, ball(0.0))]), Backend::Specialised);
+        let then = draw(&mut studio, &scene(camera, vec![body_of(body, ball(9.0))]), Backend::Specialised);
+        assert!(then.statistics.pipelines.compiled == 0 && first.rgba != then.rgba);
+    }
+}
+
+#[test]
+fn what_has_no_surface_shows_a_line() {
+    let chosen = Choice { ids: vec!["a".into()], ..Choice::default() };
+    let thematic = Focus::Thematic(chosen);
+    let ball = || Focus::from(Shape::Sphere { center: DVec3::ZERO, radius: 1.0 });
+    let both =
+        Focus::Combined { how: veduta::geom::combination::Operation::Union, parts: vec![ball(), thematic.clone()] };
+    for body in [LensBody::Shell, LensBody::Halo] {
+        assert_eq!(body_of(body, thematic.clone()).drawn_body(), LensBody::Outline);
+        assert_eq!(body_of(body, both.clone()).drawn_body(), LensBody::Outline);
+        assert_eq!(body_of(body, ball()).drawn_body(), body);
+    }
+    let in_sprite = Lens { sprite: Some(Default::default()), ..body_of(LensBody::Halo, ball()) };
+    assert_eq!(in_sprite.drawn_body(), LensBody::Outline);
+}

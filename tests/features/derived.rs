@@ -1,0 +1,251 @@
+//! Derived contents, drawn (O3, O5): who is seen where, against rays in f64; shadows; both back ends; nothing is made anew.
+
+use crate::studio::{self, *};
+use glam::DVec3;
+use veduta::{
+    city::{
+        CityModel,
+        derived::{Derive, Form, Height, derive},
+    },
+    geom::{Shape, ray::TriangleTest},
+    lens::{
+        Content, Focus, Lens, LensKind,
+        chosen::{Choice, members},
+    },
+    render::{
+        frame::Backend,
+        picture::{Picture, Request, Studio},
+    },
+    scene::{Scene, Sun},
+    view::{Camera, View},
+};
+
+const SIZE: [u32; 2] = [160, 110];
+
+const FORMS: [Form; 6] = [
+    Form::Box { oriented: false },
+    Form::Box { oriented: true },
+    Form::Prism,
+    Form::Hull,
+    Form::Flat { lift_m: 0.05 },
+    Form::Height(Height::Factor(1.7)),
+];
+
+fn showing(form: Form, focus: impl Into<Focus>) -> Lens {
+    let content = Content { derive: Some(Derive { form, parts: false }), ..Content::default() };
+    Lens {
+        kind: LensKind::Content,
+        effects: vec![],
+        content: Some(content),
+        ..lens("derived", [focus.into()], "sepia")
+    }
+}
+
+fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
+    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    studio.render(scene, &request).expect("a picture")
+}
+
+/// Triangles of a model's geometries with the index of their object.
+fn faces(model: &CityModel, geometries: &[u32]) -> Vec<([DVec3; 3], u32)> {
+    let tiles = geometries.iter().flat_map(|&g| model.geometries[g as usize].tiles.clone());
+    let mut all = Vec::new();
+    for tile in tiles.map(|t| &model.tiles[t as usize]) {
+        for corners in model.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
+            let vertex = |k: usize| tile.vertices.start + corners[k];
+            let object = model.surfaces[model.vertices[vertex(0) as usize].surface as usize].object;
+            all.push(([0, 1, 2].map(|k| model.position(tile, vertex(k))), object));
+        }
+    }
+    all
+}
+
+/// From above, and from the street.
+fn cameras(studio: &Studio) -> [Camera; 2] {
+    let extent = studio.extent();
+    let (middle, size) = (extent.center(), extent.size());
+    [
+        Camera::looking(middle + size.length() * DVec3::new(0.2, -0.5, 0.6), middle, 0.7),
+        Camera::looking(middle + size * DVec3::new(-0.1, -0.45, 0.5), middle, 1.0),
+    ]
+}
+
+#[test]
+fn chosen_objects_are_seen_in_their_form_and_under_their_own_number() {
+    let mut studio = synthetic(60);
+    let (model, geometries) = (studio.model.clone(), studio.geometries.clone());
+    let choice = Choice { attribute: Some("yearOfConstruction".into()), min: Some(1950.0), ..Choice::default() };
+    let chosen = members(&model, &choice);
+    for form in FORMS {
+        let made = derive(&model, &geometries, &Derive { form, parts: false });
+        // The context without the members but with all ground, and the members' forms.
+        let is_ground = |object: u32| model.objects[object as usize].class.is_ground();
+        let mut wanted = faces(&model, &geometries);
+        wanted.retain(|(_, object)| !chosen[*object as usize] || is_ground(*object));
+        let own = faces(&made.model, &made.geometries());
+        wanted.extend(own.into_iter().filter(|(_, object)| chosen[*object as usize]));
+        let mut seen = 0;
+        for camera in cameras(&studio) {
+            let scene = scene(camera, vec![showing(form, Focus::Thematic(choice.clone()))]);
+            let one = drawn(&mut studio, &scene, Backend::Specialised);
+            let other = drawn(&mut studio, &scene, Backend::Uber);
+            assert!(one.rgba == other.rgba && one.object_id == other.object_id, "{form:?}: the back ends differ");
+            let view = View::new(camera, SIZE, &studio.extent()).expect("a view");
+            seen += compare(&one, &view, &wanted, &chosen, form);
+        }
+        assert!(seen > 400, "{form:?}: {seen}");
+    }
+}
+
+/// Holds object ids to what rays meet first; returns how many pixels show chosen objects.
+fn compare(drawn: &Picture, view: &View, faces: &[([DVec3; 3], u32)], chosen: &[bool], form: Form) -> usize {
+    let ids = drawn.object_id.as_ref().expect("ids");
+    let [w, h] = SIZE;
+    let first = |x: u32, y: u32| {
+        let ray = view.pixel_ray(x, y);
+        let test = TriangleTest::new(&ray).expect("a direction");
+        let hits = || faces.iter().filter_map(|(corners, object)| Some((test.hit(*corners)?, object + 1)));
+        let nearest = hits().map(|(d, _)| d).fold(f64::INFINITY, f64::min);
+        let mut all: Vec<u32> =
+            hits().filter(|(d, _)| *d <= nearest * (1.0 + 1e-6)).map(|(_, object)| object).collect();
+        all.push(if nearest.is_finite() { all[0] } else { 0 });
+        all
+    };
+    let wanted: Vec<Vec<u32>> = (0..h).flat_map(|y| (0..w).map(move |x| first(x, y))).collect();
+    let (mut seen, mut unsure) = (0, 0);
+    for (i, objects) in wanted.iter().enumerate() {
+        let is_chosen = ids[i].checked_sub(1).is_some_and(|object| chosen[object as usize]);
+        seen += usize::from(is_chosen);
+        if objects.contains(&ids[i]) {
+            continue;
+        }
+        let near = [i.wrapping_sub(1), i + 1, i.wrapping_sub(w as usize), i + w as usize];
+        let is_border = near.iter().any(|&n| wanted.get(n).is_none_or(|other| other != objects));
+        assert!(is_border, "{form:?}, pixel {}, {}: {} for {objects:?}", i as u32 % w, i as u32 / w, ids[i]);
+        unsure += 1;
+    }
+    assert!(unsure * 100 < wanted.len(), "{form:?}: {unsure} of {} pixels", wanted.len());
+    seen
+}
+
+/// A tower on a lawn under the midday sun.
+fn tower(form: Option<Form>) -> (Studio, Scene) {
+    let ring = [[0, 0], [6, 0], [6, 6], [0, 6]];
+    let mut vertices: Vec<String> = Vec::new();
+    let mut corner = |x: i64, y: i64, z: i64| {
+        vertices.push(format!("[{x},{y},{z}]"));
+        vertices.len() - 1
+    };
+    let low = ring.map(|[x, y]| corner(x, y, 0));
+    let high = ring.map(|[x, y]| corner(x, y, 14));
+    let lawn = [[-40, -40], [46, -40], [46, 46], [-40, 46]].map(|[x, y]| corner(x, y, 0));
+    let list = |ring: &[usize]| format!("[[{}]]", ring.iter().map(usize::to_string).collect::<Vec<_>>().join(","));
+    let mut walls: Vec<String> =
+        (0..4).map(|k| list(&[low[k], low[(k + 1) % 4], high[(k + 1) % 4], high[k]])).collect();
+    walls.extend([list(&high), list(&[low[3], low[2], low[1], low[0]])]);
+    let text = format!(
+        "{{\"type\":\"CityJSON\",\"version\":\"2.0\",\"transform\":{{\"scale\":[1,1,1],\"translate\":[0,0,0]}},\"CityObjects\":{{\
+         \"tower\":{{\"type\":\"Building\",\"geometry\":[{{\"type\":\"MultiSurface\",\"lod\":\"1\",\"boundaries\":[{}]}}]}},\
+         \"lawn\":{{\"type\":\"LandUse\",\"geometry\":[{{\"type\":\"MultiSurface\",\"lod\":\"1\",\"boundaries\":[{}]}}]}}}},\
+         \"vertices\":[{}]}}",
+        walls.join(","),
+        list(&lawn),
+        vertices.join(",")
+    );
+    let path = std::env::temp_dir().join(format!(
+        "veduta-tower-{}-{:?}.city.json",
+        std::process::id(),
+        std::thread::current().id()
+    ));
+    std::fs::write(&path, text).expect("a temporary file");
+    let studio = studio::studio(std::slice::from_ref(&path));
+    std::fs::remove_file(path).expect("the temporary file");
+    let camera = orthographic(DVec3::new(3.0, 3.0, 90.0), DVec3::new(3.0, 3.001, 0.0), 60.0);
+    let everything = Shape::Sphere { center: DVec3::ZERO, radius: 400.0 };
+    let lenses = form.map(|form| showing(form, everything)).into_iter().collect();
+    let sun = Sun { shadows: true, elevation: 45.0_f64.to_radians(), ..Sun::default() };
+    (studio, Scene { sun, ..scene(camera, lenses) })
+}
+
+#[test]
+fn shadows_are_those_of_the_form() {
+    let shaded = |form: Option<Form>| {
+        let (mut studio, scene) = tower(form);
+        let picture = drawn(&mut studio, &scene, Backend::Specialised);
+        let ids = picture.object_id.expect("ids");
+        let lawn = |i: &usize| ids[*i] == 2;
+        let light = (0..ids.len()).filter(lawn).map(|i| picture.rgba[i][1]).max().expect("a lawn");
+        (0..ids.len()).filter(lawn).filter(|&i| picture.rgba[i][1] + 20 < light).count()
+    };
+    let itself = shaded(None);
+    // A square metre is (110 / 60)² pixels; at 45° a wall shades as far as it is high.
+    let pixels = f64::from(SIZE[1] * SIZE[1]) / 3600.0;
+    assert!((itself as f64 / pixels) > 60.0, "{itself}");
+    assert_eq!(shaded(Some(Form::Flat { lift_m: 0.05 })), 0, "what is flat throws none");
+    let boxed = shaded(Some(Form::Box { oriented: false }));
+    assert!(boxed.abs_diff(itself) <= 3, "{boxed}, {itself}: a box is its own box");
+    let half = shaded(Some(Form::Height(Height::Factor(0.5))));
+    let ratio = half as f64 / itself as f64;
+    assert!((0.4..0.6).contains(&ratio), "{half} of {itself}");
+}
+
+#[test]
+fn what_is_flat_wins_over_its_ground_in_every_frame() {
+    let (mut studio, still) = tower(Some(Form::Flat { lift_m: 0.05 }));
+    let target = DVec3::new(3.0, 3.0, 0.0);
+    let mut seen = std::collections::BTreeSet::new();
+    for i in 0..100 {
+        let t = f64::from(i);
+        let jitter = 1e-3 * DVec3::new((t * 0.618_034).fract(), (t * 0.754_878).fract(), (t * 0.569_840).fract());
+        let camera = Camera::looking(target + DVec3::new(130.0, -290.0, 41.0) + jitter, target + jitter, 0.012);
+        let picture = drawn(&mut studio, &Scene { camera: Some(camera), ..still.clone() }, Backend::Specialised);
+        let ids = picture.object_id.expect("ids");
+        seen.extend((50..60).flat_map(|y| (70..90).map(move |x| (x, y))).map(|(x, y)| ids[y * SIZE[0] as usize + x]));
+    }
+    assert_eq!(seen.into_iter().collect::<Vec<_>>(), [1], "objects (index + 1) in the middle of the tower's plan");
+}
+
+#[test]
+fn nothing_is_made_anew_where_lenses_move_and_members_change() {
+    for backend in [Backend::Specialised, Backend::Uber] {
+        let mut studio = synthetic(60);
+        let middle = studio.extent().center();
+        let [camera, _] = cameras(&studio);
+        let form = Form::Box { oriented: false };
+        let by_place = |x: f64| Shape::Sphere { center: middle + DVec3::X * x, radius: 40.0 };
+        let by_object = |year: f64| {
+            Focus::Thematic(Choice {
+                attribute: Some("yearOfConstruction".into()),
+                min: Some(year),
+                ..Choice::default()
+            })
+        };
+        let mut compiled = |focus: Focus| {
+            let picture = drawn(&mut studio, &scene(camera, vec![showing(form, focus)]), backend);
+            let contents = picture.statistics.contents;
+            (picture.statistics.pipelines.compiled, contents[0].triangles, studio.renderer.gpu.allocations())
+        };
+        for [first, second] in [[by_place(0.0).into(), by_place(9.0).into()], [by_object(1950.0), by_object(1990.0)]] {
+            let (_, triangles, before) = compiled(first);
+            let (count, again, after) = compiled(second);
+            assert_eq!((count, again), (0, triangles), "{backend:?}");
+            // A picture allocates what it is read through.
+            assert!(after - before < 16, "{backend:?}: {} allocations", after - before);
+        }
+    }
+}
+
+#[test]
+fn objects_without_the_form_are_told_of() {
+    let mut studio = studio::studio(&[citydata("roof-on-roof.city.json")]);
+    let everything = || Shape::Sphere { center: DVec3::ZERO, radius: 400.0 };
+    let camera = Camera::looking(DVec3::new(13.0, -29.0, 41.0), DVec3::new(3.0, 4.0, 3.0), 0.5);
+    let mut told = |form: Form| -> Vec<(String, u64)> {
+        let picture = drawn(&mut studio, &scene(camera, vec![showing(form, everything())]), Backend::Specialised);
+        let warnings = picture.statistics.warnings.iter();
+        let ours = warnings.filter(|w| w["code"].as_str().is_some_and(|code| code.ends_with("derived")));
+        ours.map(|w| (w["code"].as_str().unwrap().to_owned(), w["count"].as_u64().unwrap())).collect()
+    };
+    assert_eq!(told(Form::Hull), [("not-derived".to_owned(), 1)], "the awning is flat");
+    assert_eq!(told(Form::Flat { lift_m: 0.05 }), []);
+}

@@ -1,0 +1,49 @@
+//! What the program does, feature by feature, in one binary: it is linked once. Modules need nothing of each other.
+
+mod animate;
+mod best_views;
+mod bodies;
+mod borders;
+mod call_outs;
+mod captions;
+mod citydata;
+mod cli;
+mod contents;
+mod deformations;
+mod deformed_scenes;
+mod derived;
+mod described;
+mod dither;
+mod effects;
+mod far_views;
+mod floors;
+mod furniture;
+mod handlers;
+mod hiding;
+mod layers;
+#[path = "../layouts/mod.rs"]
+mod layouts;
+mod lines;
+mod many;
+mod measure;
+mod members;
+mod meshes;
+mod occlusion;
+mod over_time;
+mod overlays;
+#[path = "../panes/mod.rs"]
+mod panes;
+mod picture;
+mod placement;
+mod renderings;
+mod scenes;
+mod sections;
+mod sheets;
+mod sprite_files;
+mod sprites;
+#[path = "../studio/mod.rs"]
+mod studio;
+mod techniques;
+mod transparency;
+mod warnings;
+mod wrong_input;

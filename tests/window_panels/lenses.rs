@@ -1,0 +1,175 @@
+//! Lenses in their list, in the picture and over it.
+
+use glam::DVec3;
+use veduta::app::lens_list::State;
+
+use super::*;
+
+fn names(harness: &Panels) -> Vec<String> {
+    harness.state().document.scene().lenses.iter().map(|lens| lens.name.clone()).collect()
+}
+
+/// The built-in city with more of a scene, once it is drawn.
+fn with(scene: &str) -> Panels {
+    let text = format!(
+        "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [14, -112, 35]\ntarget = [-30, -14, 5]\n{scene}"
+    );
+    let scene = parse(&text, "scene", &Options::for_command_line()).unwrap_or_else(|error| panic!("{error}"));
+    let mut harness = window();
+    harness.state_mut().document.edit("the scene", |own| *own = scene);
+    until_drawn(&mut harness);
+    harness
+}
+
+const TWO: &str = "[[lens]]\nname = \"low\"\nshape = { kind = \"sphere\", center = [-30, -14, 5], radius = 12 }\neffects = [\"sepia\"]\n\
+                   [[lens]]\nname = \"high\"\nshape = { kind = \"sphere\", center = [0, -30, 5], radius = 9 }\neffects = [\"greyscale\"]\n";
+
+#[test]
+fn a_lens_gets_another_name_wherever_it_is_named() {
+    let mut harness = with(
+        "[[poi]]\nname = \"p\"\nobject = \"church\"\n[[lens]]\nname = \"v\"\nkind = \"best-view\"\npoi = \"p\"\n\
+         [[overlay]]\nlens = \"v\"\nat = [0.25, 0.3]\n",
+    );
+    click(&mut harness, "v");
+    click(&mut harness, "Lock v");
+    press(&mut harness, Modifiers::NONE, Key::F2);
+    assert_eq!(harness.query_all_by_label("Name of the lens").count(), 0, "it is locked");
+    click(&mut harness, "Lock v");
+    press(&mut harness, Modifiers::NONE, Key::F2);
+    harness.get_by_label("Name of the lens").focus();
+    harness.step();
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    write(&mut harness, "church view");
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert_eq!(names(&harness), ["church view"]);
+    assert_eq!(harness.state().document.scene().overlays[0].lens, "church view");
+    // A lock is the lens', not its name's.
+    click(&mut harness, "Lock church view");
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(names(&harness), ["v"]);
+    assert!(harness.state().is_locked(&harness.state().document.scene().lenses[0]));
+    // What is no name is refused, and said.
+    click(&mut harness, "Lock v");
+    press(&mut harness, Modifiers::NONE, Key::F2);
+    harness.get_by_label("Name of the lens").focus();
+    harness.step();
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    press(&mut harness, Modifiers::NONE, Key::Backspace);
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert_eq!(names(&harness), ["v"]);
+    assert!(harness.query_all_by_label_contains("name").count() > 0);
+}
+
+#[test]
+fn the_list_is_the_order_and_rows_are_dragged() {
+    let mut harness = with(TWO);
+    assert_eq!(names(&harness), ["low", "high"]);
+    let row = |harness: &Panels, name: &str| harness.get_by_label(name).rect().center();
+    let [low, high] = ["low", "high"].map(|name| row(&harness, name));
+    assert!(high.y < low.y, "the top one is the first");
+    // By the grip, left of all else.
+    let grip = |harness: &Panels, name: &str| {
+        let toggle = harness.get_by_label(&format!("{name} is on")).rect();
+        egui::pos2(toggle.left() - 10.0, toggle.center().y)
+    };
+    let (from, to) = (grip(&harness, "high"), grip(&harness, "low"));
+    drag(&mut harness, from, to);
+    assert_eq!(names(&harness), ["high", "low"]);
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(names(&harness), ["low", "high"]);
+}
+
+#[test]
+fn states_of_lenses_are_seen_in_the_list_and_in_the_picture() {
+    let mut harness = with(TWO);
+    let state = |harness: &Panels| [0, 1].map(|lens| harness.state().state_of(lens));
+    assert_eq!(state(&harness), [State::Normal; 2]);
+    let over = harness.get_by_label("low").rect().center();
+    harness.hover_at(over);
+    harness.run_steps(3);
+    assert_eq!(state(&harness), [State::RollOver, State::Normal]);
+    // Its handle, where its middle is.
+    let frame = harness.state().frame.as_ref().unwrap();
+    let city = harness.get_by_label("City").rect();
+    let pixel = frame.view.pixel(DVec3::new(0.0, -30.0, 5.0)).unwrap();
+    let spot = city.min + egui::vec2(pixel.x as f32, pixel.y as f32) * (city.width() / frame.view.size[0] as f32);
+    harness.hover_at(spot);
+    harness.run_steps(3);
+    assert_eq!(state(&harness), [State::Normal, State::RollOver]);
+    click_at(&mut harness, spot);
+    assert_eq!((state(&harness), harness.state().chosen.lens), ([State::Normal, State::Selected], Some(1)));
+    press(&mut harness, Modifiers::NONE, Key::X);
+    assert_eq!(state(&harness), [State::Normal, State::Disabled]);
+    // It is moved by its handle again once it is on.
+    press(&mut harness, Modifiers::NONE, Key::X);
+    drag(&mut harness, spot, spot + egui::vec2(40.0, 10.0));
+    let lens = harness.state().document.scene().lenses[1].clone();
+    assert_ne!(format!("{:?}", lens.shapes), format!("{:?}", parse_lens(TWO)), "it was moved");
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    let lens = harness.state().document.scene().lenses[1].clone();
+    assert_eq!(format!("{:?}", lens.shapes), format!("{:?}", parse_lens(TWO)), "one drag is one edit");
+}
+
+/// The shapes of the second lens.
+fn parse_lens(text: &str) -> Vec<veduta::lens::Focus> {
+    let scene = parse(&format!("veduta = 1\n{text}"), "scene", &Options::for_command_line()).unwrap();
+    scene.lenses[1].shapes.clone()
+}
+
+/// Over the picture of an overlay.
+fn overlay(harness: &Panels, index: usize) -> egui::Pos2 {
+    let frame = harness.state().frame.as_ref().unwrap();
+    let city = harness.get_by_label("City").rect();
+    let scale = city.width() / frame.view.size[0] as f32;
+    let own = frame.overlays[index];
+    city.min
+        + egui::vec2(own.at[0] as f32 + 0.5 * own.size[0] as f32, own.at[1] as f32 + 0.5 * own.size[1] as f32) * scale
+}
+
+#[test]
+fn overlays_are_dragged_entered_and_have_their_values() {
+    let mut harness =
+        with("[[poi]]\nname = \"p\"\nobject = \"church\"\n[[lens]]\nname = \"v\"\nkind = \"best-view\"\npoi = \"p\"\n");
+    let own = harness.state().frame.as_ref().unwrap().overlays[0];
+    let to = own.camera.expect("it is a view");
+    let at = overlay(&harness, 0);
+    let city = harness.get_by_label("City").rect();
+    let there = city.min + 0.5 * city.size();
+    drag(&mut harness, at, there);
+    let place = harness.state().document.scene().overlays[0].clone();
+    assert_eq!(place.lens, "v");
+    until_drawn(&mut harness);
+    assert!(overlay(&harness, 0).distance(there) < 6.0, "{} {there}", overlay(&harness, 0));
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert!(harness.state().document.scene().overlays.is_empty(), "one drag is one edit");
+    until_drawn(&mut harness);
+    // All its values are with its lens.
+    assert!(harness.query_all_by_label("Opacity").count() > 0);
+    // A click goes to where its eye is.
+    let at = overlay(&harness, 0);
+    click_at(&mut harness, at);
+    arrive(&mut harness);
+    let now = harness.state().camera().unwrap();
+    assert!(now.eye.distance(to.eye) < 1e-6 && now.target.distance(to.target) < 1e-6, "{now:?} {to:?}");
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert!(
+        harness.state().camera().unwrap().eye.distance(DVec3::new(14.0, -112.0, 35.0)) < 1e-9,
+        "one flight is one edit"
+    );
+}
+
+#[test]
+fn a_portal_is_stepped_through_and_leads_back() {
+    let mut harness = with(
+        "[[lens]]\nname = \"gate\"\nkind = \"portal\"\nview = { kind = \"camera\", eye = [60, 40, 20], target = [0, 0, 5] }\n",
+    );
+    let before = harness.state().camera().unwrap();
+    let at = overlay(&harness, 0);
+    click_at(&mut harness, at);
+    let beyond = harness.state().camera().unwrap();
+    assert_eq!(beyond.eye, DVec3::new(60.0, 40.0, 20.0));
+    until_drawn(&mut harness);
+    let at = overlay(&harness, 0);
+    click_at(&mut harness, at);
+    assert_eq!(harness.state().camera().unwrap().eye, before.eye);
+}
