@@ -1,20 +1,21 @@
 //! The picture in the window: it is looked at, moved around in, and its lenses have handles.
 
-use std::{sync::Arc, time::Instant};
+use std::time::Instant;
 
 use eframe::egui::{
-    self, Align2, Color32, ColorImage, Context, CursorIcon, Key, Mesh, PointerButton, Pos2, Rect, Response, Sense,
-    Shape, Stroke, TextureHandle, TextureOptions, Ui, Vec2, pos2, vec2,
+    self, Align2, Color32, ColorImage, Context, CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense,
+    TextureHandle, TextureOptions, Ui, Vec2, pos2, vec2,
 };
 use glam::{DVec2, DVec3};
 
 use crate::{
     app::{
         artist::Frame,
+        handles::{self, Grip},
         landing::EYE_HEIGHT_M,
-        lens_list::{self, Handle, State},
         new_lens::quoted,
-        window::{Window, caption, color_of, step_of},
+        outlines::Outlines,
+        window::{Window, step_of},
     },
     figure::overlays::views::POINT_RADIUS_M,
     geom::Aabb,
@@ -36,10 +37,6 @@ const KEY_PAN: f64 = 0.6;
 const KEY_ZOOM: f64 = 1.2;
 /// How much nearer a double click goes.
 const NEARER: f64 = 0.5;
-/// Half the size of a handle, points.
-const HANDLE: f32 = 7.0;
-/// Within so many points of a handle it is meant.
-const REACH: f32 = 11.0;
 /// A brisk walk, and a ride.
 const WALK_M_S: f64 = 3.0;
 const FAST_WALK_M_S: f64 = 12.0;
@@ -47,7 +44,7 @@ const FAST_WALK_M_S: f64 = 12.0;
 const MOST_PIXELS: f32 = 4096.0;
 
 /// What a drag does.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Drag {
     Orbit {
         pivot: DVec3,
@@ -56,15 +53,8 @@ enum Drag {
         at: DVec3,
     },
     Look,
-    /// The middle of the chosen lens: what is held of it is so far from its middle.
-    Move {
-        lens: usize,
-        off: Vec2,
-    },
-    /// Its ring.
-    Size {
-        lens: usize,
-    },
+    /// A handle of the chosen lens.
+    Handle(Box<Grip>),
     /// An overlay: what is held of it is so far from its middle.
     Overlay {
         lens: usize,
@@ -82,10 +72,10 @@ pub struct Canvas {
     last_step: Option<Instant>,
     /// Whether the eye moved in the last frames: pictures are to be quick until it rests.
     moved_at: Option<Instant>,
-    hovered: Option<Hovered>,
+    pub(super) hovered: Option<Hovered>,
     /// The next move is down to the ground.
     pub(super) step_down: bool,
-    outline: Option<(Arc<Mesh>, OutlineOf)>,
+    pub(super) outlines: Option<Outlines>,
 }
 
 /// What is under the pointer.
@@ -97,20 +87,13 @@ pub struct Hovered {
     pub at: DVec3,
 }
 
-/// What an outline was made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct OutlineOf {
-    objects: [Option<u32>; 2],
-    rect: Rect,
-}
-
 /// How long after the last move the eye rests, seconds.
 const REST_S: f64 = 0.15;
 
 impl Canvas {
     /// Another city is shown.
     pub fn forget(&mut self) {
-        (self.drag, self.flight, self.hovered, self.outline) = (None, None, None, None);
+        (self.drag, self.flight, self.hovered, self.outlines) = (None, None, None, None);
     }
 
     /// Takes a picture.
@@ -122,7 +105,7 @@ impl Canvas {
         let image = ColorImage::from_rgba_unmultiplied(size, frame.rgba.as_flattened());
         if frame.shown.is_some() {
             // Outlines are of what it shows; a better picture of the same shows the same.
-            self.outline = None;
+            self.outlines = None;
         }
         // A coarse picture is smoothed; one of the window's own pixels stays as it is.
         match &mut self.texture {
@@ -300,7 +283,7 @@ impl Window {
         if response.drag_started() {
             self.begin_drag(ui, response, rect);
         }
-        if let (Some(drag), true) = (self.canvas.drag, response.dragged()) {
+        if let (Some(drag), true) = (self.canvas.drag.clone(), response.dragged()) {
             self.canvas.flight = None;
             self.go_on_dragging(ui, response, rect, drag);
         }
@@ -317,18 +300,10 @@ impl Window {
         let (Some(at), Some(camera)) = (at, self.camera()) else { return };
         let (modifiers, primary) =
             ui.input(|input| (input.modifiers, input.pointer.button_down(PointerButton::Primary)));
-        if let (true, Some((lens, handle))) = (primary, self.chosen_handle()) {
-            let spots = self.view_in(rect).map(|view| handle_spots(&view, rect, &handle));
-            if let Some((middle, ring)) = spots.flatten() {
-                if middle.distance(at) <= REACH {
-                    self.canvas.drag = Some(Drag::Move { lens, off: at - middle });
-                    return;
-                }
-                if ring.is_some_and(|ring| ring.distance(at) <= REACH) {
-                    self.canvas.drag = Some(Drag::Size { lens });
-                    return;
-                }
-            }
+        let held = self.view_in(rect).filter(|_| primary).and_then(|view| self.handle_at(&view, rect, at));
+        if let Some(grip) = held.and_then(|handle| self.grip(handle, at)) {
+            self.canvas.drag = Some(Drag::Handle(Box::new(grip)));
+            return;
         }
         if let (true, Some((overlay, own))) = (primary, self.overlay_at(rect, at)) {
             let lens = overlay.lens as usize;
@@ -363,14 +338,10 @@ impl Window {
                     self.document.look(to);
                 }
             }
-            Drag::Move { lens, off } => {
+            Drag::Handle(grip) => {
                 let shift = ui.input(|input| input.modifiers.shift);
-                let handle = lens_list::handle_of(&self.document, lens);
-                if let (Some(view), Some(handle)) = (self.view_in(rect), handle) {
-                    let to = dragged_to(&view, rect, now - off, handle.center, shift);
-                    if let Some(to) = to {
-                        self.set_handle(lens, Some(handle.moved(to)));
-                    }
+                if let Some(view) = self.view_in(rect) {
+                    self.drag_grip(&grip, &view, rect, now, shift);
                 }
             }
             Drag::Overlay { lens, off } => {
@@ -390,29 +361,6 @@ impl Window {
                     self.fail(error);
                 }
             }
-            Drag::Size { lens } => {
-                let handle = lens_list::handle_of(&self.document, lens);
-                if let (Some(view), Some(handle)) = (self.view_in(rect), handle)
-                    && let Some((middle, _)) = handle_spots(&view, rect, &handle)
-                {
-                    if ui.input(|input| input.modifiers.shift) {
-                        // To where the pointer is on the ground, as seen from its middle.
-                        let to = dragged_to(&view, rect, now, handle.center, false);
-                        let way = to.map(|to| to - handle.center).filter(|way| way.truncate().length() > 1e-6);
-                        self.set_handle(lens, way.and_then(|way| handle.turned(way.y.atan2(way.x).to_degrees())));
-                    } else {
-                        let metres = view.pixel_m(view.depth(handle.center)) * f64::from(middle.distance(now));
-                        self.set_handle(lens, handle.sized(metres.max(0.1)));
-                    }
-                }
-            }
-        }
-    }
-
-    fn set_handle(&mut self, lens: usize, assignment: Option<String>) {
-        let Some(assignment) = assignment else { return };
-        if let Err(error) = self.document.preview_set(&format!("lens.{lens}.{assignment}")) {
-            self.fail(error);
         }
     }
 
@@ -523,7 +471,7 @@ impl Window {
                 drawing.points.extend(self.canvas.hovered.map(|hovered| hovered.at));
                 return;
             }
-            if let Some(lens) = self.lens_at(rect, at) {
+            if let Some(lens) = self.view_in(rect).and_then(|view| self.lens_at(&view, rect, at)) {
                 self.chosen.lens = Some(lens);
                 return;
             }
@@ -538,15 +486,15 @@ impl Window {
 
     /// What the pointer is on of lenses, and what could be done there.
     fn roll_over(&mut self, response: &Response, rect: Rect, at: Pos2) {
-        let ring = || {
-            let (lens, handle) = self.chosen_handle()?;
-            let (_, ring) = handle_spots(&self.view_in(rect)?, rect, &handle)?;
-            ring.filter(|ring| ring.distance(at) <= REACH).map(|_| (lens, CursorIcon::ResizeHorizontal))
+        let Some(view) = self.view_in(rect) else { return };
+        let held = || {
+            let handle = self.handle_at(&view, rect, at)?;
+            Some((handle.lens, handles::cursor(&handle)))
         };
-        let handle = || self.lens_at(rect, at).map(|lens| (lens, CursorIcon::Grab));
+        let disc = || self.lens_at(&view, rect, at).map(|lens| (lens, CursorIcon::Grab));
         let overlay =
             || self.overlay_at(rect, at).map(|(overlay, _)| (overlay.lens as usize, CursorIcon::PointingHand));
-        if let Some((lens, icon)) = ring().or_else(handle).or_else(overlay) {
+        if let Some((lens, icon)) = held().or_else(disc).or_else(overlay) {
             self.rolls_over = Some(lens);
             response.ctx.set_cursor_icon(if self.canvas.drag.is_some() { CursorIcon::Grabbing } else { icon });
         }
@@ -583,19 +531,6 @@ impl Window {
         }
     }
 
-    /// The lens whose handle is at a place.
-    fn lens_at(&self, rect: Rect, at: Pos2) -> Option<usize> {
-        let view = self.view_in(rect)?;
-        let count = self.document.scene().lenses.len();
-        // Those of lenses that are off are not shown, but for the chosen one's.
-        let is_shown = |index: &usize| self.chosen.lens == Some(*index) || self.state_of(*index) != State::Disabled;
-        (0..count).rev().filter(is_shown).find(|&index| {
-            let spots =
-                lens_list::handle_of(&self.document, index).and_then(|handle| handle_spots(&view, rect, &handle));
-            spots.is_some_and(|(middle, _)| middle.distance(at) <= REACH)
-        })
-    }
-
     /// The overlay at a place of the window, and where it is: of several the last, which lies in front.
     fn overlay_at(&self, rect: Rect, at: Pos2) -> Option<(ShownOverlay, Rect)> {
         let frame = self.frame.as_deref()?;
@@ -606,128 +541,15 @@ impl Window {
         };
         frame.overlays.iter().rev().map(place).find(|(_, own)| own.contains(at))
     }
-
-    fn chosen_handle(&self) -> Option<(usize, Handle)> {
-        let index = self.chosen.lens?;
-        let lens = self.document.scene().lenses.get(index)?;
-        if self.is_locked(lens) {
-            return None;
-        }
-        lens_list::handle_of(&self.document, index).map(|handle| (index, handle))
-    }
-
-    fn draw_handles(&self, ui: &Ui, rect: Rect) {
-        let Some(view) = self.view_in(rect) else { return };
-        let painter = ui.painter_at(rect);
-        for (index, lens) in self.document.scene().lenses.iter().enumerate() {
-            let state = self.state_of(index);
-            let is_chosen = self.chosen.lens == Some(index);
-            // One that is off shows where it is only to who chose it.
-            if state == State::Disabled && !is_chosen {
-                continue;
-            }
-            let handle = lens_list::handle_of(&self.document, index);
-            let Some((middle, ring)) = handle.and_then(|handle| handle_spots(&view, rect, &handle)) else { continue };
-            let color = if state == State::Disabled { Color32::from_gray(128) } else { color_of(lens.color) };
-            let size = if state == State::Normal { 0.6 * HANDLE } else { HANDLE };
-            painter.circle(middle, size, color, Stroke::new(2.0, Color32::WHITE));
-            if state == State::Normal {
-                continue;
-            }
-            if let Some(ring) = ring.filter(|_| is_chosen && !self.is_locked(lens)) {
-                painter.line_segment([middle, ring], Stroke::new(1.5, Color32::from_white_alpha(200)));
-                painter.circle(ring, 0.8 * HANDLE, Color32::WHITE, Stroke::new(2.5, color));
-            }
-            caption(&painter, middle - vec2(0.0, size + 4.0), Align2::CENTER_BOTTOM, &lens.name, 13.0);
-        }
-    }
-
-    /// The outlines of what is hovered and what is chosen.
-    fn draw_outlines(&mut self, ui: &Ui, rect: Rect) {
-        let (Some(frame), Some(city)) = (self.frame.as_deref(), &self.city) else { return };
-        let (Some((ids, _)), true) = (&frame.shown, Some(frame.view.camera) == self.document.scene().camera) else {
-            return;
-        };
-        // What all stands on is around everything.
-        let is_ground = |object: &u32| city.model.objects.get(*object as usize).is_none_or(|own| own.class.is_ground());
-        let hovered = self.canvas.hovered.and_then(|hovered| hovered.object).filter(|object| !is_ground(object));
-        let objects = [hovered, self.chosen.object];
-        if objects == [None; 2] {
-            self.canvas.outline = None;
-            return;
-        }
-        let of = OutlineOf { objects, rect };
-        let mesh = match &self.canvas.outline {
-            Some((mesh, known)) if *known == of => mesh.clone(),
-            _ => {
-                let mesh = Arc::new(outline(ids, frame.view.size, rect, &city.roots, objects));
-                self.canvas.outline = Some((mesh.clone(), of));
-                mesh
-            }
-        };
-        ui.painter_at(rect).add(Shape::Mesh(mesh));
-    }
-}
-
-/// Pixels of a picture where one of two families of objects ends: of the first thin, of the second thick.
-fn outline(ids: &[u32], [w, h]: [u32; 2], rect: Rect, roots: &[u32], objects: [Option<u32>; 2]) -> Mesh {
-    let root = |object: u32| roots.get(object as usize).copied();
-    let [hovered, chosen] = objects.map(|object| object.and_then(root));
-    let own: Vec<Option<u32>> = ids.iter().map(|id| id.checked_sub(1).and_then(root)).collect();
-    let (w, h) = (w as usize, h as usize);
-    let scale = rect.size() / vec2(w as f32, h as f32);
-    let mut mesh = Mesh::default();
-    for (wanted, reach, color) in [
-        (hovered.filter(|_| hovered != chosen), 1, Color32::from_rgb(255, 255, 255)),
-        (chosen, 2, Color32::from_rgb(255, 140, 0)),
-    ] {
-        let Some(wanted) = wanted else { continue };
-        for (i, of_pixel) in own.iter().enumerate() {
-            if *of_pixel != Some(wanted) {
-                continue;
-            }
-            let (x, y) = (i % w, i / w);
-            let is_border = x < reach
-                || y < reach
-                || x + reach >= w
-                || y + reach >= h
-                || [i - reach, i + reach, i - reach * w, i + reach * w].iter().any(|&j| own[j] != Some(wanted));
-            if is_border {
-                let at = rect.min + vec2(x as f32, y as f32) * scale;
-                mesh.add_colored_rect(Rect::from_min_size(at, scale), color);
-            }
-        }
-    }
-    mesh
 }
 
 /// A place of the window in its picture, points from the upper left.
-fn in_rect(rect: Rect, at: Pos2) -> DVec2 {
+pub(super) fn in_rect(rect: Rect, at: Pos2) -> DVec2 {
     let off = at - rect.min;
     DVec2::new(f64::from(off.x), f64::from(off.y))
 }
 
-/// Where a lens' handle and its ring are in the window; `None`: behind the eye.
-fn handle_spots(view: &View, rect: Rect, handle: &Handle) -> Option<(Pos2, Option<Pos2>)> {
-    let to_window = |place: DVec3| view.pixel(place).map(|pixel| rect.min + vec2(pixel.x as f32, pixel.y as f32));
-    let middle = to_window(handle.center)?;
-    let ring =
-        handle.radius.map(|radius| middle + vec2((radius / view.pixel_m(view.depth(handle.center))) as f32, 0.0));
-    Some((middle, ring))
-}
-
-/// Where a place goes that is dragged to a place of the window: along the ground, or up and down.
-fn dragged_to(view: &View, rect: Rect, at: Pos2, from: DVec3, is_vertical: bool) -> Option<DVec3> {
-    let ray = view.ray(in_rect(rect, at));
-    if is_vertical {
-        // In the upright plane that faces the eye.
-        let normal = view.basis.forward.with_z(0.0).try_normalize()?;
-        let along = ray.direction.dot(normal);
-        let t = (along.abs() > 1e-6).then(|| (from - ray.origin).dot(normal) / along)?;
-        return Some(from.with_z(ray.at(t).z));
-    }
-    let t = (ray.direction.z.abs() > 1e-4).then(|| (from.z - ray.origin.z) / ray.direction.z)?;
-    let to = ray.at(t);
-    // Beyond the horizon there is no ground, and next to it too much.
-    (t > 0.0 && to.distance(from) < 20.0 * view.camera.eye.distance(from).max(1.0)).then_some(to)
+/// Where a place is shown in the window; `None`: behind the eye.
+pub(super) fn spot_of(view: &View, rect: Rect, place: DVec3) -> Option<Pos2> {
+    view.pixel(place).map(|pixel| rect.min + vec2(pixel.x as f32, pixel.y as f32))
 }

@@ -33,7 +33,8 @@ impl Window {
         let Some(city) = &self.city else { return *camera };
         let here = camera.eye.truncate();
         let is_low = self.ground_at(here, camera.eye.z).is_none_or(|ground| camera.eye.z - ground < LOW_M);
-        let bounds = self.chosen.object.map(|object| city.model.family_bounds(object));
+        let chosen = self.chosen.object.filter(|object| !self.is_ground(*object));
+        let bounds = chosen.map(|object| city.model.family_bounds(object));
         let (wanted, at) = match bounds.filter(|bounds| !bounds.is_empty()) {
             _ if is_low => (here, None),
             Some(bounds) => {

@@ -1,64 +1,10 @@
 //! The lenses of the scene, the top one first.
 
-use eframe::egui::{self, Align, Color32, Id, Layout, RichText, Sense, Ui};
-use glam::DVec3;
-
-use crate::{
-    app::{
-        actions::{Action, Menu, ROWS},
-        document::Document,
-        window::Window,
-    },
-    geom::Shape,
-    lens::Focus,
+use crate::app::{
+    actions::{Action, Menu, ROWS},
+    window::Window,
 };
-
-/// What of a lens is held in the picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Handle {
-    /// Its middle, model coordinates, metres.
-    pub center: DVec3,
-    /// How far its ring is from there, metres.
-    pub radius: Option<f64>,
-    /// What makes it larger, and turns it.
-    form: Form,
-}
-
-/// What says how large a shape is, and how it stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Form {
-    /// One number, `radius`.
-    Round,
-    /// Three numbers, under this key; and angles.
-    Turned(&'static str, DVec3),
-    /// Numbers alone can say it.
-    Other,
-}
-
-impl Handle {
-    /// The assignment, below the lens, that puts its middle there.
-    pub fn moved(&self, center: DVec3) -> String {
-        let DVec3 { x, y, z } = center;
-        format!("shape.center=[{x:.3}, {y:.3}, {z:.3}]")
-    }
-
-    /// The assignment that puts its ring so far from its middle, metres.
-    pub fn sized(&self, radius: f64) -> Option<String> {
-        match (self.form, self.radius) {
-            (Form::Round, _) => Some(format!("shape.radius={radius:.2}")),
-            (Form::Turned(key, size), Some(before)) if before > 0.0 => {
-                let DVec3 { x, y, z } = size * (radius / before);
-                Some(format!("shape.{key}=[{x:.2}, {y:.2}, {z:.2}]"))
-            }
-            _ => None,
-        }
-    }
-
-    /// The assignment that turns it about the vertical, to `yaw` degrees from east, towards north.
-    pub fn turned(&self, yaw_deg: f64) -> Option<String> {
-        matches!(self.form, Form::Turned(..)).then(|| format!("shape.rotation_deg=[{yaw_deg:.1}, 0.0, 0.0]"))
-    }
-}
+use eframe::egui::{self, Align, Color32, Id, Layout, RichText, Sense, Ui};
 
 /// What a lens is to the one who looks (L1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,25 +47,6 @@ impl Window {
         let Some(own) = self.document.scene().lenses.get(lens) else { return };
         self.renaming = Some(Renaming { lens, text: own.name.clone(), is_fresh: true });
     }
-}
-
-/// The handle of a lens: of one that stands in the scene, and has one shape with a middle.
-pub fn handle_of(document: &Document, index: usize) -> Option<Handle> {
-    let lens = document.scene().lenses.get(index)?;
-    if lens.placement != crate::lens::Placement::World {
-        return None;
-    }
-    let [Focus::Shape(shape)] = &lens.shapes[..] else { return None };
-    let (center, radius, form) = match *shape {
-        Shape::Sphere { center, radius } | Shape::Cylinder { center, radius, .. } => {
-            (center, Some(radius), Form::Round)
-        }
-        Shape::Box { center, size, .. } => (center, Some(0.5 * size.x.max(size.y)), Form::Turned("size", size)),
-        Shape::Ellipsoid { center, radii, .. } => (center, Some(radii.x.max(radii.y)), Form::Turned("radii", radii)),
-        Shape::Frustum { center, .. } => (center, None, Form::Other),
-        _ => return None,
-    };
-    Some(Handle { center, radius, form })
 }
 
 /// The list.
@@ -272,55 +199,5 @@ fn grip(ui: &mut Ui) {
     let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 14.0), Sense::hover());
     for (x, y) in [(3.0, 3.0), (7.0, 3.0), (3.0, 7.0), (7.0, 7.0), (3.0, 11.0), (7.0, 11.0)] {
         ui.painter().circle_filled(rect.min + egui::vec2(x, y), 1.1, ui.visuals().weak_text_color());
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn with(shape: &str) -> Document {
-        let mut document = Document::default();
-        document.set(&format!("lens.0={{ name = \"a\", effects = [\"sepia\"], shape = {{ {shape} }} }}")).unwrap();
-        document
-    }
-
-    #[test]
-    fn what_is_held_is_what_moves_sizes_and_turns() {
-        for (shape, ring, can_turn) in [
-            ("kind = \"sphere\", center = [1, 2, 3], radius = 10", 10.0, false),
-            ("kind = \"cylinder\", center = [1, 2, 3], radius = 8, height = 30", 8.0, false),
-            ("kind = \"box\", center = [1, 2, 3], size = [20, 40, 10]", 20.0, true),
-            ("kind = \"ellipsoid\", center = [1, 2, 3], radii = [5, 9, 7]", 9.0, true),
-        ] {
-            let mut document = with(shape);
-            let handle = handle_of(&document, 0).unwrap();
-            assert_eq!((handle.center, handle.radius), (DVec3::new(1.0, 2.0, 3.0), Some(ring)), "{shape}");
-            let to = DVec3::new(-7.5, 4.25, 3.0);
-            document.set(&format!("lens.0.{}", handle.moved(to))).unwrap();
-            document.set(&format!("lens.0.{}", handle.sized(2.0 * ring).unwrap())).unwrap();
-            let now = handle_of(&document, 0).unwrap();
-            assert_eq!((now.center, now.radius), (to, Some(2.0 * ring)), "{shape}");
-            assert_eq!(now.turned(30.0).is_some(), can_turn, "{shape}");
-            if let Some(turned) = now.turned(30.0) {
-                document.set(&format!("lens.0.{turned}")).unwrap();
-                let rotation = match document.scene().lenses[0].shapes[0] {
-                    Focus::Shape(Shape::Box { rotation, .. } | Shape::Ellipsoid { rotation, .. }) => rotation,
-                    _ => panic!("{shape}"),
-                };
-                // Its own x goes 30 degrees from east towards north.
-                let x = rotation * DVec3::X;
-                assert!((x.y.atan2(x.x).to_degrees() - 30.0).abs() < 1e-9, "{shape}: {x}");
-            }
-        }
-        assert!(
-            handle_of(&with("kind = \"cone\", center = [0, 0, 0], radius = 5, height = 9"), 0)
-                .unwrap()
-                .sized(3.0)
-                .is_none()
-        );
-        assert!(
-            handle_of(&with("kind = \"mask\", points = [[0, 0], [9, 0], [5, 8]], base = 0, height = 9"), 0).is_none()
-        );
     }
 }

@@ -137,6 +137,18 @@ impl Focus {
         }
     }
 
+    /// [`Self::own_shape`], to change it.
+    pub fn own_shape_mut(&mut self) -> Option<&mut Self> {
+        match self {
+            Self::Occluders(_) | Self::Case { .. } => None,
+            Self::Combined { .. } if self.occluders().is_some() => match self {
+                Self::Combined { parts, .. } => parts.get_mut(1),
+                _ => None,
+            },
+            other => Some(other),
+        }
+    }
+
     /// The occluders that it is, or that its first part is.
     pub fn occluders(&self) -> Option<&Occluders> {
         match self {

@@ -13,7 +13,6 @@ use crate::{
         actions::Action,
         artist::Export,
         dialogs::{Asking, FileDialog, Purpose},
-        lens_list,
         new_lens::{self, Spot},
         objects,
         user_effects::is_effect,
@@ -278,11 +277,7 @@ impl Window {
         if let (Some(object), Some(city)) = (self.chosen.object, &self.city) {
             return city.model.family_bounds(object);
         }
-        let lens = self.chosen.lens.and_then(|index| lens_list::handle_of(&self.document, index));
-        lens.map_or(Aabb::EMPTY, |handle| Aabb {
-            min: handle.center - handle.radius.unwrap_or(10.0),
-            max: handle.center + handle.radius.unwrap_or(10.0),
-        })
+        self.chosen_lens_box()
     }
 
     pub(in crate::app) fn frame_box(&mut self, bounds: &Aabb) {
