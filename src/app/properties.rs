@@ -27,6 +27,9 @@ const ELSEWHERE: &[&str] = &["veduta", "lens", "overlay"];
 /// What a person asks for most.
 const FIRST: &[&str] = &["camera", "sun", "style", "poi", "figure"];
 
+/// The button that takes a value away, with the space before it, points.
+const TAKE_AWAY_WIDTH: f32 = 36.0;
+
 /// What is typed and not done yet, and what was wrong with it, by path.
 #[derive(Debug, Default)]
 pub struct Drafts {
@@ -538,7 +541,9 @@ fn widget(
                 None => value.to_string(),
             };
             let mut text = drafts.texts.get(path).cloned().unwrap_or_else(|| now.clone());
-            let field = egui::TextEdit::singleline(&mut text).desired_width(150.0).hint_text(hint);
+            // What takes it away stands behind it, and no panel gets wider for either.
+            let width = (ui.available_width() - TAKE_AWAY_WIDTH).clamp(40.0, 150.0);
+            let field = egui::TextEdit::singleline(&mut text).desired_width(width).hint_text(hint);
             let response = ui.add(field).labelled_by(label);
             if response.changed() {
                 drafts.texts.insert(path.to_owned(), text.clone());

@@ -1,7 +1,7 @@
 //! Lenses in their list, in the picture and over it.
 
-use glam::DVec3;
-use veduta::app::lens_list::State;
+use glam::{DQuat, DVec3};
+use veduta::{app::lens_list::State, geom::Shape, lens::Focus};
 
 use super::*;
 
@@ -89,10 +89,7 @@ fn states_of_lenses_are_seen_in_the_list_and_in_the_picture() {
     harness.run_steps(3);
     assert_eq!(state(&harness), [State::RollOver, State::Normal]);
     // Its handle, where its middle is.
-    let frame = harness.state().frame.as_ref().unwrap();
-    let city = harness.get_by_label("City").rect();
-    let pixel = frame.view.pixel(DVec3::new(0.0, -30.0, 5.0)).unwrap();
-    let spot = city.min + egui::vec2(pixel.x as f32, pixel.y as f32) * (city.width() / frame.view.size[0] as f32);
+    let spot = spot(&harness, DVec3::new(0.0, -30.0, 5.0));
     harness.hover_at(spot);
     harness.run_steps(3);
     assert_eq!(state(&harness), [State::Normal, State::RollOver]);
@@ -108,6 +105,79 @@ fn states_of_lenses_are_seen_in_the_list_and_in_the_picture() {
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     let lens = harness.state().document.scene().lenses[1].clone();
     assert_eq!(format!("{:?}", lens.shapes), format!("{:?}", parse_lens(TWO)), "one drag is one edit");
+}
+
+/// Where a place is shown in the window.
+fn spot(harness: &Panels, place: DVec3) -> egui::Pos2 {
+    let frame = harness.state().frame.as_ref().unwrap();
+    let city = harness.get_by_label("City").rect();
+    let pixel = frame.view.pixel(place).unwrap();
+    city.min + egui::vec2(pixel.x as f32, pixel.y as f32) * (city.width() / frame.view.size[0] as f32)
+}
+
+/// The first shape of the first lens.
+fn shape(harness: &Panels) -> Focus {
+    harness.state().document.scene().lenses[0].shapes[0].clone()
+}
+
+#[test]
+fn sides_points_and_turns_are_dragged_in_the_picture() {
+    let lens = |shape: &str| format!("[[lens]]\nname = \"held\"\neffects = [\"sepia\"]\nshape = {{ {shape} }}\n");
+    let mut harness = with(&lens("kind = \"box\", center = [-10, -20, 6], size = [30, 24, 12]"));
+    click(&mut harness, "held");
+    let Focus::Shape(Shape::Box { center, size, .. }) = shape(&harness) else { panic!("a box") };
+    let east = center + DVec3::new(0.5 * size.x, 0.0, 0.0);
+    let (from, to) = (spot(&harness, east), spot(&harness, east - DVec3::new(6.0, 0.0, 0.0)));
+    drag(&mut harness, from, to);
+    let Focus::Shape(Shape::Box { center: now, size: wide, .. }) = shape(&harness) else { panic!("a box") };
+    assert!((size - wide - DVec3::new(6.0, 0.0, 0.0)).length() < 0.05, "{wide}");
+    assert!((center - now - DVec3::new(3.0, 0.0, 0.0)).length() < 0.05, "its west side stays: {now}");
+    // A sixth of a turn, by the arrow beyond its east side.
+    until_drawn(&mut harness);
+    let (middle, side) = (spot(&harness, now), spot(&harness, now + DVec3::new(0.5 * wide.x, 0.0, 0.0)));
+    let arrow = side + 26.0 * (side - middle).normalized();
+    let angle = std::f64::consts::FRAC_PI_3;
+    let level = DVec3::new(angle.cos(), angle.sin(), 0.0);
+    let to = spot(&harness, now + 20.0 * level);
+    drag(&mut harness, arrow, to);
+    let Focus::Shape(Shape::Box { rotation, center: same, .. }) = shape(&harness) else { panic!("a box") };
+    let x = rotation * DVec3::X;
+    assert!(same == now && (x.y.atan2(x.x) - angle).abs() < 0.05, "{} degrees", x.y.atan2(x.x).to_degrees());
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(shape(&harness), Focus::Shape(Shape::Box { center, size, rotation: DQuat::IDENTITY }), "two edits");
+
+    let mut harness = with(&lens(
+        "kind = \"corridor\", points = [[-30, -30, 1], [-5, -25, 1], [10, -45, 1]], width = 8, height = 20",
+    ));
+    click(&mut harness, "held");
+    let (from, to) = (DVec3::new(10.0, -45.0, 1.0), DVec3::new(14.0, -38.0, 1.0));
+    let ends = [spot(&harness, from), spot(&harness, to)];
+    drag(&mut harness, ends[0], ends[1]);
+    let Focus::Shape(Shape::Corridor { points, width, .. }) = shape(&harness) else { panic!("a corridor") };
+    assert!(points[2].distance(to) < 0.05 && width == 8.0, "{points:?}");
+    assert_eq!(points[..2], [DVec3::new(-30.0, -30.0, 1.0), DVec3::new(-5.0, -25.0, 1.0)], "nothing else moves");
+}
+
+#[test]
+fn what_is_attached_is_moved_from_where_it_is_attached() {
+    let mut harness = with(
+        "[[poi]]\nname = \"p\"\nat = [-10, -20, 6]\n\
+         [[lens]]\nname = \"held\"\neffects = [\"sepia\"]\nattached_to = { poi = \"p\" }\n\
+         shape = { kind = \"sphere\", center = [5, 0, 0], radius = 9 }\n",
+    );
+    let before = harness.get_by_label("City").rect();
+    click(&mut harness, "held");
+    assert_eq!(harness.get_by_label("City").rect(), before, "values of the lens make their panel wider");
+    let (from, to) = (DVec3::new(-5.0, -20.0, 6.0), DVec3::new(2.0, -26.0, 6.0));
+    let ends = [spot(&harness, from), spot(&harness, to)];
+    drag(&mut harness, ends[0], ends[1]);
+    let Focus::Shape(Shape::Sphere { center, radius }) = shape(&harness) else { panic!("a sphere") };
+    assert!(center.distance(DVec3::new(12.0, -6.0, 0.0)) < 0.05 && radius == 9.0, "{center}");
+    press(&mut harness, Modifiers::NONE, Key::F);
+    arrive(&mut harness);
+    let target = harness.state().camera().unwrap().target;
+    assert!(target.distance(to) < 9.0, "its middle is looked at: {target}");
 }
 
 /// The shapes of the second lens.
