@@ -179,7 +179,7 @@ fn width_of(ui: &Ui, text: &str) -> f32 {
 
 /// Colours by an attribute, as an effect on the context.
 fn colors(window: &mut Window, ui: &mut Ui, names: &[String]) {
-    ui.heading("Colour by");
+    let label = ui.heading("Colour by").id;
     if names.is_empty() {
         ui.weak("No object of this city has an attribute.");
         return;
@@ -199,7 +199,9 @@ fn colors(window: &mut Window, ui: &mut Ui, names: &[String]) {
                     wanted = Some(Some(name.clone()));
                 }
             }
-        });
+        })
+        .response
+        .labelled_by(label);
     let done = match wanted {
         None => return,
         Some(None) => {
@@ -242,20 +244,19 @@ fn level(window: &mut Window, ui: &mut Ui, all: &[String]) {
     let now = window.document.scene().city.lod.clone();
     let mut wanted = None;
     ui.horizontal(|ui| {
-        ui.label("Level of detail up to");
-        egui::ComboBox::from_id_salt("level of detail").selected_text(now.as_deref().unwrap_or("the finest")).show_ui(
-            ui,
-            |ui| {
-                if ui.selectable_label(now.is_none(), "the finest").clicked() {
-                    wanted = Some(None);
+        let label = ui.label("Level of detail up to").id;
+        let text = now.as_deref().unwrap_or("the finest");
+        let shown = egui::ComboBox::from_id_salt("level of detail").selected_text(text).show_ui(ui, |ui| {
+            if ui.selectable_label(now.is_none(), "the finest").clicked() {
+                wanted = Some(None);
+            }
+            for lod in all {
+                if ui.selectable_label(now.as_ref() == Some(lod), lod).clicked() {
+                    wanted = Some(Some(lod.clone()));
                 }
-                for lod in all {
-                    if ui.selectable_label(now.as_ref() == Some(lod), lod).clicked() {
-                        wanted = Some(Some(lod.clone()));
-                    }
-                }
-            },
-        );
+            }
+        });
+        shown.response.labelled_by(label);
     });
     if let Some(lod) = wanted {
         window.document.edit("level of detail", |scene| scene.city.lod = lod);

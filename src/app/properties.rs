@@ -580,7 +580,7 @@ fn hex(text: &str) -> Option<[u8; 3]> {
 /// Effects in order, with their parameters, and a menu of all that there are.
 fn effects(ui: &mut Ui, drafts: &mut Drafts, key: &Key, value: &Value, path: &str, changes: &mut Vec<Change>) {
     let list = value.as_array().cloned().unwrap_or_default();
-    ui.label(title_of(key.name)).on_hover_text(key.doc);
+    let title = ui.label(title_of(key.name)).on_hover_text(key.doc).id;
     let named = |used: &Value| -> (String, TomlTable) {
         match used {
             Value::String(name) => (name.clone(), TomlTable::new()),
@@ -595,7 +595,7 @@ fn effects(ui: &mut Ui, drafts: &mut Drafts, key: &Key, value: &Value, path: &st
         ui.indent((path, i), |ui| {
             ui.horizontal(|ui| {
                 let shown = egui::ComboBox::from_id_salt((path, i, "effect")).selected_text(&name).height(360.0);
-                shown.show_ui(ui, |ui| {
+                let shown = shown.show_ui(ui, |ui| {
                     for definition in effect::effects() {
                         let label = ui
                             .selectable_label(definition.name == name, &definition.name)
@@ -609,6 +609,7 @@ fn effects(ui: &mut Ui, drafts: &mut Drafts, key: &Key, value: &Value, path: &st
                         }
                     }
                 });
+                shown.response.labelled_by(title);
                 if ui.small_button("×").on_hover_text("Take this effect away").clicked() {
                     let kept: Vec<String> =
                         list.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, v)| v.to_string()).collect();

@@ -34,6 +34,7 @@ fn a_window_without_a_size_asks_for_no_picture_and_lives() {
         if size.x == 0.0 || size.y == 0.0 {
             assert!(harness.state().frame.is_none(), "{size}: nothing is to be drawn");
         }
+        harness.check_accessibility();
         harness.set_size(vec2(900.0, 600.0));
         until(&mut harness, "a picture", |window| {
             window.frame.as_ref().is_some_and(|frame| frame.view.size.iter().all(|side| *side > 100))

@@ -18,6 +18,7 @@ fn with(scene: &str) -> Panels {
     let mut harness = window();
     harness.state_mut().document.edit("the scene", |own| *own = scene);
     until_drawn(&mut harness);
+    harness.check_accessibility();
     harness
 }
 
@@ -168,6 +169,7 @@ fn what_is_attached_is_moved_from_where_it_is_attached() {
     );
     let before = harness.get_by_label("City").rect();
     click(&mut harness, "held");
+    harness.check_accessibility();
     assert_eq!(harness.get_by_label("City").rect(), before, "values of the lens make their panel wider");
     let (from, to) = (DVec3::new(-5.0, -20.0, 6.0), DVec3::new(2.0, -26.0, 6.0));
     let ends = [spot(&harness, from), spot(&harness, to)];
