@@ -4,7 +4,7 @@ use eframe::egui::{self, Key, RichText, Ui};
 
 use crate::{
     app::{document::Document, finder::text_of, new_lens::quoted, window::Window},
-    city::CityModel,
+    city::{Attribute, CityModel},
     lens::{Focus, Lens, chosen::Choice},
     scene::LegendPlace,
 };
@@ -145,18 +145,36 @@ fn about(window: &mut Window, ui: &mut Ui, model: &CityModel, object: u32) {
         let size = bounds.size();
         ui.label(format!("{:.1} × {:.1} m, {:.1} m high", size.x, size.y, size.z));
     }
-    let attributes = model.attributes_of(object);
-    if attributes.is_empty() {
-        ui.weak("It has no attributes.");
-        return;
+    // What it is part of lends it what it has not of its own.
+    let family: Vec<u32> =
+        std::iter::successors(Some(object), |at| model.objects[*at as usize].parents.first().copied()).collect();
+    let mut known = Vec::new();
+    for at in family {
+        let of_it = model.attributes_of(at).iter().filter(|own| !known.contains(&own.name));
+        let rows: Vec<Attribute> = of_it.copied().collect();
+        known.extend(rows.iter().map(|own| own.name));
+        if rows.is_empty() {
+            continue;
+        }
+        if at != object {
+            ui.weak(format!("As part of {}:", model.objects[at as usize].id));
+        }
+        attributes(ui, model, &rows, at);
     }
+    if known.is_empty() {
+        ui.weak("It has no attributes.");
+    }
+}
+
+/// Attributes and their values.
+fn attributes(ui: &mut Ui, model: &CityModel, all: &[Attribute], object: u32) {
     let rows: Vec<(&str, String)> =
-        attributes.iter().map(|own| (model.strings.get(own.name), text_of(own.value, model))).collect();
+        all.iter().map(|own| (model.strings.get(own.name), text_of(own.value, model))).collect();
     // Names get what values leave of the panel, and at least half of it.
     let width = ui.available_width() - ui.spacing().item_spacing.x;
     let widest = rows.iter().map(|(_, value)| width_of(ui, value)).fold(0.0, f32::max);
     let of_names = width - widest.min(0.5 * width);
-    egui::Grid::new("attributes").num_columns(2).striped(true).show(ui, |ui| {
+    egui::Grid::new(("attributes", object)).num_columns(2).striped(true).show(ui, |ui| {
         for (name, value) in rows {
             ui.scope(|ui| {
                 ui.set_width(of_names);

@@ -211,6 +211,19 @@ fn objects_are_found_shown_hidden_and_coloured() {
 }
 
 #[test]
+fn a_part_has_the_attributes_of_what_it_is_part_of() {
+    let mut harness = window();
+    let part = harness.state().city.as_ref().unwrap().model.find_object("house-009-body");
+    harness.state_mut().chosen.object = Some(part.expect("the city has it"));
+    harness.run_steps(3);
+    for label in ["As part of house-009:", "yearOfConstruction", "bakery"] {
+        assert!(harness.query_all_by_label(label).count() > 0, "there is no \"{label}\"");
+    }
+    assert_eq!(harness.query_all_by_label("It has no attributes.").count(), 0);
+    harness.check_accessibility();
+}
+
+#[test]
 fn what_cannot_be_opened_is_said_and_the_city_stays() {
     let mut harness = window();
     harness.state_mut().open(&[PathBuf::from("/nowhere/at.city.json")]);
