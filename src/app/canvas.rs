@@ -182,9 +182,12 @@ impl Window {
             let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter().image(texture.id(), rect, uv, Color32::WHITE);
         }
-        if self.city.is_none() {
-            let text =
-                self.loading.clone().unwrap_or_else(|| "Open a city: File ▸ Open, or drop files here.".to_owned());
+        let text = match (&self.city, &self.canvas.texture) {
+            (None, _) => self.loading.as_deref().unwrap_or("Open a city: File ▸ Open, or drop files here."),
+            (Some(_), None) => "Drawing the first picture…",
+            _ => "",
+        };
+        if !text.is_empty() {
             ui.painter().text(
                 rect.center(),
                 Align2::CENTER_CENTER,
@@ -192,6 +195,8 @@ impl Window {
                 egui::FontId::proportional(16.0),
                 ui.visuals().text_color(),
             );
+        }
+        if self.city.is_none() {
             return;
         }
         let before = self.document.scene().camera;
