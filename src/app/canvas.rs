@@ -183,7 +183,7 @@ impl Window {
             ui.painter().image(texture.id(), rect, uv, Color32::WHITE);
         }
         let text = match (&self.city, &self.canvas.texture) {
-            (None, _) => self.loading.as_deref().unwrap_or("Open a city: File ▸ Open, or drop files here."),
+            (None, _) => self.loading.as_deref().unwrap_or("Open a city: File, Open, or drop files here."),
             (Some(_), None) => "Drawing the first picture…",
             _ => "",
         };
@@ -205,8 +205,11 @@ impl Window {
             self.canvas.moved_at = Some(Instant::now());
         }
         self.look_up(&response, rect);
-        self.draw_outlines(ui, rect);
-        self.draw_handles(ui, rect);
+        // The figure has none of what is only held and chosen.
+        if !self.previews {
+            self.draw_outlines(ui, rect);
+            self.draw_handles(ui, rect);
+        }
         self.go_on_drawing(ui);
         if let Some(view) = self.view_in(rect) {
             self.show_drawing(ui, &view, rect);

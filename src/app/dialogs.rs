@@ -363,7 +363,9 @@ fn ask(window: &mut Window, context: &Context) {
         match &asking {
             Asking::Lose(_) => {
                 ui.heading("The scene has edits that are not saved");
-                ui.label(format!("{} would lose them.", window.document.title()));
+                ui.label(
+                    "They are lost unless the scene is saved first. The city's own files are not changed by any edit.",
+                );
             }
             Asking::Replace(file, _) => {
                 ui.heading("The file is there already");

@@ -1,6 +1,9 @@
 //! The scene that is edited: what it is, what it was, and which file it has.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
 
 use crate::{
     figure::{
@@ -10,6 +13,9 @@ use crate::{
     scene::{Command, History, Scene},
     view::Camera,
 };
+
+/// Moves of the eye that are farther apart are edits of their own.
+const PAUSE: Duration = Duration::from_millis(700);
 
 /// A scene with its edits.
 #[derive(Debug, Default)]
@@ -22,13 +28,15 @@ pub struct Document {
     leads_outside: bool,
     /// An edit that goes on: a handle or a slider that is held.
     live: Option<(String, Scene)>,
+    /// When the eye was moved last.
+    looked: Option<Instant>,
 }
 
 impl Document {
     /// A scene without a past; `file`: where it is from.
     pub fn new(scene: Scene, file: Option<PathBuf>) -> Self {
         let leads_outside = file.as_ref().is_some_and(|file| leads_outside(&scene, file));
-        Self { history: History::new(scene.clone()), saved: scene, file, leads_outside, live: None }
+        Self { history: History::new(scene.clone()), saved: scene, file, leads_outside, live: None, looked: None }
     }
 
     /// The scene as it is shown.
@@ -86,11 +94,16 @@ impl Document {
         self.history = History::new(scene);
     }
 
-    /// Moves the eye.
+    /// Moves the eye. Moves that follow each other at once are one edit.
     pub fn look(&mut self, camera: Camera) {
         self.settle();
         let command = Command::look(self.history.scene(), camera);
-        self.history.apply(command);
+        if !command.is_effective() {
+            return;
+        }
+        let follows = self.looked.is_some_and(|last| last.elapsed() < PAUSE);
+        self.looked = Some(Instant::now());
+        self.history.apply(if follows { command } else { command.beginning() });
     }
 
     /// Shows an edit that goes on; [`Self::settle`] does it.
@@ -134,7 +147,8 @@ impl Document {
     /// What is wrong with it, in one message.
     pub fn set(&mut self, assignment: &str) -> Result<(), String> {
         let command = scene_file::set_within(self.scene(), assignment, &self.options()).map_err(message)?;
-        self.apply(command);
+        let name = name_of(self.scene(), assignment);
+        self.apply(command.named(name));
         Ok(())
     }
 
@@ -148,7 +162,7 @@ impl Document {
         let command = scene_file::set_within(self.scene(), assignment, &self.options()).map_err(message)?;
         let mut after = base;
         command.redo(&mut after);
-        self.preview(command.name().to_owned(), after);
+        self.preview(name_of(self.scene(), assignment), after);
         Ok(())
     }
 
@@ -184,6 +198,23 @@ impl Document {
         self.saved = self.scene().clone();
         self.leads_outside = leads_outside(&self.saved, file);
         Ok(())
+    }
+}
+
+/// What an assignment does, for a menu: `radius of crate`, `figure size`.
+fn name_of(scene: &Scene, assignment: &str) -> String {
+    let path = assignment.split('=').next().unwrap_or_default();
+    let mut segments = path.split('.').map(str::trim);
+    let first = segments.next().unwrap_or_default();
+    let rest: Vec<&str> = segments.collect();
+    let lens =
+        rest.first().filter(|_| first == "lens").and_then(|index| scene.lenses.get(index.parse::<usize>().ok()?));
+    let key = rest.iter().rev().find(|word| word.parse::<usize>().is_err()).map(|word| word.replace('_', " "));
+    match (lens, key) {
+        (Some(lens), Some(key)) => format!("{key} of {}", lens.name),
+        (Some(lens), None) => format!("lens {}", lens.name),
+        (None, Some(key)) => format!("{first} {key}"),
+        (None, None) => first.replace('_', " "),
     }
 }
 
@@ -271,6 +302,23 @@ mod tests {
         assert!(own.eye == read.eye && own.target == read.target && again.city == document.scene().city);
         assert!(document.save(&folder.join("no/where.toml")).unwrap_err().contains("where.toml"));
         std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn edits_are_called_by_what_they_change() {
+        let mut document = Document::default();
+        let lens = "lens.0={ name = \"crate\", effects = [\"sepia\"], shape = { kind = \"sphere\", center = [0, 0, 0], radius = 9 } }";
+        for (assignment, name) in [
+            (lens, "lens"),
+            ("lens.0.shape.radius=12", "radius of crate"),
+            ("lens.0.effects.0={ effect = \"sepia\", amount = 0.5 }", "effects of crate"),
+            ("figure.size=[800, 500]", "figure size"),
+            ("camera.fov_deg=60", "camera fov deg"),
+        ] {
+            let _ = document.set("camera={ eye = [0, -9, 9], target = [0, 0, 0] }");
+            document.set(assignment).unwrap();
+            assert_eq!(document.names()[0], Some(name));
+        }
     }
 
     #[test]

@@ -104,7 +104,8 @@ fn year_of(day: &str) -> Option<f64> {
 }
 
 fn find(text: &str, model: &CityModel, attributes: &[String]) -> Found {
-    let text = text.trim().to_lowercase();
+    let typed = text.trim();
+    let text = typed.to_lowercase();
     let all = 0..model.objects.len() as u32;
     if text.is_empty() {
         return Found::default();
@@ -144,6 +145,8 @@ fn find(text: &str, model: &CityModel, attributes: &[String]) -> Found {
         true => "Nothing found.".to_owned(),
         false => {
             let meant = did_you_mean(name, attributes.iter().map(String::as_str));
+            // As it was typed.
+            let name = parts(typed).map_or(name, |(name, ..)| name);
             format!("No object has an attribute \"{name}\"{meant}{}", if meant.is_empty() { "." } else { "" })
         }
     };

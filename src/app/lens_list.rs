@@ -57,10 +57,14 @@ pub fn show(window: &mut Window, ui: &mut Ui) {
             ui.menu_button("+ Add", |ui| {
                 let context = ui.ctx().clone();
                 for row in ROWS.iter().filter(|row| row.menu == Menu::Lens) {
-                    let Action::AddLens(kind) = row.action else { continue };
+                    let needs_object = match row.action {
+                        Action::AddLens(kind) => kind.needs_object(),
+                        Action::Draw(_) => false,
+                        _ => continue,
+                    };
                     let button = egui::Button::new(row.name);
                     let response = ui.add_enabled(window.can(row.action), button);
-                    if kind.needs_object() {
+                    if needs_object {
                         response.clone().on_disabled_hover_text("Choose an object first: click on it.");
                     }
                     if response.clicked() {

@@ -34,6 +34,10 @@ pub fn show(window: &mut Window, ui: &mut Ui) {
     }
     let goes = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     let found = window.finder.find(model, &city.attributes);
+    if goes && found.objects.is_empty() {
+        // Somebody types on: letters are no commands then.
+        field.request_focus();
+    }
     if found.count > 0 {
         let shown = found.objects.len();
         let more = if found.count > shown { format!("; the first {shown}") } else { String::new() };

@@ -24,6 +24,8 @@ use crate::{
 
 /// What the scene has that stands elsewhere in the window: in the list of lenses, and with the chosen one.
 const ELSEWHERE: &[&str] = &["veduta", "lens", "overlay"];
+/// What is written on figures.
+const WORDS: &[&str] = &["title", "caption"];
 /// What a person asks for most.
 const FIRST: &[&str] = &["camera", "sun", "style", "poi", "figure"];
 
@@ -244,14 +246,34 @@ fn kind_of_several(
     table(ui, drafts, (keys, false), given, path, changes);
 }
 
-/// A table of another kind: what both have stays, what the other needs is as in its example.
+/// A table of another kind: what both have stays, sizes stay about as they were, what else the other needs is as in its example.
 fn of_other_kind(keys: &Table, given: &TomlTable) -> String {
     let mut made = TomlTable::new();
+    let half = half_extent(given);
+    let before = given.get("kind").and_then(Value::as_str).and_then(|kind| of_kind(SHAPES, kind));
+    // A size of two numbers is no size of three.
+    let is_same_kind = |key: &Key| {
+        let own = before.and_then(|table| table.keys.iter().find(|own| own.name == key.name));
+        own.is_none_or(|own| std::mem::discriminant(&own.kind) == std::mem::discriminant(&key.kind))
+    };
+    let size = |name: &str| {
+        let [x, y, z] = half?;
+        let of = |numbers: &[f64]| Some(Value::Array(numbers.iter().map(|n| Value::Float(*n)).collect()));
+        match (keys.name, name) {
+            (_, "radius") => Some(Value::Float(x.max(y))),
+            ("frustum", "top_radius") => Some(Value::Float(0.5 * x.max(y))),
+            (_, "radii") => of(&[x, y, z]),
+            ("box", "size") => of(&[2.0 * x, 2.0 * y, 2.0 * z]),
+            ("cylinder" | "cone" | "frustum", "height") => Some(Value::Float(2.0 * z)),
+            _ => None,
+        }
+    };
     for key in keys.keys {
         let value = match key.name {
             "kind" => Some(Value::String(keys.name.to_owned())),
             name => {
-                given.get(name).cloned().or_else(|| key.default.is_empty().then(|| value_of(key.example)).flatten())
+                let same = given.get(name).filter(|_| is_same_kind(key)).cloned();
+                same.or_else(|| size(name)).or_else(|| key.default.is_empty().then(|| value_of(key.example)).flatten())
             }
         };
         if let Some(value) = value {
@@ -259,6 +281,22 @@ fn of_other_kind(keys: &Table, given: &TomlTable) -> String {
         }
     }
     Value::Table(made).to_string()
+}
+
+/// Half of how large a shape is along its own axes, metres, where its kind says that.
+fn half_extent(given: &TomlTable) -> Option<[f64; 3]> {
+    let number = |key: &str| given.get(key).filter(|v| v.is_float() || v.is_integer()).map(number_of);
+    let three = |key: &str| {
+        let list = given.get(key)?.as_array()?;
+        <[f64; 3]>::try_from(list.iter().map(number_of).collect::<Vec<_>>()).ok()
+    };
+    match given.get("kind").and_then(Value::as_str)? {
+        "box" => three("size").map(|size| size.map(|side| 0.5 * side)),
+        "ellipsoid" => three("radii"),
+        "sphere" => number("radius").map(|r| [r; 3]),
+        "cylinder" | "cone" | "frustum" => Some([number("radius")?, number("radius")?, 0.5 * number("height")?]),
+        _ => None,
+    }
 }
 
 /// The keys of a table: those that are given, with `shows_all` those too whose default is a value, and a menu of the others.
@@ -277,6 +315,11 @@ fn table(
     for key in keys.keys.iter().filter(is_chosen) {
         match given.get(key.name) {
             Some(value) => field(ui, drafts, key, (value, true), &format!("{path}.{}", key.name), changes),
+            // Words that only a person has: empty until they are written.
+            None if shows_all && WORDS.contains(&key.name) => {
+                let empty = Value::String(String::new());
+                field(ui, drafts, key, (&empty, false), &format!("{path}.{}", key.name), changes);
+            }
             None => match value_of(key.default).filter(|_| shows_all && !matches!(key.kind, Kind::Background)) {
                 Some(value) => field(ui, drafts, key, (&value, false), &format!("{path}.{}", key.name), changes),
                 None => absent.push(key),
@@ -474,16 +517,17 @@ fn widget(
         (Takes::Number { min, max, is_whole }, Value::Integer(_) | Value::Float(_)) => {
             let mut number = number_of(value);
             let speed = if is_whole { 0.2 } else { (number.abs() * 0.01).clamp(0.005, 10.0) };
-            let mut drag = DragValue::new(&mut number)
-                .range(min..=max)
-                .speed(speed)
-                .custom_formatter(|number, _| trimmed(number, 3));
+            let mut drag = DragValue::new(&mut number).speed(speed).custom_formatter(|number, _| trimmed(number, 3));
             // Counts say what they count by their name.
             if !unit.is_empty() && unit.len() <= 2 || unit == "degrees" || unit == "pixels" {
                 let unit = if unit == "degrees" { "°" } else { unit };
                 drag = drag.suffix(format!(" {unit}"));
             }
             let response = ui.add(drag).labelled_by(label);
+            // Dragged it stops at its ends; what is typed beyond them is refused, and says so.
+            if response.dragged() {
+                number = number.clamp(min, max);
+            }
             if response.changed() {
                 push(number_text(number, is_whole), response.dragged());
             }
@@ -713,10 +757,22 @@ mod tests {
             if table.keys.iter().any(|key| key.name == "center") {
                 assert_eq!(made["center"], sphere["center"], "{}", table.name);
             }
+            let number = |key: &str| made.get(key).map(number_of);
+            match table.name {
+                "cylinder" => assert_eq!([number("radius"), number("height")], [Some(9.5), Some(19.0)]),
+                "box" => assert_eq!(made["size"].to_string(), "[19.0, 19.0, 19.0]"),
+                "ellipsoid" => assert_eq!(made["radii"].to_string(), "[9.5, 9.5, 9.5]"),
+                _ => {}
+            }
             // What must be given is there.
             for key in table.keys.iter().filter(|key| key.default.is_empty()) {
                 assert!(made.get(key.name).is_some(), "{}: {}", table.name, key.name);
             }
         }
+        let crate_like: TomlTable = "kind = \"box\"\ncenter = [1, 2, 3]\nsize = [8, 6, 20]".parse().unwrap();
+        let of = |kind: &str| value_of(&of_other_kind(of_kind(SHAPES, kind).unwrap(), &crate_like)).unwrap();
+        assert_eq!(of("ellipsoid")["radii"].to_string(), "[4.0, 3.0, 10.0]");
+        assert_eq!(number_of(&of("sphere")["radius"]), 4.0);
+        assert!(of("flat").get("size").is_none(), "a rectangle has two sides");
     }
 }

@@ -99,6 +99,9 @@ pub struct Window {
     pub frame: Option<Box<Frame>>,
     /// What is chosen.
     pub chosen: Chosen,
+    /// What was chosen in the last frame, and whether of what is now the lens was chosen last.
+    known_chosen: Chosen,
+    pub(super) is_lens_last: bool,
     pub(super) canvas: Canvas,
     pub(super) finder: Finder,
     pub(super) dialog: Option<FileDialog>,
@@ -156,6 +159,8 @@ impl Window {
             waiting: None,
             frame: None,
             chosen: Chosen::default(),
+            known_chosen: Chosen::default(),
+            is_lens_last: false,
             canvas: Canvas::default(),
             finder: Finder::default(),
             dialog: None,
@@ -288,6 +293,17 @@ impl Window {
         let document = std::mem::take(&mut self.document);
         self.load(&document);
         self.document = document;
+    }
+
+    /// Remembers which was chosen last, a lens or an object.
+    fn follow_chosen(&mut self) {
+        let before = std::mem::replace(&mut self.known_chosen, self.chosen);
+        if self.chosen.object != before.object {
+            self.is_lens_last = false;
+        }
+        if self.chosen.lens != before.lens {
+            self.is_lens_last = self.chosen.lens.is_some();
+        }
     }
 
     /// Locks stay with lenses that got another name.
@@ -442,6 +458,7 @@ impl Window {
         }
         self.follow_city();
         self.follow_names();
+        self.follow_chosen();
         self.rolled_over = self.rolls_over.take();
         egui::Panel::top("menu").show(ui, |ui| self.menu(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
@@ -551,6 +568,8 @@ impl Window {
 
     fn status(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
+            // As high with nothing to say as with a button in it.
+            ui.set_min_height(ui.spacing().interact_size.y);
             if let Some(what) = self.loading.clone() {
                 ui.spinner();
                 ui.label(what);

@@ -17,12 +17,14 @@ pub struct Command {
     after: Scene,
     /// Several in a row are one edit.
     goes_on: bool,
+    /// It is the first of a new row.
+    begins: bool,
 }
 
 impl Command {
     /// The edit that turns `before` into `after`.
     pub fn new(name: impl Into<String>, before: Scene, after: Scene) -> Self {
-        Self { name: name.into(), before, after, goes_on: false }
+        Self { name: name.into(), before, after, goes_on: false, begins: false }
     }
 
     /// The edit that `change` makes.
@@ -35,6 +37,18 @@ impl Command {
     /// Moves the eye; several such moves in a row are one edit.
     pub fn look(scene: &Scene, camera: Camera) -> Self {
         Self { goes_on: true, ..Self::of("move camera", scene, |s| s.camera = Some(camera)) }
+    }
+
+    /// It begins a row of its own, whatever went before.
+    #[must_use]
+    pub fn beginning(self) -> Self {
+        Self { begins: true, ..self }
+    }
+
+    /// By another name.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..self }
     }
 
     /// Puts a lens on top.
@@ -72,7 +86,7 @@ impl Command {
         }))
     }
 
-    /// What it does, for a menu: `set lens.0.shape.radius`.
+    /// What it does, for a menu: `move camera`.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -124,7 +138,9 @@ impl History {
         if command.is_effective() {
             command.redo(&mut self.scene);
             self.undone.clear();
-            match self.done.last_mut().filter(|last| last.goes_on && command.goes_on && last.name == command.name) {
+            let is_same =
+                |last: &&mut Command| last.goes_on && command.goes_on && !command.begins && last.name == command.name;
+            match self.done.last_mut().filter(is_same) {
                 Some(last) => last.after = command.after,
                 None => {
                     if self.done.len() == DEPTH {

@@ -211,6 +211,40 @@ fn objects_are_found_shown_hidden_and_coloured() {
 }
 
 #[test]
+fn who_finds_nothing_types_on() {
+    let mut harness = window();
+    press(&mut harness, Modifiers::COMMAND, Key::F);
+    write(&mut harness, "zzz");
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    press(&mut harness, Modifiers::NONE, Key::L);
+    assert!(harness.state().document.scene().lenses.is_empty(), "a letter is no command there");
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    write(&mut harness, "church");
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert!(harness.state().chosen.object.is_some());
+    arrive(&mut harness);
+    press(&mut harness, Modifiers::NONE, Key::L);
+    assert_eq!(harness.state().document.scene().lenses.len(), 1, "where something was found keys are for the picture");
+    assert!(harness.state().chosen.lens.is_some());
+}
+
+#[test]
+fn ways_of_the_eye_are_taken_back_one_by_one() {
+    let mut harness = window();
+    let mut seen = Vec::new();
+    for key in [Key::Num7, Key::Num1] {
+        press(&mut harness, Modifiers::NONE, key);
+        arrive(&mut harness);
+        seen.push(harness.state().camera().unwrap());
+        std::thread::sleep(Duration::from_millis(800));
+    }
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.state().camera().unwrap(), seen[0]);
+    press(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(harness.state().camera().unwrap(), seen[1]);
+}
+
+#[test]
 fn a_part_has_the_attributes_of_what_it_is_part_of() {
     let mut harness = window();
     let part = harness.state().city.as_ref().unwrap().model.find_object("house-009-body");

@@ -274,10 +274,11 @@ impl Window {
     }
 
     fn chosen_box(&self) -> Aabb {
-        if let (Some(object), Some(city)) = (self.chosen.object, &self.city) {
-            return city.model.family_bounds(object);
+        let of_lens = self.chosen_lens_box();
+        match (self.chosen.object, &self.city) {
+            (Some(object), Some(city)) if of_lens.is_empty() || !self.is_lens_last => city.model.family_bounds(object),
+            _ => of_lens,
         }
-        self.chosen_lens_box()
     }
 
     pub(in crate::app) fn frame_box(&mut self, bounds: &Aabb) {
