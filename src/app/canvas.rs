@@ -481,6 +481,7 @@ impl Window {
             }
             if let Some(lens) = self.view_in(rect).and_then(|view| self.lens_at(&view, rect, at)) {
                 self.chosen.lens = Some(lens);
+                self.is_lens_last = true;
                 return;
             }
             if let Some((overlay, _)) = self.overlay_at(rect, at) {
@@ -489,6 +490,7 @@ impl Window {
                 return;
             }
             self.chosen.object = self.pick_at(rect, at).and_then(|hovered| hovered.object);
+            self.is_lens_last = false;
         }
     }
 

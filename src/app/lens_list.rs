@@ -152,6 +152,7 @@ fn row(window: &mut Window, ui: &mut Ui, index: usize, id: Id) {
             let name = ui.add(egui::Button::selectable(is_chosen, text).sense(Sense::click()).truncate());
             if name.clicked() {
                 window.chosen.lens = Some(index);
+                window.is_lens_last = true;
             }
             if name.double_clicked() && !is_locked {
                 window.begin_renaming(index);

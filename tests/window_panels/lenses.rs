@@ -180,6 +180,19 @@ fn what_is_attached_is_moved_from_where_it_is_attached() {
     arrive(&mut harness);
     let target = harness.state().camera().unwrap().target;
     assert!(target.distance(to) < 9.0, "its middle is looked at: {target}");
+    // Of an object and a lens what was chosen last.
+    let church = harness.state().city.as_ref().unwrap().model.find_object("church");
+    harness.state_mut().chosen.object = church;
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::NONE, Key::F);
+    arrive(&mut harness);
+    assert!(harness.state().camera().unwrap().target.distance(to) > 9.0, "the object is looked at");
+    // Its row stands above its values.
+    harness.query_all_by_label("held").next().unwrap().click();
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::NONE, Key::F);
+    arrive(&mut harness);
+    assert!(harness.state().camera().unwrap().target.distance(to) < 9.0, "the lens is, again");
 }
 
 /// The shapes of the second lens.
