@@ -149,7 +149,7 @@ impl Picture<'_> {
             let (x, y) = (i % w, i / w);
             let is_inner = x > 0 && y > 0 && x + 1 < w && y + 1 < h;
             let is_edge = is_inner && ![i - 1, i + 1, i - w, i + w].iter().all(|&j| covered[j]);
-            if is_edge && (x + y) / DASH % 2 == 0 && !is_near(x, y) {
+            if is_edge && ((x + y) / DASH).is_multiple_of(2) && !is_near(x, y) {
                 visit(i);
             }
         }
