@@ -64,37 +64,60 @@ fn identities(middle: DVec3) -> Vec<(String, Lens)> {
     all
 }
 
-#[test]
-fn a_lens_that_changes_nothing_changes_no_byte() {
+/// Where one looks from: outside, within a lens, or along parallel rays.
+#[derive(Clone, Copy, PartialEq)]
+enum Look {
+    Outside,
+    Inside,
+    Level,
+}
+
+fn changes_no_byte(look: Look) {
     let mut studio = studio::synthetic(60);
     let middle = studio.extent().center();
-    let outside = Camera::looking(middle + DVec3::new(60.0, -110.0, 80.0), middle, 0.8);
-    let inside = Camera::looking(middle + DVec3::new(5.0, -12.0, 6.0), middle + DVec3::new(30.0, 40.0, 0.0), 1.0);
-    let level = studio::orthographic(middle + DVec3::new(60.0, -110.0, 80.0), middle, 150.0);
-    for (camera, samples, transparent, shadows) in
-        [(outside, 1, false, true), (inside, 2, true, false), (level, 1, false, false)]
-    {
-        let mut without = studio::scene(camera, vec![]);
-        without.sun.shadows = shadows;
-        without.style.background = Background::Sky;
-        let plain = draw(&mut studio, &without, samples, transparent, Backend::Specialised);
-        // One by one only once: each is a program of its own.
-        for (name, lens) in identities(middle).into_iter().filter(|_| shadows) {
-            let scene = Scene { lenses: vec![lens], ..without.clone() };
-            let drawn = draw(&mut studio, &scene, samples, transparent, Backend::Specialised);
-            assert!(is_same(&plain, &drawn), "a lens {name} changed something");
+    let away = middle + DVec3::new(60.0, -110.0, 80.0);
+    let (camera, samples, transparent) = match look {
+        Look::Outside => (Camera::looking(away, middle, 0.8), 1, false),
+        Look::Inside => {
+            (Camera::looking(middle + DVec3::new(5.0, -12.0, 6.0), middle + DVec3::new(30.0, 40.0, 0.0), 1.0), 2, true)
         }
-        // Many at once; not all, as a module takes a compiler more than twice as long that is twice as long.
-        let mut lenses: Vec<Lens> = identities(middle).into_iter().map(|(_, lens)| lens).collect();
-        lenses.iter_mut().enumerate().for_each(|(i, lens)| lens.name = format!("identity {i}"));
-        for some in lenses.chunks(4) {
-            let scene = Scene { lenses: some.to_vec(), ..without.clone() };
-            for backend in BACKENDS {
-                let drawn = draw(&mut studio, &scene, samples, transparent, backend);
-                assert!(is_same(&plain, &drawn), "{backend:?}: {} and its like changed something", some[0].name);
-            }
+        Look::Level => (studio::orthographic(away, middle, 150.0), 1, false),
+    };
+    let mut without = studio::scene(camera, vec![]);
+    without.sun.shadows = look == Look::Outside;
+    without.style.background = Background::Sky;
+    let plain = draw(&mut studio, &without, samples, transparent, Backend::Specialised);
+    // One by one only once: each is a program of its own.
+    for (name, lens) in identities(middle).into_iter().filter(|_| look == Look::Outside) {
+        let scene = Scene { lenses: vec![lens], ..without.clone() };
+        let drawn = draw(&mut studio, &scene, samples, transparent, Backend::Specialised);
+        assert!(is_same(&plain, &drawn), "a lens {name} changed something");
+    }
+    // Many at once; not all, as a module takes a compiler more than twice as long that is twice as long.
+    let mut lenses: Vec<Lens> = identities(middle).into_iter().map(|(_, lens)| lens).collect();
+    lenses.iter_mut().enumerate().for_each(|(i, lens)| lens.name = format!("identity {i}"));
+    for some in lenses.chunks(4) {
+        let scene = Scene { lenses: some.to_vec(), ..without.clone() };
+        for backend in BACKENDS {
+            let drawn = draw(&mut studio, &scene, samples, transparent, backend);
+            assert!(is_same(&plain, &drawn), "{backend:?}: {} and its like changed something", some[0].name);
         }
     }
+}
+
+#[test]
+fn a_lens_that_changes_nothing_changes_no_byte_from_outside() {
+    changes_no_byte(Look::Outside);
+}
+
+#[test]
+fn a_lens_that_changes_nothing_changes_no_byte_around_the_eye() {
+    changes_no_byte(Look::Inside);
+}
+
+#[test]
+fn a_lens_that_changes_nothing_changes_no_byte_along_parallel_rays() {
+    changes_no_byte(Look::Level);
 }
 
 #[test]
