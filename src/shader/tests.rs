@@ -211,6 +211,7 @@ fn validate(module: &Module) {
 }
 
 fn validate_text(name: &str, source: &str) {
+    assert!(!source.contains("//@") && !source.contains("/*@"), "{name}: a hook is left");
     let parsed = match wgpu::naga::front::wgsl::parse_str(source) {
         Ok(parsed) => parsed,
         Err(error) => panic!("{name}: {}", error.emit_to_string(source)),
@@ -283,7 +284,31 @@ fn what_finds_no_room_is_read_where_it_stands() {
 fn lens_tests_have_their_numbers_in_wgsl() {
     for test in VolumeTest::ALL {
         let line = format!("const {}: u32 = {}u;\n", test.constant(), test.number());
-        assert!(SHAPE.1.contains(&line), "lib/shape.wgsl lacks {line}");
+        assert!(library::SHAPE.text.contains(&line), "lib/shape.wgsl lacks {line}");
+    }
+}
+
+#[test]
+fn every_file_of_the_library_is_in_the_table_and_has_sound_hooks() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let mut found = Vec::new();
+    for part in ["lib", "pass"] {
+        for entry in std::fs::read_dir(folder.join(part)).expect("a folder").flatten() {
+            found.push(format!("{part}/{}", entry.file_name().to_string_lossy()));
+        }
+    }
+    let mut listed: Vec<_> = library::ALL.iter().map(|file| file.path.to_owned()).collect();
+    found.sort();
+    listed.sort();
+    assert_eq!(found, listed);
+    for file in library::ALL {
+        let hooks = template::Template::of_files(&[*file]).hooks();
+        let mut filled = template::Template::of_files(&[*file]);
+        for hook in hooks {
+            filled = filled.leave(&hook);
+        }
+        let text = filled.finished().unwrap_or_else(|error| panic!("{error}"));
+        assert!(!text.contains("//@") && !text.contains("/*@"), "{}", file.path);
     }
 }
 
