@@ -143,7 +143,7 @@ impl LayerKeys {
 
 /// Whether some opacity rule of a plan asks how many layers the picture has.
 pub(super) fn asks_most(plan: &Plan) -> bool {
-    plan.steps_of(EffectKind::Opacity, handlers()).any(|(_, rule)| rule.source.contains("most_layers"))
+    plan.steps_of(EffectKind::Opacity, handlers()).any(|(_, rule)| rule.asks_most_layers)
 }
 
 /// Halves of a band, the longer side halved; `None` of one pixel.
