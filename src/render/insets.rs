@@ -6,103 +6,15 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::{
-    gpu::{Gpu, GpuError},
     render::{
-        contents::Contents,
-        curtain::Curtain,
-        deformed::Deformed,
-        furniture::{Furniture, FurnitureOnGpu},
-        layers::{LayerFigures, LayersOnGpu},
-        narrow::Narrowing,
+        furniture::Furniture,
         occlusion::Occlusion,
-        own_sprites::OwnSprites,
         picture::{RenderError, Request, Studio},
-        regions::RegionsOnGpu,
-        renderer::{Buffers, Groups, Renderer, Shadow},
-        sections::SectionsOnGpu,
-        solids::SolidTable,
         stats::Pass,
-        stored::KeptSprite,
-        targets::Targets,
-        transparency::{MethodFigures, SlotsOnGpu},
+        view_state::ViewState,
     },
     scene::Scene,
 };
-
-macro_rules! view_state {
-    ($($field:ident: $type:ty,)*) => {
-        /// What the renderer keeps for one view.
-        #[derive(Debug)]
-        pub(super) struct ViewState {
-            $($field: $type,)*
-        }
-
-        impl ViewState {
-            /// Exchanges what the renderer keeps for the view that it is drawing for this.
-            fn swap(&mut self, renderer: &mut Renderer) {
-                $(std::mem::swap(&mut self.$field, &mut renderer.$field);)*
-            }
-        }
-    };
-}
-
-view_state! {
-    contents: Contents,
-    targets: Option<Targets>,
-    buffers: Buffers,
-    groups: Option<Groups>,
-    shadow_of: Option<Shadow>,
-    narrowing: Option<Narrowing>,
-    binds_narrowed: bool,
-    solids_of: Option<std::sync::Arc<SolidTable>>,
-    curtain: Option<Curtain>,
-    deformed: Option<Deformed>,
-    regions: Option<RegionsOnGpu>,
-    sections: Option<SectionsOnGpu>,
-    has_sections: bool,
-    furniture: Option<FurnitureOnGpu>,
-    own_sprites: OwnSprites,
-    kept_sprites: Vec<KeptSprite>,
-    list_target: Option<wgpu::TextureView>,
-    lists_crossings: bool,
-    crossing_room: u64,
-    layers: Option<LayersOnGpu>,
-    layer_figures: LayerFigures,
-    slots: Option<SlotsOnGpu>,
-    method_figures: MethodFigures,
-    longest_list: u32,
-}
-
-impl ViewState {
-    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self {
-            contents: Contents::default(),
-            targets: None,
-            buffers: Buffers::new(gpu)?,
-            groups: None,
-            shadow_of: None,
-            narrowing: None,
-            binds_narrowed: false,
-            solids_of: None,
-            curtain: None,
-            deformed: None,
-            regions: None,
-            sections: None,
-            has_sections: false,
-            furniture: None,
-            own_sprites: OwnSprites::default(),
-            kept_sprites: Vec::new(),
-            list_target: None,
-            lists_crossings: false,
-            crossing_room: 0,
-            layers: None,
-            layer_figures: LayerFigures::default(),
-            slots: None,
-            method_figures: MethodFigures::default(),
-            longest_list: 0,
-        })
-    }
-}
 
 /// How many triangles an inset may take for each of its pixels.
 pub const TRIANGLES_PER_PIXEL: u64 = 4;
@@ -162,7 +74,7 @@ impl Studio {
             let [a, b] = [a, b].map(|m| m.get_mut().unwrap_or_else(PoisonError::into_inner));
             std::mem::swap(a, b);
         };
-        inset.state.swap(&mut self.renderer);
+        std::mem::swap(&mut inset.state, &mut self.renderer.view);
         swap_occlusion(&mut inset.occlusion, &mut self.occlusion);
         let drawn = self.draw_with(scene, request, furniture, Some(most)).and_then(|passes| {
             // Lists that were too short are long enough the second time.
@@ -170,13 +82,13 @@ impl Studio {
             if grows { self.draw_with(scene, request, furniture, Some(most)) } else { Ok(passes) }
         });
         if drawn.is_ok()
-            && let Some(targets) = &self.renderer.targets
+            && let Some(targets) = &self.renderer.view.targets
         {
             let is_opaque = !request.transparent;
             self.renderer.images.copy(&self.renderer.gpu, number, &targets.picture.texture, is_opaque);
             inset.of = Some((scene.clone(), *request, furniture.clone()));
         }
-        inset.state.swap(&mut self.renderer);
+        std::mem::swap(&mut inset.state, &mut self.renderer.view);
         swap_occlusion(&mut inset.occlusion, &mut self.occlusion);
         drawn
     }

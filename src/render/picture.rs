@@ -24,7 +24,6 @@ use crate::{
     gpu::{Gpu, GpuError, Timer},
     lens::solids::{ShownCity, Solids},
     render::{
-        Renderer,
         best_views::KnownViews,
         body::Leaf,
         city::Shown,
@@ -33,24 +32,25 @@ use crate::{
         deformed::DeformedFigures,
         eye::PictureTile,
         footprints::{self, OwnFootprints},
-        frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
+        frame::{Backend, FrameInput, ShaderPart},
         furniture::{self, Furniture},
         insets::Inset,
-        layers::LayerFigures,
+        layers::{LayerFigures, MethodFigures},
         lens_figures::lens_figures,
         lens_volumes::{LensVolumes, Tools, volumes_of},
         occlusion::Occlusion,
         operations::{LensTables, MOST_FILTERS, Operations},
         parts::{Part, parts, put, whole},
+        pass::masks::CLEAR_MASKS,
         placement::Eye,
         regions,
+        renderer::Renderer,
+        resource::recording::PassRecord,
         sights::sights,
         solids::SolidTable,
         stats::{self, Statistics},
         stored::SpriteTexels,
-        told,
-        transparency::MethodFigures,
-        visible_share,
+        told, visible_share,
         volume::LensVolume,
     },
     scene::{CitySpec, Drawn, Scene},
@@ -599,7 +599,7 @@ impl Studio {
         let camera = self.camera(scene, size);
         let bounds = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
         let (view, eye) = (View::new(camera, size, &bounds)?, Eye::new(&camera)?);
-        let sun = self.renderer.sun_view(&view, &scene.sun, |_| [Aabb::EMPTY; 2]).map(|sun| sun.frustum(1.0));
+        let sun = self.renderer.sun_view(&view, &scene.sun).map(|sun| sun.frustum(1.0));
         let stage = content_cities::Stage {
             drawn,
             model: &self.model,
@@ -758,7 +758,7 @@ impl Studio {
         };
         let narrowing = pipelines.narrowing;
         let compiled = pipelines.compiled + u32::from(narrowing == Some(true));
-        let names: Vec<String> = pipelines.used.iter().map(crate::render::key::Key::name).collect();
+        let names: Vec<String> = pipelines.used.iter().map(|key| key.name()).collect();
         let names: Vec<String> = names.into_iter().chain(narrowing.map(|_| "narrow lists".to_owned())).collect();
         Statistics {
             adapter: stats::Adapter {
@@ -811,7 +811,7 @@ impl Studio {
                     )
                 })
                 .collect(),
-            contents: prepared.contents.figures(drawn, self.shown(), &self.renderer),
+            contents: prepared.contents.figures(drawn, self.shown(), |id| self.renderer.content_city(id)),
             overlays: Vec::new(),
             warnings: self.warnings().into_iter().chain(told::warnings(scene, picture)).collect(),
             passes,
