@@ -1,7 +1,42 @@
 //! The passes of a frame, one file each, in one ordered table.
 //!
 //! ```text
-//! LIST
+//! crossings of sprites    of rays with the solids of lenses that have layered sprites
+//! stored depth sprites    of the lens volumes in view that are tested by them, and those that have eyes of their own and are not there yet
+//! shadow map              if the sun casts shadows and the map does not hold this view yet
+//! depth sprites           of the solids in view whose sides are asked for: nothing, then
+//! depth sprites, nearest  where rays enter first
+//! depth sprites, farthest and where they leave last
+//! geometry                everything once; on a software adapter what is near, and then
+//! geometry beyond         what that does not hide, where it hides much
+//! geometry                where a technique goes by regions: chunks that no lens reaches, as ever
+//! geometry of a region    for each region that may occur: chunks that may reach into it; fragments in other regions are discarded before visibility
+//! count sections          where lenses that ask for sections lay closed shells open: how many shells are there,
+//! sections                and the surface that closes them
+//! clear lens masks        where AOVs or statistics ask for them
+//! layers                  every fragment that is seen through and not behind what is opaque, into the list of its pixel
+//! count layers            where opacity rules ask how many layers the picture has
+//! sort layers             where a list is very long
+//! composite               the lists, sorted and laid one over the other
+//! slots, depths           where the scene asks for a K-buffer or peeling: the nearest layers of each pixel,
+//! slots, codes            which fragments these are,
+//! slots, rest             and their normals and colours
+//! link slots              slots as lists
+//! weighted                what found no slot as one layer
+//! stochastic              layers that are there by chance, in place of lists
+//! narrow lists            per-tile lens culling: of many lenses, those that each tile shows something of
+//! lines                   edges, where effects draw them
+//! unfiltered              for each neighbourhood filter in view: its lens' own image over the lens' bounds and what the filter reaches beyond them,
+//! filter down             and the filter, down
+//! filter across           and across
+//! classes                 the lens masks, where a technique goes by regions and something asks for them
+//! shade                   outside of where lenses may be seen without them, inside with them
+//! regions                 the numbers of regions as depths, with those of the background
+//! shade regions           each region by a shader of its own that tests no lens
+//! shown layers            where AOVs are asked for
+//! resolve                 the mean of the samples, after the last of several
+//! furniture               title, caption, legends: over the last sample
+//! furniture over          its layer, where the picture is transparent
 //! ```
 //!
 //! A pass that the scene does not call for is not recorded (U3): [`Inputs::of`] asks each what the plan of a frame wants of it. Another pass
