@@ -3,8 +3,6 @@
 //! A view has its own state on the card - targets, buffers, bind groups, shadow map, lists - so that views that take turns neither make nor
 //! upload anything as long as nothing changes (architecture, decision 5); pipelines, city and images are those of all.
 
-use std::sync::{Mutex, PoisonError};
-
 use crate::{
     render::{
         furniture::Furniture,
@@ -23,8 +21,8 @@ pub const TRIANGLES_PER_PIXEL: u64 = 4;
 #[derive(Debug)]
 pub(super) struct Inset {
     state: ViewState,
-    /// Whom its occlusion lenses found last.
-    occlusion: Mutex<Occlusion>,
+    /// What its occlusion lenses found last.
+    occlusion: Occlusion,
     /// What its image shows.
     of: Option<(Scene, Request, Furniture)>,
 }
@@ -47,7 +45,7 @@ impl Studio {
         self.find_blocks(most)?;
         let mut inset = match self.insets.remove(&number) {
             Some(inset) => inset,
-            None => Inset { state: ViewState::new(&self.renderer.gpu)?, occlusion: Mutex::default(), of: None },
+            None => Inset { state: ViewState::new(&self.renderer.gpu)?, occlusion: Occlusion::default(), of: None },
         };
         let shows = !is_stale
             && self.renderer.images.size(number).is_some()
@@ -70,12 +68,8 @@ impl Studio {
         most: u64,
     ) -> Result<Vec<Pass>, RenderError> {
         inset.of = None;
-        let swap_occlusion = |a: &mut Mutex<Occlusion>, b: &mut Mutex<Occlusion>| {
-            let [a, b] = [a, b].map(|m| m.get_mut().unwrap_or_else(PoisonError::into_inner));
-            std::mem::swap(a, b);
-        };
         std::mem::swap(&mut inset.state, &mut self.renderer.view);
-        swap_occlusion(&mut inset.occlusion, &mut self.occlusion);
+        std::mem::swap(&mut inset.occlusion, &mut self.known().occlusion);
         let drawn = self.draw_with(scene, request, furniture, Some(most)).and_then(|passes| {
             // Lists that were too short are long enough the second time.
             let grows = self.renderer.makes_room()? | self.renderer.sorts_longer()?;
@@ -89,7 +83,7 @@ impl Studio {
             inset.of = Some((scene.clone(), *request, furniture.clone()));
         }
         std::mem::swap(&mut inset.state, &mut self.renderer.view);
-        swap_occlusion(&mut inset.occlusion, &mut self.occlusion);
+        std::mem::swap(&mut inset.occlusion, &mut self.known().occlusion);
         drawn
     }
 

@@ -63,6 +63,7 @@ mod programs;
 mod refinery;
 mod regions;
 pub mod renderer;
+mod resolve;
 pub mod resource;
 mod saved_sprites;
 mod section_rounds;

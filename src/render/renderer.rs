@@ -7,7 +7,6 @@ use std::path::Path;
 
 use crate::{
     city::{CityModel, ground::Ground},
-    geom::Aabb,
     gpu::{Gpu, GpuError, Timer},
     render::{
         bare,
@@ -34,7 +33,6 @@ use crate::{
         stored::SpriteTexels,
         view_state::{ViewState, fit_targets},
     },
-    scene::Sun,
     shader::handlers,
     view::View,
 };
@@ -134,11 +132,6 @@ impl Renderer {
     pub(super) fn cities(&self) -> Option<Cities<'_>> {
         let ViewState { contents, deformed, .. } = &self.view;
         Some(Cities { own: self.city.as_ref()?, deformed: deformed.as_ref(), contents })
-    }
-
-    /// The sun's view where shadows are wanted, of the city alone.
-    pub(super) fn sun_view(&self, view: &View, sun: &Sun) -> Option<View> {
-        self.cities()?.facts().sun_view(view, sun, |_| [Aabb::EMPTY; 2])
     }
 
     /// Gives back the targets and the lists of translucent layers; the next frame makes its own. City and pipelines stay.
