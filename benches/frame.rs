@@ -288,7 +288,7 @@ fn processor_ms() -> f64 {
 /// Milliseconds that the host computes for a frame, and until it is drawn.
 fn parts(studio: &mut Studio, frame: &Frame) -> [f64; 2] {
     let is_software = studio.renderer.gpu.is_software();
-    studio.renderer.culls_hidden = is_software && !matches!(frame, Frame::Unculled(_));
+    studio.renderer.settings.culls_hidden = is_software && !matches!(frame, Frame::Unculled(_));
     let (start, before) = (Instant::now(), processor_ms());
     match frame {
         Frame::Bare(view) => studio.renderer.draw_bare(view),

@@ -41,11 +41,11 @@ impl Studio {
 
     fn bulk(&self, id: &str) -> Result<(Sphere, DVec3), RenderError> {
         let object = self.object(id)?;
-        if let Some(bulk) = self.known().balls.get(&object) {
+        if let Some(bulk) = self.known_views().balls.get(&object) {
             return Ok(*bulk);
         }
         let bulk = self.with_subject(object, |subject| Ok((subject.ball, subject.middle())))?;
-        self.known().balls.insert(object, bulk);
+        self.known_views().balls.insert(object, bulk);
         Ok(bulk)
     }
 
@@ -57,7 +57,7 @@ impl Studio {
     pub fn best_view(&self, id: &str, fov_y: f64) -> Result<BestView, RenderError> {
         let object = self.object(id)?;
         let key = (object, fov_y.to_bits());
-        if let Some(best) = self.known().best.get(&key) {
+        if let Some(best) = self.known_views().best.get(&key) {
             return Ok(*best);
         }
         let field = Field { fov_y, ..Field::default() };
@@ -65,7 +65,7 @@ impl Studio {
             let views = subject.best_views(&field, 1).map_err(|error| RenderError::Scene(error.to_string()))?;
             views.first().copied().ok_or_else(|| RenderError::Scene(format!("the object \"{id}\" has no view")))
         })?;
-        self.known().best.insert(key, best);
+        self.known_views().best.insert(key, best);
         Ok(best)
     }
 
@@ -83,7 +83,7 @@ impl Studio {
         ask(&subject.map_err(|error| RenderError::Scene(error.to_string()))?)
     }
 
-    fn known(&self) -> MutexGuard<'_, KnownViews> {
+    fn known_views(&self) -> MutexGuard<'_, KnownViews> {
         self.known_views.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

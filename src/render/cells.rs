@@ -10,12 +10,8 @@ use rustc_hash::FxHashMap;
 use crate::{
     city::{CityModel, Tile},
     geom::Aabb,
-    render::{
-        Renderer,
-        city::{CHUNK_TRIANGLES, Chunk, Section, Shown},
-        frame::FrameInput,
-    },
-    view::{Frustum, View},
+    render::city::{CHUNK_TRIANGLES, Chunk, Shown},
+    view::View,
 };
 
 /// The cell of what is in none.
@@ -211,28 +207,6 @@ fn densest(cells: &[CellFigures], seen: &[(usize, f64)], most: u64) -> (f64, u64
         (density, taken) = (together[0].0, next);
     }
     (density, taken as u64)
-}
-
-impl Renderer {
-    /// The detail of each cell in a frame. What draws lines needs edges, which only the model itself has.
-    pub(super) fn details_for(&self, input: &FrameInput) -> Details {
-        let (Some(most), Some(city)) = (input.most_triangles, self.city.as_ref().map(|city| &city.buffers)) else {
-            return Details::default();
-        };
-        if !city.has_blocks || input.operations.draws_lines() {
-            return Details::default();
-        }
-        let frustum = input.view.frustum(1.0);
-        let left = most.saturating_sub(terrain_in(&city.sections, &frustum)).max(most / 4);
-        Details::new(&city.cells, &input.view, left)
-    }
-}
-
-/// Triangles of terrain in a frustum.
-fn terrain_in(sections: &[Section], frustum: &Frustum) -> u64 {
-    let chunks = sections.iter().flat_map(|section| &section.chunks);
-    let terrain = chunks.filter(|chunk| chunk.has_terrain() && frustum.meets(&chunk.bounds));
-    terrain.map(|chunk| u64::from(triangles_in(&chunk.range))).sum()
 }
 
 /// The finest detail of a cell with at most so many triangles per pixel; `area`: the pixels that it covers.

@@ -32,9 +32,9 @@ impl Studio {
         let mut found =
             Composited { veil: vec![[0.0, 0.0, 0.0, 1.0]; size[0] as usize * size[1] as usize], most_layers: 0 };
         loop {
-            self.renderer.picked_layer = Some(found.most_layers);
+            self.renderer.settings.picked_layer = Some(found.most_layers);
             let layer = self.veil(&exact, size);
-            self.renderer.picked_layer = None;
+            self.renderer.settings.picked_layer = None;
             // None of a pixel is 1; an opacity comes as its negative.
             let mut is_any = false;
             for (veil, [r, g, b, opacity]) in found.veil.iter_mut().zip(layer?).filter(|(_, layer)| layer[3] <= 0.0) {

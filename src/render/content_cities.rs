@@ -19,7 +19,7 @@ use crate::{
     geom::{Aabb, shape::Motion},
     lens::{Class, Content, ContentSource, Lens, solids::ShownCity},
     render::{
-        Renderer,
+        city::CityBuffers,
         contents::{ContentCity, Placement, WantedContent},
         operations::ContentUse,
         stats,
@@ -214,14 +214,19 @@ impl SceneContents {
         self.uses.iter().fold(Aabb::EMPTY, |all, shown| all.union(of(shown)))
     }
 
-    /// What statistics say of it.
-    pub fn figures(&self, drawn: &Drawn, own: ShownCity, renderer: &Renderer) -> Vec<stats::Content> {
+    /// What statistics say of it; `on_gpu`: the buffers of a content's city, by its name.
+    pub(super) fn figures<'a>(
+        &self,
+        drawn: &Drawn,
+        own: ShownCity,
+        on_gpu: impl Fn(u64) -> Option<&'a CityBuffers>,
+    ) -> Vec<stats::Content> {
         let mut counted: Vec<u64> = Vec::new();
         let figure = |w: &WantedContent| {
             let (model, shown) = w.shown(own);
             let objects = shown.iter().map(|&g| model.geometries[g as usize].object);
             let city = w.city.as_ref();
-            let on_gpu = renderer.content_city(city.map_or(0, |city| city.id));
+            let on_gpu = on_gpu(city.map_or(0, |city| city.id));
             let is_new = city.is_some_and(|city| !counted.contains(&city.id));
             counted.extend(city.map(|city| city.id));
             let mut lenses: Vec<u32> =

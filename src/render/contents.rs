@@ -11,20 +11,19 @@ use glam::{DMat3, DQuat, DVec3};
 use crate::{
     city::{CityModel, coplanar::stacked_triangles, decode_normal, encode_normal, ground::Ground},
     geom::Aabb,
-    gpu::GpuError,
+    gpu::{Gpu, GpuError},
     render::{
-        cells::Details,
-        city::{Chunk, CityBuffers, Section, SectionKind, Shown},
-        cut::Cut,
+        city::{Chunk, Shown},
+        city_on_gpu::CityOnGpu,
         eye::{padded, relative, split_eye},
         footprints::Footprints,
-        frame::{FrameInput, strided},
-        hiding::reaches_of,
         layout,
-        renderer::{CityOnGpu, Renderer, STAGE_STRIDE},
+        resource::{
+            bindings::{STAGE_STRIDE, strided},
+            pipelines::Pipelines,
+        },
         surfaces,
     },
-    view::{Frustum, View},
 };
 
 /// A city as contents show it.
@@ -159,49 +158,37 @@ struct ShownContent {
     chunks: Vec<Vec<Chunk>>,
 }
 
-/// A section of a city that a frame draws.
+/// What of a content a frame draws, and where.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct DrawnSection<'a> {
+pub(super) struct PlacedCity<'a> {
     pub city: &'a CityOnGpu,
-    pub section: &'a Section,
-    pub image: Option<&'a wgpu::BindGroup>,
-    /// Where they stand.
-    pub chunks: &'a [Chunk],
-    /// The content's number; `None`: the scene's own.
-    pub content: Option<u32>,
-    /// Offset of its `City`.
-    pub offset: u32,
+    pub number: u32,
+    pub placement: &'a Placement,
     /// Whether it throws shadows.
     pub has_shadow: bool,
-    /// Which layer of their planes its faces are in, where they overlap others; the lowest is 0.
-    pub layer: u32,
-    /// In which detail its cells are drawn, if it is the scene's own.
-    pub details: &'a Details,
+    /// Chunks of each section where they stand; empty: where they are.
+    pub chunks: &'a [Vec<Chunk>],
+    /// Offset of its uniform `City`.
+    pub offset: u32,
 }
 
-impl DrawnSection<'_> {
-    /// Whether a chunk of it may show something.
-    pub fn shows(&self, chunk: &Chunk, cut: Option<&Cut>, view: &View) -> bool {
-        match self.content {
-            None => self.details.show(chunk),
-            Some(number) => cut.is_some_and(|cut| cut.hiding.shows(number, &chunk.bounds, view)),
-        }
-    }
-}
-
-impl Renderer {
-    /// Makes the card hold these contents beside the scene's city, whose plain ground is `ground`, and no others; with their
-    /// edges where something draws lines. Between frames with the same contents nothing is made.
-    pub fn set_contents(
+impl Contents {
+    /// Makes the card hold these contents beside the scene's `own` city, whose plain ground is `ground`, and no others; with their
+    /// edges where something draws lines. Between frames with the same contents nothing is made. Whether the table of surfaces is another
+    /// one now.
+    pub fn set(
         &mut self,
+        gpu: &Gpu,
+        pipelines: &Pipelines,
+        own: &CityOnGpu,
         wanted: &[WantedContent],
         ground: Option<&Ground>,
         edges: bool,
-    ) -> Result<(), GpuError> {
-        if self.city.is_none() || (wanted.is_empty() && self.contents.shown.is_empty()) {
-            return Ok(());
+    ) -> Result<bool, GpuError> {
+        if wanted.is_empty() && self.shown.is_empty() {
+            return Ok(false);
         }
-        self.contents.cities.retain(|(id, _)| wanted.iter().any(|w| w.id() == *id));
+        self.cities.retain(|(id, _)| wanted.iter().any(|w| w.id() == *id));
         for city in wanted.iter().filter_map(|w| w.city.as_ref()) {
             let plain = Shown {
                 model: &city.model,
@@ -210,23 +197,22 @@ impl Renderer {
                 is_lit_as_before: city.is_lit_as_before,
                 ground: if city.is_own && !city.is_derived() { ground } else { city.ground.as_ref() },
             };
-            if !self.contents.cities.iter().any(|(id, _)| *id == city.id) {
+            if !self.cities.iter().any(|(id, _)| *id == city.id) {
                 let coplanar = stacked_triangles(&city.model, &city.geometries, &city.heights);
-                let made = self.city_on_gpu(&Shown { coplanar: &coplanar, ..plain }, None)?;
-                self.contents.cities.push((city.id, made));
+                let made = CityOnGpu::new(gpu, pipelines, &Shown { coplanar: &coplanar, ..plain }, None)?;
+                self.cities.push((city.id, made));
             }
-            let gpu = &self.gpu;
-            if let Some((_, on_gpu)) = self.contents.cities.iter_mut().find(|(id, _)| edges && *id == city.id) {
+            if let Some((_, on_gpu)) = self.cities.iter_mut().find(|(id, _)| edges && *id == city.id) {
                 on_gpu.find_edges(gpu, &plain)?;
             }
         }
-        self.set_parts(wanted)?;
-        self.place(wanted);
-        Ok(())
+        let is_other = self.set_parts(gpu, own, wanted)?;
+        self.place(own, wanted);
+        Ok(is_other)
     }
 
     /// The table of surfaces, where it is not the one that is there.
-    fn set_parts(&mut self, wanted: &[WantedContent]) -> Result<(), GpuError> {
+    fn set_parts(&mut self, gpu: &Gpu, own: &CityOnGpu, wanted: &[WantedContent]) -> Result<bool, GpuError> {
         let mut parts: Vec<Part> = Vec::new();
         for w in wanted {
             let part = (w.id(), w.first_object, w.placement.rotation);
@@ -234,10 +220,9 @@ impl Renderer {
                 parts.push(part);
             }
         }
-        if parts == self.contents.parts && self.contents.surfaces.is_some() != wanted.is_empty() {
-            return Ok(());
+        if parts == self.parts && self.surfaces.is_some() != wanted.is_empty() {
+            return Ok(false);
         }
-        let Some(own) = &self.city else { return Ok(()) };
         let mut table = if wanted.is_empty() { Vec::new() } else { own.buffers.surface_table.clone() };
         for part in &parts {
             let turned = |normal: u32| {
@@ -249,27 +234,24 @@ impl Renderer {
                 normal: turned(s.normal),
                 ..*s
             };
-            let city = self.contents.city(own, part.0);
+            let city = self.city(own, part.0);
             table.extend(city.into_iter().flat_map(|city| &city.buffers.surface_table).map(entry));
         }
-        self.contents.surfaces = if wanted.is_empty() { None } else { Some(surfaces::upload(&self.gpu, &table)?) };
-        (self.contents.table, self.contents.parts) = (table, parts);
-        self.groups = None;
-        self.shadow_of = None;
-        Ok(())
+        self.surfaces = if wanted.is_empty() { None } else { Some(surfaces::upload(gpu, &table)?) };
+        (self.table, self.parts) = (table, parts);
+        Ok(true)
     }
 
     /// Where the contents stand.
-    fn place(&mut self, wanted: &[WantedContent]) {
-        let Some(own) = &self.city else { return };
-        let mut before = std::mem::take(&mut self.contents.shown);
+    fn place(&mut self, own: &CityOnGpu, wanted: &[WantedContent]) {
+        let mut before = std::mem::take(&mut self.shown);
         let shown = wanted.iter().map(|w| {
             let (id, placement) = (w.id(), w.placement);
-            let first_surface = self.contents.first_surface(own, (id, w.first_object, placement.rotation));
+            let first_surface = self.first_surface(own, (id, w.first_object, placement.rotation));
             let same = before.iter().position(|s| (s.id, s.placement) == (id, placement));
             let chunks = same.map_or_else(
                 || {
-                    let city = self.contents.city(own, id).filter(|_| !placement.is_none());
+                    let city = self.city(own, id).filter(|_| !placement.is_none());
                     let placed = |c: &Chunk| Chunk { bounds: placement.boxed(&c.bounds), ..c.clone() };
                     let sections = city.into_iter().flat_map(|city| &city.buffers.sections);
                     sections.map(|s| s.chunks.iter().map(placed).collect()).collect()
@@ -279,123 +261,50 @@ impl Renderer {
             let has_shadow = w.city.as_ref().is_none_or(|city| city.has_shadow);
             ShownContent { number: w.number, id, placement, has_shadow, first_surface, chunks }
         });
-        self.contents.shown = shown.collect();
+        self.shown = shown.collect();
     }
 
     /// The entry of the table of surfaces, of the scene's own city and of contents; of a section, whose it is.
-    pub fn surface(&self, number: u32) -> Option<layout::Surface> {
+    pub fn surface(&self, own: &CityOnGpu, number: u32) -> Option<layout::Surface> {
         if number & layout::SECTION != 0 {
             let object = Some(number & layout::SECTION_OBJECT).filter(|&object| object != layout::SECTION_OBJECT);
             return Some(layout::Surface::new(object.unwrap_or(layout::NO_OBJECT), 0, [0.0; 3], 0));
         }
-        let own = &self.city.as_ref()?.buffers.surface_table;
-        let table = if self.contents.surfaces.is_some() { &self.contents.table } else { own };
+        let table = if self.surfaces.is_some() { &self.table } else { &own.buffers.surface_table };
         table.get(number as usize).copied()
     }
 
-    /// The buffers of a content's city, by its name; 0: of the scene's own.
-    pub fn content_city(&self, id: u64) -> Option<&CityBuffers> {
-        self.contents.city(self.city.as_ref()?, id).map(|city| &city.buffers)
+    /// The cities beside the scene's own that the card holds.
+    pub fn others(&self) -> impl Iterator<Item = &CityOnGpu> {
+        self.cities.iter().map(|(_, city)| city)
     }
 
-    /// All cities that the card holds.
-    pub(super) fn cities(&self) -> impl Iterator<Item = &CityOnGpu> {
-        let deformed = self.deformed.iter().map(|deformed| &deformed.city);
-        self.city.iter().chain(deformed).chain(self.contents.cities.iter().map(|(_, city)| city))
-    }
-
-    /// What is drawn where this is hidden and shown.
-    pub(super) fn drawn_sections(&self, cut: Option<&Cut>) -> Vec<DrawnSection<'_>> {
-        let Some(own) = &self.city else { return Vec::new() };
-        let mut drawn = Vec::new();
-        let which = (None, 0, true);
-        match &self.deformed {
-            None => add_sections(&mut drawn, (own, &self.details), which, &[]),
-            Some(deformed) => {
-                add_sections(&mut drawn, (own, &self.details), which, &deformed.left);
-                add_sections(&mut drawn, (&deformed.city, &self.details), which, &[]);
-            }
-        }
-        for (i, content) in self.contents.shown.iter().enumerate() {
-            let is_asked = cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == content.number));
-            let offset = (i as u32 + 1) * STAGE_STRIDE as u32;
-            if let Some(city) = self.contents.city(own, content.id).filter(|_| is_asked) {
-                let which = (Some(content.number), offset, content.has_shadow);
-                add_sections(&mut drawn, (city, &self.details), which, &content.chunks);
-            }
-        }
-        drawn
-    }
-
-    /// The uniforms `City` of the scene's own city and of all contents, for an eye; nothing without contents.
-    pub(super) fn city_uniforms(&self, eye: DVec3) -> Vec<u8> {
-        if self.contents.shown.is_empty() {
-            return Vec::new();
-        }
-        let own = strided(&Placement::NONE.uniform(eye, 0, 0));
-        let contents =
-            self.contents.shown.iter().map(|c| strided(&c.placement.uniform(eye, c.number, c.first_surface)));
-        std::iter::once(own).chain(contents).flatten().collect()
-    }
-
-    /// The contents whose edges a frame draws: their edges, number, placement and offset.
-    pub(super) fn content_edges(&self) -> impl Iterator<Item = (&CityOnGpu, u32, &Placement, u32)> {
-        let own = self.city.as_ref();
-        let shown = self.contents.shown.iter().enumerate();
-        shown.filter_map(move |(i, content)| {
-            let city = self.contents.city(own?, content.id)?;
-            Some((city, content.number, &content.placement, (i as u32 + 1) * STAGE_STRIDE as u32))
+    /// The contents that frames may show.
+    pub fn placed<'a>(&'a self, own: &'a CityOnGpu) -> impl Iterator<Item = PlacedCity<'a>> {
+        self.shown.iter().enumerate().filter_map(move |(i, content)| {
+            Some(PlacedCity {
+                city: self.city(own, content.id)?,
+                number: content.number,
+                placement: &content.placement,
+                has_shadow: content.has_shadow,
+                chunks: &content.chunks,
+                offset: (i as u32 + 1) * STAGE_STRIDE as u32,
+            })
         })
     }
 
-    /// Box around what contents show that a frustum meets, and around all that they show, metres.
-    pub(super) fn content_bounds(&self, input: &FrameInput, frustum: &Frustum) -> [Aabb; 2] {
-        let mut found = [Aabb::EMPTY; 2];
-        let Some(own) = &self.city else { return found };
-        for content in &self.contents.shown {
-            let uses = input.operations.contents.iter().filter(|c| c.city == content.number);
-            let reaches = uses.flat_map(|c| reaches_of(Some(c.lens), c.class, input.volumes, &input.view));
-            let room = reaches.fold(Aabb::EMPTY, |all, reach| all.union(reach.bounds()));
-            let Some(city) = self.contents.city(own, content.id) else { continue };
-            for (i, section) in city.buffers.sections.iter().enumerate() {
-                for chunk in content.chunks.get(i).unwrap_or(&section.chunks) {
-                    let bounds = chunk.bounds;
-                    let part = Aabb { min: bounds.min.max(room.min), max: bounds.max.min(room.max) };
-                    if part.is_empty() {
-                        continue;
-                    }
-                    found[1] = found[1].union(part);
-                    if frustum.meets(&part) {
-                        found[0] = found[0].union(part);
-                    }
-                }
-            }
+    /// The uniforms `City` of the scene's own city and of all contents, for an eye; nothing without contents.
+    pub fn uniforms(&self, eye: DVec3) -> Vec<u8> {
+        if self.shown.is_empty() {
+            return Vec::new();
         }
-        found
+        let own = strided(&Placement::NONE.uniform(eye, 0, 0));
+        let contents = self.shown.iter().map(|c| strided(&c.placement.uniform(eye, c.number, c.first_surface)));
+        std::iter::once(own).chain(contents).flatten().collect()
     }
-}
 
-fn add_sections<'a>(
-    drawn: &mut Vec<DrawnSection<'a>>,
-    (city, details): (&'a CityOnGpu, &'a Details),
-    (content, offset, has_shadow): (Option<u32>, u32, bool),
-    chunks: &'a [Vec<Chunk>],
-) {
-    let sections = city.buffers.sections.iter().zip(&city.images).enumerate();
-    // Sections of coplanar faces follow each other from the lowest layer of a city up.
-    let mut layers = 0;
-    drawn.extend(sections.map(|(i, (section, image))| {
-        let is_coplanar = section.kind == SectionKind::Coplanar;
-        let layer = if is_coplanar { layers } else { 0 };
-        layers += u32::from(is_coplanar);
-        let chunks = chunks.get(i).unwrap_or(&section.chunks);
-        DrawnSection { city, section, image: image.as_ref(), chunks, content, offset, has_shadow, layer, details }
-    }));
-}
-
-impl Contents {
     /// The city that an id names.
-    fn city<'a>(&'a self, own: &'a CityOnGpu, id: u64) -> Option<&'a CityOnGpu> {
+    pub fn city<'a>(&'a self, own: &'a CityOnGpu, id: u64) -> Option<&'a CityOnGpu> {
         if id == 0 { Some(own) } else { self.cities.iter().find(|(i, _)| *i == id).map(|(_, city)| city) }
     }
 

@@ -3,7 +3,6 @@
 use glam::DVec2;
 
 use crate::{
-    gpu::Gpu,
     render::{
         city::Chunk,
         eye::{PictureTile, view_uniform},
@@ -11,28 +10,11 @@ use crate::{
         hiding::Hiding,
         layout,
         own_sprites::OwnSprites,
-        pipelines::{self, storage, uniform},
         volume::LensVolume,
     },
-    shader::{Plan, Program, handlers},
+    shader::{Plan, handlers},
     view::View,
 };
-
-/// What the shadow map binds where something is hidden, group 2: object values, parameters, invokers, the main view, shapes,
-/// sprites.
-pub(super) fn shapes_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    use wgpu::ShaderStages as S;
-    let entries = [
-        (1, S::FRAGMENT, storage()),
-        (2, S::FRAGMENT, uniform()),
-        (5, S::FRAGMENT, uniform()),
-        (7, S::VERTEX, uniform()),
-        (8, S::FRAGMENT, storage()),
-        (9, S::FRAGMENT, storage()),
-        (10, S::FRAGMENT, storage()),
-    ];
-    pipelines::layout(gpu, "shapes", &entries)
-}
 
 /// What is hidden from one eye.
 #[derive(Clone, Debug)]
@@ -50,13 +32,6 @@ pub(super) struct Cuts {
     pub sun: Option<Cut>,
 }
 
-/// The programs that hide it.
-#[derive(Clone, Debug, Default)]
-pub(super) struct CutPrograms {
-    pub picture: Option<Program>,
-    pub sun: Option<Program>,
-}
-
 /// Shapes of lens volumes for the sun, in the main view's space.
 pub(super) struct Shapes {
     pub eye: layout::View,
@@ -67,18 +42,6 @@ pub(super) struct Shapes {
 impl Cuts {
     pub fn all(&self) -> impl Iterator<Item = &Cut> {
         self.picture.iter().chain(&self.sun)
-    }
-
-    /// Written out.
-    pub fn specialised(&self) -> CutPrograms {
-        let program = |cut: &Option<Cut>| cut.as_ref().map(|cut| Program::Specialised(cut.plan.clone()));
-        CutPrograms { picture: program(&self.picture), sun: program(&self.sun) }
-    }
-
-    /// From the invoker table.
-    pub fn uber(&self, [picture, sun]: [Option<Program>; 2]) -> CutPrograms {
-        let program = |cut: &Option<Cut>, hiding: Option<Program>| cut.as_ref().and(hiding);
-        CutPrograms { picture: program(&self.picture, picture), sun: program(&self.sun, sun) }
     }
 }
 

@@ -8,14 +8,14 @@
 //!                          └ refined and moved (render::refinery) ─ sections of a city of its own, with a normal per vertex
 //! ```
 //!
-//! Whatever draws the city asks [`Renderer::drawn_sections`] and so draws this too: shadows, translucent layers, sections and sprites know
+//! Whatever draws the city asks [`Cities::drawn_sections`](crate::render::cities::Cities::drawn_sections) and so draws this too: shadows, translucent layers, sections and sprites know
 //! nothing of deformations. Which triangles are met is found on the host, once for deformations that stay; what they become, anew for every
 //! view, since edges are as fine as their error in pixels asks for.
 
 use std::{ops::Range, sync::Arc};
 
 use bytemuck::Zeroable;
-use glam::{DVec3, IVec3, Vec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
@@ -29,7 +29,9 @@ use crate::{
     },
     gpu::{Gpu, GpuError},
     render::{
-        city::{Chunk, CityBuffers, Section, SectionKind, provoking_corner},
+        city::{Chunk, CityBuffers, Section, SectionKind},
+        city_on_gpu::{CityOnGpu, image_of},
+        city_source::Source,
         deform_words::Lattice,
         deformations::Moved,
         deformed_edges::deformed_edges,
@@ -38,7 +40,7 @@ use crate::{
         heights::{Height, Heights},
         layout::{self, CityVertex},
         refinery::{LAYER_SHIFT, Made, Refinery, Rest, TURNED},
-        renderer::{CityOnGpu, Renderer},
+        resource::pipelines::Pipelines,
     },
     view::View,
 };
@@ -64,16 +66,6 @@ const NARROWEST: f64 = 4.0 / (1 << 23) as f64;
 /// at least.
 const SUPPORT_ERROR: f64 = 4.0 / (1 << 23) as f64;
 const LEAST_SUPPORT_ERROR_M: f64 = 1e-3;
-
-/// The corners of a section, on the host.
-#[derive(Debug)]
-pub(super) struct Source {
-    /// Which corner of a triangle flat values come from.
-    provoking: usize,
-    vertices: Vec<CityVertex>,
-    indices: Vec<u32>,
-    texcoords: Vec<[f32; 2]>,
-}
 
 /// What a deformed city was made of.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,68 +119,77 @@ pub struct DeformedFigures {
     pub report: Report,
 }
 
-impl Renderer {
-    /// Makes the deformed city fit a frame; nothing is made where it does.
-    pub(super) fn fit_deformed(&mut self, input: &FrameInput) -> Result<(), GpuError> {
-        let Some(city) = &mut self.city else { return Ok(()) };
+/// What deforms a city, and what deformations meet of it, whatever the view.
+#[derive(Debug, Default)]
+pub(super) struct Deforming {
+    met: Option<Met>,
+    refinery: Option<Refinery>,
+    /// Cities that were there so far.
+    cities: u64,
+}
+
+impl Deforming {
+    /// Another city is there now.
+    pub fn begin_city(&mut self) {
+        self.met = None;
+        self.cities += 1;
+    }
+
+    /// Makes the deformed city fit a frame; nothing is made where it does. Whether it is another one now.
+    pub fn fit(
+        &mut self,
+        gpu: &Gpu,
+        pipelines: &Pipelines,
+        city: &mut CityOnGpu,
+        deformed: &mut Option<Deformed>,
+        input: &FrameInput,
+    ) -> Result<bool, GpuError> {
         if input.moved.is_nothing() {
-            // What was moved cast another shadow.
-            if self.deformed.take().is_some() {
-                self.shadow_of = None;
-            }
-            return Ok(());
+            return Ok(deformed.take().is_some());
         }
         let of = Of {
             moved: input.moved.clone(),
             view: input.view,
             chord_px: input.chord_px,
-            city: self.city_number,
+            city: self.cities,
             edges: city.edges.is_some(),
         };
-        if self.deformed.as_ref().is_some_and(|deformed| deformed.of == of) {
-            return Ok(());
+        if deformed.as_ref().is_some_and(|deformed| deformed.of == of) {
+            return Ok(false);
         }
-        self.shadow_of = None;
         if city.sources.is_none() {
-            let sources = city.buffers.sections.iter().map(|section| Source::read(&self.gpu, section));
+            let sources = city.buffers.sections.iter().map(|section| Source::read(gpu, section));
             city.sources = Some(sources.collect::<Result<_, _>>()?);
         }
         if let (None, Some(edges)) = (&city.edge_sources, &city.edges) {
-            city.edge_sources = Some(bytemuck::pod_collect_to_vec(&self.gpu.read_buffer(&edges.instances)?));
+            city.edge_sources = Some(bytemuck::pod_collect_to_vec(&gpu.read_buffer(&edges.instances)?));
         }
         let is_met = |met: &Met| met.moved == of.moved && met.city == of.city;
         let met = match self.met.take().filter(is_met) {
             Some(met) => met,
-            None => Met::new(&self.gpu, city, &of)?,
+            None => Met::new(gpu, city, &of)?,
         };
         let mut refinery = match self.refinery.take() {
             Some(refinery) => refinery,
-            None => Refinery::new(&self.gpu)?,
+            None => Refinery::new(gpu)?,
         };
-        let stage = stage_of(&of.view, &met.rest.lattice, (of.chord_px, city.buffers.smooth));
-        let made = refinery.refined(&self.gpu, &met.rest, &stage)?;
+        let stage = stage_of(&of.view, &met.rest.lattice, of.chord_px, city.buffers.smooth);
+        let made = refinery.refined(gpu, &met.rest, &stage)?;
         self.refinery = Some(refinery);
-        self.deformed = self.deformed_of(&met, made, of)?;
+        *deformed = Some(Deformed::new(gpu, pipelines, city, &met, made, of)?);
         self.met = Some(met);
-        Ok(())
+        Ok(true)
     }
 
-    /// What the deformations of the last frame took; `None`: there were none.
-    pub fn deformed_figures(&self) -> Option<DeformedFigures> {
-        self.deformed.as_ref().map(|deformed| deformed.figures)
-    }
-
-    /// How far the bent edges of the last frame are from where they should be, by brute force in f64, pixels: the median of those that are
+    /// How far the bent edges of a deformed city are from where they should be, by brute force in f64, pixels: the median of those that are
     /// off at all, and the farthest. `None`: nothing is refined.
     ///
     /// # Errors
     /// What the card cannot read back.
-    pub fn chords(&self) -> Result<Option<[f64; 2]>, GpuError> {
-        let (Some(refinery), Some(met), Some(deformed)) = (&self.refinery, &self.met, &self.deformed) else {
-            return Ok(None);
-        };
+    pub fn chords(&self, gpu: &Gpu, deformed: &Deformed) -> Result<Option<[f64; 2]>, GpuError> {
+        let (Some(refinery), Some(met)) = (&self.refinery, &self.met) else { return Ok(None) };
         let Of { moved, view, .. } = &deformed.of;
-        let edges = refinery.edges(&self.gpu, &met.rest, deformed.figures.triangles as u32)?;
+        let edges = refinery.edges(gpu, &met.rest, deformed.figures.triangles as u32)?;
         let off = |[a, b]: &[DVec3; 2]| {
             let [start, end] = [*a, *b].map(|place| moved.deformers.value(place));
             let at = |i: u32| {
@@ -202,9 +203,17 @@ impl Renderer {
         all.sort_by(f64::total_cmp);
         Ok(all.last().map(|worst| [all[all.len() / 2], *worst]))
     }
+}
 
-    fn deformed_of(&self, met: &Met, made: Made, of: Of) -> Result<Option<Deformed>, GpuError> {
-        let Some(city) = &self.city else { return Ok(None) };
+impl Deformed {
+    fn new(
+        gpu: &Gpu,
+        pipelines: &Pipelines,
+        city: &CityOnGpu,
+        met: &Met,
+        made: Made,
+        of: Of,
+    ) -> Result<Self, GpuError> {
         let figures = DeformedFigures {
             met: u64::from(met.rest.triangles),
             triangles: u64::from(made.triangles),
@@ -216,25 +225,8 @@ impl Renderer {
             },
         };
         let bounds = made.chunks.iter().fold(Aabb::EMPTY, |all, (_, bounds)| all.union(*bounds));
-        let sections = met.sections.iter().map(|(kind, chunks)| Section {
-            // What is bent is in no plane.
-            kind: if *kind == SectionKind::Coplanar { SectionKind::Plain } else { *kind },
-            vertices: made.vertices.clone(),
-            indices: made.indices.clone(),
-            extra: made.texcoords.clone().filter(|_| matches!(kind, SectionKind::Textured { .. })),
-            chunks: met.chunks[chunks.clone()]
-                .iter()
-                .zip(&made.chunks[chunks.clone()])
-                .map(|(chunk, (range, bounds))| Chunk {
-                    range: 3 * range.start..3 * range.end,
-                    bounds: *bounds,
-                    ..chunk.clone()
-                })
-                .collect(),
-        });
-        let sections: Vec<Section> = sections.collect();
-        let images = met.sections.iter().map(|(kind, _)| self.image_of(&city.buffers, *kind)).collect();
-        let buffers = CityBuffers::of_sections(sections, city.buffers.surfaces.clone(), bounds);
+        let images = met.sections.iter().map(|(kind, _)| image_of(gpu, pipelines, &city.buffers, *kind)).collect();
+        let buffers = CityBuffers::of_sections(sections_of(met, &made), city.buffers.surfaces.clone(), bounds);
         let view = of.view;
         let pixels_per_m = move |place: DVec3| pixels_per_m(&view, place);
         let refiner = Refiner {
@@ -245,18 +237,36 @@ impl Renderer {
         };
         let of_city = city.edges.as_ref().zip(city.edge_sources.as_ref());
         let edges = of_city
-            .map(|(edges, all)| {
-                deformed_edges(&self.gpu, (edges, all), &refiner, &raised_of(&city.buffers, &of.moved.heights))
-            })
+            .map(|(edges, all)| deformed_edges(gpu, edges, all, &refiner, &raised_of(&city.buffers, &of.moved.heights)))
             .transpose()?;
-        let city =
-            CityOnGpu { group: city.group.clone(), images, buffers, edges: None, sources: None, edge_sources: None };
-        Ok(Some(Deformed { of, left: met.left.clone(), city, edges, figures }))
+        let city = CityOnGpu::beside(city, images, buffers);
+        Ok(Self { of, left: met.left.clone(), city, edges, figures })
     }
 }
 
+/// The sections that are moved, each of the chunks of one that is met.
+fn sections_of(met: &Met, made: &Made) -> Vec<Section> {
+    let section = |(kind, chunks): &(SectionKind, Range<usize>)| Section {
+        // What is bent is in no plane.
+        kind: if *kind == SectionKind::Coplanar { SectionKind::Plain } else { *kind },
+        vertices: made.vertices.clone(),
+        indices: made.indices.clone(),
+        extra: made.texcoords.clone().filter(|_| matches!(kind, SectionKind::Textured { .. })),
+        chunks: met.chunks[chunks.clone()]
+            .iter()
+            .zip(&made.chunks[chunks.clone()])
+            .map(|(chunk, (range, bounds))| Chunk {
+                range: 3 * range.start..3 * range.end,
+                bounds: *bounds,
+                ..chunk.clone()
+            })
+            .collect(),
+    };
+    met.sections.iter().map(section).collect()
+}
+
 /// The view as what is refined is seen in it.
-fn stage_of(view: &View, lattice: &Lattice, (chord_px, is_smooth): (f64, bool)) -> layout::Refinement {
+fn stage_of(view: &View, lattice: &Lattice, chord_px: f64, is_smooth: bool) -> layout::Refinement {
     let (eye, offset) = lattice.cell_of(view.camera.eye);
     layout::Refinement {
         eye: eye.to_array(),
@@ -430,26 +440,6 @@ impl MetPart {
                 self.texcoords.push(source.texcoords.get(i).copied().unwrap_or_default());
             }
         }
-    }
-}
-
-impl Source {
-    /// What the card has of a section.
-    fn read(gpu: &Gpu, section: &Section) -> Result<Self, GpuError> {
-        let of = |buffer: &wgpu::Buffer| gpu.read_buffer(buffer);
-        let texcoords = match (section.kind, &section.extra) {
-            (SectionKind::Textured { .. }, Some(extra)) => bytemuck::pod_collect_to_vec(&of(extra)?),
-            _ => Vec::new(),
-        };
-        let vertices = bytemuck::pod_collect_to_vec(&of(&section.vertices)?);
-        let provoking = provoking_corner(gpu);
-        Ok(Self { provoking, vertices, indices: bytemuck::pod_collect_to_vec(&of(&section.indices)?), texcoords })
-    }
-
-    /// Where a vertex is, exactly.
-    fn place(&self, index: u32) -> DVec3 {
-        let CityVertex { origin, position, .. } = self.vertices[index as usize];
-        IVec3::from(origin).as_dvec3() + Vec3::from(position).as_dvec3()
     }
 }
 

@@ -20,7 +20,8 @@ use crate::{
 /// The edges that stay as they are, and those that deformations reach.
 pub(super) fn deformed_edges(
     gpu: &Gpu,
-    (edges, all): (&EdgeBuffers, &[Edge]),
+    edges: &EdgeBuffers,
+    all: &[Edge],
     refiner: &Refiner,
     raised: &[Option<Height>],
 ) -> Result<[EdgeBuffers; 2], GpuError> {

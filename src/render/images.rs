@@ -13,9 +13,22 @@ use crate::{
     gpu::Gpu,
     render::{
         furniture::Furniture,
-        pipelines::{PICTURE, Pipelines},
-        renderer::group,
+        resource::{
+            bindings::{GroupLayout, SAMPLED, SAMPLER, group},
+            formats::PICTURE,
+            pipelines::Pipelines,
+        },
     },
+};
+
+/// Group 1 of furniture with an image: the picture of an overlay, its mask, a sampler.
+pub(super) static FURNITURE_PICTURE: GroupLayout = GroupLayout {
+    label: "furniture's pictures",
+    entries: &[
+        (0, wgpu::ShaderStages::FRAGMENT, SAMPLED),
+        (1, wgpu::ShaderStages::FRAGMENT, SAMPLED),
+        (2, wgpu::ShaderStages::FRAGMENT, SAMPLER),
+    ],
 };
 
 /// Images by number; straight alpha, but for those of boards.
@@ -156,7 +169,7 @@ impl Images {
             Some(mask) => &self.kept.get(&mask)?.view,
         };
         let entries = [(0, R::TextureView(image)), (1, R::TextureView(mask)), (2, R::Sampler(&self.sampler))];
-        Some(group(gpu, "image over the picture", &pipelines.layouts.furniture_picture, &entries))
+        Some(group(gpu, "image over the picture", &pipelines.layout(&FURNITURE_PICTURE), &entries))
     }
 }
 

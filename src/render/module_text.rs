@@ -1,6 +1,7 @@
 //! The text of the modules that a frame runs, for people to read (H4).
 
 use crate::{
+    geom::Aabb,
     lens::Lens,
     render::{
         frame::{Backend, FrameInput, ShaderPart},
@@ -16,7 +17,8 @@ const NOTHING_TRANSLUCENT: &str = "// Nothing is translucent.\n";
 impl Renderer {
     /// The text of a module as it runs where the lenses are in the picture; without lenses in view everywhere.
     pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
-        let seen = seen_volumes(input, &self.drawn_box(), (0, 0)).volumes;
+        let bounds = self.cities().map_or(Aabb::EMPTY, |cities| cities.bounds());
+        let seen = seen_volumes(input, &bounds, (0, 0)).volumes;
         let plans = Plans::new(input, &seen);
         let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
         let is_written_out = input.backend == Backend::Specialised && !plans.is_long();

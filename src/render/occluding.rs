@@ -1,11 +1,9 @@
 //! Whom the occlusion lenses of a scene find (O2), and how these come and go over time (O6).
 
-use std::sync::{MutexGuard, PoisonError};
-
 use crate::{
     lens::{Lens, rendering::When},
     render::{
-        occlusion::{Occlusion, Passing},
+        occlusion::Passing,
         picture::{RenderError, Studio},
         placement::Eye,
         stats,
@@ -23,11 +21,6 @@ fn cases_of(lens: &Lens) -> Vec<When> {
 }
 
 impl Studio {
-    /// What is known of occluders.
-    pub(super) fn occlusion(&self) -> MutexGuard<'_, Occlusion> {
-        self.occlusion.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually (O6). The first time everything
     /// begins settled. A picture of that scene then has its history; one of another moment has none.
     pub fn pass(&mut self, scene: &Scene, size: [u32; 2], dt: f64) -> Result<(), RenderError> {
@@ -37,44 +30,47 @@ impl Studio {
             lenses.push(Passing { name: &lens.name, of, when: cases_of(lens) });
         }
         let eye = Eye::new(&self.camera(scene, size))?;
-        let mut occlusion = self.occlusion();
-        occlusion.pass(&lenses, &scene.standing_pois(), self.shown(), eye.viewer(), dt);
+        self.known().occlusion.pass(&lenses, &scene.standing_pois(), self.shown(), eye.viewer(), dt);
         Ok(())
     }
 
     /// Per object of the city, how far it is drawn as an occluder of a lens, by its name, 0 to 1, since time last passed
     /// ([`Self::pass`]); `None` of a lens that was not there then.
     pub fn occluder_weights(&self, lens: &str) -> Option<Vec<f32>> {
-        self.occlusion().weights(lens)
+        self.known().occlusion.weights(lens)
     }
 
     /// Of each case that a lens draws occluders in, the same: together they are its weights, less what is drawn in no case.
     pub fn case_weights(&self, lens: &str) -> Option<Vec<Vec<f32>>> {
-        self.occlusion().case_weights(lens, self.shown())
+        self.known().occlusion.case_weights(lens, self.shown())
     }
 
     /// How often the city was asked for occluders so far.
     pub fn occlusion_tests(&self) -> u64 {
-        self.occlusion().asked()
+        self.known().occlusion.asked()
     }
 
     /// Whom an occlusion lens finds, with reasons; `None` for other lenses.
     pub(super) fn occluders(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<Vec<stats::Occluder>> {
         let of = lens.occluders()?;
         let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };
-        let mut occlusion = self.occlusion();
-        Some(occlusion.explained(&lens.name, (of, &cases_of(lens)), &scene.standing_pois(), self.shown(), eye.viewer()))
+        Some(self.known().occlusion.explained(
+            &lens.name,
+            (of, &cases_of(lens)),
+            &scene.standing_pois(),
+            self.shown(),
+            eye.viewer(),
+        ))
     }
 
     /// How many of them come and go; `None` where no time passed up to here.
     pub(super) fn over_time(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<stats::OverTime> {
         let (of, eye) = (lens.occluders().filter(|_| lens.enabled)?, Eye::new(&view.camera).ok()?);
-        let occlusion = self.occlusion();
-        occlusion.over_time(&lens.name, of, &scene.standing_pois(), eye.viewer())
+        self.known().occlusion.over_time(&lens.name, of, &scene.standing_pois(), eye.viewer())
     }
 
     /// Whether occluders come, go or change at the moment up to which time passed ([`Self::pass`]).
     pub fn is_fading(&self) -> bool {
-        self.occlusion().is_fading()
+        self.known().occlusion.is_fading()
     }
 }

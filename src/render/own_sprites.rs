@@ -12,12 +12,12 @@ use crate::{
         sprite::{DepthCode, Mapping},
     },
     render::{
+        bake::BakeRequest,
         eye::PictureTile,
         frame::FrameInput,
         layout,
-        renderer::Renderer,
         solids::SolidTable,
-        stored::{KeptSprite, Making, Stored, code_of},
+        stored::{KeptSprite, Stored, code_of},
         volume::LensVolume,
     },
     shader::VolumeTest,
@@ -268,7 +268,7 @@ impl OwnSprites {
         input: &FrameInput<'a>,
         is_needed: impl Fn(usize) -> bool,
         mut lists: u64,
-    ) -> Vec<Making<'a>> {
+    ) -> Vec<BakeRequest<'a>> {
         let mut all = Vec::new();
         for one in self.list.iter().filter(|one| !one.is_made && !one.bounds.is_empty() && is_needed(one.volume)) {
             let Source::Shapes(shapes) = &one.from else { continue };
@@ -279,7 +279,7 @@ impl OwnSprites {
                 lists += u64::from(stored.width(one.bounds.size[0])) * u64::from(one.bounds.size[1]);
             }
             let (size, bounds) = (one.space.size, one.bounds);
-            all.push(Making { lens: one.lens, body, size, bounds, stored, own: Some(shapes.view) });
+            all.push(BakeRequest { lens: one.lens, body, size, bounds, stored, own: Some(shapes.view) });
         }
         all
     }
@@ -346,16 +346,7 @@ impl OwnSprites {
     }
 
     /// The places among the counts of those that are made.
-    pub fn counts_of<'a>(making: &'a [Making<'a>]) -> impl Iterator<Item = u32> {
-        making.iter().filter(|one| one.own.is_some() && one.stored.excess > 0).map(|one| one.stored.excess)
-    }
-}
-
-impl Renderer {
-    /// Puts the sprites of files on the card that are not there yet, and notes the others as made.
-    pub(super) fn finish_own_sprites(&mut self, is_needed: impl Fn(usize) -> bool) {
-        for (first, words) in self.own_sprites.note_made(is_needed) {
-            self.gpu.write_from(self.buffers.sprites.buffer(), 4 * u64::from(first), &words);
-        }
+    pub fn counts_of<'a>(requests: &'a [BakeRequest<'a>]) -> impl Iterator<Item = u32> {
+        requests.iter().filter(|one| one.own.is_some() && one.stored.excess > 0).map(|one| one.stored.excess)
     }
 }

@@ -6,13 +6,12 @@ use crate::{
     lens::color::{Srgb, linear_from_srgb},
     render::{
         eye::PictureTile,
-        frame::color_attachment,
-        furniture::{Furniture, FurnitureOnGpu, Over},
+        furniture::Furniture,
+        furniture_on_gpu::{FurnitureKey, FurnitureOnGpu, Over},
         images::Of,
-        key::Key,
         parts::{parts, put},
-        pipelines::PICTURE,
         renderer::Renderer,
+        resource::{formats::PICTURE, key::Key, recording::cleared},
         told,
     },
 };
@@ -70,7 +69,7 @@ impl Renderer {
         ground: wgpu::Color,
     ) -> Result<wgpu::Texture, GpuError> {
         for part in furniture.parts() {
-            self.pipelines.prepare(&Key::Furniture { layered: false, part });
+            self.pipelines.prepare(&Key::from(FurnitureKey { layered: false, part }));
         }
         let [width, height] = over.tile.size;
         on_gpu.fit(&self.gpu, &self.pipelines, &self.images, furniture, over)?;
@@ -80,7 +79,7 @@ impl Renderer {
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("page"),
-            color_attachments: &[Some(color_attachment(&view, ground))],
+            color_attachments: &[Some(cleared(&view, ground))],
             ..Default::default()
         });
         on_gpu.draw(&mut pass, &self.gpu, &self.pipelines, &self.images, false);

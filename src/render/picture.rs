@@ -3,7 +3,7 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::{
-        Arc, Mutex, OnceLock, PoisonError,
+        Arc, Mutex, MutexGuard, OnceLock, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
     time::Instant,
@@ -22,39 +22,30 @@ use crate::{
     },
     geom::{Aabb, deform::Deformers},
     gpu::{Gpu, GpuError, Timer},
-    lens::solids::{ShownCity, Solids},
+    lens::solids::ShownCity,
     render::{
-        Renderer,
         best_views::KnownViews,
-        body::Leaf,
         city::Shown,
-        content_cities::{self, ContentCities, SceneContents},
-        deformations::{self, KnownDeformations, Moved, SceneDeformations},
+        deformations::Moved,
         deformed::DeformedFigures,
         eye::PictureTile,
-        footprints::{self, OwnFootprints},
-        frame::{Backend, CLEAR_MASKS, FrameInput, PassRecord, ShaderPart},
+        footprints::OwnFootprints,
+        frame::{Backend, FrameInput, ShaderPart},
         furniture::{self, Furniture},
         insets::Inset,
-        layers::LayerFigures,
+        layers::{LayerFigures, MethodFigures},
         lens_figures::lens_figures,
-        lens_volumes::{LensVolumes, Tools, volumes_of},
-        occlusion::Occlusion,
-        operations::{LensTables, MOST_FILTERS, Operations},
         parts::{Part, parts, put, whole},
-        placement::Eye,
-        regions,
-        sights::sights,
-        solids::SolidTable,
+        pass::masks::CLEAR_MASKS,
+        renderer::Renderer,
+        resolve::{Known, ResolveError, Resolved, Surroundings},
+        resource::recording::PassRecord,
         stats::{self, Statistics},
         stored::SpriteTexels,
-        told,
-        transparency::MethodFigures,
-        visible_share,
+        told, visible_share,
         volume::LensVolume,
     },
     scene::{CitySpec, Drawn, Scene},
-    shader::{MOST_SLOTS, MOST_VOLUMES},
     view::{Camera, CameraError, View, first_view},
 };
 
@@ -76,6 +67,15 @@ pub enum RenderError {
     /// [`Studio::interrupt`] said so.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<ResolveError> for RenderError {
+    fn from(error: ResolveError) -> Self {
+        match error {
+            ResolveError::Camera(error) => Self::Camera(error),
+            ResolveError::Scene(message) => Self::Scene(message),
+        }
+    }
 }
 
 /// Which AOVs a picture brings along; all of the unjittered sample at the pixel's centre.
@@ -193,35 +193,20 @@ pub struct Studio {
     pub load: stats::Load,
     /// How [`Studio::redraw`] makes shaders.
     pub backend: Backend,
-    /// Solids of lenses made so far, and as the card reads them.
-    solids: Mutex<Solids>,
-    solid_table: Mutex<Arc<SolidTable>>,
-    /// Whom occlusion lenses found last.
-    pub(super) occlusion: Mutex<Occlusion>,
+    /// What stays from scene to scene.
+    pub(super) known: Mutex<Known>,
     /// Where it is `true`, a picture of several samples ends after the one that is being drawn, as [`RenderError::Interrupted`].
     pub interrupt: Arc<AtomicBool>,
     /// How contents of lenses are loaded.
     pub reading: LoadOptions,
-    /// Those loaded so far.
-    content_cities: Mutex<ContentCities>,
     /// From where objects are seen best, by object and field of view.
     pub(super) known_views: Mutex<KnownViews>,
-    known_deformations: Mutex<KnownDeformations>,
     /// Pictures from other eyes, by number.
     pub(super) insets: BTreeMap<u64, Inset>,
     /// Where the shown triangles are, made for the first picture whose lenses are counted.
     index: Arc<OnceLock<SpatialIndex>>,
     /// What its objects cover of the ground, once an effect asks for it.
     footprints: OwnFootprints,
-}
-
-/// Everything of a scene that does not depend on the eye.
-struct Prepared {
-    volumes: Vec<LensVolume>,
-    solids: Arc<SolidTable>,
-    operations: Operations,
-    contents: SceneContents,
-    deformations: SceneDeformations,
 }
 
 impl Studio {
@@ -258,13 +243,9 @@ impl Studio {
             ground,
             load: stats::Load::default(),
             backend: Backend::default(),
-            solids: Mutex::default(),
-            solid_table: Mutex::default(),
-            occlusion: Mutex::default(),
+            known: Mutex::default(),
             reading: LoadOptions::default(),
-            content_cities: Mutex::default(),
             known_views: Mutex::default(),
-            known_deformations: Mutex::default(),
             interrupt: Arc::default(),
             insets: BTreeMap::new(),
             index: Arc::default(),
@@ -326,24 +307,23 @@ impl Studio {
     ) -> Result<Picture, RenderError> {
         let started = Instant::now();
         let drawn = scene.drawn();
-        let prepared = self.prepare(&drawn, request.size)?;
-        let view = self.view(scene, request.size, &prepared)?;
+        let resolved = self.resolve(&drawn, request.size)?;
         let mut picture = Picture::empty(request, drawn.scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
-        self.find_cities(&prepared)?;
+        self.find_cities(&resolved)?;
         for part in parts(request.size) {
-            self.render_part(&drawn, request, &prepared, &view, part, furniture, &mut picture, &mut passes)?;
+            self.render_part(&drawn, request, &resolved, part, furniture, &mut picture, &mut passes)?;
         }
-        picture.open = told::open_shells(self, &prepared.volumes, &prepared.operations);
-        picture.not_derived = told::not_derived(&prepared.contents);
-        picture.weakened = prepared.deformations.weakened.clone();
+        picture.open = told::open_shells(self, &resolved.volumes, &resolved.operations);
+        picture.not_derived = told::not_derived(&resolved.contents);
+        picture.weakened = resolved.deformations.weakened.clone();
         picture.deformed = self.renderer.deformed_figures();
         picture.without_glyph = told::without_glyph(furniture);
         picture.fold(&drawn, scene.lenses.len());
         told::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
         if request.statistics {
-            picture.statistics = self.statistics(scene, &drawn, request, &prepared, &view, &picture, passes);
+            picture.statistics = self.statistics(scene, &drawn, request, &resolved, &picture, passes);
             let frame = &mut picture.statistics.frame;
             frame.cpu_ms = started.elapsed().as_secs_f64() * 1e3;
             (frame.allocations, frame.uploads) = picture.made;
@@ -381,12 +361,10 @@ impl Studio {
         most_triangles: Option<u64>,
     ) -> Result<Vec<stats::Pass>, RenderError> {
         let drawn = scene.drawn();
-        let prepared = self.prepare(&drawn, request.size)?;
-        let view = self.view(scene, request.size, &prepared)?;
+        let resolved = self.resolve(&drawn, request.size)?;
         let whole = PictureTile::whole(request.size);
-        self.find_cities(&prepared)?;
-        let mut input =
-            FrameInput { furniture, most_triangles, ..input(&drawn.scene, request, &prepared, view, whole) };
+        self.find_cities(&resolved)?;
+        let mut input = FrameInput { furniture, most_triangles, ..input(&drawn.scene, request, &resolved, whole) };
         let mut passes = Vec::new();
         for sample in 0..input.samples {
             input.sample = sample;
@@ -407,9 +385,9 @@ impl Studio {
     }
 
     /// Puts contents of lenses on the card, and edges the first time that something draws lines.
-    fn find_cities(&mut self, prepared: &Prepared) -> Result<(), RenderError> {
-        let edges = prepared.operations.draws_lines();
-        self.renderer.set_contents(&prepared.contents.wanted, self.ground.as_ref(), edges)?;
+    fn find_cities(&mut self, resolved: &Resolved) -> Result<(), RenderError> {
+        let edges = resolved.operations.draws_lines();
+        self.renderer.set_contents(&resolved.contents.wanted, self.ground.as_ref(), edges)?;
         if self.renderer.has_edges() || !edges {
             return Ok(());
         }
@@ -448,24 +426,39 @@ impl Studio {
         part: ShaderPart,
     ) -> Result<String, RenderError> {
         let drawn = scene.drawn();
-        let prepared = self.prepare(&drawn, size)?;
-        let view = self.view(scene, size, &prepared)?;
+        let resolved = self.resolve(&drawn, size)?;
         let request = Request { backend, ..Request::plain(size) };
-        let input = input(&drawn.scene, &request, &prepared, view, whole(size));
+        let input = input(&drawn.scene, &request, &resolved, whole(size));
         Ok(self.renderer.shader(&input, &drawn.scene.lenses, part))
     }
 
-    fn view(&self, scene: &Scene, size: [u32; 2], prepared: &Prepared) -> Result<View, CameraError> {
-        let own = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let own = prepared.deformations.moved.bounds(&own);
-        let drawn = own.union(prepared.contents.bounds(&own, &prepared.volumes));
-        View::new(self.camera(scene, size), size, &drawn)
+    /// The surroundings that scenes are resolved in.
+    fn surroundings(&self) -> Surroundings<'_> {
+        Surroundings {
+            city: self.shown(),
+            model: &self.model,
+            facts: self.renderer.cities().map(|cities| cities.facts()),
+            footprints: &self.footprints,
+            reading: &self.reading,
+        }
+    }
+
+    /// What stays from scene to scene.
+    pub(super) fn known(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What a scene is in a picture of this size.
+    fn resolve(&self, drawn: &Drawn, size: [u32; 2]) -> Result<Resolved, RenderError> {
+        let camera = self.camera(&drawn.scene, size);
+        Ok(self.surroundings().resolve(drawn, &camera, size, &mut self.known())?)
     }
 
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
     pub fn lenses_in_view(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<bool>, RenderError> {
-        let volumes = self.lens_volumes(scene, size)?;
-        let view = View::new(self.camera(scene, size), size, &Aabb::EMPTY)?;
+        let camera = self.camera(scene, size);
+        let volumes = self.volumes_from(scene, &camera)?;
+        let view = View::new(camera, size, &Aabb::EMPTY)?;
         let mut seen = vec![false; scene.lenses.len()];
         for volume in volumes.iter().filter(|v| v.seen_part(&view, whole(size)).is_some()) {
             seen[volume.lens as usize] = true;
@@ -475,81 +468,15 @@ impl Studio {
 
     /// The volumes of the scene's enabled lenses where they stand in a picture of this size.
     pub fn lens_volumes(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<LensVolume>, RenderError> {
+        self.volumes_from(scene, &self.camera(scene, size))
+    }
+
+    /// The volumes of the scene's enabled lenses where they stand for an eye.
+    fn volumes_from(&self, scene: &Scene, camera: &Camera) -> Result<Vec<LensVolume>, RenderError> {
         let drawn = scene.drawn();
-        let mut volumes = self.volumes_of(&drawn, size)?.volumes;
+        let mut volumes = self.surroundings().volumes(&drawn, camera, &mut self.known())?;
         volumes.iter_mut().for_each(|volume| volume.lens = drawn.owner(volume.lens));
         Ok(volumes)
-    }
-
-    fn volumes_of(&self, drawn: &Drawn, size: [u32; 2]) -> Result<LensVolumes, RenderError> {
-        let (city, scene) = (self.shown(), &*drawn.scene);
-        let moved = self.deformations(scene, size)?.moved;
-        let mut solids = self.solids.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut occlusion = self.occlusion();
-        let eye = Eye::new(&self.camera(scene, size))?;
-        let mut tools = Tools {
-            solids: &mut solids,
-            occlusion: &mut occlusion,
-            pois: &scene.pois,
-            viewer: eye.viewer(),
-            moved: &moved,
-            lens: "",
-            is_enabled: true,
-        };
-        volumes_of(drawn, city, &eye, &mut tools).map_err(RenderError::Scene)
-    }
-
-    fn prepare(&self, drawn: &Drawn, size: [u32; 2]) -> Result<Prepared, RenderError> {
-        let mut found = self.volumes_of(drawn, size)?;
-        let scene = &*drawn.scene;
-        let technique = scene.style.technique;
-        if let Some(problem) = technique.refuses(scene).or_else(|| regions::refused(scene, &found.volumes)) {
-            return Err(RenderError::Scene(problem.to_string()));
-        }
-        regions::set_tests(technique, &mut found.volumes);
-        let solids = {
-            let mut kept = self.solid_table.lock().unwrap_or_else(PoisonError::into_inner);
-            *kept = found.place_solids(&kept).map_err(RenderError::Scene)?;
-            kept.clone()
-        };
-        let deformations = self.deformations(scene, size)?;
-        let LensVolumes { mut volumes, tests } = found;
-        let contents = self.contents(drawn, size, &volumes)?;
-        let models: Vec<&CityModel> = std::iter::once(&self.model).chain(&contents.models).map(|m| &**m).collect();
-        let objects = models.iter().map(|model| model.objects.len()).sum();
-        let mut present = vec![false; scene.lenses.len()];
-        for volume in &volumes {
-            present[volume.lens as usize] = true;
-        }
-        let sights = {
-            let mut occlusion = self.occlusion();
-            sights(scene, self.shown(), &Eye::new(&self.camera(scene, size))?, &mut occlusion)
-        };
-        let footprints = footprints::tables(scene, self.shown(), &self.footprints, &contents, &volumes);
-        let tables = LensTables { sights, footprints };
-        let mut operations = Operations::new(&scene.style.effects, &scene.lenses, &present, tests, &models, &tables)
-            .map_err(|error| RenderError::Scene(error.to_string()))?;
-        operations.contents.clone_from(&contents.uses);
-        for volume in &mut volumes {
-            for leaf in volume.body.leaves_mut() {
-                if let Leaf::Members(members) = &leaf.leaf {
-                    leaf.place.first = operations.add_members(members, objects);
-                }
-            }
-        }
-        let all: Vec<u32> = volumes.iter().map(|v| v.lens).collect();
-        let counts = [
-            ("volumes", volumes.len(), MOST_VOLUMES as usize),
-            ("parameters of effects and outlines, in fours,", operations.parameters.len(), MOST_SLOTS as usize),
-            ("different neighbourhood filters", operations.filters(&all, false).len(), MOST_FILTERS),
-        ];
-        for (what, count, most) in counts {
-            if count > most {
-                let message = format!("the lenses have {count} {what} together; one picture takes {most}");
-                return Err(RenderError::Scene(message));
-            }
-        }
-        Ok(Prepared { volumes, solids, operations, contents, deformations })
     }
 
     /// How the city is shown in a picture of a scene of this size, in the world.
@@ -557,7 +484,9 @@ impl Studio {
     /// # Errors
     /// What a deformation lens cannot do.
     pub fn moved(&self, scene: &Scene, size: [u32; 2]) -> Result<Moved, RenderError> {
-        self.deformations(&scene.drawn().scene, size).map(|found| found.moved)
+        let drawn = scene.drawn();
+        let camera = self.camera(&drawn.scene, size);
+        Ok(self.surroundings().deformations(&drawn.scene, &camera, &mut self.known())?.moved)
     }
 
     /// What moves the city in a picture of a scene of this size, in the world; none where nothing does.
@@ -568,67 +497,18 @@ impl Studio {
         self.moved(scene, size).map(|moved| moved.deformers)
     }
 
-    /// What the scene's lenses move, in a picture of this size.
-    fn deformations(&self, scene: &Scene, size: [u32; 2]) -> Result<SceneDeformations, RenderError> {
-        if scene.lenses.iter().all(|lens| lens.deform.is_none()) {
-            return Ok(SceneDeformations::default());
-        }
-        let camera = self.camera(scene, size);
-        let bounds = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let mut occlusion = self.occlusion();
-        let mut stage = deformations::Stage {
-            scene,
-            model: &self.model,
-            bounds,
-            camera,
-            eye: &Eye::new(&camera)?,
-            city: self.shown(),
-            occlusion: &mut occlusion,
-        };
-        let mut known = self.known_deformations.lock().unwrap_or_else(PoisonError::into_inner);
-        known.of_scene(&mut stage).map_err(RenderError::Scene)
-    }
-
-    /// What lenses show in themselves, in a picture of this size.
-    fn contents(&self, drawn: &Drawn, size: [u32; 2], volumes: &[LensVolume]) -> Result<SceneContents, RenderError> {
-        let scene = &*drawn.scene;
-        if scene.lenses.iter().all(|lens| lens.shown().is_none()) {
-            self.content_cities.lock().unwrap_or_else(PoisonError::into_inner).clear();
-            return Ok(SceneContents::default());
-        }
-        let camera = self.camera(scene, size);
-        let bounds = self.renderer.city().map_or(Aabb::EMPTY, |c| c.bounds);
-        let (view, eye) = (View::new(camera, size, &bounds)?, Eye::new(&camera)?);
-        let sun = self.renderer.sun_view(&view, &scene.sun, |_| [Aabb::EMPTY; 2]).map(|sun| sun.frustum(1.0));
-        let stage = content_cities::Stage {
-            drawn,
-            model: &self.model,
-            geometries: &self.geometries,
-            volumes,
-            motion: &|lens| eye.motion(lens, scene, &self.model),
-            is_seen: &|volume| {
-                let is_in_sun = sun.as_ref().is_some_and(|frustum| frustum.meets(&volume.bounds));
-                is_in_sun || volume.seen_part(&view, whole(size)).is_some()
-            },
-            reading: &self.reading,
-        };
-        let mut cities = self.content_cities.lock().unwrap_or_else(PoisonError::into_inner);
-        cities.of_scene(&stage).map_err(RenderError::Scene)
-    }
-
     #[allow(clippy::too_many_arguments, reason = "one part of a picture; the arguments are the picture's own")]
     fn render_part(
         &mut self,
         drawn: &Drawn,
         request: &Request,
-        prepared: &Prepared,
-        view: &View,
+        resolved: &Resolved,
         part: Part,
         furniture: &Furniture,
         picture: &mut Picture,
         passes: &mut Vec<stats::Pass>,
     ) -> Result<(), RenderError> {
-        let mut input = FrameInput { furniture, ..input(&drawn.scene, request, prepared, *view, part.drawn) };
+        let mut input = FrameInput { furniture, ..input(&drawn.scene, request, resolved, part.drawn) };
         for sample in 0..input.samples {
             if sample > 0 && self.interrupt.load(Ordering::Relaxed) {
                 return Err(RenderError::Interrupted);
@@ -651,7 +531,7 @@ impl Studio {
             picture.made.0 += self.renderer.gpu.allocations() - before.0;
             picture.made.1 += self.renderer.gpu.uploads() - before.1;
             if sample == 0 {
-                self.read_aovs(request, view, part, picture)?;
+                self.read_aovs(request, &resolved.view, part, picture)?;
                 if records.iter().any(|r| r.name == CLEAR_MASKS) {
                     self.read_masks(drawn.scene.lenses.len(), part, picture)?;
                 }
@@ -742,8 +622,7 @@ impl Studio {
         scene: &Scene,
         drawn: &Drawn,
         request: &Request,
-        prepared: &Prepared,
-        view: &View,
+        resolved: &Resolved,
         picture: &Picture,
         passes: Vec<stats::Pass>,
     ) -> Statistics {
@@ -751,14 +630,13 @@ impl Studio {
         let pipelines = self.renderer.pipelines();
         let city = self.renderer.city();
         let lens_seen = |i: usize| {
-            prepared
-                .volumes
-                .iter()
-                .any(|v| drawn.owner(v.lens) as usize == i && v.seen_part(view, whole(request.size)).is_some())
+            resolved.volumes.iter().any(|v| {
+                drawn.owner(v.lens) as usize == i && v.seen_part(&resolved.view, whole(request.size)).is_some()
+            })
         };
         let narrowing = pipelines.narrowing;
         let compiled = pipelines.compiled + u32::from(narrowing == Some(true));
-        let names: Vec<String> = pipelines.used.iter().map(crate::render::key::Key::name).collect();
+        let names: Vec<String> = pipelines.used.iter().map(|key| key.name()).collect();
         let names: Vec<String> = names.into_iter().chain(narrowing.map(|_| "narrow lists".to_owned())).collect();
         Statistics {
             adapter: stats::Adapter {
@@ -799,19 +677,19 @@ impl Studio {
             handlers: self.renderer.handlers(),
             lenses: (0..scene.lenses.len())
                 .map(|i| stats::LensFigures {
-                    occluders: self.occluders(scene, &scene.lenses[i], view),
-                    over_time: self.over_time(scene, &scene.lenses[i], view),
+                    occluders: self.occluders(scene, &scene.lenses[i], &resolved.view),
+                    over_time: self.over_time(scene, &scene.lenses[i], &resolved.view),
                     ..lens_figures(
                         self,
                         (scene, drawn),
-                        (&prepared.volumes, &prepared.contents),
+                        (&resolved.volumes, &resolved.contents),
                         picture,
                         i,
                         lens_seen(i),
                     )
                 })
                 .collect(),
-            contents: prepared.contents.figures(drawn, self.shown(), &self.renderer),
+            contents: resolved.contents.figures(drawn, self.shown(), |id| self.renderer.content_city(id)),
             overlays: Vec::new(),
             warnings: self.warnings().into_iter().chain(told::warnings(scene, picture)).collect(),
             passes,
@@ -824,15 +702,9 @@ impl Studio {
     }
 }
 
-fn input<'a>(
-    scene: &Scene,
-    request: &Request,
-    prepared: &'a Prepared,
-    view: View,
-    tile: PictureTile,
-) -> FrameInput<'a> {
+fn input<'a>(scene: &Scene, request: &Request, resolved: &'a Resolved, tile: PictureTile) -> FrameInput<'a> {
     FrameInput {
-        view,
+        view: resolved.view,
         tile,
         sun: scene.sun,
         base: scene.style.base,
@@ -841,17 +713,17 @@ fn input<'a>(
         transparency: scene.style.transparency,
         transparent: request.transparent,
         haze: HAZE,
-        volumes: &prepared.volumes,
-        solids: &prepared.solids,
+        volumes: &resolved.volumes,
+        solids: &resolved.solids,
         lens_count: scene.lenses.len() as u32,
-        operations: &prepared.operations,
+        operations: &resolved.operations,
         backend: request.backend,
         measured: request.aovs.depth,
         shown: request.aovs.object_id || request.aovs.normal,
         masks: request.statistics || request.aovs.lens_mask,
         sample: 0,
         samples: request.samples.max(1),
-        moved: &prepared.deformations.moved,
+        moved: &resolved.deformations.moved,
         chord_px: scene.style.chord_px,
         furniture: &furniture::NONE,
         most_triangles: None,

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::{
     render::{
-        frame::{FrameInput, haze, wants_masks},
+        frame::FrameInput,
         invokers::Invokers,
         octagon::Octagon,
         operations::Filter,
@@ -40,13 +40,13 @@ pub(super) struct Plans {
 
 impl Plans {
     pub fn new(input: &FrameInput, seen: &[SeenVolume]) -> Self {
-        let haze = haze(input) > 0.0;
+        let haze = input.haze_per_radius() > 0.0;
         let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         let filters = input.operations.filters(&lenses, haze);
         let volumes: Vec<_> = seen.iter().map(|v| (v.lens, v.test, v.leaves.clone())).collect();
         let lenses = match seen.is_empty() {
             true => Plan::default(),
-            false => input.operations.lens_plan(&volumes, haze, wants_masks(input)),
+            false => input.operations.lens_plan(&volumes, haze, input.wants_masks()),
         };
         let context = input.operations.context_plan(haze);
         let whole = if seen.is_empty() { &context } else { &lenses };

@@ -27,8 +27,10 @@ use crate::{
     render::{
         deform_words::{DeformNumbers, Lattice, plan_of},
         layout::{self, CityVertex},
-        renderer::{group, whole},
-        synced::{Room, Synced},
+        resource::{
+            bindings::{group, whole},
+            synced::{Room, Synced},
+        },
     },
     shader::{DeformPlan, Module},
 };

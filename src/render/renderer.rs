@@ -3,300 +3,69 @@
 //! It refuses to know files, commands and windows. Between two equal frames it allocates and uploads
 //! nothing; [`Gpu::allocations`] and [`Gpu::uploads`] prove it.
 
-use std::{path::Path, sync::Arc};
+use std::path::Path;
 
 use crate::{
-    city::CityModel,
-    gpu::{Gpu, GpuError},
+    city::{CityModel, ground::Ground},
+    gpu::{Gpu, GpuError, Timer},
     render::{
-        cells::Details,
-        city::{CityBuffers, SectionKind, Shown},
-        contents::Contents,
-        curtain::Curtain,
-        deformed::{Deformed, Met, Source},
-        edges::{Edge, EdgeBuffers},
-        furniture::FurnitureOnGpu,
+        bare,
+        cities::Cities,
+        city::{CityBuffers, Shown},
+        city_on_gpu::CityOnGpu,
+        contents::WantedContent,
+        deformed::{DeformedFigures, Deforming},
+        frame::FrameInput,
         images::Images,
-        layers::{LayerFigures, LayersOnGpu},
+        layers::{LayerFigures, MethodFigures},
         layout,
-        narrow::Narrowing,
-        own_sprites::OwnSprites,
-        pipelines::{Layouts, Pipelines},
-        refinery::Refinery,
-        regions::RegionsOnGpu,
-        sections::SectionsOnGpu,
-        solids::SolidTable,
-        stored::KeptSprite,
-        synced::{Room, Synced},
-        targets::{Needs, Target, Targets},
-        transparency::{MethodFigures, SlotsOnGpu},
+        pass::{
+            Inputs,
+            context::{FrameContext, Preparing},
+        },
+        plan::{Adapter, FramePlan, Stayed},
+        resource::{
+            pipelines::Pipelines,
+            recording::{PassRecord, Recording},
+            targets::{Needs, Targets},
+        },
+        settings::Settings,
+        stored::SpriteTexels,
+        view_state::{ViewState, fit_targets},
     },
-    shader::{Program, handlers},
+    shader::handlers,
+    view::View,
 };
-
-/// Bytes between two dynamic offsets: what every adapter accepts.
-pub(super) const STAGE_STRIDE: u64 = 256;
-/// What to do where sprites are too large.
-const COARSER: &str = "a smaller resolution, fewer layers or fewer bits (sprite of a lens) would be right";
 
 /// A renderer on one device.
 #[derive(Debug)]
 pub struct Renderer {
     /// The device.
     pub gpu: Gpu,
+    /// Room, and ways of drawing.
+    pub settings: Settings,
+    /// What of furniture is images.
+    pub images: Images,
     pub(super) pipelines: Pipelines,
     pub(super) city: Option<CityOnGpu>,
-    pub(super) contents: Contents,
-    pub(super) targets: Option<Targets>,
-    pub(super) buffers: Buffers,
-    pub(super) groups: Option<Groups>,
-    pub(super) shadow_sampler: wgpu::Sampler,
-    /// What the shadow map holds; drawn again when it should hold something else.
-    pub(super) shadow_of: Option<Shadow>,
-    /// Whether chunks that nearer ones hide are left out where that pays: on software adapters.
-    pub culls_hidden: bool,
-    /// Whether lists of many lenses are narrowed to what each tile shows.
-    pub narrows_lists: bool,
-    pub(super) narrowing: Option<Narrowing>,
-    /// Whether the groups bind the narrowed lists.
-    pub(super) binds_narrowed: bool,
+    /// What is kept for the view that is drawn.
+    pub(super) view: ViewState,
+    deforming: Deforming,
     /// The effects that the frames since the last [`Renderer::begin_picture`] ran, ascending.
-    pub(super) ran: Vec<u32>,
-    /// The solids that the card holds.
-    pub(super) solids_of: Option<Arc<SolidTable>>,
-    /// The near depth of the last frame that culled by it.
-    pub(super) curtain: Option<Curtain>,
-    /// What deformations make of the city in this view.
-    pub(super) deformed: Option<Deformed>,
-    /// What they meet, whatever the view.
-    pub(super) met: Option<Met>,
-    /// What refines it.
-    pub(super) refinery: Option<Refinery>,
-    /// Cities that were put on the card so far.
-    pub(super) city_number: u64,
-    /// Of techniques that draw the city by regions, once there was one.
-    pub(super) regions: Option<RegionsOnGpu>,
-    pub(super) sections: Option<SectionsOnGpu>,
-    /// Whether the scene asks for sections, in view or not.
-    pub(super) has_sections: bool,
-    /// Titles, captions and legends, once a picture had some.
-    pub(super) furniture: Option<FurnitureOnGpu>,
-    /// What of it is images.
-    pub images: Images,
-    /// The sprites that have eyes of their own.
-    pub(super) own_sprites: OwnSprites,
-    /// The stored sprites of the last frame.
-    pub(super) kept_sprites: Vec<KeptSprite>,
-    /// What passes that list crossings are drawn on, once there was one.
-    pub(super) list_target: Option<wgpu::TextureView>,
-    /// Whether the last frame listed crossings, and how many of them there is room for.
-    pub(super) lists_crossings: bool,
-    pub(super) crossing_room: u64,
-    /// Lists of translucent layers, once there were some, and what the last frame had of them.
-    pub(super) layers: Option<LayersOnGpu>,
-    pub(super) layer_figures: LayerFigures,
-    /// Slots of the nearest of them, once a method took some.
-    pub(super) slots: Option<SlotsOnGpu>,
-    /// What the method of the last frame took and left out.
-    pub(super) method_figures: MethodFigures,
-    /// The longest list that frames sort; 0: none is long.
-    pub(super) longest_list: u32,
-    /// How many notes of translucent layers have room at a time; `None`: as many as [`crate::render::layers::LAYER_BYTES`]
-    /// hold. What does not fit is drawn in bands.
-    pub most_layers: Option<u64>,
-    /// The number of the only layer that the exact method tells ([`crate::render::composited`]), nearest first; `None`: all are laid.
-    pub(super) picked_layer: Option<u32>,
-    /// Triangles of translucent layers are drawn one by one, in an order shuffled by this number; `None`: as they lie in the city.
-    /// The picture is the same.
-    pub shuffled: Option<u32>,
-    /// Counts cities, so that the shadow of an old one is not taken for the new one's.
-    /// In which detail the view that is drawn shows the city.
-    pub(super) details: Details,
-}
-
-/// The city's buffers and the groups that bind them.
-#[derive(Debug)]
-pub(super) struct CityOnGpu {
-    pub buffers: CityBuffers,
-    pub group: wgpu::BindGroup,
-    /// Its edges, once something drew lines.
-    pub edges: Option<EdgeBuffers>,
-    /// One per section: its texture's group.
-    pub images: Vec<Option<wgpu::BindGroup>>,
-    /// One per section: its corners on the host, once something deformed it.
-    pub sources: Option<Vec<Source>>,
-    /// Its edges on the host, once something deformed them.
-    pub edge_sources: Option<Vec<Edge>>,
-}
-
-/// Small buffers that follow the scene.
-#[derive(Debug)]
-pub(super) struct Buffers {
-    pub view: Synced,
-    pub sun_view: Synced,
-    pub light: Synced,
-    pub planes: Synced,
-    /// Solids: their columns and faces, and the corners of their faces to draw.
-    pub solids: Synced,
-    pub solid_corners: Synced,
-    pub sprite_stages: Synced,
-    /// The sprites of lenses, and what makes them.
-    pub sprites: Room,
-    pub stored_stages: Synced,
-    /// Lists of crossings that layered sprites are made from, the crossings, and how many there are; then the rays of each
-    /// sprite that have more intervals than layers.
-    pub lists: Room,
-    pub crossings: Room,
-    pub counts: Room,
-    pub sprite_places: Synced,
-    pub lens_shapes: Synced,
-    pub parameters: Synced,
-    pub invoker_table: Synced,
-    pub invokers: Synced,
-    pub tile_lists: Synced,
-    pub filter_stages: Synced,
-    pub object_values: Synced,
-    /// For the sun, where something is hidden: the main view, shapes of lens volumes, their planes, invokers.
-    pub eye: Synced,
-    pub shapes: Synced,
-    pub shape_planes: Synced,
-    pub shape_invoker_table: Synced,
-    pub shape_invokers: Synced,
-    pub line_stages: Synced,
-    /// The scene's own city and contents, for the main view and for the sun.
-    pub cities: Synced,
-    pub sun_cities: Synced,
-    pub resolve: Synced,
-    /// Triangles over parts of the picture.
-    pub mesh: Synced,
-}
-
-impl Buffers {
-    /// Empty ones.
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        use wgpu::BufferUsages as U;
-        let uniform = |label| Synced::new(gpu, label, U::UNIFORM);
-        let storage = |label| Synced::new(gpu, label, U::STORAGE);
-        Ok(Self {
-            view: uniform("view")?,
-            sun_view: uniform("sun's view")?,
-            light: uniform("light")?,
-            planes: storage("lens planes")?,
-            solids: storage("solids of lenses")?,
-            solid_corners: Synced::new(gpu, "corners of solids", U::VERTEX)?,
-            sprite_stages: uniform("sprite stages")?,
-            sprites: Room::new(gpu, "depth sprites of lenses", U::STORAGE | U::COPY_SRC | U::COPY_DST, COARSER)?,
-            stored_stages: uniform("stages of stored sprites")?,
-            lists: Room::new(gpu, "lists of crossings", U::STORAGE | U::COPY_DST, COARSER)?,
-            crossings: Room::new(gpu, "crossings", U::STORAGE, COARSER)?,
-            counts: Room::new(gpu, "counts of sprites", U::STORAGE | U::COPY_DST | U::COPY_SRC, COARSER)?,
-            sprite_places: uniform("places of depth sprites")?,
-            lens_shapes: uniform("lens shapes")?,
-            parameters: uniform("parameters")?,
-            invoker_table: uniform("invoker table")?,
-            invokers: storage("invokers")?,
-            tile_lists: storage("invokers of tiles")?,
-            filter_stages: uniform("filter stages")?,
-            object_values: storage("object values")?,
-            eye: uniform("main view for the sun")?,
-            shapes: storage("lens shapes for the sun")?,
-            shape_planes: storage("lens planes for the sun")?,
-            line_stages: uniform("line stages")?,
-            cities: uniform("cities")?,
-            sun_cities: uniform("cities for the sun")?,
-            shape_invoker_table: uniform("invoker table for the sun")?,
-            shape_invokers: storage("invokers for the sun")?,
-            resolve: uniform("resolve")?,
-            mesh: Synced::new(gpu, "parts of the picture", U::VERTEX)?,
-        })
-    }
-}
-
-/// What a shadow map shows.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Shadow {
-    /// The sun's view.
-    pub view: layout::View,
-    /// What is hidden from it, and all numbers that this depends on.
-    pub cut: Option<(Program, Vec<u8>)>,
-    /// Where contents stand.
-    pub cities: Vec<u8>,
-    /// In which detail the city throws it.
-    pub details: Details,
-}
-
-/// Bind groups over buffers and targets; made anew when one of them was replaced.
-#[derive(Debug)]
-pub(super) struct Groups {
-    pub view: wgpu::BindGroup,
-    pub sun_view: wgpu::BindGroup,
-    pub planes: wgpu::BindGroup,
-    pub sprite_stage: wgpu::BindGroup,
-    pub stored: wgpu::BindGroup,
-    pub shade: wgpu::BindGroup,
-    pub lenses: wgpu::BindGroup,
-    /// Where something is hidden: from the picture, and from the sun.
-    pub cut_city: wgpu::BindGroup,
-    pub shapes_city: wgpu::BindGroup,
-    pub shapes: wgpu::BindGroup,
-    /// The layer of lines, and where there are some the stage of one draw.
-    pub lines: wgpu::BindGroup,
-    pub line_stage: Option<wgpu::BindGroup>,
-    /// Down, and across; where the frame has filters.
-    pub filters: Option<[wgpu::BindGroup; 2]>,
-    pub resolve: wgpu::BindGroup,
+    ran: Vec<u32>,
 }
 
 impl Renderer {
     /// A renderer without a city.
     pub fn new(gpu: Gpu) -> Result<Self, GpuError> {
-        let buffers = Buffers::new(&gpu)?;
-        let shadow_sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("shadow"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            compare: Some(wgpu::CompareFunction::GreaterEqual),
-            ..Default::default()
-        });
         Ok(Self {
+            settings: Settings::new(gpu.is_software()),
+            images: Images::new(&gpu),
             pipelines: Pipelines::new(&gpu),
             city: None,
-            contents: Contents::default(),
-            targets: None,
-            buffers,
-            groups: None,
-            shadow_sampler,
-            shadow_of: None,
-            culls_hidden: gpu.is_software(),
-            narrows_lists: true,
-            narrowing: None,
-            binds_narrowed: false,
-            curtain: None,
-            deformed: None,
-            met: None,
-            refinery: None,
-            city_number: 0,
-            regions: None,
-            sections: None,
-            has_sections: false,
-            furniture: None,
-            images: Images::new(&gpu),
+            view: ViewState::new(&gpu)?,
+            deforming: Deforming::default(),
             ran: Vec::new(),
-            solids_of: None,
-            own_sprites: OwnSprites::default(),
-            layers: None,
-            slots: None,
-            method_figures: MethodFigures::default(),
-            layer_figures: LayerFigures::default(),
-            longest_list: 0,
-            most_layers: None,
-            picked_layer: None,
-            shuffled: None,
-            kept_sprites: Vec::new(),
-            list_target: None,
-            lists_crossings: false,
-            crossing_room: 0,
-            details: Details::default(),
             gpu,
         })
     }
@@ -304,33 +73,10 @@ impl Renderer {
     /// Puts a city on the card in place of the last one.
     pub fn set_city(&mut self, shown: &Shown, blocks: Option<&CityModel>) -> Result<(), GpuError> {
         self.city = None;
-        (self.deformed, self.met) = (None, None);
-        self.city_number += 1;
-        (self.layers, self.longest_list) = (None, 0);
-        self.slots = None;
-        self.contents = Contents::default();
-        self.city = Some(self.city_on_gpu(shown, blocks)?);
-        self.groups = None;
-        self.shadow_of = None;
+        self.deforming.begin_city();
+        self.view.begin_city();
+        self.city = Some(CityOnGpu::new(&self.gpu, &self.pipelines, shown, blocks)?);
         Ok(())
-    }
-
-    /// The buffers of a city, and what binds them.
-    pub(super) fn city_on_gpu(&self, shown: &Shown, blocks: Option<&CityModel>) -> Result<CityOnGpu, GpuError> {
-        let gpu = &self.gpu;
-        let buffers = CityBuffers::new(gpu, shown, blocks)?;
-        let surfaces = wgpu::BindingResource::TextureView(&buffers.surfaces);
-        let group = group(gpu, "city", &self.pipelines.layouts.city, &[(0, surfaces)]);
-        let images = buffers.sections.iter().map(|section| self.image_of(&buffers, section.kind)).collect();
-        Ok(CityOnGpu { group, images, buffers, edges: None, sources: None, edge_sources: None })
-    }
-
-    /// What binds the texture of a section.
-    pub(super) fn image_of(&self, buffers: &CityBuffers, kind: SectionKind) -> Option<wgpu::BindGroup> {
-        let SectionKind::Textured { texture, .. } = kind else { return None };
-        let (view, sampler) = buffers.textures.get(texture)?;
-        let entries = [(0, wgpu::BindingResource::TextureView(view)), (1, wgpu::BindingResource::Sampler(sampler))];
-        Some(group(&self.gpu, "image", &self.pipelines.layouts.image, &entries))
     }
 
     /// The city's buffers.
@@ -338,14 +84,64 @@ impl Renderer {
         self.city.as_ref().map(|c| &c.buffers)
     }
 
+    /// Makes the card hold these contents beside the scene's city, whose plain ground is `ground`, and no others; with their
+    /// edges where something draws lines. Between frames with the same contents nothing is made.
+    pub fn set_contents(
+        &mut self,
+        wanted: &[WantedContent],
+        ground: Option<&Ground>,
+        edges: bool,
+    ) -> Result<(), GpuError> {
+        let Some(own) = &self.city else { return Ok(()) };
+        if self.view.contents.set(&self.gpu, &self.pipelines, own, wanted, ground, edges)? {
+            self.view.change_surfaces();
+        }
+        Ok(())
+    }
+
+    /// Whether the city's edges are on the card.
+    pub fn has_edges(&self) -> bool {
+        self.city.as_ref().is_some_and(|city| city.edges.is_some())
+    }
+
+    /// Puts the edges of the city that [`Renderer::set_city`] was given on the card; once per city.
+    pub fn set_edges(&mut self, shown: &Shown) -> Result<(), GpuError> {
+        match &mut self.city {
+            Some(city) => city.find_edges(&self.gpu, shown),
+            None => Ok(()),
+        }
+    }
+
+    /// The entry of the table of surfaces, of the scene's own city and of contents; of a section, whose it is.
+    pub fn surface(&self, number: u32) -> Option<layout::Surface> {
+        self.view.contents.surface(self.city.as_ref()?, number)
+    }
+
+    /// The AOV's number of what has this code in the geometry target: object index + 1, 0 = nothing.
+    pub(super) fn object_id(&self, code: u32) -> u32 {
+        // The plain ground is no object: its NO_OBJECT wraps to 0.
+        code.checked_sub(1).and_then(|number| self.surface(number)).map_or(0, |s| s.object.wrapping_add(1))
+    }
+
+    /// The buffers of a content's city, by its name; 0: of the scene's own.
+    pub fn content_city(&self, id: u64) -> Option<&CityBuffers> {
+        self.view.contents.city(self.city.as_ref()?, id).map(|city| &city.buffers)
+    }
+
+    /// The cities that frames draw.
+    pub(super) fn cities(&self) -> Option<Cities<'_>> {
+        let ViewState { contents, deformed, .. } = &self.view;
+        Some(Cities { own: self.city.as_ref()?, deformed: deformed.as_ref(), contents })
+    }
+
     /// Gives back the targets and the lists of translucent layers; the next frame makes its own. City and pipelines stay.
     pub fn drop_targets(&mut self) {
-        (self.targets, self.groups, self.layers, self.slots) = (None, None, None, None);
+        self.view.drop_targets();
     }
 
     /// The targets of the last frame.
     pub fn targets(&self) -> Option<&Targets> {
-        self.targets.as_ref()
+        self.view.targets.as_ref()
     }
 
     /// Starts counting pipelines anew.
@@ -357,12 +153,6 @@ impl Renderer {
     /// Names of the effects that ran since then, each once.
     pub fn handlers(&self) -> Vec<String> {
         self.ran.iter().map(|&e| handlers()[e as usize].name.clone()).collect()
-    }
-
-    /// The AOV's number of what has this code in the geometry target: object index + 1, 0 = nothing.
-    pub(super) fn object_id(&self, code: u32) -> u32 {
-        // The plain ground is no object: its NO_OBJECT wraps to 0.
-        code.checked_sub(1).and_then(|number| self.surface(number)).map_or(0, |s| s.object.wrapping_add(1))
     }
 
     /// Keeps the image of a file ([`Images::of_file`]).
@@ -384,171 +174,130 @@ impl Renderer {
         &self.pipelines
     }
 
-    /// Makes the targets fit; what is there is kept where it does.
-    pub(super) fn fit_targets(&mut self, needs: Needs) -> Result<(), GpuError> {
-        if self.targets.as_ref().is_some_and(|t| t.serve(&needs)) {
-            return Ok(());
+    /// Draws one sample into the targets; the picture stands in `targets.picture` after the last one.
+    pub fn draw(&mut self, input: &FrameInput, timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {
+        let drawn = self.draw_frame(input, timer);
+        if drawn.is_err() {
+            // What was to be made may not be there.
+            self.view.own_sprites.forget();
         }
-        self.groups = None;
-        let before = self.targets.take();
-        let shadow = before.as_ref().map(|t| t.shadow.texture.clone());
-        let targets = Targets::new(&self.gpu, needs, self.pipelines.layouts.sums, before);
-        if shadow.is_none_or(|shadow| shadow != targets.shadow.texture) {
-            self.shadow_of = None;
-        }
-        self.targets = Some(targets);
-        Ok(())
+        drawn
     }
 
-    /// Makes the bind groups if something they bind was replaced.
-    pub(super) fn fit_groups(&mut self) {
-        if self.groups.is_some() {
-            return;
-        }
-        let (Some(targets), Some(city)) = (&self.targets, &self.city) else { return };
-        let (gpu, p, b): (_, &Layouts, _) = (&self.gpu, &self.pipelines.layouts, &self.buffers);
-        let lists = match &self.narrowing {
-            Some(narrowing) if self.binds_narrowed => &narrowing.lists,
-            _ => b.tile_lists.buffer(),
-        };
-        let stage_group =
-            |label, buffer: &Synced, size: usize| group(gpu, label, &p.stage, &[(0, stage_of(buffer, size))]);
-        let surfaces = || {
-            let all = self.contents.surfaces.as_ref().unwrap_or(&city.buffers.surfaces);
-            wgpu::BindingResource::TextureView(all)
-        };
-        let cut_city = |planes: &Synced, cities: &Synced| {
-            let entries = [
-                (0, surfaces()),
-                (1, whole(planes.buffer())),
-                (2, whole(b.solids.buffer())),
-                (3, one_of::<layout::City>(cities)),
-                (4, one_of::<layout::City>(&b.cities)),
-            ];
-            group(gpu, "surfaces and planes", &p.cut_city, &entries)
-        };
-        self.groups = Some(Groups {
-            view: group(gpu, "view", &p.view, &[(0, whole(b.view.buffer()))]),
-            sun_view: group(gpu, "sun's view", &p.view, &[(0, whole(b.sun_view.buffer()))]),
-            planes: group(gpu, "planes", &p.planes, &[(1, whole(b.planes.buffer())), (2, whole(b.solids.buffer()))]),
-            sprite_stage: stage_group("sprite stage", &b.sprite_stages, size_of::<layout::SpriteStage>()),
-            stored: group(
-                gpu,
-                "stored sprites",
-                &p.stored,
-                &[
-                    (0, stage_of(&b.stored_stages, size_of::<layout::StoredStage>())),
-                    (1, whole(b.sprites.buffer())),
-                    (2, whole(b.lists.buffer())),
-                    (3, whole(b.crossings.buffer())),
-                    (4, whole(b.counts.buffer())),
-                ],
-            ),
-            shade: group(
-                gpu,
-                "shade",
-                &p.shade,
-                &[
-                    (0, surfaces()),
-                    (1, whole(b.planes.buffer())),
-                    (2, whole(b.solids.buffer())),
-                    (3, whole(b.light.buffer())),
-                    (4, all_of(&targets.shadow)),
-                    (5, wgpu::BindingResource::Sampler(&self.shadow_sampler)),
-                    (6, all_of(&targets.codes)),
-                    (7, all_of(&targets.depth)),
-                    (8, all_of(&targets.colors)),
-                ],
-            ),
-            lenses: group(
-                gpu,
-                "lenses",
-                &p.lenses,
-                &[
-                    (0, all_of(&targets.sprites)),
-                    (1, whole(b.object_values.buffer())),
-                    (2, whole(b.parameters.buffer())),
-                    (3, whole(b.sprite_places.buffer())),
-                    (4, all_of(&targets.masks)),
-                    (5, whole(b.invoker_table.buffer())),
-                    (6, all_of(&targets.filtered)),
-                    (7, whole(b.lens_shapes.buffer())),
-                    (8, whole(lists)),
-                    (9, whole(b.invokers.buffer())),
-                    (10, whole(b.sprites.buffer())),
-                ],
-            ),
-            lines: group(gpu, "lines and layers", &p.lines, &[(0, all_of(&targets.lines)), (1, all_of(&targets.veil))]),
-            line_stage: targets.needs.lines.then(|| {
-                let entries =
-                    [(0, one_of::<layout::LineStage>(&b.line_stages)), (1, one_of::<layout::City>(&b.cities))];
-                group(gpu, "line stage", &p.line_stage, &entries)
-            }),
-            cut_city: cut_city(&b.planes, &b.cities),
-            shapes_city: cut_city(&b.shape_planes, &b.sun_cities),
-            shapes: group(
-                gpu,
-                "shapes",
-                &p.shapes,
-                &[
-                    (1, whole(b.object_values.buffer())),
-                    (2, whole(b.parameters.buffer())),
-                    (5, whole(b.shape_invoker_table.buffer())),
-                    (7, whole(b.eye.buffer())),
-                    (8, whole(b.shapes.buffer())),
-                    (9, whole(b.shape_invokers.buffer())),
-                    (10, whole(b.sprites.buffer())),
-                ],
-            ),
-            filters: (targets.needs.filters > 0).then(|| {
-                [&targets.unfiltered, &targets.half_filtered].map(|image| {
-                    let stage = wgpu::BufferBinding {
-                        buffer: b.filter_stages.buffer(),
-                        offset: 0,
-                        size: wgpu::BufferSize::new(size_of::<layout::FilterStage>() as u64),
-                    };
-                    let entries = [
-                        (0, wgpu::BindingResource::Buffer(stage)),
-                        (1, all_of(image)),
-                        (2, whole(b.parameters.buffer())),
-                    ];
-                    group(gpu, "filter", &p.filter, &entries)
-                })
-            }),
-            resolve: group(gpu, "resolve", &p.resolve, &[(0, whole(b.resolve.buffer())), (1, all_of(&targets.sums))]),
+    fn draw_frame(&mut self, input: &FrameInput, timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {
+        let Self { gpu, settings, images, pipelines, city, view, deforming, ran } = self;
+        let Some(city) = city else { return Ok(Vec::new()) };
+        let ViewState { contents, deformed, targets, shared, passes, own_sprites } = view;
+        shared.world += u64::from(deforming.fit(gpu, pipelines, city, deformed, input)?);
+        let cities = Cities { own: city, deformed: deformed.as_ref(), contents };
+        let (sprite_bytes, count_bytes) = (shared.sprites.buffer().size(), passes.stored.count_bytes());
+        let stayed = Stayed { own_sprites, sprite_bytes, count_bytes };
+        let plan = FramePlan::new(input, &cities.facts(), adapter_of(gpu), *settings, stayed);
+        let inputs = Inputs::of(&plan);
+        passes.begin(&plan);
+        let targets = fit_targets(gpu, targets, shared, needs_of(&plan, &inputs), pipelines.sums());
+        let programs = plan.programs(|wanted| {
+            // All are asked for, also when the first is not there.
+            let keys = passes.keys(&inputs, &plan, wanted);
+            keys.of_programs().filter(|key| !pipelines.is_ready(key)).count() == 0
         });
+        for key in passes.keys(&inputs, &plan, &programs).sorted() {
+            pipelines.prepare(&key);
+        }
+        ran.extend(plan.effects());
+        ran.sort_unstable();
+        ran.dedup();
+        shared.fit_sprites(gpu, &plan)?;
+        shared.upload(gpu, &plan, &cities, programs.is_uber)?;
+        if !plan.narrows() {
+            shared.bind_tile_lists();
+        }
+        let (plan, programs, pipelines) = (&plan, &programs, pipelines);
+        passes.prepare(&inputs, &mut Preparing { gpu, pipelines, images, cities, shared, targets, plan, programs })?;
+        shared.fit_groups(gpu, pipelines, &cities, targets);
+        let Some(groups) = shared.groups() else { return Ok(Vec::new()) };
+        let frame = FrameContext { gpu, pipelines, images, cities, shared, groups, targets, plan, programs };
+        let mut recording = Recording::new(gpu, timer);
+        passes.record(&inputs, &frame, &mut recording)?;
+        Ok(recording.finish(gpu))
+    }
+
+    /// Draws the city in one lit pass over the same buffers and the same visible chunks, into the same targets: what
+    /// the plain frame is measured against. Needs a frame drawn before, for the targets and the view.
+    pub fn draw_bare(&mut self, view: &View) {
+        let (Some(targets), Some(groups), Some(city)) = (&self.view.targets, self.view.shared.groups(), &self.city)
+        else {
+            return;
+        };
+        bare::draw(&self.gpu, &mut self.pipelines, city, targets, &groups.view, view);
+    }
+
+    /// The stored sprites of a lens as the last frame made them.
+    pub fn read_sprites(&self, lens: u32) -> Result<Vec<SpriteTexels>, GpuError> {
+        self.view.passes.stored.read(&self.gpu, &self.view.shared, lens)
+    }
+
+    /// Whether the last frame met more crossings than there was room for, and the next has room for them.
+    pub fn makes_room(&mut self) -> Result<bool, GpuError> {
+        self.view.passes.stored.makes_room(&self.gpu, &mut self.view.own_sprites)
+    }
+
+    /// Rays that have more intervals than their sprite has layers, by lens: of the sprites of the last frame's eye, and with `own`
+    /// of those that have eyes of their own.
+    pub fn read_excess(&self, own: bool) -> Result<Vec<(u32, u32)>, GpuError> {
+        self.view.passes.stored.read_excess(&self.gpu, own)
+    }
+
+    /// Whether lists of the last frame are longer than it was made for, and the next one has to sort them; that it then does.
+    pub(super) fn sorts_longer(&mut self) -> Result<bool, GpuError> {
+        self.view.passes.layers.sorts_longer(&self.gpu)
+    }
+
+    /// What the last frame had of translucent layers.
+    pub fn layer_figures(&self) -> LayerFigures {
+        let passes = &self.view.passes;
+        let all = [passes.layers.figures, passes.slots.figures, passes.stochastic.figures];
+        all.into_iter().find(|figures| figures.bands > 0).unwrap_or_default()
+    }
+
+    /// What the method of the last frame took and left out.
+    pub fn method_figures(&self) -> MethodFigures {
+        let passes = &self.view.passes;
+        let all = [passes.layers.method, passes.slots.method];
+        all.into_iter().find(|method| *method != MethodFigures::default()).unwrap_or_default()
+    }
+
+    /// What the deformations of the last frame took; `None`: there were none.
+    pub fn deformed_figures(&self) -> Option<DeformedFigures> {
+        self.view.deformed.as_ref().map(|deformed| deformed.figures)
+    }
+
+    /// How far the bent edges of the last frame are from where they should be, by brute force in f64, pixels: the median of those that are
+    /// off at all, and the farthest. `None`: nothing is refined.
+    ///
+    /// # Errors
+    /// What the card cannot read back.
+    pub fn chords(&self) -> Result<Option<[f64; 2]>, GpuError> {
+        match &self.view.deformed {
+            Some(deformed) => self.deforming.chords(&self.gpu, deformed),
+            None => Ok(None),
+        }
     }
 }
 
-/// A uniform of this size at a dynamic offset.
-fn stage_of(buffer: &Synced, size: usize) -> wgpu::BindingResource<'_> {
-    let size = wgpu::BufferSize::new(size as u64);
-    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size })
+fn adapter_of(gpu: &Gpu) -> Adapter {
+    Adapter { is_software: gpu.is_software(), tests_depth_early: gpu.tests_depth_early() }
 }
 
-pub(super) fn all_of(target: &Target) -> wgpu::BindingResource<'_> {
-    wgpu::BindingResource::TextureView(&target.view)
-}
-
-/// One of several in a uniform buffer, at a dynamic offset.
-pub(super) fn one_of<T>(buffer: &Synced) -> wgpu::BindingResource<'_> {
-    let size = wgpu::BufferSize::new(size_of::<T>() as u64);
-    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: buffer.buffer(), offset: 0, size })
-}
-
-pub(super) fn whole(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
-    buffer.as_entire_binding()
-}
-
-pub(super) fn group(
-    gpu: &Gpu,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    entries: &[(u32, wgpu::BindingResource)],
-) -> wgpu::BindGroup {
-    let entries: Vec<_> = entries
-        .iter()
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+/// The targets that a frame draws into.
+fn needs_of(plan: &FramePlan, inputs: &Inputs) -> Needs {
+    let mut needs = Needs {
+        size: plan.input.tile.size,
+        colors: plan.colored,
+        smooth: plan.smooth,
+        own_depth: plan.input.measured,
+        ..Needs::default()
+    };
+    inputs.add_needs(plan, &mut needs);
+    needs
 }

@@ -10,7 +10,7 @@ use crate::{
         furniture::{Furniture, Piece},
         operations::Operations,
         picture::{Picture, Studio},
-        sections::ends_of,
+        section_rounds::ends_of,
         text::{cleaned, has_glyph},
         volume::LensVolume,
     },

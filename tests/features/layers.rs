@@ -41,10 +41,10 @@ fn layers_of_a_number_along_the_ray_grow_denser() {
         assert!(error <= 1e-5, "{of}: {error:e}");
         assert_eq!(found, veil(&mut studio, &scene, Backend::Uber, SIZE), "{of}");
         // In bands, the picture's number of layers is that of all of them.
-        studio.renderer.most_layers = Some(200);
+        studio.renderer.settings.most_layers = Some(200);
         assert_eq!(found, veil(&mut studio, &scene, Backend::Specialised, SIZE), "{of}, in bands");
         assert!(studio.renderer.layer_figures().bands > 2);
-        studio.renderer.most_layers = None;
+        studio.renderer.settings.most_layers = None;
     }
 }
 

@@ -169,7 +169,7 @@ fn what_a_tile_does_not_show_changes_no_byte() {
             scene.lenses.push(lens(&format!("shape {i}"), [focus], "invert"));
         }
         let mut draw = |narrows: bool| {
-            studio.renderer.narrows_lists = narrows;
+            studio.renderer.settings.narrows_lists = narrows;
             let request = Request {
                 size: SIZE,
                 samples: 2,

@@ -207,7 +207,7 @@ fn what_near_buildings_hide_is_not_drawn_and_not_missed() {
     assert!(used >= 6, "only {used} of 12 street views leave anything out");
     assert!(fewer * 3 < all * 2, "{fewer} triangles are drawn instead of {all}");
     // From above, everything is drawn in one pass.
-    studio.renderer.culls_hidden = true;
+    studio.renderer.settings.culls_hidden = true;
     let extent = studio.extent();
     let above = Camera::looking(extent.center() + DVec3::new(0.0, -1.0, 1.0) * extent.size().y, extent.center(), 0.8);
     let passes = picture(&mut studio, &scene(above, vec![]), SIZE).statistics.passes;

@@ -61,11 +61,11 @@ fn peeling_until_nothing_is_left_is_exact_to_the_bit() {
             assert_eq!((layers.notes, layers.excess, figures.dropped, figures.merged), (fragments, 0, 0, None));
             assert!(figures.rounds >= 3, "{figures:?}");
             // In bands too.
-            studio.renderer.most_layers = Some(u64::from(SIZE[0]) * 4 * 7);
+            studio.renderer.settings.most_layers = Some(u64::from(SIZE[0]) * 4 * 7);
             let found = veil(&mut studio, &by(PEEL, &scene), backend, SIZE);
             assert_eq!(exact, found, "{backend:?} in bands");
             assert_eq!(studio.renderer.layer_figures().bands, 6);
-            studio.renderer.most_layers = None;
+            studio.renderer.settings.most_layers = None;
         }
     }
 }
@@ -159,7 +159,7 @@ fn the_order_in_which_the_city_is_drawn_does_not_matter_to_slots() {
     let first = scenes.each_ref().map(|scene| veil(&mut studio, scene, Backend::Specialised, SIZE));
     // In the file, and on the card.
     for order in 0..20 {
-        studio.renderer.shuffled = Some(order);
+        studio.renderer.settings.shuffled = Some(order);
         for i in (1..all.len()).rev() {
             all.swap(i, random.below(i as u64 + 1) as usize);
         }
@@ -294,10 +294,10 @@ fn what_finds_no_slot_is_one_layer_behind_the_others() {
         }
         // In bands too.
         let whole = veil(&mut studio, &scene, Backend::Specialised, SIZE);
-        studio.renderer.most_layers = Some(u64::from(SIZE[0] * slots) * 9);
+        studio.renderer.settings.most_layers = Some(u64::from(SIZE[0] * slots) * 9);
         assert_eq!(whole, veil(&mut studio, &scene, Backend::Specialised, SIZE));
         assert_eq!(studio.renderer.layer_figures().bands, 5);
-        studio.renderer.most_layers = None;
+        studio.renderer.settings.most_layers = None;
     }
 }
 

@@ -20,7 +20,7 @@ fn what_has_no_room_is_drawn_in_bands_or_counted() {
     let notes: u64 = stacks.iter().map(|s| s.len() as u64).sum();
     assert_eq!(figures, LayerFigures { notes, bands: 1, excess: 0 });
     let mut at = |capacity: u64| {
-        studio.renderer.most_layers = Some(capacity);
+        studio.renderer.settings.most_layers = Some(capacity);
         (veil(&mut studio, &scene, Backend::Specialised, SIZE), studio.renderer.layer_figures())
     };
     assert_eq!(at(notes), (whole.clone(), LayerFigures { notes, bands: 1, excess: 0 }));

@@ -60,7 +60,7 @@ fn the_order_in_which_the_city_is_drawn_does_not_matter() {
     let first = veil(&mut studio, &scene, Backend::Specialised, SIZE);
     // In the file, and on the card.
     for order in 0..100 {
-        studio.renderer.shuffled = Some(order);
+        studio.renderer.settings.shuffled = Some(order);
         assert_eq!(first, veil(&mut studio, &scene, Backend::Specialised, SIZE), "the card's order {order}: {all:?}");
         for i in (1..all.len()).rev() {
             all.swap(i, random.below(i as u64 + 1) as usize);

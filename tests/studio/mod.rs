@@ -309,7 +309,7 @@ pub fn hiding_changes_nothing(studio: &mut Studio, views: u32, size: [u32; 2]) -
         let request =
             Request { size, samples, transparent: false, aovs: ALL, statistics: true, backend: Default::default() };
         let mut draw = |hides: bool| {
-            studio.renderer.culls_hidden = hides;
+            studio.renderer.settings.culls_hidden = hides;
             let picture = studio.render(&scene, &request).expect("a picture");
             let named = |p: &str| picture.statistics.passes.iter().any(|pass| pass.name == p);
             let triangles = picture.statistics.passes.iter().map(|pass| pass.triangles).sum::<u64>();

@@ -1,0 +1,145 @@
+//! Depth sprites that a frame has to make: bake requests, and the numbers that the card makes each from.
+
+use crate::{
+    lens::SpriteSpace,
+    render::{
+        body::{Body, PlacedLeaf},
+        eye::PictureTile,
+        frame::FrameInput,
+        layout,
+        seen::{Kept, SeenSprite, SeenVolume},
+        stored::{KeptSprite, Stored},
+    },
+    shader::VolumeTest,
+    view::View,
+};
+
+/// The solids of a body whose crossings are listed, each with its number among the leaves.
+pub(super) fn solids_of(body: &Body) -> impl Iterator<Item = (u32, &PlacedLeaf)> {
+    (0..).zip(body.leaves()).filter(|(_, leaf)| leaf.leaf.test() == VolumeTest::Solid)
+}
+
+/// A sprite that is to be made.
+#[derive(Debug)]
+pub(super) struct BakeRequest<'a> {
+    /// Whose it is.
+    pub lens: u32,
+    /// What it is made of.
+    pub body: &'a Body,
+    /// Width and height of the whole sprite, texels, and the part of it that is kept.
+    pub size: [u32; 2],
+    pub bounds: PictureTile,
+    /// How it is stored, and where.
+    pub stored: Stored,
+    /// Its own eye; `None`: the picture's.
+    pub own: Option<View>,
+}
+
+/// The sprites of the picture's eye, all of which are made in every frame.
+pub(super) fn of_picture<'a>(seen: &[SeenVolume], input: &FrameInput<'a>) -> Vec<BakeRequest<'a>> {
+    let request = |v: &SeenVolume| match v.sprite.as_ref()? {
+        &SeenSprite { size, bounds, kept: Kept::Stored(stored) } => {
+            Some(BakeRequest { lens: v.lens, body: &input.volumes[v.index].body, size, bounds, stored, own: None })
+        }
+        _ => None,
+    };
+    seen.iter().filter_map(request).collect()
+}
+
+impl BakeRequest<'_> {
+    /// Lists of crossings that it takes, those before it included; 0 where it is made without.
+    pub fn lists_end(&self) -> u64 {
+        if self.body.is_form() {
+            return 0;
+        }
+        let texels = u64::from(self.stored.width(self.bounds.size[0])) * u64::from(self.bounds.size[1]);
+        u64::from(self.stored.first_list) + texels
+    }
+
+    /// What makes it, of a body whose shape is `shape`; its eye sees it on a target of `target` pixels.
+    pub fn stage(&self, shape: layout::Shape, view: layout::View, target: [u32; 2]) -> layout::StoredStage {
+        let &Self { size, bounds, stored, .. } = self;
+        let (kind, near, far) = stored.numbers();
+        layout::StoredStage {
+            view,
+            shape,
+            pixels_per_texel: std::array::from_fn(|i| target[i] as f32 / size[i] as f32),
+            origin: bounds.origin.map(|o| o as f32),
+            width: stored.width(bounds.size[0]),
+            height: bounds.size[1],
+            layers: stored.layers,
+            first: stored.first,
+            kind,
+            near,
+            far,
+            first_list: stored.first_list,
+            excess: stored.excess,
+            pad_0: [0; 3],
+        }
+    }
+
+    /// What lists the crossings of the solids of its body, whose sprite is `stage`, on a target of `target` texels; `room`: how many
+    /// crossings there is room for.
+    pub fn list_stages(
+        &self,
+        own_view: &View,
+        stage: &layout::StoredStage,
+        target: [u32; 2],
+        room: u64,
+    ) -> Vec<layout::ListStage> {
+        let clip_scale: [f32; 2] = std::array::from_fn(|i| self.size[i] as f32 / target[i] as f32);
+        // Texels count down the target, clip space up.
+        let side = |i: usize| clip_scale[i] - 2.0 * self.bounds.origin[i] as f32 / target[i] as f32 - 1.0;
+        let list = |(leaf, of): (u32, &PlacedLeaf)| layout::ListStage {
+            view: stage.view,
+            shape: of.figures(own_view, &mut Vec::new()),
+            clip_scale,
+            clip_shift: [side(0), -side(1)],
+            width: stage.width,
+            height: stage.height,
+            first_list: stage.first_list,
+            leaf,
+            room: room as u32,
+            pad_0: [0; 3],
+        };
+        solids_of(self.body).map(list).collect()
+    }
+
+    /// Where a sprite of the picture's eye stands.
+    pub fn place(&self, volume: &SeenVolume, tile: PictureTile) -> layout::SpritePlace {
+        let &Self { size, bounds, stored, .. } = self;
+        let (kind, near, far) = stored.numbers();
+        layout::SpritePlace {
+            origin: volume.bounds.origin.map(|o| o as i32),
+            size: volume.bounds.size.map(|s| s as i32),
+            texels_per_pixel: std::array::from_fn(|i| size[i] as f32 / tile.size[i] as f32),
+            sprite: bounds.origin.map(|o| -(o as f32)),
+            page: 0,
+            first: stored.first,
+            width: stored.width(bounds.size[0]),
+            layers: stored.layers,
+            kind,
+            near,
+            far,
+            own: 0,
+        }
+    }
+}
+
+/// The target on which crossings are listed: as large as the largest sprite that is made from lists.
+pub(super) fn list_target(requests: &[BakeRequest]) -> [u32; 2] {
+    let with_lists = requests.iter().filter_map(|m| solids_of(m.body).next().map(|_| m.bounds.size));
+    with_lists.fold([0; 2], |all, size| std::array::from_fn(|i| all[i].max(size[i])))
+}
+
+/// The sprites of the picture's eye, for reading back.
+pub(super) fn kept_sprites(requests: &[BakeRequest], view: &View) -> Vec<KeptSprite> {
+    let kept = |m: &BakeRequest| KeptSprite {
+        lens: m.lens,
+        space: SpriteSpace { size: m.size, ..SpriteSpace::of(view) },
+        bounds: m.bounds,
+        stored: m.stored,
+        is_own: false,
+    };
+    requests.iter().filter(|m| m.own.is_none()).map(kept).collect()
+}

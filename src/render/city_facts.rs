@@ -1,0 +1,114 @@
+//! What the plan of a frame asks of the cities that are there: plain data.
+
+use crate::{
+    geom::Aabb,
+    render::{
+        cells::{CellFigures, Detail, Details, triangles_in},
+        city::{Chunk, SectionKind},
+        frame::FrameInput,
+        hiding::reaches_of,
+        light,
+    },
+    scene::Sun,
+    view::{Frustum, View},
+};
+
+/// A section, as far as pipelines go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SectionFacts {
+    pub kind: SectionKind,
+    /// Whether its city has normals per vertex.
+    pub is_smooth: bool,
+}
+
+/// Where the chunks of a content are.
+#[derive(Clone, Debug)]
+pub(super) struct ContentFacts<'a> {
+    pub number: u32,
+    pub chunks: Vec<&'a [Chunk]>,
+}
+
+/// The cities that are there.
+#[derive(Clone, Debug)]
+pub(super) struct CityFacts<'a> {
+    /// Box around the scene's own, and around all of them, metres.
+    pub bounds: Aabb,
+    pub all: Aabb,
+    /// Box around what deformations move, metres.
+    pub moved: Aabb,
+    /// Of the scene's own: chunks by section, cells, whether it has block models, whether its edges are there.
+    pub chunks: Vec<&'a [Chunk]>,
+    pub cells: &'a [CellFigures],
+    pub has_blocks: bool,
+    pub has_edges: bool,
+    /// Whether some city has normals per vertex.
+    pub has_smooth: bool,
+    /// Sections of all of them, and those of the scene's own and of what is moved of it.
+    pub sections: Vec<SectionFacts>,
+    pub own_sections: Vec<SectionFacts>,
+    pub contents: Vec<ContentFacts<'a>>,
+}
+
+impl CityFacts<'_> {
+    /// Whether some section has a texture.
+    pub fn is_textured(&self) -> bool {
+        self.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { .. }))
+    }
+
+    /// The detail of each cell in a frame. What draws lines needs edges, which only the model itself has.
+    pub fn details(&self, input: &FrameInput) -> Details {
+        let Some(most) = input.most_triangles else { return Details::default() };
+        if !self.has_blocks || input.operations.draws_lines() {
+            return Details::default();
+        }
+        let left = most.saturating_sub(self.terrain_in(&input.view.frustum(1.0))).max(most / 4);
+        Details::new(self.cells, &input.view, left)
+    }
+
+    /// Triangles of terrain in a frustum.
+    fn terrain_in(&self, frustum: &Frustum) -> u64 {
+        let chunks = self.chunks.iter().copied().flatten();
+        let terrain = chunks.filter(|chunk| chunk.has_terrain() && frustum.meets(&chunk.bounds));
+        terrain.map(|chunk| u64::from(triangles_in(&chunk.range))).sum()
+    }
+
+    /// The sun's view where shadows are wanted. `contents`: what contents show in a frustum, and in all.
+    pub fn sun_view(&self, view: &View, sun: &Sun, contents: impl Fn(&Frustum) -> [Aabb; 2]) -> Option<View> {
+        if !light::casts_shadows(sun) {
+            return None;
+        }
+        let frustum = view.frustum(1.0);
+        let receivers = self
+            .chunks
+            .iter()
+            .copied()
+            .flatten()
+            .filter(|c| c.details & Detail::Full.bit() != 0 && frustum.meets(&c.bounds))
+            .fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
+        let [seen, all] = contents(&frustum);
+        let seen = if frustum.meets(&self.moved) { seen.union(self.moved) } else { seen };
+        light::sun_view(sun, &receivers.union(seen), &self.bounds.union(all).union(self.moved))
+    }
+
+    /// Box around what contents show that a frustum meets, and around all that they show, metres.
+    pub fn content_bounds(&self, input: &FrameInput, frustum: &Frustum) -> [Aabb; 2] {
+        let mut found = [Aabb::EMPTY; 2];
+        for content in &self.contents {
+            let uses = input.operations.contents.iter().filter(|c| c.city == content.number);
+            let reaches = uses.flat_map(|c| reaches_of(Some(c.lens), c.class, input.volumes, &input.view));
+            let room = reaches.fold(Aabb::EMPTY, |all, reach| all.union(reach.bounds()));
+            for chunk in content.chunks.iter().copied().flatten() {
+                let bounds = chunk.bounds;
+                let part = Aabb { min: bounds.min.max(room.min), max: bounds.max.min(room.max) };
+                if part.is_empty() {
+                    continue;
+                }
+                found[1] = found[1].union(part);
+                if frustum.meets(&part) {
+                    found[0] = found[0].union(part);
+                }
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,68 @@
+//! A city on the graphics card: its buffers, what binds them, and its edges once something drew lines.
+
+use crate::{
+    city::CityModel,
+    gpu::{Gpu, GpuError},
+    render::{
+        city::{CityBuffers, SectionKind, Shown},
+        city_source::Source,
+        edges::{Edge, EdgeBuffers},
+        resource::{
+            bindings::group,
+            layouts::{CITY, IMAGE},
+            pipelines::Pipelines,
+        },
+    },
+};
+
+/// The city's buffers and the groups that bind them.
+#[derive(Debug)]
+pub(super) struct CityOnGpu {
+    pub buffers: CityBuffers,
+    pub group: wgpu::BindGroup,
+    /// Its edges, once something drew lines.
+    pub edges: Option<EdgeBuffers>,
+    /// One per section: its texture's group.
+    pub images: Vec<Option<wgpu::BindGroup>>,
+    /// One per section: its corners on the host, once something deformed it.
+    pub sources: Option<Vec<Source>>,
+    /// Its edges on the host, once something deformed them.
+    pub edge_sources: Option<Vec<Edge>>,
+}
+
+impl CityOnGpu {
+    /// Puts what is shown of a city on the card, and the block models of its objects where there are some.
+    pub fn new(gpu: &Gpu, pipelines: &Pipelines, shown: &Shown, blocks: Option<&CityModel>) -> Result<Self, GpuError> {
+        let buffers = CityBuffers::new(gpu, shown, blocks)?;
+        let surfaces = wgpu::BindingResource::TextureView(&buffers.surfaces);
+        let group = group(gpu, "city", &pipelines.layout(&CITY), &[(0, surfaces)]);
+        let images = buffers.sections.iter().map(|section| image_of(gpu, pipelines, &buffers, section.kind)).collect();
+        Ok(Self { group, images, buffers, edges: None, sources: None, edge_sources: None })
+    }
+
+    /// Sections whose surfaces and textures are those of another city.
+    pub fn beside(of: &Self, images: Vec<Option<wgpu::BindGroup>>, buffers: CityBuffers) -> Self {
+        Self { group: of.group.clone(), images, buffers, edges: None, sources: None, edge_sources: None }
+    }
+
+    /// Puts the edges of what it shows on the card, if they are not there.
+    pub fn find_edges(&mut self, gpu: &Gpu, shown: &Shown) -> Result<(), GpuError> {
+        if self.edges.is_none() {
+            self.edges = Some(EdgeBuffers::new(gpu, shown, &self.buffers, &Default::default())?);
+        }
+        Ok(())
+    }
+}
+
+/// What binds the texture of a section.
+pub(super) fn image_of(
+    gpu: &Gpu,
+    pipelines: &Pipelines,
+    buffers: &CityBuffers,
+    kind: SectionKind,
+) -> Option<wgpu::BindGroup> {
+    let SectionKind::Textured { texture, .. } = kind else { return None };
+    let (view, sampler) = buffers.textures.get(texture)?;
+    let entries = [(0, wgpu::BindingResource::TextureView(view)), (1, wgpu::BindingResource::Sampler(sampler))];
+    Some(group(gpu, "image", &pipelines.layout(&IMAGE), &entries))
+}

@@ -1,0 +1,102 @@
+//! The numbers of a frame's lens volumes as shaders read them: shapes, planes, and where depth sprites stand.
+
+use crate::{
+    render::{
+        bake::BakeRequest,
+        frame::FrameInput,
+        layout,
+        own_sprites::OwnSprites,
+        seen::{Kept, SeenSprite, SeenVolume},
+        sprites::Place,
+    },
+    shader::VolumeTest,
+};
+
+/// Numbers of the volumes of a frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LensNumbers {
+    /// Of each volume that is seen.
+    pub shapes: Vec<layout::Shape>,
+    /// Where the sprite of each stands; zeros where it has none.
+    pub places: Vec<layout::SpritePlace>,
+    /// Of each whose sides a sprite on a page tells.
+    pub sides: Vec<layout::Shape>,
+    /// Of each sprite that is to be made.
+    pub baked: Vec<layout::Shape>,
+    /// Planes of convex volumes, and other rows that shapes name.
+    pub planes: Vec<[f32; 4]>,
+}
+
+impl LensNumbers {
+    /// Those of `seen` volumes, of which the requests of the picture's eye come first, and of the requests of other eyes.
+    pub fn new(input: &FrameInput, seen: &[SeenVolume], requests: &[BakeRequest], own: &OwnSprites) -> Self {
+        let mut numbers = Self::default();
+        let mut of_seen = requests.iter();
+        for volume in seen {
+            numbers.add(input, volume, own, &mut of_seen);
+        }
+        // Those that have eyes of their own follow.
+        for request in of_seen {
+            let own_view = request.own.as_ref().unwrap_or(&input.view);
+            numbers.baked.push(match request.body.is_form() {
+                true => request.body.figures(own_view, &mut numbers.planes),
+                false => request.body.program_figures(own_view, &mut numbers.planes),
+            });
+        }
+        numbers
+    }
+
+    fn add<'r>(
+        &mut self,
+        input: &FrameInput,
+        volume: &SeenVolume,
+        own: &OwnSprites,
+        requests: &mut impl Iterator<Item = &'r BakeRequest<'r>>,
+    ) {
+        let body = &input.volumes[volume.index].body;
+        let nowhere = bytemuck::Zeroable::zeroed();
+        if volume.test == VolumeTest::OwnSprite {
+            self.shapes.push(own.figures(volume.index, &input.view, &mut self.planes));
+            self.places.push(nowhere);
+            return;
+        }
+        let is_listed = volume.test.is_sprite() && !body.is_form();
+        let shape = match is_listed {
+            true => body.program_figures(&input.view, &mut self.planes),
+            false => body.figures(&input.view, &mut self.planes),
+        };
+        self.shapes.push(layout::Shape { kind: volume.test.number(), ..shape });
+        match volume.sprite.as_ref().map(|sprite| (sprite, &sprite.kept)) {
+            None => self.places.push(nowhere),
+            Some((sprite, Kept::Page(on))) => {
+                self.sides.push(shape);
+                self.places.push(place_on_page(input, volume, sprite, *on));
+            }
+            Some((_, Kept::Stored(_))) => {
+                let Some(request) = requests.next() else { return };
+                self.baked.push(shape);
+                self.places.push(request.place(volume, input.tile));
+            }
+        }
+    }
+}
+
+/// Texels of a sprite per pixel of the picture, and from its own texels to those of its page.
+pub(super) fn scale_and_shift(input: &FrameInput, sprite: &SeenSprite, on: Place) -> [[f32; 2]; 2] {
+    [
+        std::array::from_fn(|i| sprite.size[i] as f32 / input.tile.size[i] as f32),
+        std::array::from_fn(|i| on.origin[i] as f32 - sprite.bounds.origin[i] as f32),
+    ]
+}
+
+fn place_on_page(input: &FrameInput, volume: &SeenVolume, sprite: &SeenSprite, on: Place) -> layout::SpritePlace {
+    let [scale, shift] = scale_and_shift(input, sprite, on);
+    layout::SpritePlace {
+        origin: volume.bounds.origin.map(|o| o as i32),
+        size: volume.bounds.size.map(|s| s as i32),
+        texels_per_pixel: scale,
+        sprite: shift,
+        page: on.page,
+        ..bytemuck::Zeroable::zeroed()
+    }
+}

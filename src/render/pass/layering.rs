@@ -1,0 +1,130 @@
+//! What all methods of laying translucent layers one over the other share in a frame (O1, O7).
+
+use crate::{
+    gpu::{Gpu, GpuError},
+    render::{
+        cut::Cut,
+        eye::PictureTile,
+        pass::context::FrameContext,
+        picture_parts::Piece,
+        plan::FramePlan,
+        programs::Programs,
+        resource::recording::{Recording, cleared},
+        resource::targets::Needs,
+    },
+    scene::Transparency,
+    shader::{EffectKind, Program, handlers},
+};
+
+/// Storage buffers that a shader of layers binds: two of lists, and what lens tests read.
+const BUFFERS: u32 = 8;
+
+/// What is translucent in a frame, and where.
+#[derive(Clone, Debug)]
+pub struct Layering<'a> {
+    pub cut: &'a Cut,
+    /// Parts of the picture where something may be translucent, as triangles of the mesh.
+    pub pieces: Vec<Piece>,
+    /// Of the picture: the context's (0), or the lenses' (1).
+    pub part: u32,
+    /// The rectangle around all pieces; `None`: there is no pixel.
+    pub region: Option<PictureTile>,
+    /// Whether it is written down which layer is the shown surface.
+    pub shown: bool,
+}
+
+/// The programs of translucent layers.
+#[derive(Clone, Copy, Debug)]
+pub struct LayerPrograms<'a> {
+    /// What is translucent.
+    pub noting: &'a Program,
+    /// How it looks.
+    pub composite: &'a Program,
+}
+
+impl<'a> LayerPrograms<'a> {
+    /// Those of a frame; `None`: nothing is translucent.
+    pub fn of(programs: &'a Programs) -> Option<Self> {
+        let (noting, composite) = programs.picture.as_ref().zip(programs.layering.as_ref())?;
+        Some(Self { noting, composite })
+    }
+}
+
+impl<'a> Layering<'a> {
+    /// What a frame's plan has of them.
+    pub fn of(plan: &'a FramePlan<'a>) -> Option<Self> {
+        let (_, cut) = plan.plans.layering.as_ref().zip(plan.cuts.picture.as_ref())?;
+        let (parts, size) = (&plan.parts, plan.input.tile.size);
+        let is_everywhere = plan.plans.context.veils;
+        let pieces = if is_everywhere || parts.inside.is_empty() { parts.all() } else { parts.inside.clone() };
+        let region = pieces.iter().map(|(_, tile)| *tile).filter(|tile| !tile.is_empty()).reduce(around);
+        let region = region.map(|region| common(region, PictureTile::whole(size))).filter(|r| !r.is_empty());
+        Some(Self { cut, pieces, part: u32::from(plan.has_lenses()), region, shown: shows_layers(plan) })
+    }
+
+    /// Adds the targets of layers.
+    pub fn add_needs(plan: &FramePlan, needs: &mut Needs) {
+        needs.veils = true;
+        needs.shown_layers = plan.input.wants_shown_layers();
+    }
+
+    /// Nothing is translucent, until something is.
+    ///
+    /// # Errors
+    /// That the device binds fewer buffers than lists of layers take.
+    pub fn clear(&self, frame: &FrameContext, recording: &mut Recording) -> Result<(), GpuError> {
+        check(frame.gpu)?;
+        let clear = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 1.0 };
+        let targets = frame.targets;
+        let colors = [
+            Some(cleared(&targets.veil.view, clear)),
+            Some(cleared(&targets.shown_code.view, wgpu::Color::TRANSPARENT)),
+        ];
+        recording.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("clear layers"),
+            color_attachments: &colors[..if self.shown { 2 } else { 1 }],
+            ..Default::default()
+        });
+        Ok(())
+    }
+}
+
+/// Whether it is written down which layer is the shown surface: those that are there by chance are it already.
+pub fn shows_layers(plan: &FramePlan) -> bool {
+    plan.input.wants_shown_layers() && plan.input.transparency != Transparency::Stochastic
+}
+
+/// Words of a note of a layer.
+pub fn words(plan: &FramePlan) -> u32 {
+    3 + u32::from(plan.smooth) + u32::from(plan.is_textured())
+}
+
+/// Whether some opacity rule asks how many layers the picture has.
+pub fn asks_most(plan: &FramePlan) -> bool {
+    let rules = plan.plans.layering.as_ref().map(|layering| layering.steps_of(EffectKind::Opacity, handlers()));
+    rules.into_iter().flatten().any(|(_, rule)| rule.asks_most_layers)
+}
+
+/// The rectangle around two parts of a picture.
+fn around(a: PictureTile, b: PictureTile) -> PictureTile {
+    let low = [0, 1].map(|i| a.origin[i].min(b.origin[i]));
+    let high = [0, 1].map(|i| (a.origin[i] + a.size[i]).max(b.origin[i] + b.size[i]));
+    PictureTile { origin: low, size: [0, 1].map(|i| high[i] - low[i]) }
+}
+
+/// What two parts of a picture have in common.
+pub fn common(a: PictureTile, b: PictureTile) -> PictureTile {
+    let low = [0, 1].map(|i| a.origin[i].max(b.origin[i]));
+    let high = [0, 1].map(|i| (a.origin[i] + a.size[i]).min(b.origin[i] + b.size[i]));
+    PictureTile { origin: low, size: [0, 1].map(|i| high[i].saturating_sub(low[i])) }
+}
+
+/// Refuses a device that binds fewer buffers than lists of layers take.
+fn check(gpu: &Gpu) -> Result<(), GpuError> {
+    let most = gpu.device.limits().max_storage_buffers_per_shader_stage;
+    if most >= BUFFERS {
+        return Ok(());
+    }
+    let message = format!("it binds {most} storage buffers at a time; what is translucent takes {BUFFERS}");
+    Err(GpuError::Failed { adapter: gpu.name(), message })
+}

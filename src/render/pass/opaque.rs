@@ -1,0 +1,244 @@
+//! Drawing what is opaque of the city into the targets: what geometry passes share.
+
+use crate::{
+    render::{
+        cities::DrawnSection,
+        city::{Chunk, CityBuffers, Draw as Run, SectionKind, draws_of},
+        cut::Cut,
+        pass::{
+            context::{FrameContext, Keys},
+            section_kind::{GeometryKind, Normals},
+        },
+        plan::FramePlan,
+        resource::{
+            bindings::{DRAWN, GroupLayout, STAGE, UNIFORM},
+            formats::{COLORS, OWN_DEPTH, REGIONS, codes},
+            key::{Draw, Parts, PipelineKey, Stage, depth_test, flag, words},
+            layouts::{CITY, CUT_CITY, LENSES, VIEW},
+            recording::{Counted, DrawnPass, Recording, Shaded, cleared, cleared_depth, kept, kept_depth},
+        },
+    },
+    shader::{Module, Program},
+};
+
+/// Group 0 of the geometry of a region: the view, and the number of the region at a dynamic offset.
+pub static REGION: GroupLayout =
+    GroupLayout { label: "region", entries: &[(0, DRAWN, UNIFORM), (1, wgpu::ShaderStages::FRAGMENT, STAGE)] };
+
+/// Opaque triangles.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct GeometryKey {
+    /// How vertices are laid out and where depth comes from.
+    pub section: GeometryKind,
+    /// Whether base colours are written.
+    pub colored: bool,
+    pub normals: Normals,
+    /// Whether interpolated depth is written, for the AOV.
+    pub measured: bool,
+    /// What is hidden; of a program that tells regions apart, what is not in the one that is drawn.
+    pub cut: Option<Program>,
+}
+
+impl GeometryKey {
+    /// The pipeline that draws a section of a frame; `cut`: where something may be hidden.
+    pub fn new(plan: &FramePlan, kind: SectionKind, is_smooth_city: bool, cut: Option<Program>) -> Self {
+        Self {
+            section: kind.into(),
+            colored: plan.colored,
+            normals: Normals::new(plan.smooth, is_smooth_city),
+            measured: plan.input.measured,
+            cut,
+        }
+    }
+
+    fn is_of_region(&self) -> bool {
+        self.cut.as_ref().is_some_and(|program| program.regions().is_some())
+    }
+
+    fn entry_points(&self) -> (&'static str, &'static str) {
+        let full = self.colored || self.measured || self.is_of_region();
+        match (self.section, self.normals.smooth) {
+            (GeometryKind::Plain, false) => ("vertex", if full { "full" } else { "plain" }),
+            (GeometryKind::Plain, true) => ("vertex_smooth", if full { "smooth_full" } else { "smooth_plain" }),
+            (GeometryKind::Textured(_), _) => ("vertex_textured", "textured"),
+            (GeometryKind::Coplanar, _) => ("vertex_coplanar", if full { "coplanar_full" } else { "coplanar_plain" }),
+        }
+    }
+
+    fn targets(&self) -> Vec<Option<wgpu::ColorTargetState>> {
+        let mut targets = vec![Some(codes(self.normals.smooth).into()), self.colored.then(|| COLORS.into())];
+        targets.extend(self.measured.then(|| Some(OWN_DEPTH.into())));
+        // Without the colour target the list ends where it may.
+        targets.truncate(if self.measured { 3 } else { 1 + usize::from(self.colored) });
+        if self.is_of_region() {
+            targets.resize(3, None);
+            targets.push(Some(REGIONS.into()));
+        }
+        targets
+    }
+}
+
+impl PipelineKey for GeometryKey {
+    fn name(&self) -> String {
+        let kind = match self.section {
+            GeometryKind::Plain => "",
+            GeometryKind::Textured(0) => " textured",
+            GeometryKind::Textured(_) => " textured with holes",
+            GeometryKind::Coplanar => " coplanar",
+        };
+        let Normals { smooth, flat } = self.normals;
+        let flags =
+            words(&[(self.colored, "colored"), (smooth, "smooth"), (flat, "flat"), (self.measured, "measured")]);
+        format!("{}{kind}{flags}", Module::Geometry(self.cut.clone()).name())
+    }
+
+    fn parts(&self, _: wgpu::TextureFormat) -> Parts {
+        let is_cut = self.cut.is_some();
+        let compare = match self.section {
+            GeometryKind::Coplanar => wgpu::CompareFunction::GreaterEqual,
+            _ => wgpu::CompareFunction::Greater,
+        };
+        let (vertex, fragment) = self.entry_points();
+        let constants = [("SMOOTH", flag(self.normals.smooth)), ("FLAT_CITY", flag(self.normals.flat))];
+        Parts {
+            module: Module::Geometry(self.cut.clone()),
+            groups: vec![
+                Some(if self.is_of_region() { &REGION } else { &VIEW }),
+                Some(if is_cut { &CUT_CITY } else { &CITY }),
+                is_cut.then_some(&LENSES),
+                self.section.image(),
+            ],
+            constants: constants.into_iter().chain(self.section.constants()).collect(),
+            stage: Stage::Draw(Draw {
+                buffers: self.section.vertex_buffers(),
+                targets: self.targets(),
+                depth: Some(depth_test(compare, true)),
+                ..Draw::new(vertex, Some(fragment))
+            }),
+        }
+    }
+}
+
+/// What a pass draws of a section.
+#[derive(Clone, Debug)]
+pub struct SectionPart<'a> {
+    pub drawn: DrawnSection<'a>,
+    pub chunks: Vec<&'a Chunk>,
+}
+
+/// What is hidden, and the program that hides it.
+#[derive(Clone, Copy, Debug)]
+pub struct CutBy<'a> {
+    pub cut: &'a Cut,
+    pub program: &'a Program,
+}
+
+impl<'a> CutBy<'a> {
+    /// What is hidden in the picture of a frame.
+    pub fn of_picture(frame: &FrameContext<'a>) -> Option<Self> {
+        let (cut, program) = frame.plan.cuts.picture.as_ref().zip(frame.programs.picture.as_ref())?;
+        Some(Self { cut, program })
+    }
+}
+
+/// Adds the pipelines of what no lens reaches.
+pub fn add_whole_keys(plan: &FramePlan, keys: &mut Keys) {
+    keys.add(11, plan.own_sections.iter().map(|s| GeometryKey::new(plan, s.kind, s.is_smooth, None)));
+}
+
+/// Adds those of what a program hides something of: for all sections, contents' too.
+pub fn add_cut_keys(plan: &FramePlan, program: &Program, keys: &mut Keys) {
+    let key = |s: &crate::render::city_facts::SectionFacts| {
+        GeometryKey::new(plan, s.kind, s.is_smooth, Some(program.clone()))
+    };
+    keys.add_programs(23, plan.sections.iter().map(key));
+}
+
+/// The chunks of a section that a frame may show, in drawing order.
+pub fn visible<'a>(
+    drawn: &DrawnSection<'a>,
+    frame: &FrameContext,
+    cut: Option<&Cut>,
+) -> Vec<crate::render::city::SeenChunk<'a>> {
+    let view = &frame.plan.input.view;
+    let shown = drawn.chunks.iter().filter(|c| drawn.shows(c, cut, view));
+    CityBuffers::visible(shown, &view.frustum(1.0), view.camera.eye)
+}
+
+/// Sets what a section is drawn from, but for its pipeline.
+pub fn set_section(pass: &mut wgpu::RenderPass, drawn: &DrawnSection) {
+    pass.set_vertex_buffer(0, drawn.section.vertices.slice(..));
+    if let Some(extra) = &drawn.section.extra {
+        pass.set_vertex_buffer(1, extra.slice(..));
+    }
+    if let Some(image) = drawn.image {
+        pass.set_bind_group(3, image, &[]);
+    }
+}
+
+/// Draws parts of the city into the targets, cleared before where they are the `first`.
+pub fn draw_opaque(
+    frame: &FrameContext,
+    recording: &mut Recording,
+    name: &'static str,
+    parts: &[SectionPart],
+    cut: Option<CutBy>,
+    is_first: bool,
+) {
+    let FrameContext { targets, groups, plan, .. } = *frame;
+    let input = plan.input;
+    let attachment = |view| if is_first { cleared(view, wgpu::Color::TRANSPARENT) } else { kept(view) };
+    let colors =
+        [Some(&targets.codes), plan.colored.then_some(&targets.colors), input.measured.then_some(&targets.own_depth)]
+            .map(|target| target.map(|target| attachment(&target.view)));
+    let count = if input.measured { 3 } else { 1 + usize::from(plan.colored) };
+    let depth = &targets.depth.view;
+    let pass = DrawnPass {
+        name,
+        view: "main",
+        lenses: cut.map_or(&[][..], |by| &by.cut.hiding.lenses),
+        shaded: Shaded::Counted,
+        colors: &colors[..count],
+        depth: Some(if is_first { cleared_depth(depth, 0.0) } else { kept_depth(depth) }),
+    };
+    recording.draw(pass, |pass| {
+        pass.set_bind_group(0, &groups.view, &[]);
+        let mut counted = Counted::NONE;
+        for part in parts.iter().filter(|part| !part.chunks.is_empty()) {
+            set_section(pass, &part.drawn);
+            counted += draw_part(frame, pass, part, cut);
+        }
+        counted
+    });
+}
+
+/// Draws what a part has, what is cut and what is not each by its pipeline.
+fn draw_part(frame: &FrameContext, pass: &mut wgpu::RenderPass, part: &SectionPart, by: Option<CutBy>) -> Counted {
+    let FrameContext { groups, plan, .. } = *frame;
+    let DrawnSection { city, section, content, offset, .. } = part.drawn;
+    let mut counted = Counted::NONE;
+    for (chunks, is_cut) in Cut::parts(by.map(|by| by.cut), &plan.input.view, &part.chunks, content.is_some()) {
+        let (runs, triangles) = draws_of(chunks.into_iter());
+        let program = by.filter(|_| is_cut).map(|by| by.program.clone());
+        if program.is_some() {
+            pass.set_bind_group(2, &groups.lenses, &[]);
+        }
+        match program.is_some() {
+            true => pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
+            false => pass.set_bind_group(1, &city.group, &[]),
+        }
+        let key = GeometryKey::new(plan, section.kind, city.buffers.smooth, program);
+        pass.set_pipeline(frame.pipelines.get(&key));
+        draw_runs(pass, &section.indices, &runs);
+        counted += Counted { draws: runs.len() as u32, triangles };
+    }
+    counted
+}
+
+/// Draws runs of an index buffer.
+pub fn draw_runs(pass: &mut wgpu::RenderPass, indices: &wgpu::Buffer, runs: &[Run]) {
+    pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+    for run in runs {
+        pass.draw_indexed(run.clone(), 0, 0..1);
+    }
+}

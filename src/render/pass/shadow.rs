@@ -1,0 +1,286 @@
+//! The shadow map: depth from the sun, drawn where the map does not hold this view yet.
+
+use glam::DVec2;
+use wgpu::ShaderStages as S;
+
+use crate::{
+    gpu::{Gpu, GpuError},
+    render::{
+        cells::Details,
+        cities::DrawnSection,
+        city::{Chunk, CityBuffers, draws_of},
+        cut::{Cut, Shapes},
+        eye::{PictureTile, view_uniform},
+        invokers::Invokers,
+        layout, light,
+        pass::{
+            context::{Board, FrameContext, Keys, Line, Pass, Preparing},
+            opaque::{CutBy, draw_runs},
+        },
+        plan::FramePlan,
+        programs::Programs,
+        resource::{
+            bindings::{GroupLayout, KeptGroup, STORAGE, UNIFORM, group, one_of, whole},
+            key::{Draw, Parts, PipelineKey, Stage, depth_test},
+            layouts::{CITY, CUT_CITY, VIEW},
+            recording::{Counted, DrawnPass, Recording, Shaded, cleared_depth},
+            synced::Synced,
+            targets::Needs,
+            vertices,
+        },
+    },
+    shader::{Module, Plan, Program, handlers},
+    view::View,
+};
+
+/// Where something is hidden, group 2: object values, parameters, invokers, the main view, shapes, sprites.
+static SHAPES: GroupLayout = GroupLayout {
+    label: "shapes",
+    entries: &[
+        (1, S::FRAGMENT, STORAGE),
+        (2, S::FRAGMENT, UNIFORM),
+        (5, S::FRAGMENT, UNIFORM),
+        (7, S::VERTEX, UNIFORM),
+        (8, S::FRAGMENT, STORAGE),
+        (9, S::FRAGMENT, STORAGE),
+        (10, S::FRAGMENT, STORAGE),
+    ],
+};
+
+/// Depth from the sun, and what is hidden from it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct ShadowKey(Option<Program>);
+
+impl PipelineKey for ShadowKey {
+    fn name(&self) -> String {
+        Module::Shadow(self.0.clone()).name()
+    }
+
+    fn parts(&self, _: wgpu::TextureFormat) -> Parts {
+        let (groups, fragment) = match self.0 {
+            Some(_) => (vec![Some(&VIEW), Some(&CUT_CITY), Some(&SHAPES)], Some("fragment")),
+            None => (vec![Some(&VIEW), Some(&CITY)], None),
+        };
+        Parts {
+            module: Module::Shadow(self.0.clone()),
+            groups,
+            constants: Vec::new(),
+            stage: Stage::Draw(Draw {
+                buffers: vec![vertices::city()],
+                depth: Some(depth_test(wgpu::CompareFunction::Greater, true)),
+                ..Draw::new("vertex", fragment)
+            }),
+        }
+    }
+}
+
+/// What a shadow map shows.
+#[derive(Clone, Debug, PartialEq)]
+struct Held {
+    /// The sun's view.
+    view: layout::View,
+    /// What is hidden from it, and all numbers that this depends on.
+    cut: Option<(Program, Vec<u8>)>,
+    /// Where contents stand.
+    cities: Vec<u8>,
+    /// In which detail the city throws it.
+    details: Details,
+    /// How often what may cast it became another.
+    world: u64,
+    /// The map.
+    map: wgpu::Texture,
+}
+
+/// What the pass keeps.
+#[derive(Debug)]
+pub struct ShadowMap {
+    view: Synced,
+    cities: Synced,
+    /// Where something is hidden: the main view, shapes of lens volumes, their planes, invokers.
+    eye: Synced,
+    shapes: Synced,
+    shape_planes: Synced,
+    invoker_table: Synced,
+    invokers: Synced,
+    view_group: KeptGroup,
+    city_group: KeptGroup,
+    shapes_group: KeptGroup,
+    /// What the map holds.
+    held: Option<Held>,
+}
+
+impl ShadowMap {
+    /// Brings what hides something from the sun up to date; whether bind groups are stale.
+    fn upload_cut(&mut self, stage: &Preparing, cut: &Cut) -> Result<bool, GpuError> {
+        let Shapes { eye, shapes, planes } = cut.shapes(stage.plan.input, stage.plan.own_sprites);
+        let mut stale = self.eye.sync(stage.gpu, &[eye])?;
+        stale |= self.shapes.sync(stage.gpu, &shapes)?;
+        stale |= self.shape_planes.sync(stage.gpu, &planes)?;
+        if stage.programs.is_uber {
+            let none = Plan::default();
+            let invokers = Invokers::new([&none, &none], [Some(&cut.plan), None, None], handlers());
+            stale |= self.invoker_table.sync(stage.gpu, &invokers.table([0, 0]))?;
+            stale |= self.invokers.sync(stage.gpu, invokers.all())?;
+        }
+        Ok(stale)
+    }
+
+    fn fit_groups(&mut self, frame: &FrameContext) {
+        let FrameContext { gpu, pipelines, shared, cities, .. } = *frame;
+        let stamp = shared.stamp;
+        self.view_group
+            .fit(stamp, || group(gpu, "sun's view", &pipelines.layout(&VIEW), &[(0, whole(self.view.buffer()))]));
+        self.city_group.fit(stamp, || {
+            let entries = [
+                (0, wgpu::BindingResource::TextureView(cities.surfaces())),
+                (1, whole(self.shape_planes.buffer())),
+                (2, whole(shared.solids.buffer())),
+                (3, one_of::<layout::City>(&self.cities)),
+                (4, one_of::<layout::City>(&shared.cities)),
+            ];
+            group(gpu, CUT_CITY.label, &pipelines.layout(&CUT_CITY), &entries)
+        });
+        self.shapes_group.fit(stamp, || {
+            let entries = [
+                (1, whole(shared.object_values.buffer())),
+                (2, whole(shared.parameters.buffer())),
+                (5, whole(self.invoker_table.buffer())),
+                (7, whole(self.eye.buffer())),
+                (8, whole(self.shapes.buffer())),
+                (9, whole(self.invokers.buffer())),
+                (10, whole(shared.sprites.buffer())),
+            ];
+            group(gpu, "shapes", &pipelines.layout(&SHAPES), &entries)
+        });
+    }
+
+    /// Draws what a section has for the sun.
+    fn draw_section(
+        &self,
+        frame: &FrameContext,
+        pass: &mut wgpu::RenderPass,
+        drawn: &DrawnSection,
+        sun: &View,
+        by: Option<CutBy>,
+    ) -> Counted {
+        let (view, cut) = (&frame.plan.input.view, by.map(|by| by.cut));
+        let shown = drawn.chunks.iter().filter(|c| drawn.shows(c, cut, view));
+        // Casters may stand before the picture's edge, never behind the sun.
+        let seen = CityBuffers::visible(shown, &sun.frustum(1.0), sun.camera.eye);
+        let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
+        pass.set_vertex_buffer(0, drawn.section.vertices.slice(..));
+        let mut counted = Counted::NONE;
+        for (part, is_cut) in Cut::parts(cut, view, &chunks, drawn.content.is_some()) {
+            let (runs, triangles) = draws_of(part.into_iter());
+            let program = by.filter(|_| is_cut).map(|by| by.program.clone());
+            match program.is_some() {
+                true => {
+                    pass.set_bind_group(1, self.city_group.get(), &[drawn.offset; 2]);
+                    pass.set_bind_group(2, self.shapes_group.get(), &[]);
+                }
+                false => pass.set_bind_group(1, &drawn.city.group, &[]),
+            }
+            pass.set_pipeline(frame.pipelines.get(&ShadowKey(program)));
+            draw_runs(pass, &drawn.section.indices, &runs);
+            counted += Counted { draws: runs.len() as u32, triangles };
+        }
+        counted
+    }
+}
+
+impl Pass for ShadowMap {
+    /// The sun's eye.
+    type Input<'a> = &'a View;
+
+    const LIST: &'static [Line] = &[("shadow map", "if the sun casts shadows and the map does not hold this view yet")];
+
+    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        use wgpu::BufferUsages as U;
+        let uniform = |label| Synced::new(gpu, label, U::UNIFORM);
+        let storage = |label| Synced::new(gpu, label, U::STORAGE);
+        Ok(Self {
+            view: uniform("sun's view")?,
+            cities: uniform("cities for the sun")?,
+            eye: uniform("main view for the sun")?,
+            shapes: storage("lens shapes for the sun")?,
+            shape_planes: storage("lens planes for the sun")?,
+            invoker_table: uniform("invoker table for the sun")?,
+            invokers: storage("invokers for the sun")?,
+            view_group: KeptGroup::default(),
+            city_group: KeptGroup::default(),
+            shapes_group: KeptGroup::default(),
+            held: None,
+        })
+    }
+
+    fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<&'a View> {
+        plan.sun.as_ref()
+    }
+
+    fn add_needs(_: &&View, _: &FramePlan, needs: &mut Needs) {
+        needs.shadow = light::SHADOW_SIZE;
+    }
+
+    fn add_keys(&self, input: Option<&&View>, _: &FramePlan, programs: &Programs, keys: &mut Keys) {
+        keys.add(10, input.map(|_| ShadowKey(None)));
+        keys.add_programs(25, programs.made_for_sun.iter().map(|program| ShadowKey(Some(program.clone()))));
+    }
+
+    fn prepare(&mut self, sun: &&View, stage: &mut Preparing) -> Result<(), GpuError> {
+        let whole = PictureTile::whole(sun.size);
+        let mut stale = self.view.sync(stage.gpu, &[view_uniform(sun, whole, DVec2::ZERO, 0, 0.0)])?;
+        stale |= self.cities.sync(stage.gpu, &stage.cities.contents.uniforms(sun.camera.eye))?;
+        if let Some(cut) = &stage.plan.cuts.sun {
+            stale |= self.upload_cut(stage, cut)?;
+        }
+        if stale {
+            [&mut self.view_group, &mut self.city_group, &mut self.shapes_group]
+                .into_iter()
+                .for_each(KeptGroup::forget);
+        }
+        Ok(())
+    }
+
+    fn record(
+        &mut self,
+        sun: &&View,
+        frame: &FrameContext,
+        recording: &mut Recording,
+        _: &mut Board,
+    ) -> Result<(), GpuError> {
+        let FrameContext { plan, programs, targets, shared, cities, .. } = *frame;
+        let by = plan.cuts.sun.as_ref().zip(programs.sun.as_ref()).map(|(cut, program)| CutBy { cut, program });
+        let numbers = |by: CutBy| (by.program.clone(), by.cut.all_numbers(plan.input, plan.own_sprites));
+        let wanted = Held {
+            view: view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0),
+            cut: by.map(numbers),
+            cities: cities.contents.uniforms(sun.camera.eye),
+            details: plan.details.clone(),
+            world: shared.world,
+            map: targets.shadow.texture.clone(),
+        };
+        if self.held.as_ref() == Some(&wanted) {
+            return Ok(());
+        }
+        self.held = Some(wanted);
+        self.fit_groups(frame);
+        let pass = DrawnPass {
+            name: "shadow map",
+            view: "sun",
+            lenses: by.map_or(&[][..], |by| &by.cut.hiding.lenses),
+            shaded: Shaded::Unmeasured,
+            colors: &[],
+            depth: Some(cleared_depth(&targets.shadow.view, 0.0)),
+        };
+        recording.draw(pass, |pass| {
+            pass.set_bind_group(0, self.view_group.get(), &[]);
+            let mut counted = Counted::NONE;
+            let sections = cities.drawn_sections(&plan.details, by.map(|by| by.cut));
+            for drawn in sections.iter().filter(|drawn| drawn.has_shadow) {
+                counted += self.draw_section(frame, pass, drawn, sun, by);
+            }
+            counted
+        });
+        Ok(())
+    }
+}

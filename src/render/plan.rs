@@ -1,0 +1,202 @@
+//! The plan of a frame: plain data, worked out once from what a frame is drawn from, the cities that are there and what stayed from
+//! before. All passes read it, and nothing works out again what it says.
+
+use glam::DVec2;
+
+use crate::{
+    render::{
+        bake::{self, BakeRequest},
+        cells::Details,
+        city_facts::{CityFacts, SectionFacts},
+        cut::Cuts,
+        eye::view_uniform,
+        frame::{Backend, FrameInput},
+        layout,
+        lens_numbers::LensNumbers,
+        light,
+        own_sprites::OwnSprites,
+        picture_parts::PictureParts,
+        plans::Plans,
+        programs::Programs,
+        section_rounds,
+        seen::{Seen, seen_volumes},
+        settings::Settings,
+    },
+    scene::{BaseStyle, Technique},
+    view::View,
+};
+
+/// What a frame depends on of the adapter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Adapter {
+    /// Whether it is a program.
+    pub is_software: bool,
+    /// Whether it can test depth before the shader runs.
+    pub tests_depth_early: bool,
+}
+
+/// What stayed from the frame before.
+pub(super) struct Stayed<'a> {
+    /// Sprites that have eyes of their own.
+    pub own_sprites: &'a mut OwnSprites,
+    /// How much room there is for sprites, and for what is counted of them, bytes.
+    pub sprite_bytes: u64,
+    pub count_bytes: u64,
+}
+
+/// The plan of a frame.
+pub(super) struct FramePlan<'a> {
+    /// What the frame is drawn from.
+    pub input: &'a FrameInput<'a>,
+    pub settings: Settings,
+    pub adapter: Adapter,
+    /// In which detail the city is shown.
+    pub details: Details,
+    /// Whether some of what is shown has a base colour, and a normal per vertex.
+    pub colored: bool,
+    pub smooth: bool,
+    /// Whether the edges of the city are there.
+    pub has_edges: bool,
+    /// Sections of all cities, and of the scene's own.
+    pub sections: Vec<SectionFacts>,
+    pub own_sections: Vec<SectionFacts>,
+    /// Half the diagonal of the city in plan, metres.
+    pub radius: f64,
+    /// The volumes of lenses that the picture may show, and their numbers.
+    pub seen: Seen,
+    pub numbers: LensNumbers,
+    /// The sun's eye, where there are shadows.
+    pub sun: Option<View>,
+    /// What shaders do.
+    pub plans: Plans,
+    /// What is hidden.
+    pub cuts: Cuts,
+    /// Whether the scene asks for sections, in view or not.
+    pub has_sections: bool,
+    /// Depth sprites that have to be made.
+    pub requests: Vec<BakeRequest<'a>>,
+    /// Room for the sprites, and for what is counted of them, bytes.
+    pub sprite_bytes: u64,
+    pub count_bytes: u64,
+    /// Words of sprites that come from files, each with where they begin.
+    pub file_words: Vec<(u32, Vec<u32>)>,
+    pub own_sprites: &'a OwnSprites,
+    /// Where the picture is drawn.
+    pub parts: PictureParts,
+}
+
+impl<'a> FramePlan<'a> {
+    /// The plan of a frame.
+    pub fn new(
+        input: &'a FrameInput<'a>,
+        facts: &CityFacts,
+        adapter: Adapter,
+        settings: Settings,
+        stayed: Stayed<'a>,
+    ) -> Self {
+        let Stayed { own_sprites, .. } = stayed;
+        own_sprites.plan(input, &facts.all);
+        let seen = seen_volumes(input, &facts.all, own_sprites.room());
+        let sun = facts.sun_view(&input.view, &input.sun, |frustum| facts.content_bounds(input, frustum));
+        let plans = Plans::new(input, &seen.volumes);
+        let is_seen = |lens| seen.volumes.iter().any(|v| v.lens == lens);
+        let cuts = Cuts::new(input, is_seen, sun.as_ref(), plans.hiding.clone());
+        let sprite_bytes = 4 * seen.words;
+        let counts = 1 + u64::from(own_sprites.room().1) + seen.volumes.len() as u64;
+        let count_bytes = if seen.lists > 0 || own_sprites.counts() { 4 * counts } else { 0 };
+        if sprite_bytes > stayed.sprite_bytes || count_bytes > stayed.count_bytes {
+            // There is other room then, with nothing in it.
+            own_sprites.forget();
+        }
+        let is_needed = |volume: usize| {
+            let lens = input.volumes[volume].lens;
+            let is_hiding = cuts.sun.as_ref().is_some_and(|cut| cut.hiding.lenses.contains(&lens));
+            is_hiding || seen.volumes.iter().any(|v| v.index == volume)
+        };
+        let mut requests = bake::of_picture(&seen.volumes, input);
+        requests.extend(own_sprites.to_make(input, is_needed, seen.lists));
+        let file_words = own_sprites.note_made(is_needed);
+        let own_sprites: &OwnSprites = own_sprites;
+        let has_sections = section_rounds::are_asked_for(input);
+        Self {
+            settings,
+            adapter,
+            details: facts.details(input),
+            colored: has_sections || facts.is_textured(),
+            // Sections have normals of their own.
+            smooth: has_sections || facts.has_smooth,
+            has_edges: facts.has_edges,
+            sections: facts.sections.clone(),
+            own_sections: facts.own_sections.clone(),
+            radius: light::radius_of(&facts.bounds),
+            numbers: LensNumbers::new(input, &seen.volumes, &requests, own_sprites),
+            parts: PictureParts::new(&seen.volumes, &plans.filters, input.tile.size),
+            sun,
+            plans,
+            cuts,
+            has_sections,
+            requests,
+            sprite_bytes,
+            count_bytes,
+            file_words,
+            own_sprites,
+            seen,
+            input,
+        }
+    }
+
+    /// Whether lenses may be seen.
+    pub fn has_lenses(&self) -> bool {
+        !self.seen.volumes.is_empty()
+    }
+
+    /// Whether everything is drawn in clay.
+    pub fn is_clay(&self) -> bool {
+        self.input.base == BaseStyle::Clay
+    }
+
+    /// Whether base colours come from a target.
+    pub fn is_textured(&self) -> bool {
+        self.colored && !self.is_clay()
+    }
+
+    /// Whether lists of lenses are narrowed to what each tile shows: of what is opaque, by the uber back end.
+    pub fn narrows(&self) -> bool {
+        let is_uber = self.input.technique == Technique::Accumulate;
+        self.settings.narrows_lists && is_uber && self.plans.is_long() && self.plans.layering.is_none()
+    }
+
+    /// The view of the picture, as shaders read it.
+    pub fn view_uniform(&self) -> layout::View {
+        let input = self.input;
+        let jitter = crate::view::jitter_px(input.sample);
+        let jitter = if input.is_summed() { jitter } else { DVec2::ZERO };
+        view_uniform(&input.view, input.tile, jitter, input.sample, input.haze_per_radius() / self.radius)
+    }
+
+    /// The programs of the back end. `are_ready`: whether the pipelines of these programs are there, which the adaptive one asks.
+    pub fn programs(&self, are_ready: impl FnOnce(&Programs) -> bool) -> Programs {
+        let specialised = || Programs::specialised(&self.plans, &self.cuts);
+        let uber = || Programs::uber(self.input, &self.plans, &self.cuts, self.sun.is_some());
+        match self.input.backend {
+            // Those kept for reference are written out.
+            _ if self.input.technique != Technique::Accumulate => specialised(),
+            // What is written out for so many compiles for minutes.
+            Backend::Specialised | Backend::Adaptive if self.plans.is_long() => uber(),
+            Backend::Specialised => specialised(),
+            Backend::Uber => uber(),
+            Backend::Adaptive => {
+                let wanted = specialised();
+                if are_ready(&wanted) { wanted } else { uber() }
+            }
+        }
+    }
+
+    /// The effects that run, in no order.
+    pub fn effects(&self) -> Vec<u32> {
+        let plans = &self.plans;
+        let all = [Some(&plans.context), Some(&plans.lenses), plans.layering.as_ref(), plans.lining.as_ref()];
+        let cuts = self.cuts.all().map(|cut| &cut.plan);
+        all.into_iter().flatten().chain(cuts).flat_map(|plan| plan.effects()).collect()
+    }
+}

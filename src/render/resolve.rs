@@ -1,0 +1,247 @@
+//! What a scene is in one view: its volumes, solids, operations, contents and deformations, worked out once and in this order, from the
+//! scene, the city, the eye and what stayed from the scenes before.
+
+use std::sync::Arc;
+
+use crate::{
+    city::{CityModel, load::LoadOptions},
+    geom::Aabb,
+    lens::solids::{ShownCity, Solids},
+    render::{
+        body::Leaf,
+        city_facts::CityFacts,
+        content_cities::{self, ContentCities, SceneContents},
+        deformations::{self, KnownDeformations, Moved, SceneDeformations},
+        footprints::{self, OwnFootprints},
+        lens_volumes::{LensVolumes, Tools, volumes_of},
+        occlusion::Occlusion,
+        operations::{LensTables, MOST_FILTERS, Operations},
+        parts::whole,
+        placement::Eye,
+        regions,
+        sights::sights,
+        solids::SolidTable,
+        volume::LensVolume,
+    },
+    scene::{Drawn, Scene},
+    shader::{MOST_SLOTS, MOST_VOLUMES},
+    view::{Camera, CameraError, View},
+};
+
+/// Why a scene cannot be resolved.
+#[derive(Debug)]
+pub(super) enum ResolveError {
+    /// The camera.
+    Camera(CameraError),
+    /// Something a scene says that the city cannot answer.
+    Scene(String),
+}
+
+impl From<CameraError> for ResolveError {
+    fn from(error: CameraError) -> Self {
+        Self::Camera(error)
+    }
+}
+
+/// What stays from scene to scene.
+#[derive(Debug, Default)]
+pub(super) struct Known {
+    /// Solids of lenses made so far, and as the card reads them.
+    pub solids: Solids,
+    pub solid_table: Arc<SolidTable>,
+    /// What occlusion lenses found last.
+    pub occlusion: Occlusion,
+    /// Contents of lenses loaded so far.
+    pub contents: ContentCities,
+    pub deformations: KnownDeformations,
+}
+
+/// What scenes are resolved in.
+pub(super) struct Surroundings<'a> {
+    /// The city, and what is shown of it.
+    pub city: ShownCity<'a>,
+    pub model: &'a Arc<CityModel>,
+    /// What is drawn of it; `None`: nothing yet.
+    pub facts: Option<CityFacts<'a>>,
+    /// What its objects cover of the ground, once an effect asks for it.
+    pub footprints: &'a OwnFootprints,
+    /// How contents of lenses are loaded.
+    pub reading: &'a LoadOptions,
+}
+
+/// What a scene is in one view.
+pub(super) struct Resolved {
+    pub view: View,
+    pub volumes: Vec<LensVolume>,
+    pub solids: Arc<SolidTable>,
+    pub operations: Operations,
+    pub contents: SceneContents,
+    pub deformations: SceneDeformations,
+}
+
+impl Surroundings<'_> {
+    /// Box around what is drawn of the city, metres.
+    fn bounds(&self) -> Aabb {
+        self.facts.as_ref().map_or(Aabb::EMPTY, |facts| facts.bounds)
+    }
+
+    /// What a scene is in a picture of this size, seen by `camera`.
+    pub fn resolve(
+        &self,
+        drawn: &Drawn,
+        camera: &Camera,
+        size: [u32; 2],
+        known: &mut Known,
+    ) -> Result<Resolved, ResolveError> {
+        let scene = &*drawn.scene;
+        let deformations = self.deformations(scene, camera, known)?;
+        let eye = Eye::new(camera)?;
+        let mut found = self.placed(drawn, &eye, &deformations.moved, known)?;
+        let technique = scene.style.technique;
+        if let Some(problem) = technique.refuses(scene).or_else(|| regions::refused(scene, &found.volumes)) {
+            return Err(ResolveError::Scene(problem.to_string()));
+        }
+        regions::set_tests(technique, &mut found.volumes);
+        known.solid_table = found.place_solids(&known.solid_table).map_err(ResolveError::Scene)?;
+        let LensVolumes { mut volumes, tests } = found;
+        let contents = self.contents(drawn, &eye, camera, size, &volumes, known)?;
+        let mut operations = self.operations(scene, &eye, &volumes, tests, &contents, known)?;
+        add_members(&mut operations, &mut volumes, &self.models(&contents));
+        check_counts(&operations, &volumes)?;
+        let own = deformations.moved.bounds(&self.bounds());
+        let view = View::new(*camera, size, &own.union(contents.bounds(&own, &volumes)))?;
+        let solids = known.solid_table.clone();
+        Ok(Resolved { view, volumes, solids, operations, contents, deformations })
+    }
+
+    /// The volumes of a scene's enabled lenses.
+    pub fn volumes(&self, drawn: &Drawn, camera: &Camera, known: &mut Known) -> Result<Vec<LensVolume>, ResolveError> {
+        let moved = self.deformations(&drawn.scene, camera, known)?.moved;
+        Ok(self.placed(drawn, &Eye::new(camera)?, &moved, known)?.volumes)
+    }
+
+    fn placed(&self, drawn: &Drawn, eye: &Eye, moved: &Moved, known: &mut Known) -> Result<LensVolumes, ResolveError> {
+        let mut tools = Tools {
+            solids: &mut known.solids,
+            occlusion: &mut known.occlusion,
+            pois: &drawn.scene.pois,
+            viewer: eye.viewer(),
+            moved,
+            lens: "",
+            is_enabled: true,
+        };
+        volumes_of(drawn, self.city, eye, &mut tools).map_err(ResolveError::Scene)
+    }
+
+    /// What the scene's lenses move.
+    pub fn deformations(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        known: &mut Known,
+    ) -> Result<SceneDeformations, ResolveError> {
+        if scene.lenses.iter().all(|lens| lens.deform.is_none()) {
+            return Ok(SceneDeformations::default());
+        }
+        let mut stage = deformations::Stage {
+            scene,
+            model: self.model,
+            bounds: self.bounds(),
+            camera: *camera,
+            eye: &Eye::new(camera)?,
+            city: self.city,
+            occlusion: &mut known.occlusion,
+        };
+        known.deformations.of_scene(&mut stage).map_err(ResolveError::Scene)
+    }
+
+    /// What lenses show in themselves, in a picture of this size.
+    fn contents(
+        &self,
+        drawn: &Drawn,
+        eye: &Eye,
+        camera: &Camera,
+        size: [u32; 2],
+        volumes: &[LensVolume],
+        known: &mut Known,
+    ) -> Result<SceneContents, ResolveError> {
+        let scene = &*drawn.scene;
+        if scene.lenses.iter().all(|lens| lens.shown().is_none()) {
+            known.contents.clear();
+            return Ok(SceneContents::default());
+        }
+        let view = View::new(*camera, size, &self.bounds())?;
+        let sun = self.facts.as_ref().and_then(|facts| facts.sun_view(&view, &scene.sun, |_| [Aabb::EMPTY; 2]));
+        let sun = sun.map(|sun| sun.frustum(1.0));
+        let stage = content_cities::Stage {
+            drawn,
+            model: self.model,
+            geometries: self.city.geometries,
+            volumes,
+            motion: &|lens| eye.motion(lens, scene, self.model),
+            is_seen: &|volume| {
+                let is_in_sun = sun.as_ref().is_some_and(|frustum| frustum.meets(&volume.bounds));
+                is_in_sun || volume.seen_part(&view, whole(size)).is_some()
+            },
+            reading: self.reading,
+        };
+        known.contents.of_scene(&stage).map_err(ResolveError::Scene)
+    }
+
+    /// The models of the city and of contents.
+    fn models<'m>(&'m self, contents: &'m SceneContents) -> Vec<&'m CityModel> {
+        std::iter::once(self.model).chain(&contents.models).map(|m| &**m).collect()
+    }
+
+    fn operations(
+        &self,
+        scene: &Scene,
+        eye: &Eye,
+        volumes: &[LensVolume],
+        tests: [Vec<crate::shader::VolumeTest>; 3],
+        contents: &SceneContents,
+        known: &mut Known,
+    ) -> Result<Operations, ResolveError> {
+        let mut present = vec![false; scene.lenses.len()];
+        for volume in volumes {
+            present[volume.lens as usize] = true;
+        }
+        let sights = sights(scene, self.city, eye, &mut known.occlusion);
+        let footprints = footprints::tables(scene, self.city, self.footprints, contents, volumes);
+        let (style, tables) = (&scene.style, LensTables { sights, footprints });
+        let models = self.models(contents);
+        let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &tables);
+        let mut operations = made.map_err(|error| ResolveError::Scene(error.to_string()))?;
+        operations.contents.clone_from(&contents.uses);
+        Ok(operations)
+    }
+}
+
+/// Puts the objects that lenses mean among the object values.
+fn add_members(operations: &mut Operations, volumes: &mut [LensVolume], models: &[&CityModel]) {
+    let objects = models.iter().map(|model| model.objects.len()).sum();
+    for volume in volumes {
+        for leaf in volume.body.leaves_mut() {
+            if let Leaf::Members(members) = &leaf.leaf {
+                leaf.place.first = operations.add_members(members, objects);
+            }
+        }
+    }
+}
+
+/// Refuses what is too much for one picture.
+fn check_counts(operations: &Operations, volumes: &[LensVolume]) -> Result<(), ResolveError> {
+    let all: Vec<u32> = volumes.iter().map(|v| v.lens).collect();
+    let counts = [
+        ("volumes", volumes.len(), MOST_VOLUMES as usize),
+        ("parameters of effects and outlines, in fours,", operations.parameters.len(), MOST_SLOTS as usize),
+        ("different neighbourhood filters", operations.filters(&all, false).len(), MOST_FILTERS),
+    ];
+    match counts.into_iter().find(|(_, count, most)| count > most) {
+        Some((what, count, most)) => {
+            let message = format!("the lenses have {count} {what} together; one picture takes {most}");
+            Err(ResolveError::Scene(message))
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,25 @@
+//! What those who hold a renderer may set: room, and ways of drawing that leave the picture as it is.
+
+/// Settings of a renderer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Whether chunks that nearer ones hide are left out where that pays: on software adapters.
+    pub culls_hidden: bool,
+    /// Whether lists of many lenses are narrowed to what each tile shows.
+    pub narrows_lists: bool,
+    /// How many notes of translucent layers have room at a time; `None`: as many as [`crate::render::layers::LAYER_BYTES`]
+    /// hold. What does not fit is drawn in bands.
+    pub most_layers: Option<u64>,
+    /// The number of the only layer that the exact method tells ([`crate::render::composited`]), nearest first; `None`: all are laid.
+    pub(super) picked_layer: Option<u32>,
+    /// Triangles of translucent layers are drawn one by one, in an order shuffled by this number; `None`: as they lie in the city.
+    /// The picture is the same.
+    pub shuffled: Option<u32>,
+}
+
+impl Settings {
+    /// Those that suit an adapter.
+    pub fn new(is_software: bool) -> Self {
+        Self { culls_hidden: is_software, narrows_lists: true, most_layers: None, picked_layer: None, shuffled: None }
+    }
+}
