@@ -147,9 +147,18 @@ struct Run {
     details: u8,
 }
 
+/// How corners become vertices.
+#[derive(Clone, Copy)]
+struct WeldKind {
+    /// With a normal each.
+    smooth: bool,
+    /// Which corner of a triangle flat values come from.
+    provoking: usize,
+}
+
 impl Gathered {
-    fn new(smooth: bool, provoking: usize) -> Self {
-        Self { weld: Weld::new(smooth, provoking), texcoords: Vec::new(), runs: Vec::new() }
+    fn new(kind: WeldKind) -> Self {
+        Self { weld: Weld::new(kind.smooth, kind.provoking), texcoords: Vec::new(), runs: Vec::new() }
     }
 
     fn close_run(&mut self, bounds: Aabb, cell: u32, details: u8) {
@@ -230,8 +239,8 @@ impl CityBuffers {
         let mut table = SurfaceTable::new(shown.model, &textures, &shells);
         let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
         let smooth = is_smooth(shown, &apart);
-        let provoking = provoking_corner(gpu);
-        let mut plain = Gathered::new(smooth, provoking);
+        let kind = WeldKind { smooth, provoking: provoking_corner(gpu) };
+        let mut plain = Gathered::new(kind);
         let mut textured: FxHashMap<(u32, u32), Gathered> = FxHashMap::default();
         for &(t, cell) in tiles {
             let tile = &shown.model.tiles[t as usize];
@@ -256,22 +265,21 @@ impl CityBuffers {
                 sections.push(section);
             }
         };
-        let layers = gather_layers(shown, tiles, &mut table, (smooth, provoking));
+        let layers = gather_layers(shown, tiles, &mut table, kind);
         let mut entries = table.entries;
-        let blocks =
-            blocks.map(|model| gather_blocks(model, &cells, &mut entries, extent.center(), (smooth, provoking)));
-        push(upload(gpu, SectionKind::Plain, &plain, ("", &[0_u32; 0]))?);
+        let blocks = blocks.map(|model| gather_blocks(model, &cells, &mut entries, extent.center(), kind));
+        push(upload(gpu, SectionKind::Plain, &plain, Extra::NONE)?);
         let mut by_texture: Vec<_> = textured.into_iter().collect();
         by_texture.sort_unstable_by_key(|(key, _)| *key);
         for ((texture, cutoff), gathered) in &by_texture {
             let kind = SectionKind::Textured { texture: *texture, alpha_cutoff: f32::from_bits(*cutoff) };
-            push(upload(gpu, kind, gathered, ("texture coordinates", &gathered.texcoords))?);
+            push(upload(gpu, kind, gathered, Extra { name: "texture coordinates", each: &gathered.texcoords })?);
         }
         for layer in &layers {
-            push(upload(gpu, SectionKind::Coplanar, &layer.gathered, ("planes", &layer.planes))?);
+            push(upload(gpu, SectionKind::Coplanar, &layer.gathered, Extra { name: "planes", each: &layer.planes })?);
         }
         if let Some(blocks) = &blocks {
-            push(upload(gpu, SectionKind::Plain, blocks, ("", &[0_u32; 0]))?);
+            push(upload(gpu, SectionKind::Plain, blocks, Extra::NONE)?);
         }
         let surfaces = surfaces::upload(gpu, &entries)?;
         let surface_table = entries;
@@ -397,7 +405,7 @@ fn gather_tile(
             plain.weld.triangle(number, corners.map(|v| Corner { position: v.position, normal: v.normal }));
             continue;
         };
-        let target = textured.entry(key).or_insert_with(|| Gathered::new(false, 0));
+        let target = textured.entry(key).or_insert_with(|| Gathered::new(WeldKind { smooth: false, provoking: 0 }));
         let at = triangle as usize * 3;
         for (vertex, &corner) in corners.into_iter().zip(&model.indices[at..at + 3]) {
             let surface = table.number(first.surface, vertex.normal);
@@ -434,7 +442,7 @@ fn gather_blocks(
     cells: &Cells,
     entries: &mut Vec<layout::Surface>,
     middle: DVec3,
-    (smooth, provoking): (bool, usize),
+    kind: WeldKind,
 ) -> Gathered {
     let mut tiles: Vec<(u32, u32)> = (0..model.tiles.len() as u32).map(|t| (cells.of(model, t), t)).collect();
     tiles.retain(|(cell, _)| *cell != NO_CELL);
@@ -445,7 +453,7 @@ fn gather_blocks(
     let textures = Textures::none();
     let mut table = SurfaceTable::new(model, &textures, &shells);
     table.entries = std::mem::take(entries);
-    let mut gathered = Gathered::new(smooth, provoking);
+    let mut gathered = Gathered::new(kind);
     for of_cell in tiles.chunk_by(|a, b| a.0 == b.0) {
         for is_roof in [true, false] {
             let details = Detail::Blocks.bit() | if is_roof { Detail::Roofs.bit() } else { 0 };
@@ -488,8 +496,8 @@ struct Layer {
 }
 
 impl Layer {
-    fn new(smooth: bool, provoking: usize) -> Self {
-        let gathered = Gathered::new(smooth, provoking);
+    fn new(kind: WeldKind) -> Self {
+        let gathered = Gathered::new(kind);
         Self { gathered, planes: Vec::new(), owners: Vec::new(), numbers: FxHashMap::default() }
     }
 
@@ -500,7 +508,7 @@ impl Layer {
     }
 
     /// Adds a triangle of a surface, by its number in the table, that lies in a shared plane.
-    fn triangle(&mut self, surface: u32, (group, plane): (u32, layout::Plane), corners: [Corner; 3]) {
+    fn triangle(&mut self, surface: u32, group: u32, plane: layout::Plane, corners: [Corner; 3]) {
         let owner = *self.numbers.entry((surface, group)).or_insert_with(|| {
             self.owners.push((surface, plane));
             (self.owners.len() - 1) as u32
@@ -521,14 +529,14 @@ impl Layer {
 }
 
 /// The overlapping triangles of all shared planes, lowest layer first.
-fn gather_layers(shown: &Shown, tiles: &[(u32, u32)], table: &mut SurfaceTable, kind: (bool, usize)) -> Vec<Layer> {
+fn gather_layers(shown: &Shown, tiles: &[(u32, u32)], table: &mut SurfaceTable, kind: WeldKind) -> Vec<Layer> {
     let model = shown.model;
     let mut of_tile: FxHashMap<u32, Vec<&CoplanarTriangle>> = FxHashMap::default();
     for c in shown.coplanar {
         of_tile.entry(c.tile).or_default().push(c);
     }
     let count = shown.coplanar.iter().map(|c| c.layer + 1).max().unwrap_or(0);
-    let mut layers: Vec<Layer> = (0..count).map(|_| Layer::new(kind.0, kind.1)).collect();
+    let mut layers: Vec<Layer> = (0..count).map(|_| Layer::new(kind)).collect();
     // All faces of a plane take their depth from the same numbers.
     let mut planes: FxHashMap<u32, layout::Plane> = FxHashMap::default();
     for (t, cell, triangles) in tiles.iter().filter_map(|(t, cell)| Some((*t, *cell, of_tile.get(t)?))) {
@@ -541,7 +549,7 @@ fn gather_layers(shown: &Shown, tiles: &[(u32, u32)], table: &mut SurfaceTable, 
             let plane = *planes.entry(c.group).or_insert_with(|| plane_of(equation, tile.origin));
             let number = table.number(corners[0].surface, corners[0].normal);
             let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
-            layers[c.layer as usize].triangle(number, (c.group, plane), corners);
+            layers[c.layer as usize].triangle(number, c.group, plane, corners);
         }
         layers.iter_mut().for_each(|layer| layer.end_tile(tile.bounds, cell));
     }
@@ -560,12 +568,23 @@ fn plane_of(plane: &Plane, near: IVec3) -> layout::Plane {
     }
 }
 
+/// What each vertex has beside a [`CityVertex`]: a name, and one of each.
+#[derive(Clone, Copy)]
+struct Extra<'a, T> {
+    name: &'static str,
+    each: &'a [T],
+}
+
+impl Extra<'_, u32> {
+    const NONE: Self = Self { name: "", each: &[] };
+}
+
 /// A section of what was gathered, with what each vertex has beside a [`CityVertex`]; and its triangles and vertices.
 fn upload<T: bytemuck::NoUninit>(
     gpu: &Gpu,
     kind: SectionKind,
     gathered: &Gathered,
-    (extra_name, extra): (&str, &[T]),
+    extra: Extra<T>,
 ) -> Result<Option<(Section, usize, usize)>, GpuError> {
     // What deforms it reads it back.
     use wgpu::BufferUsages as U;
@@ -577,9 +596,9 @@ fn upload<T: bytemuck::NoUninit>(
         kind,
         vertices: gpu.buffer("vertices", U::VERTEX | U::COPY_SRC, vertices)?,
         indices: gpu.buffer("indices", U::INDEX | U::COPY_SRC, indices)?,
-        extra: match extra {
+        extra: match extra.each {
             [] => None,
-            extra => Some(gpu.buffer(extra_name, U::VERTEX | U::COPY_SRC, extra)?),
+            each => Some(gpu.buffer(extra.name, U::VERTEX | U::COPY_SRC, each)?),
         },
         chunks: gathered.chunks(),
     };

@@ -312,11 +312,12 @@ impl WantedContent {
 
     /// City objects of which a triangle, where it stands, meets one of the volumes.
     pub fn objects_meeting(&self, own: ShownCity, volumes: &[&LensVolume]) -> u64 {
-        met(self.shown(own), &self.placement, volumes).len() as u64
+        let (model, geometries) = self.shown(own);
+        met(model, geometries, &self.placement, volumes).len() as u64
     }
 }
 
-fn met((model, geometries): (&CityModel, &[u32]), placement: &Placement, volumes: &[&LensVolume]) -> FxHashSet<u32> {
+fn met(model: &CityModel, geometries: &[u32], placement: &Placement, volumes: &[&LensVolume]) -> FxHashSet<u32> {
     let mut met = FxHashSet::default();
     for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
         let bounds = placement.boxed(&geometry.bounds);

@@ -39,7 +39,7 @@ use crate::{
         frame::FrameInput,
         heights::{Height, Heights},
         layout::{self, CityVertex},
-        refinery::{LAYER_SHIFT, Made, Refinery, Rest, TURNED},
+        refinery::{LAYER_SHIFT, Made, Refinery, Rest, RestTriangles, TURNED},
         resource::pipelines::Pipelines,
     },
     view::View,
@@ -331,11 +331,12 @@ impl Met {
             let is_coplanar = section.kind == SectionKind::Coplanar;
             let own_layer = if is_coplanar { layer } else { 0 };
             layer += u32::from(is_coplanar);
+            let kind = MetKind { layer: own_layer, has_textures };
             // In parts that keep their order.
             let parts: Vec<MetPart> = section
                 .chunks
                 .par_chunks(CHUNKS_PER_PART)
-                .map(|chunks| MetPart::of(chunks, source, &reach, own_layer, has_textures))
+                .map(|chunks| MetPart::of(chunks, source, &reach, kind))
                 .collect();
             let first = chunks.len();
             let mut own_left = Vec::new();
@@ -357,7 +358,8 @@ impl Met {
         let reach = bounds.union(of.moved.bounds(&bounds));
         let is_textured = met.iter().any(|(kind, _)| matches!(kind, SectionKind::Textured { .. }));
         let texcoords = is_textured.then_some(&all.texcoords[..]);
-        let rest = Rest::new(gpu, (&all.corners, &all.bits), texcoords, firsts, &of.moved.deformers, &reach)?;
+        let triangles = RestTriangles { corners: &all.corners, bits: &all.bits, texcoords, firsts };
+        let rest = Rest::new(gpu, triangles, &of.moved.deformers, &reach)?;
         Ok(Self { moved: of.moved.clone(), city: of.city, left: Arc::new(left), sections: met, chunks, rest })
     }
 }
@@ -377,8 +379,17 @@ fn raised_of(city: &CityBuffers, heights: &Heights) -> Vec<Option<Height>> {
     city.surface_table.iter().map(|surface| heights.of(surface.object).copied()).collect()
 }
 
+/// What the triangles of a section have beside their corners.
+#[derive(Clone, Copy)]
+struct MetKind {
+    /// The layer of coplanar faces.
+    layer: u32,
+    /// Whether some of what is met has texture coordinates.
+    has_textures: bool,
+}
+
 impl MetPart {
-    fn of(chunks: &[Chunk], source: &Source, reach: &Reach, layer: u32, has_textures: bool) -> Self {
+    fn of(chunks: &[Chunk], source: &Source, reach: &Reach, kind: MetKind) -> Self {
         let mut part = Self::default();
         for chunk in chunks {
             let may_be_raised = reach.heights.reaches(&chunk.bounds);
@@ -398,7 +409,7 @@ impl MetPart {
                 let places = corners.map(|i| raised.map_or(source.place(i), |height| height.place(source.place(i))));
                 if raised.is_some() || near.iter().any(|support| support.meets_triangle(&places)) {
                     close(&mut run, chunk, source, &mut part.left);
-                    part.add(source, corners, &places, raised, (layer, has_textures));
+                    part.add(source, corners, &places, raised, kind);
                 } else {
                     run = Some(run.map_or(start, |run: Range<u32>| run.start)..start + 3);
                 }
@@ -418,7 +429,7 @@ impl MetPart {
         corners: [u32; 3],
         places: &[DVec3; 3],
         raised: Option<Height>,
-        (layer, has_textures): (u32, bool),
+        MetKind { layer, has_textures }: MetKind,
     ) {
         let mut sorted = [0, 1, 2];
         sorted.sort_by(|&i, &j| order(places[i], places[j]));

@@ -166,7 +166,7 @@ fn gather(shown: &Shown, city: &CityBuffers, angles: &CreaseAngles) -> Vec<Edge>
             let surfaces = faces.map(|(tile, triangle)| {
                 let [first, ..] = corners_of(model, &model.tiles[tile as usize], triangle);
                 *known.entry((first.surface, first.normal)).or_insert_with(|| {
-                    numbers.find(&surfaces::entry(model, (&city.textures, &city.shells), first.surface, first.normal))
+                    numbers.find(&surfaces::entry(model, &city.textures, &city.shells, first.surface, first.normal))
                 })
             });
             Edge::new(edge, tile.origin, surfaces)

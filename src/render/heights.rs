@@ -11,7 +11,7 @@ use crate::{
         solids::ShownCity,
         thematic::{attribute_names, number_of},
     },
-    render::occlusion::Occlusion,
+    render::occlusion::{Occlusion, Search},
     scene::Poi,
     visibility::Viewer,
 };
@@ -53,7 +53,7 @@ impl Rule {
     pub fn of_lens(lens: usize, name: &str, deform: &Deform, asked: &mut Asked) -> Vec<Self> {
         let weights = |step: &Step, asked: &mut Asked| {
             let Step::Lower { of, .. } = step else { return Vec::new() };
-            let shown = asked.occlusion.objects(name, (of, &[]), asked.pois, asked.city, asked.viewer);
+            let shown = asked.occlusion.objects(name, Search { of, when: &[] }, asked.pois, asked.city, asked.viewer);
             let settled = || shown.objects.iter().map(|is| f32::from(u8::from(*is))).collect();
             asked.occlusion.weights(name).unwrap_or_else(settled)
         };

@@ -24,7 +24,30 @@ pub(super) struct Inset {
     /// What its occlusion lenses found last.
     occlusion: Occlusion,
     /// What its image shows.
-    of: Option<(Scene, Request, Furniture)>,
+    of: Option<Shown>,
+}
+
+/// What an image shows.
+#[derive(Debug)]
+struct Shown {
+    scene: Scene,
+    request: Request,
+    furniture: Furniture,
+}
+
+/// What it should show.
+#[derive(Clone, Copy)]
+struct Asked<'a> {
+    scene: &'a Scene,
+    request: &'a Request,
+    furniture: &'a Furniture,
+}
+
+impl Asked<'_> {
+    fn is(&self, shown: &Shown) -> bool {
+        let Self { scene, request, furniture } = *self;
+        shown.scene == *scene && shown.request == *request && shown.furniture == *furniture
+    }
 }
 
 impl Studio {
@@ -41,6 +64,7 @@ impl Studio {
         furniture: &Furniture,
         is_stale: bool,
     ) -> Result<Option<Vec<Pass>>, RenderError> {
+        let asked = Asked { scene, request, furniture };
         let most = TRIANGLES_PER_PIXEL * request.size.iter().map(|&side| u64::from(side)).product::<u64>();
         self.find_blocks(most)?;
         let mut inset = match self.insets.remove(&number) {
@@ -49,10 +73,10 @@ impl Studio {
         };
         let shows = !is_stale
             && self.renderer.images.size(number).is_some()
-            && inset.of.as_ref().is_some_and(|(s, r, f)| s == scene && r == request && f == furniture);
+            && inset.of.as_ref().is_some_and(|of| asked.is(of));
         let drawn = match shows {
             true => Ok(None),
-            false => self.draw_inset(&mut inset, number, (scene, request, furniture), most).map(Some),
+            false => self.draw_inset(&mut inset, number, asked, most).map(Some),
         };
         if drawn.is_ok() {
             self.insets.insert(number, inset);
@@ -64,9 +88,10 @@ impl Studio {
         &mut self,
         inset: &mut Inset,
         number: u64,
-        (scene, request, furniture): (&Scene, &Request, &Furniture),
+        asked: Asked,
         most: u64,
     ) -> Result<Vec<Pass>, RenderError> {
+        let Asked { scene, request, furniture } = asked;
         inset.of = None;
         std::mem::swap(&mut inset.state, &mut self.renderer.view);
         std::mem::swap(&mut inset.occlusion, &mut self.known().occlusion);
@@ -80,7 +105,7 @@ impl Studio {
         {
             let is_opaque = !request.transparent;
             self.renderer.images.copy(&self.renderer.gpu, number, &targets.picture.texture, is_opaque);
-            inset.of = Some((scene.clone(), *request, furniture.clone()));
+            inset.of = Some(Shown { scene: scene.clone(), request: *request, furniture: furniture.clone() });
         }
         std::mem::swap(&mut inset.state, &mut self.renderer.view);
         std::mem::swap(&mut inset.occlusion, &mut self.known().occlusion);

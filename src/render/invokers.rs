@@ -13,6 +13,21 @@ const SECTIONS: usize = 6;
 /// An invoker of a section, and the lens of the plan that it belongs to; none: the context.
 type Entry = (u32, Option<u32>);
 
+/// What invokers are made of: the context's plan and the lenses', what is hidden, what lines go through, and translucent layers.
+#[derive(Clone, Copy, Debug)]
+pub struct InvokerPlans<'a> {
+    /// Outside of all lenses.
+    pub context: &'a Plan,
+    /// Where they may be seen.
+    pub lenses: &'a Plan,
+    /// What is hidden.
+    pub hiding: Option<&'a Plan>,
+    /// What lines go through.
+    pub lining: Option<&'a Plan>,
+    /// What is seen through.
+    pub layering: Option<&'a Plan>,
+}
+
 /// The invokers of a picture.
 #[derive(Debug, Default)]
 pub struct Invokers {
@@ -30,11 +45,9 @@ pub struct Invokers {
 
 impl Invokers {
     /// Of the context's plan and the lenses', of what is hidden, of what lines go through, and of translucent layers.
-    pub fn new(
-        plans: [&Plan; 2],
-        [hiding, lining, layering]: [Option<&Plan>; 3],
-        handlers: &[EffectDefinition],
-    ) -> Self {
+    pub fn new(plans: InvokerPlans, handlers: &[EffectDefinition]) -> Self {
+        let InvokerPlans { context, lenses, hiding, lining, layering } = plans;
+        let plans = [context, lenses];
         let mut out = Self { has_layers: layering.is_some(), ..Self::default() };
         let first = out.all.len() as u32;
         if let Some(plan) = hiding {

@@ -12,15 +12,21 @@ use crate::{
     scene::{Drawn, Scene},
 };
 
+/// What is counted: the lenses of a scene, as they were drawn.
+#[derive(Clone, Copy)]
+pub(super) struct FiguresOf<'a> {
+    pub scene: &'a Scene,
+    pub drawn: &'a Drawn<'a>,
+    pub volumes: &'a [LensVolume],
+    pub contents: &'a SceneContents,
+    /// Which lenses of the scene can be seen.
+    pub seen: &'a [bool],
+}
+
 /// What statistics say of a lens of the scene.
-pub(super) fn lens_figures(
-    studio: &Studio,
-    (scene, drawn): (&Scene, &Drawn),
-    (volumes, contents): (&[LensVolume], &SceneContents),
-    picture: &Picture,
-    index: usize,
-    visible: bool,
-) -> stats::LensFigures {
+pub(super) fn lens_figures(studio: &Studio, of: FiguresOf, picture: &Picture, index: usize) -> stats::LensFigures {
+    let FiguresOf { scene, drawn, volumes, contents, seen } = of;
+    let visible = seen[index];
     let lens = &scene.lenses[index];
     let whole = drawn.whole(index as u32);
     let volumes: Vec<&LensVolume> = volumes.iter().filter(|v| v.lens == whole).collect();

@@ -18,14 +18,14 @@ use crate::{
         body::{Body, Leaf, Members, PlacedLeaf, too_large},
         deformations::Moved,
         enclosed::enclosed,
-        occlusion::Occlusion,
+        occlusion::{Occlusion, Search},
+        operations::AllTests,
         own_sprites,
         placement::Eye,
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
     },
     scene::{Drawn, Poi},
-    shader::VolumeTest,
     view::CameraError,
     visibility::Viewer,
 };
@@ -35,8 +35,8 @@ use crate::{
 pub struct LensVolumes {
     /// Bottom lens first.
     pub volumes: Vec<LensVolume>,
-    /// In the picture, and from the sun; and what the leaves of combinations are.
-    pub tests: [Vec<VolumeTest>; 3],
+    /// How they may be tested.
+    pub tests: AllTests,
 }
 
 /// What focus areas are made with.
@@ -110,9 +110,9 @@ pub(super) fn volumes_of<'a>(
             let volume = volume_of(i as u32, lens, body, &place.motion)
                 .map_err(|message| format!("[lens.{}] sprite.camera: {message}", drawn.owner(i as u32)))?;
             let [picture, sun] = volume.tests();
-            all.tests[0].extend(picture);
-            all.tests[1].extend(sun);
-            all.tests[2].extend(volume.body.kinds());
+            all.tests.picture.extend(picture);
+            all.tests.sun.extend(sun);
+            all.tests.leaves.extend(volume.body.kinds());
             // A lens without volume shows nothing and costs nothing.
             if lens.enabled && motion.is_some() && !volume.body.is_empty() {
                 all.volumes.push(volume);
@@ -252,16 +252,18 @@ fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -
         Focus::Thematic(choice) => members(city.model, choice).into(),
         Focus::Occluders(_) | Focus::Case { .. } if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
         Focus::Occluders(of) => {
-            let shown = tools.occlusion.objects(tools.lens, (of, &[]), tools.pois, city, tools.viewer);
+            let shown = tools.occlusion.objects(tools.lens, Search { of, when: &[] }, tools.pois, city, tools.viewer);
             thresholds = shown.thresholds;
             shown.objects
         }
         Focus::Case { of, when } => {
-            let shown = tools.occlusion.objects(tools.lens, (of, when), tools.pois, city, tools.viewer);
+            let shown = tools.occlusion.objects(tools.lens, Search { of, when }, tools.pois, city, tools.viewer);
             thresholds = shown.thresholds;
             shown.objects
         }
-        Focus::Enclosed { parts, whole, types } => objects_in(parts, (*whole, types), city, place, tools)?.into(),
+        Focus::Enclosed { parts, whole, types } => {
+            objects_in(parts, Held { whole: *whole, types }, city, place, tools)?.into()
+        }
         Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(tools.solids.sprite(file, city, &place.motion)?)]),
         _ => return Ok(tools.solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),
     };
@@ -270,10 +272,19 @@ fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -
     Ok(vec![Leaf::Members(Members { objects, thresholds, bounds })])
 }
 
+/// Which objects shapes hold.
+#[derive(Clone, Copy)]
+struct Held<'a> {
+    /// Those that are in them as a whole, or those that have a part in them.
+    whole: bool,
+    /// Of these types; none: of any.
+    types: &'a [String],
+}
+
 /// The objects that some shapes hold, one per object of the city.
 fn objects_in(
     parts: &[Focus],
-    (whole, types): (bool, &[String]),
+    held: Held,
     city: ShownCity,
     place: &Place,
     tools: &mut Tools,
@@ -283,7 +294,7 @@ fn objects_in(
         bodies.extend(bodies_of(part, city, place, tools).map_err(|error| within(i, error))?);
     }
     let areas: Vec<_> = bodies.iter().filter(|body| !body.is_empty()).map(|body| (body, body.bounds())).collect();
-    Ok(enclosed(city, &areas, whole, types))
+    Ok(enclosed(city, &areas, held.whole, held.types))
 }
 
 /// What is wrong with part i of a focus area.

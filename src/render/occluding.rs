@@ -3,7 +3,7 @@
 use crate::{
     lens::{Lens, rendering::When},
     render::{
-        occlusion::Passing,
+        occlusion::{Passing, Search},
         picture::{RenderError, Studio},
         placement::Eye,
         stats,
@@ -56,7 +56,7 @@ impl Studio {
         let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };
         Some(self.known().occlusion.explained(
             &lens.name,
-            (of, &cases_of(lens)),
+            Search { of, when: &cases_of(lens) },
             &scene.standing_pois(),
             self.shown(),
             eye.viewer(),

@@ -128,17 +128,27 @@ struct Found {
     objects: Arc<[bool]>,
 }
 
+/// What a lens looks for: occluders, and the cases that it draws them in.
+#[derive(Clone, Copy, Debug)]
+pub struct Search<'a> {
+    /// Occluders.
+    pub of: &'a Occluders,
+    /// The cases, in order; none: all in one way.
+    pub when: &'a [When],
+}
+
 impl Occlusion {
     /// The occluders of a lens, by its name: as remembered, if time was made to pass up to here, else as they are found. Of
     /// some cases those that the last one holds of, and none before it; without a case all.
     pub fn objects(
         &mut self,
         lens: &str,
-        (of, when): (&Occluders, &[When]),
+        search: Search,
         pois: &[Poi],
         city: ShownCity,
         viewer: Viewer,
     ) -> ShownOccluders {
+        let Search { of, when } = search;
         let units = self.units_of(city);
         let remembered = self.memory_of(lens, of, pois, viewer).filter(|known| known.when.starts_with(when));
         let Some(Remembered { memory, cases, shown, .. }) = remembered else {
@@ -223,11 +233,12 @@ impl Occlusion {
     pub fn explained(
         &mut self,
         lens: &str,
-        (of, when): (&Occluders, &[When]),
+        search: Search,
         pois: &[Poi],
         city: ShownCity,
         viewer: Viewer,
     ) -> Vec<stats::Occluder> {
+        let Search { of, when } = search;
         let how = How { is_measured: true, ..How::default() };
         let detected = self.found(of, pois, city, viewer, how).detected;
         let units = self.units_of(city);

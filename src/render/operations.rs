@@ -94,6 +94,17 @@ pub struct LensTables {
     pub footprints: Vec<Vec<u32>>,
 }
 
+/// How the volumes of all lenses of a scene may be tested.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AllTests {
+    /// In the picture.
+    pub picture: Vec<VolumeTest>,
+    /// From the sun.
+    pub sun: Vec<VolumeTest>,
+    /// What the leaves of combinations are.
+    pub leaves: Vec<VolumeTest>,
+}
+
 /// The operations of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Operations {
@@ -125,14 +136,14 @@ impl Operations {
         context: &[EffectUse],
         lenses: &[Lens],
         visible: &[bool],
-        [tests, shape_tests, leaves]: [Vec<VolumeTest>; 3],
+        tests: AllTests,
         models: &[&CityModel],
         tables: &LensTables,
     ) -> Result<Self, ChoiceError> {
         let mut out =
-            Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(shape_tests), ..Self::default() };
-        out.uber.tests = each_once(tests);
-        out.uber.leaves = each_once(leaves);
+            Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(tests.sun), ..Self::default() };
+        out.uber.tests = each_once(tests.picture);
+        out.uber.leaves = each_once(tests.leaves);
         // Lenses of no volume at all have no bodies.
         if out.uber.tests.is_empty() {
             out.uber.bodies.clear();

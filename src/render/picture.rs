@@ -34,7 +34,7 @@ use crate::{
         furniture::{self, Furniture},
         insets::Inset,
         layers::{LayerFigures, MethodFigures},
-        lens_figures::lens_figures,
+        lens_figures::{FiguresOf, lens_figures},
         parts::{Part, parts, put, whole},
         pass::masks::CLEAR_MASKS,
         renderer::Renderer,
@@ -629,11 +629,11 @@ impl Studio {
         let gpu = &self.renderer.gpu;
         let pipelines = self.renderer.pipelines();
         let city = self.renderer.city();
-        let lens_seen = |i: usize| {
-            resolved.volumes.iter().any(|v| {
-                drawn.owner(v.lens) as usize == i && v.seen_part(&resolved.view, whole(request.size)).is_some()
-            })
-        };
+        let mut seen = vec![false; scene.lenses.len()];
+        let is_seen = |v: &&LensVolume| v.seen_part(&resolved.view, whole(request.size)).is_some();
+        resolved.volumes.iter().filter(is_seen).for_each(|v| seen[drawn.owner(v.lens) as usize] = true);
+        let (volumes, contents) = (&resolved.volumes[..], &resolved.contents);
+        let of = FiguresOf { scene, drawn, volumes, contents, seen: &seen };
         let narrowing = pipelines.narrowing;
         let compiled = pipelines.compiled + u32::from(narrowing == Some(true));
         let names: Vec<String> = pipelines.used.iter().map(|key| key.name()).collect();
@@ -679,14 +679,7 @@ impl Studio {
                 .map(|i| stats::LensFigures {
                     occluders: self.occluders(scene, &scene.lenses[i], &resolved.view),
                     over_time: self.over_time(scene, &scene.lenses[i], &resolved.view),
-                    ..lens_figures(
-                        self,
-                        (scene, drawn),
-                        (&resolved.volumes, &resolved.contents),
-                        picture,
-                        i,
-                        lens_seen(i),
-                    )
+                    ..lens_figures(self, of, picture, i)
                 })
                 .collect(),
             contents: resolved.contents.figures(drawn, self.shown(), |id| self.renderer.content_city(id)),

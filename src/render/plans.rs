@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::{
     render::{
         frame::FrameInput,
-        invokers::Invokers,
+        invokers::{InvokerPlans, Invokers},
         octagon::Octagon,
         operations::Filter,
         regions::RegionPasses,
@@ -82,8 +82,14 @@ impl Plans {
 
     /// The invokers of the picture.
     pub fn invokers(&self) -> &Invokers {
-        let hidden = [self.hiding.as_ref(), self.lining.as_ref(), self.layering.as_ref()];
-        self.invokers.get_or_init(|| Invokers::new([&self.context, &self.lenses], hidden, handlers()))
+        let plans = InvokerPlans {
+            context: &self.context,
+            lenses: &self.lenses,
+            hiding: self.hiding.as_ref(),
+            lining: self.lining.as_ref(),
+            layering: self.layering.as_ref(),
+        };
+        self.invokers.get_or_init(|| Invokers::new(plans, handlers()))
     }
 
     /// Whether it would be too long, written out.

@@ -85,17 +85,19 @@ pub(super) struct Rest {
     pub tables: wgpu::Buffer,
 }
 
+/// The same, on the host.
+pub(super) struct RestTriangles<'a> {
+    pub corners: &'a [CityVertex],
+    pub bits: &'a [u32],
+    pub texcoords: Option<&'a [[f32; 2]]>,
+    pub firsts: Vec<u32>,
+}
+
 impl Rest {
     /// Triangles that are in `reach` at rest and where deformers take them.
-    pub fn new(
-        gpu: &Gpu,
-        (corners, bits): (&[CityVertex], &[u32]),
-        texcoords: Option<&[[f32; 2]]>,
-        firsts: Vec<u32>,
-        deformers: &Deformers,
-        reach: &Aabb,
-    ) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, triangles: RestTriangles, deformers: &Deformers, reach: &Aabb) -> Result<Self, GpuError> {
         use wgpu::BufferUsages as U;
+        let RestTriangles { corners, bits, texcoords, firsts } = triangles;
         let (plan, lattice) = (plan_of(deformers), Lattice::around(reach));
         let DeformNumbers { numbers, tables } = DeformNumbers::new(deformers, &plan, &lattice);
         Ok(Self {

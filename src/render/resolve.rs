@@ -15,7 +15,7 @@ use crate::{
         footprints::{self, OwnFootprints},
         lens_volumes::{LensVolumes, Tools, volumes_of},
         occlusion::Occlusion,
-        operations::{LensTables, MOST_FILTERS, Operations},
+        operations::{AllTests, LensTables, MOST_FILTERS, Operations},
         parts::whole,
         placement::Eye,
         regions,
@@ -198,7 +198,7 @@ impl Surroundings<'_> {
         scene: &Scene,
         eye: &Eye,
         volumes: &[LensVolume],
-        tests: [Vec<crate::shader::VolumeTest>; 3],
+        tests: AllTests,
         contents: &SceneContents,
         known: &mut Known,
     ) -> Result<Operations, ResolveError> {

@@ -39,7 +39,7 @@ impl<'a> SurfaceTable<'a> {
     pub fn number(&mut self, surface: u32, normal: u32) -> u32 {
         let Self { model, textures, shells, entries, numbers } = self;
         *numbers.entry((surface, normal)).or_insert_with(|| {
-            entries.push(entry(model, (textures, shells), surface, normal));
+            entries.push(entry(model, textures, shells, surface, normal));
             (entries.len() - 1) as u32
         })
     }
@@ -66,7 +66,8 @@ pub fn upload(gpu: &Gpu, entries: &[layout::Surface]) -> Result<wgpu::TextureVie
 /// What the table says of a model surface (`NONE`: the plain ground) that faces a packed normal.
 pub(super) fn entry(
     model: &CityModel,
-    (textures, shells): (&Textures, &Shells),
+    textures: &Textures,
+    shells: &Shells,
     surface: u32,
     normal: u32,
 ) -> layout::Surface {

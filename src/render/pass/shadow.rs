@@ -11,7 +11,7 @@ use crate::{
         city::{Chunk, CityBuffers, draws_of},
         cut::{Cut, Shapes},
         eye::{PictureTile, view_uniform},
-        invokers::Invokers,
+        invokers::{InvokerPlans, Invokers},
         layout, light,
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
@@ -118,7 +118,9 @@ impl ShadowMap {
         stale |= self.shape_planes.sync(stage.gpu, &planes)?;
         if stage.programs.is_uber {
             let none = Plan::default();
-            let invokers = Invokers::new([&none, &none], [Some(&cut.plan), None, None], handlers());
+            let plans =
+                InvokerPlans { context: &none, lenses: &none, hiding: Some(&cut.plan), lining: None, layering: None };
+            let invokers = Invokers::new(plans, handlers());
             stale |= self.invoker_table.sync(stage.gpu, &invokers.table([0, 0]))?;
             stale |= self.invokers.sync(stage.gpu, invokers.all())?;
         }

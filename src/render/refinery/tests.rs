@@ -52,7 +52,9 @@ fn body(gpu: &Gpu, triangles: &[[DVec3; 3]], deformers: &Deformers) -> Body {
     let bounds = Aabb::from_points(places.iter().flatten().copied());
     let reach = bounds.union(deformers.deformed_bounds(&bounds));
     let firsts = vec![0, bits.len() as u32];
-    let rest = Rest::new(gpu, (&corners, &bits), None, firsts, deformers, &reach).expect("room");
+    let rest =
+        Rest::new(gpu, RestTriangles { corners: &corners, bits: &bits, texcoords: None, firsts }, deformers, &reach)
+            .expect("room");
     Body { rest, places }
 }
 

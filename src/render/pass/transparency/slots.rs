@@ -113,6 +113,13 @@ fn bands_of(region: PictureTile, pixels: u64) -> Vec<PictureTile> {
     starts.map(band).collect()
 }
 
+/// What is translucent in a frame, and its slots.
+#[derive(Clone, Debug)]
+pub struct SlotInput<'a> {
+    layering: Layering<'a>,
+    slots: Slots,
+}
+
 /// What the pass keeps.
 #[derive(Debug)]
 pub struct SlotLayers {
@@ -341,7 +348,7 @@ fn composite_key(plan: &FramePlan, program: &Program, slots: Slots) -> Composite
 }
 
 impl Pass for SlotLayers {
-    type Input<'a> = (Layering<'a>, Slots);
+    type Input<'a> = SlotInput<'a>;
 
     const LIST: &'static [Line] = &[
         ("slots, depths", "where the scene asks for a K-buffer or peeling: the nearest layers of each pixel,"),
@@ -355,21 +362,22 @@ impl Pass for SlotLayers {
         Ok(Self { own: None, figures: LayerFigures::default(), method: MethodFigures::default() })
     }
 
-    fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<(Layering<'a>, Slots)> {
-        Layering::of(plan).zip(slots_of(plan))
+    fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<SlotInput<'a>> {
+        let (layering, slots) = Layering::of(plan).zip(slots_of(plan))?;
+        Some(SlotInput { layering, slots })
     }
 
     fn begin(&mut self, _: &FramePlan) {
         (self.figures, self.method) = (LayerFigures::default(), MethodFigures::default());
     }
 
-    fn add_needs((_, slots): &(Layering, Slots), plan: &FramePlan, needs: &mut Needs) {
+    fn add_needs(input: &SlotInput, plan: &FramePlan, needs: &mut Needs) {
         Layering::add_needs(plan, needs);
-        needs.tails = slots.has_tail();
+        needs.tails = input.slots.has_tail();
     }
 
-    fn add_keys(&self, input: Option<&(Layering, Slots)>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
-        let (Some((_, slots)), Some(programs)) = (input, LayerPrograms::of(programs)) else { return };
+    fn add_keys(&self, input: Option<&SlotInput>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
+        let (Some(SlotInput { slots, .. }), Some(programs)) = (input, LayerPrograms::of(programs)) else { return };
         keys.add_programs(28, [composite_key(plan, programs.composite, *slots)]);
         let passes = slots.passes().iter().copied().chain(slots.has_tail().then_some(FragmentPass::Tail));
         for pass in passes {
@@ -383,11 +391,12 @@ impl Pass for SlotLayers {
 
     fn record(
         &mut self,
-        (layering, slots): &(Layering, Slots),
+        input: &SlotInput,
         frame: &FrameContext,
         recording: &mut Recording,
         _: &mut Board,
     ) -> Result<(), GpuError> {
+        let SlotInput { layering, slots } = input;
         let Some(programs) = LayerPrograms::of(frame.programs) else { return Ok(()) };
         layering.clear(frame, recording)?;
         let Some(region) = layering.region else { return Ok(()) };
