@@ -1,4 +1,5 @@
 use super::*;
+use crate::shader::effect::EffectKind;
 
 const HEADER: &str = "//! name = \"mine\"\n//! kind = \"post\"\n//! spec = \"K3\"\n//! doc = \"Does it.\"\n";
 const PARAMETER: &str = "//!\n//! [[parameter]]\n//! name = \"mode\"\n//! type = \"word\"\n//! words = [\"soft\", \"very-hard\"]\n\
