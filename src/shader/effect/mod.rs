@@ -10,6 +10,6 @@ pub(super) mod user;
 
 pub use definition::{EffectDefinition, PerObject};
 pub use parameter::{DefaultValue, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition, ParameterKind};
-pub use prototype::{EffectKind, Mode};
+pub use prototype::{EffectKind, Mode, PROTOTYPES, Prototype, Stage};
 pub use registry::{MOST_HANDLERS, effects, find, handlers, number_of};
 pub use user::{add, replace};

@@ -3,7 +3,7 @@
 use crate::shader::{
     effect::{
         definition::EffectDefinition,
-        prototype::{EffectKind, Mode},
+        prototype::{EffectKind, Mode, Prototype},
     },
     effect_file::{
         cost::check_cost,
@@ -39,8 +39,12 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
     }
     check_control_flow(&file)?;
     check_cost(&file)?;
-    if effect.mode != Mode::Local || effect.kind == EffectKind::Air {
-        let message = "mode, and kind = \"air\", are for handlers of the program; expected kind = hide, opacity, material, light, scene, post or filter";
+    if effect.mode != Mode::Local || !effect.kind.prototype().is_for_users {
+        let message = format!(
+            "mode, and {}, are for handlers of the program; expected kind = {}",
+            Prototype::words_not_for_users(),
+            Prototype::words_for_users()
+        );
         return Err(file.error(0, message));
     }
     let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, blend: None }];

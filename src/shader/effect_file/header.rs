@@ -22,8 +22,8 @@ pub const RESERVED: &[&str] = &["effect", "class", "blend", "weight"];
 pub(super) struct Header {
     pub(super) name: Spanned<String>,
     pub(super) kind: EffectKind,
-    #[serde(default)]
-    pub(super) mode: Mode,
+    /// Without it the prototype's own.
+    pub(super) mode: Option<Mode>,
     pub(super) spec: String,
     pub(super) doc: String,
     pub(super) objects: Option<PerObject>,

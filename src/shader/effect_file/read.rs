@@ -21,17 +21,35 @@ use crate::shader::{
 /// What every effect may use beside its own names.
 const OUTER_NAMES: &[&str] = &["Parameters", "effect"];
 
-/// Reads an effect file; that its WGSL is right is for [`checked`] to say.
+/// Reads an effect file; that its WGSL is right is for [`crate::shader::effect_file::check::checked`] to say.
 pub fn read(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
     read_with_names(path, text, false).map(|(effect, _)| effect)
 }
 
+/// Reads an effect file, of a user or of the program, and says which names were changed.
 pub(super) fn read_with_names(
     path: &str,
     text: &str,
     is_users: bool,
 ) -> Result<(EffectDefinition, Renamed), FileError> {
     let file = File { path, text };
+    let mut effect = of_header(&file, is_users)?;
+    check_kernel(&file, &effect)?;
+    check_lines(&file, &effect)?;
+    let tokens = token::tokens(text);
+    let declared = token::declarations(text, &tokens);
+    let main = main_function(&file, &effect, &tokens, &declared)?;
+    effect.reads_below = reads_first_argument(text, &tokens, main);
+    effect.asks_most_layers = calls(text, "most_layers") && !declared.iter().any(|d| d.name == "most_layers");
+    let renamed = qualified(&effect, text, &tokens, &declared);
+    effect.source = parameters_source(&effect);
+    effect.parameters_end = effect.source.len();
+    effect.source.push_str(body_of(&renamed.text));
+    Ok((effect, renamed))
+}
+
+/// The effect as its header defines it, without its WGSL.
+fn of_header(file: &File, is_users: bool) -> Result<EffectDefinition, FileError> {
     let (toml, starts) = file.header();
     if toml.is_empty() {
         return Err(file.error(0, "expected a header: lines that begin with //! and hold name, kind, spec and doc"));
@@ -48,7 +66,7 @@ pub(super) fn read_with_names(
     let mut effect = EffectDefinition {
         name: header.name.into_inner(),
         kind: header.kind,
-        mode: header.mode,
+        mode: header.mode.unwrap_or(header.kind.prototype().default_mode),
         spec: header.spec,
         doc: header.doc,
         parameters: Vec::new(),
@@ -77,6 +95,11 @@ pub(super) fn read_with_names(
             effect.parameters.push(parameter.definition().map_err(|(_, message)| file.error(0, message))?);
         }
     }
+    Ok(effect)
+}
+
+/// Refuses a filter that does not say how far it reaches.
+fn check_kernel(file: &File, effect: &EffectDefinition) -> Result<(), FileError> {
     let reaches = |p: &ParameterDefinition| {
         p.name == "radius" && matches!(p.kind, ParameterKind::Number { max, .. } if max <= f64::from(MOST_REACH))
     };
@@ -85,6 +108,11 @@ pub(super) fn read_with_names(
             format!("expected a first parameter \"radius\", a number of at most {MOST_REACH}: how far it reaches");
         return Err(file.error(0, message));
     }
+    Ok(())
+}
+
+/// Refuses lines without a colour and a width, or of a prototype that draws none.
+fn check_lines(file: &File, effect: &EffectDefinition) -> Result<(), FileError> {
     let has = |name: &str, fits: fn(&ParameterKind) -> bool| {
         effect.parameters.iter().any(|p| p.name == name && fits(&p.kind))
     };
@@ -98,30 +126,32 @@ pub(super) fn read_with_names(
         );
         return Err(file.error(0, message));
     }
-    let tokens = token::tokens(text);
-    let declared = token::declarations(text, &tokens);
+    Ok(())
+}
+
+/// The function `effect` of a file that declares nothing that an effect may not.
+fn main_function<'a, 'b>(
+    file: &File,
+    effect: &EffectDefinition,
+    tokens: &[Token],
+    declared: &'b [Declaration<'a>],
+) -> Result<&'b Declaration<'a>, FileError> {
     if let Some(bad) = declared.iter().find(|d| matches!(d.keyword, "var" | "override")) {
         let message = format!("an effect keeps nothing between pixels: no {} at the top of a file", bad.keyword);
         return Err(file.error(bad.span.start, message));
     }
     let Some(main) = declared.iter().find(|d| (d.keyword, d.name) == ("fn", "effect")) else {
-        return Err(file.error(text.len(), format!("expected `{}`", signature(&effect))));
+        return Err(file.error(file.text.len(), format!("expected `{}`", signature(effect))));
     };
-    let is_parameters = |t: &&Token| t.kind == TokenKind::Word && &text[t.span.clone()] == "Parameters";
+    let is_parameters = |t: &&Token| t.kind == TokenKind::Word && &file.text[t.span.clone()] == "Parameters";
     if effect.slots() == 0
         && !declared.iter().any(|d| d.name == "Parameters")
         && let Some(token) = tokens.iter().find(is_parameters)
     {
-        let message = format!("the header gives no [[parameter]] for WGSL; expected `{}`", signature(&effect));
+        let message = format!("the header gives no [[parameter]] for WGSL; expected `{}`", signature(effect));
         return Err(file.error(token.span.start, message));
     }
-    effect.reads_below = reads_first_argument(text, &tokens, main);
-    effect.asks_most_layers = calls(text, "most_layers") && !declared.iter().any(|d| d.name == "most_layers");
-    let renamed = qualified(&effect, text, &tokens, &declared);
-    effect.source = parameters_source(&effect);
-    effect.parameters_end = effect.source.len();
-    effect.source.push_str(body_of(&renamed.text));
-    Ok((effect, renamed))
+    Ok(main)
 }
 
 /// A file's text after its header and the blank lines below it.
@@ -133,13 +163,7 @@ pub(super) fn body_of(text: &str) -> &str {
 /// What `effect` must look like.
 pub(super) fn signature(effect: &EffectDefinition) -> String {
     let parameters = if effect.slots() > 0 { ", p: Parameters" } else { "" };
-    let (name, type_name) = effect.kind.subject();
-    match effect.kind {
-        EffectKind::Hide => return format!("fn effect({name}: {type_name}{parameters}) -> bool"),
-        EffectKind::Filter => return format!("fn effect({name}: {type_name}{parameters}) -> {type_name}"),
-        _ => {}
-    }
-    format!("fn effect({name}: {type_name}, point: Point{parameters}) -> {type_name}")
+    format!("fn {}", effect.kind.prototype().signature(parameters))
 }
 
 /// Whether the function that begins there names its first argument again.
