@@ -1,6 +1,5 @@
 //! name = "haze"
 //! kind = "air"
-//! mode = "global"
 //! spec = "K2"
 //! doc = "What is beyond the scene fades into the horizon."
 

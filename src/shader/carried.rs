@@ -4,8 +4,8 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    effect::{EffectDefinition, EffectKind},
-    plan::{Plan, VolumeTest},
+    effect::{definition::EffectDefinition, prototype::EffectKind},
+    plan::{Plan, volume_test::VolumeTest},
 };
 
 /// How many vectors `pass/shade.wgsl` itself carries.

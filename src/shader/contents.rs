@@ -6,7 +6,10 @@
 
 use std::fmt::Write as _;
 
-use crate::shader::plan::{Clip, Plan, PlanContent};
+use crate::shader::plan::{
+    Plan,
+    content::{Clip, PlanContent},
+};
 
 /// The uniform that says which city is drawn.
 pub(super) fn binding(group: u32, binding: u32, name: &str) -> String {

@@ -1,7 +1,7 @@
 //! Which files of the library make which module.
 
 use crate::shader::{
-    effect::{EffectDefinition, EffectKind},
+    effect::{definition::EffectDefinition, prototype::EffectKind},
     library::{
         BLEND, BORDER, CITIES, CLASS, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION, COMBINED_SPRITE,
         DEPTH_CODE, DISTANCE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FRAGMENT, File, GLASS, LENS,
@@ -9,7 +9,7 @@ use crate::shader::{
         PACKED, POINT, SECTIONS, SHAPE, SHELL_SIDES, SHELL_SPRITE, SIGHT, SOLID, SOLID_DISTANCE, SOLID_SPRITE,
         STORED_SPRITE, SURFACE, VEIL, VIEW, VIEW_UNIFORM,
     },
-    plan::Program,
+    plan::program::Program,
 };
 
 /// A pass that draws the city and asks of each fragment what is there.

@@ -2,17 +2,18 @@
 //! what shades a pixel, what tells which fragments are translucent, and what draws the city.
 
 use crate::shader::{
-    effect::EffectDefinition,
+    backend,
+    effect::definition::EffectDefinition,
     files,
     geometry::{self, Drawn, NOTHING_CUT},
     hiding::{self, Eye},
     library::{CHANCE, DITHER, FORWARD, FRAGMENT, GEOMETRY, NOTES, SHADE, TAIL, TRANSLUCENT},
     names,
-    plan::Program,
-    shading::{self, Shading},
+    plan::program::Program,
+    shading::Shading,
+    table::MOST_SLOTS,
     template::Template,
     translucent::{self, DepthTest, behind_plane},
-    uber::MOST_SLOTS,
     wgsl::{function::without_entry, merge::merged},
 };
 
@@ -55,8 +56,8 @@ impl Forward {
             Program::Specialised(plan) => plan.slots(handlers),
             Program::Uber(_) => MOST_SLOTS,
         };
-        let own = shading::written(&self.shading, handlers, lenses, &Shading::of_fragments(slots));
-        let opacity = shading::opacity(&self.shading, handlers);
+        let own = backend::shading(&self.shading, handlers, lenses, &Shading::of_fragments(slots));
+        let opacity = backend::opacity(&self.shading, handlers);
         // What the triangle carries elsewhere is made where it is read.
         let shade = SHADE.changed(|text| without_entry(text, "vertex", "corner_of"));
         let text = Template::of_files(&files::of_shading(&self.shading, handlers))

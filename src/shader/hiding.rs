@@ -6,12 +6,13 @@ use std::fmt::Write as _;
 
 use crate::shader::{
     contents,
-    effect::{EffectDefinition, EffectKind},
+    effect::{definition::EffectDefinition, prototype::EffectKind},
     lens_test,
+    library::{FRAGMENT_RUNS, FRAGMENT_RUNS_DITHERED, FRAGMENT_RUNS_EVERYWHERE, SHARE_OF_INVOKER},
     names::one_line,
-    plan::{Plan, Program, Scope, Uber},
+    plan::{Plan, program::Program, step::Scope, uber::Uber},
     regions,
-    uber::{MOST_SLOTS, SHARE_OF, TABLE_SOURCE},
+    table::{self, MOST_SLOTS},
 };
 
 /// Whose eye the module draws for.
@@ -168,15 +169,17 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
 }
 
 fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition], is_layers: bool) {
-    text.push_str(&TABLE_SOURCE);
+    text.push_str(&table::declared());
     match uber.tests.is_empty() {
-        true => text.push_str(RUNS_WITHOUT_LENSES),
+        true => text.push_str(&FRAGMENT_RUNS_EVERYWHERE.paragraph()),
         false if uber.borders => {
             let tests = &uber.tests;
             let (classes, distances) = (lens_test::class_of(uber), lens_test::distance_to(tests, uber.by_ray));
-            text.push_str(&(classes + &distances + SHARE_OF + RUNS_DITHERED));
+            text.push_str(
+                &(classes + &distances + &SHARE_OF_INVOKER.paragraph() + &FRAGMENT_RUNS_DITHERED.paragraph()),
+            );
         }
-        false => text.push_str(&(lens_test::class_of(uber) + RUNS)),
+        false => text.push_str(&(lens_test::class_of(uber) + &FRAGMENT_RUNS.paragraph())),
     }
     text.push_str("fn hides(fragment: Fragment, by: Invoker) -> bool {\n    switch by.handler {\n");
     for &number in &uber.effects {
@@ -194,63 +197,6 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition], is
     text.push_str(&head(uber.contents, is_layers));
     text.push_str(if is_layers { IS_LAYER } else { VISIBLE });
 }
-
-const RUNS: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
-    if by.scope == 0u {
-        return true;
-    }
-    var all = MISSED;
-    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
-        all |= class_of(v, sight_of(fragment));
-        if v + 1u == by.first_volume + by.volumes {
-            break;
-        }
-    }
-    switch by.scope {
-        case 1u: { return is_inside(all); }
-        case 2u: { return is_in_front(all); }
-        case 3u: { return is_behind(all); }
-        default: { return is_rest(all); }
-    }
-}
-
-";
-
-/// As RUNS; a lens whose border dithers takes fragments away one by one.
-const RUNS_DITHERED: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
-    if by.scope == 0u {
-        return true;
-    }
-    let sight = sight_of(fragment);
-    var all = MISSED;
-    for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
-        all |= class_of(v, sight);
-        if v + 1u == by.first_volume + by.volumes {
-            break;
-        }
-    }
-    let share = share_of(by, all, sight);
-    if by.border != 0u && by.kind == 2u {
-        return share > 0.0;
-    }
-    if by.border != 0u && parameters[by.border - 1u].z > 0.5 {
-        return is_dithered(share, fragment.pixel);
-    }
-    switch by.scope {
-        case 1u: { return is_inside(all); }
-        case 2u: { return is_in_front(all); }
-        case 3u: { return is_behind(all); }
-        default: { return is_rest(all); }
-    }
-}
-
-";
-
-const RUNS_WITHOUT_LENSES: &str = "fn runs(by: Invoker, fragment: Fragment) -> bool {
-    return by.scope == 0u;
-}
-
-";
 
 const VISIBLE: &str = "    let range = table.ranges.xy;
     for (var i = range.x; i < range.y; i++) {

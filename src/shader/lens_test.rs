@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    plan::{Plan, Program, Uber, VolumeTest},
-    uber::MOST_VOLUMES,
+    plan::{Plan, program::Program, uber::Uber, volume_test::VolumeTest},
+    table::MOST_VOLUMES,
 };
 
 /// The uniforms that the tests of a program read in the picture; `carried`: the shapes reach fragments as

@@ -13,6 +13,11 @@ pub(super) struct File {
 }
 
 impl File {
+    /// Its text as a paragraph of another.
+    pub(super) fn paragraph(&self) -> String {
+        format!("{}\n", self.text)
+    }
+
     /// Its text, changed by its tokens.
     ///
     /// # Panics
@@ -114,4 +119,16 @@ files! {
     FURNITURE = "pass/furniture.wgsl";
     FURNITURE_OVER = "pass/furniture-over.wgsl";
     BARE = "pass/bare.wgsl";
+    INVOKERS = "lib/invokers.wgsl";
+    TILE_INVOKERS = "lib/invokers-of-tiles.wgsl";
+    NO_CLASSES = "lib/no-classes.wgsl";
+    INVOKER_CLASSES = "lib/classes-of-invokers.wgsl";
+    SHARE_OF_INVOKER = "lib/share-of-invoker.wgsl";
+    SHARE_AT_INVOKER = "lib/share-at-invoker.wgsl";
+    LENS_COVERS = "lib/lens-covers.wgsl";
+    LENS_DISTANCE = "lib/lens-distance.wgsl";
+    LENS_ENDS = "lib/lens-ends.wgsl";
+    FRAGMENT_RUNS = "lib/fragment-runs.wgsl";
+    FRAGMENT_RUNS_DITHERED = "lib/fragment-runs-dithered.wgsl";
+    FRAGMENT_RUNS_EVERYWHERE = "lib/fragment-runs-everywhere.wgsl";
 }

@@ -8,11 +8,17 @@ use std::fmt::Write as _;
 
 use crate::shader::{
     contents,
-    effect::{EffectDefinition, EffectKind},
+    effect::{definition::EffectDefinition, prototype::EffectKind},
+    invoke::{self, fades},
     lens_test,
-    plan::{Program, Scope, Step, Uber},
-    specialised::Writer,
-    uber::{self, MOST_SLOTS, TABLE_SOURCE, fades},
+    plan::{
+        program::Program,
+        step::{Scope, Step},
+        uber::Uber,
+    },
+    table::{self, MOST_SLOTS},
+    uber,
+    writer::Writer,
 };
 
 /// `line_at` and what it calls. `names` of a plan's lenses become comments.
@@ -140,9 +146,9 @@ fn weight(step: &Step, handler: &EffectDefinition) -> String {
 }
 
 fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
-    text.push_str(&TABLE_SOURCE);
+    text.push_str(&table::declared());
     text.push_str(&uber::classes(uber));
-    text.push_str(&uber::invoke(uber, "style", &[EffectKind::Post], handlers));
+    text.push_str(&invoke::invoke(uber, "style", &[EffectKind::Post], handlers));
     let own = |word: &str, type_name: &str, of: &dyn Fn(&EffectDefinition) -> Option<String>| {
         let mut text = format!("fn {word} {{\n    switch by.handler {{\n");
         for &number in &uber.effects {
@@ -160,7 +166,7 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
         h.lines.then(|| format!("{}(by.parameters).line_color", h.own("parameters")))
     }));
     let has_posts = uber.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Post);
-    let share = uber::share_argument(uber);
+    let share = invoke::share_argument(uber);
     let styled = if has_posts { format!("color = invoke_style(color, point, by{share});") } else { String::new() };
     let gone = if uber.contents { gone() } else { String::new() };
     text.push_str(&line_at(&styled, &gone));

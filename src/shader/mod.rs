@@ -3,6 +3,8 @@
 //! No wgpu handle lives here. Entry points stand in `shaders/pass` alone; everything else is importable
 //! and free of side effects.
 
+mod backend;
+mod bodies;
 mod carried;
 mod contents;
 mod deforming;
@@ -12,6 +14,7 @@ mod files;
 mod forward;
 mod geometry;
 mod hiding;
+mod invoke;
 mod lens_test;
 mod library;
 mod lining;
@@ -25,10 +28,12 @@ mod sections;
 mod shading;
 mod sorting;
 mod specialised;
+mod table;
 mod template;
 mod translucent;
 mod uber;
 pub mod wgsl;
+mod writer;
 
 pub use carried::LEAST_CARRIED;
 pub use deforming::{DEFORMER_NUMBERS, DeformPlan, PlanControl, PlanDeformer, PlanStep, STEP_NUMBERS};
@@ -36,12 +41,16 @@ pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handler
 pub use forward::{Forward, ForwardKind};
 pub use module::Module;
 pub use plan::{
-    Blend, BodyKind, ClassTest, Clip, MOST_CITIES, Plan, PlanBody, PlanBorder, PlanContent, PlanLens, Program, Scope,
-    Step, Uber, VolumeTest,
+    Plan,
+    content::{Clip, MOST_CITIES, PlanContent},
+    lens::{BodyKind, PlanBody, PlanBorder, PlanLens},
+    program::Program,
+    regions::Regions,
+    step::{Blend, ClassTest, Scope, Step, scope_number},
+    uber::Uber,
+    volume_test::VolumeTest,
 };
-pub use regions::Regions;
-pub use specialised::scope_number;
-pub use uber::{MOST_SLOTS, MOST_VOLUMES, TILE_PX};
+pub use table::{MOST_SLOTS, MOST_VOLUMES, TILE_PX};
 
 #[cfg(test)]
 mod tests;

@@ -1,9 +1,9 @@
 //! The modules of a frame: which there are, and their texts.
 
 use crate::shader::{
-    carried,
+    backend, carried,
     deforming::DeformPlan,
-    effect::{EffectDefinition, handlers},
+    effect::{definition::EffectDefinition, registry::handlers},
     files,
     forward::Forward,
     geometry::{self, Drawn, NOTHING_CUT},
@@ -16,9 +16,9 @@ use crate::shader::{
         SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW, VIEW_UNIFORM,
     },
     lining,
-    plan::{Plan, Program, VolumeTest},
+    plan::{Plan, program::Program, volume_test::VolumeTest},
     regions, sections,
-    shading::{self, Shading},
+    shading::Shading,
     sorting, specialised,
     template::Template,
     translucent::{self, DepthTest, OPAQUE_DEPTH, behind_plane},
@@ -102,13 +102,13 @@ impl Module {
             Self::CombinedSprite(kinds) | Self::StoredLayers(kinds) => return text.text() + &lens_test::leaves(kinds),
             Self::Forward(own) => return own.source(handlers, lenses),
             Self::Shade(program) => {
-                let own = shading::written(program, handlers, lenses, &Shading::of_surfaces(room));
+                let own = backend::shading(program, handlers, lenses, &Shading::of_surfaces(room));
                 text.fill("carried", own.members).fill("handlers", own.functions)
             }
             Self::Composite(program) => {
-                let own = shading::written(program, handlers, lenses, &Shading::of_layers(room));
+                let own = backend::shading(program, handlers, lenses, &Shading::of_layers(room));
                 let text = text.fill("carried", own.members).fill("handlers", own.functions);
-                sorting::filled(text).fill("opacity", shading::opacity(program, handlers))
+                sorting::filled(text).fill("opacity", backend::opacity(program, handlers))
             }
             Self::Layers(program, is_early) => {
                 let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));

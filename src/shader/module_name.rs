@@ -1,6 +1,6 @@
 //! What modules are called, for people and statistics.
 
-use crate::shader::{effect::handlers, module::Module, names, plan::Program};
+use crate::shader::{effect::registry::handlers, module::Module, names, plan::program::Program};
 
 impl Module {
     /// A name for people and statistics.

@@ -1,6 +1,6 @@
 //! Names in modules' texts and names, as people read them.
 
-use crate::shader::{effect::handlers, plan::Program};
+use crate::shader::{effect::registry::handlers, plan::program::Program};
 
 /// The effects of a program.
 pub(super) fn of_effects(program: &Program) -> String {

@@ -1,25 +1,20 @@
-//! Regions (C2): the classes of several lenses that a place is in at once, as one number. Sequential accumulation needs none; the
-//! techniques that are kept for reference do.
+//! Regions told apart by a module's text, for the techniques that are kept for reference (C2): a branch for each, or the number of the
+//! region of a place.
 
 use std::fmt::Write as _;
 
 use crate::shader::{
-    effect::EffectDefinition,
+    effect::definition::EffectDefinition,
     lens_test,
     names::one_line,
-    plan::{ClassTest, Plan, Program, Scope},
-    specialised::Writer,
+    plan::{
+        Plan,
+        program::Program,
+        regions::Regions,
+        step::{ClassTest, Scope},
+    },
+    writer::Writer,
 };
-
-/// How places are told apart, and by which numbers. What no lens acts on is region 0.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum Regions {
-    /// Every combination of the classes that lenses act on; of each lens of the plan, these classes, ascending. Of lenses that act
-    /// on one class each, the number is a bitmask, the bottom lens its lowest bit.
-    Combinations(Vec<Vec<ClassTest>>),
-    /// One class of one lens each, from 1: the first that holds. All else is 0; where *behind* is one of them, that is *rest*.
-    Passes(Vec<(u32, ClassTest)>),
-}
 
 impl Regions {
     /// All combinations of what the lenses of a plan act on.
@@ -39,115 +34,47 @@ impl Regions {
         let behind = of(ClassTest::Behind).filter(|_| asks_far_side);
         Self::Passes(of(ClassTest::Inside).chain(of(ClassTest::Front)).chain(behind).collect())
     }
+}
 
-    /// How many there are; [`None`] beyond what a word counts.
-    pub fn count(&self) -> Option<u32> {
-        match self {
-            Self::Combinations(classes) => {
-                classes.iter().try_fold(1_u32, |all, of| all.checked_mul(of.len() as u32 + 1))
-            }
-            Self::Passes(passes) => Some(passes.len() as u32 + 1),
-        }
-    }
-
-    /// The classes that a region is in, by lens of the plan; lenses of which it is in no class that is told apart are left out.
-    pub fn classes_of(&self, region: u32) -> Vec<(u32, ClassTest)> {
-        match self {
-            Self::Combinations(classes) => {
-                let mut left = region;
-                let of = |(lens, asked): (usize, &Vec<ClassTest>)| {
-                    let states = asked.len() as u32 + 1;
-                    let state = left % states;
-                    left /= states;
-                    Some((lens as u32, asked[state.checked_sub(1)? as usize]))
-                };
-                classes.iter().enumerate().filter_map(of).collect()
-            }
-            Self::Passes(passes) => match region.checked_sub(1) {
-                Some(pass) => vec![passes[pass as usize]],
-                None => {
-                    let behind = passes.iter().filter(|(_, class)| *class == ClassTest::Behind);
-                    behind.map(|(lens, _)| (*lens, ClassTest::Rest)).collect()
-                }
-            },
-        }
-    }
-
-    /// Whether it asks for other classes of a lens than *inside*.
-    pub fn asks_sides(&self, lens: u32) -> bool {
-        match self {
-            Self::Combinations(classes) => classes[lens as usize].iter().any(|class| *class != ClassTest::Inside),
-            Self::Passes(passes) => passes.iter().any(|(of, class)| *of == lens && *class != ClassTest::Inside),
-        }
-    }
-
-    /// The lines of a function that returns the number; `classes`: those of a lens of the plan.
-    fn body(&self, classes: impl Fn(u32) -> String) -> String {
-        let mut text = String::new();
-        match self {
-            Self::Combinations(asked) => {
-                text.push_str("    var region = 0u;\n");
-                let mut place = 1;
-                for (lens, asked) in asked.iter().enumerate().filter(|(_, asked)| !asked.is_empty()) {
-                    let _ = writeln!(text, "    let classes_{lens} = {};", classes(lens as u32));
-                    for (i, class) in (1..).zip(asked) {
-                        let number: u32 = place * i;
-                        let test = class.function();
-                        let _ = writeln!(text, "    region += select(0u, {number}u, {test}(classes_{lens}));");
-                    }
-                    place *= asked.len() as u32 + 1;
-                }
-                text.push_str("    return region;\n");
-            }
-            Self::Passes(passes) => {
-                let mut lenses: Vec<u32> = passes.iter().map(|(lens, _)| *lens).collect();
-                lenses.sort_unstable();
-                lenses.dedup();
-                for lens in lenses {
-                    let _ = writeln!(text, "    let classes_{lens} = {};", classes(lens));
-                }
-                for (number, (lens, class)) in (1..).zip(passes) {
+/// The lines of a function that returns the number; `classes`: those of a lens of the plan.
+fn body(regions: &Regions, classes: impl Fn(u32) -> String) -> String {
+    let mut text = String::new();
+    match regions {
+        Regions::Combinations(asked) => {
+            text.push_str("    var region = 0u;\n");
+            let mut place = 1;
+            for (lens, asked) in asked.iter().enumerate().filter(|(_, asked)| !asked.is_empty()) {
+                let _ = writeln!(text, "    let classes_{lens} = {};", classes(lens as u32));
+                for (i, class) in (1..).zip(asked) {
+                    let number: u32 = place * i;
                     let test = class.function();
-                    let _ = writeln!(text, "    if {test}(classes_{lens}) {{\n        return {number}u;\n    }}");
+                    let _ = writeln!(text, "    region += select(0u, {number}u, {test}(classes_{lens}));");
                 }
-                text.push_str("    return 0u;\n");
+                place *= asked.len() as u32 + 1;
             }
+            text.push_str("    return region;\n");
         }
-        text
-    }
-}
-
-impl Plan {
-    /// What is done in one region, with no question left to ask.
-    pub fn of_region(&self, region: u32) -> Self {
-        let own = self.regions.as_ref().map_or_else(Vec::new, |regions| regions.classes_of(region));
-        let is_own = |scope| match scope {
-            Scope::Everywhere => true,
-            Scope::Lens(lens, class) => own.contains(&(lens, class)),
-        };
-        let steps = self.steps.iter().filter(|s| is_own(s.scope)).cloned();
-        let everywhere = steps.map(|mut step| {
-            step.scope = Scope::Everywhere;
-            step
-        });
-        Self { steps: everywhere.collect(), haze: self.haze, ..Self::default() }
-    }
-}
-
-impl Program {
-    /// How it tells regions apart, if it does.
-    pub fn regions(&self) -> Option<&Regions> {
-        match self {
-            Self::Specialised(plan) => plan.regions.as_ref(),
-            Self::Uber(_) => None,
+        Regions::Passes(passes) => {
+            let mut lenses: Vec<u32> = passes.iter().map(|(lens, _)| *lens).collect();
+            lenses.sort_unstable();
+            lenses.dedup();
+            for lens in lenses {
+                let _ = writeln!(text, "    let classes_{lens} = {};", classes(lens));
+            }
+            for (number, (lens, class)) in (1..).zip(passes) {
+                let test = class.function();
+                let _ = writeln!(text, "    if {test}(classes_{lens}) {{\n        return {number}u;\n    }}");
+            }
+            text.push_str("    return 0u;\n");
         }
     }
+    text
 }
 
 /// `shade` and `styled`, for `pass/shade.wgsl`: a branch for each region, in which its effects are written out (Tiesel 2009,
 /// §3.4.5).
 pub(super) fn branches(plan: &Plan, regions: &Regions, handlers: &[EffectDefinition]) -> String {
-    let body = regions.body(|lens| format!("classes.lens_{lens}"));
+    let body = body(regions, |lens| format!("classes.lens_{lens}"));
     let mut text = format!("fn region_of(classes: Classes) -> u32 {{\n{body}}}\n\n");
     let count = regions.count().unwrap_or(1);
     for region in 0..count {
@@ -179,7 +106,7 @@ fn region_at(plan: &Plan, regions: &Regions, names: &[&str]) -> String {
     for (lens, name) in names.iter().enumerate() {
         let _ = writeln!(text, "// classes_{lens}: {}", one_line(name));
     }
-    let body = regions.body(|lens| lens_test::classes(plan, lens, "sight"));
+    let body = body(regions, |lens| lens_test::classes(plan, lens, "sight"));
     text + &format!("fn region_at(sight: Sight) -> u32 {{\n{body}}}\n\n")
 }
 
@@ -204,7 +131,7 @@ pub(super) fn marks(plan: &Plan, regions: &Regions, names: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::plan::{PlanLens, Step, VolumeTest};
+    use crate::shader::plan::{lens::PlanLens, step::Step, volume_test::VolumeTest};
 
     fn plan(scopes: &[(u32, ClassTest)]) -> Plan {
         let lens =

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    effect::EffectDefinition,
+    effect::definition::EffectDefinition,
     hiding, lens_test,
-    plan::{Program, VolumeTest},
+    plan::{program::Program, volume_test::VolumeTest},
 };
 
 /// What the pass calls: `visible`, and the ends of volumes.

@@ -1,14 +1,6 @@
-//! Shading written out: `shade`, `styled`, `outlines`, `write_classes` and what they call, for the passes that shade, by either back
-//! end.
+//! What differs between the passes that shade.
 
-use crate::shader::{
-    carried::{self, Carried},
-    effect::EffectDefinition,
-    plan::Program,
-    specialised, uber,
-};
-
-/// What differs between the passes that shade.
+/// How a pass shades.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shading {
     /// How many vectors are carried from vertices to fragments; `None`: uniforms are read where they stand.
@@ -33,25 +25,5 @@ impl Shading {
     /// Of fragments where they are drawn, by a module that reads so many `vec4f` of the parameters for other ends.
     pub(super) fn of_fragments(slots: u32) -> Self {
         Self { room: None, is_of_surfaces: false, slots }
-    }
-}
-
-/// What shading says, and what is carried for it. `names` of a plan's lenses become comments.
-pub(super) fn written(program: &Program, handlers: &[EffectDefinition], names: &[&str], shading: &Shading) -> Carried {
-    let (own, of_scene) = match program {
-        Program::Specialised(plan) => {
-            let own = shading.room.map_or_else(carried::nothing, |room| carried::of_plan(plan, handlers, room));
-            (own, specialised::source(plan, handlers, names, shading))
-        }
-        Program::Uber(uber) => (carried::nothing(), uber::source(uber, handlers, shading)),
-    };
-    Carried { functions: own.functions + &of_scene, ..own }
-}
-
-/// `opacity_at`, for translucent layers.
-pub(super) fn opacity(program: &Program, handlers: &[EffectDefinition]) -> String {
-    match program {
-        Program::Specialised(plan) => specialised::opacity(plan, handlers),
-        Program::Uber(uber) => uber::opacity(uber, handlers),
     }
 }

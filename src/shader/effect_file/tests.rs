@@ -1,4 +1,5 @@
 use super::*;
+use crate::shader::effect::EffectKind;
 
 const HEADER: &str = "//! name = \"mine\"\n//! kind = \"post\"\n//! spec = \"K3\"\n//! doc = \"Does it.\"\n";
 const PARAMETER: &str = "//!\n//! [[parameter]]\n//! name = \"mode\"\n//! type = \"word\"\n//! words = [\"soft\", \"very-hard\"]\n\
@@ -37,6 +38,11 @@ fn what_is_wrong_is_named_with_its_place() {
         (
             HEADER.replace("post", "past"),
             "my.wgsl:2:12: unknown variant `past`, expected one of `hide`, `opacity`, `material`, `light`, `scene`, `air`, `post`, `filter`",
+        ),
+        (
+            format!("{}{good}", HEADER.replace("post", "air")),
+            "my.wgsl:1:1: mode, and kind = \"air\", are for handlers of the program; expected kind = hide, opacity, material, light, \
+             scene, post or filter",
         ),
         (HEADER.replace("spec", "spek"), "my.wgsl:3:5: unknown field `spek`"),
         (HEADER.to_owned(), "my.wgsl:5:1: expected `fn effect(color: vec3f, point: Point) -> vec3f`"),

@@ -1,0 +1,3 @@
+fn runs(by: Invoker, fragment: Fragment) -> bool {
+    return by.scope == 0u;
+}

@@ -1,0 +1,29 @@
+//! Shading by either back end: `shade`, `styled`, `outlines`, `write_classes` and what they call, for the passes that shade.
+
+use crate::shader::{
+    carried::{self, Carried},
+    effect::definition::EffectDefinition,
+    plan::program::Program,
+    shading::Shading,
+    specialised, uber,
+};
+
+/// What shading says, and what is carried for it. `names` of a plan's lenses become comments.
+pub(super) fn shading(program: &Program, handlers: &[EffectDefinition], names: &[&str], pass: &Shading) -> Carried {
+    let (own, of_scene) = match program {
+        Program::Specialised(plan) => {
+            let own = pass.room.map_or_else(carried::nothing, |room| carried::of_plan(plan, handlers, room));
+            (own, specialised::source(plan, handlers, names, pass))
+        }
+        Program::Uber(uber) => (carried::nothing(), uber::source(uber, handlers, pass)),
+    };
+    Carried { functions: own.functions + &of_scene, ..own }
+}
+
+/// `opacity_at`, for translucent layers.
+pub(super) fn opacity(program: &Program, handlers: &[EffectDefinition]) -> String {
+    match program {
+        Program::Specialised(plan) => specialised::opacity(plan, handlers),
+        Program::Uber(uber) => uber::opacity(uber, handlers),
+    }
+}

@@ -1,0 +1,116 @@
+//! Effects as they are defined: what an effect file says.
+
+use crate::shader::{
+    effect::{
+        parameter::{Fallback, ParameterDefinition, ParameterKind},
+        prototype::{EffectKind, Mode},
+    },
+    wgsl::token::identifier,
+};
+
+/// What an effect reads of each object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PerObject {
+    /// A colour, by an attribute (K2); all its parameters are for the host.
+    Colors,
+    /// Whether an attribute chooses it ([`crate::lens::chosen`]).
+    Chosen,
+    /// Nothing of objects: where in the picture the points of interest of its lens are (`render::sights`).
+    Sights,
+    /// What they cover of the ground, by its outline (`render::footprints`).
+    Footprints,
+}
+
+/// One effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectDefinition {
+    /// Its name in scene files.
+    pub name: String,
+    /// Its prototype.
+    pub kind: EffectKind,
+    /// When it runs.
+    pub mode: Mode,
+    /// The requirement it fulfils.
+    pub spec: String,
+    /// What it does, one sentence.
+    pub doc: String,
+    /// Its parameters.
+    pub parameters: Vec<ParameterDefinition>,
+    /// What its WGSL reads of each object, which the host makes of attributes.
+    pub objects: Option<PerObject>,
+    /// It draws edges where it acts: with its parameters `line_color` and `line_width`.
+    pub lines: bool,
+    /// Somebody else wrote it: what it returns is contained.
+    pub is_users: bool,
+    /// It looks at what it takes first, so it cannot stand in for what is below it.
+    pub reads_below: bool,
+    /// It calls `most_layers`: how many layers the pixel has that has most, which somebody must count first.
+    pub asks_most_layers: bool,
+    /// The WGSL of its functions, names qualified; that of its parameters first.
+    pub source: String,
+    /// Where the WGSL of its parameters ends in it.
+    pub parameters_end: usize,
+}
+
+impl EffectDefinition {
+    /// Its name as WGSL has it: what all its names begin with.
+    pub fn wgsl_name(&self) -> String {
+        let name = identifier(&self.name);
+        // Whatever a user calls an effect, nothing of the program is called so.
+        if self.is_users { format!("user_{name}") } else { name }
+    }
+
+    /// What a name of its own is called in a module. Two users' effects never have the same name: an effect's holds no
+    /// `__`. That two of the program's have not, tests see.
+    pub fn own(&self, name: &str) -> String {
+        format!("{}{}{name}", self.wgsl_name(), if self.is_users { "__" } else { "_" })
+    }
+
+    /// The parameters that WGSL reads, in order.
+    pub fn shader_parameters(&self) -> impl Iterator<Item = (&ParameterDefinition, &'static str, usize)> {
+        let all = self
+            .parameters
+            .iter()
+            .filter(|p| self.objects != Some(PerObject::Colors) && !matches!(p.fallback, Fallback::Words(_)));
+        all.filter_map(|p| p.kind.in_shader().map(|(type_name, floats)| (p, type_name, floats)))
+    }
+
+    /// Of an opacity rule: which fragments it makes translucent at all, as a condition on what has `object` and `part` of this
+    /// name, and its parameters from `first`; `None`: all of them. The others stay with what is opaque.
+    pub fn acts_on(&self, place: &str, first: &str) -> Option<String> {
+        let own = format!("{}({first})", self.own("parameters"));
+        let mut conditions = Vec::new();
+        if self.terrain_parameter().is_some() {
+            conditions.push(format!("!({place}.part == PART_TERRAIN && {own}.{KEEP_TERRAIN})"));
+        }
+        if self.objects == Some(PerObject::Chosen) {
+            conditions.push(format!("is_chosen({own}.first, {place}.object)"));
+        }
+        (!conditions.is_empty()).then(|| conditions.join(" && "))
+    }
+
+    /// Of an opacity rule: by which of its parameters terrain stays opaque, if by any.
+    pub fn terrain_parameter(&self) -> Option<&ParameterDefinition> {
+        self.parameters.iter().find(|p| p.name == KEEP_TERRAIN && p.kind == ParameterKind::Boolean)
+    }
+
+    /// The WGSL of its parameters alone.
+    pub fn parameters_source(&self) -> &str {
+        &self.source[..self.parameters_end]
+    }
+
+    /// How many numbers its WGSL reads of its parameters: the first value per object is one.
+    pub fn floats(&self) -> usize {
+        let floats: usize = self.shader_parameters().map(|(_, _, floats)| floats).sum();
+        floats + usize::from(self.objects.is_some())
+    }
+
+    /// How many `vec4f` its parameters take.
+    pub fn slots(&self) -> u32 {
+        self.floats().div_ceil(4) as u32
+    }
+}
+
+/// The parameter of an opacity rule by which terrain stays opaque.
+const KEEP_TERRAIN: &str = "keep_terrain";

@@ -1,0 +1,15 @@
+//! The effects: what lenses and the context can do to what they show (C4).
+//!
+//! An effect is one file in `shaders/effect` and one row in [`registry`]; [`super::effect_file`] says what stands in it.
+
+pub(super) mod definition;
+pub(super) mod parameter;
+pub(super) mod prototype;
+pub(super) mod registry;
+pub(super) mod user;
+
+pub use definition::{EffectDefinition, PerObject};
+pub use parameter::{DefaultValue, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition, ParameterKind};
+pub use prototype::{EffectKind, Mode, PROTOTYPES, Prototype, Stage};
+pub use registry::{MOST_HANDLERS, effects, find, handlers, number_of};
+pub use user::{add, replace};

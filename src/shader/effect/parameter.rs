@@ -1,0 +1,130 @@
+//! Parameters of effects: what they take, and what holds where they are not given.
+
+/// What a parameter takes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParameterKind {
+    /// `true` or `false`; in WGSL a `bool`.
+    Boolean,
+    /// A number within the closed range; in WGSL an `f32`.
+    Number {
+        /// Smallest.
+        min: f64,
+        /// Largest.
+        max: f64,
+    },
+    /// Any text; not for WGSL.
+    Text,
+    /// One of these words; in WGSL a `u32`, and a constant `PARAMETER_WORD` for each.
+    Word(Vec<String>),
+    /// `"#rrggbb"` or `[r, g, b]`, sRGB 0..1; in WGSL a `vec3f`, linear.
+    Color,
+    /// Finite numbers, ascending, at most [`MAX_LIST`]; not for WGSL.
+    Numbers,
+    /// Texts, at most [`MAX_LIST`]; not for WGSL.
+    Texts,
+    /// Shares, 0 to 1, at equal steps of a ramp, at most [`MAX_RAMP`]; in WGSL a `u32` for `share_on_ramp`.
+    Shares,
+    /// Colours, as [`Self::Color`], at equal steps of a ramp, at most [`MAX_RAMP`]; in WGSL a `u32` for `color_on_ramp`.
+    Colors,
+}
+
+/// Longest list a parameter takes.
+pub const MAX_LIST: usize = 256;
+/// Steps of a ramp.
+pub const MAX_RAMP: usize = 64;
+
+impl ParameterKind {
+    /// Its type in WGSL and how many floats it takes there; `None` for what only the host reads.
+    pub fn in_shader(&self) -> Option<(&'static str, usize)> {
+        match self {
+            Self::Boolean => Some(("bool", 1)),
+            Self::Number { .. } => Some(("f32", 1)),
+            Self::Word(_) | Self::Shares | Self::Colors => Some(("u32", 1)),
+            Self::Color => Some(("vec3f", 3)),
+            Self::Text | Self::Numbers | Self::Texts => None,
+        }
+    }
+
+    /// What it takes, as people read it.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Boolean => "true or false".into(),
+            Self::Number { min, max } if *min == f64::MIN && *max == f64::MAX => "a finite number".into(),
+            Self::Number { min, max } => format!("a number {min} to {max}"),
+            Self::Text => "a text".into(),
+            Self::Word(words) => format!("one of {}", words.join(", ")),
+            Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
+            Self::Numbers => format!("1 to {MAX_LIST} ascending numbers"),
+            Self::Texts => format!("1 to {MAX_LIST} texts"),
+            Self::Shares => format!("1 to {MAX_RAMP} numbers of 0 to 1"),
+            Self::Colors => format!("1 to {MAX_RAMP} colours \"#rrggbb\""),
+        }
+    }
+
+    /// Whether WGSL reads it as a ramp.
+    pub fn is_ramp(&self) -> bool {
+        matches!(self, Self::Shares | Self::Colors)
+    }
+}
+
+/// What holds where a parameter is not given.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fallback {
+    /// The effect does nothing without it.
+    Required,
+    /// This value.
+    Value(DefaultValue),
+    /// What the words say; the host knows.
+    Words(String),
+}
+
+/// A parameter's default value.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[serde(untagged)]
+pub enum DefaultValue {
+    /// Yes or no.
+    Boolean(bool),
+    /// A number.
+    Number(f64),
+    /// A word, or a colour as `"#rrggbb"`.
+    Text(String),
+    /// Shares.
+    Numbers(Vec<f64>),
+    /// Colours.
+    Texts(Vec<String>),
+}
+
+/// One parameter of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterDefinition {
+    /// Its key.
+    pub name: String,
+    /// What it takes.
+    pub kind: ParameterKind,
+    /// What holds where it is not given.
+    pub fallback: Fallback,
+    /// Unit, or empty.
+    pub unit: String,
+    /// What it does.
+    pub doc: String,
+}
+
+impl ParameterDefinition {
+    /// Whether the effect does nothing without it.
+    pub fn is_required(&self) -> bool {
+        self.fallback == Fallback::Required
+    }
+
+    /// What holds where it is not given, in words or as TOML; empty where it is required.
+    pub fn default_text(&self) -> String {
+        match &self.fallback {
+            Fallback::Required => String::new(),
+            Fallback::Words(words) => words.clone(),
+            Fallback::Value(DefaultValue::Boolean(b)) => b.to_string(),
+            Fallback::Value(DefaultValue::Number(n)) => n.to_string(),
+            Fallback::Value(DefaultValue::Text(t)) => format!("\"{t}\""),
+            Fallback::Value(DefaultValue::Numbers(n)) => format!("{n:?}"),
+            Fallback::Value(DefaultValue::Texts(t)) => format!("{t:?}"),
+        }
+    }
+}

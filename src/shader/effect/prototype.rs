@@ -1,0 +1,311 @@
+//! The table of prototypes (H1): what handlers do, when they run and what their functions look like. Parsing of effect files, messages
+//! and the table in `docs/effects.md` come from it.
+
+use serde::{Deserialize, Deserializer, de::Error as _};
+
+/// The prototype handlers of shading (H1), in the order of their execution: what an effect's `kind` says. Several
+/// handlers of one prototype run in lens order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EffectKind {
+    /// Takes parts of the city away, before anything is seen of them.
+    Hide,
+    /// Says how much of a surface stands between the eye and what is behind it; from 1, lens by lens.
+    Opacity,
+    /// Changes what surfaces are made of, before light falls on them.
+    Material,
+    /// Changes the light that falls on them.
+    Light,
+    /// Gives surfaces their colour; at most one per lens, and nothing behind the city has it.
+    Scene,
+    /// Acts between the surface and the eye.
+    Air,
+    /// Changes the colour of the lit picture.
+    Post,
+    /// The same, by what is beside it: the kernel of a separable filter. Runs among the post styles.
+    Filter,
+}
+
+/// When a handler runs (H1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// Always.
+    Global,
+    /// Where a lens, or the context, has it: effects.
+    Local,
+    /// Where no other handler of its prototype set the result.
+    Optional,
+    /// Never.
+    Ignore,
+}
+
+/// A stage of shading, in the order of execution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Fragments of the city, before visibility: by each fragment's own depth (K4).
+    Visibility,
+    /// The shown surface, before it has a colour.
+    Surface,
+    /// The colour of the surface or of the sky. Its handlers take turns in lens order; what is between the surface and the eye comes
+    /// with the standard style.
+    Color,
+}
+
+/// A row of the table of prototypes. Handlers run in the order of the stages, within a stage in the order of the rows, but for styles,
+/// which are one list.
+#[derive(Clone, Copy, Debug)]
+pub struct Prototype {
+    /// The prototype.
+    pub kind: EffectKind,
+    /// Its word in the header of an effect file.
+    pub word: &'static str,
+    /// Its name as people read it.
+    pub name: &'static str,
+    /// The stage at which its handlers run.
+    pub stage: Stage,
+    /// The mode of a handler whose header gives none.
+    pub default_mode: Mode,
+    /// The first argument in WGSL: name and type.
+    pub subject: (&'static str, &'static str),
+    /// Whether the shown surface is the second argument, `point: Point`.
+    pub takes_point: bool,
+    /// The type that is given back.
+    pub result: &'static str,
+    /// Whether its handlers take turns in lens order on the colour.
+    pub is_style: bool,
+    /// Whether its handlers have a say in how a line looks: materials and light have none, nor has what is beside it.
+    pub touches_lines: bool,
+    /// Whether users can drop in a handler.
+    pub is_for_users: bool,
+    /// When it runs, as the docs say it.
+    pub when: &'static str,
+}
+
+/// All prototypes, in the order of their execution.
+pub const PROTOTYPES: [Prototype; 8] = [
+    Prototype {
+        kind: EffectKind::Hide,
+        word: "hide",
+        name: "hiding",
+        stage: Stage::Visibility,
+        default_mode: Mode::Local,
+        subject: ("fragment", "Fragment"),
+        takes_point: false,
+        result: "bool",
+        is_style: false,
+        touches_lines: true,
+        is_for_users: true,
+        when: "before anything is seen: true where the city is taken away",
+    },
+    Prototype {
+        kind: EffectKind::Opacity,
+        word: "opacity",
+        name: "opacity rule",
+        stage: Stage::Visibility,
+        default_mode: Mode::Local,
+        subject: ("opacity", "f32"),
+        takes_point: true,
+        result: "f32",
+        is_style: false,
+        touches_lines: false,
+        is_for_users: true,
+        when: "for every translucent layer: 0 is clear, 1 opaque; first 1, then what the rule before said",
+    },
+    Prototype {
+        kind: EffectKind::Material,
+        word: "material",
+        name: "material",
+        stage: Stage::Surface,
+        default_mode: Mode::Local,
+        subject: ("material", "Material"),
+        takes_point: true,
+        result: "Material",
+        is_style: false,
+        touches_lines: false,
+        is_for_users: true,
+        when: "before light: `base` (colour), `emission`, `specular`, `shininess`",
+    },
+    Prototype {
+        kind: EffectKind::Light,
+        word: "light",
+        name: "light",
+        stage: Stage::Surface,
+        default_mode: Mode::Local,
+        subject: ("arriving", "vec3f"),
+        takes_point: true,
+        result: "vec3f",
+        is_style: false,
+        touches_lines: false,
+        is_for_users: true,
+        when: "the light on a white surface",
+    },
+    Prototype {
+        kind: EffectKind::Scene,
+        word: "scene",
+        name: "scene style",
+        stage: Stage::Color,
+        default_mode: Mode::Local,
+        subject: ("color", "vec3f"),
+        takes_point: true,
+        result: "vec3f",
+        is_style: true,
+        touches_lines: true,
+        is_for_users: true,
+        when: "how surfaces are drawn; not called for the sky",
+    },
+    Prototype {
+        kind: EffectKind::Air,
+        word: "air",
+        name: "air",
+        stage: Stage::Color,
+        default_mode: Mode::Global,
+        subject: ("color", "vec3f"),
+        takes_point: true,
+        result: "vec3f",
+        is_style: false,
+        touches_lines: false,
+        is_for_users: false,
+        when: "after the standard scene style",
+    },
+    Prototype {
+        kind: EffectKind::Post,
+        word: "post",
+        name: "post style",
+        stage: Stage::Color,
+        default_mode: Mode::Local,
+        subject: ("color", "vec3f"),
+        takes_point: true,
+        result: "vec3f",
+        is_style: true,
+        touches_lines: true,
+        is_for_users: true,
+        when: "for every pixel, after it",
+    },
+    Prototype {
+        kind: EffectKind::Filter,
+        word: "filter",
+        name: "filter",
+        stage: Stage::Color,
+        default_mode: Mode::Local,
+        subject: ("offset", "f32"),
+        takes_point: false,
+        result: "f32",
+        is_style: true,
+        touches_lines: false,
+        is_for_users: true,
+        when: "the kernel of a blur or the like: a weight for each distance in pixels; its first parameter is `radius`, at most 64",
+    },
+];
+
+/// The words of all prototypes, in their order.
+const WORDS: [&str; PROTOTYPES.len()] = {
+    let mut words = [""; PROTOTYPES.len()];
+    let mut i = 0;
+    while i < words.len() {
+        words[i] = PROTOTYPES[i].word;
+        i += 1;
+    }
+    words
+};
+
+impl Prototype {
+    /// What a handler's function looks like, where the last argument is as given: nothing, or one with `, ` before it.
+    pub fn signature(&self, last: &str) -> String {
+        let (name, type_name) = self.subject;
+        let point = if self.takes_point { ", point: Point" } else { "" };
+        format!("effect({name}: {type_name}{point}{last}) -> {}", self.result)
+    }
+
+    /// The words of those whose handlers users can drop in, as a sentence lists them.
+    pub fn words_for_users() -> String {
+        let words: Vec<&str> = PROTOTYPES.iter().filter(|row| row.is_for_users).map(|row| row.word).collect();
+        let (last, others) = words.split_last().expect("there are some");
+        format!("{} or {last}", others.join(", "))
+    }
+
+    /// The kinds of the others, as a header says them.
+    pub fn words_not_for_users() -> String {
+        let of = |row: &Prototype| format!("kind = \"{}\"", row.word);
+        PROTOTYPES.iter().filter(|row| !row.is_for_users).map(of).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl EffectKind {
+    /// All, in the order of their execution.
+    pub const ALL: [Self; PROTOTYPES.len()] = {
+        let mut all = [Self::Hide; PROTOTYPES.len()];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = PROTOTYPES[i].kind;
+            i += 1;
+        }
+        all
+    };
+
+    /// Its row of the table.
+    pub fn prototype(self) -> &'static Prototype {
+        &PROTOTYPES[self as usize]
+    }
+
+    /// As people read it.
+    pub fn name(self) -> &'static str {
+        self.prototype().name
+    }
+
+    /// The first argument of its handlers, which all but hiding ones give back changed: name and type in WGSL.
+    pub fn subject(self) -> (&'static str, &'static str) {
+        self.prototype().subject
+    }
+
+    /// Whether its handlers take turns in lens order on the colour.
+    pub fn is_style(self) -> bool {
+        self.prototype().is_style
+    }
+
+    /// Whether its handlers have a say in how a line looks.
+    pub fn touches_lines(self) -> bool {
+        self.prototype().touches_lines
+    }
+
+    /// Whether its handlers decide what the geometry pass shows, by each fragment's own depth (K4).
+    pub fn decides_visibility(self) -> bool {
+        self.prototype().stage == Stage::Visibility
+    }
+
+    /// Whether its handlers run before the surface has a colour.
+    pub fn is_before_color(self) -> bool {
+        self.prototype().stage == Stage::Surface
+    }
+}
+
+impl<'de> Deserialize<'de> for EffectKind {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let word = String::deserialize(deserializer)?;
+        let row = PROTOTYPES.iter().find(|row| row.word == word);
+        row.map(|row| row.kind).ok_or_else(|| D::Error::unknown_variant(&word, &WORDS))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_in_the_order_of_execution() {
+        for (i, row) in PROTOTYPES.iter().enumerate() {
+            assert_eq!((row.kind as usize, row.kind.prototype().word), (i, row.word));
+        }
+        assert!(PROTOTYPES.is_sorted_by_key(|row| row.stage));
+        assert!(PROTOTYPES.iter().all(|row| !row.is_style || row.stage == Stage::Color));
+    }
+
+    #[test]
+    fn the_docs_have_the_table() {
+        let page = include_str!("../../../docs/effects.md");
+        let rows = PROTOTYPES.iter().filter(|row| row.is_for_users);
+        let row = |row: &Prototype| format!("  | `\"{}\"` | `{}` | {} |\n", row.word, row.signature(""), row.when);
+        let table =
+            format!("  | kind | function | when |\n  | --- | --- | --- |\n{}\n", rows.map(row).collect::<String>());
+        assert!(page.contains(&table), "docs/effects.md lacks\n{table}");
+    }
+}

@@ -1,0 +1,108 @@
+//! The handlers that there are.
+
+use std::sync::{LazyLock, PoisonError, RwLock};
+
+use crate::shader::{
+    effect::{definition::EffectDefinition, prototype::Mode},
+    effect_file::read,
+};
+
+macro_rules! built_in {
+    ($name:literal) => {
+        (concat!("shaders/effect/", $name, ".wgsl"), include_str!(concat!("../../../shaders/effect/", $name, ".wgsl")))
+    };
+}
+
+/// The handlers that come with the program: effects in the order people read them, then what runs without being asked.
+const FILES: &[(&str, &str)] = &[
+    built_in!("thematic"),
+    built_in!("flat"),
+    built_in!("cel"),
+    built_in!("gooch"),
+    built_in!("clay"),
+    built_in!("x-ray-tint"),
+    built_in!("hidden-line"),
+    built_in!("wireframe"),
+    built_in!("greyscale"),
+    built_in!("sepia"),
+    built_in!("invert"),
+    built_in!("darken"),
+    built_in!("brighten"),
+    built_in!("saturate"),
+    built_in!("overlay"),
+    built_in!("discard-color"),
+    built_in!("posterise"),
+    built_in!("engraving"),
+    built_in!("blur"),
+    built_in!("edges"),
+    built_in!("iso-lines"),
+    built_in!("eraser"),
+    built_in!("cut-away"),
+    built_in!("screen-door"),
+    built_in!("transparent"),
+    built_in!("x-ray"),
+    built_in!("film"),
+    built_in!("soft-film"),
+    built_in!("peel"),
+    built_in!("brick"),
+    built_in!("gloss"),
+    built_in!("marble"),
+    built_in!("velvet"),
+    built_in!("glow"),
+    built_in!("lighting"),
+    built_in!("lambert"),
+    built_in!("haze"),
+];
+
+/// What the 13 bits of an invoker's handler can tell apart.
+pub const MOST_HANDLERS: usize = 8192;
+
+/// The handlers there are. Definitions are never freed: a pipeline may refer to one that was replaced.
+static EFFECTS: LazyLock<RwLock<&'static [EffectDefinition]>> = LazyLock::new(|| {
+    let read = |(path, text): &(&str, &str)| {
+        read::read(path, text).unwrap_or_else(|error| unreachable!("a built-in effect: {error}"))
+    };
+    RwLock::new(Vec::leak(FILES.iter().map(read).collect()))
+});
+
+/// All handler objects: the program's, then a user's. A handler's place is the number that shaders know it by.
+pub fn handlers() -> &'static [EffectDefinition] {
+    *EFFECTS.read().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The effects: handlers that a lens, or the context, asks for by name.
+pub fn effects() -> impl Iterator<Item = &'static EffectDefinition> {
+    handlers().iter().filter(|h| h.mode == Mode::Local)
+}
+
+/// The effect called `name`.
+pub fn find(name: &str) -> Option<&'static EffectDefinition> {
+    effects().find(|e| e.name == name)
+}
+
+/// The number of the effect called `name`.
+pub fn number_of(name: &str) -> Option<u32> {
+    handlers().iter().position(|e| e.name == name && e.mode == Mode::Local).map(|i| i as u32)
+}
+
+/// Takes an effect that has a new name, or with `may_replace` that of another effect of a user, in whose place it comes then.
+///
+/// # Errors
+/// What is wrong with its name, or that there is no room.
+pub(super) fn put(effect: EffectDefinition, may_replace: bool) -> Result<(), String> {
+    let mut all = EFFECTS.write().unwrap_or_else(PoisonError::into_inner);
+    let at = all.iter().position(|e| e.name == effect.name);
+    if at.is_some_and(|at| !(may_replace && all[at].is_users)) {
+        return Err(format!("there is an effect \"{}\" already; expected another name", effect.name));
+    }
+    if at.is_none() && all.len() == MOST_HANDLERS {
+        return Err(format!("there are {MOST_HANDLERS} effects already; expected no more"));
+    }
+    let mut more = all.to_vec();
+    match at {
+        Some(at) => more[at] = effect,
+        None => more.push(effect),
+    }
+    *all = Vec::leak(more);
+    Ok(())
+}

@@ -1,0 +1,122 @@
+//! Users' effect files checked: that they can do no harm, and that their WGSL is right.
+
+use crate::shader::{
+    effect::{
+        definition::EffectDefinition,
+        prototype::{EffectKind, Mode, Prototype},
+    },
+    effect_file::{
+        cost::check_cost,
+        error::{File, FileError},
+        flow::check_control_flow,
+        read::{body_of, read_with_names, signature},
+    },
+    module::Module,
+    plan::{
+        Plan,
+        program::Program,
+        step::{Scope, Step},
+    },
+    wgsl::token,
+};
+
+/// Lines of a user's file: more than any effect needs, few enough to compile in no time.
+const MOST_LINES: usize = 2000;
+/// Bytes of a user's file.
+const MOST_BYTES: usize = 128 * 1024;
+
+/// Reads a user's effect file and checks that it can do no harm: its size, that its loops end, and its WGSL.
+pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
+    let file = File { path, text };
+    if text.len() > MOST_BYTES || text.lines().count() > MOST_LINES {
+        let message = format!("an effect file has at most {MOST_LINES} lines and {MOST_BYTES} bytes");
+        return Err(file.error(0, message));
+    }
+    let (effect, renamed) = read_with_names(path, text, true)?;
+    if effect.objects.is_some() || effect.parameters.iter().any(|p| p.kind.is_ramp()) {
+        let message = "objects, and parameters of type shares and colors, are for effects of the program";
+        return Err(file.error(0, message));
+    }
+    check_control_flow(&file)?;
+    check_cost(&file)?;
+    if effect.mode != Mode::Local || !effect.kind.prototype().is_for_users {
+        let message = format!(
+            "mode, and {}, are for handlers of the program; expected kind = {}",
+            Prototype::words_not_for_users(),
+            Prototype::words_for_users()
+        );
+        return Err(file.error(0, message));
+    }
+    let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, blend: None }];
+    let module = match effect.kind {
+        EffectKind::Filter => Module::Filter(0),
+        EffectKind::Hide => Module::Geometry(Some(Program::Specialised(Plan { steps, ..Plan::default() }))),
+        EffectKind::Opacity => Module::Composite(Program::Specialised(Plan { steps, ..Plan::default() })),
+        _ => Module::Shade(Program::Specialised(Plan { steps, ..Plan::default() })),
+    };
+    let source = module.source_with(std::slice::from_ref(&effect));
+    let body = body_of(&renamed.text).trim_end();
+    let Some(own) = source.find(effect.source.trim_end()) else { unreachable!("a module without its only effect") };
+    let begin = own + effect.parameters_end;
+    let before = renamed.text.len() - body_of(&renamed.text).len();
+    let place = |at: Option<usize>| match at {
+        Some(at) if (begin..=begin + body.len()).contains(&at) => renamed.original(at - begin + before),
+        // Beside the file: where it is called. Its signature is not what the caller expects.
+        _ => token::declarations(text, &token::tokens(text))
+            .iter()
+            .find(|d| d.name == "effect")
+            .map_or(0, |d| d.span.start),
+    };
+    let prefix = effect.own("");
+    // Names in a message are the author's. Beside the file is the call: then the signature is wrong, whatever the parser makes of it.
+    let own = |at: Option<usize>, message: String| match at {
+        Some(at) if (begin..=begin + body.len()).contains(&at) => message.replace(&prefix, ""),
+        _ => format!("expected `{}`", signature(&effect)),
+    };
+    let parsed = wgpu::naga::front::wgsl::parse_str(&source).map_err(|error| {
+        let at = error.labels().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
+        file.error(place(at), own(at, error.message().to_owned()))
+    })?;
+    let capabilities =
+        wgpu::naga::valid::Capabilities::default() | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    let mut validator = wgpu::naga::valid::Validator::new(wgpu::naga::valid::ValidationFlags::all(), capabilities);
+    validator.validate(&parsed).map_err(|error| {
+        let at = error.spans().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
+        file.error(place(at), own(at, in_words(error.as_inner())))
+    })?;
+    Ok(effect)
+}
+
+/// What a validator's error says, without the numbers by which it knows things.
+fn in_words(error: &dyn std::error::Error) -> String {
+    let mut innermost = error;
+    while let Some(source) = innermost.source() {
+        innermost = source;
+    }
+    let message = innermost.to_string();
+    if message.contains("expression None does not match") {
+        return "not every way through the function returns a value".to_owned();
+    }
+    // `[7] (of type Vector { size: Tri, ... })` is a vec3f; other handles are left out.
+    let mut text = String::new();
+    let mut rest = message.as_str();
+    while let Some((before, after)) = rest.split_once('[') {
+        let (number, tail) = after.split_once(']').unwrap_or(("", after));
+        text.push_str(before);
+        if !number.bytes().all(|b| b.is_ascii_digit()) || number.is_empty() {
+            text.push('[');
+            rest = after;
+            continue;
+        }
+        rest = tail.trim_start();
+        if let Some((kind, tail)) = rest.strip_prefix("(of type ").and_then(|r| r.split_once("})")) {
+            let size = [("Bi", "vec2"), ("Tri", "vec3"), ("Quad", "vec4")]
+                .into_iter()
+                .find(|(word, _)| kind.contains(&format!("size: {word},")));
+            text.push_str(size.map_or("another type", |(_, name)| name));
+            rest = tail.strip_prefix(')').unwrap_or(tail);
+        }
+    }
+    text.push_str(rest);
+    text
+}

@@ -1,0 +1,52 @@
+//! Contents of lenses: what a lens shows in place of what is below it (C6).
+
+use crate::shader::plan::step::ClassTest;
+
+/// What a lens of a plan shows in place of what is below it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PlanContent {
+    /// Index into [`Plan::lenses`].
+    pub lens: u32,
+    /// On which of its classes.
+    pub class: ClassTest,
+    /// Number of the city that it shows, from 1; less than [`MOST_CITIES`].
+    pub city: u32,
+    /// What becomes of what is below.
+    pub clip: Clip,
+    /// Whether terrain stays as it is below.
+    pub keeps_terrain: bool,
+}
+
+/// Cities of a picture, the scene's own included: bits of a word.
+pub const MOST_CITIES: u32 = 32;
+
+/// What becomes of what is shown below a lens that has own content (C6), the context included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Clip {
+    /// It is clipped: the topmost content shows.
+    #[default]
+    Order,
+    /// It stays, and the content is added.
+    Merge,
+    /// Nothing shows where a lens below has another content, neither; else as `Order`.
+    Discard,
+}
+
+impl Clip {
+    /// All, in the order of the uber back end's numbers.
+    pub const ALL: [Self; 3] = [Self::Order, Self::Merge, Self::Discard];
+
+    /// Its word in scene files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Order => "order",
+            Self::Merge => "merge",
+            Self::Discard => "discard",
+        }
+    }
+
+    /// The number that the uber back end knows it by.
+    pub fn number(self) -> u32 {
+        Self::ALL.iter().position(|c| *c == self).unwrap_or(0) as u32
+    }
+}

@@ -1,0 +1,210 @@
+//! What a scene asks of shading: the invoker table (H2), from which both back ends are made.
+//!
+//! A [`Plan`] names handlers, lenses and classes, never positions or parameters: those stand in uniforms, so a lens that
+//! moves or a slider that is dragged compiles nothing. Equal plans share a pipeline.
+
+pub(super) mod content;
+pub(super) mod lens;
+pub(super) mod program;
+pub(super) mod regions;
+pub(super) mod step;
+pub(super) mod uber;
+pub(super) mod volume_test;
+
+use crate::shader::{
+    effect::{definition::EffectDefinition, prototype::EffectKind},
+    plan::{
+        content::PlanContent,
+        lens::{BODY_SLOTS, BodyKind, PlanBorder, PlanLens},
+        regions::Regions,
+        step::{ClassTest, Scope, Step},
+        volume_test::VolumeTest,
+    },
+};
+
+/// Lenses and effects of one part of the picture, bottom lens first (L6).
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Plan {
+    /// Lenses that may be seen there.
+    pub lenses: Vec<PlanLens>,
+    /// What is done, bottom lens first; prototypes have an order of their own ([`EffectKind::ALL`]).
+    pub steps: Vec<Step>,
+    /// Whether the air shows.
+    pub haze: bool,
+    /// Whether every pixel's classes are written down, for AOVs and statistics.
+    pub masks: bool,
+    /// Whether some effect draws lines.
+    pub lines: bool,
+    /// Whether something is seen through: what shading lays over its picture.
+    pub veils: bool,
+    /// What its lenses show in themselves, bottom lens first (C6).
+    pub contents: Vec<PlanContent>,
+    /// How places are told apart, for the techniques that are kept for reference (C2); `None`: by accumulation.
+    pub regions: Option<Regions>,
+}
+
+impl Plan {
+    /// The numbers of all effects in it, ascending, each once.
+    pub fn effects(&self) -> Vec<u32> {
+        let mut all: Vec<u32> = self.steps.iter().map(|s| s.effect).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// What the bodies of its lenses are drawn as, ascending, each once.
+    pub fn bodies(&self) -> Vec<BodyKind> {
+        let mut kinds: Vec<BodyKind> = self.lenses.iter().filter_map(|l| l.body).map(|b| b.kind).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        kinds
+    }
+
+    /// Whether some lens fades.
+    pub fn has_borders(&self) -> bool {
+        self.borders().next().is_some()
+    }
+
+    /// The soft borders of its lenses that do something here.
+    pub fn borders(&self) -> impl Iterator<Item = PlanBorder> {
+        (0..self.lenses.len() as u32).filter_map(|lens| self.border_of(lens))
+    }
+
+    /// The soft border of one of its lenses that does something here.
+    pub fn border_of(&self, lens: u32) -> Option<PlanBorder> {
+        let acts = |s: &Step| matches!(s.scope, Scope::Lens(l, _) if l == lens);
+        // What a lens shows fades by dithering alone.
+        let shows = |b: &PlanBorder| b.dithers && self.contents.iter().any(|c| c.lens == lens);
+        self.lenses[lens as usize].border.filter(|b| shows(b) || self.steps.iter().any(acts))
+    }
+
+    /// With lenses that end at once: from where a border is not told.
+    pub fn without_borders(mut self) -> Self {
+        self.lenses.iter_mut().for_each(|lens| lens.border = None);
+        self
+    }
+
+    /// Whether some effect is a filter.
+    pub fn has_filters(&self, handlers: &[EffectDefinition]) -> bool {
+        self.steps.iter().any(|s| handlers[s.effect as usize].kind == EffectKind::Filter)
+    }
+
+    /// Whether some effect is blended.
+    pub fn has_blends(&self) -> bool {
+        self.steps.iter().any(|s| s.blend.is_some())
+    }
+
+    /// Volumes of all its lenses.
+    pub fn volumes(&self) -> u32 {
+        self.tests().count() as u32
+    }
+
+    /// How they are tested.
+    pub fn tests(&self) -> impl Iterator<Item = VolumeTest> {
+        self.lenses.iter().flat_map(|l| &l.volumes).copied()
+    }
+
+    /// Whether nobody asks for other classes of a lens than *inside*.
+    pub fn asks_inside_alone(&self, lens: u32) -> bool {
+        let is_other = |s: &Step| matches!(s.scope, Scope::Lens(l, class) if l == lens && class != ClassTest::Inside);
+        let is_content = |c: &PlanContent| c.lens == lens && c.class != ClassTest::Inside;
+        let is_apart = self.regions.as_ref().is_some_and(|regions| regions.asks_sides(lens));
+        !is_apart && !self.masks && !self.steps.iter().any(is_other) && !self.contents.iter().any(is_content)
+    }
+
+    /// The volumes of one of its lenses: how many come before them, and how they are tested.
+    pub fn volumes_of(&self, lens: u32) -> (u32, &[VolumeTest]) {
+        let before = self.lenses[..lens as usize].iter().map(|l| l.volumes.len() as u32).sum();
+        (before, &self.lenses[lens as usize].volumes)
+    }
+
+    /// Its steps of one prototype, in the order of their execution.
+    pub fn steps_of<'a>(
+        &'a self,
+        kind: EffectKind,
+        handlers: &'a [EffectDefinition],
+    ) -> impl DoubleEndedIterator<Item = (&'a Step, &'a EffectDefinition)> {
+        self.steps.iter().map(|s| (s, &handlers[s.effect as usize])).filter(move |(_, h)| h.kind == kind)
+    }
+
+    /// What of it says what is there; `None` where nothing is hidden.
+    pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let decides = |step: &&Step| handlers[step.effect as usize].kind.decides_visibility();
+        let steps: Vec<Step> = self.steps.iter().filter(decides).cloned().collect();
+        if steps.is_empty() && self.contents.is_empty() {
+            return None;
+        }
+        let (mut lenses, contents) = (self.plain_lenses(), self.contents.clone());
+        // What fades is translucent in all of its border.
+        let fades = |lens: u32| {
+            let mut rules = self.steps_of(EffectKind::Opacity, handlers);
+            rules.any(|(step, _)| matches!(step.scope, Scope::Lens(l, _) if l == lens))
+        };
+        (0..).zip(&mut lenses).for_each(|(i, lens)| lens.border = lens.border.filter(|b| b.dithers || fades(i)));
+        Some(Self { lenses, steps, contents, ..Self::default() })
+    }
+
+    /// What of it lines go through; `None` where nobody draws any.
+    pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let steps = self.steps.iter().filter(|s| handlers[s.effect as usize].kind.touches_lines()).cloned().collect();
+        self.lines.then(|| Self {
+            lenses: self.plain_lenses(),
+            steps,
+            lines: true,
+            contents: self.contents.clone(),
+            ..Self::default()
+        })
+    }
+
+    /// Its lenses for passes that ask for nothing but their volumes, which keep their places.
+    fn plain_lenses(&self) -> Vec<PlanLens> {
+        let lens = |(i, lens): (usize, &PlanLens)| PlanLens { number: i as u32, body: None, ..lens.clone() };
+        self.lenses.iter().enumerate().map(lens).collect()
+    }
+
+    /// What of it says how things look.
+    pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
+        self.veils = self.is_seen_through(handlers);
+        self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
+        self.contents.clear();
+        self
+    }
+
+    /// What of it says how much of each translucent layer is seen, and how that looks; `None` where nothing is seen through.
+    pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let is_of_layers =
+            |step: &&Step| !matches!(handlers[step.effect as usize].kind, EffectKind::Hide | EffectKind::Filter);
+        let steps = self.steps.iter().filter(is_of_layers).cloned().collect();
+        let mut lenses = self.lenses.clone();
+        lenses.iter_mut().for_each(|lens| lens.body = None);
+        let all = Self { lenses, steps, haze: self.haze, masks: self.masks, ..Self::default() };
+        self.is_seen_through(handlers).then_some(all)
+    }
+
+    fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
+        self.steps_of(EffectKind::Opacity, handlers).next().is_some()
+    }
+
+    /// How many `vec4f` of the parameters it reads.
+    pub fn slots(&self, handlers: &[EffectDefinition]) -> u32 {
+        let of_steps = self.steps.iter().map(|s| s.end(&handlers[s.effect as usize]));
+        let of_lines = self.lenses.iter().filter_map(|l| l.body.map(|b| b.parameters + BODY_SLOTS));
+        let of_borders = self.lenses.iter().filter_map(|l| l.border.map(|b| b.parameters + 1));
+        of_steps.chain(of_lines).chain(of_borders).max().unwrap_or(0)
+    }
+
+    /// What is done in one region, with no question left to ask.
+    pub fn of_region(&self, region: u32) -> Self {
+        let own = self.regions.as_ref().map_or_else(Vec::new, |regions| regions.classes_of(region));
+        let is_own = |scope| match scope {
+            Scope::Everywhere => true,
+            Scope::Lens(lens, class) => own.contains(&(lens, class)),
+        };
+        let steps = self.steps.iter().filter(|s| is_own(s.scope)).cloned();
+        let everywhere = steps.map(|mut step| {
+            step.scope = Scope::Everywhere;
+            step
+        });
+        Self { steps: everywhere.collect(), haze: self.haze, ..Self::default() }
+    }
+}

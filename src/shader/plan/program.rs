@@ -1,0 +1,142 @@
+//! A plan on one of the back ends, and which libraries it calls.
+
+use crate::shader::plan::{Plan, lens::BodyKind, regions::Regions, uber::Uber, volume_test::VolumeTest};
+
+/// A plan on one of the back ends (H3). Both make the same picture.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Program {
+    /// What is asked for, written out.
+    Specialised(Plan),
+    /// Everything that the scene may ask for, chosen per pixel from a table in a uniform.
+    Uber(Uber),
+}
+
+impl Program {
+    /// How it tells regions apart, if it does.
+    pub fn regions(&self) -> Option<&Regions> {
+        match self {
+            Self::Specialised(plan) => plan.regions.as_ref(),
+            Self::Uber(_) => None,
+        }
+    }
+
+    /// Which libraries it calls.
+    pub fn has(&self) -> Parts {
+        let (tests, has_lenses) = match self {
+            Self::Specialised(plan) => (plan.tests().collect(), !plan.lenses.is_empty()),
+            Self::Uber(uber) => (uber.tests.clone(), !uber.tests.is_empty()),
+        };
+        let (bodies, blends, lines, borders) = match self {
+            Self::Specialised(plan) => (plan.bodies(), plan.has_blends(), plan.lines, plan.has_borders()),
+            Self::Uber(uber) => (uber.bodies.clone(), uber.blends, uber.lines, uber.borders && has_lenses),
+        };
+        let veils = match self {
+            Self::Specialised(plan) => plan.veils,
+            Self::Uber(uber) => uber.veils,
+        };
+        let by_ray = match self {
+            Self::Specialised(plan) => plan.borders().any(|border| border.by_ray),
+            Self::Uber(uber) => uber.by_ray && borders,
+        };
+        let contents = match self {
+            Self::Specialised(plan) => !plan.contents.is_empty(),
+            Self::Uber(uber) => uber.contents,
+        };
+        let has_body = |kind| bodies.contains(&kind);
+        Parts {
+            lenses: has_lenses,
+            // The uber back end reads there which test it is.
+            shapes: tests.iter().any(|t| !t.is_sprite()) || (matches!(self, Self::Uber(_)) && has_lenses),
+            members: tests.contains(&VolumeTest::Members),
+            fading_members: tests.contains(&VolumeTest::FadingMembers),
+            fading: tests.iter().chain(&self.leaves()).any(|test| *test == VolumeTest::FadingMembers),
+            sprites: tests.iter().any(|t| t.is_sprite()),
+            own_sprites: tests.contains(&VolumeTest::OwnSprite),
+            solids: tests.iter().any(|t| t.has_faces()),
+            side_sprites: tests.iter().any(|t| t.has_sides()),
+            combinations: tests.iter().any(|t| t.has_leaves()),
+            combined_sprites: tests.contains(&VolumeTest::CombinedSprite),
+            bodies: !bodies.is_empty(),
+            outlines: bodies.iter().any(|b| b.has_outline()),
+            shells: has_body(BodyKind::Shell),
+            halos: has_body(BodyKind::Halo),
+            distances: borders || has_body(BodyKind::Shell) || has_body(BodyKind::Halo),
+            blends: blends || borders,
+            lines,
+            veils,
+            contents,
+            borders,
+            by_ray,
+        }
+    }
+
+    /// What the leaves of its combinations are, ascending, each once.
+    pub fn leaves(&self) -> Vec<VolumeTest> {
+        match self {
+            Self::Specialised(plan) => {
+                let mut all: Vec<VolumeTest> = plan.lenses.iter().flat_map(|l| &l.leaves).copied().collect();
+                all.sort_unstable();
+                all.dedup();
+                all
+            }
+            Self::Uber(uber) => uber.leaves.clone(),
+        }
+    }
+
+    /// The numbers of all handlers its text has, ascending.
+    pub fn effects(&self) -> Vec<u32> {
+        match self {
+            Self::Specialised(plan) => plan.effects(),
+            Self::Uber(uber) => uber.effects.clone(),
+        }
+    }
+}
+
+/// Which libraries a program calls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parts {
+    /// The classes of lenses.
+    pub lenses: bool,
+    /// The lens test from shapes.
+    pub shapes: bool,
+    /// The lens test by depth sprites.
+    pub sprites: bool,
+    /// By those that have their own eye.
+    pub own_sprites: bool,
+    /// Membership by object.
+    pub members: bool,
+    /// Membership by object where objects come or go.
+    pub fading_members: bool,
+    /// The same, also of leaves of combinations.
+    pub fading: bool,
+    /// The lens test from the faces of solids.
+    pub solids: bool,
+    /// The sides of solids and combinations by depth sprites.
+    pub side_sprites: bool,
+    /// The lens test from the leaves of combinations.
+    pub combinations: bool,
+    /// Their sides by depth sprites.
+    pub combined_sprites: bool,
+    /// Bodies.
+    pub bodies: bool,
+    /// Their silhouettes.
+    pub outlines: bool,
+    /// As glass.
+    pub shells: bool,
+    /// As a glow.
+    pub halos: bool,
+    /// How far a place is from a lens.
+    pub distances: bool,
+    /// Blend modes.
+    pub blends: bool,
+    /// Lines over what was shaded.
+    pub lines: bool,
+    /// Translucent layers over what was shaded.
+    pub veils: bool,
+    /// Contents of lenses.
+    pub contents: bool,
+    /// Soft borders of lenses.
+    pub borders: bool,
+    /// Borders of lenses along rays.
+    pub by_ray: bool,
+}

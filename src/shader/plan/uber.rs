@@ -1,0 +1,91 @@
+//! What a module of the uber back end holds: whatever any plan of the scene may name.
+
+use crate::shader::{
+    effect::{definition::EffectDefinition, prototype::EffectKind},
+    plan::{lens::BodyKind, volume_test::VolumeTest},
+};
+
+/// What one module of the uber back end holds: what any plan of the scene may name.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Uber {
+    /// The scene's effects, ascending, each once; those of disabled lenses too.
+    pub effects: Vec<u32>,
+    /// How the volumes of the scene's lenses are tested, ascending, each once; none: there are no lenses.
+    pub tests: Vec<VolumeTest>,
+    /// What the leaves of their combinations are, ascending, each once.
+    pub leaves: Vec<VolumeTest>,
+    /// What their bodies are drawn as, ascending, each once.
+    pub bodies: Vec<BodyKind>,
+    /// Whether something may act on other classes of them than *inside*.
+    pub sides: bool,
+    /// Whether some of them have soft borders.
+    pub borders: bool,
+    /// Whether some of these are told along rays.
+    pub by_ray: bool,
+    /// Whether what cannot be had by halves is dithered along some of these.
+    pub dithers: bool,
+    /// Whether some effects are blended.
+    pub blends: bool,
+    /// Whether the air shows.
+    pub haze: bool,
+    /// Whether every pixel's classes are written down.
+    pub masks: bool,
+    /// Whether some effects draw lines.
+    pub lines: bool,
+    /// Whether something may be seen through.
+    pub veils: bool,
+    /// Whether some lenses have own content.
+    pub contents: bool,
+}
+
+impl Uber {
+    /// What of it says what is there; `None` where nothing may be hidden.
+    pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let effects = self.of(handlers, EffectKind::decides_visibility);
+        (!effects.is_empty() || self.contents).then(|| Self {
+            effects,
+            tests: self.tests.clone(),
+            leaves: self.leaves.clone(),
+            contents: self.contents,
+            sides: self.sides,
+            borders: self.dithers || (self.borders && self.is_seen_through(handlers)),
+            by_ray: self.by_ray,
+            ..Self::default()
+        })
+    }
+
+    /// Whether nobody asks for other classes of lenses than *inside*.
+    pub fn asks_inside_alone(&self) -> bool {
+        !self.sides && !self.masks
+    }
+
+    /// What of it lines go through; `None` where nobody may draw any.
+    pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let effects = self.of(handlers, EffectKind::touches_lines);
+        let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
+        let Self { sides, borders, by_ray, dithers, contents, .. } = *self;
+        let all = Self { effects, tests, leaves, sides, borders, by_ray, dithers, contents, ..Self::default() };
+        self.lines.then_some(Self { blends: self.blends, lines: true, ..all })
+    }
+
+    /// What of it says how things look.
+    pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
+        let veils = self.is_seen_through(handlers);
+        Self { effects: self.of(handlers, |kind| !kind.decides_visibility()), veils, contents: false, ..self }
+    }
+
+    /// What of it says how much of each translucent layer is seen, and how that looks; `None` where nothing may be seen through.
+    pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
+        let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
+        let all = Self { effects, bodies: Vec::new(), lines: false, veils: false, contents: false, ..self.clone() };
+        self.is_seen_through(handlers).then_some(all)
+    }
+
+    fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
+        self.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Opacity)
+    }
+
+    fn of(&self, handlers: &[EffectDefinition], is_wanted: impl Fn(EffectKind) -> bool) -> Vec<u32> {
+        self.effects.iter().copied().filter(|&e| is_wanted(handlers[e as usize].kind)).collect()
+    }
+}

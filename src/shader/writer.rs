@@ -1,0 +1,238 @@
+//! A plan written out, as a person would write it for this one scene: what the parts of the specialised back end share.
+
+use std::fmt::Write as _;
+
+use crate::shader::{
+    effect::{
+        definition::EffectDefinition,
+        prototype::{EffectKind, Mode},
+    },
+    lens_test, masks,
+    names::one_line,
+    plan::{
+        Plan,
+        program::Program,
+        step::{Scope, Step},
+    },
+};
+
+/// What is written out.
+pub(super) struct Writer<'a> {
+    /// What of the scene.
+    pub(super) plan: &'a Plan,
+    /// The handlers that its numbers count.
+    pub(super) handlers: &'a [EffectDefinition],
+    /// Names of its lenses, which become comments.
+    pub(super) names: &'a [&'a str],
+}
+
+impl Writer<'_> {
+    /// The uniforms that are read, as [`lens_test::bindings`]; other parts of the module read so many `vec4f` of the parameters.
+    pub(super) fn bindings(&self, others_slots: u32, carried: bool) -> String {
+        let mut text = String::new();
+        let slots = self.plan.slots(self.handlers);
+        if slots > 0 {
+            let slots = slots.max(others_slots);
+            text.push_str(&lens_test::uniform(2, "parameters", &format!("array<vec4f, {slots}>"), carried));
+        }
+        text.push_str(&lens_test::bindings(&Program::Specialised(self.plan.clone()), carried));
+        if self.plan.masks {
+            text.push_str(masks::BINDING);
+        }
+        text.push('\n');
+        text
+    }
+
+    /// The handlers that may run, once each: the plan's, and those of the program that it calls for.
+    pub(super) fn used(&self) -> impl Iterator<Item = &EffectDefinition> {
+        let own = self.plan.effects();
+        let is_used = move |(i, h): &(usize, &EffectDefinition)| match h.mode {
+            Mode::Local => own.contains(&(*i as u32)) && h.kind != EffectKind::Filter,
+            Mode::Optional => self.needs_optional(h.kind),
+            Mode::Global => self.plan.haze && self.needs_optional(EffectKind::Scene),
+            Mode::Ignore => false,
+        };
+        self.handlers.iter().enumerate().filter(is_used).map(|(_, h)| h)
+    }
+
+    /// Whether some surface gets its result from a prototype's optional handler.
+    fn needs_optional(&self, kind: EffectKind) -> bool {
+        !self.plan.steps_of(kind, self.handlers).any(|(s, h)| s.scope == Scope::Everywhere && s.replaces(h))
+    }
+
+    fn comment(&self, lens: usize) -> String {
+        self.names.get(lens).map_or_else(String::new, |name| format!("  // {}", one_line(name)))
+    }
+
+    /// Which classes of which lens a pixel is in.
+    pub(super) fn classes(&self) -> String {
+        let mut text = "struct Classes {\n".to_owned();
+        let lenses = &self.plan.lenses;
+        if lenses.is_empty() {
+            text.push_str("    none: u32,\n");
+        }
+        for i in 0..lenses.len() {
+            let _ = writeln!(text, "    lens_{i}: u32,{}", self.comment(i));
+            if self.plan.border_of(i as u32).is_some() {
+                let _ = writeln!(text, "    interest_{i}: f32,");
+            }
+        }
+        text.push_str("}\n\nfn classes_at(sight: Sight, part: u32) -> Classes {\n    var classes: Classes;\n");
+        for i in 0..lenses.len() {
+            let _ = writeln!(text, "    classes.lens_{i} = {};", lens_test::classes(self.plan, i as u32, "sight"));
+            if let Some(border) = self.plan.border_of(i as u32) {
+                let interest = lens_test::interest(self.plan, i as u32, &format!("parameters[{}]", border.parameters));
+                let _ = writeln!(text, "    classes.interest_{i} = {interest};");
+            }
+        }
+        text.push_str("    return classes;\n}\n\n");
+        text
+    }
+
+    /// The call of a handler, laid over `subject` as the step says.
+    fn call(step: &Step, handler: &EffectDefinition, subject: &str, point: &str) -> String {
+        let name = handler.wgsl_name();
+        let own = match handler.slots() {
+            0 => String::new(),
+            _ => format!(", {}({}u)", handler.own("parameters"), step.parameters),
+        };
+        let mut call = match handler.kind {
+            EffectKind::Filter => format!("filtered_at({}u, {point})", step.image(handler)),
+            _ => format!("{name}({subject}, {point}{own})"),
+        };
+        let is_material = handler.kind == EffectKind::Material;
+        if handler.is_users && handler.kind != EffectKind::Filter {
+            let contained = if is_material { "contained_material" } else { "contained" };
+            call = format!("{contained}({call})");
+        }
+        let Some((blend, weight)) = step.blend.zip(step.weight(handler)) else { return call };
+        let weight = format!("parameters[{weight}].x");
+        match is_material {
+            true => format!("blended_material({}u, {subject}, {call}, {weight})", blend.number()),
+            false => format!("weighed({subject}, blend_{}({subject}, {call}), {weight})", blend.word()),
+        }
+    }
+
+    /// `if condition { subject = call; }`.
+    pub(super) fn statement(&self, step: &Step, handler: &EffectDefinition) -> String {
+        let subject = match handler.kind {
+            EffectKind::Material => "material",
+            EffectKind::Light => "(*point).arriving",
+            _ => "color",
+        };
+        let point = if handler.kind.is_before_color() { "*point" } else { "point" };
+        let value = Self::call(step, handler, subject, point);
+        let mut conditions = Vec::new();
+        let mut plus = "";
+        if handler.kind == EffectKind::Scene {
+            conditions.push("point.surface != NO_SURFACE".to_owned());
+            if self.has(EffectKind::Material) {
+                plus = " + point.highlight";
+            }
+        }
+        if let Some(share) = self.share(step) {
+            let laid = match handler.kind {
+                EffectKind::Material => format!("blended_material(1u, {subject}, {value}, share)"),
+                _ => format!("weighed({subject}, {value}, share)"),
+            };
+            let plus = if plus.is_empty() { "" } else { " + point.highlight * share" };
+            conditions.insert(0, "share > 0.0".to_owned());
+            let conditions = conditions.join(" && ");
+            return format!(
+                "    {{\n        let share = {share};\n        if {conditions} {{\n            {subject} = {laid}{plus};\n        }}\n    }}\n"
+            );
+        }
+        if let Scope::Lens(lens, class) = step.scope {
+            conditions.insert(0, format!("{}(classes.lens_{lens})", class.function()));
+        }
+        let line = format!("{subject} = {value}{plus}");
+        match conditions.is_empty() {
+            true => format!("    {line};\n"),
+            false => format!("    if {} {{\n        {line};\n    }}\n", conditions.join(" && ")),
+        }
+    }
+
+    /// How much of a step a place has, of a lens that fades.
+    pub(super) fn share(&self, step: &Step) -> Option<String> {
+        let Scope::Lens(lens, class) = step.scope else { return None };
+        self.plan.border_of(lens)?;
+        Some(format!("{}(classes.lens_{lens}, classes.interest_{lens})", class.share()))
+    }
+
+    fn has(&self, kind: EffectKind) -> bool {
+        self.plan.steps_of(kind, self.handlers).next().is_some()
+    }
+
+    fn statements(&self, kind: EffectKind) -> String {
+        self.plan.steps_of(kind, self.handlers).map(|(step, handler)| self.statement(step, handler)).collect()
+    }
+
+    /// From the surface to its colour: material, light, the standard style and air, then the styles. `suffix` of its name and of that of
+    /// `styled`.
+    pub(super) fn shade(&self, suffix: &str) -> String {
+        let mut text = format!("fn shade{suffix}(point: ptr<function, Point>, classes: Classes) -> vec3f {{\n");
+        if self.has(EffectKind::Material) {
+            text.push_str("    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);\n");
+            text.push_str(&self.statements(EffectKind::Material));
+            text.push_str("    (*point).base = material.base;\n");
+        }
+        if self.has(EffectKind::Light) {
+            text.push_str(&self.statements(EffectKind::Light));
+            text.push_str("    (*point).shade = luminance((*point).arriving);\n");
+        }
+        let highlights = self.has(EffectKind::Material);
+        if highlights {
+            text.push_str("    (*point).highlight = highlights(material, *point);\n");
+        }
+        text.push_str("    var color = vec3f(0.0);\n");
+        let own = |kind, mode| self.handlers.iter().find(move |h| h.kind == kind && h.mode == mode);
+        if let Some(standard) =
+            own(EffectKind::Scene, Mode::Optional).filter(|_| self.needs_optional(EffectKind::Scene))
+        {
+            let plus = if highlights { " + (*point).highlight" } else { "" };
+            let _ = writeln!(text, "    color = {}(color, *point){plus};", standard.wgsl_name());
+            if let Some(air) = own(EffectKind::Air, Mode::Global).filter(|_| self.plan.haze) {
+                let _ = writeln!(text, "    color = {}(color, *point);", air.wgsl_name());
+            }
+        }
+        let _ = writeln!(text, "    return styled{suffix}(color, *point, classes);\n}}\n");
+        text
+    }
+
+    /// How much of a translucent layer is seen, for `pass/composite.wgsl`.
+    pub(super) fn opacity(&self) -> String {
+        let mut text = "fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n".to_owned();
+        for (step, handler) in self.plan.steps_of(EffectKind::Opacity, self.handlers) {
+            let first = format!("{}u", step.parameters);
+            let own = match handler.slots() {
+                0 => String::new(),
+                _ => format!(", {}({first})", handler.own("parameters")),
+            };
+            let value = format!("contained_opacity({}(opacity, point{own}))", handler.wgsl_name());
+            let (scope, value) = match (step.scope, self.share(step)) {
+                (Scope::Everywhere, _) => (None, value),
+                (_, Some(share)) => (None, format!("mix(opacity, {value}, {share})")),
+                (Scope::Lens(lens, class), None) => (Some(format!("{}(classes.lens_{lens})", class.function())), value),
+            };
+            let conditions: Vec<String> = scope.into_iter().chain(handler.acts_on("point", &first)).collect();
+            let _ = match conditions.is_empty() {
+                true => writeln!(text, "    opacity = {value};"),
+                false => writeln!(text, "    if {} {{\n        opacity = {value};\n    }}", conditions.join(" && ")),
+            };
+        }
+        text.push_str("    return opacity;\n}\n");
+        text
+    }
+
+    /// Scene styles and post styles, in lens order: what replaces the colour leaves nothing of the styles below (C5).
+    pub(super) fn styled(&self, suffix: &str) -> String {
+        let is_style = |(_, h): &(&Step, &EffectDefinition)| h.kind.is_style();
+        let all = self.plan.steps.iter().map(|s| (s, &self.handlers[s.effect as usize])).filter(is_style);
+        let lines: String = all.map(|(step, handler)| self.statement(step, handler)).collect();
+        let head = format!("fn styled{suffix}(start: vec3f, point: Point, classes: Classes) -> vec3f {{\n");
+        match lines.is_empty() {
+            true => format!("{head}    return start;\n}}\n\n"),
+            false => format!("{head}    var color = start;\n{lines}    return color;\n}}\n\n"),
+        }
+    }
+}
