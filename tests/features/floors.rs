@@ -1,10 +1,23 @@
-//! The house rules that the compiler does not know (ARCHITECTURE.md): a room imports rooms of lower floors only,
-//! and shader entry points live in `shaders/pass` only.
+//! The house rules that the compiler does not know (ARCHITECTURE.md): a room imports rooms of lower floors only, its files make no large
+//! knots, what grows unnoticed stays below limits, and shader entry points live in `shaders/pass` only.
+//!
+//! Nothing here needs the crate: `./dev lint` compiles this file alone.
+
+#[path = "floors/knots.rs"]
+mod knots;
+#[path = "floors/made_up.rs"]
+mod made_up;
+#[path = "floors/sizes.rs"]
+mod sizes;
+#[path = "floors/source.rs"]
+mod source;
 
 use std::{
     fs,
     path::{Path, PathBuf},
 };
+
+use source::{Modules, modules};
 
 /// The rooms, ground floor first; rooms of one floor do not import each other.
 const FLOORS: &[&[&str]] = &[
@@ -111,6 +124,27 @@ fn imports_go_down_only() {
         wrong.extend(wrong_imports(room, &inside.display().to_string(), &fs::read_to_string(&path).unwrap()));
     }
     assert!(seen > 0, "no source files found");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The modules of the library.
+fn library() -> Modules {
+    let modules = modules(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    assert!(modules.len() > FLOORS.len(), "no source files found");
+    modules
+}
+
+#[test]
+fn rooms_have_no_large_knots() {
+    let wrong = knots::complaints(&library());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn what_grows_stays_below_limits() {
+    let modules = library();
+    let mut wrong: Vec<String> = sizes::RULES.iter().flat_map(|rule| sizes::complaints(rule, &modules)).collect();
+    wrong.extend(sizes::renderer_complaint(&modules));
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
