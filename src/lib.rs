@@ -30,3 +30,7 @@ pub mod scene;
 pub mod shader;
 pub mod view;
 pub mod visibility;
+
+#[cfg(test)]
+#[path = "../tests/seeds/mod.rs"]
+mod seeds;

@@ -7,7 +7,7 @@ use glam::{DQuat, DVec2, DVec3};
 use crate::{
     geom::{
         Aabb,
-        shape::{Shape, flat::FlatFigure},
+        shape::{definition::Shape, flat::FlatFigure},
     },
     lens::Focus,
 };

@@ -200,6 +200,8 @@ mod tests {
     use crate::{geom::Aabb, view::Camera};
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn spans_are_the_pixels_in_a_triangle(p in prop::array::uniform3(prop::array::uniform2(-8.0..40.0_f64))) {
             let [a, b, c] = p.map(DVec2::from);

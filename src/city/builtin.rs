@@ -51,7 +51,7 @@ pub fn read(path: &Path) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::city::load::{LoadOptions, Quiet, load};
+    use crate::city::load::{load, options::LoadOptions, progress::Quiet};
 
     #[test]
     fn all_load_and_nothing_else_is_built_in() {

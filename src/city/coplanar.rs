@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::{
-    city::{CityModel, NONE, ObjectClass, StringId},
+    city::model::{CityModel, NONE, ObjectClass, StringId},
     geom::{Aabb, bvh::Bvh},
 };
 

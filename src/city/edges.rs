@@ -12,7 +12,7 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::city::{CityModel, Lod, NONE, ObjectClass, decode_normal, encode_normal};
+use crate::city::model::{CityModel, Lod, NONE, ObjectClass, decode_normal, encode_normal};
 
 /// Faces on one side of an edge that differ by less than this lie on each other, degrees.
 const SAME_SIDE_DEG: f64 = 1.0;
@@ -66,7 +66,7 @@ pub struct Extent {
 pub struct Edge {
     /// Start and end, metres from the tile's origin; the very floats of the vertices.
     pub ends: [[f32; 3]; 2],
-    /// Normals of its first face and of the one that turns most from it, packed as in [`crate::city::Vertex`]; where
+    /// Normals of its first face and of the one that turns most from it, packed as in [`crate::city::model::Vertex`]; where
     /// the file turns the two differently, the second one's is reversed, so that they agree. A border repeats the first.
     pub normals: [u32; 2],
     /// How far the two faces go from the edge.
@@ -159,7 +159,8 @@ fn weld(model: &CityModel, tiles: std::ops::Range<u32>, scratch: &mut Scratch) {
         let shift = (tile.origin - first.origin).as_dvec3();
         let vertices = &model.vertices[tile.vertices.start as usize..tile.vertices.end as usize];
         let numbers = places.len() as u32..;
-        let place = |v: &crate::city::Vertex| (shift + Vec3::from(v.position).as_dvec3()).to_array().map(ordered);
+        let place =
+            |v: &crate::city::model::Vertex| (shift + Vec3::from(v.position).as_dvec3()).to_array().map(ordered);
         places.extend(vertices.iter().map(place).zip(numbers));
     }
     places.par_sort_unstable();
@@ -352,7 +353,7 @@ fn extent_of(model: &CityModel, side: &Side, face: &Face, boxes: &[(Vec3, Vec3)]
     }
 }
 
-fn vertex(model: &CityModel, tile: u32, corner: u32) -> &crate::city::Vertex {
+fn vertex(model: &CityModel, tile: u32, corner: u32) -> &crate::city::model::Vertex {
     let first = model.tiles[tile as usize].vertices.start;
     &model.vertices[(first + model.indices[corner as usize]) as usize]
 }

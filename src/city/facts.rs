@@ -6,7 +6,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use crate::{
-    city::{Attribute, CityModel, NONE, StringId, TextureImage, Value},
+    city::model::{Attribute, CityModel, NONE, StringId, TextureImage, Value},
     geom::Aabb,
 };
 
@@ -222,7 +222,7 @@ fn object_facts(city: &CityModel, list: bool) -> ObjectFacts {
     for object in &city.objects {
         *counts.entry(object.kind).or_insert(0) += 1;
     }
-    let listed = |(object, number): (&crate::city::CityObject, u32)| {
+    let listed = |(object, number): (&crate::city::model::CityObject, u32)| {
         let range = object.geometries.start as usize..object.geometries.end as usize;
         let mut lods: Vec<_> = city.geometries[range].iter().map(|g| g.lod).collect();
         lods.sort();
@@ -285,7 +285,7 @@ fn semantic_facts(city: &CityModel) -> Vec<(String, u64)> {
 
 /// The warnings of a city as they stand in `info --json` and `--stats`.
 pub fn warning_facts(city: &CityModel) -> Vec<WarningFacts> {
-    let fact = |(code, warning): (crate::city::WarningCode, &crate::city::warning::Warning)| WarningFacts {
+    let fact = |(code, warning): (crate::city::warning::WarningCode, &crate::city::warning::Warning)| WarningFacts {
         code: code.code(),
         count: warning.count,
         objects: warning.objects.clone(),
@@ -555,7 +555,10 @@ mod tests {
 
     use super::*;
     use crate::{
-        city::{CityObject, Geometry, Lod, ObjectClass, Source, WarningCode},
+        city::{
+            model::{CityObject, Geometry, Lod, ObjectClass, Source},
+            warning::WarningCode,
+        },
         geom::Aabb,
     };
 

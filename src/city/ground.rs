@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use crate::{
-    city::{CityModel, NONE, ObjectClass, Tile, Vertex, encode_normal},
+    city::model::{CityModel, NONE, ObjectClass, Tile, Vertex, encode_normal},
     geom::Aabb,
 };
 
@@ -370,24 +370,24 @@ mod tests {
     fn parts_stand_on_the_base_of_their_building() {
         let mut b = builder();
         add_box(&mut b, "house", [0, 0, 0], [10_000, 10_000, 8_000]);
-        let mut balcony = crate::city::build::RawObject { id: "balcony".to_owned(), ..Default::default() };
+        let mut balcony = crate::city::build::raw::RawObject { id: "balcony".to_owned(), ..Default::default() };
         balcony.parents.push("house".to_owned());
         let balcony = b.add_object(balcony);
-        let surface = b.add_surface(crate::city::Surface {
+        let surface = b.add_surface(crate::city::model::Surface {
             object: balcony,
             material: NONE,
-            kind: crate::city::StringId(NONE),
+            kind: crate::city::model::StringId(NONE),
             detail: NONE,
         });
-        b.add_geometry(crate::city::build::RawGeometry {
+        b.add_geometry(crate::city::build::raw::RawGeometry {
             object: balcony,
-            lod: crate::city::Lod { tenths: 20 },
+            lod: crate::city::model::Lod { tenths: 20 },
             solid: false,
-            pool: std::sync::Arc::new(crate::city::build::Pool {
+            pool: std::sync::Arc::new(crate::city::build::points::Pool {
                 lattice: crate::city::test_city::LATTICE,
                 points: vec![[10_000, 2_000, 5_000], [30_000, 2_000, 5_000], [30_000, 8_000, 5_000]].into(),
             }),
-            polygons: crate::city::build::Polygons {
+            polygons: crate::city::build::raw::Polygons {
                 indices: vec![0, 1, 2],
                 ring_ends: vec![3],
                 polygon_ends: vec![1],

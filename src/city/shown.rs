@@ -1,6 +1,6 @@
 //! Which geometries are shown: the default rule for levels of detail.
 
-use crate::city::{CityModel, Lod};
+use crate::city::model::{CityModel, Lod};
 
 /// Geometries to show, as sorted indices into [`CityModel::geometries`].
 ///
@@ -58,7 +58,7 @@ fn as_range(range: &std::ops::Range<u32>) -> std::ops::Range<usize> {
 mod tests {
     use super::*;
     use crate::{
-        city::{CityObject, Geometry, ObjectClass, StringId},
+        city::model::{CityObject, Geometry, ObjectClass, StringId},
         geom::Aabb,
     };
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
-    city::CityModel,
+    city::model::CityModel,
     geom::{
         Aabb, Region,
         bvh::{Bvh, HalfSpace},

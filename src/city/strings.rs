@@ -4,7 +4,7 @@ use std::hash::BuildHasher;
 
 use rustc_hash::FxBuildHasher;
 
-use crate::city::{StringId, memory::give_back};
+use crate::city::{memory::give_back, model::StringId};
 
 /// Interned strings: one text for all, because a city has tens of thousands of a few bytes each.
 #[derive(Clone, Debug, Default)]

@@ -5,8 +5,13 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::city::{
-    CityModel, Lod, NONE, ObjectClass, Source, StringId, Surface,
-    build::{Lattice, ModelBuilder, Polygons, Pool, RawGeometry, RawObject},
+    build::{
+        ModelBuilder,
+        lattice::Lattice,
+        points::Pool,
+        raw::{Polygons, RawGeometry, RawObject},
+    },
+    model::{CityModel, Lod, NONE, ObjectClass, Source, StringId, Surface},
 };
 
 /// Millimetres somewhere in the Netherlands.

@@ -13,7 +13,7 @@ use std::{
 use image::{ImageReader, Limits};
 use rayon::prelude::*;
 
-use crate::city::{Texture, TextureImage};
+use crate::city::model::{Texture, TextureImage};
 
 /// The longest side that is kept; larger images are halved until they fit.
 pub const MAX_SIDE: u32 = 8192;
@@ -49,7 +49,7 @@ impl Pixels {
 }
 
 /// Decodes a PNG or JPEG and makes its mip levels; the error says what is wrong, for
-/// [`crate::city::WarningCode::MissingTexture`].
+/// [`crate::city::warning::WarningCode::MissingTexture`].
 pub fn decode(texture: &Texture) -> Result<Pixels, String> {
     let limited = |mut limits: Limits| {
         limits.max_image_width = Some(MAX_DECODED_SIDE);
@@ -192,7 +192,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::city::Wrap;
+    use crate::city::model::Wrap;
 
     fn png(width: u32, height: u32, pixels: &[u8]) -> Texture {
         let mut bytes = Vec::new();

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::{
-    city::{Attribute, CityModel, Geometry, NONE, StringId, Surface, Tile, Value},
+    city::model::{Attribute, CityModel, Geometry, NONE, StringId, Surface, Tile, Value},
     geom::Aabb,
 };
 

@@ -10,7 +10,9 @@ use serde::Serialize;
 
 use crate::{
     cli::{
-        Failure, GlobalArguments, Outcome, output,
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        output,
         render::{
             self,
             arguments::{MAX_SAMPLES, Size},

@@ -7,7 +7,9 @@ use serde_json::{Value, json};
 
 use crate::{
     cli::{
-        Failure, GlobalArguments, Outcome, output,
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        output,
         report::wrap,
         terminal::{self, Paint},
     },
@@ -91,7 +93,7 @@ pub fn run(arguments: &Arguments, _: &GlobalArguments) -> Outcome {
     }
     if let Some(unknown) = arguments.names.iter().find(|name| effect::find(name).is_none()) {
         let message = crate::lens::effect::unknown_effect(unknown);
-        return Err(crate::cli::Failure::usage(format!("effects: {message}")));
+        return Err(crate::cli::failure::Failure::usage(format!("effects: {message}")));
     }
     let is_asked = |effect: &&EffectDefinition| arguments.names.is_empty() || arguments.names.contains(&effect.name);
     let effects = effect::effects().filter(is_asked);

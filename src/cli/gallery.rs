@@ -5,7 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::{
-    cli::{Failure, GlobalArguments, Outcome, output, render, sheet, terminal},
+    cli::{
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        output, render, sheet, terminal,
+    },
     figure::{
         self, picture,
         scene_file::{self, Options},

@@ -14,7 +14,12 @@ use crate::{
         shown::shown_geometries,
         spatial::SpatialIndex,
     },
-    cli::{Failure, GlobalArguments, Outcome, load, output, report, terminal::Paint},
+    cli::{
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        load, output, report,
+        terminal::Paint,
+    },
     lens::nearest::did_you_mean,
     view::Field,
     visibility,

@@ -7,7 +7,11 @@ use crate::{
         CityModel,
         load::{self, LoadOptions, LoadStats, Stage},
     },
-    cli::{Failure, GlobalArguments, Outcome, terminal},
+    cli::{
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        terminal,
+    },
 };
 
 /// Shows which file loading is at.

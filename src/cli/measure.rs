@@ -8,7 +8,13 @@ use std::{
 use clap::Args;
 
 use crate::{
-    cli::{Failure, GlobalArguments, Outcome, output, render, render::arguments::Size, terminal},
+    cli::{
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        output,
+        render::{self, arguments::Size},
+        terminal,
+    },
     figure::{file::write_whole, picture, scene_file::Options},
     lens::nearest::did_you_mean,
     measure::{

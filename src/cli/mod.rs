@@ -4,6 +4,7 @@
 //! What a command prints goes through [`output`], what it says meanwhile through [`terminal`].
 
 pub mod animate;
+pub mod arguments;
 pub mod effects;
 pub mod failure;
 pub mod gallery;
@@ -22,6 +23,7 @@ use std::{ffi::OsString, path::PathBuf, process::ExitCode};
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
+pub use arguments::GlobalArguments;
 pub use failure::{Failure, Outcome};
 
 use crate::{app, city::builtin};
@@ -61,23 +63,6 @@ Examples:
 FILE is CityJSON (.json), CityJSONSeq (.jsonl), glTF (.gltf, .glb) or OBJ (.obj), the JSON ones also .gz,
 or a folder of them. Several files make one city.
 Exit code: 0 done, 1 failed, 2 wrong usage.";
-
-/// Options that every command takes.
-#[derive(Args, Clone, Debug, Default)]
-pub struct GlobalArguments {
-    /// Say more on stderr; twice: even more
-    #[arg(short, long, global = true, action = clap::ArgAction::Count, conflicts_with = "quiet", display_order = 100)]
-    pub verbose: u8,
-    /// Say nothing on stderr but errors
-    #[arg(short, long, global = true, display_order = 100)]
-    pub quiet: bool,
-    /// Follow paths in models and scenes that leave the folders named on the command line
-    #[arg(long, global = true, display_order = 100)]
-    pub allow_outside: bool,
-    /// Add the effects in this folder (*.wgsl, docs/effects.md); repeatable
-    #[arg(long, global = true, value_name = "DIR", display_order = 100)]
-    pub effects: Vec<PathBuf>,
-}
 
 /// The commands of this version.
 #[derive(Debug, Subcommand)]

@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    cli::{Failure, Outcome},
+    cli::failure::{Failure, Outcome},
     figure::file::{WriteError, check_target, write_whole},
 };
 

@@ -6,7 +6,9 @@ use clap::Args;
 
 use crate::{
     cli::{
-        Failure, GlobalArguments, Outcome, output,
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        output,
         render::{
             self,
             arguments::{Shaders, Size, scene_among},

@@ -7,7 +7,12 @@ use flate2::{Compression, write::GzEncoder};
 
 use crate::{
     city::synth::{self, SynthOptions},
-    cli::{Failure, GlobalArguments, Outcome, output, terminal::Progress},
+    cli::{
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        output,
+        terminal::Progress,
+    },
 };
 
 const EXAMPLES: &str = "\

@@ -7,7 +7,7 @@ use std::{
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::cli::GlobalArguments;
+use crate::cli::arguments::GlobalArguments;
 
 /// Writes one line to stderr; a stderr that is gone is no reason to stop.
 pub fn say(line: &str) {

@@ -9,7 +9,7 @@ use obvhs::{
     bvh2::{Bvh2, builder::build_bvh2, node::Bvh2Node},
 };
 
-use crate::geom::{Aabb, ray::Ray};
+use crate::geom::{aabb::Aabb, ray::Ray};
 
 /// `normal · p + offset ≥ 0`: one side of a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -138,6 +138,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn the_program_of_a_tree_says_what_the_tree_says(tree in trees(), bits in 0..64_u8) {
             let expected = value(&tree, bits);

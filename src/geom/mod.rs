@@ -13,11 +13,12 @@ pub mod region;
 pub mod shaft;
 pub mod shape;
 pub mod sphere;
+pub(crate) mod triangle;
 pub mod triangulate;
 
 pub use aabb::Aabb;
-pub(crate) use meets::clipped;
 pub use ray::Ray;
 pub use region::Region;
 pub use shape::{Shape, Solid, Volume};
 pub use sphere::Sphere;
+pub(crate) use triangle::clipped;

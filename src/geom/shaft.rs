@@ -15,7 +15,7 @@
 use glam::{DVec2, DVec3};
 use robust::{Coord, Coord3D};
 
-use crate::geom::Aabb;
+use crate::geom::aabb::Aabb;
 
 /// The sight lines from an eye to an axis-aligned box, up to where they enter it. Where the eye is in the box, there are none.
 #[derive(Clone, Debug)]

@@ -95,7 +95,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::geom::Aabb;
+    use crate::geom::aabb::Aabb;
 
     const FAR: DVec3 = DVec3::new(85_000.0, 447_000.0, 12.0);
 
@@ -135,6 +135,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn all_points_are_in_it_and_no_smaller_ball_has_them(points in prop::collection::vec(prop::array::uniform3(-50.0..50.0f64), 1..60)) {
             let points: Vec<DVec3> = points.into_iter().map(|p| FAR + DVec3::from(p)).collect();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 
-use crate::{lens::EffectUse, view::Camera};
+use crate::{lens::effect_use::EffectUse, view::Camera};
 
 /// Vertical field of view of local cameras that say nothing of it, radians.
 pub const DEFAULT_FOV: f64 = 45_f64.to_radians();

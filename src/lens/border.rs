@@ -93,6 +93,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn both_sides_share_what_there_is(distance in -50.0..50.0_f64, width in 0.01..60.0_f64) {
             let both = degree_of_interest(distance, width) + degree_of_interest(-distance, width);

@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use crate::{
     city::{CityModel, StringId, Value},
     lens::{
-        EffectUse, Parameter,
+        effect_use::{EffectUse, Parameter},
         nearest::did_you_mean,
         thematic::{ThematicError, attribute_names, category_of, number_of},
     },
@@ -204,7 +204,7 @@ mod tests {
     use super::*;
     use crate::{
         city::{Attribute, CityObject, ObjectClass},
-        lens::Class,
+        lens::class::Class,
     };
 
     /// A city of objects without geometry whose attribute `year` is this.

@@ -2,7 +2,7 @@
 
 use crate::{
     geom::{Ray, Volume, shape::solid::FaceCrossing},
-    lens::Class,
+    lens::class::Class,
 };
 
 /// Where a sight line crosses the border of a solid.
@@ -134,6 +134,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         /// The oracle counts, at d itself, the solids that hold d; it sorts nothing.
         #[test]
         fn crossings_say_what_counting_says(solids in prop::collection::vec((0..40i32, 1..20i32), 1..9), d in 0..120i32) {

@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3};
 
 use crate::{
     city::{Lod, derived::Derive},
-    lens::Class,
+    lens::class::Class,
     shader::Clip,
 };
 

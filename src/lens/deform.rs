@@ -9,7 +9,7 @@ use crate::{
         Shape,
         deform::{Control, ControlPlane, Deformation, Frame, Opening, Operator, Profile, Space, Texels},
     },
-    lens::Occluders,
+    lens::occluders::Occluders,
 };
 
 /// A corridor's half width over the reach of what opens it: all that it moves is in the corridor.

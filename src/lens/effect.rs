@@ -5,8 +5,8 @@
 
 use crate::{
     lens::{
-        EffectUse, Parameter,
         color::{Srgb, linear_from_srgb, parse_hex},
+        effect_use::{EffectUse, Parameter},
         nearest::did_you_mean,
     },
     shader::{
@@ -17,7 +17,7 @@ use crate::{
     },
 };
 
-/// Stands among the effects of a lens for a content in another level of detail ([`crate::lens::Content`]).
+/// Stands among the effects of a lens for a content in another level of detail ([`crate::lens::content::Content`]).
 pub const LOD: &str = "lod";
 
 /// Something wrong with a use of an effect.

@@ -4,7 +4,12 @@ use std::collections::BTreeMap;
 
 use crate::{
     city::derived::{Derive, Form, HEIGHT_RANGE_M, Height, LIFT_M, LIFT_RANGE_M},
-    lens::{Class, Content, EffectUse, Parameter, chosen::Choice},
+    lens::{
+        chosen::Choice,
+        class::Class,
+        content::Content,
+        effect_use::{EffectUse, Parameter},
+    },
     shader::effect::{DefaultValue, Fallback, ParameterDefinition, ParameterKind, find},
 };
 

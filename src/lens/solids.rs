@@ -24,7 +24,8 @@ use crate::{
             refine::{Limits, refined},
         },
         shape::{
-            Hull, Mesh, Motion, PlacedSolid, ShapeError, Sightlines, Solid,
+            Hull, Mesh, Motion, PlacedSolid, Sightlines, Solid,
+            error::ShapeError,
             solid::{self, Bitmap},
         },
     },

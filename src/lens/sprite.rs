@@ -452,6 +452,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn a_decoded_distance_finds_its_code(near in 0.1..90.0f64, depth in 0.5..5e3f64, part in 0.0..1.0f64) {
             for (_, format) in Format::WORDS {

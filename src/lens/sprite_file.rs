@@ -10,8 +10,8 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     lens::{
-        SpriteSpace, SpriteVolume,
         sprite::{DepthCode, Format, MOST_LAYERS, Mapping},
+        sprite_volume::{SpriteSpace, SpriteVolume},
     },
     view::{Basis, MAX_SIZE},
 };

@@ -277,6 +277,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn triangles_meet_what_their_points_are_in(is_orthographic in any::<bool>(),
             corners in prop::array::uniform3((-5.0..45.0f64, -5.0..35.0f64, 5.0..60.0f64))) {

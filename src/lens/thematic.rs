@@ -8,8 +8,8 @@ use rustc_hash::FxHashMap;
 use crate::{
     city::{CityModel, Strings, Value},
     lens::{
-        EffectUse, Parameter,
         color::Srgb,
+        effect_use::{EffectUse, Parameter},
         nearest::did_you_mean,
         ramp::{MAX_CATEGORIES, category, ramp},
     },

@@ -44,6 +44,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         /// By definition: sorted by one figure, the other falls along the front; and who is not on it is beaten by
         /// somebody who is.
         #[test]

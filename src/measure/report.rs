@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use serde_json::{Value as Json, json};
 
 use crate::measure::{
-    Quantity,
     difference::RIGHT_STEPS,
+    quantity::Quantity,
     ratio::Estimate,
     run::{Measurement, Row},
 };

@@ -318,7 +318,7 @@ pub fn mark_front(topic: &Topic, rows: &mut [Row]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::{Knob, Quantity};
+    use crate::measure::{quantity::Quantity, topic::Knob};
 
     /// A row with a knob, a FLIP error and a ratio.
     fn row(knob: f64, flip: f64, ratio: f64) -> Row {

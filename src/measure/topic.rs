@@ -5,7 +5,7 @@ use std::{fmt, sync::Arc};
 use serde::Serialize;
 
 use crate::{
-    measure::{Quantity, stage::Stage},
+    measure::{quantity::Quantity, stage::Stage},
     render::{
         composited::Composited,
         picture::{RenderError, Request},

@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use crate::overlay::Rect;
+use crate::overlay::rect::Rect;
 
 /// Lattice steps per pixel.
 pub const STEPS: i64 = 256;

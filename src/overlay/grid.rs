@@ -6,9 +6,9 @@
 //! the exact predicates of [`crate::overlay::crossings`].
 
 use crate::overlay::{
-    Rect,
     crossings::{Lattice, Way, on_lattice, segment_passes, segments_cross},
-    place::Crossings,
+    placed::Crossings,
+    rect::Rect,
 };
 
 /// Boxes are told in parts of cells, of which there are 2 to the power of this in a row.

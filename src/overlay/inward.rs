@@ -11,11 +11,10 @@
 use glam::DVec2;
 
 use crate::overlay::{
-    Rect,
     crossings::FURTHEST,
-    fill::Problem,
     lane::{Board, Side, Windows, nearest},
-    rect::closed_by,
+    problem::Problem,
+    rect::{Rect, closed_by},
 };
 
 /// What is known of the room further inward: for overlays of a size, or of a larger one, the least depth at each side at
@@ -173,7 +172,7 @@ fn least_depth(mut closed: Vec<Closed>, (low, high): (i32, i32), (first, last): 
 mod tests {
     use super::*;
     use crate::overlay::{
-        Arrangement,
+        request::Arrangement,
         tests::{overlay, request},
     };
 

@@ -4,7 +4,10 @@
 //! place of each that leaves room for those after it; forwards, the place of each that is nearest to the one that it wants. If a row fits at all, the first
 //! pass finds that out. Both are linear in the overlays and their windows.
 
-use crate::overlay::{Along, Rect, rect::closed_by};
+use crate::overlay::{
+    rect::{Rect, closed_by},
+    request::Along,
+};
 use glam::DVec2;
 
 /// A side of the picture.

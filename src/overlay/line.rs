@@ -6,9 +6,10 @@
 use glam::DVec2;
 
 use crate::overlay::{
-    Focus, LineKind, Rect,
     crossings::{Lattice, STEPS, Way, lattice, pixels},
     lane::Side,
+    rect::Rect,
+    request::{Focus, LineKind},
 };
 
 /// How far from the corners of an overlay lines begin, pixels; a quarter of the edge where that is less.

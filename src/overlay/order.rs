@@ -3,7 +3,7 @@
 //! For overlays of one size with one line each, the order of least total length has no crossing, where lines are straight: if two cross, the overlays change
 //! places, and both lines together become shorter, so this ends. It is how the search begins. Where overlays differ in size, have many lines or lines with
 //! bends, crossings may remain: then any two overlays change places, and any one moves to another place of the lanes, as long as less crossings are left.
-//! If there still are some and overlays are few ([`crate::overlay::Layout::proven`]), all orders are tried: what remains is the least number for these rows.
+//! If there still are some and overlays are few ([`crate::overlay::request::Layout::proven`]), all orders are tried: what remains is the least number for these rows.
 //! For more overlays what is left is counted, and may not be the least.
 //!
 //! A change costs O(n) for each overlay whose place it changes; the counts of all pairs are kept.
@@ -11,12 +11,13 @@
 use std::cell::Cell;
 
 use crate::overlay::{
-    Order, Rect,
     crossings::{Way, between},
-    fill::{Filled, Lane, Problem},
     grid::count,
     lane::{Seat, Side, Windows, pack, wishes},
     line::way,
+    problem::{Filled, Lane, Problem},
+    rect::Rect,
+    request::Order,
 };
 
 /// Pairs of overlays whose lines are looked at before the search gives up; curves count as much more as they have segments. About 10 ms.

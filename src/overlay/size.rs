@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::overlay::{Overlay, SizeRule};
+use crate::overlay::request::{Overlay, SizeRule};
 
 /// Steps from the size that an overlay should have down to the smallest: eighths.
 pub const SHRINK_STEPS: u32 = 8;
@@ -64,7 +64,7 @@ fn at_least(size: [i32; 2], least: [i32; 2]) -> [i32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::overlay::LineKind;
+    use crate::overlay::request::LineKind;
 
     fn overlay(distance: f64, weight: f64) -> Overlay {
         let [min, preferred, max] = [DVec2::new(40.0, 20.0), DVec2::new(100.0, 80.0), DVec2::new(200.0, 100.0)];

@@ -7,17 +7,20 @@
 //! The order changes only where a line has crossed another by more than the dead band, and another order has less crossings; what was shrunk,
 //! folded or put inward comes back when there would be room even if all points came nearer by the dead band. Such a change is made at once, in one
 //! step, by those
-//! of the sides that it changes; [`crate::overlay::place::Jump`] tells of it.
+//! of the sides that it changes; [`crate::overlay::placed::Jump`] tells of it.
 
 use crate::overlay::{
-    Order, Placed, Rect, Request,
     crossings::Way,
-    fill::{Filled, Problem, unease},
+    fill::unease,
     grid::{Counted, Segment, count},
     inward::Depths,
     lane::{Board, Side, Windows, fits},
     order::{Packer, packed, rects_of, search, sides_of, ways_of},
-    place::{Crossings, Jump, Seat},
+    placed::Placed,
+    placed::{Crossings, Jump, Seat},
+    problem::{Filled, Problem},
+    rect::Rect,
+    request::{Order, Request},
     size::{SHRINK_STEPS, Sizes},
 };
 

@@ -6,12 +6,15 @@ use glam::DVec2;
 use proptest::prelude::*;
 
 use crate::overlay::{
-    Align, Along, Arrangement, Fact, Focus, Layout, LineKind, Order, Overlay, Placed, Rect, Request, SizeRule,
-    fill::{Problem, fill},
+    fill::fill,
     grid::count,
     lane::Side,
     order::{MOST_PROVEN, Packer, ways_of},
-    place::{Crossings, Seat, place},
+    place::place,
+    placed::{Crossings, Fact, Placed, Seat},
+    problem::Problem,
+    rect::Rect,
+    request::{Align, Along, Arrangement, Focus, Layout, LineKind, Order, Overlay, Request, SizeRule},
 };
 
 pub(super) fn overlay(id: u32, size: [f64; 2], at: [f64; 2]) -> Overlay {
@@ -488,7 +491,7 @@ fn any_few(sizes: usize, anchors: usize, most: usize) -> impl Strategy<Value = R
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..crate::seeds::config() })]
 
     #[test]
     fn promises_hold(asked in any_request(), turn in 0..14_usize) {
@@ -565,7 +568,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..crate::seeds::config() })]
 
     #[test]
     fn crossings_are_the_least(asked in prop_oneof![any_few(1, 1, 6), any_few(3, 1, 6), any_few(3, 3, 5)]) {

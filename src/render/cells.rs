@@ -253,6 +253,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         /// Never more than may be, shadows included; nothing is simplified where all fits; more room never makes a cell that is seen coarser; and
         /// what is beside the picture is there from the eye on.
         #[test]

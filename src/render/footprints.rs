@@ -286,6 +286,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         /// Cells leave out no edge that is as near as the core, of outlines with corners anywhere.
         #[test]
         fn cells_leave_out_nothing_near(

@@ -269,6 +269,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         /// What is left out of a pass has nothing to do in it.
         #[test]
         fn chunks_are_left_out_where_all_their_points_agree(

@@ -78,6 +78,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn every_pixel_is_in_one_part(a in any_patch(), b in any_patch()) {
             let parts: Vec<Patch> = a.without(b).chain(a.common(b)).collect();

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::view::{Camera, CameraError};
+use crate::view::camera::{Camera, CameraError};
 
 /// Below this sine of the angle between view and reference up they count as parallel.
 /// f64 still gives `right` to ten digits here; a user's 0.1° off the vertical is far above it.
@@ -73,6 +73,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn axes_are_orthonormal_and_right_handed(f in prop::array::uniform3(-1.0..1.0f64), u in prop::array::uniform3(-1.0..1.0f64)) {
             let Some(forward) = DVec3::from(f).try_normalize() else { return Ok(()) };

@@ -4,7 +4,10 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     geom::Aabb,
-    view::{Basis, Camera, Projection, default_near_m},
+    view::{
+        basis::Basis,
+        camera::{Camera, Projection, default_near_m},
+    },
 };
 
 /// Vertical field of view, radians: wide enough for depth, narrow enough for upright walls.
@@ -89,7 +92,7 @@ fn without_outliers(boxes: &[Aabb]) -> Vec<Aabb> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::View;
+    use crate::view::project::View;
 
     fn grid(n: i32, pitch: f64) -> Vec<Aabb> {
         let at = |i: i32, j: i32| DVec3::new(80_000.0 + pitch * f64::from(i), 450_000.0 + pitch * f64::from(j), 2.0);

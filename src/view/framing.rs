@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use crate::{
     geom::Sphere,
-    view::{Camera, CameraError, MAX_FOV, MIN_FOV, Projection},
+    view::camera::{Camera, CameraError, MAX_FOV, MIN_FOV, Projection},
 };
 
 /// How much a camera sees.
@@ -116,7 +116,7 @@ impl Framing {
 /// of view f and up u, B3's normalise((I − n·nᵀ)(f − (f·n)u)): where f leads is the top of the picture, and where f is the vertical
 /// too, u is. Without a viewer, or where that is nothing, north.
 pub fn up_along(normal: DVec3, viewer: Option<[DVec3; 2]>) -> DVec3 {
-    /// Below this sine they count as parallel, as for [`crate::view::Basis`].
+    /// Below this sine they count as parallel, as for [`crate::view::basis::Basis`].
     const PARALLEL: f64 = 1e-6;
     if normal.cross(DVec3::Z).length() > PARALLEL {
         return DVec3::Z;
@@ -132,7 +132,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::{geom::Aabb, view::View};
+    use crate::{geom::Aabb, view::project::View};
 
     const BALL: Sphere = Sphere { center: DVec3::new(85_000.0, 447_000.0, 12.0), radius: 10.0 };
 
@@ -147,6 +147,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn the_ball_touches_the_border_and_nothing_of_it_is_cut(
             n in prop::array::uniform3(-1.0..1.0f64), fov in 5.0..150.0f64, width in 100..1500u32, height in 100..1500u32

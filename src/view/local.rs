@@ -1,11 +1,11 @@
-//! Cameras of best-view lenses that go by the main eye (B3, B4; V §3.4.1); those that go by an object are [`crate::view::Framing`]s.
+//! Cameras of best-view lenses that go by the main eye (B3, B4; V §3.4.1); those that go by an object are [`crate::view::framing::Framing`]s.
 //!
 //! All of them look along a line that the caller gives, at a field of view that the caller gives; what is decided here is where they
 //! stand and what is up in them.
 
 use glam::{DVec2, DVec3};
 
-use crate::view::{Camera, Projection, default_near_m};
+use crate::view::camera::{Camera, Projection, default_near_m};
 
 /// How far sights of a camera may lie from the eye plane to count as level, sine.
 const LEVEL: f64 = 1e-9;
@@ -125,7 +125,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::{geom::Aabb, view::View};
+    use crate::{geom::Aabb, view::project::View};
 
     fn viewers() -> impl Strategy<Value = Camera> {
         let unit = || prop::array::uniform3(-1.0..1.0f64).prop_map(DVec3::from);
@@ -142,6 +142,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn up_is_across_the_view_and_never_undefined(viewer in viewers(), normal in units()) {
             let up = upright(normal, &viewer);

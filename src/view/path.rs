@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use crate::view::{Camera, CameraError, Projection, default_near_m};
+use crate::view::camera::{Camera, CameraError, Projection, default_near_m};
 
 /// Pieces that a curve between two keys is measured in.
 const PIECES: usize = 32;
@@ -486,6 +486,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn a_path_passes_through_its_keys((times, points) in keys()) {
             let path = Path::new(&times, &points);

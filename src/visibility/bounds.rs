@@ -4,7 +4,11 @@ use glam::DVec3;
 
 use crate::{
     geom::{Aabb, Ray, bvh::HalfSpace, shaft::segment_meets_box},
-    visibility::{Poi, Reference, Set, Test, Units, Viewer},
+    visibility::{
+        set::Set,
+        test::{Reference, Test},
+        units::{Poi, Units, Viewer},
+    },
 };
 
 /// The units whose boxes a test of boxes holds for, with `margin` metres added to its reach; `None` for other tests.

@@ -1,6 +1,6 @@
 //! Cases over time (O6): which of several ways an occluder is drawn in changes by the same margin and fade as whether it is one.
 
-use crate::visibility::Pace;
+use crate::visibility::memory::Pace;
 
 /// Which of some cases something is in, and how far each of them has come to be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +62,8 @@ mod tests {
     use super::*;
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         /// Of cases by distance: between two changes the whole margin is crossed, shares follow without a jump, and each threshold
         /// below the weight is that of one case.
         #[test]

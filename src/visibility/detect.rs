@@ -11,9 +11,11 @@ use crate::{
         shaft::{BoxShaft, SegmentShaft, TriangleShaft},
     },
     visibility::{
-        Coverage, Poi, Set, Test, Units, Viewer,
         bounds::{self, grown},
-        coverage::Sampler,
+        coverage::{Coverage, Sampler},
+        set::Set,
+        test::Test,
+        units::{Poi, Units, Viewer},
     },
 };
 

@@ -20,7 +20,7 @@ use rustc_hash::FxHashMap;
 use crate::{
     city::{CityModel, ObjectClass, StringId, Value, derived::footprints},
     geom::{Aabb, bvh::Bvh},
-    visibility::Units,
+    visibility::units::Units,
 };
 
 /// How far the neighbourhood of an object reaches, metres.

@@ -1,6 +1,6 @@
 //! Classes over time (O6): what is an occluder stays one until it has left its test by a margin, and comes and goes gradually.
 
-use crate::visibility::{Detected, Set};
+use crate::visibility::{detect::Detected, set::Set};
 
 /// How fast things come and go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +82,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         /// Between two changes of class the whole margin is crossed, and weights follow without a jump.
         #[test]
         fn a_class_changes_once_per_crossing_of_its_boundary(

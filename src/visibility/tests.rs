@@ -76,7 +76,7 @@ fn ups() -> impl Strategy<Value = DVec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(crate::seeds::cases(64))]
 
     #[test]
     fn near_boxes_are_found_by_every_reference(eye in eyes(), radius in 0.0..90.0f64) {

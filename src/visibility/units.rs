@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::{
     city::CityModel,
     geom::{Aabb, bvh::Bvh},
-    visibility::Set,
+    visibility::set::Set,
 };
 
 /// The units of a city: what is part of the same city object, by any way up or down. A member of a group stands for itself.

@@ -1,10 +1,23 @@
-//! The house rules that the compiler does not know (ARCHITECTURE.md): a room imports rooms of lower floors only,
-//! and shader entry points live in `shaders/pass` only.
+//! The house rules that the compiler does not know (ARCHITECTURE.md): a room imports rooms of lower floors only, its files make no large
+//! knots, what grows unnoticed stays below limits, and shader entry points live in `shaders/pass` only.
+//!
+//! Nothing here needs the crate: `./dev lint` compiles this file alone.
+
+#[path = "floors/knots.rs"]
+mod knots;
+#[path = "floors/made_up.rs"]
+mod made_up;
+#[path = "floors/sizes.rs"]
+mod sizes;
+#[path = "floors/source.rs"]
+mod source;
 
 use std::{
     fs,
     path::{Path, PathBuf},
 };
+
+use source::{Modules, modules};
 
 /// The rooms, ground floor first; rooms of one floor do not import each other.
 const FLOORS: &[&[&str]] = &[
@@ -19,6 +32,9 @@ const FLOORS: &[&[&str]] = &[
     &["app"],
     &["cli"],
 ];
+
+/// What tests of all rooms import: the seed of property tests (`tests/seeds`).
+const OF_TESTS: &str = "seeds";
 
 fn floor(room: &str) -> Option<usize> {
     FLOORS.iter().position(|rooms| rooms.contains(&room))
@@ -82,7 +98,7 @@ fn imported_rooms(source: &str) -> Vec<String> {
 fn wrong_imports(room: &str, file: &str, source: &str) -> Vec<String> {
     let Some(here) = floor(room) else { return vec![format!("{file}: the room `{room}` is on no floor")] };
     let complaint = |other: String| match floor(&other) {
-        _ if other == room => None,
+        _ if other == room || other == OF_TESTS => None,
         Some(there) if there < here => None,
         Some(there) => Some(format!("{file}: {room} (floor {here}) imports {other} (floor {there})")),
         None => Some(format!("{file}: imports `{other}`, which is on no floor")),
@@ -111,6 +127,46 @@ fn imports_go_down_only() {
         wrong.extend(wrong_imports(room, &inside.display().to_string(), &fs::read_to_string(&path).unwrap()));
     }
     assert!(seen > 0, "no source files found");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The modules of the library.
+fn library() -> Modules {
+    let modules = modules(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    assert!(modules.len() > FLOORS.len(), "no source files found");
+    modules
+}
+
+/// Whether all property tests of `source` take their seed from `tests/seeds`.
+fn are_seeded(source: &str) -> bool {
+    source.split("proptest! {\n").skip(1).all(|block| {
+        let first = block.lines().next().unwrap_or("").trim();
+        first.starts_with("#![proptest_config(") && first.contains("seeds::")
+    })
+}
+
+#[test]
+fn property_tests_are_the_same_each_time() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let all = ["src", "tests"].into_iter().flat_map(|folder| files(&root.join(folder), "rs"));
+    let wrong: Vec<PathBuf> = all.filter(|path| !are_seeded(&fs::read_to_string(path).unwrap())).collect();
+    assert!(wrong.is_empty(), "these need #![proptest_config(crate::seeds::config())]: {wrong:?}");
+    assert!(!are_seeded(&["proptest! {", "    #[test]", "}"].join("\n")));
+    assert!(!are_seeded(&["proptest! {", "    #![proptest_config(ProptestConfig::with_cases(9))]", "}"].join("\n")));
+    assert!(are_seeded(&["proptest! {", "    #![proptest_config(crate::seeds::cases(9))]", "}"].join("\n")));
+}
+
+#[test]
+fn rooms_have_no_large_knots() {
+    let wrong = knots::complaints(&library());
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn what_grows_stays_below_limits() {
+    let modules = library();
+    let mut wrong: Vec<String> = sizes::RULES.iter().flat_map(|rule| sizes::complaints(rule, &modules)).collect();
+    wrong.extend(sizes::renderer_complaint(&modules));
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

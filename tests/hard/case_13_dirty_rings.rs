@@ -76,7 +76,7 @@ fn small_ring(points: std::ops::Range<usize>) -> impl Strategy<Value = Vec<P2>> 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3000))]
+    #![proptest_config(crate::seeds::cases(3000))]
 
     /// Anything at all: crossing, touching, folding back, repeating itself.
     #[test]

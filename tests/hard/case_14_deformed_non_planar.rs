@@ -72,7 +72,7 @@ fn triangulated(rings: &[Vec<P3>]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 20, ..ProptestConfig::default() })]
+    #![proptest_config(crate::seeds::cases(20))]
 
     #[test]
     fn faces_become_the_same_however_they_are_written(

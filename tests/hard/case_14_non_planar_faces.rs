@@ -51,7 +51,7 @@ pub fn face(radii: &[i64], heights: &[i64], holes: usize) -> Vec<Vec<P3>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1500))]
+    #![proptest_config(crate::seeds::cases(1500))]
 
     #[test]
     fn the_same_triangles_however_the_face_is_written(

@@ -43,5 +43,7 @@ mod lenses;
 mod oracle;
 #[path = "../panes/mod.rs"]
 mod panes;
+#[path = "../seeds/mod.rs"]
+mod seeds;
 #[path = "../studio/mod.rs"]
 mod studio;

@@ -10,7 +10,7 @@ use veduta::overlay::{
     lane::Side,
     line::{Target, way},
     place,
-    place::{Crossings, Jump, Seat},
+    placed::{Crossings, Jump, Seat},
 };
 
 /// Frames within which no two overlays change their order back.

@@ -2,20 +2,21 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
-
 use super::{
-    Lattice, extent_of,
     metric::{Grid, is_trusted},
     planes::PlaneKey,
     repeats,
     shelf::{Part, Shape, Shelf, Slices, corners_and_triangles},
     tiles,
 };
+use glam::DVec3;
+
 use crate::{
     city::{
-        CityObject, CutTriangle, Geometry, Surface, Tile, Vertex, WarningCode, Warnings, encode_normal,
+        build::{lattice::Lattice, raw::extent_of},
         memory::give_back,
+        model::{CityObject, CutTriangle, Geometry, Surface, Tile, Vertex, encode_normal},
+        warning::{WarningCode, Warnings},
     },
     geom::{
         exact::newell,

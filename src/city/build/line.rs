@@ -11,12 +11,15 @@ use std::{
 };
 
 use super::{
-    Lattice,
     job::{self, Chunk},
     planes::PlaneTable,
     shelf::{Part, Shelf, corners_and_triangles},
 };
-use crate::city::{CityModel, CutTriangle, NONE};
+
+use crate::city::{
+    build::lattice::Lattice,
+    model::{CityModel, CutTriangle, NONE},
+};
 
 /// Jobs in a city, about; results do not depend on it.
 const JOBS: usize = 128;

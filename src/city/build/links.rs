@@ -3,7 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::KeptObject;
-use crate::city::{WarningCode, Warnings};
+use crate::city::warning::{WarningCode, Warnings};
 
 /// Ids unique over the whole city: the first keeps its own, later ones become `ID#2`, `ID#3`, ...
 pub(super) fn unique_ids(objects: &[KeptObject], warnings: &mut Warnings) -> Vec<Box<str>> {
@@ -164,7 +164,7 @@ mod tests {
             parents: own(parents),
             children: own(children),
             kind: 0,
-            class: crate::city::ObjectClass::Other,
+            class: crate::city::model::ObjectClass::Other,
             attributes: 0..0,
         }
     }

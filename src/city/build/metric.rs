@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Lattice;
+use crate::city::build::lattice::Lattice;
 
 /// World metres are trusted up to here; farther points are damaged input.
 const FARTHEST: DVec3 = DVec3::new(1e9, 1e9, 1e6);

@@ -10,138 +10,27 @@
 //! ```
 
 mod job;
+pub mod lattice;
 mod line;
 mod links;
 mod metric;
 mod planes;
-mod points;
+pub mod points;
+pub mod raw;
 mod repeats;
 mod shelf;
 mod tiles;
 
-use std::{ops::Range, sync::Arc};
-
-use glam::DVec3;
-
+pub use self::lattice::Lattice;
 pub use self::points::{BAD_POINT, Points, Pool};
+pub use self::raw::{Polygons, RawGeometry, RawObject};
 use self::shelf::Shelf;
-use crate::{
-    city::{
-        Attribute, CityModel, CityObject, Lod, ObjectClass, Source, StringId, Surface, SurfaceDetail, WarningCode,
-        memory::give_back,
-    },
-    geom::Aabb,
+use crate::city::{
+    build::raw::KeptObject,
+    memory::give_back,
+    model::{Attribute, CityModel, CityObject, Source, StringId, Surface, SurfaceDetail},
+    warning::WarningCode,
 };
-
-/// How a pool's integers become metres, per axis: `origin + step × integer`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lattice {
-    /// Metres per unit, > 0.
-    pub step: DVec3,
-    /// Metres at integer 0.
-    pub origin: DVec3,
-}
-
-impl Lattice {
-    /// The lattice that floating-point formats are put on: 2⁻²⁰ m (about a micrometre) around the world's origin.
-    /// Positions nearer than 2³² m are rounded by at most half a step.
-    pub const FINE: Self = Self { step: DVec3::splat(1.0 / 1_048_576.0), origin: DVec3::ZERO };
-
-    /// World metres of a lattice point.
-    pub fn to_world(&self, p: [i64; 3]) -> DVec3 {
-        self.origin + self.step * DVec3::new(p[0] as f64, p[1] as f64, p[2] as f64)
-    }
-
-    /// The nearest lattice point; `None` for NaN, infinity or farther than 2^62 steps.
-    pub fn nearest(&self, world: DVec3) -> Option<[i64; 3]> {
-        let p = ((world - self.origin) / self.step).round();
-        p.abs().cmplt(DVec3::splat(4.6e18)).all().then_some([p.x as i64, p.y as i64, p.z as i64])
-    }
-}
-
-/// Polygons of one geometry, flat: `indices` split into rings by `ring_ends`, rings into polygons by `polygon_ends`.
-///
-/// ```text
-/// indices       0 1 2 3 | 4 5 6 | 7 8 9
-/// ring_ends             4       7      10      (exclusive, into indices)
-/// polygon_ends                  2       3      (exclusive, into ring_ends; ring 0 of a polygon is its outer one)
-/// surfaces                      a       b      (one per polygon)
-/// ```
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Polygons {
-    /// Indices into the pool.
-    pub indices: Vec<u32>,
-    /// Exclusive ends of rings in `indices`.
-    pub ring_ends: Vec<u32>,
-    /// Exclusive ends of polygons in `ring_ends`.
-    pub polygon_ends: Vec<u32>,
-    /// Index into the builder's surfaces, one per polygon.
-    pub surfaces: Vec<u32>,
-    /// Texture coordinates (v down), one per index, or empty.
-    pub texcoords: Vec<[f32; 2]>,
-    /// Smooth unit normals, one per index, or empty: faces are flat.
-    pub normals: Vec<[f32; 3]>,
-}
-
-/// One geometry of one object, as read.
-#[derive(Clone, Debug)]
-pub struct RawGeometry {
-    /// The object, as returned by [`ModelBuilder::add_object`].
-    pub object: u32,
-    /// Its level of detail.
-    pub lod: Lod,
-    /// Whether it is made of closed shells.
-    pub solid: bool,
-    /// The vertices, shared between geometries of one file.
-    pub pool: Arc<Pool>,
-    /// The faces.
-    pub polygons: Polygons,
-}
-
-impl RawGeometry {
-    /// Box around the vertices its polygons use, metres: taken on the integers, so corners are exactly as read.
-    /// Coordinates too far away to be true are left out.
-    pub fn extent(&self) -> Aabb {
-        extent_of(&self.polygons.indices, &self.pool, |p| self.pool.lattice.to_world(p))
-    }
-}
-
-/// Box around the points that `indices` name, in metres as `world` has them: it must grow with each coordinate.
-fn extent_of(indices: &[u32], pool: &Pool, world: impl Fn([i64; 3]) -> DVec3) -> Aabb {
-    let used = || indices.iter().filter_map(|&i| pool.points.get(i));
-    let (mut min, mut max) = ([i64::MAX; 3], [i64::MIN; 3]);
-    for point in used() {
-        for axis in 0..3 {
-            min[axis] = min[axis].min(point[axis]);
-            max[axis] = max[axis].max(point[axis]);
-        }
-    }
-    if min[0] > max[0] {
-        return Aabb::EMPTY;
-    }
-    let corners = [min, max].map(&world);
-    if corners.into_iter().all(metric::is_trusted) {
-        return Aabb { min: corners[0], max: corners[1] };
-    }
-    Aabb::from_points(used().map(&world).filter(|&p| metric::is_trusted(p)))
-}
-
-/// An object as read; links by id are resolved in [`ModelBuilder::finish`], within the object's own file.
-#[derive(Clone, Debug, Default)]
-pub struct RawObject {
-    /// Id as the file spells it.
-    pub id: String,
-    /// Type as the file names it.
-    pub kind: String,
-    /// What kind of thing it is.
-    pub class: ObjectClass,
-    /// Ids of its parents.
-    pub parents: Vec<String>,
-    /// Ids of its children.
-    pub children: Vec<String>,
-    /// Its attributes; strings interned with [`ModelBuilder::intern`].
-    pub attributes: Vec<Attribute>,
-}
 
 /// Gathers what loaders read.
 #[derive(Debug, Default)]
@@ -158,19 +47,6 @@ pub struct ModelBuilder {
     /// First object of each file.
     file_starts: Vec<u32>,
     shelf: Shelf,
-}
-
-/// A [`RawObject`] on less memory: a city has tens of thousands, waiting for the rest of their file.
-#[derive(Clone, Debug)]
-struct KeptObject {
-    id: Box<str>,
-    parents: Box<[String]>,
-    children: Box<[String]>,
-    /// Index into [`ModelBuilder::kinds`].
-    kind: u32,
-    class: ObjectClass,
-    /// In [`ModelBuilder::attributes`].
-    attributes: Range<u32>,
 }
 
 impl ModelBuilder {

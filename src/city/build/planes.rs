@@ -2,9 +2,8 @@
 
 use glam::DVec3;
 
-use super::Lattice;
 use crate::{
-    city::memory::give_back,
+    city::{build::lattice::Lattice, memory::give_back},
     geom::plane::{ExactPlane, Plane},
 };
 

@@ -1,7 +1,6 @@
 //! Vertices that polygons index into, as compact as their integers allow.
 
-use super::Lattice;
-use crate::city::memory::give_back;
+use crate::city::{build::lattice::Lattice, memory::give_back};
 
 /// What loaders put into a pool for a point that is no number: its faces are dropped as `bad-coordinate`.
 pub const BAD_POINT: [i64; 3] = [i64::MAX; 3];

@@ -4,7 +4,7 @@ use super::{
     job::{Context, corner_ranges},
     shelf::Shape,
 };
-use crate::city::{NONE, Surface};
+use crate::city::model::{NONE, Surface};
 
 /// Buffers kept between objects.
 #[derive(Debug, Default)]

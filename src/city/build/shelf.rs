@@ -5,8 +5,14 @@
 
 use std::{ops::Range, sync::Arc};
 
-use super::{Polygons, Pool, RawGeometry};
-use crate::city::{Lod, memory::give_back};
+use crate::city::{
+    build::{
+        points::Pool,
+        raw::{Polygons, RawGeometry},
+    },
+    memory::give_back,
+    model::Lod,
+};
 
 /// Everything that was read and waits.
 #[derive(Debug, Default)]

@@ -1,6 +1,9 @@
+use std::sync::Arc;
+
+use glam::DVec3;
+
 use super::*;
-use crate::city::NONE;
-use crate::city::decode_normal;
+use crate::city::model::{Lod, NONE, decode_normal};
 
 const MM: Lattice = Lattice { step: DVec3::splat(0.001), origin: DVec3::ZERO };
 

@@ -2,16 +2,18 @@
 
 use std::ops::Range;
 
-use glam::{DVec3, IVec3, Vec3};
-
 use super::{
-    BAD_POINT,
     job::{Chunk, Triangle},
     metric::Grid,
     shelf::Shape,
 };
+use glam::{DVec3, IVec3, Vec3};
+
 use crate::{
-    city::{CutTriangle, NONE, Tile, Vertex, encode_normal},
+    city::{
+        build::points::BAD_POINT,
+        model::{CutTriangle, NONE, Tile, Vertex, encode_normal},
+    },
     geom::Aabb,
 };
 

@@ -5,14 +5,15 @@ use std::path::Path;
 use rustc_hash::FxHashMap;
 
 use crate::city::{
-    Material, NONE, Texture, TextureImage, WarningCode, Wrap,
     build::ModelBuilder,
     cityjson::{
         geometry::{GeometryRead, MaterialUse},
         nested::Token,
     },
-    load::{LoadOptions, Sibling},
+    load::options::{LoadOptions, Sibling},
     memory::give_back,
+    model::{Material, NONE, Texture, TextureImage, Wrap},
+    warning::WarningCode,
 };
 
 /// `appearance` as read.

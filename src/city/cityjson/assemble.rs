@@ -6,8 +6,12 @@ use glam::{DMat4, DVec3};
 use rustc_hash::FxHashMap;
 
 use crate::city::{
-    Lod, NONE, StringId, Surface, WarningCode,
-    build::{Lattice, ModelBuilder, Polygons, Pool, RawGeometry},
+    build::{
+        ModelBuilder,
+        lattice::Lattice,
+        points::Pool,
+        raw::{Polygons, RawGeometry},
+    },
     cityjson::{
         appearance::{Dressed, Wardrobe},
         document::{Document, ObjectRead},
@@ -17,6 +21,8 @@ use crate::city::{
         vertices::{self, Placing, Vertices},
     },
     memory::give_back,
+    model::{Lod, NONE, StringId, Surface},
+    warning::WarningCode,
 };
 
 /// Indices that instances of templates may add to one city: a file of a few bytes could ask for any number.

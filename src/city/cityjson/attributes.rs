@@ -1,9 +1,10 @@
 //! Attribute values, and members that nobody here reads.
 
 use crate::city::{
-    Attribute, Value, WarningCode,
     build::ModelBuilder,
     json::{self, Json, Kind, Number, Step},
+    model::{Attribute, Value},
+    warning::WarningCode,
 };
 
 /// Reads the value of `attributes` (an object, or null) and appends it to `attributes`.

@@ -5,8 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::city::{
-    Attribute, Material, WarningCode, Wrap,
-    build::{ModelBuilder, RawObject},
+    build::{ModelBuilder, raw::RawObject},
     cityjson::{
         appearance::{self, Appearance},
         attributes,
@@ -16,6 +15,8 @@ use crate::city::{
         vertices::{Transform, Vertices},
     },
     json::{Json, JsonError, Kind, Step},
+    model::{Attribute, Material, Wrap},
+    warning::WarningCode,
 };
 
 /// A city object and its geometries, as read.

@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 
 use crate::city::{
-    Attribute, Lod, StringId,
     build::ModelBuilder,
     cityjson::{
         attributes,
         nested::{Boundaries, Values},
     },
     json::{Json, Kind, Number, Step},
+    model::{Attribute, Lod, StringId},
 };
 
 /// The geometry types of CityJSON.

@@ -1,6 +1,6 @@
 //! City object types of CityJSON and what kind of thing they are.
 
-use crate::city::ObjectClass;
+use crate::city::model::ObjectClass;
 
 /// The class of a type as the file names it; extensions (`+Foo`) and unknown ones are [`ObjectClass::Other`].
 pub fn class(kind: &str) -> ObjectClass {

@@ -19,7 +19,6 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::city::{
-    Source, WarningCode,
     build::ModelBuilder,
     cityjson::{
         appearance::{Dressed, Wardrobe},
@@ -29,8 +28,10 @@ use crate::city::{
     },
     crs::{Axes, Crs, UtmZone},
     json::{self, Json},
-    load::{Input, LoadError, LoadOptions},
+    load::{error::LoadError, input::Input, options::LoadOptions},
     memory::give_back,
+    model::Source,
+    warning::WarningCode,
 };
 
 /// Versions that can be read.

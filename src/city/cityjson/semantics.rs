@@ -1,12 +1,13 @@
 //! Semantic surfaces: which polygon is a roof, and what is known about it.
 
 use crate::city::{
-    NONE, StringId, WarningCode,
     build::ModelBuilder,
     cityjson::{
         geometry::{GeometryRead, Semantic},
         nested::Token,
     },
+    model::{NONE, StringId},
+    warning::WarningCode,
 };
 
 /// A polygon's semantics: its type and its detail, or `NONE` in both.

@@ -4,12 +4,12 @@
 //! then a dozen lists for each of a hundred thousand geometries would cost several times what is in them.
 
 use crate::city::{
-    Attribute, Lod, StringId,
     cityjson::{
         geometry::{GeometryKind, GeometryRead, MaterialUse, Semantic},
         nested::{Token, Values},
     },
     memory::give_back,
+    model::{Attribute, Lod, StringId},
 };
 
 /// Geometries, taken out in the order in which they were put in.

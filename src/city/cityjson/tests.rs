@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use crate::{
     city::{
-        CityModel, Material, NONE, ObjectClass, Surface, TextureImage, Value, Wrap,
-        load::{LoadOptions, Quiet, load},
+        load::{load, options::LoadOptions, progress::Quiet},
+        model::{CityModel, Material, NONE, ObjectClass, Surface, TextureImage, Value, Wrap},
     },
     geom::Aabb,
 };

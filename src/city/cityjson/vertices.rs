@@ -3,7 +3,10 @@
 use glam::DVec3;
 
 use crate::city::{
-    build::{Lattice, Points, Pool},
+    build::{
+        lattice::Lattice,
+        points::{Points, Pool},
+    },
     crs::{Axes, UtmZone},
     json::{Json, Kind, Number, Step},
 };

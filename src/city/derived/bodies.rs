@@ -3,17 +3,23 @@
 
 use std::sync::Arc;
 
+use super::{
+    moved,
+    source::{Face, Part, Source, Target, Unit},
+};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{
-    Derived, Form, moved,
-    source::{Face, Part, Source, Target, Unit},
-};
 use crate::{
     city::{
-        Lod, NONE, ObjectClass,
-        build::{self, Lattice, Polygons, Pool, RawGeometry},
+        build::{
+            self,
+            lattice::Lattice,
+            points::Pool,
+            raw::{Polygons, RawGeometry},
+        },
+        derived::form::{Derived, Form},
+        model::{Lod, NONE, ObjectClass},
     },
     geom::outline,
 };

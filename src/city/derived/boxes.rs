@@ -1,10 +1,11 @@
 //! `box`: an object as its bounding box.
 
-use super::{
-    Form,
-    bodies::{Body, Triangles, span},
+use super::bodies::{Body, Triangles, span};
+
+use crate::{
+    city::derived::form::Form,
+    geom::outline::{convex, smallest_rectangle},
 };
-use crate::geom::outline::{convex, smallest_rectangle};
 
 /// The box along the axes; or the upright one on the smallest rectangle around the footprint, its corners rounded to the lattice.
 pub(super) fn body(triangles: &Triangles, form: &Form) -> Option<Body> {

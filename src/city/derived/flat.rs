@@ -9,10 +9,10 @@
 //! too large near the eye, slopes are followed, ids and other AOVs stay, and what light the scene has now falls on them.
 
 use super::{
-    Form, LIFT_M,
     moved::Change,
     source::{Source, Unit},
 };
+use crate::city::derived::form::{Form, LIFT_M};
 
 /// Lowest points are rounded to this, per metre: those of neighbours are then one plane where they are meant to be.
 const PER_M: f64 = 1000.0;

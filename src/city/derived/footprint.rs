@@ -3,16 +3,19 @@
 //! A footprint is the union of the faces that lie on the ground where the object is pressed flat (`flat`), on a lattice of millimetres;
 //! [`outline::union`] says how exact that is. What has too many faces over one another for an outline has that of its convex hull.
 
-use glam::DVec2;
-use rayon::prelude::*;
-
 use super::{
-    Form, LIFT_M, flat,
+    flat,
     moved::{Change, kept},
     source::{Source, Unit},
 };
+use glam::DVec2;
+use rayon::prelude::*;
+
 use crate::{
-    city::CityModel,
+    city::{
+        derived::form::{Form, LIFT_M},
+        model::CityModel,
+    },
     geom::outline::{self, Point},
 };
 

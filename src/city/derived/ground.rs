@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::source::{Face, Source};
 use crate::{
-    city::CityModel,
+    city::model::CityModel,
     geom::{Aabb, bvh::Bvh, plane::Plane},
 };
 

@@ -12,10 +12,10 @@
 //! An object without walls below its roofs, or one that is to be lower than its roofs are high, is scaled as a whole.
 
 use super::{
-    Form, Height,
     moved::{Change, Steps},
     source::{Part, Source, Unit},
 };
+use crate::city::derived::form::{Form, Height};
 
 /// Objects and walls lower than this cannot be stretched, metres.
 const LEAST_M: f64 = 1e-3;

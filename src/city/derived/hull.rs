@@ -1,13 +1,15 @@
 //! `hull`: an object as its convex hull. Exact on the lattice: which faces it has is decided by exact predicates.
 
-use glam::DVec3;
-
 use super::{
-    Form,
     bodies::{Body, Triangles},
     source::{Part, STEEPEST_ROOF},
 };
-use crate::geom::{outline::convex, shape::Hull};
+use glam::DVec3;
+
+use crate::{
+    city::derived::form::Form,
+    geom::{outline::convex, shape::Hull},
+};
 
 pub(super) fn body(triangles: &Triangles, _: &Form) -> Option<Body> {
     let mut points: Vec<[i64; 3]> = triangles.iter().flatten().map(|&[x, y, z]| [z, x, y]).collect();

@@ -1,8 +1,13 @@
 //! `lod1`: an object as its own block model, its geometry of level of detail 1 (1.0 to 1.3, the finest of these); where it has
 //! none, as the prism over its footprint.
 
-use super::{Derive, Derived, Form, bodies, prism, source::Source};
-use crate::city::{CityModel, Lod, shown::shown_geometries};
+use super::{bodies, prism, source::Source};
+
+use crate::city::{
+    derived::form::{Derive, Derived, Form},
+    model::{CityModel, Lod},
+    shown::shown_geometries,
+};
 
 /// Levels that are block models, tenths.
 const BLOCKS: std::ops::Range<u16> = 10..20;

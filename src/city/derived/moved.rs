@@ -1,16 +1,20 @@
 //! Forms that are an object's own faces, at other heights: textures, semantics and the objects of parts stay.
 
+use super::{
+    flat,
+    ground::GroundFaces,
+    source::{Face, Part, Source, Target, Unit},
+};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::{
-    Derived, Form, flat,
-    ground::GroundFaces,
-    source::{Face, Part, Source, Target, Unit},
-};
 use crate::{
-    city::{CutTriangle, Geometry, NONE, Tile, Vertex, coplanar::intersection, decode_normal, encode_normal},
+    city::{
+        coplanar::intersection,
+        derived::form::{Derived, Form},
+        model::{CutTriangle, Geometry, NONE, Tile, Vertex, decode_normal, encode_normal},
+    },
     geom::{Aabb, plane::Plane},
 };
 

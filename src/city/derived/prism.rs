@@ -3,14 +3,15 @@
 //! The footprint is the union of its faces that look up, seen from above (of what has none, of those that look down), so it
 //! holds roofs that reach over walls too. [`outline::union`] says how exact it is; lattice units are millimetres.
 
-use super::{
-    Form,
-    bodies::{Body, Triangles, span},
-};
-use crate::geom::{
-    exact::orient,
-    outline::{self, Point},
-    triangulate::Triangulator,
+use super::bodies::{Body, Triangles, span};
+
+use crate::{
+    city::derived::form::Form,
+    geom::{
+        exact::orient,
+        outline::{self, Point},
+        triangulate::Triangulator,
+    },
 };
 
 pub(super) fn body(triangles: &Triangles, _: &Form) -> Option<Body> {

@@ -7,7 +7,10 @@ use rustc_hash::FxHashMap;
 
 use super::ground::GroundFaces;
 use crate::{
-    city::{CityModel, CityObject, Geometry, NONE, StringId, Strings, Surface, Tile},
+    city::{
+        model::{CityModel, CityObject, Geometry, NONE, StringId, Surface, Tile},
+        strings::Strings,
+    },
     geom::Aabb,
 };
 

@@ -4,9 +4,13 @@ use glam::{DVec2, DVec3, Vec3};
 
 use super::*;
 use crate::city::{
-    Lod, NONE, ObjectClass, StringId, Surface,
-    build::{ModelBuilder, Polygons, Pool, RawGeometry, RawObject},
+    build::{
+        ModelBuilder,
+        points::Pool,
+        raw::{Polygons, RawGeometry, RawObject},
+    },
     coplanar::{coplanar_triangles, stacked_triangles},
+    model::{Lod, NONE, ObjectClass, StringId, Surface},
     test_city::{LATTICE, add, add_box, builder, grid_of_cubes},
 };
 
@@ -29,7 +33,7 @@ fn derived_by(model: &CityModel, how: Derive) -> Derived {
 
 /// The triangles of a model, with the index of the surface and the packed normal.
 fn triangles(model: &CityModel) -> Vec<([DVec3; 3], u32, u32)> {
-    let of = |tile: &crate::city::Tile| {
+    let of = |tile: &crate::city::model::Tile| {
         let (range, first) = (tile.indices.clone(), tile.vertices.start);
         let (origin, indices) = (tile.origin.as_dvec3(), &model.indices);
         let triangle = move |at: u32| {
@@ -223,7 +227,7 @@ fn pressed_flat_the_highest_is_seen() {
     let derived = made(&model, FLAT);
     assert!(near(seen_from_above(&derived.model), 80.0), "the plan of two roofs");
     let level = |(corners, _, normal): &([DVec3; 3], u32, u32)| {
-        corners.iter().all(|c| (c.z - 2.05).abs() < 1e-6) && *normal == crate::city::encode_normal(DVec3::Z)
+        corners.iter().all(|c| (c.z - 2.05).abs() < 1e-6) && *normal == crate::city::model::encode_normal(DVec3::Z)
     };
     assert!(triangles(&derived.model).iter().all(level));
     assert!(stacked_triangles(&derived.model, &derived.geometries(), &derived.heights).is_empty(), "side by side");
@@ -308,7 +312,7 @@ fn walls_are_stretched_and_roofs_are_moved() {
     let lowered = made(&model, Form::Height(Height::Metres(2.0)));
     for (corners, _, normal) in triangles(&lowered.model) {
         let lies = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-        assert!(lies.angle_between(crate::city::decode_normal(normal)) < 1e-4, "{corners:?}");
+        assert!(lies.angle_between(crate::city::model::decode_normal(normal)) < 1e-4, "{corners:?}");
     }
 }
 
@@ -350,7 +354,7 @@ fn a_picture_from_above_keeps_the_light_of_slopes() {
     for (corners, _, normal) in triangles(&top.model) {
         let side = if corners.iter().map(|c| c.y - LATTICE.origin.y).sum::<f64>() < 12.0 { 1.0 } else { -1.0 };
         let wanted = south * DVec3::new(1.0, side, 1.0);
-        assert!(crate::city::decode_normal(normal).distance(wanted) < 1e-3, "{corners:?}");
+        assert!(crate::city::model::decode_normal(normal).distance(wanted) < 1e-3, "{corners:?}");
     }
 }
 

@@ -2,8 +2,12 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use super::*;
 use crate::city::{
-    StringId, Surface,
-    build::{ModelBuilder, Polygons, Pool, RawGeometry, RawObject},
+    build::{
+        ModelBuilder,
+        points::Pool,
+        raw::{Polygons, RawGeometry, RawObject},
+    },
+    model::{StringId, Surface},
     test_city::{LATTICE, add, add_box, builder, grid_of_cubes, terrain},
 };
 

@@ -11,8 +11,9 @@ use gltf::json::{Root, buffer::View, image::Image};
 use rustc_hash::FxHashMap;
 
 use crate::city::{
-    TextureImage, WarningCode, Warnings,
-    load::{LoadOptions, Sibling},
+    load::options::{LoadOptions, Sibling},
+    model::TextureImage,
+    warning::{WarningCode, Warnings},
 };
 
 /// The largest file a model may pull in.

@@ -8,8 +8,8 @@ use gltf::json::Root;
 use serde::Deserialize;
 
 use crate::city::{
-    WarningCode, Warnings,
-    load::{Input, LoadError},
+    load::{error::LoadError, input::Input},
+    warning::{WarningCode, Warnings},
 };
 
 /// Extensions a file may require: read, or without effect on what is shown here.

@@ -3,7 +3,11 @@
 use gltf::json::extras::RawValue;
 use serde_json::Value as Json;
 
-use crate::city::{Attribute, Value, WarningCode, build::ModelBuilder};
+use crate::city::{
+    build::ModelBuilder,
+    model::{Attribute, Value},
+    warning::WarningCode,
+};
 
 /// The attributes that `extras` hold: its members, or itself as `extras` where it is no table.
 pub(super) fn attributes(builder: &mut ModelBuilder, extras: &RawValue, object: &str) -> Vec<Attribute> {

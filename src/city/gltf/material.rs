@@ -9,7 +9,10 @@ use gltf::json::{
 use rustc_hash::FxHashMap;
 
 use super::buffers::{self, Buffers, Surroundings};
-use crate::city::{CityModel, Material, NONE, Texture, WarningCode, Wrap};
+use crate::city::{
+    model::{CityModel, Material, NONE, Texture, Wrap},
+    warning::WarningCode,
+};
 
 /// Vertex colours are kept as materials; a file with more different ones than this gets means per primitive.
 pub(super) const MAX_TINTS: usize = 4096;

@@ -16,8 +16,14 @@ use super::{
     material::{self, Key, Mapping, Materials, Palette, UNTINTED},
 };
 use crate::city::{
-    Lod, NONE, StringId, Surface, WarningCode,
-    build::{Lattice, ModelBuilder, Polygons, Pool, RawGeometry},
+    build::{
+        ModelBuilder,
+        lattice::Lattice,
+        points::Pool,
+        raw::{Polygons, RawGeometry},
+    },
+    model::{Lod, NONE, StringId, Surface},
+    warning::WarningCode,
 };
 
 /// Farther than this from the origin, coordinates are wrong.

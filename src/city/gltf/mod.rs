@@ -2,7 +2,7 @@
 //!
 //! glTF is y up, with z toward the viewer; the world here is x east, y north, z up: (x, y, z) → (x, −z, y).
 //! Node transforms are chained in f64. glTF says nothing of levels of detail or of what a mesh is, so geometry has
-//! [`Lod::NONE`](crate::city::Lod::NONE) and objects are of type `Mesh`, taken for buildings.
+//! [`Lod::NONE`](crate::city::model::Lod::NONE) and objects are of type `Mesh`, taken for buildings.
 
 mod accessor;
 mod buffers;
@@ -22,9 +22,10 @@ use self::{
     mesh::{Gathered, Placed},
 };
 use crate::city::{
-    ObjectClass, Source, WarningCode,
-    build::{ModelBuilder, RawObject},
-    load::{Input, LoadError, LoadOptions},
+    build::{ModelBuilder, raw::RawObject},
+    load::{error::LoadError, input::Input, options::LoadOptions},
+    model::{ObjectClass, Source},
+    warning::WarningCode,
 };
 
 /// Corners that a file may unfold to by instancing and by shared accessors: this many for free, ...
@@ -92,7 +93,7 @@ impl Reader<'_> {
         for extras in [node.extras.as_ref(), mesh.and_then(|m| m.extras.as_ref())].into_iter().flatten() {
             for attribute in extras::attributes(builder, extras, &id) {
                 // The node's own word counts before that of the mesh it shares.
-                if !attributes.iter().any(|a: &crate::city::Attribute| a.name == attribute.name) {
+                if !attributes.iter().any(|a: &crate::city::model::Attribute| a.name == attribute.name) {
                     attributes.push(attribute);
                 }
             }

@@ -11,7 +11,7 @@ use super::{
     container::Placement,
     world_from_scene,
 };
-use crate::city::{WarningCode, Warnings};
+use crate::city::warning::{WarningCode, Warnings};
 
 /// A mesh node on the way through the tree.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::city::{load::LoadError, memory::give_back};
+use crate::city::{load::error::LoadError, memory::give_back};
 
 /// The largest model, after decompression: 4 GiB, what 32-bit offsets can count.
 const MAX_BYTES: u64 = 4 << 30;

@@ -4,7 +4,10 @@
 //! path ─ input (read, gunzip, BOM) ─ sniff (what is it?) ─ cityjson | gltf | obj ─> ModelBuilder ─ finish ─> CityModel
 //! ```
 
+pub mod error;
 pub mod input;
+pub mod options;
+pub mod progress;
 mod sniff;
 
 use std::{
@@ -12,146 +15,12 @@ use std::{
     time::{Duration, Instant},
 };
 
+pub use error::LoadError;
 pub use input::Input;
+pub use options::{LoadOptions, Sibling};
+pub use progress::{Progress, Quiet, Stage};
 
-use crate::city::{CityModel, WarningCode, build::ModelBuilder, load::sniff::Format, warning::one_line};
-
-/// What a loader may do.
-#[derive(Clone, Debug, Default)]
-pub struct LoadOptions {
-    /// Whether paths inside a model (textures, buffers) may leave [`Self::roots`].
-    pub allow_outside: bool,
-    /// Folders the user named; the folder of each loaded file and `${VEDUTA_DATA}` are added by [`load`].
-    pub roots: Vec<PathBuf>,
-}
-
-/// Where a path that stands inside a model file leads.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Sibling {
-    /// A regular file that may be read.
-    Found(PathBuf),
-    /// Nothing readable there.
-    Missing(PathBuf),
-    /// It leaves the folders the user named: note [`WarningCode::OutsidePath`] and do not open it.
-    Outside(PathBuf),
-}
-
-impl LoadOptions {
-    /// Follows `reference` as it stands in `file` (relative to its folder), inside the allowed folders.
-    pub fn sibling(&self, file: &Path, reference: &str) -> Sibling {
-        let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let path = folder.join(reference.replace('\\', "/"));
-        // An unresolvable folder can only hold missing files, but a path that climbs out is named as such first.
-        let climbs = !self.allow_outside && !self.admits(&lexical(&absolute(&path)));
-        if climbs {
-            return Sibling::Outside(path);
-        }
-        match path.canonicalize() {
-            Ok(real) if !self.allow_outside && !self.admits(&real) => Sibling::Outside(path),
-            Ok(real) if real.is_file() => Sibling::Found(path),
-            _ => Sibling::Missing(path),
-        }
-    }
-
-    /// Whether a path may be read: inside the roots by its text and, where it exists, by what it really is.
-    pub fn allows(&self, path: &Path) -> bool {
-        self.allow_outside
-            || (self.admits(&lexical(&absolute(path))) && path.canonicalize().map_or(true, |real| self.admits(&real)))
-    }
-
-    /// Whether a normalised absolute path is inside one of the roots.
-    fn admits(&self, path: &Path) -> bool {
-        self.roots.iter().any(|root| {
-            path.starts_with(lexical(&absolute(root))) || root.canonicalize().is_ok_and(|real| path.starts_with(real))
-        })
-    }
-}
-
-fn absolute(path: &Path) -> PathBuf {
-    // The folder of `scene.toml` is written as nothing, which is no path: it would hold everything.
-    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
-}
-
-/// The path without `.` and `..`, by its text alone.
-fn lexical(path: &Path) -> PathBuf {
-    let mut out = PathBuf::new();
-    for part in path.components() {
-        match part {
-            std::path::Component::ParentDir => {
-                out.pop();
-            }
-            std::path::Component::CurDir => {}
-            other => out.push(other),
-        }
-    }
-    out
-}
-
-/// Why a file could not be loaded: file, place in it, what would be right.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}{}{place}: {message}", file.display(), if place.is_empty() { "" } else { ", " })]
-pub struct LoadError {
-    /// The file, as the user named it.
-    pub file: PathBuf,
-    /// Line and column, object id or JSON path; may be empty.
-    pub place: String,
-    /// What is wrong and what would be right.
-    pub message: String,
-}
-
-impl LoadError {
-    /// An error about a file as a whole.
-    pub fn new(file: &Path, message: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), place: String::new(), message: one_line(message.into()) }
-    }
-
-    /// An error at a place in a file.
-    pub fn at(file: &Path, place: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), place: one_line(place.into()), message: one_line(message.into()) }
-    }
-}
-
-/// What loading is busy with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Stage {
-    /// Bytes come from the disk, and are decompressed.
-    Read,
-    /// Text becomes objects and polygons.
-    Parse,
-    /// Polygons become triangles, tiles and planes.
-    Build,
-}
-
-impl Stage {
-    /// As it stands in statistics and on the progress bar.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Read => "read",
-            Self::Parse => "parse",
-            Self::Build => "build",
-        }
-    }
-}
-
-/// Is told how far loading got; a progress bar, or nothing ([`Quiet`]).
-pub trait Progress: Sync {
-    /// `file` (0-based) of `files` entered `stage`; for [`Stage::Build`] `file == files`.
-    fn enter(&self, stage: Stage, file: usize, files: usize, path: &Path);
-
-    /// Whether nobody wants the city any more: asked before each stage.
-    fn is_cancelled(&self) -> bool {
-        false
-    }
-}
-
-/// No progress bar.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Quiet;
-
-impl Progress for Quiet {
-    fn enter(&self, _: Stage, _: usize, _: usize, _: &Path) {}
-}
+use crate::city::{build::ModelBuilder, load::sniff::Format, model::CityModel, warning::WarningCode};
 
 /// How long loading took, by stage, over all files; `load.ms` of `--stats`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::city::load::{Input, input};
+use crate::city::load::input::{self, Input};
 
 /// What can be read, for messages.
 pub(super) const READABLE: &str =

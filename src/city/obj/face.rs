@@ -7,8 +7,12 @@ use super::{
     lines::{text, words},
 };
 use crate::city::{
-    NONE, ObjectClass, StringId, Surface, WarningCode,
-    build::{ModelBuilder, Polygons, RawObject},
+    build::{
+        ModelBuilder,
+        raw::{Polygons, RawObject},
+    },
+    model::{NONE, ObjectClass, StringId, Surface},
+    warning::WarningCode,
 };
 
 /// The faces of one name.

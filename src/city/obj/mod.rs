@@ -23,9 +23,15 @@ use self::{
     mtl::Look,
 };
 use crate::city::{
-    Lod, Source, WarningCode,
-    build::{Lattice, ModelBuilder, Points, Pool, RawGeometry},
-    load::{Input, LoadError, LoadOptions},
+    build::{
+        ModelBuilder,
+        lattice::Lattice,
+        points::{Points, Pool},
+        raw::RawGeometry,
+    },
+    load::{error::LoadError, input::Input, options::LoadOptions},
+    model::{Lod, Source},
+    warning::WarningCode,
 };
 
 /// Farther than this from the origin, coordinates are wrong.

@@ -6,8 +6,9 @@ use rustc_hash::FxHashMap;
 
 use super::lines::{Lines, number, statement, text, words};
 use crate::city::{
-    CityModel, Material, NONE, Texture, TextureImage, WarningCode, Warnings, Wrap,
-    load::{LoadOptions, Sibling},
+    load::options::{LoadOptions, Sibling},
+    model::{CityModel, Material, NONE, Texture, TextureImage, Wrap},
+    warning::{WarningCode, Warnings},
 };
 
 /// A material as the city holds it, with and without its texture.

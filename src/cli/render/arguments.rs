@@ -5,7 +5,11 @@ use std::{path::PathBuf, str::FromStr};
 use clap::Args;
 
 use crate::{
-    cli::{Failure, Outcome, output, render::sprites::SpriteRequest},
+    cli::{
+        failure::{Failure, Outcome},
+        output,
+        render::sprites::SpriteRequest,
+    },
     render::frame::Backend,
 };
 

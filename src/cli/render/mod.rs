@@ -12,7 +12,11 @@ use arguments::{AovFormat, AovKind, AovRequest, Arguments};
 
 use crate::{
     city::{TextureImage, facts, load::LoadOptions},
-    cli::{Failure, GlobalArguments, Outcome, load, output, terminal},
+    cli::{
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        load, output, terminal,
+    },
     figure::{
         self,
         picture::{self, Notes},

@@ -3,7 +3,10 @@
 use std::{path::PathBuf, str::FromStr};
 
 use crate::{
-    cli::{Failure, Outcome, output},
+    cli::{
+        failure::{Failure, Outcome},
+        output,
+    },
     figure::file::{WriteError, write_whole},
     lens::{nearest::did_you_mean, sprite_file},
     render::picture::{RenderError, Studio},

@@ -8,7 +8,11 @@ use clap::Args;
 
 use crate::{
     city::builtin,
-    cli::{Failure, GlobalArguments, Outcome, output, render, terminal},
+    cli::{
+        arguments::GlobalArguments,
+        failure::{Failure, Outcome},
+        output, render, terminal,
+    },
     figure::{
         self,
         file::write_whole,

@@ -648,6 +648,8 @@ fn turn_alike(a: &Focus, b: &mut Focus) {
 }
 
 proptest! {
+    #![proptest_config(crate::seeds::config())]
+
     #[test]
     fn what_is_written_is_read_back(scene in scenes()) {
         let text = to_toml(&scene);

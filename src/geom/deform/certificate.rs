@@ -6,7 +6,7 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 use glam::DVec3;
 
 use crate::geom::{
-    Aabb,
+    aabb::Aabb,
     deform::{
         Control, Deformation, Deformer, Fault, Interval,
         deformer::intervals,

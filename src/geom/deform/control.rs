@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::geom::{
-    Aabb,
+    aabb::Aabb,
     deform::{
         Interval,
         number::{Number, Vector},

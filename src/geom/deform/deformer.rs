@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::geom::{
-    Aabb,
+    aabb::Aabb,
     deform::{
         Deformation, Fault, Frame, Interval, Space,
         control::Sampled,

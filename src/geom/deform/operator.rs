@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::geom::{
-    Aabb,
+    aabb::Aabb,
     deform::{
         Opening,
         number::{Matrix, Number, Vector, determinant, plus_identity, zeros},

@@ -10,7 +10,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::geom::{Aabb, Volume, meets::clipped};
+use crate::geom::{aabb::Aabb, shape::volume::Volume, triangle::clipped};
 
 /// How far from a volume a point is taken to be on its border, metres: a thousandth of the finest lattice of city files;
 /// more for volumes of 1,000 km and beyond, by what f64 loses in them.

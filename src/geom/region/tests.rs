@@ -2,7 +2,7 @@ use glam::DQuat;
 use proptest::prelude::*;
 
 use super::*;
-use crate::geom::Shape;
+use crate::geom::shape::definition::Shape;
 
 /// A volume of each kind, about `size` metres large, placed and turned by eight numbers.
 fn volume(kind: usize, n: &[f64], size: f64) -> Volume {
@@ -87,7 +87,7 @@ fn corners(n: &[f64]) -> [DVec3; 3] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3000))]
+    #![proptest_config(crate::seeds::cases(3000))]
 
     /// One volume: the closed forms say the same as cutting, which knows nothing of them.
     #[test]

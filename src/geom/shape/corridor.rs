@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec2, DVec3};
 
-use crate::geom::shape::{Hull, ShapeError, Volume, hull};
+use crate::geom::shape::{error::ShapeError, hull::Hull, limits::MAX_POINTS, volume::Volume};
 
 /// Seen from above, shorter ways are none: there the bodies at both ends are one to 2.5e-13 m²/width.
 const SHORTEST_M: f64 = 1e-6;
@@ -16,7 +16,7 @@ pub(super) fn bodies(points: &[DVec3], width: f64, height: f64) -> Result<Vec<Vo
     if points.len() < 2 {
         return Err(ShapeError::ShortLine(points.len()));
     }
-    if points.len() > hull::MAX_POINTS {
+    if points.len() > MAX_POINTS {
         return Err(ShapeError::ManyPoints(points.len()));
     }
     if width <= 0.0 || height <= 0.0 {
@@ -67,6 +67,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn a_corridor_holds_what_is_along_its_line(
             line in prop::collection::vec(prop::array::uniform3(-9.0..9.0f64), 2..7),

@@ -12,10 +12,10 @@
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
-use crate::geom::{Ray, shape::ShapeError};
-
-/// Corners a polygon may have: each costs every pixel of its bounds a test.
-pub const MAX_CORNERS: usize = 1024;
+use crate::geom::{
+    ray::Ray,
+    shape::{error::ShapeError, limits::MAX_CORNERS},
+};
 
 /// Half the edge of the box around what has no end, metres: beyond everything, and a number.
 pub const ENDLESS_M: f64 = 1e30;

@@ -7,10 +7,11 @@ use glam::DVec3;
 use robust::{Coord3D, orient3d};
 use rustc_hash::FxHashMap;
 
-use crate::geom::{Aabb, Ray, shape::ShapeError};
-
-/// Points a hull may be given: each costs a test against every face.
-pub const MAX_POINTS: usize = 4096;
+use crate::geom::{
+    aabb::Aabb,
+    ray::Ray,
+    shape::{error::ShapeError, limits::MAX_POINTS},
+};
 
 /// A hull thinner than this has no usable inside, metres.
 pub(super) const THIN_M: f64 = 1e-6;
@@ -99,7 +100,7 @@ impl Hull {
 
     pub(super) fn entry_exit(&self, ray: &Ray) -> Option<(f64, f64)> {
         let origin = ray.origin - self.center;
-        let (mut entry, mut exit) = super::EVERYWHERE;
+        let (mut entry, mut exit) = crate::geom::shape::span::EVERYWHERE;
         for (normal, offset) in &self.planes {
             let (speed, gap) = (normal.dot(ray.direction), offset - normal.dot(origin));
             if speed == 0.0 {

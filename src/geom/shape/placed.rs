@@ -2,9 +2,12 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::geom::{
-    Shape, Volume,
-    shape::{Flat, Hull, ShapeError, Sightlines},
+use crate::geom::shape::{
+    definition::Shape,
+    error::ShapeError,
+    flat::{Flat, Sightlines},
+    hull::Hull,
+    volume::Volume,
 };
 
 /// A turn, and then a move.
@@ -111,7 +114,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::geom::{Ray, shape::FlatFigure};
+    use crate::geom::{ray::Ray, shape::flat::FlatFigure};
 
     /// One of each shape, near the origin.
     fn shapes() -> Vec<Shape> {
@@ -138,6 +141,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         /// What a moved volume says of a moved point or ray is what the volume said before.
         #[test]
         fn motions_and_tests_commute(

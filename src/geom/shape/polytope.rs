@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
-use crate::geom::shape::{Hull, ShapeError, hull::THIN_M};
-
-/// Planes a body may be given: each three of them may meet in a corner.
-pub const MAX_PLANES: usize = 64;
+use crate::geom::shape::{
+    error::ShapeError,
+    hull::{Hull, THIN_M},
+    limits::MAX_PLANES,
+};
 
 /// Directions whose sines are below this count as one.
 const PARALLEL: f64 = 1e-9;

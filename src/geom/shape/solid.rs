@@ -18,17 +18,19 @@ use glam::{DQuat, DVec2, DVec3};
 use robust::{Coord, orient2d};
 
 use crate::geom::{
-    Aabb, Ray,
-    meets::nearest_to_origin,
-    shape::{Mesh, ShapeError, solid::columns::Columns},
+    aabb::Aabb,
+    ray::Ray,
+    shape::{
+        error::ShapeError,
+        limits::MAX_FACES,
+        mesh::Mesh,
+        solid::columns::{Columns, upward},
+    },
+    triangle::nearest_to_origin,
 };
 
-pub(super) use form::words_for;
 pub use form::{Bitmap, prism, stacked};
 pub use near::{Near, rounded_reach, widest_reach};
-
-/// Faces that a solid may have.
-pub const MAX_FACES: usize = 1 << 20;
 
 /// A solid in its own coordinates, metres, rounded to f32: to 2⁻²⁴ of its extent. What every adapter computes with, to the bit.
 #[derive(Clone, Debug, PartialEq)]
@@ -201,16 +203,6 @@ fn turns(corners: [DVec2; 3], at: DVec2) -> i32 {
             if orient2d(coord(left), coord(right), coord(at)) < 0.0 { turn } else { 0 }
         })
         .sum()
-}
-
-/// The normal of a face that looks up, its length 1; for an upright one straight up, and how much higher than its first corner
-/// the level is at which it counts as above.
-fn upward(corners: &[DVec3; 3]) -> (DVec3, f64) {
-    let [a, b, c] = *corners;
-    match (b - a).cross(c - a).try_normalize() {
-        Some(n) if n.z.abs() > 1e-12 => (if n.z < 0.0 { -n } else { n }, 0.0),
-        _ => (DVec3::Z, (a.z + b.z + c.z) / 3.0 - a.z),
-    }
 }
 
 /// Whether a face under or over which a place lies stands above it; what is on it counts as below where it looks up.

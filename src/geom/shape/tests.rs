@@ -1,6 +1,11 @@
+use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
-use super::*;
+use crate::geom::{
+    aabb::Aabb,
+    ray::Ray,
+    shape::{definition::Shape, error::ShapeError, mesh::Mesh, span::EVERYWHERE, volume::Volume},
+};
 
 fn point(reach: f64) -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-reach..reach).prop_map(DVec3::from)
@@ -102,7 +107,7 @@ fn holds(shape: &Shape, p: DVec3) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(192))]
+    #![proptest_config(crate::seeds::cases(192))]
 
     #[test]
     fn contains_is_the_definition(shape in shapes(), p in point(9.0)) {

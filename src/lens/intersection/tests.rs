@@ -95,7 +95,7 @@ fn check(model: &CityModel, index: &SpatialIndex, lenses: &[LensNumbers]) -> Res
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(crate::seeds::cases(150))]
 
     /// One to three lenses on houses and on ground whose tiles have hierarchies of their own, before and after it moves.
     #[test]

@@ -10,12 +10,12 @@ pub mod scale;
 pub mod svg;
 
 use crate::measure::{
-    Quantity,
     plot::{
         labels::Frame,
         scale::Scale,
         svg::{Anchor, Font, Marker, Stroke, Svg, text_width},
     },
+    quantity::Quantity,
     report::{Origin, number},
     run::{Measurement, Row},
 };

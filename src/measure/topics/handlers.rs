@@ -4,8 +4,9 @@ use crate::{
     geom::Shape,
     lens::Lens,
     measure::{
-        Knob, Quantity, Shot, Topic, Trial, Value, Variant,
+        quantity::Quantity,
         stage::{Stage, lens},
+        topic::{Knob, Shot, Topic, Trial, Value, Variant},
     },
     render::{frame::Backend, picture::RenderError},
 };

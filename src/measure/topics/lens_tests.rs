@@ -8,8 +8,9 @@ use crate::{
     geom::{Shape, combination::Operation},
     lens::{Focus, Lens, LensSprite},
     measure::{
-        Knob, Quantity, Topic, Trial, Value, Variant,
+        quantity::Quantity,
         stage::{Stage, lens},
+        topic::{Knob, Topic, Trial, Value, Variant},
     },
     render::picture::RenderError,
     scene::{Scene, Technique as Evaluation},

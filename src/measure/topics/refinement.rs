@@ -7,8 +7,9 @@ use crate::{
         deform::{Deform, Step},
     },
     measure::{
-        Knob, Quantity, Topic, Trial, Value, Variant,
+        quantity::Quantity,
         stage::{Stage, lens},
+        topic::{Knob, Topic, Trial, Value, Variant},
     },
     render::picture::RenderError,
     scene::Scene,

@@ -1,7 +1,11 @@
 //! Samples per pixel: smoother edges for whole frames more.
 
 use crate::{
-    measure::{Knob, Quantity, Shot, Topic, Trial, Value, Variant, stage::Stage},
+    measure::{
+        quantity::Quantity,
+        stage::Stage,
+        topic::{Knob, Shot, Topic, Trial, Value, Variant},
+    },
     render::picture::RenderError,
 };
 

@@ -11,8 +11,9 @@ use crate::{
         sprite::{Format, Mapping},
     },
     measure::{
-        Knob, Quantity, Topic, Trial, Value, Variant,
+        quantity::Quantity,
         stage::{Stage, lens},
+        topic::{Knob, Topic, Trial, Value, Variant},
     },
     render::picture::RenderError,
 };

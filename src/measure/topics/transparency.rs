@@ -8,8 +8,9 @@ use crate::{
     geom::Aabb,
     lens::{Class, EffectUse, Lens, Parameter},
     measure::{
-        Knob, Quantity, Topic, Trial, Value, Variant,
+        quantity::Quantity,
         stage::{Stage, lens},
+        topic::{Knob, Topic, Trial, Value, Variant},
     },
     render::picture::RenderError,
     scene::{Scene, Transparency, transparency::SLOTS},

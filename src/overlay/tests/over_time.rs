@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::*;
-use crate::overlay::place::Jump;
+use crate::overlay::placed::Jump;
 
 /// Calls until nothing changes any more; what is then.
 fn at_rest(asked: &Request, from: Placed) -> (Placed, usize) {

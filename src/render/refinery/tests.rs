@@ -313,7 +313,7 @@ fn chord(deformers: &Deformers, [a, b]: [DVec3; 2]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+    #![proptest_config(crate::seeds::cases(12))]
     #[test]
     fn bodies_are_refined_as_the_host_does(
         deformation in deformation(5e4), shift in vector(10.0), shakes in prop::collection::vec(vector(1.0), 18),

@@ -358,6 +358,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn any_text_can_be_set(text in "\\PC{0,40}|[\\x00-\\x{10FFFF}]{0,40}", width in 0.0_f32..300.0) {
             let mut set = Typesetter::default();

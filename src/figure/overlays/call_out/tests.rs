@@ -129,6 +129,8 @@ fn a_picture_of_one_pixel_has_small_images() {
 }
 
 proptest! {
+    #![proptest_config(crate::seeds::config())]
+
     #[test]
     fn pixels_show_what_lies_there(
         eye in prop::array::uniform3(-200.0..200.0f64), target in prop::array::uniform3(-40.0..40.0f64), ortho in any::<bool>(),

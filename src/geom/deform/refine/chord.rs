@@ -317,7 +317,7 @@ impl Support {
         let sides = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| {
             [(axis, axis.dot(self.bounds.max.min(high))), (-axis, -axis.dot(self.bounds.min.max(low)))]
         });
-        crate::geom::clipped(&local, sides).into_iter().map(|p| self.frame.to_world(p)).collect()
+        crate::geom::triangle::clipped(&local, sides).into_iter().map(|p| self.frame.to_world(p)).collect()
     }
 }
 

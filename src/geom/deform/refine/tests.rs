@@ -211,7 +211,7 @@ fn what_is_far_is_coarser() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(crate::seeds::cases(24))]
 
     #[test]
     fn neighbours_meet_whatever_the_order(

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use super::{deformation, difference, ready, street, vector};
 use crate::geom::{
-    Aabb,
+    aabb::Aabb,
     deform::{
         Control, ControlPlane, Deformation, Frame, Interval, Opening, Operator, Profile, Proof, Space, Strength,
         number::Number,
@@ -87,7 +87,7 @@ fn what_is_unbounded_is_not_proven_by_chance() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+    #![proptest_config(crate::seeds::cases(12))]
 
     #[test]
     fn what_is_proven_folds_nowhere_and_goes_back(

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 
 use super::{control, deformation, profile, ready, vector};
 use crate::geom::{
-    Aabb,
+    aabb::Aabb,
     deform::{Control, ControlPlane, Deformation, Frame, Operator, Profile, Space, Texels},
 };
 
@@ -51,6 +51,8 @@ fn profiles_have_their_shapes() {
 }
 
 proptest! {
+    #![proptest_config(crate::seeds::config())]
+
     #[test]
     fn nothing_tears_along_the_border(profile in profile(), along in 0.0..=1.0f64) {
         let shown = kappa(profile);

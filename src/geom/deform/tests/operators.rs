@@ -114,6 +114,8 @@ fn frames_follow_the_camera() {
 }
 
 proptest! {
+    #![proptest_config(crate::seeds::config())]
+
     #[test]
     fn operators_have_the_derivatives_that_differences_give(operator in operator(), p in vector(30.0)) {
         let Some(slope) = difference(|p| operator.value(p), p) else { return Ok(()) };

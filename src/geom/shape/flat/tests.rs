@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::geom::{Shape, Volume};
+use crate::geom::shape::{definition::Shape, volume::Volume};
 
 fn point(reach: f64) -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-reach..reach).prop_map(DVec3::from)
@@ -52,7 +52,7 @@ fn sights() -> impl Strategy<Value = Sightlines> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
+    #![proptest_config(crate::seeds::cases(256))]
 
     #[test]
     fn it_holds_what_is_seen_through_its_triangles(sight in sights(), turn in point(3.0), center in point(2.0), p in point(15.0)) {

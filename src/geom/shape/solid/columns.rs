@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::geom::{Aabb, shape::solid::upward};
+use crate::geom::aabb::Aabb;
 
 /// Columns per side, at most.
 const MOST: f64 = 512.0;
@@ -108,5 +108,15 @@ impl Columns {
             words.push([bits(normal.x), bits(normal.y), bits(normal.z), bits(rise)]);
         }
         words
+    }
+}
+
+/// The normal of a face that looks up, its length 1; for an upright one straight up, and how much higher than its first corner
+/// the level is at which it counts as above.
+pub(super) fn upward(corners: &[DVec3; 3]) -> (DVec3, f64) {
+    let [a, b, c] = *corners;
+    match (b - a).cross(c - a).try_normalize() {
+        Some(n) if n.z.abs() > 1e-12 => (if n.z < 0.0 { -n } else { n }, 0.0),
+        _ => (DVec3::Z, (a.z + b.z + c.z) / 3.0 - a.z),
     }
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use crate::geom::{
-    shape::{ShapeError, solid::Solid},
-    triangulate::{Refusal, Triangulator},
+    shape::{error::ShapeError, solid::Solid},
+    triangulate::Triangulator,
 };
 
 /// A picture of yes and no; rows from north to south.
@@ -144,17 +144,4 @@ fn rectangles(across: i64, along: i64, value: impl Fn(i64, i64) -> i32) -> Vec<(
         open = next;
     }
     done
-}
-
-/// Why a polygon was refused, in words.
-pub(in crate::geom::shape) fn words_for(refusal: &Refusal) -> &'static str {
-    match refusal {
-        Refusal::ShortRing => "a ring needs at least 3 points that differ",
-        Refusal::ZeroArea => "the polygon has no area: all its points are on one line",
-        Refusal::SelfCrossing => {
-            "the polygon crosses itself, or a hole crosses its border: order the points along the border"
-        }
-        Refusal::AreaMismatch => "the holes must lie inside of the polygon and not overlap",
-        Refusal::TooLarge => "the polygon is too large",
-    }
 }

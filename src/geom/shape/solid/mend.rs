@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use crate::geom::Aabb;
+use crate::geom::aabb::Aabb;
 
 /// The faces of a body with holes closed and turned so that they look outwards, and how many faces closed holes. Points that
 /// are equal are one; faces without three different corners are left out.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geom::{Aabb, meets::nearest_to_origin, shape::Solid};
+use crate::geom::{aabb::Aabb, shape::solid::Solid, triangle::nearest_to_origin};
 
 /// Cells of a grid, at most.
 const MOST_CELLS: f64 = 262_144.0;

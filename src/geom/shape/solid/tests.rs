@@ -327,6 +327,8 @@ fn wrong_polygons_are_refused_in_words() {
 }
 
 proptest! {
+    #![proptest_config(crate::seeds::config())]
+
     #[test]
     fn a_mask_holds_its_cells(bits in prop::collection::vec(any::<bool>(), 3 * 7 * 5), turn in 0..3_usize) {
         let layers: Vec<Bitmap> = bits.chunks(35).map(|b| Bitmap { size: [7, 5], bits: b.to_vec() }).collect();
@@ -376,7 +378,7 @@ proptest! {
         let at = DVec3::new(4e5, -3e5, 120.0);
         let placed = PlacedSolid { solid: solid.clone(), rotation, at };
         let p = DVec3::from(p);
-        let volume = crate::geom::Volume::Solid(placed.clone());
+        let volume = crate::geom::shape::volume::Volume::Solid(placed.clone());
         prop_assume!(solid.distance(p) > 1e-3);
         prop_assert_eq!(volume.contains(placed.world(p)), solid.winding(p) != 0);
         prop_assert!((volume.signed_distance(placed.world(p)).abs() - solid.distance(p)).abs() < 1e-6);

@@ -1,0 +1,124 @@
+//! The lens: shapes, effects and all else that is said of it.
+
+use crate::{
+    geom::Shape,
+    lens::{
+        best_view::BestView, body::LensBody, border::Border, class::Class, content::Content, deform::Deform,
+        effect_use::EffectUse, focus::Focus, kind::LensKind, occluders::Occluders, placement::Placement,
+        rendering::Rendering, sprite::LensSprite,
+    },
+};
+
+/// A lens (L1).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lens {
+    /// Its name, unique.
+    pub name: String,
+    /// What kind of lens it is.
+    pub kind: LensKind,
+    /// `false`: keeps its place and its mask bit, acts on nothing.
+    pub enabled: bool,
+    /// Its own colour, sRGB 0..1: outline, legend, halo.
+    pub color: [f32; 3],
+    /// What its shapes are fixed to (L2).
+    pub placement: Placement,
+    /// Its focus areas: inside where any of them is (L1).
+    pub shapes: Vec<Focus>,
+    /// How the occluders of an occlusion lens are drawn (O3).
+    pub render: Option<Rendering>,
+    /// What it does, in order (K1: at most one scene style), after what it is drawn by.
+    pub effects: Vec<EffectUse>,
+    /// What its overlay shows, if it has one (B1 to B5).
+    pub best_view: Option<BestView>,
+    /// What it does with space, if it is a deformation lens (D1).
+    pub deform: Option<Deform>,
+    /// What it shows in place of what is below it (C6); `None`: it acts on that.
+    pub content: Option<Content>,
+    /// How the lens body itself is drawn (L5).
+    pub body: LensBody,
+    /// The volumetric depth sprite that it is tested by; `None`: from its shapes (S7).
+    pub sprite: Option<LensSprite>,
+    /// How it ends (L9); `None`: at once.
+    pub border: Option<Border>,
+    /// Whether what it takes away, sees through or replaces still casts the shadow that it has without the lens.
+    pub keeps_shadows: bool,
+    /// Whether its focus area is of the city at rest and goes with what deformations move, or stands where it is (L10).
+    pub at_rest: bool,
+    /// The colour, sRGB 0..1, of the sections through closed shells where it ends; `None`: what is cut is hollow.
+    pub section: Option<[f32; 3]>,
+}
+
+impl Lens {
+    /// A lens without shapes and without effects, its body as lenses of its kind have it.
+    pub fn plain(name: impl Into<String>, kind: LensKind, color: [f32; 3]) -> Self {
+        Self {
+            name: name.into(),
+            kind,
+            enabled: true,
+            color,
+            placement: Placement::World,
+            shapes: Vec::new(),
+            render: None,
+            effects: Vec::new(),
+            best_view: None,
+            deform: None,
+            content: None,
+            body: LensBody::of_kind(kind),
+            sprite: None,
+            border: None,
+            keeps_shadows: false,
+            at_rest: false,
+            section: None,
+        }
+    }
+
+    /// Its border, if it has a width.
+    pub fn soft_border(&self) -> Option<Border> {
+        self.border.filter(|b| b.width > 0.0)
+    }
+
+    /// Whether some of its shapes are depth sprites of files (S8).
+    pub fn has_sprite_file(&self) -> bool {
+        self.shapes.iter().any(|s| s.any(&|f| matches!(f, Focus::Sprite { .. })))
+    }
+
+    /// How its body is drawn: lenses by object have no surface, and a flat one has no silhouette that a ray comes close to; they
+    /// show a line instead.
+    pub fn drawn_body(&self) -> LensBody {
+        let is_in = |is_one: &dyn Fn(&Focus) -> bool| self.shapes.iter().any(|s| s.any(is_one));
+        let is_by_object = || is_in(&Focus::is_by_object);
+        let is_flat = || is_in(&|f| matches!(f, Focus::Shape(Shape::Flat { .. })));
+        match self.body {
+            LensBody::Shell if is_by_object() => LensBody::Outline,
+            LensBody::Halo if self.sprite.is_some() || is_by_object() || is_flat() || self.has_sprite_file() => {
+                LensBody::Outline
+            }
+            body => body,
+        }
+    }
+}
+
+impl Lens {
+    /// The classes it acts on, of what it does and shows.
+    pub fn classes(&self) -> impl Iterator<Item = Class> {
+        self.uses().map(|e| e.class).chain(self.shown().map(|c| c.class))
+    }
+
+    /// What it shows in itself: its own content, or what it shows occluders as; of several cases the first that shows something.
+    pub fn shown(&self) -> Option<&Content> {
+        let cases = || self.render.iter().flat_map(|render| &render.cases);
+        self.content.as_ref().or_else(|| cases().find_map(|case| case.content.as_ref()))
+    }
+
+    /// What it does, in order: how it draws occluders, then its effects.
+    pub fn uses(&self) -> impl Iterator<Item = &EffectUse> {
+        let cases = self.render.iter().flat_map(|render| &render.cases);
+        cases.flat_map(|case| &case.effects).chain(&self.effects)
+    }
+
+    /// Whom it looks for, if it is an occlusion lens.
+    pub fn occluders(&self) -> Option<&Occluders> {
+        let of_deform = || self.deform.as_ref().and_then(Deform::occluders);
+        self.shapes.first().and_then(Focus::occluders).or_else(of_deform)
+    }
+}

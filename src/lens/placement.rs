@@ -1,0 +1,16 @@
+//! What lenses are fixed to.
+
+/// What the shapes of a lens are fixed to, whose origin and axes their coordinates are of (L2); metres.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub enum Placement {
+    /// The world: model coordinates.
+    #[default]
+    World,
+    /// A city object, by its id: the middle of the axis-aligned box around the geometries of all its levels of detail and those
+    /// of all its parts; the world's axes.
+    Object(String),
+    /// A point of interest, by its name: its point, or its object as above; the world's axes.
+    Poi(String),
+    /// The camera: the eye; x to the right of the picture, y to its top, z out of it to whoever looks.
+    Camera,
+}
