@@ -27,7 +27,7 @@ mod studio;
 #[path = "data/walks.rs"]
 mod walks;
 
-use std::path::PathBuf;
+use std::{path::PathBuf, time::Instant};
 
 use libtest_mimic::{Arguments, Failed, Trial};
 
@@ -40,7 +40,17 @@ fn root() -> Option<PathBuf> {
 fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 'static) -> Trial {
     let root = root();
     let is_absent = root.is_none();
-    Trial::test(name, move || run(root.expect("the trial is ignored without the data"))).with_ignored_flag(is_absent)
+    let named = name.to_owned();
+    let timed = move || {
+        let started = Instant::now();
+        let result = run(root.expect("the trial is ignored without the data"));
+        // As the standard harness says it, for `./dev test --times`.
+        if std::env::var_os("VEDUTA_TIMES").is_some() {
+            println!("test data::{named} ... done <{:.3}s>", started.elapsed().as_secs_f64());
+        }
+        result
+    };
+    Trial::test(name, timed).with_ignored_flag(is_absent)
 }
 
 fn main() {

@@ -27,6 +27,7 @@ struct Varying {
 }
 
 fn placed(in: Vertex) -> Varying {
+    //@placed
     return Varying(clip_from_relative(city_relative(in.origin, in.position)), city_surface(in.surface) + 1u);
 }
 
@@ -34,6 +35,7 @@ struct Full {
     @location(0) code: vec2u,
     @location(1) color: vec4f,
     @location(2) own_depth: f32,
+    //@region-member
 }
 
 //@handlers
@@ -54,7 +56,7 @@ fn plain(in: Varying) -> @location(0) u32 {
 @fragment
 fn full(in: Varying) -> Full {
     cut(in.clip.xy, in.clip.z, in.code);
-    return Full(vec2u(in.code, 0u), vec4f(surface_at(in.code - 1u).color, 1.0), in.clip.z);
+    return Full(vec2u(in.code, 0u), vec4f(surface_at(in.code - 1u).color, 1.0), in.clip.z/*@region*/);
 }
 
 // ---- faces in a city where some have a normal per vertex
@@ -89,7 +91,7 @@ fn smooth_plain(in: SmoothVarying) -> @location(0) vec2u {
 fn smooth_full(in: SmoothVarying) -> Full {
     cut(in.clip.xy, in.clip.z, in.code);
     let code = vec2u(in.code, normal_code(in.normal, in.code));
-    return Full(code, vec4f(surface_at(in.code - 1u).color, 1.0), in.clip.z);
+    return Full(code, vec4f(surface_at(in.code - 1u).color, 1.0), in.clip.z/*@region*/);
 }
 
 // ---- textured surfaces
@@ -119,7 +121,7 @@ fn textured(in: TexturedVarying) -> Full {
     }
     cut(in.clip.xy, in.clip.z, in.code);
     let code = vec2u(in.code, select(0u, encode_normal(in.normal), SMOOTH));
-    return Full(code, vec4f(texel.rgb * surface_at(in.code - 1u).color, 1.0), in.clip.z);
+    return Full(code, vec4f(texel.rgb * surface_at(in.code - 1u).color, 1.0), in.clip.z/*@region*/);
 }
 
 // ---- faces of exactly one plane that overlap (hard case 3)
@@ -202,6 +204,7 @@ struct CoplanarFull {
     @location(0) code: vec2u,
     @location(1) color: vec4f,
     @location(2) own_depth: f32,
+    //@region-member
     @builtin(frag_depth) depth: f32,
 }
 
@@ -210,5 +213,5 @@ fn coplanar_full(in: CoplanarVarying) -> CoplanarFull {
     let depth = depth_on_plane(in);
     cut(in.clip.xy, depth, in.code);
     let color = vec4f(surface_at(in.code - 1u).color, 1.0);
-    return CoplanarFull(coplanar_code(in), color, in.clip.z, depth);
+    return CoplanarFull(coplanar_code(in), color, in.clip.z/*@region*/, depth);
 }

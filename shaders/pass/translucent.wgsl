@@ -10,7 +10,7 @@ const KEPT_PLANE_SHIFT: u32 = 27u;
 const MOST_KEPT_IN_PLANE: u32 = 31u;
 const KEPT_ALONE: u32 = 0xf8000000u;    // in its plane: as the lowest
 
-@group(0) @binding(3) var opaque_depth: texture_depth_2d;
+//@opaque-depth
 
 fn own_color(code: u32) -> u32 {
     if TEXTURED {
@@ -55,10 +55,6 @@ fn vertex_in_plane(in: Vertex, plane: Plane, @builtin(instance_index) layer: u32
 fn lay_coplanar(in: CoplanarVarying) -> Laid {
     let depth = depth_on_plane(in);
     //@behind-plane
-    if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) > depth {
-        discard;
-    }
-    //@end
     let code = in.code & KEPT_CODE;
     let normal = select(0u, normal_code(in.normal, code), SMOOTH);
     return lay(in.clip.xy, depth, code, in.code & ~KEPT_CODE, normal, own_color(code));

@@ -48,34 +48,36 @@ pub(super) fn specialised(
     text + "    return shown;\n}\n\n"
 }
 
-/// The same from the invoker table; `runs` says whether an invoker runs there.
+/// The same from the invoker table; `runs` says whether an invoker, `by`, runs there. `handler` of an invoker is the city's number, `kind`
+/// that of the clip, `weight` 1 where terrain stays.
 pub(super) fn uber(place: &str, runs: &str) -> String {
-    SHOWN.replace("PLACE", place).replace("runs(by)", runs)
-}
-
-/// `handler` of an invoker is the city's number, `kind` that of the clip, `weight` 1 where terrain stays.
-const SHOWN: &str = "fn shown_cities(PLACE) -> u32 {
+    format!(
+        "fn shown_cities({place}) -> u32 {{
     var shown = 1u;
     var below = 0u;
-    for (var i = table.tiles.y; i < table.tiles.z; i++) {
+    for (var i = table.tiles.y; i < table.tiles.z; i++) {{
         let by = invoker(i);
-        if (by.weight == 0u || fragment.part != PART_TERRAIN) && runs(by) {
+        if (by.weight == 0u || fragment.part != PART_TERRAIN) && {runs} {{
             let own = 1u << by.handler;
-            switch by.kind {
-                case 0u: { shown = own; }
-                case 1u: { shown |= own; }
-                default: { shown = select(0u, own, (below & ~own) == 0u); }
-            }
+            switch by.kind {{
+                case 0u: {{ shown = own; }}
+                case 1u: {{ shown |= own; }}
+                default: {{ shown = select(0u, own, (below & ~own) == 0u); }}
+            }}
             below |= own;
-        }
-        if i + 1u == table.tiles.z {
+        }}
+        if i + 1u == table.tiles.z {{
             break;
-        }
-    }
+        }}
+    }}
     return shown;
+}}
+
+"
+    )
 }
 
-";
-
-/// What a fragment is asked first.
-pub(super) const IS_SHOWN: &str = "(shown_cities(PLACE) >> fragment.city & 1u) == 1u";
+/// Whether what is drawn shows at a place, with these arguments of `shown_cities`: what a fragment is asked first.
+pub(super) fn is_shown(place: &str) -> String {
+    format!("(shown_cities({place}) >> fragment.city & 1u) == 1u")
+}

@@ -4,7 +4,10 @@
 
 use std::sync::{LazyLock, RwLock};
 
-use crate::shader::effect_file::{self, FileError};
+use crate::shader::{
+    effect_file::{self, FileError},
+    wgsl::token::identifier,
+};
 
 macro_rules! built_in {
     ($name:literal) => {
@@ -309,6 +312,8 @@ pub struct EffectDefinition {
     pub is_users: bool,
     /// It looks at what it takes first, so it cannot stand in for what is below it.
     pub reads_below: bool,
+    /// It calls `most_layers`: how many layers the pixel has that has most, which somebody must count first.
+    pub asks_most_layers: bool,
     /// The WGSL of its functions, names qualified; that of its parameters first.
     pub source: String,
     /// Where the WGSL of its parameters ends in it.
@@ -318,7 +323,7 @@ pub struct EffectDefinition {
 impl EffectDefinition {
     /// Its name as WGSL has it: what all its names begin with.
     pub fn wgsl_name(&self) -> String {
-        let name = self.name.replace('-', "_");
+        let name = identifier(&self.name);
         // Whatever a user calls an effect, nothing of the program is called so.
         if self.is_users { format!("user_{name}") } else { name }
     }

@@ -31,7 +31,11 @@ use crate::shader::{
         DefaultValue, EffectDefinition, EffectKind, Fallback, MAX_RAMP, Mode, ParameterDefinition, ParameterKind,
         PerObject,
     },
-    wgsl::{self, Declaration, Renamed, Token, TokenKind},
+    wgsl::{
+        function::calls,
+        rename::Renamed,
+        token::{self, Declaration, Token, TokenKind, identifier},
+    },
 };
 
 /// Lines of a user's file: more than any effect needs, few enough to compile in no time.
@@ -130,7 +134,7 @@ struct File<'a> {
 
 impl File<'_> {
     fn error(&self, at: usize, message: impl Into<String>) -> FileError {
-        let (line, column) = wgsl::line_and_column(self.text, at);
+        let (line, column) = token::line_and_column(self.text, at);
         FileError { path: self.path.to_owned(), line, column, message: message.into() }
     }
 
@@ -185,6 +189,7 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
         lines: header.lines,
         is_users,
         reads_below: false,
+        asks_most_layers: false,
         source: String::new(),
         parameters_end: 0,
     };
@@ -226,8 +231,8 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
         );
         return Err(file.error(0, message));
     }
-    let tokens = wgsl::tokens(text);
-    let declared = wgsl::declarations(text, &tokens);
+    let tokens = token::tokens(text);
+    let declared = token::declarations(text, &tokens);
     if let Some(bad) = declared.iter().find(|d| matches!(d.keyword, "var" | "override")) {
         let message = format!("an effect keeps nothing between pixels: no {} at the top of a file", bad.keyword);
         return Err(file.error(bad.span.start, message));
@@ -244,6 +249,7 @@ fn read_with_names(path: &str, text: &str, is_users: bool) -> Result<(EffectDefi
         return Err(file.error(token.span.start, message));
     }
     effect.reads_below = reads_first_argument(text, &tokens, main);
+    effect.asks_most_layers = calls(text, "most_layers") && !declared.iter().any(|d| d.name == "most_layers");
     let renamed = qualified(&effect, text, &tokens, &declared);
     effect.source = parameters_source(&effect);
     effect.parameters_end = effect.source.len();
@@ -306,7 +312,7 @@ fn word_constants(effect: &EffectDefinition) -> impl Iterator<Item = (String, us
     let of = |p: &ParameterDefinition| {
         let words = if let ParameterKind::Word(words) = &p.kind { words.clone() } else { Vec::new() };
         let parameter = p.name.to_uppercase();
-        let name = move |word: &str| format!("{parameter}_{}", word.to_uppercase().replace('-', "_"));
+        let name = move |word: &str| format!("{parameter}_{}", identifier(&word.to_uppercase()));
         words.into_iter().enumerate().map(move |(i, word)| (name(&word), i)).collect::<Vec<_>>()
     };
     effect.shader_parameters().flat_map(move |(p, ..)| of(p)).collect::<Vec<_>>().into_iter()
@@ -461,19 +467,20 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         _ => Module::Shade(Program::Specialised(Plan { steps, ..Plan::default() })),
     };
     let source = module.source_with(std::slice::from_ref(&effect));
-    let body = body_of(&renamed.text);
-    let begin = source.find(body).unwrap_or(0);
-    let before = renamed.text.len() - body.len();
+    let body = body_of(&renamed.text).trim_end();
+    let Some(own) = source.find(effect.source.trim_end()) else { unreachable!("a module without its only effect") };
+    let begin = own + effect.parameters_end;
+    let before = renamed.text.len() - body_of(&renamed.text).len();
     let place = |at: Option<usize>| match at {
         Some(at) if (begin..=begin + body.len()).contains(&at) => renamed.original(at - begin + before),
         // Beside the file: where it is called. Its signature is not what the caller expects.
-        _ => wgsl::declarations(text, &wgsl::tokens(text))
+        _ => token::declarations(text, &token::tokens(text))
             .iter()
             .find(|d| d.name == "effect")
             .map_or(0, |d| d.span.start),
     };
     let prefix = effect.own("");
-    // Beside the file is the call: then the signature is wrong, whatever the parser makes of it.
+    // Names in a message are the author's. Beside the file is the call: then the signature is wrong, whatever the parser makes of it.
     let own = |at: Option<usize>, message: String| match at {
         Some(at) if (begin..=begin + body.len()).contains(&at) => message.replace(&prefix, ""),
         _ => format!("expected `{}`", signature(&effect)),
@@ -529,7 +536,7 @@ fn in_words(error: &dyn std::error::Error) -> String {
 /// Refuses what may never end, or leave a hole: `loop`, `while`, `discard`, and `for` but for
 /// `for (var i = NUMBER; i < NUMBER; i++)` whose body leaves `i` alone.
 fn check_control_flow(file: &File) -> Result<(), FileError> {
-    let tokens = wgsl::tokens(file.text);
+    let tokens = token::tokens(file.text);
     let word = |i: usize| tokens.get(i).map_or("", |t: &Token| &file.text[t.span.clone()]);
     for (i, token) in tokens.iter().enumerate().filter(|(_, t)| t.kind == TokenKind::Word) {
         let error = |message: &str| Err(file.error(token.span.start, message));
@@ -592,8 +599,8 @@ fn is_bounded<'a>(tokens: &[Token], i: usize, word: &impl Fn(usize) -> &'a str) 
 
 /// Refuses what ends, but not in anybody's lifetime: loops in loops, and functions that call the next one twice.
 fn check_cost(file: &File) -> Result<(), FileError> {
-    let tokens = wgsl::tokens(file.text);
-    let declared = wgsl::declarations(file.text, &tokens);
+    let tokens = token::tokens(file.text);
+    let declared = token::declarations(file.text, &tokens);
     let mut costs = Costs { file, tokens: &tokens, declared: &declared, known: Vec::new() };
     for declaration in declared.iter().filter(|d| d.keyword == "fn") {
         if costs.of(declaration.name, 0).is_none_or(|cost| cost > MOST_STEPS) {

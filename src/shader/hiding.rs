@@ -5,12 +5,12 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    contents::{self, IS_SHOWN},
+    contents,
     effect::{EffectDefinition, EffectKind},
     lens_test,
+    names::one_line,
     plan::{Plan, Program, Scope, Uber},
     regions,
-    specialised::one_line,
     uber::{MOST_SLOTS, SHARE_OF, TABLE_SOURCE},
 };
 
@@ -21,6 +21,8 @@ pub(super) enum Eye {
     Picture,
     /// The picture's, for what is translucent.
     Layers,
+    /// The same, in a module that shades fragments where they are drawn.
+    Fragments,
     /// The sun's: of a place that the picture may not show, the shapes alone say where it is.
     Sun,
 }
@@ -39,7 +41,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
     }
     match eye {
-        Eye::Picture | Eye::Layers => text.push_str(&lens_test::bindings(program, false)),
+        Eye::Picture | Eye::Layers | Eye::Fragments => text.push_str(&lens_test::bindings(program, false)),
         Eye::Sun if !program.has().lenses => {}
         Eye::Sun => {
             text.push_str(
@@ -58,7 +60,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         let source = if effect.kind == EffectKind::Opacity { effect.parameters_source() } else { &effect.source };
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, source.trim_end());
     }
-    let is_layers = eye == Eye::Layers;
+    let is_layers = matches!(eye, Eye::Layers | Eye::Fragments);
     match program {
         Program::Specialised(plan) => {
             text.push_str("// ==== this scene\n\n");
@@ -72,21 +74,22 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
 /// Where vertices stand.
 fn cities(program: &Program, eye: Eye) -> String {
     match (eye, program.has().contents) {
-        (Eye::Picture | Eye::Layers, false) => String::new(),
+        (Eye::Picture | Eye::Layers | Eye::Fragments, false) => String::new(),
         (Eye::Picture | Eye::Layers, true) => contents::binding(1, 3, "city"),
-        (Eye::Sun, false) => RELATIVE.replace("PLACED", "(vec3f(whole - eye.eye_whole) - eye.eye_fraction) + offset"),
+        // Group 1 is that of shading.
+        (Eye::Fragments, true) => contents::binding(0, 5, "city"),
+        (Eye::Sun, false) => relative_to_main_eye("(vec3f(whole - eye.eye_whole) - eye.eye_fraction) + offset"),
         (Eye::Sun, true) => {
             let both = contents::binding(1, 3, "city") + &contents::binding(1, 4, "main_city");
-            both + &RELATIVE.replace("PLACED", "placed_by(main_city, whole, offset)")
+            both + &relative_to_main_eye("placed_by(main_city, whole, offset)")
         }
     }
 }
 
-const RELATIVE: &str = "
-fn relative_to_main_eye(whole: vec3i, offset: vec3f) -> vec3f {
-    return PLACED;
+/// Where a place of a city stands, from the eye of the picture.
+fn relative_to_main_eye(placed: &str) -> String {
+    format!("\nfn relative_to_main_eye(whole: vec3i, offset: vec3f) -> vec3f {{\n    return {placed};\n}}\n")
 }
-";
 
 /// `visible`, or `is_layer`, begins with this.
 fn head(has_contents: bool, is_layers: bool) -> String {
@@ -94,9 +97,7 @@ fn head(has_contents: bool, is_layers: bool) -> String {
     let head = format!("fn {name}(fragment: Fragment) -> bool {{\n");
     match has_contents {
         false => head,
-        true => {
-            format!("{head}    if !({}) {{\n        return false;\n    }}\n", IS_SHOWN.replace("PLACE", "fragment"))
-        }
+        true => format!("{head}    if !({}) {{\n        return false;\n    }}\n", contents::is_shown("fragment")),
     }
 }
 

@@ -199,14 +199,14 @@ fn by_number(tests: &[VolumeTest], question: Question, place: &str) -> String {
 
 /// `leaf_holds` and `span_of_leaf`, for leaves of combinations of these kinds.
 pub(super) fn leaves(kinds: &[VolumeTest]) -> String {
-    let of = |head: &str, end: &str, answer: &dyn Fn(VolumeTest) -> String| {
+    let of = |head: &str, kind: &str, end: &str, answer: &dyn Fn(VolumeTest) -> String| {
         let mut text = format!("fn {head} {{\n");
         match kinds {
             [only] => {
                 let _ = writeln!(text, "    return {};", answer(*only));
             }
             _ => {
-                text.push_str("    switch kind {\n");
+                let _ = writeln!(text, "    switch {kind} {{");
                 for kind in kinds {
                     let _ = writeln!(text, "        case {}: {{ return {}; }}", kind.constant(), answer(*kind));
                 }
@@ -228,9 +228,8 @@ pub(super) fn leaves(kinds: &[VolumeTest]) -> String {
         VolumeTest::Members | VolumeTest::FadingMembers => "span_of_shape(ray, s, BOX)".to_owned(),
         _ => format!("span_of_shape(ray, s, {})", kind.constant()),
     };
-    let holds = of("leaf_holds(leaf: Leaf, place: Sight) -> bool", "false", &holds);
-    let spans = of("span_of_leaf(ray: Ray, s: Shape) -> Span", "EMPTY_SPAN", &span);
-    holds.replace("switch kind", "switch leaf.shape.kind") + &spans.replace("switch kind", "switch s.kind")
+    let holds = of("leaf_holds(leaf: Leaf, place: Sight) -> bool", "leaf.shape.kind", "false", &holds);
+    holds + &of("span_of_leaf(ray: Ray, s: Shape) -> Span", "s.kind", "EMPTY_SPAN", &span)
 }
 
 /// `distance_to_leaf`, for leaves of combinations of these kinds.

@@ -7,18 +7,18 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    contents::{self, IS_SHOWN},
+    contents,
     effect::{EffectDefinition, EffectKind},
     lens_test,
     plan::{Program, Scope, Step, Uber},
     specialised::Writer,
-    uber::{self, MOST_SLOTS, TABLE_SOURCE},
+    uber::{self, MOST_SLOTS, TABLE_SOURCE, fades},
 };
 
 /// `line_at` and what it calls. `names` of a plan's lenses become comments.
 pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str]) -> String {
     let mut text = match program {
-        Program::Specialised(plan) => Writer { plan, handlers, names }.bindings(false),
+        Program::Specialised(plan) => Writer { plan, handlers, names }.bindings(0, false),
         Program::Uber(_) => {
             let tests = lens_test::bindings(program, false);
             format!("@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;\n{tests}\n")
@@ -53,7 +53,7 @@ const PLACE: &str = "fragment: Fragment, classes: Classes";
 
 /// A line of a city that does not show at its place.
 fn gone() -> String {
-    format!("    if !({}) {{\n        opacity = 0.0;\n    }}\n", IS_SHOWN.replace("PLACE", "fragment, classes"))
+    format!("    if !({}) {{\n        opacity = 0.0;\n    }}\n", contents::is_shown("fragment, classes"))
 }
 
 fn parameters(handler: &EffectDefinition, first: &str) -> String {
@@ -160,54 +160,58 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
         h.lines.then(|| format!("{}(by.parameters).line_color", h.own("parameters")))
     }));
     let has_posts = uber.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Post);
-    let styled = if has_posts { "color = invoke_style(color, point, by);" } else { "" };
-    let fades = uber.borders && !uber.tests.is_empty();
+    let share = uber::share_argument(uber);
+    let styled = if has_posts { format!("color = invoke_style(color, point, by{share});") } else { String::new() };
     let gone = if uber.contents { gone() } else { String::new() };
-    let loops = LINE_AT.replace("STYLED", styled).replace("    GONE\n", &gone);
-    text.push_str(&uber::faded(uber, &loops));
+    text.push_str(&line_at(&styled, &gone));
     if uber.contents {
         text.push_str(&contents::uber(
             PLACE,
-            if fades { "is_there(by, fragment, classes)" } else { "runs(by, classes)" },
+            if fades(uber) { "is_there(by, fragment, classes)" } else { "runs(by, classes)" },
         ));
     }
-    text.push_str(&if fades { [LINE_SHARE_FADED, IS_THERE].concat() } else { LINE_SHARE.to_owned() });
+    text.push_str(&if fades(uber) { [LINE_SHARE_FADED, IS_THERE].concat() } else { LINE_SHARE.to_owned() });
     text.push_str(LINE_KINDS);
 }
 
+/// How a line looks. `styled`: what post styles do; `gone`: what a city does that does not show there.
+///
 /// `by.kind` says what an invoker is to lines: as `render::operations` writes it. No round ends early: what pixels that go different
 /// ways leave behind then, Mesa 22.3 gets wrong.
-const LINE_AT: &str = "fn line_at(step: u32, point: Point, fragment: Fragment, other: Fragment, classes: Classes) -> vec4f {
+fn line_at(styled: &str, gone: &str) -> String {
+    format!(
+        "fn line_at(step: u32, point: Point, fragment: Fragment, other: Fragment, classes: Classes) -> vec4f {{
     var color = vec3f(0.0);
     var opacity = 0.0;
     var is_hidden = false;
     let range = table.ranges.zw;
     let drawing = invoker(range.x + step);
-    for (var i = range.x; i < range.y; i++) {
+    for (var i = range.x; i < range.y; i++) {{
         let by = invoker(i);
         let share = line_share(by, fragment, classes);
         let is_meant = share > 0.0;
-        if is_meant && by.kind == POST {
-            STYLED
-        }
-        if is_meant && (by.kind == SCENE || by.kind == SCENE_WITH_LINES) && drawing.kind == SCENE_WITH_LINES {
+        if is_meant && by.kind == POST {{
+            {styled}
+        }}
+        if is_meant && (by.kind == SCENE || by.kind == SCENE_WITH_LINES) && drawing.kind == SCENE_WITH_LINES {{
             opacity = select(opacity * (1.0 - share), 0.0, by.border == 0u);
-        }
+        }}
         is_hidden |= is_meant && by.kind == HIDE && hides(fragment, by) && hides(other, by);
         let draws = by.kind == SCENE_WITH_LINES || (by.kind == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
-        if is_meant && draws && i == range.x + step {
+        if is_meant && draws && i == range.x + step {{
             color = line_color(by);
             opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u) * share;
-        }
-        if i + 1u == range.y {
+        }}
+        if i + 1u == range.y {{
             break;
-        }
-    }
-    GONE
-    return vec4f(color, select(opacity, 0.0, is_hidden));
-}
+        }}
+    }}
+{gone}    return vec4f(color, select(opacity, 0.0, is_hidden));
+}}
 
-";
+"
+    )
+}
 
 /// How much of an invoker a line has.
 const LINE_SHARE: &str = "fn line_share(by: Invoker, fragment: Fragment, classes: Classes) -> f32 {

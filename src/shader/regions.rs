@@ -6,8 +6,9 @@ use std::fmt::Write as _;
 use crate::shader::{
     effect::EffectDefinition,
     lens_test,
+    names::one_line,
     plan::{ClassTest, Plan, Program, Scope},
-    specialised::{Writer, one_line},
+    specialised::Writer,
 };
 
 /// How places are told apart, and by which numbers. What no lens acts on is region 0.
@@ -152,19 +153,23 @@ pub(super) fn branches(plan: &Plan, regions: &Regions, handlers: &[EffectDefinit
     for region in 0..count {
         let own = plan.of_region(region);
         let writer = Writer { plan: &own, handlers, names: &[] };
-        let shade = writer.shade().replace("fn shade(", &format!("fn shade_{region}("));
-        text.push_str(&writer.styled().replace("fn styled(", &format!("fn styled_{region}(")));
-        text.push_str(&shade.replace("return styled(", &format!("return styled_{region}(")));
+        let suffix = format!("_{region}");
+        text.push_str(&writer.styled(&suffix));
+        text.push_str(&writer.shade(&suffix));
     }
-    let mut switch = |head: &str, call: &str| {
+    let mut switch = |head: &str, call: &dyn Fn(u32) -> String| {
         let _ = writeln!(text, "{head}\n    switch region_of(classes) {{");
         for region in 1..count {
-            let _ = writeln!(text, "        case {region}u: {{ return {}; }}", call.replace('#', &region.to_string()));
+            let _ = writeln!(text, "        case {region}u: {{ return {}; }}", call(region));
         }
-        let _ = writeln!(text, "        default: {{ return {}; }}\n    }}\n}}\n", call.replace('#', "0"));
+        let _ = writeln!(text, "        default: {{ return {}; }}\n    }}\n}}\n", call(0));
     };
-    switch("fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {", "shade_#(point, classes)");
-    switch("fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {", "styled_#(start, point, classes)");
+    switch("fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {", &|region| {
+        format!("shade_{region}(point, classes)")
+    });
+    switch("fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {", &|region| {
+        format!("styled_{region}(start, point, classes)")
+    });
     text
 }
 
@@ -194,21 +199,6 @@ fn visible(fragment: Fragment) -> bool {
 /// `region_at` and what it calls, for the pass that marks regions.
 pub(super) fn marks(plan: &Plan, regions: &Regions, names: &[&str]) -> String {
     lens_test::bindings(&Program::Specialised(plan.clone()), false) + "\n" + &region_at(plan, regions, names)
-}
-
-/// What the geometry pass' text gets so that it writes down the region too, and how often.
-const WRITTEN: [(&str, &str, usize); 3] = [
-    ("    @location(2) own_depth: f32,\n", "    @location(2) own_depth: f32,\n    @location(3) region: u32,\n", 2),
-    (", 1.0), in.clip.z);", ", 1.0), in.clip.z, drawn.x);", 3),
-    ("color, in.clip.z, depth);", "color, in.clip.z, drawn.x, depth);", 1),
-];
-
-/// The geometry pass with one output more: the number of the region.
-pub(super) fn geometry(text: &str) -> String {
-    WRITTEN.iter().fold(text.to_owned(), |text, (from, to, times)| {
-        debug_assert_eq!(text.matches(from).count(), *times, "{from}");
-        text.replace(from, to)
-    })
 }
 
 #[cfg(test)]

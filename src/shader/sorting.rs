@@ -4,6 +4,8 @@
 
 use std::fmt::Write;
 
+use crate::shader::template::Template;
+
 /// How many notes are nearest at a time; a power of two.
 const KEPT: usize = 16;
 /// How many notes of the list are taken at a time; at most [`KEPT`].
@@ -76,12 +78,12 @@ fn pick(indent: &str) -> String {
     text
 }
 
-/// The text of `pass/composite.wgsl` with all that is said of each kept note.
-pub(super) fn written_out(text: &str) -> String {
-    text.replace("//@kept\n", &format!("const KEPT: u32 = {KEPT}u;\n"))
-        .replace("        //@first\n", &first("        "))
-        .replace("            //@more\n", &more("            "))
-        .replace("            //@pick\n", &pick("            "))
+/// Fills the hooks of `pass/composite.wgsl` with all that is said of each kept note.
+pub(super) fn filled(text: Template) -> Template {
+    text.fill("kept", format!("const KEPT: u32 = {KEPT}u;\n"))
+        .fill("first", first("        "))
+        .fill("more", more("            "))
+        .fill("pick", pick("            "))
 }
 
 #[cfg(test)]

@@ -3,18 +3,22 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    HALO, SHELL, SILHOUETTE,
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
+    library::{File, HALO, SHELL, SILHOUETTE},
+    masks,
+    names::one_line,
     plan::{BodyKind, ClassTest, Plan, PlanBody, Program, Scope, Step},
     regions,
+    shading::Shading,
+    wgsl::function::bound,
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`. `names` of the plan's lenses
-/// become comments. `is_carried`: whether uniforms are carried to fragments.
-pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str], is_carried: bool) -> String {
+/// become comments.
+pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str], shading: &Shading) -> String {
     let writer = Writer { plan, handlers, names };
-    let mut text = writer.bindings(is_carried);
+    let mut text = writer.bindings(shading.slots, shading.room.is_some());
     for effect in writer.used() {
         let _ = write!(text, "// ==== effect {}\n\n{}\n", effect.name, effect.source.trim_end());
         text.push('\n');
@@ -23,13 +27,13 @@ pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str],
     text.push_str(&writer.classes());
     match &plan.regions {
         None => {
-            text.push_str(&writer.shade());
-            text.push_str(&writer.styled());
+            text.push_str(&writer.shade(""));
+            text.push_str(&writer.styled(""));
         }
         Some(regions) => text.push_str(&regions::branches(plan, regions, handlers)),
     }
     text.push_str(&writer.outlines());
-    text.push_str(&writer.write_classes());
+    text.push_str(&writer.write_classes(shading.is_of_surfaces));
     text
 }
 
@@ -45,16 +49,17 @@ pub(super) struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// The uniforms that are read, as [`lens_test::bindings`].
-    pub(super) fn bindings(&self, carried: bool) -> String {
+    /// The uniforms that are read, as [`lens_test::bindings`]; other parts of the module read so many `vec4f` of the parameters.
+    pub(super) fn bindings(&self, others_slots: u32, carried: bool) -> String {
         let mut text = String::new();
         let slots = self.plan.slots(self.handlers);
         if slots > 0 {
+            let slots = slots.max(others_slots);
             text.push_str(&lens_test::uniform(2, "parameters", &format!("array<vec4f, {slots}>"), carried));
         }
         text.push_str(&lens_test::bindings(&Program::Specialised(self.plan.clone()), carried));
         if self.plan.masks {
-            text.push_str(MASKS);
+            text.push_str(masks::BINDING);
         }
         text.push('\n');
         text
@@ -184,9 +189,10 @@ impl Writer<'_> {
         self.plan.steps_of(kind, self.handlers).map(|(step, handler)| self.statement(step, handler)).collect()
     }
 
-    /// From the surface to its colour: material, light, the standard style and air, then the styles.
-    pub(super) fn shade(&self) -> String {
-        let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
+    /// From the surface to its colour: material, light, the standard style and air, then the styles. `suffix` of its name and of that of
+    /// `styled`.
+    pub(super) fn shade(&self, suffix: &str) -> String {
+        let mut text = format!("fn shade{suffix}(point: ptr<function, Point>, classes: Classes) -> vec3f {{\n");
         if self.has(EffectKind::Material) {
             text.push_str("    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);\n");
             text.push_str(&self.statements(EffectKind::Material));
@@ -211,7 +217,7 @@ impl Writer<'_> {
                 let _ = writeln!(text, "    color = {}(color, *point);", air.wgsl_name());
             }
         }
-        text.push_str("    return styled(color, *point, classes);\n}\n\n");
+        let _ = writeln!(text, "    return styled{suffix}(color, *point, classes);\n}}\n");
         text
     }
 
@@ -241,56 +247,22 @@ impl Writer<'_> {
     }
 
     /// Scene styles and post styles, in lens order: what replaces the colour leaves nothing of the styles below (C5).
-    pub(super) fn styled(&self) -> String {
+    pub(super) fn styled(&self, suffix: &str) -> String {
         let is_style = |(_, h): &(&Step, &EffectDefinition)| h.kind.is_style();
         let all = self.plan.steps.iter().map(|s| (s, &self.handlers[s.effect as usize])).filter(is_style);
         let lines: String = all.map(|(step, handler)| self.statement(step, handler)).collect();
-        let head = "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n";
+        let head = format!("fn styled{suffix}(start: vec3f, point: Point, classes: Classes) -> vec3f {{\n");
         match lines.is_empty() {
             true => format!("{head}    return start;\n}}\n\n"),
             false => format!("{head}    var color = start;\n{lines}    return color;\n}}\n\n"),
         }
     }
 
-    /// The lenses' bodies, and for these which lens covers a pixel, where a ray meets it, and how far a place is from it.
+    /// The lenses' bodies.
     fn outlines(&self) -> String {
-        let mut text = String::new();
         let bodies: Vec<(usize, PlanBody)> =
             self.plan.lenses.iter().enumerate().filter_map(|(i, l)| l.body.map(|body| (i, body))).collect();
-        // Each its own: a compiler takes its time over one that asks for the lens.
-        let mut add = |i: usize, source: &str, name: &str| {
-            let mut own = source.to_owned();
-            for question in ["covers", "distance", "ends", "normal"] {
-                own = own.replace(&format!("lens_{question}(lens, "), &format!("lens_{i}_{question}("));
-                own = own.replace(&format!("lens_{question}(lens: u32, "), &format!("lens_{i}_{question}("));
-            }
-            let _ = writeln!(text, "{}", own.replace(&format!("fn {name}(lens: u32, "), &format!("fn {name}_{i}(")));
-        };
-        for (i, body) in &bodies {
-            let (i, kind) = (*i, body.kind);
-            let covers = lens_test::covers(self.plan, i as u32, "pixel");
-            add(i, &format!("fn lens_covers(lens: u32, pixel: vec2i) -> bool {{\n    return {covers};\n}}\n"), "");
-            if kind.has_outline() {
-                add(i, SILHOUETTE.1, "silhouette");
-            }
-            if kind != BodyKind::Outline {
-                let distance = lens_test::distance_of(self.plan, i as u32, "vec4f(0.0)");
-                add(
-                    i,
-                    &format!("fn lens_distance(lens: u32, sight: Sight) -> f32 {{\n    return {distance};\n}}\n"),
-                    "",
-                );
-            }
-            if kind == BodyKind::Shell {
-                let ends = lens_test::ends_of(self.plan, i as u32);
-                let head = "fn lens_ends(lens: u32, pixel: vec2i, ray: Ray) -> Span {";
-                add(i, &format!("{head}\n    return {ends};\n}}\n"), "");
-                add(i, SHELL.1, "shell");
-            }
-            if kind == BodyKind::Halo {
-                add(i, HALO.1, "halo");
-            }
-        }
+        let mut text: String = bodies.iter().map(|(i, body)| self.body_functions(*i, body.kind)).collect();
         text.push_str("fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n");
         if bodies.is_empty() && !self.plan.lines && !self.plan.veils {
             text.push_str("    return start;\n}\n\n");
@@ -317,13 +289,46 @@ impl Writer<'_> {
         text
     }
 
+    /// What the body of a lens calls: which pixels it covers, where a ray meets it, how far a place is from it. Each lens has its own: a
+    /// compiler takes its time over a function that asks for the lens.
+    fn body_functions(&self, i: usize, kind: BodyKind) -> String {
+        let lens = i as u32;
+        let of_this = |name: &str| match name.strip_prefix("lens_") {
+            Some(question) => format!("lens_{i}_{question}"),
+            None => format!("{name}_{i}"),
+        };
+        let own = |file: &File, names: &[&'static str]| {
+            let names: Vec<_> = names.iter().map(|name| (*name, of_this(name))).collect();
+            file.changed(|text| bound(text, "lens", &names)) + "\n"
+        };
+        let answer = |head: &str, value: &str| format!("fn lens_{i}_{head} {{\n    return {value};\n}}\n\n");
+        let mut text = answer("covers(pixel: vec2i) -> bool", &lens_test::covers(self.plan, lens, "pixel"));
+        if kind.has_outline() {
+            text.push_str(&own(&SILHOUETTE, &["lens_covers", "silhouette"]));
+        }
+        if kind != BodyKind::Outline {
+            let distance = lens_test::distance_of(self.plan, lens, "vec4f(0.0)");
+            text.push_str(&answer("distance(sight: Sight) -> f32", &distance));
+        }
+        if kind == BodyKind::Shell {
+            text.push_str(&answer("ends(pixel: vec2i, ray: Ray) -> Span", &lens_test::ends_of(self.plan, lens)));
+            text.push_str(&own(&SHELL, &["lens_normal", "lens_distance", "lens_ends", "shell"]));
+        }
+        if kind == BodyKind::Halo {
+            text.push_str(&own(&HALO, &["lens_covers", "lens_distance", "halo"]));
+        }
+        text
+    }
+
     /// Writes the classes down, one bit per lens.
-    fn write_classes(&self) -> String {
+    fn write_classes(&self, is_of_surfaces: bool) -> String {
         let mut text = "fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n".to_owned();
         if self.plan.masks {
-            text.push_str(ONLY_SHOWN);
+            if is_of_surfaces {
+                text.push_str(masks::ONLY_SHOWN);
+            }
             if self.plan.veils {
-                text.push_str(NOT_THROUGH_LAYERS);
+                text.push_str(&masks::not_through_layers(""));
             }
             let mut words: Vec<u32> = self.plan.lenses.iter().map(|l| l.number / 32).collect();
             words.dedup();
@@ -360,20 +365,9 @@ pub(super) fn kernel(filter: &EffectDefinition) -> String {
     )
 }
 
-/// Where masks are written.
-pub(super) const MASKS: &str = "// Layers, per 32 lenses: inside, in front, behind.\n\
-    @group(2) @binding(4) var class_masks: texture_storage_2d_array<r32uint, write>;\n";
-
-/// A shader that stores may run before the depth test that chooses between surface and background.
-pub(super) const ONLY_SHOWN: &str = "    // This may run before the depth test that chooses between surface and background.\n    \
-    if (textureLoad(scene_depth, pixel, 0) > 0.0) != (point.surface != NO_SURFACE) {\n        return;\n    }\n";
-
 /// What stands over the shaded picture and below the bodies of lenses: lines of the city, and translucent layers over these.
 const WITH_LINES: &str = "    paint = with_lines(paint, pixel);\n";
 const WITH_VEIL: &str = "    paint = with_veil(paint, pixel);\n";
-
-/// What shows a layer has that one's classes.
-pub(super) const NOT_THROUGH_LAYERS: &str = "    if is_layer_shown(pixel) {\n        return;\n    }\n";
 
 /// The number that the uber back end knows a scope by: 0 is everywhere.
 pub fn scope_number(scope: Scope) -> u32 {
@@ -381,9 +375,4 @@ pub fn scope_number(scope: Scope) -> u32 {
         Scope::Everywhere => 0,
         Scope::Lens(_, class) => 1 + ClassTest::ALL.iter().position(|c| *c == class).unwrap_or(0) as u32,
     }
-}
-
-/// A text that cannot end the comment it stands in.
-pub(super) fn one_line(text: &str) -> String {
-    text.chars().take(60).map(|c| if c.is_control() || "\u{2028}\u{2029}".contains(c) { ' ' } else { c }).collect()
 }

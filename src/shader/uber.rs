@@ -4,11 +4,12 @@
 use std::{fmt::Write as _, sync::LazyLock};
 
 use crate::shader::{
-    HALO, SHELL, SILHOUETTE,
     effect::{EffectDefinition, EffectKind, Mode},
     lens_test,
+    library::{HALO, SHELL, SILHOUETTE},
+    masks,
     plan::{BodyKind, Program, Uber},
-    specialised::{MASKS, NOT_THROUGH_LAYERS, ONLY_SHOWN},
+    shading::Shading,
 };
 
 /// Side of the tiles that have lists of invokers, pixels.
@@ -19,12 +20,12 @@ pub const MOST_VOLUMES: u32 = 1024;
 pub const MOST_SLOTS: u32 = 4096;
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`.
-pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
+pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition], shading: &Shading) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;");
     text.push_str(&lens_test::bindings(&Program::Uber(uber.clone()), false));
     if uber.masks {
-        text.push_str(MASKS);
+        text.push_str(masks::BINDING);
     }
     text.push('\n');
     for (_, effect) in used(uber, handlers).filter(|(_, h)| h.kind != EffectKind::Filter) {
@@ -43,28 +44,26 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
         text.push_str(&(lens_test::volume_covers(&uber.tests) + LENS_COVERS));
     }
     if parts.outlines {
-        let _ = writeln!(text, "{}", SILHOUETTE.1);
+        let _ = writeln!(text, "{}", SILHOUETTE.text);
     }
     if parts.shells || parts.halos {
         text.push_str(LENS_DISTANCE);
     }
     if parts.shells {
         text.push_str(&lens_test::ends_of_volume(&uber.tests));
-        let _ = writeln!(text, "{LENS_ENDS}{}", SHELL.1);
+        let _ = writeln!(text, "{LENS_ENDS}{}", SHELL.text);
     }
     if parts.halos {
-        let _ = writeln!(text, "{}", HALO.1);
+        let _ = writeln!(text, "{}", HALO.text);
     }
-    let outlines = if parts.bodies { outlines_of(&uber.bodies) } else { NO_OUTLINES.to_owned() };
-    let plain = "    var paint = start;\n";
-    let over = [(uber.lines, WITH_LINES), (uber.veils, WITH_VEIL)];
-    let over: String = over.iter().filter(|(is_drawn, _)| *is_drawn).map(|(_, laid)| *laid).collect();
-    text.push_str(&outlines.replace(plain, &(plain.to_owned() + &over)));
+    text.push_str(&outlines(uber));
     text.push_str("fn write_classes(pixel: vec2i, point: Point, classes: Classes) {\n");
     if uber.masks && !uber.tests.is_empty() {
-        text.push_str(ONLY_SHOWN);
+        if shading.is_of_surfaces {
+            text.push_str(masks::ONLY_SHOWN);
+        }
         if uber.veils {
-            text.push_str(&NOT_THROUGH_LAYERS.replace("if ", "if table.tiles.w != 0u && "));
+            text.push_str(&masks::not_through_layers("table.tiles.w != 0u && "));
         }
         text.push_str(WRITE_CLASSES);
     }
@@ -76,7 +75,8 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition]) -> String {
 pub(super) fn opacity(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let mut text = invoke(uber, "opacity", &[EffectKind::Opacity], handlers);
     text.push_str("fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n");
-    text.push_str(&each(uber, "OPACITIES", "opacity = invoke_opacity(opacity, point, by);"));
+    let share = share_argument(uber);
+    text.push_str(&each(uber, "OPACITIES", &format!("opacity = invoke_opacity(opacity, point, by{share});\n")));
     text + "    return opacity;\n}\n"
 }
 
@@ -174,13 +174,13 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
 }
 
 /// Whether some of the scene's lenses may fade.
-fn fades(uber: &Uber) -> bool {
+pub(super) fn fades(uber: &Uber) -> bool {
     uber.borders && !uber.tests.is_empty()
 }
 
-/// Calls of what an invoker asks for; where lenses fade they say how much of it there is.
-pub(super) fn faded(uber: &Uber, text: &str) -> String {
-    if fades(uber) { text.replace("point, by);", "point, by, share);") } else { text.to_owned() }
+/// The last argument of calls of what an invoker asks for: where lenses fade they say how much of it there is.
+pub(super) fn share_argument(uber: &Uber) -> &'static str {
+    if fades(uber) { ", share" } else { "" }
 }
 
 /// A loop over the invokers of a section of the tile's list that run at a place, in their order; `body`: what is done with each, `by`.
@@ -190,53 +190,56 @@ pub(super) fn faded(uber: &Uber, text: &str) -> String {
 /// each has its `share`: how much is left over from asking, and of it Mesa 22.3 makes something else at some pixels. Loops here leave at
 /// the end of their last round: such an adapter goes through a whole round to find that there is none.
 fn each(uber: &Uber, section: &str, body: &str) -> String {
-    let loops = if fades(uber) { EACH_SHARE } else { EACH };
-    let indented: String = body.lines().map(|line| format!("{:1$}{line}\n", "", 12)).collect();
-    let text = loops.replace("SECTION", section).replace("LIST", &format!("of_{}", section.to_lowercase()));
-    text.replace("            BODY\n", &faded(uber, &indented))
-}
-
-const EACH: &str = "    let LIST = invokers_of(classes, SECTION);
-    for (var first = LIST.x; first < LIST.y; first += 32u * ENTRY) {
-        var left = running(first, min(first + 32u * ENTRY, LIST.y), classes);
-        while left != 0u {
-            let by = listed(first + ENTRY * firstTrailingBit(left));
-            BODY
-            left &= left - 1u;
-            if left == 0u {
-                break;
-            }
-        }
-        if first + 32u * ENTRY >= LIST.y {
-            break;
-        }
-    }
-";
-
-const EACH_SHARE: &str = "    let LIST = invokers_of(classes, SECTION);
-    for (var k = LIST.x; k < LIST.y; k += ENTRY) {
+    let list = format!("of_{}", section.to_lowercase());
+    let body: String = body.lines().map(|line| format!("{:1$}{line}\n", "", 12)).collect();
+    if fades(uber) {
+        return format!(
+            "    let {list} = invokers_of(classes, {section});
+    for (var k = {list}.x; k < {list}.y; k += ENTRY) {{
         let by = listed(k);
         let share = share_at(by, classes);
-        if share > 0.0 {
-            BODY
-        }
-        if k + ENTRY == LIST.y {
+        if share > 0.0 {{
+{body}        }}
+        if k + ENTRY == {list}.y {{
             break;
-        }
+        }}
+    }}
+"
+        );
     }
-";
+    format!(
+        "    let {list} = invokers_of(classes, {section});
+    for (var first = {list}.x; first < {list}.y; first += 32u * ENTRY) {{
+        var left = running(first, min(first + 32u * ENTRY, {list}.y), classes);
+        while left != 0u {{
+            let by = listed(first + ENTRY * firstTrailingBit(left));
+{body}            left &= left - 1u;
+            if left == 0u {{
+                break;
+            }}
+        }}
+        if first + 32u * ENTRY >= {list}.y {{
+            break;
+        }}
+    }}
+"
+    )
+}
 
 /// From the surface to its colour: material, light, the standard style and air, then the styles.
 fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let has = |kind| has(uber, kind, handlers);
+    let share = share_argument(uber);
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
     if has(EffectKind::Material) {
         text.push_str("    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);\n");
-        text.push_str(&each(uber, "MATERIALS", "material = invoke_material(material, *point, by);"));
+        let call = format!("material = invoke_material(material, *point, by{share});\n");
+        text.push_str(&each(uber, "MATERIALS", &call));
         text.push_str("    (*point).base = material.base;\n");
     }
     if has(EffectKind::Light) {
-        text.push_str(&each(uber, "LIGHTS", "(*point).arriving = invoke_light((*point).arriving, *point, by);"));
+        let call = format!("(*point).arriving = invoke_light((*point).arriving, *point, by{share});\n");
+        text.push_str(&each(uber, "LIGHTS", &call));
         text.push_str("    (*point).shade = luminance((*point).arriving);\n");
     }
     let plus = if has(EffectKind::Material) {
@@ -269,20 +272,20 @@ fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
         true => "        color += point.highlight;\n",
         false => "",
     };
-    let body = STYLE.replace("        HIGHLIGHT\n", highlight);
+    let share = share_argument(uber);
+    let body = format!(
+        "let is_scene_style = by.kind == 1u;
+if !is_scene_style || point.surface != NO_SURFACE {{
+    color = invoke_style(color, point, by{share});
+    if is_scene_style {{
+{highlight}    }}
+}}
+"
+    );
     let text =
         "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n    var color = start;\n".to_owned();
     text + &each(uber, "STYLES", &body) + "    return color;\n}\n\n"
 }
-
-const STYLE: &str = "let is_scene_style = by.kind == 1u;
-if !is_scene_style || point.surface != NO_SURFACE {
-    color = invoke_style(color, point, by);
-    if is_scene_style {
-        HIGHLIGHT
-    }
-}
-";
 
 /// The table, declared.
 pub(super) static TABLE_SOURCE: LazyLock<String> =
@@ -463,13 +466,6 @@ const SHARE_AT: &str = "fn share_at(by: Invoker, classes: Classes) -> f32 {
 
 ";
 
-const NO_OUTLINES: &str = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
-    var paint = start;
-    return paint;
-}
-
-";
-
 const LENS_COVERS: &str = "fn lens_covers(lens: u32, pixel: vec2i) -> bool {
     let by = invoker(lens);
     for (var v = by.first_volume; v < by.first_volume + by.volumes; v++) {
@@ -513,19 +509,24 @@ const LENS_ENDS: &str = "fn lens_ends(lens: u32, pixel: vec2i, ray: Ray) -> Span
 
 ";
 
-/// The bodies of lenses, of these kinds; `by.handler` says which.
-fn outlines_of(kinds: &[BodyKind]) -> String {
-    let mut text = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {
-    var paint = start;
-    let run = invokers_of(classes, OUTLINES);
-    for (var k = run.x; k < run.y; k += ENTRY) {
+/// What is laid over the shaded picture: lines, layers, and the bodies of lenses; `by.handler` says of which kind a body is.
+fn outlines(uber: &Uber) -> String {
+    let over = [(uber.lines, WITH_LINES), (uber.veils, WITH_VEIL)];
+    let over: String = over.iter().filter(|(is_drawn, _)| *is_drawn).map(|(_, laid)| *laid).collect();
+    let head = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n    var paint = start;\n";
+    if uber.bodies.is_empty() {
+        return format!("{head}{over}    return paint;\n}}\n\n");
+    }
+    let mut text = format!(
+        "{head}{over}    let run = invokers_of(classes, OUTLINES);
+    for (var k = run.x; k < run.y; k += ENTRY) {{
         let lens = tile_lists[k + 2u];
         let by = listed(k);
         let color = parameters[by.parameters];
         let width = parameters[by.parameters + 1u].x;
 "
-    .to_owned();
-    for kind in kinds {
+    );
+    for kind in &uber.bodies {
         let drawn = match kind {
             BodyKind::Outline => "",
             BodyKind::Shell => "            paint = shell(lens, paint, pixel, color);\n",

@@ -43,11 +43,12 @@ fn glass_is_where_rays_meet_the_lens_and_nothing_stands_before() {
     let mut studio = synthetic(60);
     let middle = studio.extent().center();
     let eye = middle + DVec3::new(60.0, -110.0, 80.0);
-    for camera in [Camera::looking(eye, middle, 0.8), orthographic(eye, middle, 150.0)] {
+    for (camera, every) in [(Camera::looking(eye, middle, 0.8), 1), (orthographic(eye, middle, 150.0), 3)] {
         let view = view_of(camera);
         let plain = draw(&mut studio, &scene(camera, vec![]), Backend::Specialised);
         let depth = plain.depth.as_ref().expect("depth");
-        for (i, focus) in shapes(middle + DVec3::new(0.0, 0.0, 2.0), 26.0).into_iter().enumerate() {
+        let shapes = shapes(middle + DVec3::new(0.0, 0.0, 2.0), 26.0).into_iter().enumerate();
+        for (i, focus) in shapes.step_by(if is_thorough() { 1 } else { every }) {
             let reference = Reference::of(&focus);
             let scene = scene(camera, vec![body_of(LensBody::Shell, focus)]);
             let glass = draw(&mut studio, &scene, Backend::Specialised);
@@ -98,7 +99,7 @@ fn a_glow_fades_away_from_the_silhouette() {
         let scene = Scene { lenses: vec![body_of(LensBody::Halo, focus)], ..plain.clone() };
         let glowing = draw(&mut studio, &scene, Backend::Specialised);
         let mut by_distance = vec![Vec::new(); 40];
-        for (k, x, y) in pixels().step_by(43) {
+        for (k, x, y) in pixels().step_by(if is_thorough() { 43 } else { 131 }) {
             let at = DVec2::new(f64::from(x), f64::from(y));
             let nearest = pixels()
                 .filter(|(j, ..)| met[*j] != met[k])
@@ -130,7 +131,7 @@ fn both_back_ends_draw_the_same_bodies_and_moving_them_compiles_nothing() {
         .enumerate()
         .map(|(i, focus)| Lens { name: format!("lens {i}"), ..body_of(bodies[i % 3], focus) })
         .collect();
-    for part in all.chunks(4).step_by(2) {
+    for part in all.chunks(if is_thorough() { 4 } else { 2 }).step_by(2) {
         let scene = scene(camera, part.to_vec());
         let [one, other] = BACKENDS.map(|backend| draw(&mut studio, &scene, backend));
         assert!(one.rgba == other.rgba);

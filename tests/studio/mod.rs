@@ -27,6 +27,11 @@ use veduta::{
 /// All AOVs.
 pub const ALL: Aovs = Aovs { depth: true, object_id: true, normal: true, lens_mask: true };
 
+/// Whether a property is to be tried with all that there is (`./dev hard`), not with the sample that every run takes.
+pub fn is_thorough() -> bool {
+    std::env::var_os("VEDUTA_HARD").is_some()
+}
+
 /// A file of `citydata/`.
 pub fn citydata(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("citydata").join(name)

@@ -102,7 +102,7 @@ pub fn words(plan: &FramePlan) -> u32 {
 /// Whether some opacity rule asks how many layers the picture has.
 pub fn asks_most(plan: &FramePlan) -> bool {
     let rules = plan.plans.layering.as_ref().map(|layering| layering.steps_of(EffectKind::Opacity, handlers()));
-    rules.into_iter().flatten().any(|(_, rule)| rule.source.contains("most_layers"))
+    rules.into_iter().flatten().any(|(_, rule)| rule.asks_most_layers)
 }
 
 /// The rectangle around two parts of a picture.

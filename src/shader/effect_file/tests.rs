@@ -50,6 +50,10 @@ fn what_is_wrong_is_named_with_its_place() {
             "my.wgsl:6:12: no definition in scope",
         ),
         (
+            format!("{HEADER}fn effect(color: vec3f, point: Point) -> vec3f {{\n    return colour;\n}}\n\n\n\n\n"),
+            "my.wgsl:6:12: no definition in scope",
+        ),
+        (
             format!("{HEADER}fn effect(color: vec3f) -> vec3f {{ return color; }}"),
             "my.wgsl:5:4: expected `fn effect(color: vec3f, point: Point) -> vec3f`",
         ),

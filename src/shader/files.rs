@@ -1,0 +1,124 @@
+//! Which files of the library make which module.
+
+use crate::shader::{
+    effect::{EffectDefinition, EffectKind},
+    library::{
+        BLEND, BORDER, CITIES, CLASS, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION, COMBINED_SPRITE,
+        DEPTH_CODE, DISTANCE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FRAGMENT, File, GLASS, LENS,
+        LENS_SPRITE, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE,
+        PACKED, POINT, SECTIONS, SHAPE, SHELL_SIDES, SHELL_SPRITE, SIGHT, SOLID, SOLID_DISTANCE, SOLID_SPRITE,
+        STORED_SPRITE, SURFACE, VEIL, VIEW, VIEW_UNIFORM,
+    },
+    plan::Program,
+};
+
+/// A pass that draws the city and asks of each fragment what is there.
+pub(super) fn of_city(program: &Program, behind: &[File]) -> Vec<File> {
+    let lenses = of_lenses(program);
+    [&[VIEW, VIEW_UNIFORM, SURFACE, SIGHT], &lenses[..], &[OBJECTS, FRAGMENT, vertices(program)], behind].concat()
+}
+
+/// The same of translucent fragments, which keep colours.
+pub(super) fn of_translucent_city(program: &Program, behind: &[File]) -> Vec<File> {
+    let lenses = of_lenses(program);
+    [&[VIEW, VIEW_UNIFORM, SURFACE, PACKED, SIGHT], &lenses[..], &[OBJECTS, FRAGMENT, vertices(program)], behind]
+        .concat()
+}
+
+/// What lines call, and the pass that draws them.
+pub(super) fn of_lines(program: &Program) -> Vec<File> {
+    let cities = vertices(program);
+    let mut files = vec![VIEW, VIEW_UNIFORM, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT, FRAGMENT, cities, EDGE];
+    if program.has().blends {
+        files.push(BLEND);
+    }
+    files.extend(of_lenses(program));
+    files.push(LINES);
+    files
+}
+
+/// What shading calls, and nothing else.
+pub(super) fn of_shading(program: &Program, handlers: &[EffectDefinition]) -> Vec<File> {
+    let parts = program.has();
+    let has = |kind| program.effects().iter().any(|&e| handlers[e as usize].kind == kind);
+    let (materials, filters) = (has(EffectKind::Material), has(EffectKind::Filter));
+    let mut files = vec![VIEW, SURFACE, COLOR, PACKED, LIGHT, OBJECTS, POINT, SIGHT];
+    files.extend(of_lenses(program));
+    files.extend(if parts.shells { of_spans(program) } else { Vec::new() });
+    files.extend(used(&[
+        (parts.blends || materials, BLEND),
+        (materials, MATERIAL),
+        (parts.bodies, OUTLINE),
+        (parts.bodies && parts.members, MEMBER_OUTLINE),
+        (parts.bodies && parts.fading_members, FADING_OUTLINE),
+        (parts.shells, GLASS),
+        (filters, FILTERED),
+        (parts.lines, LINE),
+        (parts.veils, VEIL),
+    ]));
+    files
+}
+
+/// The pass that finds where volumes end, and what it calls.
+pub(super) fn of_sections(program: &Program) -> Vec<File> {
+    [
+        &[VIEW, VIEW_UNIFORM, SURFACE, SIGHT],
+        &of_lenses(program)[..],
+        &of_spans(program)[..],
+        program.has().combinations.then_some(COMBINED_SECTION).as_slice(),
+        &[OBJECTS, FRAGMENT, vertices(program), SECTIONS],
+    ]
+    .concat()
+}
+
+/// Where vertices stand: of the scene's own city, or also of contents.
+pub(super) fn vertices(program: &Program) -> File {
+    if program.has().contents { CITIES } else { ONE_CITY }
+}
+
+/// The lens tests that a program makes.
+pub(super) fn of_lenses(program: &Program) -> Vec<File> {
+    let parts = program.has();
+    used(&[
+        (parts.lenses, CLASS),
+        (parts.lenses, SHAPE),
+        (parts.shapes, LENS),
+        (parts.sprites || parts.own_sprites || parts.side_sprites, LENS_SPRITE),
+        (parts.sprites || parts.own_sprites, DEPTH_CODE),
+        (parts.sprites || parts.own_sprites, STORED_SPRITE),
+        (parts.own_sprites, OWN_SPRITE),
+        (parts.members, MEMBERS),
+        (parts.borders || parts.fading, DITHER),
+        (parts.fading, FADING_MEMBERS),
+        (parts.solids, SOLID),
+        (parts.side_sprites, SOLID_SPRITE),
+        (parts.combinations, COMBINED),
+        (parts.combined_sprites, COMBINED_SPRITE),
+        (parts.borders, BORDER),
+        (parts.by_ray && parts.side_sprites, SHELL_SIDES),
+        (parts.by_ray && parts.sprites, SHELL_SPRITE),
+        (parts.distances, DISTANCE),
+        (parts.distances && parts.solids, SOLID_DISTANCE),
+        (parts.distances && parts.combinations, COMBINED_DISTANCE),
+    ])
+}
+
+/// What tells from sprites where a ray is inside.
+pub(super) fn of_spans(program: &Program) -> Vec<File> {
+    let parts = program.has();
+    // With borders along rays they are there already.
+    let is_new = !parts.by_ray;
+    used(&[(parts.side_sprites && is_new, SHELL_SIDES), (parts.sprites && is_new, SHELL_SPRITE)])
+}
+
+/// With the threshold of a pixel, which fragments know.
+pub(super) fn with_threshold(mut files: Vec<File>) -> Vec<File> {
+    if files.contains(&FRAGMENT) && !files.contains(&DITHER) {
+        files.push(DITHER);
+    }
+    files
+}
+
+fn used(files: &[(bool, File)]) -> Vec<File> {
+    files.iter().filter(|(is_used, _)| *is_used).map(|(_, file)| *file).collect()
+}

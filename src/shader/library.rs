@@ -1,0 +1,117 @@
+//! The WGSL files that modules are made of: `shaders/lib`, importable and free of side effects, and `shaders/pass`, one file for each
+//! entry point.
+
+use crate::shader::wgsl::function::FunctionError;
+
+/// A WGSL file that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct File {
+    /// Its path below `shaders`.
+    pub(super) path: &'static str,
+    /// What it says.
+    pub(super) text: &'static str,
+}
+
+impl File {
+    /// Its text, changed by its tokens.
+    ///
+    /// # Panics
+    /// Where the text has not what is changed: as a hook that is not filled ([`crate::shader::template::Template::text`]).
+    pub(super) fn changed(&self, change: impl FnOnce(&str) -> Result<String, FunctionError>) -> String {
+        change(self.text).unwrap_or_else(|error| panic!("shaders/{}: {error}", self.path))
+    }
+}
+
+macro_rules! files {
+    ($($name:ident = $path:literal;)*) => {
+        $(pub(super) const $name: File = File { path: $path, text: include_str!(concat!("../../shaders/", $path)) };)*
+
+        /// All of them.
+        #[cfg(test)]
+        pub(super) const ALL: &[File] = &[$($name),*];
+    };
+}
+
+files! {
+    VIEW = "lib/view.wgsl";
+    VIEW_UNIFORM = "lib/view-uniform.wgsl";
+    SURFACE = "lib/surface.wgsl";
+    COLOR = "lib/color.wgsl";
+    PACKED = "lib/packed.wgsl";
+    SHAPE = "lib/shape.wgsl";
+    LIGHT = "lib/light.wgsl";
+    BLEND = "lib/blend.wgsl";
+    MATERIAL = "lib/material.wgsl";
+    CLASS = "lib/class.wgsl";
+    DITHER = "lib/dither.wgsl";
+    BORDER = "lib/border.wgsl";
+    DISTANCE = "lib/distance.wgsl";
+    SOLID_DISTANCE = "lib/solid-distance.wgsl";
+    COMBINED_DISTANCE = "lib/combined-distance.wgsl";
+    SIGHT = "lib/sight.wgsl";
+    LENS = "lib/lens.wgsl";
+    LENS_SPRITE = "lib/lens-sprite.wgsl";
+    DEPTH_CODE = "lib/depth-code.wgsl";
+    STORED_SPRITE = "lib/stored-sprite.wgsl";
+    OWN_SPRITE = "lib/own-sprite.wgsl";
+    STORED_PASS = "pass/stored-sprite.wgsl";
+    STORED_FORM = "lib/stored-form.wgsl";
+    STORED_LAYERS = "lib/stored-layers.wgsl";
+    SPRITE_LIST = "pass/sprite-list.wgsl";
+    CROSSING = "lib/crossing.wgsl";
+    SOLID = "lib/solid.wgsl";
+    MEMBERS = "lib/members.wgsl";
+    FADING_MEMBERS = "lib/fading-members.wgsl";
+    FADING_OUTLINE = "lib/fading-outline.wgsl";
+    MEMBER_OUTLINE = "lib/member-outline.wgsl";
+    SOLID_SPRITE = "lib/solid-sprite.wgsl";
+    COMBINED = "lib/combined.wgsl";
+    COMBINED_SECTION = "lib/combined-section.wgsl";
+    COMBINED_SPRITE = "lib/combined-sprite.wgsl";
+    COMBINED_PASS = "pass/combined-sprite.wgsl";
+    OBJECTS = "lib/objects.wgsl";
+    POINT = "lib/point.wgsl";
+    LINE = "lib/line.wgsl";
+    VEIL = "lib/veil.wgsl";
+    EDGE = "lib/edge.wgsl";
+    ONE_CITY = "lib/one-city.wgsl";
+    CITIES = "lib/cities.wgsl";
+    FRAGMENT = "lib/fragment.wgsl";
+    CUT = "lib/cut.wgsl";
+    OUTLINE = "lib/outline.wgsl";
+    SILHOUETTE = "lib/silhouette.wgsl";
+    GLASS = "lib/glass.wgsl";
+    SHELL = "lib/shell.wgsl";
+    SHELL_SIDES = "lib/shell-sides.wgsl";
+    SHELL_SPRITE = "lib/shell-sprite.wgsl";
+    HALO = "lib/halo.wgsl";
+    FILTERED = "lib/filter.wgsl";
+    GEOMETRY = "pass/geometry.wgsl";
+    SHADOW = "pass/shadow.wgsl";
+    SHADOW_CUT = "pass/shadow-cut.wgsl";
+    SPRITE = "pass/sprite.wgsl";
+    SHADE = "pass/shade.wgsl";
+    LINES = "pass/lines.wgsl";
+    NOTES = "lib/notes.wgsl";
+    LAYERS = "pass/layers.wgsl";
+    COMPOSITE = "pass/composite.wgsl";
+    COUNT_LAYERS = "pass/count-layers.wgsl";
+    SORT_LAYERS = "pass/sort-layers.wgsl";
+    SHOWN = "pass/shown.wgsl";
+    SLOTS = "lib/slots.wgsl";
+    FORWARD = "lib/forward.wgsl";
+    TAIL = "lib/tail.wgsl";
+    CHANCE = "lib/chance.wgsl";
+    TRANSLUCENT = "pass/translucent.wgsl";
+    LINK_SLOTS = "pass/link-slots.wgsl";
+    FILTER = "pass/filter.wgsl";
+    RESOLVE = "pass/resolve.wgsl";
+    NARROW = "pass/narrow.wgsl";
+    DEFORM = "lib/deform.wgsl";
+    REFINE = "pass/refine.wgsl";
+    REGIONS = "pass/regions.wgsl";
+    SECTIONS = "pass/sections.wgsl";
+    FURNITURE = "pass/furniture.wgsl";
+    FURNITURE_OVER = "pass/furniture-over.wgsl";
+    BARE = "pass/bare.wgsl";
+}

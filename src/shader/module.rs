@@ -1,0 +1,193 @@
+//! The modules of a frame: which there are, and their texts.
+
+use crate::shader::{
+    carried,
+    deforming::DeformPlan,
+    effect::{EffectDefinition, handlers},
+    files,
+    forward::Forward,
+    geometry::{self, Drawn, NOTHING_CUT},
+    hiding::{self, Eye},
+    lens_test,
+    library::{
+        BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM, DEPTH_CODE, FILTER,
+        FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, NOTES, OBJECTS, ONE_CITY, PACKED,
+        REFINE, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHAPE, SHOWN, SIGHT, SLOTS, SOLID, SORT_LAYERS, SPRITE,
+        SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW, VIEW_UNIFORM,
+    },
+    lining,
+    plan::{Plan, Program, VolumeTest},
+    regions, sections,
+    shading::{self, Shading},
+    sorting, specialised,
+    template::Template,
+    translucent::{self, DepthTest, OPAQUE_DEPTH, behind_plane},
+};
+
+/// A module of the frame.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Module {
+    /// The opaque geometry pass, and what is hidden in it.
+    Geometry(Option<Program>),
+    /// Depth from the sun, and what is hidden from it.
+    Shadow(Option<Program>),
+    /// The sides of a solid.
+    Sprite,
+    /// The depth sprite of a volume that has a closed form.
+    StoredForm,
+    /// That of a lens of several leaves, or of a solid, and what the leaves are.
+    StoredLayers(Vec<VolumeTest>),
+    /// Where rays go through the faces of its solids.
+    SpriteList,
+    /// The sides of a combination, and what its leaves are.
+    CombinedSprite(Vec<VolumeTest>),
+    /// Deferred shading, and what the lenses make of it.
+    Shade(Program),
+    /// Edges as lines, and what lenses make of them.
+    Lines(Program),
+    /// Lists of translucent layers, and what is translucent; whether the adapter can test depth before the shader runs.
+    Layers(Program, bool),
+    /// Translucent layers, one over the other, and what the lenses make of each.
+    Composite(Program),
+    /// How many layers the pixel has that has most.
+    CountLayers,
+    /// Long lists of layers in order.
+    SortLayers,
+    /// Layers that are the shown surface, in the targets of what is opaque.
+    ShownLayers,
+    /// The nearest layers in slots, and what is translucent; whether the adapter can test depth before the shader runs.
+    Slots(Program, bool),
+    /// Slots as lists.
+    LinkSlots,
+    /// Translucent fragments shaded where they are drawn.
+    Forward(Forward),
+    /// Regions as depths, and how they are told apart.
+    Regions(Plan),
+    /// Sections through closed shells, and what is hidden.
+    Sections(Program),
+    /// One direction of a neighbourhood filter: the number of its handler.
+    Filter(u32),
+    /// The mean of samples.
+    Resolve,
+    /// Lists of invokers narrowed to what tiles show.
+    Narrow,
+    /// What deformations meet, refined and moved, and what they do.
+    Refine(DeformPlan),
+    /// Titles, captions and legends.
+    Furniture,
+    /// Furniture over a transparent picture.
+    FurnitureOver,
+    /// The bare lit draw that benchmarks compare with.
+    Bare,
+}
+
+impl Module {
+    /// The whole WGSL text.
+    pub fn source(&self) -> String {
+        self.source_with(handlers())
+    }
+
+    /// The whole WGSL text, where a program's numbers count these handlers.
+    pub fn source_with(&self, handlers: &[EffectDefinition]) -> String {
+        self.source_for_people(handlers, &[], carried::LEAST_CARRIED)
+    }
+
+    /// The whole WGSL text with the names of a plan's lenses in comments (H4), for an adapter that carries so many vectors
+    /// from vertices to fragments: [`carried::LEAST_CARRIED`] or more.
+    pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], room: u32) -> String {
+        let files = files::with_threshold(self.files(handlers));
+        let text = Template::of_files(&files);
+        let hidden = |program, eye| hiding::source(program, handlers, lenses, eye);
+        let filled = match self {
+            Self::CombinedSprite(kinds) | Self::StoredLayers(kinds) => return text.text() + &lens_test::leaves(kinds),
+            Self::Forward(own) => return own.source(handlers, lenses),
+            Self::Shade(program) => {
+                let own = shading::written(program, handlers, lenses, &Shading::of_surfaces(room));
+                text.fill("carried", own.members).fill("handlers", own.functions)
+            }
+            Self::Composite(program) => {
+                let own = shading::written(program, handlers, lenses, &Shading::of_layers(room));
+                let text = text.fill("carried", own.members).fill("handlers", own.functions);
+                sorting::filled(text).fill("opacity", shading::opacity(program, handlers))
+            }
+            Self::Layers(program, is_early) => {
+                let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
+                translucent::filled(text, DepthTest::of_notes(*is_early), "return;")
+            }
+            Self::Slots(program, is_early) => {
+                let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
+                // They are of a pass that has something to return.
+                translucent::filled(text, DepthTest::of_notes(*is_early), "discard;")
+                    .fill("opaque-depth", OPAQUE_DEPTH)
+                    .fill("behind-plane", behind_plane("opaque_depth"))
+            }
+            Self::Lines(program) => text.fill("handlers", lining::source(program, handlers, lenses)),
+            Self::Refine(plan) => text.fill("deformers", plan.shown()).fill("traced", plan.traced()),
+            Self::Geometry(None) => geometry::filled(text, Drawn::Surfaces, NOTHING_CUT),
+            Self::Geometry(Some(program)) => {
+                let drawn = if program.regions().is_some() { Drawn::Regions } else { Drawn::Surfaces };
+                geometry::filled(text, drawn, &hidden(program, Eye::Picture))
+            }
+            Self::Sections(program) => text.fill("handlers", sections::source(program, handlers, lenses)),
+            Self::Regions(plan) => {
+                let own = plan.regions.as_ref().map(|regions| regions::marks(plan, regions, lenses));
+                text.fill("handlers", own.unwrap_or_default())
+            }
+            Self::Shadow(Some(program)) => text.fill("handlers", hidden(program, Eye::Sun)),
+            Self::Filter(effect) => {
+                let filter = &handlers[*effect as usize];
+                let own = carried::of_filter(filter);
+                text.fill("carried", own.members).fill("handlers", own.functions + &specialised::kernel(filter))
+            }
+            _ => text,
+        };
+        filled.text()
+    }
+
+    /// The files it is made of, in order.
+    fn files(&self, handlers: &[EffectDefinition]) -> Vec<File> {
+        let of: &[File] = match self {
+            Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, GEOMETRY],
+            Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, GEOMETRY]),
+            Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SHADOW],
+            Self::Shadow(Some(program)) => return files::of_city(program, &[SHADOW_CUT]),
+            Self::Sprite => &[VIEW, VIEW_UNIFORM, SHAPE, SPRITE],
+            Self::StoredForm => &[VIEW, SHAPE, DEPTH_CODE, STORED_PASS, STORED_FORM],
+            Self::StoredLayers(_) => {
+                &[VIEW, SIGHT, CLASS, SHAPE, SOLID, COMBINED, DEPTH_CODE, CROSSING, STORED_PASS, STORED_LAYERS]
+            }
+            Self::SpriteList => &[VIEW, SHAPE, CROSSING, SPRITE_LIST],
+            Self::CombinedSprite(_) => {
+                &[VIEW, VIEW_UNIFORM, SIGHT, CLASS, SHAPE, SOLID, COMBINED, SPRITE, COMBINED_PASS]
+            }
+            Self::Shade(program) => return [files::of_shading(program, handlers), vec![SHADE]].concat(),
+            Self::Composite(program) => {
+                return [files::of_shading(program, handlers), vec![SHADE, NOTES, COMPOSITE]].concat();
+            }
+            Self::Lines(program) => return files::of_lines(program),
+            Self::Regions(plan) => {
+                let lenses = files::of_lenses(&Program::Specialised(plan.clone()));
+                return [&[VIEW, VIEW_UNIFORM, SIGHT], &lenses[..], &[SURFACE, OBJECTS, REGIONS]].concat();
+            }
+            Self::Sections(program) => return files::of_sections(program),
+            Self::Layers(program, _) => return files::of_translucent_city(program, &[GEOMETRY, NOTES, LAYERS]),
+            Self::Slots(program, _) => {
+                return files::of_translucent_city(program, &[GEOMETRY, NOTES, SLOTS, TRANSLUCENT]);
+            }
+            Self::CountLayers => &[NOTES, COUNT_LAYERS],
+            Self::SortLayers => &[NOTES, SORT_LAYERS],
+            Self::ShownLayers => &[SHOWN],
+            Self::LinkSlots => &[NOTES, LINK_SLOTS],
+            // Two texts, merged.
+            Self::Forward(_) => &[],
+            Self::Filter(_) => &[PACKED, FILTER],
+            Self::Resolve => &[RESOLVE],
+            Self::Narrow => &[VIEW, VIEW_UNIFORM, NARROW],
+            Self::Refine(_) => &[SURFACE, DEFORM, REFINE],
+            Self::Furniture => &[FURNITURE],
+            Self::FurnitureOver => &[FURNITURE_OVER],
+            Self::Bare => &[VIEW, VIEW_UNIFORM, SURFACE, BARE],
+        };
+        of.to_vec()
+    }
+}

@@ -1,0 +1,27 @@
+//! Names in modules' texts and names, as people read them.
+
+use crate::shader::{effect::handlers, plan::Program};
+
+/// The effects of a program.
+pub(super) fn of_effects(program: &Program) -> String {
+    let names: Vec<&str> = program.effects().iter().map(|&e| handlers()[e as usize].name.as_str()).collect();
+    names.join(", ")
+}
+
+/// What a pass takes away, behind the name of the pass.
+pub(super) fn of_hidden(program: &Program) -> String {
+    let contents = program.has().contents.then_some("contents".to_owned());
+    let effects = Some(of_effects(program)).filter(|names| !names.is_empty());
+    let what: Vec<String> = contents.into_iter().chain(effects).collect();
+    format!(" cut{} ({})", of_backend(program), what.join(", "))
+}
+
+/// The back end, where it is not the specialised one.
+pub(super) fn of_backend(program: &Program) -> &'static str {
+    if matches!(program, Program::Uber(_)) { " uber" } else { "" }
+}
+
+/// A text that cannot end the comment it stands in.
+pub(super) fn one_line(text: &str) -> String {
+    text.chars().take(60).map(|c| if c.is_control() || "\u{2028}\u{2029}".contains(c) { ' ' } else { c }).collect()
+}
