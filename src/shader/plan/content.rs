@@ -5,7 +5,7 @@ use crate::shader::plan::step::ClassTest;
 /// The content that a lens of a plan shows in place of what is below it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PlanContent {
-    /// Index into [`Plan::lenses`].
+    /// Index into [`crate::shader::Plan::lenses`].
     pub lens: u32,
     /// On which of its classes.
     pub class: ClassTest,

@@ -20,7 +20,7 @@ pub struct Step {
 pub enum Scope {
     /// All of the picture.
     Everywhere,
-    /// One class of a lens (L4): index into [`Plan::lenses`].
+    /// One class of a lens (L4): index into [`crate::shader::Plan::lenses`].
     Lens(u32, ClassTest),
 }
 
