@@ -1,6 +1,6 @@
 // Soft borders of lenses (L9): the degree of interest by how far a place is from a lens. Twin: `veduta::lens::border`.
 
-// Of a lens' parameters: x the width, y 1 where that is in pixels, z 1 where what cannot be had by halves is dithered, w 1 where
+// The parameters of a border: x the width, y 1 where that is in pixels, z 1 where what cannot be had by halves is dithered, w 1 where
 // distances are along the ray.
 fn border_width(border: vec4f, sight: Sight) -> f32 {
     let metres_per_pixel = abs(view.across_from_pixel.y) * select(max(sight.distance, 0.0), 1.0, sight.is_parallel);
@@ -25,7 +25,7 @@ fn distance_to_ends(ends: Span, sight: Sight) -> f32 {
     return select(FAR_AWAY, away, is_met && sight.distance < FAR_AWAY);
 }
 
-// What of a class of L4 a place has. Inside of a volume one of the sides is named, too: so that inside and outside share what
+// The share of a class of L4 that a place has. Inside of a volume one of the sides is named, too: so that inside and outside share what
 // there is.
 fn share_inside(classes: u32, interest: f32) -> f32 {
     return interest;

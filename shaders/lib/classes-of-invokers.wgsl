@@ -1,3 +1,4 @@
+// Classes of a place with regard to the lens of an invoker, and whether the invoker runs there; `class_of` is of the scene.
 struct Classes {
     part: u32,
     sight: Sight,

@@ -1,6 +1,6 @@
 // Deformations (D1; V 3.6): where places are shown, and what normals become. The same formulas as `geom::deform`, in f32. Which of them a
 // scene calls for is written out by `shader::deforming`; their numbers stand where `render::deform_words` puts them, in `numbers` and
-// `tables`, which whoever includes this binds.
+// `tables`, which the module that includes this binds.
 //
 // A place is a cell of a lattice (whole numbers of a power of two of a metre, from an anchor) and an offset in metres. Differences of
 // cells are exact, so what is computed depends on where a lens is, not on where the city is: errors are some 2^-23 of the distance from
@@ -17,7 +17,7 @@ const SIDES: u32 = 8u;          // 1/metres, twice; then border, or inner and ou
 const TEXELS: u32 = 9u;         // where they begin in `tables`
 const BAND: u32 = 10u;          // low, high, 1/fade
 const DEFORMER_NUMBERS: u32 = 11u;
-// Of a step: twice the reciprocal of how far apart samples may be; then its own.
+// Numbers of a step: twice the reciprocal of how far apart samples may be; then its own.
 
 fn cell_size() -> f32 {
     return numbers[0].x;
@@ -192,7 +192,7 @@ fn band_end(q: f32, rate: f32) -> vec2f {
     return smoothed(vec2f(clamp(q, 0.0, 1.0), clamp_slope(q, 0.0, 1.0) * rate));
 }
 
-// What a step does to a place: g(p) - p, and its derivative (columns: by x, y, z).
+// Changes of a place by a step: g(p) - p, and its derivative (columns: by x, y, z).
 struct Jet {
     way: vec3f,
     slope: mat3x3f,

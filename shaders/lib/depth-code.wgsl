@@ -92,7 +92,7 @@ fn nearest_code(c: DepthCode) -> u32 {
     return select(top_code(c), 0u, mapping == BY_Z || mapping == BY_W);
 }
 
-// Of an exit: the lens has no end.
+// The code of an exit where the lens has no end.
 fn farthest_code(c: DepthCode) -> u32 {
     return top_code(c) - nearest_code(c);
 }

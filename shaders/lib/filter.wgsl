@@ -1,4 +1,4 @@
-// What neighbourhood filters made (K3): each is one lens' own image, filtered before anything masks it. Its pixels stand
+// Images of neighbourhood filters (K3): each is one lens' own image, filtered before anything masks it. Its pixels stand
 // where `pass/filter.wgsl` put them. Of a transparent picture there are two images: colours times opacity, and opacity.
 
 @group(2) @binding(6) var filtered: texture_2d_array<u32>;

@@ -9,7 +9,7 @@ fn most_layers() -> u32 {
     return 1u;
 }
 
-// What a rule returned, as an opacity: nothing that is no number.
+// The answer of a rule as an opacity, 0 to 1; 0 where it is no number.
 fn contained_opacity(opacity: f32) -> f32 {
     return select(0.0, min(opacity, 1.0), opacity > 0.0);
 }

@@ -1,3 +1,4 @@
+// Whether an invoker runs at a fragment. A lens whose border dithers takes fragments away one by one.
 fn runs(by: Invoker, fragment: Fragment) -> bool {
     if by.scope == 0u {
         return true;

@@ -20,7 +20,7 @@ fn sight_of(fragment: Fragment) -> Sight {
                  fragment.object);
 }
 
-// What is drawn at a place of the target.
+// The fragment at a place of the target.
 fn fragment_at(at: vec2f, depth: f32, code: u32) -> Fragment {
     let ray = ray_of_pixel(at);
     let position = ray.origin + distance_of_depth(depth) * ray.direction;

@@ -1,8 +1,8 @@
-// What the bodies of lenses are made of (L5).
+// The glass of the bodies of lenses (L5).
 
 // On the side towards the sun it is lighter; seen at a slant there is more of it.
 fn glazed(paint: vec4f, normal: vec3f, ray: Ray, color: vec3f, most: f32) -> vec4f {
-    // Of what its sprite alone tells there is no normal.
+    // Without a normal where a sprite alone tells the surface.
     let is_known = dot(normal, normal) > 0.5;
     let facing = select(0.6, abs(dot(normal, normalize(ray.direction))), is_known);
     let slant = (1.0 - facing) * (1.0 - facing);
@@ -11,7 +11,7 @@ fn glazed(paint: vec4f, normal: vec3f, ray: Ray, color: vec3f, most: f32) -> vec
     return vec4f(mix(paint.rgb, color * lit, opacity), paint.a + (1.0 - paint.a) * opacity);
 }
 
-// A place in view space, as nobody sees it.
+// A place in view space, seen from itself.
 fn sight_near(pixel: vec2i, position: vec3f) -> Sight {
     let along = vec3f(0.0, 0.0, -1.0);
     let is_parallel = view.orthographic == 1u;
@@ -22,7 +22,7 @@ fn sight_near(pixel: vec2i, position: vec3f) -> Sight {
     return Sight(pixel, 0.0, ray, -position.z, position, is_parallel, NO_OBJECT);
 }
 
-// What either of two spans holds, and what is between.
+// The span of both spans, and of what is between.
 fn with_span(a: Span, b: Span) -> Span {
     let both = Span(min(a.enter, b.enter), max(a.exit, b.exit));
     if a.enter > a.exit {

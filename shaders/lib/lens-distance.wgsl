@@ -1,3 +1,4 @@
+// Distance of a place from a lens of the invoker table, metres, negative inside.
 fn lens_distance(lens: u32, sight: Sight) -> f32 {
     let by = invoker(lens);
     var distance = FAR_AWAY;

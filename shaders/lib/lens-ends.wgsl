@@ -1,3 +1,4 @@
+// Where a ray meets a lens of the invoker table first and last.
 fn lens_ends(lens: u32, pixel: vec2i, ray: Ray) -> Span {
     let by = invoker(lens);
     var ends = EMPTY_SPAN;

@@ -6,7 +6,7 @@
 
 fn class_in_shape(s: Shape, kind: u32, sight: Sight) -> u32 {
     let span = span_of_shape(sight.ray, s, kind);
-    // Perspective rays start at the eye: what lies behind it is not seen, and nobody there looks past a lens.
+    // Perspective rays start at the eye: what lies behind it is not seen, and no ray there looks past a lens.
     let starts_at_eye = !sight.is_parallel;
     let is_missed = span.enter > span.exit || (starts_at_eye && (span.exit <= 0.0 || sight.distance <= 0.0));
     let side = select(BEHIND, FRONT, sight.distance < 0.5 * (span.enter + span.exit));

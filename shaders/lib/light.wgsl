@@ -54,7 +54,7 @@ fn irradiance(normal: vec3f, sun: f32) -> vec3f {
     return ambient + light.sun * (max(dot(normal, light.to_sun), 0.0) * sun);
 }
 
-// What is behind the city.
+// The sky behind the city.
 override BACKGROUND: u32 = 0u;
 
 const SKY: u32 = 0u;

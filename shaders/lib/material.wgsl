@@ -1,4 +1,4 @@
-// What a surface is made of, as far as handlers may change it.
+// Materials of surfaces, as far as handlers may change them.
 
 struct Material {
     base: vec3f,                // diffuse colour, linear

@@ -1,3 +1,4 @@
+// Classes where no lens is in the scene: an invoker runs everywhere, or it is not of this part of the picture.
 struct Classes {
     part: u32,
 }

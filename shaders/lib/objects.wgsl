@@ -1,4 +1,4 @@
-// What effects read of each object.
+// Values per object that effects read.
 
 @group(2) @binding(1) var<storage, read> object_values: array<u32>;
 
@@ -8,7 +8,7 @@ fn is_chosen(first: u32, object: u32) -> bool {
     return object_values[first + (object + 1u)] != 0u;
 }
 
-// What a ramp has at a place, 0 to 1, between its steps linearly; `first`: the parameter.
+// The value of a ramp at a place, 0 to 1, between its steps linearly; `first`: the parameter.
 fn share_on_ramp(first: u32, at: f32) -> f32 {
     let place = step_of_ramp(first, at);
     let next = place.step + select(0u, 1u, place.step + 1u < object_values[first]);

@@ -98,7 +98,7 @@ fn nowhere(pixel: vec2i) -> Point {
                  vec3f(0.0), vec3f(0.0), false, 1.0, vec3f(1.0), 1.0, vec3f(0.0));
 }
 
-// What is shown beside a point, `offset` pixels away; at the picture's edge, what is at the edge.
+// The surface shown beside a point, `offset` pixels away; at the picture's edge, what is at the edge.
 struct Beside {
     depth: f32,                 // as Point's
     normal: vec3f,              // unit; whichever way it faces
@@ -137,7 +137,7 @@ fn within(point: Point, period: f32) -> vec3f {
     return (at - floor(at)) * period;
 }
 
-// What a user's effect returned, as a colour: no negative light, no infinity, nothing that is no number.
+// The answer of a user's effect as a colour: no negative light, no infinity, nothing that is no number.
 fn contained(color: vec3f) -> vec3f {
     return select(vec3f(0.0), min(color, vec3f(64.0)), color > vec3f(0.0));
 }

@@ -1,4 +1,4 @@
-// What the surface of a lens is along a ray, by the sprite that tells its sides.
+// The surface of a lens along a ray, by the sprite that tells its sides.
 
 fn span_in_sides(place: SpritePlace, pixel: vec2i) -> Span {
     let ends = textureLoad(side_sprites, sprite_texel(place, pixel), place.page, 0).xy;

@@ -1,4 +1,4 @@
-// What the surface of a lens is along a ray, by its stored depth sprite: the first entry and the last exit.
+// The surface of a lens along a ray, by its stored depth sprite: the first entry and the last exit.
 
 fn span_in_layers(s: SpritePlace, pixel: vec2i) -> Span {
     let code = DepthCode(s.kind, s.near, s.far);

@@ -23,7 +23,7 @@ fn shell(lens: u32, paint: vec4f, pixel: vec2i, color: vec4f) -> vec4f {
         return seen;
     }
     let nearest = select(0.0, -FAR_AWAY, view.orthographic == 1u);
-    // The far side first; nobody sees where it has no end.
+    // The far side first; it is not seen where it has no end.
     for (var side = 0; side < 2; side++) {
         let is_far = side == 0;
         let t = select(ends.enter, ends.exit, is_far);

@@ -10,7 +10,7 @@ struct Sight {
     object: u32,                // that it belongs to, or NO_OBJECT
 }
 
-// What a pixel shows.
+// The place that a pixel shows.
 fn sight_at(pixel: vec2i, ray: Ray, depth: f32, object: u32) -> Sight {
     let distance = select(FAR_AWAY, distance_of_depth(depth), depth > 0.0);
     return Sight(pixel, depth, ray, distance, ray.origin + distance * ray.direction, view.orthographic == 1u, object);

@@ -2,7 +2,7 @@
 // city find them whatever the order in which it is drawn.
 //
 //   depths   each fragment goes down the slots of its pixel; a slot keeps the nearest depth that came by, the other goes on
-//   codes    those whose depth was kept say who they are; of equal depths, in the order of their numbers
+//   codes    those whose depth was kept give their numbers; of equal depths, in the order of their numbers
 //   rest     normals and colours of textures, where the picture has them
 //
 // `pass/link-slots.wgsl` makes lists of them as `pass/layers.wgsl` does, in order. Peeling does this again and again, with what
@@ -70,7 +70,7 @@ fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) ->
     let bits = bitcast<u32>(depth);
     // The smaller the number the nearer, and the larger the key.
     var key = ~(code | plane);
-    // What is farther than the last slot has no place; while depths are found, only where some were laid before is that all.
+    // A fragment farther than the last slot has no place; while depths are found, only where some were laid before is that all.
     var is_wanted = STAGE == DEPTHS || atomicLoad(&slots[key_place(first + SLOTS - 1u)]) <= bits;
     if RECORD > 1u {
         is_wanted = is_wanted && is_behind_laid(record, bits, code | plane);

@@ -1,7 +1,7 @@
 // Solids of any form (L3): the winding number of their surface about a place, counted along the line straight up from it in the
 // solid's own coordinates. Twin: `veduta::geom::shape::Solid`, which says how.
 
-// Of each solid: low x, y of the columns, columns per metre in x, y (f32); columns in x and y, fours of words that the next
+// Each solid has: low x, y of the columns, columns per metre in x, y (f32); columns in x and y, fours of words that the next
 // list takes, number of faces; where the faces of each column begin; the faces, four entries each: corners by x, and whether
 // that is their turn (1 or -1); upward normal, and how much higher than its first corner an upright face counts as above.
 @group(1) @binding(2) var<storage, read> solids: array<vec4u>;

@@ -1,4 +1,4 @@
-// Of one volume that has a closed form: a layer is enough.
+// The depth sprite of one volume that has a closed form: a layer is enough.
 
 // Which kind of shape this pipeline is for.
 override KIND: u32 = SPHERE;

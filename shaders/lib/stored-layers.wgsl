@@ -1,4 +1,4 @@
-// Of a lens that is no convex volume (S3): the ends of its closed forms and the crossings with the faces of its solids, in their
+// The depth sprite of a lens that is no convex volume (S3): the ends of its closed forms and the crossings with the faces of its solids, in their
 // order along the ray; an entry into a solid counts 1, an exit -1, and the ray is in the solid where the sum is not 0. Where the
 // combination of the leaves begins or ends to hold, an interval does. Twin: `veduta::lens::classify::intervals_of`.
 //
@@ -138,7 +138,7 @@ fn follow(ray: Ray, list: u32, first: u32, code: DepthCode, format: u32) -> bool
             windings[i] = select(known, known - windings[i], leaf.kind == SOLID && is_in_doubt(leaf));
         }
     }
-    // What happens just at the start has happened.
+    // A crossing just at the start has happened.
     here = Event(select(-FAR_AWAY, 0.0, starts_at_eye), NONE, 0u, 0);
     var is_in = is_in_after(here.at);
     var entered = here.at;

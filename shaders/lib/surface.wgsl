@@ -1,10 +1,10 @@
-// What a triangle is part of, and which way it faces: one texel per surface, direction and tile.
+// Surfaces of triangles, and which way they face: one texel per surface, direction and tile.
 
 const NO_OBJECT: u32 = 0xffffffffu;
 const SURFACE_UNLIT: u32 = 1u;
 const SURFACE_PART: u32 = 6u;   // bits that hold the part
 const SURFACE_PART_SHIFT: u32 = 1u;
-// What a surface is part of.
+// Parts of the city that a surface may be of.
 const PART_OTHER: u32 = 0u;
 const PART_ROOF: u32 = 1u;
 const PART_WALL: u32 = 2u;      // with its windows and doors

@@ -33,7 +33,7 @@ override PICKS: bool = false;
 const PICKED: u32 = 3u;         // the word of `heads` that has its number
 const LONGEST: u32 = 2u;        // the word of `heads` that has the length of the longest list that was not done
 const MOST_LAYERS: u32 = 1u;    // the word of `heads` that has the largest number of layers of a pixel
-// What is let through below this is not seen, whatever its colour.
+// Less light let through than this is not seen, whatever its colour.
 const NOTHING_SEEN: f32 = 5.9604645e-8;     // 2^-24
 
 //@kept
@@ -50,7 +50,7 @@ fn most_layers() -> u32 {
     return atomicLoad(&heads[MOST_LAYERS]);
 }
 
-// What a rule returned, as an opacity: nothing that is no number.
+// The answer of a rule as an opacity, 0 to 1; 0 where it is no number.
 fn contained_opacity(opacity: f32) -> f32 {
     return select(0.0, min(opacity, 1.0), opacity > 0.0);
 }
@@ -186,7 +186,7 @@ fn composite(in: Corner) -> Composite {
         through = recorded(record + RECORD_THROUGH);
         shown = vec2u(atomicLoad(&heads[record + RECORD_SHOWN]), atomicLoad(&heads[record + RECORD_SHOWN + 1u]));
         shown_depth = recorded(record + RECORD_SHOWN_DEPTH);
-        // What is in the list comes after it.
+        // The notes in the list come after it.
         last.x = atomicLoad(&heads[record + RECORD_BEFORE]);
     }
     while is_left {

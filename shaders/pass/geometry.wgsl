@@ -19,7 +19,7 @@ struct Vertex {
     @location(3) normal: u32,       // octahedral
 }
 
-// What every fragment knows. Flat values are those of a triangle's provoking vertex; its other vertices may belong
+// Values that every fragment knows. Flat values are those of a triangle's provoking vertex; its other vertices may belong
 // to other faces. Each kind of face carries no more than it uses: what is handed over is paid per vertex.
 struct Varying {
     @builtin(position) clip: vec4f,

@@ -10,7 +10,7 @@
 override TEXTURED: bool = false;    // whether the picture has textures
 override ALL: bool = false;         // whether all that is drawn is translucent
 
-// What is in the first words of `heads`; those of the pixels follow.
+// The first words of `heads`; those of the pixels follow.
 const SPILLED: u32 = 0u;            // how many notes their pool had no room for
 const FIRST_POOL: u32 = 16u;        // how many notes a pool was to take, those that spilled included; each in a line of its own
 const FIRST_HEAD: u32 = 272u;

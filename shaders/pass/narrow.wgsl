@@ -1,6 +1,6 @@
 // The lists of invokers, tile by tile, narrowed to what the tile shows (L8): what acts inside of a lens alone is left out where no
 // shown place of the tile lies in the box around the lens. First the depths that each tile shows are found, by an invocation for each
-// two columns of it; then an invocation for each tile goes through its list. Nobody waits, and nobody counts together: software
+// two columns of it; then an invocation for each tile goes through its list. No invocation waits for another or counts with it: software
 // adapters are slow at both. Loops leave at the end of their last round: such an adapter goes through a whole round to find that there
 // is none.
 
@@ -46,7 +46,7 @@ fn record_of(tile: u32) -> u32 {
 fn measure(@builtin(workgroup_id) at: vec3u, @builtin(local_invocation_index) pair: u32) {
     let size = textureDimensions(scene_depth);
     let tile = at.y * tiles().x + at.x;
-    // Where nothing is in the list, nobody asks.
+    // An empty list needs none.
     let is_empty = lists[record_of(tile)] == lists[record_of(tile) + SECTIONS];
     let rounds = select(2u * TILE_PX, 1u, is_empty);
     var least = 2.0;

@@ -1,6 +1,6 @@
 // Deferred shading of the shown surface, and what the lenses make of it.
 //
-// What the scene's context and lenses do stands in `shade` and `styled`, which are put together from the scene: by the
+// The effects of the context and of lenses stand in `shade` and `styled`, which are put together from the scene: by the
 // specialised back end, which writes out what is asked for and nothing else (U3), or by the uber back end, which reads
 // it from a table. Moving a lens or turning a parameter changes uniforms only.
 
@@ -9,7 +9,7 @@ override SUMMED: bool = false;      // weighted by coverage, to be summed over s
 @group(0) @binding(0) var<uniform> view_uniform: View;
 @group(1) @binding(3) var<uniform> light_uniform: Light;
 
-// What fragments read of uniforms is carried to them with the triangle, flat: in a fragment the software adapter reads each
+// Values of uniforms are carried to fragments with the triangle, flat: in a fragment the software adapter reads each
 // number of a uniform lane by lane, thirty instructions long, and what is flat it has at hand. These are what libraries,
 // effects and handlers read; `take` fills them.
 var<private> view: View;
@@ -60,7 +60,7 @@ fn vertex(@location(0) at: vec2f, @builtin(instance_index) part: u32) -> Corner 
     return corner;
 }
 
-// What is not carried is seldom read.
+// Values that are not carried are seldom read.
 fn take(in: Corner) {
     view.view_from_world = mat3x3f(in.view_x.xyz, in.view_y.xyz, in.view_z.xyz);
     view.projection = view_uniform.projection;
@@ -113,7 +113,7 @@ fn background(in: Corner) -> @location(0) vec4f {
     return paint_of_background(vec2i(in.clip.xy), in.clip.xy, in.part.x);
 }
 
-// What a neighbourhood filter reads: colours times opacity, and of a transparent picture opacity.
+// Pixels as a neighbourhood filter reads them: colours times opacity, and of a transparent picture opacity.
 struct Unfiltered {
     @location(0) color: vec4u,
     @location(1) opacity: vec4u,

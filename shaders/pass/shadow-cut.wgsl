@@ -25,7 +25,7 @@ fn vertex(@location(0) origin: vec3i, @location(1) surface: u32, @location(2) po
 fn fragment(in: Varying) {
     let surface = surface_at(in.surface);
     let is_parallel = (in.flags & 1u) == 1u;
-    // Behind the eye there is none; nobody asks for it there.
+    // Behind the eye there is none, and none is asked for.
     let distance = max(-in.position.z, 1e-30);
     let along = vec3f(0.0, 0.0, -1.0);
     var ray = Ray(vec3f(in.position.xy, 0.0), along);

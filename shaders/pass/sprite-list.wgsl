@@ -23,7 +23,7 @@ struct ListStage {
 @group(2) @binding(3) var<storage, read_write> crossings: array<u32>;
 @group(2) @binding(4) var<storage, read_write> counts: array<atomic<u32>>;
 
-// Of the near plane's distance.
+// Share of the near plane's distance.
 const CLIPPED: f32 = 0.01;
 
 // The eye of the sprite.

@@ -20,7 +20,7 @@ struct StoredStage {
     far: f32,
     // Where the lists of crossings of its texels begin.
     first_list: u32,
-    // Which of the counts is that of its rays that have more intervals than layers; 0: nobody asks.
+    // Which of the counts is that of its rays that have more intervals than layers; 0: it is not counted.
     excess: u32,
 }
 

@@ -8,7 +8,7 @@ use crate::shader::{
     specialised, uber,
 };
 
-/// What shading says, and what is carried for it. `names` of a plan's lenses become comments.
+/// Shading written out, with what is carried for it. `names` of a plan's lenses become comments.
 pub(super) fn shading(program: &Program, handlers: &[EffectDefinition], names: &[&str], pass: &Shading) -> Carried {
     let (own, of_scene) = match program {
         Program::Specialised(plan) => {

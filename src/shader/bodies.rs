@@ -12,7 +12,7 @@ use crate::shader::{
     wgsl::function::bound,
 };
 
-/// What stands over the shaded picture and below the bodies of lenses: lines of the city, and translucent layers over these.
+/// Layers over the shaded picture and below the bodies of lenses: lines of the city, and translucent layers over these.
 const WITH_LINES: &str = "    paint = with_lines(paint, pixel);\n";
 const WITH_VEIL: &str = "    paint = with_veil(paint, pixel);\n";
 
@@ -47,7 +47,7 @@ pub(super) fn outlines(plan: &Plan) -> String {
     text
 }
 
-/// What the body of a lens calls: which pixels it covers, where a ray meets it, how far a place is from it. Each lens has its own: a
+/// Functions that the body of a lens calls: which pixels it covers, where a ray meets it, how far a place is from it. Each lens has its own: a
 /// compiler takes its time over a function that asks for the lens.
 fn body_functions(plan: &Plan, i: usize, kind: BodyKind) -> String {
     let lens = i as u32;

@@ -1,4 +1,4 @@
-//! What fragments of the specialised back end read of a scene's uniforms, carried to them flat with the triangle:
+//! Values of a scene's uniforms that fragments of the specialised back end read, carried to them flat with the triangle:
 //! `pass/shade.wgsl` says why.
 
 use std::fmt::Write as _;
@@ -10,7 +10,7 @@ use crate::shader::{
 
 /// How many vectors `pass/shade.wgsl` itself carries.
 const FIRST: u32 = 14;
-/// How many an adapter carries at least: OpenGL ES 3.0's and WebGPU's compatibility mode, whose full one has 16.
+/// How many an adapter carries at least: that of OpenGL ES 3.0 and of WebGPU's compatibility mode; full WebGPU has 16.
 pub const LEAST_CARRIED: u32 = 15;
 const AXES: [&str; 4] = ["x", "y", "z", "w"];
 
@@ -49,7 +49,7 @@ pub(super) fn of_filter(filter: &EffectDefinition) -> Carried {
     Carried { members, functions: format!("{carry}\n\nfn take_own(in: Corner) {{\n{take}}}\n\n") }
 }
 
-/// What a plan reads; `room` is how many vectors the adapter carries. What finds no room is read where it stands.
+/// The values that a plan reads; `room` is how many vectors the adapter carries. Values without room are read where they stand.
 pub(super) fn of_plan(plan: &Plan, handlers: &[EffectDefinition], room: u32) -> Carried {
     let mut items = Vec::new();
     for (i, test) in plan.tests().enumerate() {
@@ -69,7 +69,7 @@ pub(super) fn of_plan(plan: &Plan, handlers: &[EffectDefinition], room: u32) -> 
     carried(items, room.saturating_sub(FIRST) as usize)
 }
 
-/// What `lib/shape.wgsl` reads of a shape that is tested so, and how many numbers that is.
+/// Members that `lib/shape.wgsl` reads of a shape that is tested so, and how many numbers each has.
 fn members(test: VolumeTest) -> &'static [(&'static str, usize)] {
     match test {
         VolumeTest::Sphere => &[("center", 3), ("size_x", 1)],

@@ -24,7 +24,7 @@ pub(super) fn specialised(
     interest: impl Fn(u32) -> String,
 ) -> String {
     let mut text = format!("fn shown_cities({place}) -> u32 {{\n    var shown = 1u;\n");
-    // What lenses below showed: asked where they are not to meet.
+    // The contents that lenses below show: asked for where contents are not to meet.
     let is_asked = |i: usize| plan.contents[i + 1..].iter().any(|c| c.clip == Clip::Discard);
     if plan.contents.iter().any(|c| c.clip == Clip::Discard) {
         text.push_str("    var below = 0u;\n");
@@ -51,8 +51,8 @@ pub(super) fn specialised(
     text + "    return shown;\n}\n\n"
 }
 
-/// The same from the invoker table; `runs` says whether an invoker, `by`, runs there. `handler` of an invoker is the city's number, `kind`
-/// that of the clip, `weight` 1 where terrain stays.
+/// The same from the invoker table; `runs` says whether an invoker, `by`, runs there. `handler` of an invoker is the city's number,
+/// `kind` that of the clip, `weight` 1 where terrain stays.
 pub(super) fn uber(place: &str, runs: &str) -> String {
     format!(
         "fn shown_cities({place}) -> u32 {{

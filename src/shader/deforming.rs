@@ -5,16 +5,16 @@ use std::fmt::Write as _;
 
 /// Fours of numbers before the first deformer, of a deformer, and of a step of it: `lib/deform.wgsl`.
 pub const FIRST_DEFORMER: usize = 1;
-/// Of a deformer.
+/// Fours of numbers of a deformer.
 pub const DEFORMER_NUMBERS: usize = 11;
-/// Of a step: how far apart samples may be, and three of its own.
+/// Fours of numbers of a step: how far apart samples may be, and three of its own.
 pub const STEP_NUMBERS: usize = 4;
 
-/// What deformations do, but for their numbers: the deformers, bottom first.
+/// Deformations without their numbers: the deformers, bottom first.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct DeformPlan(pub Vec<PlanDeformer>);
 
-/// What one does.
+/// A deformer without its numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct PlanDeformer {
     /// How strong it is.
@@ -111,7 +111,7 @@ impl DeformPlan {
         self.0.iter().any(has)
     }
 
-    /// What replaces `//@deformers`: how many there are, and `shown_at`.
+    /// The filling of the hook `deformers` (`lib/deform.wgsl`): how many there are, and `shown_at`.
     pub(super) fn shown(&self) -> String {
         let steps: usize = self.0.iter().map(|deformer| deformer.steps.len()).sum();
         let mut text = format!(
@@ -148,7 +148,7 @@ impl DeformPlan {
         text
     }
 
-    /// What replaces `//@traced`: how far a place is moved, metres, with all steps noted.
+    /// The filling of the hook `traced` (`pass/refine.wgsl`): how far a place is moved, metres, with all steps noted.
     pub(super) fn traced(&self) -> String {
         let mut text = "// How far a place is moved, metres; only the first step of a deformer is continuous across the border of its \
                         support.\nfn traced(cell: vec3i, offset: vec3f, is_first: bool) -> vec3f {\n    \

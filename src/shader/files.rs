@@ -25,7 +25,7 @@ pub(super) fn of_translucent_city(program: &Program, behind: &[File]) -> Vec<Fil
         .concat()
 }
 
-/// What lines call, and the pass that draws them.
+/// The pass that draws lines, and what it calls.
 pub(super) fn of_lines(program: &Program) -> Vec<File> {
     let cities = vertices(program);
     let mut files = vec![VIEW, VIEW_UNIFORM, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT, FRAGMENT, cities, EDGE];
@@ -37,7 +37,7 @@ pub(super) fn of_lines(program: &Program) -> Vec<File> {
     files
 }
 
-/// What shading calls, and nothing else.
+/// The libraries that shading calls.
 pub(super) fn of_shading(program: &Program, handlers: &[EffectDefinition]) -> Vec<File> {
     let parts = program.has();
     let has = |kind| program.effects().iter().any(|&e| handlers[e as usize].kind == kind);
@@ -103,7 +103,7 @@ pub(super) fn of_lenses(program: &Program) -> Vec<File> {
     ])
 }
 
-/// What tells from sprites where a ray is inside.
+/// The libraries that tell from sprites where a ray is inside.
 pub(super) fn of_spans(program: &Program) -> Vec<File> {
     let parts = program.has();
     // With borders along rays they are there already.

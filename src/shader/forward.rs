@@ -17,7 +17,7 @@ use crate::shader::{
     wgsl::{function::without_entry, merge::merged},
 };
 
-/// What becomes of a fragment.
+/// Methods: what becomes of a fragment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ForwardKind {
     /// It is added to the layer that all behind the slots are, or all.
@@ -29,11 +29,11 @@ pub enum ForwardKind {
 /// Such a module.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Forward {
-    /// What becomes of a fragment.
+    /// The method.
     pub kind: ForwardKind,
-    /// What is translucent.
+    /// The part of the scene that decides what is translucent.
     pub hidden: Program,
-    /// What the lenses make of it.
+    /// The part that decides how it looks.
     pub shading: Program,
 }
 
@@ -49,7 +49,7 @@ impl Forward {
         merged(&self.shading_text(handlers, lenses), &self.city_text(handlers, lenses))
     }
 
-    /// What shades a fragment, and what becomes of it then.
+    /// The text that shades a fragment, and says what becomes of it then.
     fn shading_text(&self, handlers: &[EffectDefinition], lenses: &[&str]) -> String {
         // As many parameters as the longer list reads.
         let slots = match &self.hidden {
@@ -58,7 +58,7 @@ impl Forward {
         };
         let own = backend::shading(&self.shading, handlers, lenses, &Shading::of_fragments(slots));
         let opacity = backend::opacity(&self.shading, handlers);
-        // What the triangle carries elsewhere is made where it is read.
+        // The values that a triangle carries elsewhere are made where they are read.
         let shade = SHADE.changed(|text| without_entry(text, "vertex", "corner_of"));
         let text = Template::of_files(&files::of_shading(&self.shading, handlers))
             .then(Template::below_path(SHADE.path, &shade))
@@ -78,7 +78,7 @@ impl Forward {
         .text()
     }
 
-    /// What draws the city, and tells which fragments are translucent.
+    /// The text that draws the city, and tells which fragments are translucent.
     fn city_text(&self, handlers: &[EffectDefinition], lenses: &[&str]) -> String {
         let shading = [files::of_shading(&self.shading, handlers), vec![SHADE]].concat();
         let mut files = files::of_lenses(&self.hidden);
@@ -89,7 +89,7 @@ impl Forward {
         }
         let hidden = hiding::source(&self.hidden, handlers, lenses, Eye::Fragments) + NOTHING_CUT;
         let text = geometry::filled(Template::of_files(&files), Drawn::Shaded, &hidden);
-        // What is opaque is read where shading reads it. Where the depth test comes after the shader, it writes too.
+        // The opaque depth is read where shading reads it. Where the depth test comes after the shader, it writes too.
         let plane = if self.kind == ForwardKind::Tail { behind_plane("scene_depth") } else { String::new() };
         translucent::filled(text, DepthTest::Any, "").leave("opaque-depth").fill("behind-plane", plane).text()
     }

@@ -2,7 +2,7 @@
 
 use crate::shader::template::Template;
 
-/// What fragments leave behind, and where they look from.
+/// Outputs of the geometry pass, and the view that its vertices get.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Drawn {
     /// Surfaces, and nothing else.

@@ -1,4 +1,4 @@
-//! What is there: `visible` and what it calls (architecture, decision 4), for the geometry pass and the shadow map, on both
+//! Visibility of fragments: `visible` and what it calls (architecture, decision 4), for the geometry pass and the shadow map, on both
 //! back ends. A hiding effect says for each fragment, by its own depth, whether it is taken away (K4), an opacity rule whether it
 //! is translucent: then it is in the list of its pixel instead, by `is_layer`, and casts no shadow.
 
@@ -15,7 +15,7 @@ use crate::shader::{
     table::{self, MOST_SLOTS},
 };
 
-/// Whose eye the module draws for.
+/// The eye that a module draws for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Eye {
     /// The picture's.

@@ -40,7 +40,7 @@ pub(super) fn uniform(binding: u32, name: &str, array: &str, carried: bool) -> S
     format!("@group(2) @binding({binding}) var<uniform> {name}{whole}: {array};\n{own}")
 }
 
-/// What is asked of a volume.
+/// Questions to a volume.
 #[derive(Clone, Copy)]
 enum Question {
     /// Its classes.
@@ -105,7 +105,7 @@ pub(super) fn covers(plan: &Plan, lens: u32, pixel: &str) -> String {
     joined(plan, lens, Question::Covers, pixel, " || ")
 }
 
-/// The degree of interest of a place in one lens of a plan, whose border's parameters are `border`.
+/// The degree of interest of a place in one lens of a plan; `border` are the parameters of its border.
 pub(super) fn interest(plan: &Plan, lens: u32, border: &str) -> String {
     format!("degree_of_interest({}, {border}, sight)", distance_of(plan, lens, border))
 }

@@ -8,7 +8,7 @@ use crate::shader::wgsl::function::FunctionError;
 pub(super) struct File {
     /// Its path below `shaders`.
     pub(super) path: &'static str,
-    /// What it says.
+    /// Its text.
     pub(super) text: &'static str,
 }
 

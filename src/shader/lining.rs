@@ -54,7 +54,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
     text
 }
 
-/// What `shown_cities` is asked of.
+/// The parameters of `shown_cities`.
 const PLACE: &str = "fragment: Fragment, classes: Classes";
 
 /// A line of a city that does not show at its place.

@@ -12,7 +12,8 @@ pub(super) const BINDING: &str = "// Layers, per 32 lenses: inside, in front, be
 pub(super) const ONLY_SHOWN: &str = "    // This may run before the depth test that chooses between surface and background.\n    \
     if (textureLoad(scene_depth, pixel, 0) > 0.0) != (point.surface != NO_SURFACE) {\n        return;\n    }\n";
 
-/// What shows a layer has that one's classes. `condition` begins what is asked: nothing, or something with `&& ` behind it.
+/// Leaves a pixel that shows a layer to the classes of that layer. `condition` comes before the question: nothing, or a condition
+/// with `&& `.
 pub(super) fn not_through_layers(condition: &str) -> String {
     format!("    if {condition}is_layer_shown(pixel) {{\n        return;\n    }}\n")
 }

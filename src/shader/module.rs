@@ -71,7 +71,7 @@ pub enum Module {
     Resolve,
     /// Lists of invokers narrowed to what tiles show.
     Narrow,
-    /// What deformations meet, refined and moved, and what they do.
+    /// Meshes that deformations reach, refined and moved.
     Refine(DeformPlan),
     /// Titles, captions and legends.
     Furniture,

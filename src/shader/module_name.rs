@@ -1,4 +1,4 @@
-//! What modules are called, for people and statistics.
+//! Names of modules, for people and statistics.
 
 use crate::shader::{effect::registry::handlers, module::Module, names, plan::program::Program};
 

@@ -8,7 +8,7 @@ pub(super) fn of_effects(program: &Program) -> String {
     names.join(", ")
 }
 
-/// What a pass takes away, behind the name of the pass.
+/// The effects that take fragments away, behind the name of a pass.
 pub(super) fn of_hidden(program: &Program) -> String {
     let contents = program.has().contents.then_some("contents".to_owned());
     let effects = Some(of_effects(program)).filter(|names| !names.is_empty());

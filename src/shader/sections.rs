@@ -8,7 +8,7 @@ use crate::shader::{
     plan::{program::Program, volume_test::VolumeTest},
 };
 
-/// What the pass calls: `visible`, and the ends of volumes.
+/// The functions that the pass calls: `visible`, and the ends of volumes.
 pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str]) -> String {
     let mut text = hiding::source(program, handlers, names, hiding::Eye::Picture);
     let (kinds, by): (Vec<(String, VolumeTest, String)>, &str) = match program {

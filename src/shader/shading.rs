@@ -1,4 +1,4 @@
-//! What differs between the passes that shade.
+//! Differences between the passes that shade.
 
 /// How a pass shades.
 #[derive(Clone, Copy, Debug)]
@@ -12,17 +12,17 @@ pub(super) struct Shading {
 }
 
 impl Shading {
-    /// Of the shown surfaces, and of what is behind the city.
+    /// Shading of the shown surfaces, and of the sky behind the city.
     pub(super) fn of_surfaces(room: u32) -> Self {
         Self { room: Some(room), is_of_surfaces: true, slots: 0 }
     }
 
-    /// Of translucent layers. Their pixels are no other shader's, whatever is opaque behind them.
+    /// Shading of translucent layers. No other shader writes their pixels, whatever is opaque behind them.
     pub(super) fn of_layers(room: u32) -> Self {
         Self { room: Some(room), is_of_surfaces: false, slots: 0 }
     }
 
-    /// Of fragments where they are drawn, by a module that reads so many `vec4f` of the parameters for other ends.
+    /// Shading of fragments where they are drawn, by a module that reads so many `vec4f` of the parameters elsewhere.
     pub(super) fn of_fragments(slots: u32) -> Self {
         Self { room: None, is_of_surfaces: false, slots }
     }

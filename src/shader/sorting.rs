@@ -19,7 +19,7 @@ fn bitonic() -> impl Iterator<Item = [usize; 2]> {
     strides.flat_map(|stride| (0..KEPT).filter(move |i| i & stride == 0).map(move |i| [i, i + stride]))
 }
 
-/// What takes the place of the farthest of those that are kept, where it is nearer: theirs, and the taken one.
+/// Pairs of a kept note, from the farthest on, and a taken one that takes its place where it is nearer.
 fn exchanged() -> impl Iterator<Item = [usize; 2]> {
     (0..TAKEN).map(|i| [KEPT - 1 - i, i])
 }
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn all_that_is_taken_is_put_in_order() {
-        // What sorts all zeros and ones sorts everything.
+        // A network that sorts all zeros and ones sorts everything (Knuth, 5.3.4, theorem Z).
         for bits in 0..1_u32 << TAKEN {
             let mut numbers: Vec<u32> = (0..TAKEN).map(|i| bits >> i & 1).collect();
             NETWORK.iter().for_each(|&pair| order(&mut numbers, pair));

@@ -16,7 +16,7 @@ use std::borrow::Cow;
 
 use crate::shader::library::File;
 
-/// What is wrong with the filling of a template.
+/// A mistake in the filling of a template.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("shaders/{file}: hook `{hook}` {problem}")]
 pub(super) struct HookError {
@@ -24,7 +24,7 @@ pub(super) struct HookError {
     pub(super) file: String,
     /// Its name.
     pub(super) hook: String,
-    /// What is wrong.
+    /// The mistake.
     pub(super) problem: HookProblem,
 }
 
@@ -40,7 +40,7 @@ pub(super) enum HookProblem {
     /// The text is finished without a filling for it.
     #[error("is not filled")]
     Unfilled,
-    /// What stands behind the mark is no name, or has no end.
+    /// The text behind the mark is no name, or has no end.
     #[error("is no name of a-z, 0-9 and -, alone at the end of its line or in /*@ */")]
     Malformed,
 }

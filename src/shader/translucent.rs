@@ -14,7 +14,7 @@ pub(super) enum DepthTest {
 }
 
 impl DepthTest {
-    /// Of what is noted; `is_early`: whether the adapter can test depth before the shader.
+    /// The test of a pass that notes fragments; `is_early`: whether the adapter can test depth before the shader.
     pub(super) fn of_notes(is_early: bool) -> Self {
         if is_early { Self::Early } else { Self::InShader }
     }
@@ -32,10 +32,10 @@ pub(super) fn filled<'a>(text: Template<'a>, test: DepthTest, leave: &str) -> Te
     text.fill("early", early).fill("behind", behind)
 }
 
-/// What is opaque, read from a binding of its own.
+/// The opaque depth, read from a binding of its own.
 pub(super) const OPAQUE_DEPTH: &str = "@group(0) @binding(3) var opaque_depth: texture_depth_2d;\n";
 
-/// A fragment whose depth is that of its plane, compared with what is opaque in this texture.
+/// Compares a fragment whose depth is that of its plane with the opaque depth in this texture.
 pub(super) fn behind_plane(texture: &str) -> String {
     format!("    if textureLoad({texture}, vec2i(in.clip.xy), 0) > depth {{\n        discard;\n    }}\n")
 }

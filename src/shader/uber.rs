@@ -97,7 +97,7 @@ pub(super) fn classes(uber: &Uber) -> String {
 const WITH_LINES: &str = "    if table.ranges.z < table.ranges.w {\n        paint = with_lines(paint, pixel);\n    }\n";
 const WITH_VEIL: &str = "    if table.tiles.w != 0u {\n        paint = with_veil(paint, pixel);\n    }\n";
 
-/// What is laid over the shaded picture: lines, layers, and the bodies of lenses; `by.handler` says of which kind a body is.
+/// `outlines`: lines, layers and the bodies of lenses over the shaded picture; `by.handler` is the kind of a body.
 fn outlines(uber: &Uber) -> String {
     let over = [(uber.lines, WITH_LINES), (uber.veils, WITH_VEIL)];
     let over: String = over.iter().filter(|(is_drawn, _)| *is_drawn).map(|(_, laid)| *laid).collect();

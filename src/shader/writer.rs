@@ -16,9 +16,9 @@ use crate::shader::{
     },
 };
 
-/// What is written out.
+/// A plan while it is written out.
 pub(super) struct Writer<'a> {
-    /// What of the scene.
+    /// The plan.
     pub(super) plan: &'a Plan,
     /// The handlers that its numbers count.
     pub(super) handlers: &'a [EffectDefinition],

@@ -8,7 +8,7 @@ use crate::shader::{
     wgsl::token::identifier,
 };
 
-/// What an effect reads of each object.
+/// Values per object that effects read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PerObject {
@@ -18,7 +18,7 @@ pub enum PerObject {
     Chosen,
     /// Nothing of objects: where in the picture the points of interest of its lens are (`render::sights`).
     Sights,
-    /// What they cover of the ground, by its outline (`render::footprints`).
+    /// Outlines of the ground that they cover (`render::footprints`).
     Footprints,
 }
 
@@ -33,19 +33,19 @@ pub struct EffectDefinition {
     pub mode: Mode,
     /// The requirement it fulfils.
     pub spec: String,
-    /// What it does, one sentence.
+    /// Its purpose, one sentence.
     pub doc: String,
     /// Its parameters.
     pub parameters: Vec<ParameterDefinition>,
-    /// What its WGSL reads of each object, which the host makes of attributes.
+    /// The values per object that its WGSL reads, which the host makes of attributes.
     pub objects: Option<PerObject>,
     /// It draws edges where it acts: with its parameters `line_color` and `line_width`.
     pub lines: bool,
-    /// Somebody else wrote it: what it returns is contained.
+    /// Whether a user wrote it: then its results are contained.
     pub is_users: bool,
     /// It looks at what it takes first, so it cannot stand in for what is below it.
     pub reads_below: bool,
-    /// It calls `most_layers`: how many layers the pixel has that has most, which somebody must count first.
+    /// Whether it calls `most_layers`: the largest number of layers of a pixel, which a pass must count first.
     pub asks_most_layers: bool,
     /// The WGSL of its functions, names qualified; that of its parameters first.
     pub source: String,
@@ -61,7 +61,7 @@ impl EffectDefinition {
         if self.is_users { format!("user_{name}") } else { name }
     }
 
-    /// What a name of its own is called in a module. Two users' effects never have the same name: an effect's holds no
+    /// The name in a module of one of its own names. Two users' effects never have the same name: an effect's holds no
     /// `__`. That two of the program's have not, tests see.
     pub fn own(&self, name: &str) -> String {
         format!("{}{}{name}", self.wgsl_name(), if self.is_users { "__" } else { "_" })
@@ -76,7 +76,7 @@ impl EffectDefinition {
         all.filter_map(|p| p.kind.in_shader().map(|(type_name, floats)| (p, type_name, floats)))
     }
 
-    /// Of an opacity rule: which fragments it makes translucent at all, as a condition on what has `object` and `part` of this
+    /// Which fragments an opacity rule makes translucent at all, as a condition on what has `object` and `part` of this
     /// name, and its parameters from `first`; `None`: all of them. The others stay with what is opaque.
     pub fn acts_on(&self, place: &str, first: &str) -> Option<String> {
         let own = format!("{}({first})", self.own("parameters"));
@@ -90,7 +90,7 @@ impl EffectDefinition {
         (!conditions.is_empty()).then(|| conditions.join(" && "))
     }
 
-    /// Of an opacity rule: by which of its parameters terrain stays opaque, if by any.
+    /// The parameter of an opacity rule by which terrain stays opaque, if there is one.
     pub fn terrain_parameter(&self) -> Option<&ParameterDefinition> {
         self.parameters.iter().find(|p| p.name == KEEP_TERRAIN && p.kind == ParameterKind::Boolean)
     }

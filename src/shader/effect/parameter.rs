@@ -1,6 +1,6 @@
 //! Parameters of effects: what they take, and what holds where they are not given.
 
-/// What a parameter takes.
+/// Types of parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParameterKind {
     /// `true` or `false`; in WGSL a `bool`.
@@ -45,7 +45,7 @@ impl ParameterKind {
         }
     }
 
-    /// What it takes, as people read it.
+    /// Its values in words.
     pub fn describe(&self) -> String {
         match self {
             Self::Boolean => "true or false".into(),
@@ -67,14 +67,14 @@ impl ParameterKind {
     }
 }
 
-/// What holds where a parameter is not given.
+/// The value of a parameter that is not given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fallback {
     /// The effect does nothing without it.
     Required,
     /// This value.
     Value(DefaultValue),
-    /// What the words say; the host knows.
+    /// A value that the host works out, in words.
     Words(String),
 }
 
@@ -99,13 +99,13 @@ pub enum DefaultValue {
 pub struct ParameterDefinition {
     /// Its key.
     pub name: String,
-    /// What it takes.
+    /// Its type.
     pub kind: ParameterKind,
-    /// What holds where it is not given.
+    /// Its value where it is not given.
     pub fallback: Fallback,
     /// Unit, or empty.
     pub unit: String,
-    /// What it does.
+    /// Its meaning.
     pub doc: String,
 }
 
@@ -115,7 +115,7 @@ impl ParameterDefinition {
         self.fallback == Fallback::Required
     }
 
-    /// What holds where it is not given, in words or as TOML; empty where it is required.
+    /// Its value where it is not given, in words or as TOML; empty where it is required.
     pub fn default_text(&self) -> String {
         match &self.fallback {
             Fallback::Required => String::new(),

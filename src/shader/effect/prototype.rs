@@ -63,7 +63,7 @@ pub struct Prototype {
     pub name: &'static str,
     /// The stage at which its handlers run.
     pub stage: Stage,
-    /// The mode of a handler whose header gives none.
+    /// The mode of a handler without one in its header.
     pub default_mode: Mode,
     /// The first argument in WGSL: name and type.
     pub subject: (&'static str, &'static str),
@@ -209,14 +209,14 @@ const WORDS: [&str; PROTOTYPES.len()] = {
 };
 
 impl Prototype {
-    /// What a handler's function looks like, where the last argument is as given: nothing, or one with `, ` before it.
+    /// The declaration of a handler's function; `last` is its last parameter: nothing, or one with `, ` before it.
     pub fn signature(&self, last: &str) -> String {
         let (name, type_name) = self.subject;
         let point = if self.takes_point { ", point: Point" } else { "" };
         format!("effect({name}: {type_name}{point}{last}) -> {}", self.result)
     }
 
-    /// The words of those whose handlers users can drop in, as a sentence lists them.
+    /// The words of the prototypes of which users can drop in handlers, as a sentence lists them.
     pub fn words_for_users() -> String {
         let words: Vec<&str> = PROTOTYPES.iter().filter(|row| row.is_for_users).map(|row| row.word).collect();
         let (last, others) = words.split_last().expect("there are some");

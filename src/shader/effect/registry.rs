@@ -54,7 +54,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("haze"),
 ];
 
-/// What the 13 bits of an invoker's handler can tell apart.
+/// How many handlers the 13 bits of an invoker can tell apart.
 pub const MOST_HANDLERS: usize = 8192;
 
 /// The handlers there are. Definitions are never freed: a pipeline may refer to one that was replaced.
@@ -88,7 +88,7 @@ pub fn number_of(name: &str) -> Option<u32> {
 /// Takes an effect that has a new name, or with `may_replace` that of another effect of a user, in whose place it comes then.
 ///
 /// # Errors
-/// What is wrong with its name, or that there is no room.
+/// Its name is taken, or there is no room.
 pub(super) fn put(effect: EffectDefinition, may_replace: bool) -> Result<(), String> {
     let mut all = EFFECTS.write().unwrap_or_else(PoisonError::into_inner);
     let at = all.iter().position(|e| e.name == effect.name);

@@ -8,7 +8,7 @@ use crate::shader::{
 /// Adds a user's effect file; its name must be new.
 ///
 /// # Errors
-/// What is wrong with the file, or with its name.
+/// A mistake in the file, or a name that is taken.
 pub fn add(path: &str, text: &str) -> Result<(), FileError> {
     put(path, text, false).map(drop)
 }
@@ -18,7 +18,7 @@ pub fn add(path: &str, text: &str) -> Result<(), FileError> {
 /// picture is drawn: that would mix both versions.
 ///
 /// # Errors
-/// What is wrong with the file, or with its name; what was there before stays.
+/// A mistake in the file, or a name that is taken; what was there before stays.
 pub fn replace(path: &str, text: &str) -> Result<String, FileError> {
     put(path, text, true)
 }

@@ -87,7 +87,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
     Ok(effect)
 }
 
-/// What a validator's error says, without the numbers by which it knows things.
+/// The message of a validator, without the numbers by which it knows things.
 fn in_words(error: &dyn std::error::Error) -> String {
     let mut innermost = error;
     while let Some(source) = innermost.source() {

@@ -1,4 +1,4 @@
-//! What users' effects cost: loops and calls multiplied out.
+//! Costs of users' effects: loops and calls multiplied out.
 
 use crate::shader::{
     effect_file::error::{File, FileError},
@@ -8,7 +8,7 @@ use crate::shader::{
 /// Words and marks that `effect` may run through for one pixel, loops and calls multiplied out.
 const MOST_STEPS: u64 = 1_000_000;
 
-/// Refuses what ends, but not in anybody's lifetime: loops in loops, and functions that call the next one twice.
+/// Refuses effects that end, but far too late: loops in loops, and functions that call the next one twice.
 pub(super) fn check_cost(file: &File) -> Result<(), FileError> {
     let tokens = token::tokens(file.text);
     let declared = token::declarations(file.text, &tokens);
@@ -22,7 +22,7 @@ pub(super) fn check_cost(file: &File) -> Result<(), FileError> {
     Ok(())
 }
 
-/// What the functions of a file cost.
+/// Costs of the functions of a file.
 struct Costs<'a> {
     file: &'a File<'a>,
     tokens: &'a [Token],

@@ -1,8 +1,8 @@
-//! What is wrong with an effect file, and where.
+//! Mistakes in effect files, with their places.
 
 use crate::shader::wgsl::token::line_and_column;
 
-/// What is wrong with an effect file.
+/// A mistake in an effect file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{path}:{line}:{column}: {message}")]
 pub struct FileError {
@@ -12,7 +12,7 @@ pub struct FileError {
     pub line: usize,
     /// Column, from 1, in characters.
     pub column: usize,
-    /// What is wrong, and what was expected.
+    /// The mistake, and what was expected.
     pub message: String,
 }
 
@@ -20,7 +20,7 @@ pub struct FileError {
 pub(super) struct File<'a> {
     /// Its path.
     pub(super) path: &'a str,
-    /// What it says.
+    /// Its text.
     pub(super) text: &'a str,
 }
 

@@ -46,7 +46,7 @@ fn is_bounded<'a>(tokens: &[Token], i: usize, word: &impl Fn(usize) -> &'a str) 
     if !(0..head.len()).all(|k| word(i + k) == head[k]) || to.saturating_sub(from) > MOST_ROUNDS {
         return false;
     }
-    // Up to the brace that closes the body, nobody assigns to the variable or takes its address.
+    // Up to the brace that closes the body, the variable is not assigned to, and its address is not taken.
     let mut depth = 1;
     for k in i + head.len()..tokens.len() {
         match word(k) {

@@ -76,7 +76,7 @@ pub(super) struct SharedParameters {
 pub(super) const CHOICE: &str = include_str!("../../../shaders/effect/choice.toml");
 
 impl ParameterHeader {
-    /// What it defines, or what is wrong and where in the header.
+    /// The definition, or a mistake and its place in the header.
     pub(super) fn definition(self) -> Result<ParameterDefinition, (Option<std::ops::Range<usize>>, String)> {
         let span = Some(self.r#type.span());
         let wrong = |message: &str| Err((span.clone(), message.to_owned()));

@@ -18,7 +18,7 @@ use crate::shader::{
     },
 };
 
-/// What every effect may use beside its own names.
+/// Names that every effect may use beside its own.
 const OUTER_NAMES: &[&str] = &["Parameters", "effect"];
 
 /// Reads an effect file; that its WGSL is right is for [`crate::shader::effect_file::check::checked`] to say.
@@ -160,7 +160,7 @@ pub(super) fn body_of(text: &str) -> &str {
     text[header..].trim_start_matches(['\n', '\r'])
 }
 
-/// What `effect` must look like.
+/// The declaration that `effect` must have.
 pub(super) fn signature(effect: &EffectDefinition) -> String {
     let parameters = if effect.slots() > 0 { ", p: Parameters" } else { "" };
     format!("fn {}", effect.kind.prototype().signature(parameters))

@@ -2,16 +2,16 @@
 
 use crate::shader::plan::step::ClassTest;
 
-/// What a lens of a plan shows in place of what is below it.
+/// The content that a lens of a plan shows in place of what is below it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PlanContent {
-    /// Index into [`Plan::lenses`].
+    /// Index into [`crate::shader::Plan::lenses`].
     pub lens: u32,
     /// On which of its classes.
     pub class: ClassTest,
     /// Number of the city that it shows, from 1; less than [`MOST_CITIES`].
     pub city: u32,
-    /// What becomes of what is below.
+    /// How it is combined with what is below.
     pub clip: Clip,
     /// Whether terrain stays as it is below.
     pub keeps_terrain: bool,
@@ -20,7 +20,7 @@ pub struct PlanContent {
 /// Cities of a picture, the scene's own included: bits of a word.
 pub const MOST_CITIES: u32 = 32;
 
-/// What becomes of what is shown below a lens that has own content (C6), the context included.
+/// How the content of a lens is combined with what is shown below (C6), the context included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Clip {
     /// It is clipped: the topmost content shows.

@@ -12,7 +12,7 @@ pub struct PlanLens {
     pub number: u32,
     /// How each of its volumes is tested; among the frame's volumes they follow those of the lenses before it.
     pub volumes: Vec<VolumeTest>,
-    /// What the leaves of its combinations are, ascending, each once.
+    /// Lens tests of the leaves of its combinations, ascending, each once.
     pub leaves: Vec<VolumeTest>,
     /// How its body is drawn, if it is.
     pub body: Option<PlanBody>,
@@ -29,7 +29,7 @@ pub struct PlanBody {
     pub parameters: u32,
 }
 
-/// What the body of a lens is drawn as.
+/// Kinds of bodies of lenses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum BodyKind {
     /// A line around its silhouette.

@@ -1,4 +1,4 @@
-//! What a scene asks of shading: the invoker table (H2), from which both back ends are made.
+//! Plans: what a scene asks of shading, the invoker table (H2), from which both back ends are made.
 //!
 //! A [`Plan`] names handlers, lenses and classes, never positions or parameters: those stand in uniforms, so a lens that
 //! moves or a slider that is dragged compiles nothing. Equal plans share a pipeline.
@@ -27,7 +27,7 @@ use crate::shader::{
 pub struct Plan {
     /// Lenses that may be seen there.
     pub lenses: Vec<PlanLens>,
-    /// What is done, bottom lens first; prototypes have an order of their own ([`EffectKind::ALL`]).
+    /// The uses of effects, bottom lens first; prototypes have an order of their own ([`EffectKind::ALL`]).
     pub steps: Vec<Step>,
     /// Whether the air shows.
     pub haze: bool,
@@ -37,7 +37,7 @@ pub struct Plan {
     pub lines: bool,
     /// Whether something is seen through: what shading lays over its picture.
     pub veils: bool,
-    /// What its lenses show in themselves, bottom lens first (C6).
+    /// The contents of its lenses, bottom lens first (C6).
     pub contents: Vec<PlanContent>,
     /// How places are told apart, for the techniques that are kept for reference (C2); `None`: by accumulation.
     pub regions: Option<Regions>,
@@ -52,7 +52,7 @@ impl Plan {
         all
     }
 
-    /// What the bodies of its lenses are drawn as, ascending, each once.
+    /// Kinds of bodies of its lenses, ascending, each once.
     pub fn bodies(&self) -> Vec<BodyKind> {
         let mut kinds: Vec<BodyKind> = self.lenses.iter().filter_map(|l| l.body).map(|b| b.kind).collect();
         kinds.sort_unstable();
@@ -73,7 +73,7 @@ impl Plan {
     /// The soft border of one of its lenses that does something here.
     pub fn border_of(&self, lens: u32) -> Option<PlanBorder> {
         let acts = |s: &Step| matches!(s.scope, Scope::Lens(l, _) if l == lens);
-        // What a lens shows fades by dithering alone.
+        // Contents fade by dithering alone.
         let shows = |b: &PlanBorder| b.dithers && self.contents.iter().any(|c| c.lens == lens);
         self.lenses[lens as usize].border.filter(|b| shows(b) || self.steps.iter().any(acts))
     }
@@ -104,7 +104,7 @@ impl Plan {
         self.lenses.iter().flat_map(|l| &l.volumes).copied()
     }
 
-    /// Whether nobody asks for other classes of a lens than *inside*.
+    /// Whether no other classes of a lens than *inside* are asked for.
     pub fn asks_inside_alone(&self, lens: u32) -> bool {
         let is_other = |s: &Step| matches!(s.scope, Scope::Lens(l, class) if l == lens && class != ClassTest::Inside);
         let is_content = |c: &PlanContent| c.lens == lens && c.class != ClassTest::Inside;
@@ -127,7 +127,7 @@ impl Plan {
         self.steps.iter().map(|s| (s, &handlers[s.effect as usize])).filter(move |(_, h)| h.kind == kind)
     }
 
-    /// What of it says what is there; `None` where nothing is hidden.
+    /// The part that decides which fragments are there; `None` where nothing is hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let decides = |step: &&Step| handlers[step.effect as usize].kind.decides_visibility();
         let steps: Vec<Step> = self.steps.iter().filter(decides).cloned().collect();
@@ -135,7 +135,7 @@ impl Plan {
             return None;
         }
         let (mut lenses, contents) = (self.plain_lenses(), self.contents.clone());
-        // What fades is translucent in all of its border.
+        // A lens that fades is translucent in all of its border.
         let fades = |lens: u32| {
             let mut rules = self.steps_of(EffectKind::Opacity, handlers);
             rules.any(|(step, _)| matches!(step.scope, Scope::Lens(l, _) if l == lens))
@@ -144,7 +144,7 @@ impl Plan {
         Some(Self { lenses, steps, contents, ..Self::default() })
     }
 
-    /// What of it lines go through; `None` where nobody draws any.
+    /// The part that lines go through; `None` where no effect draws lines.
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let steps = self.steps.iter().filter(|s| handlers[s.effect as usize].kind.touches_lines()).cloned().collect();
         self.lines.then(|| Self {
@@ -162,7 +162,7 @@ impl Plan {
         self.lenses.iter().enumerate().map(lens).collect()
     }
 
-    /// What of it says how things look.
+    /// The part that decides how surfaces look.
     pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
         self.veils = self.is_seen_through(handlers);
         self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
@@ -170,7 +170,7 @@ impl Plan {
         self
     }
 
-    /// What of it says how much of each translucent layer is seen, and how that looks; `None` where nothing is seen through.
+    /// The part that decides how much of each translucent layer is seen, and how that looks; `None` without opacity rules.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let is_of_layers =
             |step: &&Step| !matches!(handlers[step.effect as usize].kind, EffectKind::Hide | EffectKind::Filter);
@@ -193,7 +193,7 @@ impl Plan {
         of_steps.chain(of_lines).chain(of_borders).max().unwrap_or(0)
     }
 
-    /// What is done in one region, with no question left to ask.
+    /// The plan of one region, where no class is left to test.
     pub fn of_region(&self, region: u32) -> Self {
         let own = self.regions.as_ref().map_or_else(Vec::new, |regions| regions.classes_of(region));
         let is_own = |scope| match scope {

@@ -5,7 +5,7 @@ use crate::shader::plan::{Plan, lens::BodyKind, regions::Regions, uber::Uber, vo
 /// A plan on one of the back ends (H3). Both make the same picture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Program {
-    /// What is asked for, written out.
+    /// The plan, written out.
     Specialised(Plan),
     /// Everything that the scene may ask for, chosen per pixel from a table in a uniform.
     Uber(Uber),
@@ -70,7 +70,7 @@ impl Program {
         }
     }
 
-    /// What the leaves of its combinations are, ascending, each once.
+    /// Lens tests of the leaves of its combinations, ascending, each once.
     pub fn leaves(&self) -> Vec<VolumeTest> {
         match self {
             Self::Specialised(plan) => {

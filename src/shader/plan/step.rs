@@ -20,7 +20,7 @@ pub struct Step {
 pub enum Scope {
     /// All of the picture.
     Everywhere,
-    /// One class of a lens (L4): index into [`Plan::lenses`].
+    /// One class of a lens (L4): index into [`crate::shader::Plan::lenses`].
     Lens(u32, ClassTest),
 }
 
@@ -116,7 +116,7 @@ impl Step {
         self.blend.map(|_| self.parameters + handler.slots() + u32::from(handler.kind == EffectKind::Filter))
     }
 
-    /// Of a filter: where it stands which image holds what it made.
+    /// The slot of a filter that holds the number of its image.
     pub fn image(&self, handler: &EffectDefinition) -> u32 {
         self.parameters + handler.slots()
     }

@@ -1,20 +1,20 @@
-//! What a module of the uber back end holds: whatever any plan of the scene may name.
+//! Modules of the uber back end: they hold whatever any plan of the scene may name.
 
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     plan::{lens::BodyKind, volume_test::VolumeTest},
 };
 
-/// What one module of the uber back end holds: what any plan of the scene may name.
+/// Contents of a module of the uber back end: whatever any plan of the scene may name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Uber {
     /// The scene's effects, ascending, each once; those of disabled lenses too.
     pub effects: Vec<u32>,
     /// How the volumes of the scene's lenses are tested, ascending, each once; none: there are no lenses.
     pub tests: Vec<VolumeTest>,
-    /// What the leaves of their combinations are, ascending, each once.
+    /// Lens tests of the leaves of their combinations, ascending, each once.
     pub leaves: Vec<VolumeTest>,
-    /// What their bodies are drawn as, ascending, each once.
+    /// Kinds of their bodies, ascending, each once.
     pub bodies: Vec<BodyKind>,
     /// Whether something may act on other classes of them than *inside*.
     pub sides: bool,
@@ -39,7 +39,7 @@ pub struct Uber {
 }
 
 impl Uber {
-    /// What of it says what is there; `None` where nothing may be hidden.
+    /// The part that decides which fragments are there; `None` where nothing may be hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::decides_visibility);
         (!effects.is_empty() || self.contents).then(|| Self {
@@ -54,12 +54,12 @@ impl Uber {
         })
     }
 
-    /// Whether nobody asks for other classes of lenses than *inside*.
+    /// Whether no other classes of lenses than *inside* are asked for.
     pub fn asks_inside_alone(&self) -> bool {
         !self.sides && !self.masks
     }
 
-    /// What of it lines go through; `None` where nobody may draw any.
+    /// The part that lines go through; `None` where no effect draws lines.
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
@@ -68,13 +68,13 @@ impl Uber {
         self.lines.then_some(Self { blends: self.blends, lines: true, ..all })
     }
 
-    /// What of it says how things look.
+    /// The part that decides how surfaces look.
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
         let veils = self.is_seen_through(handlers);
         Self { effects: self.of(handlers, |kind| !kind.decides_visibility()), veils, contents: false, ..self }
     }
 
-    /// What of it says how much of each translucent layer is seen, and how that looks; `None` where nothing may be seen through.
+    /// The part that decides how much of each translucent layer is seen, and how that looks; `None` without opacity rules.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
         let all = Self { effects, bodies: Vec::new(), lines: false, veils: false, contents: false, ..self.clone() };

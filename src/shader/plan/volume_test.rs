@@ -5,29 +5,29 @@
 pub enum VolumeTest {
     /// From the figures of a sphere.
     Sphere,
-    /// Of an oriented box.
+    /// From the figures of an oriented box.
     Box,
-    /// Of a cylinder.
+    /// From the figures of a cylinder.
     Cylinder,
-    /// Of the planes of a convex polytope.
+    /// From the planes of a convex polytope.
     Convex,
-    /// Of an ellipsoid.
+    /// From the figures of an ellipsoid.
     Ellipsoid,
-    /// Of a cone, cut or not.
+    /// From the figures of a cone or frustum.
     Frustum,
-    /// Of the faces of a solid of any form; cheap for *inside* alone.
+    /// From the faces of a solid of any form; cheap for *inside* alone.
     Solid,
-    /// Of the faces, and of a volumetric depth sprite what is in front and behind.
+    /// From the faces of a solid; *in front* and *behind* from a volumetric depth sprite.
     SolidSprite,
     /// By its volumetric depth sprite.
     Sprite,
     /// By the object that a place belongs to.
     Members,
-    /// Of the leaves of a combination; cheap for *inside* alone.
+    /// From the leaves of a combination; cheap for *inside* alone.
     Combined,
-    /// Of the leaves, and of a volumetric depth sprite what is in front and behind.
+    /// From the leaves of a combination; *in front* and *behind* from a volumetric depth sprite.
     CombinedSprite,
-    /// Of a figure in a plane, which is looked through.
+    /// From a figure in a plane, which is looked through.
     Flat,
     /// By its volumetric depth sprite, whatever that is stored in.
     LayeredSprite,

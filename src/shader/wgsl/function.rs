@@ -10,7 +10,7 @@ use crate::shader::wgsl::token::{Token, TokenKind, tokens};
 pub struct FunctionError {
     /// Its name.
     pub name: String,
-    /// What was expected of it.
+    /// The expectation that does not hold.
     pub expected: String,
 }
 
@@ -78,8 +78,8 @@ impl<'a> Editing<'a> {
     }
 }
 
-/// A text in which functions whose first parameter is `parameter` have other names, and that parameter no more: what they ask about is
-/// in the new name. They are declared there as `fn name(parameter: TYPE, ...)` or called as `name(parameter, ...)`.
+/// A text in which functions with the first parameter `parameter` have other names and that parameter no more: the new name stands for
+/// its value. They are declared there as `fn name(parameter: TYPE, ...)` or called as `name(parameter, ...)`.
 ///
 /// # Errors
 /// A function that is not named there, or with another first parameter.

@@ -9,7 +9,7 @@ use crate::shader::wgsl::{
     token::{Declaration, Token, TokenKind, declarations, tokens},
 };
 
-/// What a text declares at its top, each with its attributes and what stands before it, in order.
+/// Declarations at the top of a text, each with its attributes and what stands before it, in order.
 fn items<'a>(text: &'a str, tokens: &[Token]) -> Vec<(Declaration<'a>, Range<usize>)> {
     let mut named = declarations(text, tokens).into_iter().peekable();
     let mut out = Vec::new();

@@ -2,7 +2,7 @@
 
 use crate::shader::wgsl::token::{Token, TokenKind};
 
-/// A text whose names were changed, and the way back to the author's.
+/// A text with changed names, and the way back to the author's places.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Renamed {
     /// The new text; lines are the old ones.

@@ -7,7 +7,7 @@ use std::ops::Range;
 pub struct Token {
     /// Where it stands, bytes.
     pub span: Range<usize>,
-    /// What it is.
+    /// Its kind.
     pub kind: TokenKind,
 }
 
@@ -91,7 +91,7 @@ pub struct Declaration<'a> {
     pub span: Range<usize>,
 }
 
-/// What a text declares at its top.
+/// Declarations at the top of a text.
 pub fn declarations<'a>(text: &'a str, tokens: &[Token]) -> Vec<Declaration<'a>> {
     const KEYWORDS: [&str; 6] = ["fn", "const", "struct", "alias", "var", "override"];
     let mut depth = 0_i32;
