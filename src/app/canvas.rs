@@ -13,11 +13,10 @@ use crate::{
         artist::Frame,
         handles::{self, Grip},
         landing::EYE_HEIGHT_M,
-        new_lens::quoted,
         outlines::Outlines,
         window::{Window, step_of},
     },
-    figure::overlays::views::POINT_RADIUS_M,
+    figure::{overlays::views::POINT_RADIUS_M, scene_file::node::Data},
     geom::Aabb,
     render::picture::ShownOverlay,
     scene::{Command, PoiPlace},
@@ -358,14 +357,15 @@ impl Window {
                 let scene = self.document.scene();
                 let Some(name) = scene.lenses.get(lens).map(|lens| lens.name.clone()) else { return };
                 let at = scene.overlays.iter().position(|overlay| overlay.lens == name);
-                let assignment = match at {
-                    Some(i) => format!("overlay.{i}.at=[{x:.4}, {y:.4}]"),
+                let place = Data::from([x, y].map(|share| (f64::from(share) * 1e4).round() / 1e4));
+                let (path, value) = match at {
+                    Some(i) => (format!("overlay.{i}.at"), place),
                     None => {
-                        let i = scene.overlays.len();
-                        format!("overlay.{i}={{ lens = {}, at = [{x:.4}, {y:.4}] }}", quoted(&name))
+                        let table = Data::table([("lens", Data::Text(name)), ("at", place)]);
+                        (format!("overlay.{}", scene.overlays.len()), table)
                     }
                 };
-                if let Err(error) = self.document.preview_set(&assignment) {
+                if let Err(error) = self.document.preview_value(&path, Some(value)) {
                     self.fail(error);
                 }
             }

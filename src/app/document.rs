@@ -8,7 +8,7 @@ use std::{
 use crate::{
     figure::{
         file::write_whole,
-        scene_file::{self, Options},
+        scene_file::{self, Edit, Options, SceneFileError, node::Data},
     },
     scene::{Command, History, Scene},
     view::Camera,
@@ -30,13 +30,27 @@ pub struct Document {
     live: Option<(String, Scene)>,
     /// When the eye was moved last.
     looked: Option<Instant>,
+    /// Where the eye was at first.
+    begun: Option<Camera>,
+    /// Whether the file says where the eye is.
+    says_eye: bool,
 }
 
 impl Document {
     /// A scene without a past; `file`: where it is from.
     pub fn new(scene: Scene, file: Option<PathBuf>) -> Self {
         let leads_outside = file.as_ref().is_some_and(|file| leads_outside(&scene, file));
-        Self { history: History::new(scene.clone()), saved: scene, file, leads_outside, live: None, looked: None }
+        let says_eye = scene.camera.is_some();
+        Self {
+            history: History::new(scene.clone()),
+            says_eye,
+            saved: scene,
+            file,
+            leads_outside,
+            live: None,
+            looked: None,
+            begun: None,
+        }
     }
 
     /// The scene as it is shown.
@@ -92,6 +106,7 @@ impl Document {
     pub fn begin_at(&mut self, camera: Camera) {
         let scene = Scene { camera: Some(camera), ..self.history.scene().clone() };
         self.history = History::new(scene);
+        self.begun = Some(camera);
     }
 
     /// Moves the eye. Moves that follow each other at once are one edit.
@@ -146,23 +161,33 @@ impl Document {
     /// # Errors
     /// What is wrong with it, in one message.
     pub fn set(&mut self, assignment: &str) -> Result<(), String> {
-        let command = scene_file::set_within(self.scene(), assignment, &self.options()).map_err(message)?;
-        let name = name_of(self.scene(), assignment);
-        self.apply(command.named(name));
-        Ok(())
+        self.do_edit(&Edit::of_assignment(assignment).map_err(message)?)
+    }
+
+    /// Gives a key another value: `lens.0.shape.radius`, a number; `None` takes it away.
+    ///
+    /// # Errors
+    /// What is wrong with it, in one message.
+    pub fn set_value(&mut self, path: &str, value: Option<Data>) -> Result<(), String> {
+        self.do_edit(&Edit::new(path, value).map_err(message)?)
     }
 
     /// Shows what that would make; [`Self::settle`] does it.
     ///
     /// # Errors
     /// What is wrong with it, in one message.
-    pub fn preview_set(&mut self, assignment: &str) -> Result<(), String> {
-        let base = self.history.scene().clone();
+    pub fn preview_value(&mut self, path: &str, value: Option<Data>) -> Result<(), String> {
+        let edit = Edit::new(path, value).map_err(message)?;
         // Several values may be held at once: each goes on from what is shown.
-        let command = scene_file::set_within(self.scene(), assignment, &self.options()).map_err(message)?;
-        let mut after = base;
-        command.redo(&mut after);
-        self.preview(name_of(self.scene(), assignment), after);
+        let after = edit.after(self.scene(), &self.options()).map_err(message)?;
+        self.preview(name_of(self.scene(), path), after);
+        Ok(())
+    }
+
+    fn do_edit(&mut self, edit: &Edit) -> Result<(), String> {
+        let command = edit.command(self.scene(), &self.options()).map_err(message)?;
+        let name = name_of(self.scene(), edit.path());
+        self.apply(command.named(name));
         Ok(())
     }
 
@@ -186,14 +211,32 @@ impl Document {
         scene_file::parse(&scene_file::to_toml_for(self.scene(), &options), &self.title(), &options).map_err(message)
     }
 
-    /// Writes the scene; it has this file from now on.
+    /// The eye as its file says it: one that the file did not say, and that nobody moved, it does not say now.
+    fn said_eye(&self) -> Option<Camera> {
+        let camera = self.scene().camera;
+        let is_unsaid = self.file.is_some() && !self.says_eye && camera == self.begun;
+        camera.filter(|_| !is_unsaid)
+    }
+
+    /// The text of the scene for a file: that of the file that it has, where there is one, with what is another value.
+    fn text_for(&self, file: &Path) -> String {
+        let options = Options { allow_outside: true, ..Options::for_file(file) };
+        let scene = Scene { camera: self.said_eye(), ..self.scene().clone() };
+        match self.file.as_ref().and_then(|own| std::fs::read_to_string(own).ok()) {
+            Some(text) => scene_file::to_edited(&text, &self.options(), &scene, &options),
+            None => scene_file::to_toml_for(&scene, &options),
+        }
+    }
+
+    /// Writes the scene; it has this file from now on. What its text says besides stays.
     ///
     /// # Errors
     /// What the system says, with the file.
     pub fn save(&mut self, file: &Path) -> Result<(), String> {
         self.settle();
-        let text = scene_file::to_toml_for(self.scene(), &Options::for_file(file));
+        let text = self.text_for(file);
         write_whole(file, |out| out.write_all(text.as_bytes())).map_err(|error| error.to_string())?;
+        self.says_eye = self.said_eye().is_some();
         self.file = Some(file.to_owned());
         self.saved = self.scene().clone();
         self.leads_outside = leads_outside(&self.saved, file);
@@ -201,9 +244,8 @@ impl Document {
     }
 }
 
-/// What an assignment does, for a menu: `radius of crate`, `figure size`.
-fn name_of(scene: &Scene, assignment: &str) -> String {
-    let path = assignment.split('=').next().unwrap_or_default();
+/// What an edit does, for a menu: `radius of crate`, `figure size`.
+fn name_of(scene: &Scene, path: &str) -> String {
     let mut segments = path.split('.').map(str::trim);
     let first = segments.next().unwrap_or_default();
     let rest: Vec<&str> = segments.collect();
@@ -227,7 +269,7 @@ fn leads_outside(scene: &Scene, file: &Path) -> bool {
 }
 
 /// The first problem, as the window says it: it knows where it is.
-fn message(error: scene_file::SceneFileError) -> String {
+fn message(error: SceneFileError) -> String {
     error.problems.first().map_or_else(|| error.to_string(), |problem| format!("{}: {}", problem.key, problem.message))
 }
 
@@ -263,9 +305,9 @@ mod tests {
         let lens = "lens.0={ name = \"a\", shape = { kind = \"sphere\", center = [0, 0, 0], radius = 10 }, effects = [\"sepia\"] }";
         document.set(lens).unwrap();
         for radius in [20, 30, 40] {
-            document.preview_set(&format!("lens.0.shape.radius={radius}")).unwrap();
+            document.preview_value("lens.0.shape.radius", Some(f64::from(radius).into())).unwrap();
         }
-        assert!(document.preview_set("lens.0.shape.radius=-1").unwrap_err().contains("radius"));
+        assert!(document.preview_value("lens.0.shape.radius", Some((-1.0).into())).unwrap_err().contains("radius"));
         let held = document.scene().clone();
         document.settle();
         assert_eq!(*document.scene(), held);
@@ -301,6 +343,36 @@ mod tests {
         let [own, read] = [document.scene(), &again].map(|scene| scene.camera.unwrap());
         assert!(own.eye == read.eye && own.target == read.target && again.city == document.scene().city);
         assert!(document.save(&folder.join("no/where.toml")).unwrap_err().contains("where.toml"));
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn one_number_that_is_changed_is_the_difference_of_its_file() {
+        const FILE: &str = "# Drawn for the exhibition.\nveduta = 1\n\n[figure]\nsize = [ 800, 600 ] # fits the frame\n\n\n[sun]\nazimuth_deg = 90\n[city]\nfiles = [\"builtin:square\"]\n\n# The old town.\n[[lens]]\nshape = { kind = \"sphere\", radius = 60, center = [1, 2, 3] } # by hand\nname = \"a\"\neffects = [\"sepia\"]\n";
+        let folder = std::env::temp_dir().join(format!("veduta-edited-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let file = folder.join("s.toml");
+        std::fs::write(&file, FILE).unwrap();
+        let open = || {
+            let scene = scene_file::read(&file, &Options::for_file(&file)).unwrap();
+            let mut document = Document::new(scene, Some(file.clone()));
+            document.begin_at(camera(3.0));
+            document
+        };
+        let mut document = open();
+        document.save(&file).unwrap();
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), FILE);
+        for radius in [61.0, 62.5] {
+            document.preview_value("lens.0.shape.radius", Some(radius.into())).unwrap();
+        }
+        document.save(&file).unwrap();
+        let edited = FILE.replace("radius = 60,", "radius = 62.5,");
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), edited);
+        // Elsewhere it is the same text, with what it did not say before.
+        document.look(camera(4.0));
+        document.save(&folder.join("t.toml")).unwrap();
+        let elsewhere = std::fs::read_to_string(folder.join("t.toml")).unwrap();
+        assert!(elsewhere.starts_with(&edited) && elsewhere.contains("[camera]\neye = [4.0, "), "{elsewhere}");
         std::fs::remove_dir_all(&folder).unwrap();
     }
 

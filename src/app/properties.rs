@@ -11,11 +11,14 @@ use crate::{
     figure::scene_file::{
         best_view::VIEWS,
         deformation::STEPS,
-        keys::{Key, Kind, LENS, ROOT, Table},
+        keys::{Key, Kind, Table},
+        lens::LENS,
+        node::Data,
         overlay::OVERLAY,
+        scene::ROOT,
         shape_keys::SHAPES,
         test_keys::TESTS,
-        to_toml_for,
+        tree,
     },
     lens::rendering::ROWS,
     scene::Scene,
@@ -46,18 +49,32 @@ impl Drafts {
         let scene = window.document.scene();
         let is_known = self.of.as_ref().is_some_and(|(of, _)| of == scene);
         if !is_known {
-            let table: TomlTable = to_toml_for(scene, &window.document.options()).parse().unwrap_or_default();
+            let table = match Value::from(&tree(scene, &window.document.options()).data) {
+                Value::Table(table) => table,
+                _ => TomlTable::new(),
+            };
             self.of = Some((scene.clone(), Rc::new(table)));
         }
         self.of.as_ref().map(|(_, table)| table.clone()).unwrap_or_default()
     }
 }
 
+/// What a value becomes.
+#[derive(Clone, Debug)]
+enum To {
+    /// Another value.
+    Value(Value),
+    /// What somebody typed.
+    Typed(String),
+    /// It is taken away.
+    Nothing,
+}
+
 /// What a widget asks for.
 #[derive(Clone, Debug)]
 struct Change {
     path: String,
-    value: String,
+    to: To,
     /// It goes on.
     is_held: bool,
 }
@@ -90,13 +107,15 @@ pub fn show(window: &mut Window, drafts: &mut Drafts, ui: &mut Ui) {
             section(window, drafts, &root, key, ui, &mut changes);
         }
     });
-    for Change { path, value, is_held } in changes {
-        let assignment = format!("{path}={value}");
+    for Change { path, to, is_held } in changes {
         let renamed = window.chosen.lens.filter(|index| path == format!("lens.{index}.name"));
-        let done = match (is_held, renamed, value_of(&value)) {
-            (true, ..) => window.document.preview_set(&assignment),
-            (false, Some(index), Some(Value::String(name))) => window.document.rename_lens(index, &name),
-            (false, ..) => window.document.set(&assignment),
+        let data = |value: &Value| Some(Data::from(value));
+        let done = match (&to, renamed) {
+            (To::Value(Value::String(name)), Some(index)) => window.document.rename_lens(index, name),
+            (To::Value(value), _) if is_held => window.document.preview_value(&path, data(value)),
+            (To::Value(value), _) => window.document.set_value(&path, data(value)),
+            (To::Typed(text), _) => window.document.set(&format!("{path}={text}")),
+            (To::Nothing, _) => window.document.set_value(&path, None),
         };
         match done {
             Ok(()) => {
@@ -129,15 +148,20 @@ fn overlay(
     egui::CollapsingHeader::new("Overlay").id_salt("overlay of the lens").default_open(true).show(ui, |ui| {
         let mut own_changes = Vec::new();
         table(ui, drafts, (&OVERLAY, true), &own, &path, &mut own_changes);
-        for Change { path: place, value, is_held } in own_changes {
-            match (at, place.strip_prefix(&format!("{path}."))) {
+        for Change { path: place, to, is_held } in own_changes {
+            let name = Value::String(lens.name.clone());
+            let (path, to) = match (at, place.strip_prefix(&format!("{path}.")), to) {
                 // The first that is said of it makes its table.
-                (None, Some(key)) => {
-                    let value = format!("{{ lens = {}, {key} = {value} }}", Value::String(lens.name.clone()));
-                    changes.push(Change { path: path.clone(), value, is_held });
+                (None, Some(key), To::Value(value)) => {
+                    let own = TomlTable::from_iter([("lens".to_owned(), name), (key.to_owned(), value)]);
+                    (path.clone(), To::Value(Value::Table(own)))
                 }
-                _ => changes.push(Change { path: place, value, is_held }),
-            }
+                (None, Some(key), To::Typed(text)) => {
+                    (path.clone(), To::Typed(format!("{{ lens = {name}, {key} = {text} }}")))
+                }
+                (_, _, to) => (place, to),
+            };
+            changes.push(Change { path, to, is_held });
         }
     });
 }
@@ -159,8 +183,10 @@ fn section(window: &Window, drafts: &mut Drafts, root: &TomlTable, key: &Key, ui
                     && ui.button("Add one in the middle of the picture").clicked()
                 {
                     let count = window.document.scene().pois.len();
-                    let value = format!("{{ at = [{:.2}, {:.2}, {:.2}] }}", at.x, at.y, at.z);
-                    changes.push(Change { path: format!("poi.{count}"), value, is_held: false });
+                    let at = at.to_array().map(|c| Value::Float((c * 100.0).round() / 100.0)).to_vec();
+                    let poi = TomlTable::from_iter([("at".to_owned(), Value::Array(at))]);
+                    let to = To::Value(Value::Table(poi));
+                    changes.push(Change { path: format!("poi.{count}"), to, is_held: false });
                 }
             }
             _ => {}
@@ -189,7 +215,7 @@ fn tables(
         egui::CollapsingHeader::new(name).id_salt(&at).show(ui, |ui| {
             table(ui, drafts, (keys, false), inner, &at, changes);
             if ui.small_button("Take it away").clicked() {
-                changes.push(Change { path: at.clone(), value: "unset".to_owned(), is_held: false });
+                changes.push(Change { path: at.clone(), to: To::Nothing, is_held: false });
             }
         });
         wrong(ui, drafts, &at);
@@ -199,7 +225,7 @@ fn tables(
     if let Some(example) = example.filter(|_| key.name != "poi")
         && ui.small_button(format!("Add {}", keys.name)).on_hover_text(keys.doc).clicked()
     {
-        changes.push(Change { path: format!("{path}.{}", list.len()), value: example.to_string(), is_held: false });
+        changes.push(Change { path: format!("{path}.{}", list.len()), to: To::Value(example), is_held: false });
     }
     wrong(ui, drafts, &format!("{path}.{}", list.len()));
 }
@@ -237,7 +263,8 @@ fn kind_of_several(
         let shown = egui::ComboBox::from_id_salt((path, "kind")).selected_text(kind).show_ui(ui, |ui| {
             for table in family {
                 if ui.selectable_label(table.name == keys.name, table.name).on_hover_text(table.doc).clicked() {
-                    changes.push(Change { path: path.to_owned(), value: of_other_kind(table, given), is_held: false });
+                    let to = To::Value(of_other_kind(table, given));
+                    changes.push(Change { path: path.to_owned(), to, is_held: false });
                 }
             }
         });
@@ -247,7 +274,7 @@ fn kind_of_several(
 }
 
 /// A table of another kind: what both have stays, sizes stay about as they were, what else the other needs is as in its example.
-fn of_other_kind(keys: &Table, given: &TomlTable) -> String {
+fn of_other_kind(keys: &Table, given: &TomlTable) -> Value {
     let mut made = TomlTable::new();
     let half = half_extent(given);
     let before = given.get("kind").and_then(Value::as_str).and_then(|kind| of_kind(SHAPES, kind));
@@ -280,7 +307,7 @@ fn of_other_kind(keys: &Table, given: &TomlTable) -> String {
             made.insert(key.name.to_owned(), value);
         }
     }
-    Value::Table(made).to_string()
+    Value::Table(made)
 }
 
 /// Half of how large a shape is along its own axes, metres, where its kind says that.
@@ -341,7 +368,7 @@ fn table(
                     ui.close();
                     changes.push(Change {
                         path: format!("{path}.{}", key.name),
-                        value: key.example.to_owned(),
+                        to: To::Typed(key.example.to_owned()),
                         is_held: false,
                     });
                 }
@@ -406,8 +433,8 @@ fn field(
                 for table in STEPS {
                     if ui.button(table.name).on_hover_text(table.doc).clicked() {
                         ui.close();
-                        let value = of_other_kind(table, &TomlTable::new());
-                        changes.push(Change { path: format!("{path}.{}", steps.len()), value, is_held: false });
+                        let to = To::Value(of_other_kind(table, &TomlTable::new()));
+                        changes.push(Change { path: format!("{path}.{}", steps.len()), to, is_held: false });
                     }
                 }
             });
@@ -419,7 +446,7 @@ fn field(
         let label = ui.label(title_of(key.name)).on_hover_text(&hint);
         widget(ui, drafts, Takes::of(&key.kind), value, path, (key.unit, ""), label.id, changes);
         if removable && ui.small_button("×").on_hover_text(format!("Take it away: {}", key.default)).clicked() {
-            changes.push(Change { path: path.to_owned(), value: "unset".to_owned(), is_held: false });
+            changes.push(Change { path: path.to_owned(), to: To::Nothing, is_held: false });
         }
     });
     wrong(ui, drafts, path);
@@ -512,7 +539,9 @@ fn widget(
     label: egui::Id,
     changes: &mut Vec<Change>,
 ) {
-    let mut push = |value: String, is_held: bool| changes.push(Change { path: path.to_owned(), value, is_held });
+    let mut push = |value: Value, is_held: bool| {
+        changes.push(Change { path: path.to_owned(), to: To::Value(value), is_held });
+    };
     match (takes, value) {
         (Takes::Number { min, max, is_whole }, Value::Integer(_) | Value::Float(_)) => {
             let mut number = number_of(value);
@@ -529,7 +558,7 @@ fn widget(
                 number = number.clamp(min, max);
             }
             if response.changed() {
-                push(number_text(number, is_whole), response.dragged());
+                push(number_value(number, is_whole), response.dragged());
             }
         }
         (Takes::Numbers, Value::Array(list)) if list.iter().all(|n| n.is_integer() || n.is_float()) => {
@@ -549,21 +578,20 @@ fn widget(
                 }
             }
             if let Some(is_held) = held {
-                let texts: Vec<String> = numbers.iter().map(|n| number_text(*n, is_whole)).collect();
-                push(format!("[{}]", texts.join(", ")), is_held);
+                push(Value::Array(numbers.iter().map(|n| number_value(*n, is_whole)).collect()), is_held);
             }
         }
         (Takes::Boolean, Value::Boolean(is)) => {
             let mut is = *is;
             if ui.add(egui::Checkbox::without_text(&mut is)).labelled_by(label).changed() {
-                push(is.to_string(), false);
+                push(Value::Boolean(is), false);
             }
         }
         (Takes::Words(words), Value::String(now)) => {
             let shown = egui::ComboBox::from_id_salt(path).selected_text(now).show_ui(ui, |ui| {
                 for word in words {
                     if ui.selectable_label(word == now, word).clicked() {
-                        push(Value::String(word.to_owned()).to_string(), false);
+                        push(Value::String(word.to_owned()), false);
                     }
                 }
             });
@@ -574,7 +602,7 @@ fn widget(
             let response = ui.color_edit_button_srgb(&mut rgb).labelled_by(label);
             if response.changed() {
                 let [r, g, b] = rgb;
-                push(format!("\"#{r:02x}{g:02x}{b:02x}\""), true);
+                push(Value::String(format!("#{r:02x}{g:02x}{b:02x}")), true);
             }
         }
         (takes, _) => {
@@ -593,8 +621,12 @@ fn widget(
                 drafts.texts.insert(path.to_owned(), text.clone());
             }
             if response.lost_focus() && text != now {
-                let value = if is_text { Value::String(text.clone()).to_string() } else { text.clone() };
-                push(if text.trim().is_empty() { "unset".to_owned() } else { value }, false);
+                let to = match text.trim().is_empty() {
+                    true => To::Nothing,
+                    false if is_text => To::Value(Value::String(text)),
+                    false => To::Typed(text),
+                };
+                changes.push(Change { path: path.to_owned(), to, is_held: false });
             }
         }
     }
@@ -611,8 +643,8 @@ fn number_of(value: &Value) -> f64 {
     value.as_float().or(value.as_integer().map(|n| n as f64)).unwrap_or(0.0)
 }
 
-fn number_text(number: f64, is_whole: bool) -> String {
-    if is_whole { format!("{}", number.round() as i64) } else { Value::Float((number * 1e6).round() / 1e6).to_string() }
+fn number_value(number: f64, is_whole: bool) -> Value {
+    if is_whole { Value::Integer(number.round() as i64) } else { Value::Float((number * 1e6).round() / 1e6) }
 }
 
 fn hex(text: &str) -> Option<[u8; 3]> {
@@ -647,7 +679,7 @@ fn effects(ui: &mut Ui, drafts: &mut Drafts, key: &Key, value: &Value, path: &st
                         if label.clicked() && definition.name != name {
                             changes.push(Change {
                                 path: format!("{path}.{i}"),
-                                value: new_effect(definition),
+                                to: To::Value(new_effect(definition)),
                                 is_held: false,
                             });
                         }
@@ -655,13 +687,9 @@ fn effects(ui: &mut Ui, drafts: &mut Drafts, key: &Key, value: &Value, path: &st
                 });
                 shown.response.labelled_by(title);
                 if ui.small_button("×").on_hover_text("Take this effect away").clicked() {
-                    let kept: Vec<String> =
-                        list.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, v)| v.to_string()).collect();
-                    changes.push(Change {
-                        path: path.to_owned(),
-                        value: format!("[{}]", kept.join(", ")),
-                        is_held: false,
-                    });
+                    let kept = list.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, own)| own.clone());
+                    let to = To::Value(Value::Array(kept.collect()));
+                    changes.push(Change { path: path.to_owned(), to, is_held: false });
                 }
             });
             let Some(definition) = effect::find(&name) else { return };
@@ -683,19 +711,23 @@ fn effects(ui: &mut Ui, drafts: &mut Drafts, key: &Key, value: &Value, path: &st
                     for change in own {
                         let mut table = table.clone();
                         table.insert("effect".to_owned(), Value::String(name.clone()));
-                        if change.value == "unset" {
-                            table.remove(&parameter.name);
-                            let value = Value::Table(table).to_string();
-                            changes.push(Change { path: format!("{path}.{i}"), value, is_held: false });
-                            continue;
-                        }
-                        let Some(parsed) = value_of(&change.value) else {
-                            drafts.wrong.insert(place.clone(), format!("{} is not a value", change.value));
-                            continue;
+                        let value = match change.to {
+                            To::Value(value) => Some(value),
+                            To::Typed(text) => {
+                                let Some(value) = value_of(&text) else {
+                                    drafts.wrong.insert(place.clone(), format!("{text} is not a value"));
+                                    continue;
+                                };
+                                Some(value)
+                            }
+                            To::Nothing => None,
                         };
-                        table.insert(parameter.name.clone(), parsed);
-                        let value = Value::Table(table).to_string();
-                        changes.push(Change { path: format!("{path}.{i}"), value, is_held: change.is_held });
+                        match value {
+                            Some(value) => table.insert(parameter.name.clone(), value),
+                            None => table.remove(&parameter.name),
+                        };
+                        let to = To::Value(Value::Table(table));
+                        changes.push(Change { path: format!("{path}.{i}"), to, is_held: change.is_held });
                     }
                 });
                 wrong(ui, drafts, &place);
@@ -711,7 +743,7 @@ fn effects(ui: &mut Ui, drafts: &mut Drafts, key: &Key, value: &Value, path: &st
                         ui.close();
                         changes.push(Change {
                             path: format!("{path}.{}", list.len()),
-                            value: new_effect(definition),
+                            to: To::Value(new_effect(definition)),
                             is_held: false,
                         });
                     }
@@ -722,8 +754,8 @@ fn effects(ui: &mut Ui, drafts: &mut Drafts, key: &Key, value: &Value, path: &st
     wrong(ui, drafts, path);
 }
 
-fn new_effect(definition: &effect::EffectDefinition) -> String {
-    Value::String(definition.name.clone()).to_string()
+fn new_effect(definition: &effect::EffectDefinition) -> Value {
+    Value::String(definition.name.clone())
 }
 
 /// A value, of its TOML.
@@ -752,7 +784,7 @@ mod tests {
     fn another_kind_of_shape_keeps_what_both_have() {
         let sphere: TomlTable = "kind = \"sphere\"\ncenter = [1, 2, 3]\nradius = 9.5".parse().unwrap();
         for table in SHAPES {
-            let made = value_of(&of_other_kind(table, &sphere)).unwrap();
+            let made = of_other_kind(table, &sphere);
             assert_eq!(made["kind"].as_str(), Some(table.name));
             if table.keys.iter().any(|key| key.name == "center") {
                 assert_eq!(made["center"], sphere["center"], "{}", table.name);
@@ -770,7 +802,7 @@ mod tests {
             }
         }
         let crate_like: TomlTable = "kind = \"box\"\ncenter = [1, 2, 3]\nsize = [8, 6, 20]".parse().unwrap();
-        let of = |kind: &str| value_of(&of_other_kind(of_kind(SHAPES, kind).unwrap(), &crate_like)).unwrap();
+        let of = |kind: &str| of_other_kind(of_kind(SHAPES, kind).unwrap(), &crate_like);
         assert_eq!(of("ellipsoid")["radii"].to_string(), "[4.0, 3.0, 10.0]");
         assert_eq!(number_of(&of("sphere")["radius"]), 4.0);
         assert!(of("flat").get("size").is_none(), "a rectangle has two sides");

@@ -4,18 +4,22 @@ use glam::DVec3;
 
 use crate::{
     figure::scene_file::{
+        camera::{CAMERA, DEFAULT_FOV_DEG},
         check::{Checker, Fields, Place},
         content::CONTENT,
-        keys::{CAMERA, Kind, POI, Table, key},
+        forms::{Degrees, Form as _, Same, Word, numbers},
+        keys::{Kind, Table, key},
         node::{Data, Node},
-        parse::DEFAULT_FOV_DEG,
+        paths::Options,
+        poi::POI,
+        reader::Reader,
+        row::{self, Row, field, keys_of},
         shape_keys::SHAPES,
-        write::{degrees, list, number, point, quoted},
     },
     lens::nearest::did_you_mean,
     scene::{
         Scene,
-        animation::{Animation, Change, ChangeKey, MOST_FRAMES, Numbers, Track},
+        animation::{Animation, Change, ChangeKey, MOST_FRAMES, Track},
     },
     view::{
         Camera, Projection,
@@ -38,7 +42,11 @@ pub const ANIMATION: Table = Table {
     name: "animation",
     doc: "What changes from frame to frame of `veduta animate`: the camera along a path, and numbers along theirs; see Animations. \
           Pictures by `veduta render` show nothing of it.",
-    keys: &[
+    keys: keys_of!(ANIMATION_ROWS),
+};
+
+const ANIMATION_ROWS: &[Row<Animation>] = &[
+    field!(
         key(
             "frames",
             Kind::Integer { min: 1, max: MOST_FRAMES as i64 },
@@ -47,7 +55,17 @@ pub const ANIMATION: Table = Table {
             "How many pictures; frame i, from 0, is at i / `fps` seconds.",
             "300",
         ),
+        Same,
+        |animation: Animation| animation.frames
+    )
+    .always(),
+    field!(
         key("fps", Kind::Number { min: 0.01, max: 1000.0 }, "30.0", "per second", "Pictures per second.", "25.0"),
+        Same,
+        |animation: Animation| animation.fps
+    )
+    .always(),
+    field!(
         key(
             "speed",
             SPEED,
@@ -57,6 +75,10 @@ pub const ANIMATION: Table = Table {
              when the times between say nothing.",
             "\"constant\"",
         ),
+        Word,
+        |animation: Animation| animation.speed
+    ),
+    Row::<Animation>::joint(
         key(
             "camera",
             Kind::Tables(&CAMERA_KEY),
@@ -65,6 +87,13 @@ pub const ANIMATION: Table = Table {
             "Where the camera is when.",
             "[{ at = 0.0, eye = [0, -90, 60], target = [0, 0, 5] }, { at = 4.0, eye = [90, 0, 60], target = [0, 0, 5] }]",
         ),
+        |animation, options| {
+            (!animation.camera.is_empty()).then(|| {
+                Data::list(animation.camera.iter().map(|key| row::written(CAMERA_KEY_ROWS, key, &NOWHERE, options)))
+            })
+        },
+    ),
+    Row::<Animation>::joint(
         key(
             "change",
             Kind::Tables(&CHANGE),
@@ -73,19 +102,33 @@ pub const ANIMATION: Table = Table {
             "What else changes.",
             "[{ path = \"lens.a.shape.radius\", keys = [{ at = 0.0, value = 20.0 }, { at = 4.0, value = 60.0 }] }]",
         ),
-    ],
-};
+        |animation, options| {
+            (!animation.changes.is_empty()).then(|| {
+                Data::list(animation.changes.iter().map(|change| row::written(CHANGE_ROWS, change, &still(), options)))
+            })
+        },
+    ),
+];
 
 /// An element of `camera` of `[animation]`.
 pub const CAMERA_KEY: Table = Table {
     name: "camera",
     doc: "The camera at a time. It goes through the keys on a centripetal Catmull-Rom curve. What a key does not say is as in \
           `[camera]`.",
-    keys: &[
-        key("at", AT, "", "s", "When, later than the key before.", "2.5"),
-        CAMERA.keys[0],
-        CAMERA.keys[1],
+    keys: keys_of!(CAMERA_KEY_ROWS),
+};
+
+const CAMERA_KEY_ROWS: &[Row<CameraKey>] = &[
+    field!(key("at", AT, "", "s", "When, later than the key before.", "2.5"), Same, |key: CameraKey| key.at),
+    field!(CAMERA.keys[0], Same, |key: CameraKey| key.eye),
+    field!(CAMERA.keys[1], Same, |key: CameraKey| key.target),
+    field!(
         key("up", Kind::Direction, "that of `[camera]`", "", "What is up in the picture.", "[0, 0, 1]"),
+        Same,
+        |key: CameraKey| key.up
+    )
+    .always(),
+    Row::<CameraKey>::joint(
         key(
             "fov_deg",
             Kind::Number { min: 0.01, max: 179.0 },
@@ -94,6 +137,13 @@ pub const CAMERA_KEY: Table = Table {
             "Vertical field of view.",
             "60.0",
         ),
+        |key, _| match &key.projection {
+            Projection::Perspective { fov_y } => Degrees::data(fov_y),
+            Projection::Orthographic { .. } => None,
+        },
+    )
+    .always(),
+    Row::<CameraKey>::joint(
         key(
             "height_m",
             Kind::Number { min: 0.001, max: 1e7 },
@@ -102,14 +152,23 @@ pub const CAMERA_KEY: Table = Table {
             "Height of the picture, where `[camera]` is orthographic.",
             "250.0",
         ),
-    ],
-};
+        |key, _| match key.projection {
+            Projection::Orthographic { height_m } => Some(height_m.into()),
+            Projection::Perspective { .. } => None,
+        },
+    )
+    .always(),
+];
 
 /// An element of `change` of `[animation]`.
 pub const CHANGE: Table = Table {
     name: "change",
     doc: "A number, or a list of numbers, of a lens, a point of interest, the style or the sun over time.",
-    keys: &[
+    keys: keys_of!(CHANGE_ROWS),
+};
+
+const CHANGE_ROWS: &[Row<Change>] = &[
+    field!(
         key(
             "path",
             Kind::Text,
@@ -118,6 +177,10 @@ pub const CHANGE: Table = Table {
             "The way to it, as `--set` has it; it begins with `lens`, `poi`, `style` or `sun`.",
             "\"lens.a.shape.center\"",
         ),
+        Same,
+        |change: Change| change.path
+    ),
+    Row::<Change>::joint(
         key(
             "keys",
             Kind::Tables(&CHANGE_KEY),
@@ -127,6 +190,11 @@ pub const CHANGE: Table = Table {
              key to key and never beyond them.",
             "[{ at = 0.0, value = 20.0 }, { at = 4.0, value = 60.0 }]",
         ),
+        |change, options| {
+            Some(Data::list(change.keys.iter().map(|key| row::written(CHANGE_KEY_ROWS, key, key, options))))
+        },
+    ),
+    field!(
         key(
             "speed",
             SPEED,
@@ -135,15 +203,17 @@ pub const CHANGE: Table = Table {
             "How the path of a place is followed, as that of the camera.",
             "\"constant\"",
         ),
-    ],
-};
+        Word,
+        |change: Change| change.speed
+    ),
+];
 
 /// An element of `keys` of a change.
-pub const CHANGE_KEY: Table = Table {
-    name: "keys",
-    doc: "A value at a time.",
-    keys: &[
-        key("at", AT, "", "s", "When, later than the key before.", "2.5"),
+pub const CHANGE_KEY: Table = Table { name: "keys", doc: "A value at a time.", keys: keys_of!(CHANGE_KEY_ROWS) };
+
+const CHANGE_KEY_ROWS: &[Row<ChangeKey>] = &[
+    field!(key("at", AT, "", "s", "When, later than the key before.", "2.5"), Same, |key: ChangeKey| key.at),
+    field!(
         key(
             "value",
             Kind::Numbers,
@@ -152,8 +222,10 @@ pub const CHANGE_KEY: Table = Table {
             "What it is: a number or a list of numbers, in all keys of one form. Texts and `true` or `false` have nothing between them.",
             "[10.0, 20.0, 3.0]",
         ),
-    ],
-};
+        Same,
+        |key: ChangeKey| key.value
+    ),
+];
 
 /// Whether the last word of a way is the name of a place.
 fn is_place(path: &str) -> bool {
@@ -162,50 +234,58 @@ fn is_place(path: &str) -> bool {
     tables.flat_map(|table| table.keys).any(|key| key.name == last && matches!(key.kind, Kind::Point))
 }
 
-/// The numbers of a value; `None` where it has others.
-pub(super) fn numbers(node: &Node) -> Option<Numbers> {
-    match &node.data {
-        Data::Integer(_) | Data::Number(_) => node.number().filter(|n| n.is_finite()).map(Numbers::One),
-        Data::List(all) if !all.is_empty() => all.iter().map(numbers).collect::<Option<_>>().map(Numbers::List),
-        _ => None,
-    }
+/// An animation of which nothing is said.
+const PLAIN: Animation = Animation { frames: 0, fps: FPS, speed: Speed::Keys, camera: Vec::new(), changes: Vec::new() };
+
+/// A camera of which nothing is said yet.
+const NOWHERE: CameraKey = CameraKey {
+    at: 0.0,
+    eye: DVec3::ZERO,
+    target: DVec3::ZERO,
+    up: DVec3::Z,
+    projection: Projection::Perspective { fov_y: 0.0 },
+};
+
+/// A change of nothing.
+fn still() -> Change {
+    Change { is_place: false, path: String::new(), speed: Speed::Keys, keys: Vec::new() }
 }
 
 /// Reads the table of a scene of which all else is read: keys fall back on its camera.
-pub(super) fn read(checker: &mut Checker, fields: &Fields, scene: &Scene) -> Option<Animation> {
+pub fn read(reader: &mut Reader, fields: &Fields, scene: &Scene) -> Option<Animation> {
     let camera = scene.camera.as_ref();
+    let mut animation = PLAIN;
+    row::read(ANIMATION_ROWS, fields, reader, &mut animation);
+    let checker = &mut reader.checker;
     let before = checker.problems.len();
-    let speed = speed_of(fields);
-    let cameras = camera_keys(checker, fields, camera, speed);
-    let changes = elements(fields, "change")
+    animation.camera = camera_keys(checker, fields, camera, animation.speed);
+    animation.changes = elements(fields, "change")
         .into_iter()
-        .filter_map(|(key, node)| change(checker, &fields.place.within(&key, node.line), node))
-        .collect::<Vec<Change>>();
-    if checker.problems.len() > before {
+        .filter_map(|(key, node)| change(reader, &fields.place.within(&key, node.line), node))
+        .collect();
+    if reader.checker.problems.len() > before {
         return None;
     }
-    let fps = fields.number("fps").unwrap_or(FPS);
-    let last_camera = cameras.iter().map(|key| key.at);
-    let last = changes.iter().flat_map(|change| change.keys.iter().map(|key| key.at)).chain(last_camera);
+    if fields.given("frames") {
+        return Some(animation);
+    }
+    let last_camera = animation.camera.iter().map(|key| key.at);
+    let last = animation.changes.iter().flat_map(|change| change.keys.iter().map(|key| key.at)).chain(last_camera);
     // What moves arrives, or goes round once.
     let arrivals = scene.trajectories.iter().map(|way| (way.end_s() - scene.time_s).clamp(0.0, LATEST_S));
     let last = last.chain(arrivals);
-    let by_keys = (last.fold(0.0, f64::max) * fps).round() + 1.0;
-    if !fields.given("frames") && by_keys > f64::from(MOST_FRAMES) {
+    let by_keys = (last.fold(0.0, f64::max) * animation.fps).round() + 1.0;
+    if by_keys > f64::from(MOST_FRAMES) {
         let message = format!("is {by_keys} up to the last key; at most {MOST_FRAMES} would be right");
-        checker.note(&fields.place, "frames", fields.place.line, message);
+        reader.checker.note(&fields.place, "frames", fields.place.line, message);
     }
-    let frames = fields.integer("frames").unwrap_or(by_keys as u32);
-    Some(Animation { frames, fps, speed, camera: cameras, changes })
+    animation.frames = by_keys as u32;
+    Some(animation)
 }
 
 fn elements<'a>(fields: &Fields<'a>, key: &str) -> Vec<(String, &'a Node)> {
     let list = fields.node(key).and_then(Node::list).unwrap_or_default();
     list.iter().enumerate().map(|(i, node)| (format!("{key}.{i}"), node)).collect()
-}
-
-fn speed_of(fields: &Fields) -> Speed {
-    if fields.text("speed") == Some("constant") { Speed::Constant } else { Speed::Keys }
 }
 
 fn camera_keys(checker: &mut Checker, fields: &Fields, camera: Option<&Camera>, speed: Speed) -> Vec<CameraKey> {
@@ -258,10 +338,16 @@ fn camera_keys(checker: &mut Checker, fields: &Fields, camera: Option<&Camera>, 
     found
 }
 
-fn change(checker: &mut Checker, place: &Place, node: &Node) -> Option<Change> {
-    let fields = checker.fields(node, &CHANGE, &[], place.clone());
-    let path = fields.text("path")?.to_owned();
-    let first = path.split('.').next().unwrap_or_default();
+fn change(reader: &mut Reader, place: &Place, node: &Node) -> Option<Change> {
+    let fields = reader.checker.fields(node, &CHANGE, &[], place.clone());
+    let mut change = still();
+    row::read(CHANGE_ROWS, &fields, reader, &mut change);
+    if change.path.is_empty() {
+        return None;
+    }
+    change.is_place = is_place(&change.path);
+    let checker = &mut reader.checker;
+    let first = change.path.split('.').next().unwrap_or_default();
     if !CHANGED.contains(&first) {
         let message = match first {
             "camera" => "the camera has keys of its own: camera = [{ at = ..., eye = ..., target = ... }]".to_owned(),
@@ -272,11 +358,10 @@ fn change(checker: &mut Checker, place: &Place, node: &Node) -> Option<Change> {
         };
         checker.note(&fields.place, "path", fields.line("path"), message);
     }
-    let mut keys: Vec<ChangeKey> = Vec::new();
     for (key, node) in elements(&fields, "keys") {
         let own = checker.fields(node, &CHANGE_KEY, &[], fields.place.within(&key, node.line));
         let (Some(at), Some(value)) = (own.number("at"), own.node("value").and_then(numbers)) else { continue };
-        if let Some(before) = keys.last() {
+        if let Some(before) = change.keys.last() {
             if at <= before.at {
                 checker.note(&own.place, "at", own.line("at"), PathError::Time(0).to_string().replace("key 0: ", ""));
             }
@@ -285,9 +370,8 @@ fn change(checker: &mut Checker, place: &Place, node: &Node) -> Option<Change> {
                 checker.note(&own.place, "value", own.line("value"), message);
             }
         }
-        keys.push(ChangeKey { at, value });
+        change.keys.push(ChangeKey { at, value });
     }
-    let change = Change { is_place: is_place(&path), path, speed: speed_of(&fields), keys };
     if change.keys.is_empty() && fields.node("keys").is_some_and(|n| n.list().is_some_and(<[Node]>::is_empty)) {
         checker.note(&fields.place, "keys", fields.line("keys"), "is empty; a change has one key or more");
     }
@@ -298,38 +382,9 @@ fn change(checker: &mut Checker, place: &Place, node: &Node) -> Option<Change> {
     Track::new(&change).map(|_| change)
 }
 
-/// The keys of the table, as TOML.
-pub(super) fn written(animation: &Animation) -> Vec<(&'static str, String)> {
-    let speed = |speed: Speed| (speed == Speed::Constant).then(|| quoted("constant"));
-    let camera = |key: &CameraKey| {
-        let mut keys =
-            vec![("at", number(key.at)), ("eye", point(key.eye)), ("target", point(key.target)), ("up", point(key.up))];
-        keys.push(match key.projection {
-            Projection::Perspective { fov_y } => ("fov_deg", number(degrees(fov_y))),
-            Projection::Orthographic { height_m } => ("height_m", number(height_m)),
-        });
-        table(keys)
-    };
-    let change = |change: &Change| {
-        let key = |key: &ChangeKey| table(vec![("at", number(key.at)), ("value", key.value.to_string())]);
-        let mut keys = vec![("path", quoted(&change.path)), ("keys", list(change.keys.iter().map(key)))];
-        keys.extend(speed(change.speed).map(|word| ("speed", word)));
-        table(keys)
-    };
-    let mut keys = vec![("frames", animation.frames.to_string()), ("fps", number(animation.fps))];
-    keys.extend(speed(animation.speed).map(|word| ("speed", word)));
-    if !animation.camera.is_empty() {
-        keys.push(("camera", list(animation.camera.iter().map(camera))));
-    }
-    if !animation.changes.is_empty() {
-        keys.push(("change", list(animation.changes.iter().map(change))));
-    }
-    keys
-}
-
-fn table(keys: Vec<(&'static str, String)>) -> String {
-    let keys: Vec<String> = keys.into_iter().map(|(key, value)| format!("{key} = {value}")).collect();
-    format!("{{ {} }}", keys.join(", "))
+/// The table.
+pub fn written(animation: &Animation, options: &Options) -> Data {
+    row::written(ANIMATION_ROWS, animation, &PLAIN, options)
 }
 
 /// Tables of it, for the docs.

@@ -4,11 +4,15 @@ use glam::DVec3;
 
 use crate::{
     figure::scene_file::{
-        check::{Checker, Fields},
-        keys::{CAMERA, FAR_M, Key, Kind, Table, key},
-        node::Node,
+        camera::{self, CAMERA},
+        check::Fields,
+        effects,
+        forms::{Behind, Degrees, Form as _, Names, Same, Word},
+        keys::{FAR_M, Key, Kind, Table, key},
+        node::{Data, Node},
         paths::Options,
-        write::{camera_keys, degrees, effect, list, number, point, quoted, write_color},
+        reader::Reader,
+        row::{self, Row, Variant, field, keys_of, kind, part, tables, variant},
     },
     lens::{
         LensKind,
@@ -17,12 +21,8 @@ use crate::{
         },
         nearest::did_you_mean,
     },
-    view::Camera,
+    view::{Camera, Projection},
 };
-
-const fn view_kind(name: &'static str) -> Key {
-    key("kind", Kind::Text, "the first that its kind of lens may have", "", "Which eye.", name)
-}
 
 const FOV: Key =
     key("fov_deg", Kind::Number { min: 0.01, max: 179.0 }, "45.0", "degrees", "Vertical field of view.", "30.0");
@@ -30,72 +30,95 @@ const FOV: Key =
 const MAP_MODES: [&str; 3] = [MapMode::WORDS[0].0, MapMode::WORDS[1].0, MapMode::WORDS[2].0];
 
 /// All eyes of their own.
-pub const VIEWS: &[Table] = &[
-    Table {
-        name: "best",
-        doc: "All of the first point of interest: the sphere around it fills the overlay. What is nearer to this eye than that sphere is \
+pub const VIEWS: &[Table] = &tables::<_, { VIEW_KINDS.len() }>(VIEW_KINDS);
+
+const VIEW_KINDS: &[Variant<LocalView>] = &[
+    variant!(
+        LocalView,
+        "best",
+        "All of the first point of interest: the sphere around it fills the overlay. What is nearer to this eye than that sphere is \
               left out, so that nothing hides it; where the eye is chosen and less than a tenth of the object is hidden, it stays.",
-        keys: &[
-            view_kind("\"best\""),
-            key(
+        LocalView::Best { normal: None, fov_y: DEFAULT_FOV },
+        LocalView::Best { .. },
+        &[
+            kind!("best", "Which eye.", "the first that its kind of lens may have"),
+            part!(LocalView, key(
                 "normal",
                 Kind::Direction,
                 "where most of its facades is seen from",
                 "",
                 "The direction from the object to the eye (best-view normal), of any length but 0.",
                 "[-1.0, -1.0, 0.5]",
-            ),
-            FOV,
-        ],
-    },
-    Table {
-        name: "mcop",
-        doc: "The main eye, looked at from outside (multiple centres of projection).",
-        keys: &[
-            view_kind("\"mcop\""),
-            key(
+            ), Same, LocalView::Best { normal, .. } => normal),
+            part!(LocalView, FOV, Degrees, LocalView::Best { fov_y, .. } => fov_y),
+        ]
+    ),
+    variant!(
+        LocalView,
+        "mcop",
+        "The main eye, looked at from outside (multiple centres of projection).",
+        LocalView::Mcop { normal: DVec3::Z, distance_m: 0.0, fov_y: DEFAULT_FOV },
+        LocalView::Mcop { .. },
+        &[
+            kind!("mcop", "Which eye.", "the first that its kind of lens may have"),
+            part!(LocalView, key(
                 "normal",
                 Kind::Direction,
                 "[0, 0, 1]",
                 "",
                 "The direction from the main eye to this one, of any length but 0.",
                 "[0, -1, 1]",
-            ),
-            key("distance", Kind::Number { min: 1e-3, max: FAR_M }, "", "m", "How far from the main eye.", "250.0"),
-            FOV,
-        ],
-    },
-    Table {
-        name: "scop",
-        doc: "From the main eye in another direction (single centre of projection): a rear-view mirror, a look aside.",
-        keys: &[
-            view_kind("\"scop\""),
-            key(
+            ), Same, LocalView::Mcop { normal, .. } => normal),
+            part!(LocalView, key("distance", Kind::Number { min: 1e-3, max: FAR_M }, "", "m", "How far from the main eye.", "250.0"), Same, LocalView::Mcop { distance_m, .. } => distance_m),
+            part!(LocalView, FOV, Degrees, LocalView::Mcop { fov_y, .. } => fov_y),
+        ]
+    ),
+    variant!(
+        LocalView,
+        "scop",
+        "From the main eye in another direction (single centre of projection): a rear-view mirror, a look aside.",
+        LocalView::Scop { direction: DVec3::Z, of_camera: true, mirror: false, fov_y: DEFAULT_FOV },
+        LocalView::Scop { .. },
+        &[
+            kind!("scop", "Which eye.", "the first that its kind of lens may have"),
+            part!(LocalView, key(
                 "direction",
                 Kind::Direction,
                 "[0, 0, 1], backwards",
                 "",
                 "Where it looks, of any length but 0.",
                 "[1, 0, 0]",
+            ), Same, LocalView::Scop { direction, .. } => direction),
+            Row::<LocalView>::new(
+                key(
+                    "axes",
+                    Kind::Word { now: &["camera", "world"], later: &[] },
+                    "\"camera\"",
+                    "",
+                    "The axes of `direction`: the main camera's (x to the right, y up, z towards whoever looks) or the model's.",
+                    "\"world\"",
+                ),
+                |view, _| match view {
+                    LocalView::Scop { of_camera: false, .. } => Some(WORLD.into()),
+                    _ => None,
+                },
+                |view, given| if let LocalView::Scop { of_camera, .. } = view {
+                    *of_camera = given.node.text() != Some(WORLD)
+                }
             ),
-            key(
-                "axes",
-                Kind::Word { now: &["camera", "world"], later: &[] },
-                "\"camera\"",
-                "",
-                "The axes of `direction`: the main camera's (x to the right, y up, z towards whoever looks) or the model's.",
-                "\"world\"",
-            ),
-            key("mirror", Kind::Boolean, "false", "", "Exchanges left and right, as a mirror does.", "true"),
-            FOV,
-        ],
-    },
-    Table {
-        name: "map",
-        doc: "A map of what lies around the main eye, seen straight from above.",
-        keys: &[
-            view_kind("\"map\""),
-            key(
+            part!(LocalView, key("mirror", Kind::Boolean, "false", "", "Exchanges left and right, as a mirror does.", "true"), Same, LocalView::Scop { mirror, .. } => mirror),
+            part!(LocalView, FOV, Degrees, LocalView::Scop { fov_y, .. } => fov_y),
+        ]
+    ),
+    variant!(
+        LocalView,
+        "map",
+        "A map of what lies around the main eye, seen straight from above.",
+        LocalView::Map { mode: MapMode::default(), height_m: 500.0, magnification: 1.0, lazy: 0.0 },
+        LocalView::Map { .. },
+        &[
+            kind!("map", "Which eye.", "the first that its kind of lens may have"),
+            part!(LocalView, key(
                 "mode",
                 Kind::Word { now: &MAP_MODES, later: &[] },
                 "\"north-up\"",
@@ -103,24 +126,24 @@ pub const VIEWS: &[Table] = &[
                 "What is at its top: north, or where the main eye looks (`head-up`, with a compass); `user-view` has north at the top and a \
                  symbol that shows where the main eye looks.",
                 "\"head-up\"",
-            ),
-            key(
+            ), Word, LocalView::Map { mode, .. } => mode),
+            part!(LocalView, key(
                 "height_m",
                 Kind::Number { min: 1e-3, max: 1e7 },
                 "500.0",
                 "m",
                 "Metres of ground from its lower to its upper border.",
                 "800.0",
-            ),
-            key(
+            ), Same, LocalView::Map { height_m, .. } => height_m),
+            part!(LocalView, key(
                 "magnification",
                 Kind::Number { min: 1.0, max: MOST_MAGNIFIED },
                 "1.0",
                 "",
                 "Fisheye: how many times larger its middle is than without; what is at its border is as much smaller.",
                 "2.5",
-            ),
-            key(
+            ), Same, LocalView::Map { magnification, .. } => magnification),
+            part!(LocalView, key(
                 "lazy",
                 Kind::Number { min: 0.0, max: 1.0 },
                 "0.0",
@@ -128,105 +151,123 @@ pub const VIEWS: &[Table] = &[
                 "Lazy tracking: how far the main eye may move from the middle before the map follows, as a share of the way to the border. \
                  A single picture has the eye in the middle; `animate` lets the map keep still.",
                 "0.5",
-            ),
-        ],
-    },
-    Table {
-        name: "worldlet",
-        doc: "A small model that can be turned: the first point of interest and what is near it, alone.",
-        keys: &[
-            view_kind("\"worldlet\""),
-            key(
+            ), Same, LocalView::Map { lazy, .. } => lazy),
+        ]
+    ),
+    variant!(
+        LocalView,
+        "worldlet",
+        "A small model that can be turned: the first point of interest and what is near it, alone.",
+        LocalView::Worldlet {
+            azimuth: 215_f64.to_radians(),
+            elevation: 30_f64.to_radians(),
+            margin_m: 0.0,
+            fov_y: DEFAULT_FOV
+        },
+        LocalView::Worldlet { .. },
+        &[
+            kind!("worldlet", "Which eye.", "the first that its kind of lens may have"),
+            part!(LocalView, key(
                 "azimuth_deg",
                 Kind::Number { min: -FAR_M, max: FAR_M },
                 "215.0",
                 "degrees",
                 "Where it is looked at from, clockwise from north.",
                 "135.0",
-            ),
-            key(
+            ), Degrees, LocalView::Worldlet { azimuth, .. } => azimuth),
+            part!(LocalView, key(
                 "elevation_deg",
                 Kind::Number { min: -90.0, max: 90.0 },
                 "30.0",
                 "degrees",
                 "And how far from above.",
                 "60.0",
-            ),
-            key(
+            ), Degrees, LocalView::Worldlet { elevation, .. } => elevation),
+            part!(LocalView, key(
                 "margin",
                 Kind::Number { min: 0.0, max: FAR_M },
                 "0.0",
                 "m",
                 "How much around the object belongs to it, in plan.",
                 "25.0",
-            ),
-            FOV,
-        ],
-    },
-    Table {
-        name: "follow",
-        doc: "The first point of interest, followed from behind the direction that it moves in: it is in the middle, and what lies before it \
+            ), Same, LocalView::Worldlet { margin_m, .. } => margin_m),
+            part!(LocalView, FOV, Degrees, LocalView::Worldlet { fov_y, .. } => fov_y),
+        ]
+    ),
+    variant!(
+        LocalView,
+        "follow",
+        "The first point of interest, followed from behind the direction that it moves in: it is in the middle, and what lies before it \
               above. Behind a point of interest that does not move, or straight up or down, is the side of the main eye.",
-        keys: &[
-            view_kind("\"follow\""),
-            key(
+        LocalView::Follow { distance_m: 40.0, height_m: 25.0, fov_y: DEFAULT_FOV },
+        LocalView::Follow { .. },
+        &[
+            kind!("follow", "Which eye.", "the first that its kind of lens may have"),
+            part!(LocalView, key(
                 "distance_m",
                 Kind::Number { min: 0.0, max: FAR_M },
                 "40.0",
                 "m",
                 "How far behind it, in plan.",
                 "60.0",
-            ),
-            key("height_m", Kind::Number { min: 0.001, max: FAR_M }, "25.0", "m", "How far above it.", "12.0"),
-            FOV,
-        ],
-    },
-    Table {
-        name: "onboard",
-        doc: "From the first point of interest, level, to where it moves; from one that does not move, or straight up or down, to where the \
+            ), Same, LocalView::Follow { distance_m, .. } => distance_m),
+            part!(LocalView, key("height_m", Kind::Number { min: 0.001, max: FAR_M }, "25.0", "m", "How far above it.", "12.0"), Same, LocalView::Follow { height_m, .. } => height_m),
+            part!(LocalView, FOV, Degrees, LocalView::Follow { fov_y, .. } => fov_y),
+        ]
+    ),
+    variant!(
+        LocalView,
+        "onboard",
+        "From the first point of interest, level, to where it moves; from one that does not move, or straight up or down, to where the \
               main eye looks.",
-        keys: &[
-            view_kind("\"onboard\""),
-            key(
+        LocalView::Onboard { azimuth: 0.0, height_m: 0.0, fov_y: DEFAULT_FOV },
+        LocalView::Onboard { .. },
+        &[
+            kind!("onboard", "Which eye.", "the first that its kind of lens may have"),
+            part!(LocalView, key(
                 "azimuth_deg",
                 Kind::Number { min: -FAR_M, max: FAR_M },
                 "0.0",
                 "degrees",
                 "Clockwise from there: 90 looks to its right, 180 back.",
                 "180.0",
-            ),
-            key(
+            ), Degrees, LocalView::Onboard { azimuth, .. } => azimuth),
+            part!(LocalView, key(
                 "height_m",
                 Kind::Number { min: -FAR_M, max: FAR_M },
                 "0.0",
                 "m",
                 "How far the eye is above it.",
                 "1.7",
-            ),
-            FOV,
-        ],
-    },
-    Table {
-        name: "camera",
-        doc: "Any eye; its keys are those of `[camera]`.",
-        keys: &[
-            view_kind("\"camera\""),
-            CAMERA.keys[0],
-            CAMERA.keys[1],
-            CAMERA.keys[2],
-            CAMERA.keys[3],
-            CAMERA.keys[4],
-            CAMERA.keys[5],
-            CAMERA.keys[6],
-        ],
-    },
+            ), Same, LocalView::Onboard { height_m, .. } => height_m),
+            part!(LocalView, FOV, Degrees, LocalView::Onboard { fov_y, .. } => fov_y),
+        ]
+    ),
+    variant!(
+        LocalView,
+        "camera",
+        "Any eye; its keys are those of `[camera]`.",
+        LocalView::Camera(NOWHERE),
+        LocalView::Camera(_),
+        &[
+            kind!("camera", "Which eye.", "the first that its kind of lens may have"),
+            Row::<LocalView>::joint(CAMERA.keys[0], |own, options| camera_key(own, "eye", options)).always(),
+            Row::<LocalView>::joint(CAMERA.keys[1], |own, options| camera_key(own, "target", options)).always(),
+            Row::<LocalView>::joint(CAMERA.keys[2], |own, options| camera_key(own, "up", options)).always(),
+            Row::<LocalView>::joint(CAMERA.keys[3], |own, options| camera_key(own, "projection", options)).always(),
+            Row::<LocalView>::joint(CAMERA.keys[4], |own, options| camera_key(own, "fov_deg", options)).always(),
+            Row::<LocalView>::joint(CAMERA.keys[5], |own, options| camera_key(own, "height_m", options)).always(),
+            Row::<LocalView>::joint(CAMERA.keys[6], |own, options| camera_key(own, "near_m", options)).always(),
+        ]
+    ),
 ];
 
 /// `look` of a lens.
-pub const LOOK: Table = Table {
-    name: "look",
-    doc: "How the view of a best-view lens looks.",
-    keys: &[
+pub const LOOK: Table =
+    Table { name: "look", doc: "How the view of a best-view lens looks.", keys: keys_of!(LOOK_ROWS) };
+
+const LOOK_ROWS: &[Row<Look>] = &[
+    field!(
         key(
             "base",
             Kind::Word { now: &["natural", "clay"], later: &[] },
@@ -235,10 +276,20 @@ pub const LOOK: Table = Table {
             "As `base` of `[style]`.",
             "\"clay\"",
         ),
+        Word,
+        |look: Look| look.base
+    ),
+    Row::<Look>::new(
         key("effects", Kind::Effects, "none", "", "As `effects` of `[style]`.", "[\"sepia\"]"),
+        |look, _| effects::listed(&look.effects),
+        |look, given| look.effects = effects::of_context(given),
+    ),
+    field!(
         key("background", Kind::Background, "\"sky\"", "", "As `background` of `[style]`.", "\"#ffffff\""),
-    ],
-};
+        Behind,
+        |look: Look| look.background
+    ),
+];
 
 /// The keys of a lens that only lenses with an overlay have, beside `poi`.
 pub const OWN: [&str; 5] = ["image", "text", "view", "lenses", "look"];
@@ -271,13 +322,28 @@ pub fn views_of(kind: LensKind) -> &'static [&'static str] {
     }
 }
 
+/// An eye that is nowhere yet.
+const NOWHERE: Camera = Camera {
+    eye: DVec3::ZERO,
+    target: DVec3::ZERO,
+    up: DVec3::Z,
+    projection: Projection::Perspective { fov_y: DEFAULT_FOV },
+    near_m: 0.0,
+};
+
+/// The axes of a direction that are not the camera's.
+const WORLD: &str = "world";
+/// The view with the keys of a camera.
+const CAMERA_VIEW: &str = "camera";
+
+/// A key of the camera that a view is.
+fn camera_key(view: &LocalView, key: &str, options: &Options) -> Option<Data> {
+    let LocalView::Camera(camera) = view else { return None };
+    Node::of(camera::written(camera, options)).entry(key).map(|node| node.data.clone())
+}
+
 /// The view of a lens of this kind; noted and `None` where something is wrong.
-pub fn read_view(
-    checker: &mut Checker,
-    fields: &Fields,
-    kind: LensKind,
-    camera: impl Fn(&mut Checker, &Fields) -> Option<Camera>,
-) -> Option<LocalView> {
+fn read_view(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<LocalView> {
     let words = views_of(kind);
     let empty = Node::empty_table(fields.place.line);
     let node = fields.node("view").unwrap_or(&empty);
@@ -292,149 +358,104 @@ pub fn read_view(
                 let all = words.join(", ");
                 let message =
                     format!("must be one of {all} for a lens of kind \"{}\", is {}{hint}", kind.word(), n.quoted());
-                checker.note(&place, "kind", n.line, message);
+                reader.checker.note(&place, "kind", n.line, message);
                 return None;
             }
         },
     };
-    let own = checker.fields(node, VIEWS.iter().find(|table| table.name == word)?, &[], place);
-    let fov_y = own.number("fov_deg").map_or(DEFAULT_FOV, f64::to_radians);
-    Some(match word {
-        "best" => LocalView::Best { normal: own.point("normal"), fov_y },
-        "mcop" => LocalView::Mcop {
-            normal: own.point("normal").unwrap_or(DVec3::Z),
-            distance_m: own.number("distance")?,
-            fov_y,
-        },
-        "scop" => LocalView::Scop {
-            direction: own.point("direction").unwrap_or(DVec3::Z),
-            of_camera: own.text("axes") != Some("world"),
-            mirror: own.boolean("mirror").unwrap_or(false),
-            fov_y,
-        },
-        "map" => LocalView::Map {
-            mode: MapMode::WORDS
-                .iter()
-                .find(|(w, _)| own.text("mode") == Some(*w))
-                .map_or_else(Default::default, |(_, m)| *m),
-            height_m: own.number("height_m").unwrap_or(500.0),
-            magnification: own.number("magnification").unwrap_or(1.0),
-            lazy: own.number("lazy").unwrap_or(0.0),
-        },
-        "worldlet" => LocalView::Worldlet {
-            azimuth: own.number("azimuth_deg").unwrap_or(215.0).to_radians(),
-            elevation: own.number("elevation_deg").unwrap_or(30.0).to_radians(),
-            margin_m: own.number("margin").unwrap_or(0.0),
-            fov_y,
-        },
-        "follow" => LocalView::Follow {
-            distance_m: own.number("distance_m").unwrap_or(40.0),
-            height_m: own.number("height_m").unwrap_or(25.0),
-            fov_y,
-        },
-        "onboard" => LocalView::Onboard {
-            azimuth: own.number("azimuth_deg").unwrap_or(0.0).to_radians(),
-            height_m: own.number("height_m").unwrap_or(0.0),
-            fov_y,
-        },
-        _ => LocalView::Camera(camera(checker, &own)?),
+    let view = VIEW_KINDS.iter().find(|view| view.table.name == word)?;
+    let own = reader.checker.fields(node, &view.table, &[], place);
+    match word {
+        CAMERA_VIEW => camera::read(reader, &own).map(LocalView::Camera),
+        _ => view.read(&own, reader),
+    }
+}
+
+/// What the overlay of a lens shows, if its kind has one.
+pub fn read(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<BestView> {
+    let given = |key: &&str| fields.given(key);
+    if !kind.has_overlay() {
+        for key in OWN.into_iter().filter(given) {
+            let message = "has a meaning only for lenses that have an overlay: annotation, best-view, map-view, worldlet, see-through, portal";
+            reader.checker.note(&fields.place, key, fields.line(key), message);
+        }
+        return None;
+    }
+    for key in NOT_OWN.into_iter().filter(given) {
+        let word = kind.word();
+        let message = match key {
+            "effects" => format!(
+                "has no meaning for a lens of kind \"{word}\"; what acts on all of its view stands in look = {{ effects = [...] }}"
+            ),
+            _ => format!("has no meaning for a lens of kind \"{word}\", which has an overlay and no focus area"),
+        };
+        reader.checker.note(&fields.place, key, fields.line(key), message);
+    }
+    let depiction = depiction(reader, fields, kind);
+    let of_view = ["view", "lenses", "look"].into_iter().map(|key| (key, kind == LensKind::Annotation));
+    let of_annotation = ["image", "text"].into_iter().map(|key| (key, kind != LensKind::Annotation));
+    for (key, is_wrong) in of_view.chain(of_annotation) {
+        if is_wrong && fields.given(key) {
+            let message = format!("has no meaning for a lens of kind \"{}\"", kind.word());
+            reader.checker.note(&fields.place, key, fields.line(key), message);
+        }
+    }
+    let look = fields.node("look").map(|node| {
+        let own = reader.checker.fields(node, &LOOK, &[], fields.place.within("look", node.line));
+        let mut look = PLAIN_LOOK;
+        row::read(LOOK_ROWS, &own, reader, &mut look);
+        look
+    });
+    Some(BestView {
+        pois: fields.node("poi").map(Node::names).unwrap_or_default(),
+        depiction: depiction.unwrap_or_else(|| Depiction::Text(String::new())),
+        lenses: fields.node("lenses").map(Node::texts),
+        look,
     })
 }
 
-/// The keys of what a best-view lens shows.
-pub(super) fn written(kind: LensKind, shown: &BestView, options: &Options) -> Vec<(&'static str, String)> {
-    let names = |names: &[String]| match names {
-        [one] => quoted(one),
-        all => list(all.iter().map(|name| quoted(name))),
-    };
-    let mut keys = Vec::new();
-    if !shown.pois.is_empty() {
-        keys.push(("poi", names(&shown.pois)));
-    }
-    match &shown.depiction {
-        Depiction::Image(file) => keys.push(("image", quoted(&options.written(file)))),
-        Depiction::Text(text) => keys.push(("text", quoted(text))),
-        Depiction::View(view) => {
-            let (word, own) = view_keys(view);
-            let is_default = views_of(kind).first() == Some(&word);
-            let head = (!is_default || own.is_empty()).then(|| format!("kind = {}", quoted(word)));
-            let own = own.into_iter().map(|(key, value)| format!("{key} = {value}"));
-            let all: Vec<String> = head.into_iter().chain(own).collect();
-            keys.push(("view", format!("{{ {} }}", all.join(", "))));
+/// What an overlay shows; noted and `None` where something is wrong.
+fn depiction(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<Depiction> {
+    match (kind, fields.node("image").and_then(Node::text), fields.text("text")) {
+        (LensKind::Annotation, Some(_), Some(_)) => {
+            let message = "is given together with image: an annotation is one of them; a caption stands in [[overlay]]";
+            reader.checker.note(&fields.place, "text", fields.line("text"), message);
+            None
         }
-    }
-    if let Some(lenses) = &shown.lenses {
-        keys.push(("lenses", list(lenses.iter().map(|name| quoted(name)))));
-    }
-    if let Some(look) = &shown.look {
-        let mut own = Vec::new();
-        if look.base == BaseStyle::Clay {
-            own.push("base = \"clay\"".to_owned());
-        }
-        if !look.effects.is_empty() {
-            own.push(format!("effects = {}", list(look.effects.iter().map(effect))));
-        }
-        if let Background::Color(c) = look.background {
-            own.push(format!("background = {}", write_color(c)));
-        }
-        keys.push(("look", if own.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", own.join(", ")) }));
-    }
-    keys
-}
-
-fn view_keys(view: &LocalView) -> (&'static str, Vec<(&'static str, String)>) {
-    let fov = |fov_y: f64| (fov_y != DEFAULT_FOV).then(|| ("fov_deg", number(degrees(fov_y))));
-    match view {
-        LocalView::Best { normal, fov_y } => {
-            ("best", normal.map(|n| ("normal", point(n))).into_iter().chain(fov(*fov_y)).collect())
-        }
-        LocalView::Mcop { normal, distance_m, fov_y } => {
-            let normal = (*normal != DVec3::Z).then(|| ("normal", point(*normal)));
-            let distance = ("distance", number(*distance_m));
-            ("mcop", normal.into_iter().chain([distance]).chain(fov(*fov_y)).collect())
-        }
-        LocalView::Scop { direction, of_camera, mirror, fov_y } => {
-            let direction = (*direction != DVec3::Z).then(|| ("direction", point(*direction)));
-            let axes = (!of_camera).then(|| ("axes", quoted("world")));
-            let mirror = mirror.then(|| ("mirror", "true".to_owned()));
-            ("scop", direction.into_iter().chain(axes).chain(mirror).chain(fov(*fov_y)).collect())
-        }
-        LocalView::Map { mode, height_m, magnification, lazy } => {
-            let word = MapMode::WORDS.iter().find(|(_, m)| m == mode).map_or("north-up", |(word, _)| word);
-            let mode = (*mode != MapMode::default()).then(|| ("mode", quoted(word)));
-            let magnification = (*magnification != 1.0).then(|| ("magnification", number(*magnification)));
-            let lazy = (*lazy != 0.0).then(|| ("lazy", number(*lazy)));
-            (
-                "map",
-                mode.into_iter().chain([("height_m", number(*height_m))]).chain(magnification).chain(lazy).collect(),
-            )
-        }
-        LocalView::Worldlet { azimuth, elevation, margin_m, fov_y } => {
-            let mut keys =
-                vec![("azimuth_deg", number(degrees(*azimuth))), ("elevation_deg", number(degrees(*elevation)))];
-            if *margin_m != 0.0 {
-                keys.push(("margin", number(*margin_m)));
+        (LensKind::Annotation, Some(_), None) => reader.file(fields, "image").map(Depiction::Image),
+        (LensKind::Annotation, None, Some(text)) => Some(Depiction::Text(text.to_owned())),
+        (LensKind::Annotation, None, None) => {
+            if !fields.given("image") && !fields.given("text") {
+                let message = "is missing: an annotation shows image = \"FILE\" or text = \"...\"";
+                reader.checker.note(&fields.place, "image", fields.place.line, message);
             }
-            keys.extend(fov(*fov_y));
-            ("worldlet", keys)
+            None
         }
-        LocalView::Follow { distance_m, height_m, fov_y } => {
-            let own = [("distance_m", number(*distance_m)), ("height_m", number(*height_m))];
-            ("follow", own.into_iter().chain(fov(*fov_y)).collect())
-        }
-        LocalView::Onboard { azimuth, height_m, fov_y } => {
-            let own = [("azimuth_deg", number(degrees(*azimuth))), ("height_m", number(*height_m))];
-            ("onboard", own.into_iter().chain(fov(*fov_y)).collect())
-        }
-        LocalView::Camera(camera) => ("camera", camera_keys(camera)),
+        _ => read_view(reader, fields, kind).map(Depiction::View),
     }
 }
 
-/// The look of a view.
-pub fn look(fields: &Fields, effects: Vec<crate::lens::EffectUse>) -> Look {
-    Look {
-        base: if fields.text("base") == Some("clay") { BaseStyle::Clay } else { BaseStyle::Natural },
-        effects,
-        background: fields.color("background").map_or(Background::Sky, Background::Color),
+/// A look of which nothing is said.
+const PLAIN_LOOK: Look = Look { base: BaseStyle::Natural, effects: Vec::new(), background: Background::Sky };
+
+/// `poi` of a lens with an overlay.
+pub fn pois(shown: &BestView) -> Option<Data> {
+    if shown.pois.is_empty() { None } else { Names::data(&shown.pois) }
+}
+
+/// `look`.
+pub fn look(shown: &BestView, options: &Options) -> Option<Data> {
+    shown.look.as_ref().map(|look| row::written(LOOK_ROWS, look, &PLAIN_LOOK, options))
+}
+
+/// `view`, of a lens of this kind.
+pub fn view(kind: LensKind, shown: &BestView, options: &Options) -> Option<Data> {
+    let view = shown.view()?;
+    let own = Variant::of(VIEW_KINDS, view)?;
+    let Data::Table(mut entries) = own.written(view, options) else { return None };
+    let is_default = views_of(kind).first() == Some(&own.table.name);
+    if is_default && entries.len() > 1 {
+        entries.retain(|(key, ..)| key != "kind");
     }
+    Some(Data::Table(entries))
 }

@@ -7,12 +7,11 @@ use glam::DVec3;
 use crate::{
     city::Lod,
     figure::scene_file::{
-        animation,
+        forms::{color, numbers, parameter},
         keys::{FAR_M, Key, Kind, Table},
         node::{Data, Node},
-        parse::parameter,
     },
-    lens::{Rendering, color::parse_hex, effect::problem_with, nearest::did_you_mean},
+    lens::{Rendering, effect::problem_with, nearest::did_you_mean},
     shader::effect::ParameterKind,
 };
 
@@ -186,14 +185,6 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// The colour a value means, sRGB.
-pub fn color(node: &Node) -> Option<[f32; 3]> {
-    match &node.data {
-        Data::Text(text) => parse_hex(text),
-        _ => node.numbers::<3>().filter(|c| c.iter().all(|c| (0.0..=1.0).contains(c))).map(|c| c.map(|c| c as f32)),
-    }
-}
-
 /// What is wrong with a value, if anything. Tables, shapes and effects are looked into later.
 fn wrong(kind: &Kind, node: &Node) -> Option<String> {
     let each =
@@ -242,7 +233,7 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         Kind::Color => color(node).is_some(),
         Kind::Background => node.text() == Some("sky") || color(node).is_some(),
         Kind::Lod => lod(node).is_some(),
-        Kind::Numbers => animation::numbers(node).is_some(),
+        Kind::Numbers => numbers(node).is_some(),
         Kind::Size => {
             node.list().is_some_and(|l| l.len() == 2 && l.iter().all(|n| matches!(n.data, Data::Integer(1..=16_384))))
         }

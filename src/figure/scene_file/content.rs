@@ -1,19 +1,32 @@
 //! `content` of a lens in scene files: its keys, and what it derives, read and written.
 
+use glam::DQuat;
+
 use crate::{
     city::derived::{Derive, FORMS, Form, HEIGHT_RANGE_M, Height, LIFT_M, LIFT_RANGE_M, WORDS},
     figure::scene_file::{
-        check::{Checker, Fields},
+        check::{Fields, lod},
+        effects::Shown,
+        forms::{Form as _, Same, Turn, Word, Worded},
         keys::{CLASSES, Kind, Table, key},
-        write::{number, quoted},
+        node::{Data, Node},
+        paths::Options,
+        reader::Reader,
+        row::{self, Row, field, keys_of},
     },
+    lens::{Content, Copied},
+    shader::Clip,
 };
 
 /// `content` of a lens.
 pub const CONTENT: Table = Table {
     name: "content",
     doc: "What a lens shows in itself: the scene's city or another data set, in a level of detail, derived of it, moved or not. See Contents.",
-    keys: &[
+    keys: keys_of!(CONTENT_ROWS),
+};
+
+const CONTENT_ROWS: &[Row<Content>] = &[
+    Row::<Content>::new(
         key(
             "files",
             Kind::Texts,
@@ -22,6 +35,13 @@ pub const CONTENT: Table = Table {
             "City files or folders of another data set, by the same rules as those of `[city]`.",
             "[\"plan.city.json\"]",
         ),
+        |content, options| {
+            (!content.files.is_empty())
+                .then(|| Data::list(content.files.iter().map(|file| Data::Text(options.written(file)))))
+        },
+        |content, given| content.files = given.reader.files(given.fields, false),
+    ),
+    Row::<Content>::new(
         key(
             "lod",
             Kind::Lod,
@@ -30,6 +50,10 @@ pub const CONTENT: Table = Table {
             "Shows no level of detail finer than this, one that the data set has.",
             "\"1.2\"",
         ),
+        |content, _| content.lod.map(|lod| Data::Text(lod.to_string())),
+        |content, given| content.lod = lod(given.node),
+    ),
+    Row::<Content>::joint(
         key(
             "derive",
             Kind::Word { now: WORDS, later: &[] },
@@ -38,6 +62,9 @@ pub const CONTENT: Table = Table {
             "What objects are shown as: their bounding `box`, the `prism` over their footprint, their convex `hull`, their block model of level of detail 1 (`lod1`; where there is none the prism), themselves pressed `flat` to the ground, the same lit as they stood (`top`), themselves at another `height`. Terrain, roads, water and land use stay as they are below. See Contents.",
             "\"box\"",
         ),
+        |content, _| content.derive.map(|derive| derive.form.row().word.into()),
+    ),
+    Row::<Content>::joint(
         key(
             "parts",
             Kind::Boolean,
@@ -46,6 +73,10 @@ pub const CONTENT: Table = Table {
             "For `derive`: whether each part that has faces of its own is derived by itself.",
             "true",
         ),
+        |content, _| content.derive.filter(|derive| derive.parts).map(|_| true.into()),
+    )
+    .after("factor"),
+    Row::<Content>::joint(
         key(
             "oriented",
             Kind::Boolean,
@@ -54,6 +85,12 @@ pub const CONTENT: Table = Table {
             "For `derive = \"box\"`: whether boxes stand on the smallest rectangle around the footprint.",
             "true",
         ),
+        |content, _| match content.derive.map(|derive| derive.form) {
+            Some(Form::Box { oriented: true }) => Some(true.into()),
+            _ => None,
+        },
+    ),
+    Row::<Content>::joint(
         key(
             "lift",
             Kind::Number { min: LIFT_RANGE_M[0], max: LIFT_RANGE_M[1] },
@@ -62,6 +99,12 @@ pub const CONTENT: Table = Table {
             "For `derive = \"flat\"` and `\"top\"`: how far above the lowest point of an object it lies.",
             "0.2",
         ),
+        |content, _| match content.derive.map(|derive| derive.form) {
+            Some(Form::Flat { lift_m } | Form::Top { lift_m }) if lift_m != LIFT_M => Some(lift_m.into()),
+            _ => None,
+        },
+    ),
+    Row::<Content>::joint(
         key(
             "height",
             Kind::Number { min: HEIGHT_RANGE_M[0], max: HEIGHT_RANGE_M[1] },
@@ -70,6 +113,12 @@ pub const CONTENT: Table = Table {
             "For `derive = \"height\"`: from the lowest point of an object to its highest. Either this or `factor`.",
             "12.0",
         ),
+        |content, _| match content.derive.map(|derive| derive.form) {
+            Some(Form::Height(Height::Metres(metres))) => Some(metres.into()),
+            _ => None,
+        },
+    ),
+    Row::<Content>::joint(
         key(
             "factor",
             Kind::Number { min: 0.001, max: 1000.0 },
@@ -78,6 +127,12 @@ pub const CONTENT: Table = Table {
             "For `derive = \"height\"`: how many times as high as it is.",
             "0.5",
         ),
+        |content, _| match content.derive.map(|derive| derive.form) {
+            Some(Form::Height(Height::Factor(factor))) => Some(factor.into()),
+            _ => None,
+        },
+    ),
+    field!(
         key(
             "class",
             Kind::Word { now: CLASSES, later: &[] },
@@ -86,6 +141,10 @@ pub const CONTENT: Table = Table {
             "Which part of the sight line it shows in, as that of an effect.",
             "\"behind\"",
         ),
+        Word,
+        |content: Content| content.class
+    ),
+    field!(
         key(
             "keep_terrain",
             Kind::Boolean,
@@ -94,6 +153,10 @@ pub const CONTENT: Table = Table {
             "Terrain, roads, water, land use and the plain ground stay as they are below, and the content brings none.",
             "true",
         ),
+        Same,
+        |content: Content| content.keep_terrain
+    ),
+    Row::<Content>::new(
         key(
             "from",
             Kind::Point,
@@ -102,6 +165,10 @@ pub const CONTENT: Table = Table {
             "The point of the data set that is put to `to`.",
             "[120.0, 40.0, 0.0]",
         ),
+        |content, _| content.copied.as_ref().and_then(|copied| Same::data(&copied.from)),
+        |content, given| Same::take(given.node, &mut copied(content).from),
+    ),
+    Row::<Content>::new(
         key(
             "to",
             Kind::Point,
@@ -110,6 +177,10 @@ pub const CONTENT: Table = Table {
             "Where `from` is put, counted as the shapes' coordinates are.",
             "[0.0, 0.0, 0.0]",
         ),
+        |content, _| content.copied.as_ref().and_then(|copied| Same::data(&copied.to)),
+        |content, given| Same::take(given.node, &mut copied(content).to),
+    ),
+    Row::<Content>::new(
         key(
             "rotation_deg",
             Kind::Angles,
@@ -118,17 +189,78 @@ pub const CONTENT: Table = Table {
             "Turns it about that point: yaw counter-clockwise from above, pitch lifts its east, roll about its east.",
             "[90.0, 0.0, 0.0]",
         ),
+        |content, _| {
+            content
+                .copied
+                .filter(|copied| copied.rotation != DQuat::IDENTITY)
+                .and_then(|copied| Turn::data(&copied.rotation))
+        },
+        |content, given| Turn::take(given.node, &mut copied(content).rotation),
+    ),
+    Row::<Content>::new(
         key("scale", Kind::Number { min: 1e-3, max: 1e3 }, "1.0", "", "Scales it about that point.", "2.0"),
-    ],
-};
+        |content, _| content.copied.filter(says_scale).map(|copied| copied.scale.into()),
+        |content, given| Same::take(given.node, &mut copied(content).scale),
+    ),
+];
+
+/// How it is moved, which something says.
+fn copied(content: &mut Content) -> &mut Copied {
+    content.copied.get_or_insert(Copied { from: None, to: None, rotation: DQuat::IDENTITY, scale: 1.0 })
+}
+
+/// Whether the scale is written: something says that a content is moved.
+fn says_scale(copied: &Copied) -> bool {
+    copied.scale != 1.0 || (copied.rotation == DQuat::IDENTITY && copied.from.is_none() && copied.to.is_none())
+}
+
+/// The table of a content.
+pub fn written(content: &Content, options: &Options) -> Data {
+    row::written(CONTENT_ROWS, content, &Content::default(), options)
+}
+
+/// The content of a lens; `of_effects`: that of its effect `lod`.
+pub fn read(reader: &mut Reader, fields: &Fields, of_effects: Option<Shown>) -> Option<Content> {
+    let clip = fields.text("clip").and_then(Clip::of_word);
+    if let (true, Some(shown)) = (fields.given("content"), &of_effects) {
+        let message = "is given together with the effect \"lod\", which is a content too: a lens has one";
+        reader.checker.note(&fields.place, "content", shown.line, message);
+    }
+    let content = match fields.node("content") {
+        None => of_effects.map(|shown| shown.content),
+        Some(node) => {
+            let own = reader.checker.fields(node, &CONTENT, &[], fields.place.within("content", node.line));
+            let mut content = Content::default();
+            if own.node("files").and_then(Node::list).is_some_and(<[Node]>::is_empty) {
+                let message = "is empty: name the files, or leave the key away for the scene's own city";
+                reader.checker.note(&own.place, "files", own.line("files"), message);
+            }
+            content.derive = derived(&own, reader);
+            if ["from", "to", "rotation_deg", "scale"].into_iter().any(|key| own.given(key)) {
+                copied(&mut content);
+            }
+            row::read(CONTENT_ROWS, &own, reader, &mut content);
+            Some(content)
+        }
+    };
+    if content.is_none() && fields.given("clip") {
+        let message = "has a meaning only for a lens with content";
+        reader.checker.note(&fields.place, "clip", fields.line("clip"), message);
+    }
+    if content.is_none() && !fields.given("content") && fields.text("kind") == Some("content") {
+        let message = "is missing: a content lens shows something. For example content = { lod = \"1.2\" }";
+        reader.checker.note(&fields.place, "content", fields.place.line, message);
+    }
+    content.map(|content| Content { clip: clip.unwrap_or_default(), ..content })
+}
 
 /// What a content derives, of its keys; what is wrong is noted.
-pub(super) fn derived(own: &Fields, checker: &mut Checker) -> Option<Derive> {
+fn derived(own: &Fields, reader: &mut Reader) -> Option<Derive> {
     let word = own.text("derive");
     let row = word.and_then(|word| FORMS.iter().find(|row| row.word == word));
     if !own.given("derive") && own.given("parts") {
         let message = "has a meaning only with derive; for example derive = \"box\"";
-        checker.note(&own.place, "parts", own.line("parts"), message);
+        reader.checker.note(&own.place, "parts", own.line("parts"), message);
     }
     let mut options: Vec<&str> = FORMS.iter().flat_map(|of| of.options).copied().collect();
     options.dedup();
@@ -139,7 +271,7 @@ pub(super) fn derived(own: &Fields, checker: &mut Checker) -> Option<Derive> {
         // A word that is none has its own message.
         if own.given(option) && !has && (row.is_some() || word.is_none()) {
             let message = format!("has a meaning only with derive = {}", of.join(" or "));
-            checker.note(&own.place, option, own.line(option), message);
+            reader.checker.note(&own.place, option, own.line(option), message);
         }
     }
     let height = match (own.number("height"), own.number("factor")) {
@@ -159,27 +291,11 @@ pub(super) fn derived(own: &Fields, checker: &mut Checker) -> Option<Derive> {
                 (false, false) => Some("\"height\" needs a height in metres or a factor; for example height = 12.0"),
                 _ => None,
             };
-            message.into_iter().for_each(|message| checker.note(&own.place, "derive", own.line("derive"), message));
+            message
+                .into_iter()
+                .for_each(|message| reader.checker.note(&own.place, "derive", own.line("derive"), message));
             Form::Height(height)
         }
     };
     Some(Derive { form, parts: own.boolean("parts").unwrap_or(false) })
-}
-
-/// The keys of what a content derives.
-pub(super) fn derive_keys(how: &Derive) -> Vec<String> {
-    let mut keys = vec![format!("derive = {}", quoted(how.form.row().word))];
-    match how.form {
-        Form::Box { oriented: true } => keys.push("oriented = true".to_owned()),
-        Form::Flat { lift_m } | Form::Top { lift_m } if lift_m != LIFT_M => {
-            keys.push(format!("lift = {}", number(lift_m)))
-        }
-        Form::Height(Height::Metres(metres)) => keys.push(format!("height = {}", number(metres))),
-        Form::Height(Height::Factor(factor)) => keys.push(format!("factor = {}", number(factor))),
-        Form::Box { .. } | Form::Prism | Form::Hull | Form::Lod1 | Form::Flat { .. } | Form::Top { .. } => {}
-    }
-    if how.parts {
-        keys.push("parts = true".to_owned());
-    }
-    keys
 }

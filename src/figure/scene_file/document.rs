@@ -6,12 +6,25 @@ use serde_json::{Map, Value, json};
 
 use crate::{
     figure::scene_file::{
-        best_view::VIEWS,
-        deformation::STEPS,
-        keys::{self, CLASSES, Key, Kind, TABLES, Table},
+        animation,
+        best_view::{LOOK, VIEWS},
+        camera::CAMERA,
+        choice::CHOICE,
+        city::{CITY, SUN},
+        content::CONTENT,
+        deformation::{CONTROL, STEPS},
+        figure::FIGURE,
+        keys::{self, CLASSES, Key, Kind, Table},
+        lens::{ATTACHED_TO, BORDER, LENS},
+        overlay::{CALL_OUT, FRAME, LAYOUT, LINE, OVERLAY},
+        poi::POI,
         rendering::{AS, BY_EFFECTS, WORDS},
+        scene::ROOT,
         shape_keys::SHAPES,
+        sprite::{SPRITE, SPRITE_CAMERA},
+        style::{STYLE, TRANSPARENCY},
         test_keys::TESTS,
+        trajectory::{TIME, TRAJECTORY},
     },
     lens::{effect::LOD, rendering::ROWS},
     shader::{
@@ -19,6 +32,38 @@ use crate::{
         effect::{EffectKind, MAX_RAMP, ParameterDefinition, ParameterKind, effects as all_effects},
     },
 };
+
+/// All tables of the file with the way to them, for the docs and for tests.
+pub const TABLES: &[(&str, &Table)] = &[
+    ("top level", &ROOT),
+    ("[city]", &CITY),
+    ("[camera]", &CAMERA),
+    ("[sun]", &SUN),
+    ("[time]", &TIME),
+    ("[style]", &STYLE),
+    ("transparency of [style]", &TRANSPARENCY),
+    ("[[trajectory]]", &TRAJECTORY),
+    ("[[poi]]", &POI),
+    ("[[lens]]", &LENS),
+    ("attached_to of a lens", &ATTACHED_TO),
+    ("content of a lens", &CONTENT),
+    ("sprite of a lens", &SPRITE),
+    ("camera of a sprite", &SPRITE_CAMERA),
+    ("border of a lens", &BORDER),
+    ("force and forbid of a lens", &CHOICE),
+    ("look of a lens", &LOOK),
+    ("control of a lens", &CONTROL),
+    ("[[overlay]]", &OVERLAY),
+    ("frame of an overlay", &FRAME),
+    ("line of an overlay", &LINE),
+    ("call_out of an overlay", &CALL_OUT),
+    ("[layout]", &LAYOUT),
+    ("[figure]", &FIGURE),
+    animation::TABLES[0],
+    animation::TABLES[1],
+    animation::TABLES[2],
+    animation::TABLES[3],
+];
 
 /// The reference part of `docs/scene.md`: every key with what it takes, unit, default and an example.
 pub fn reference() -> String {
@@ -154,7 +199,7 @@ fn rows(out: &mut String, keys: &[Key]) {
 
 /// The JSON schema (draft 2020-12) of scene files, for editors that check TOML with one.
 pub fn schema() -> Value {
-    let mut schema = object(&keys::ROOT);
+    let mut schema = object(&ROOT);
     schema.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
     schema.insert("title".into(), "Veduta scene".into());
     // Shapes may hold shapes.
@@ -425,7 +470,7 @@ pub(in crate::figure) mod tests {
 
     #[test]
     fn the_reference_is_committed() {
-        const MARK: &str = "<!-- From here on made from the tables in src/figure/scene_file/keys.rs. -->\n";
+        const MARK: &str = "<!-- From here on made from the tables in src/figure/scene_file. -->\n";
         committed("scene.md", |old| {
             let prose = old.split(MARK).next().unwrap_or_default();
             format!("{prose}{MARK}\n{}", reference())

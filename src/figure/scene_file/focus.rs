@@ -1,162 +1,179 @@
-//! Focus areas of lenses that are made from files, images, polygons or the city, read and written.
+//! Shapes of lenses in scene files, read.
 
-use std::{fmt::Write as _, path::PathBuf};
+use std::path::PathBuf;
 
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
 use crate::{
     figure::scene_file::{
-        check::{Checker, Fields},
-        node::Node,
-        paths::{Options, PathProblem},
-        write::{list, number, point, quoted, turned},
+        check::{Fields, Place},
+        choice::{self, refuse},
+        node::{Data, Node},
+        reader::Reader,
+        shape_keys::{SHAPES, kind_of},
     },
-    geom::shape::solid::prism,
-    lens::{Focus, chosen::Choice},
+    geom::{Shape, shape::FlatFigure, shape::solid::prism},
+    lens::{Focus, nearest::did_you_mean},
 };
 
-/// What reading needs beside the fields.
-pub(super) struct Reader<'r> {
-    pub checker: &'r mut Checker,
-    pub options: &'r Options,
-    /// Set where `${VEDUTA_DATA}` is needed and not set.
-    pub lacks_data: &'r mut bool,
+/// A shape of its table; `None` where something is wrong (and noted).
+pub fn read(reader: &mut Reader, node: &Node, place: &Place) -> Option<Focus> {
+    let Data::Table(entries) = &node.data else {
+        reader.checker.note(
+            place,
+            "",
+            node.line,
+            format!("must be a table {{ kind = ..., ... }}, is {}", node.quoted()),
+        );
+        return None;
+    };
+    let kind = entries.iter().find(|(k, ..)| k == "kind").map(|(.., n)| n);
+    let names = || SHAPES.iter().map(|own| own.name);
+    let all = names().collect::<Vec<_>>().join(", ");
+    let Some(own) = kind.and_then(Node::text).and_then(kind_of) else {
+        let (line, message) = match kind {
+            None => (node.line, format!("is missing: one of {all}")),
+            Some(n) => {
+                let hint = did_you_mean(n.text().unwrap_or_default(), names());
+                (n.line, format!("must be one of {all}, is {}{hint}", n.quoted()))
+            }
+        };
+        reader.checker.note(place, "kind", line, message);
+        return None;
+    };
+    let fields = reader.checker.fields(node, &own.table, &[], place.clone());
+    let focus = match (own.default)() {
+        blank @ (Focus::Combined { .. } | Focus::Enclosed { .. }) => return parts(reader, &fields, blank),
+        Focus::Prism { .. } => mask(reader, &fields)?,
+        Focus::Objects(_) => Focus::Objects(choice::read(reader, &fields)),
+        Focus::Thematic(_) => Focus::Thematic(choice::read(reader, &fields)),
+        Focus::Shape(Shape::Flat { .. }) => {
+            one_figure(reader, &fields);
+            with_figure(&fields, own.read(&fields, reader)?)?
+        }
+        _ => {
+            let focus = own.read(&fields, reader)?;
+            with_files(reader, &fields, focus)?
+        }
+    };
+    check(reader, &fields, &focus);
+    Some(focus)
 }
 
-impl Reader<'_> {
-    /// The focus area of a table of this kind; `None` where something is wrong (and noted), or it is another kind.
-    pub fn focus(&mut self, kind: &str, fields: &Fields, rotation: DQuat) -> Option<Focus> {
-        let focus = match kind {
-            "mesh" => Focus::Mesh {
-                file: self.path(fields, "file", fields.node("file")?)?,
-                at: fields.point("at").unwrap_or(DVec3::ZERO),
-                rotation,
-                scale: fields.number("scale").unwrap_or(1.0),
-            },
-            "sprite" => Focus::Sprite { file: self.path(fields, "file", fields.node("file")?)? },
-            "mask" => self.mask(fields)?,
-            "mask3d" => {
-                let images = fields.node("images").and_then(Node::list)?;
-                if images.is_empty() {
-                    self.checker.note(&fields.place, "images", fields.line("images"), "must name at least one image");
-                }
-                let named = |i: usize| format!("images.{i}");
-                let images: Option<Vec<PathBuf>> =
-                    images.iter().enumerate().map(|(i, node)| self.path(fields, &named(i), node)).collect();
-                Focus::Mask3d { images: images?, corner: fields.point("corner")?, size: fields.point("size")? }
-            }
-            "objects" => Focus::Objects(self.choice(fields)?),
-            "thematic" => Focus::Thematic(self.choice(fields)?),
-            _ => return None,
-        };
-        if let Some((key, message)) = focus.check() {
-            self.checker.note(&fields.place, key, fields.line(key), message);
+/// Notes what the shape itself finds wrong with it.
+fn check(reader: &mut Reader, fields: &Fields, focus: &Focus) {
+    if let Focus::Shape(shape) = focus {
+        if let Err(error) = shape.check() {
+            let key = ["points", "planes"].into_iter().find(|key| fields.given(key)).unwrap_or("");
+            reader.checker.note(&fields.place, key, fields.place.line, error.to_string());
         }
-        Some(focus)
+    } else if let Some((key, message)) = focus.check() {
+        reader.checker.note(&fields.place, key, fields.line(key), message);
     }
+}
 
-    fn path(&mut self, fields: &Fields, key: &str, node: &Node) -> Option<PathBuf> {
-        let message = match self.options.resolve(node.text().unwrap_or_default()) {
-            Ok(path) => return Some(path),
-            Err(PathProblem::NoData) => {
-                *self.lacks_data = true;
-                format!("{} needs the environment variable VEDUTA_DATA, which is not set", node.quoted())
+/// The same with the files that it is made of.
+fn with_files(reader: &mut Reader, fields: &Fields, focus: Focus) -> Option<Focus> {
+    Some(match focus {
+        Focus::Mesh { at, rotation, scale, .. } => {
+            Focus::Mesh { file: reader.file(fields, "file")?, at, rotation, scale }
+        }
+        Focus::Sprite { .. } => Focus::Sprite { file: reader.file(fields, "file")? },
+        Focus::Mask3d { corner, size, .. } => {
+            let nodes = fields.node("images").and_then(Node::list)?;
+            if nodes.is_empty() {
+                reader.checker.note(&fields.place, "images", fields.line("images"), "must name at least one image");
             }
-            Err(PathProblem::Wrong(message)) => message,
-        };
-        self.checker.note(&fields.place, key, node.line, message);
-        None
+            let path = |(i, node)| reader.path(fields, &format!("images.{i}"), node);
+            let images: Vec<Option<PathBuf>> = nodes.iter().enumerate().map(path).collect();
+            Focus::Mask3d { images: images.into_iter().collect::<Option<_>>()?, corner, size }
+        }
+        other => other,
+    })
+}
+
+/// Notes a flat lens that has no figure, or several.
+fn one_figure(reader: &mut Reader, fields: &Fields) {
+    let given: Vec<&str> = ["radius", "size", "points"].into_iter().filter(|key| fields.given(key)).collect();
+    let message = match given[..] {
+        [_] => return,
+        [] => "is missing: a flat lens has a radius, a size = [width, height] or points".to_owned(),
+        [first, ..] => format!("is given together with {first}: a flat lens has one figure"),
+    };
+    reader.checker.note(&fields.place, given.last().unwrap_or(&"radius"), fields.place.line, message);
+}
+
+/// A flat lens with its figure.
+fn with_figure(fields: &Fields, flat: Focus) -> Option<Focus> {
+    let Focus::Shape(Shape::Flat { center, rotation, .. }) = flat else { return Some(flat) };
+    let figure = if let Some(radius) = fields.number("radius") {
+        FlatFigure::Disc { radius }
+    } else if let Some(size) = fields.node("size").and_then(plan) {
+        FlatFigure::Rectangle { size }
+    } else {
+        FlatFigure::Polygon { points: ring(fields.node("points")?)? }
+    };
+    Some(Shape::Flat { center, rotation, figure }.into())
+}
+
+/// What a combination or an enclosure is made of.
+fn parts(reader: &mut Reader, fields: &Fields, blank: Focus) -> Option<Focus> {
+    let nodes = fields.node("shapes").and_then(Node::list)?;
+    let part = |(i, node): (usize, &Node)| read(reader, node, &fields.place.within(&format!("shapes.{i}"), node.line));
+    let parts: Vec<Focus> = nodes.iter().enumerate().filter_map(part).collect();
+    let whole = fields.boolean("whole").unwrap_or(false);
+    let types = fields.node("types").and_then(Node::list).unwrap_or_default();
+    if fields.given("types") && types.is_empty() {
+        reader.checker.note(&fields.place, "types", fields.line("types"), "must name at least one type");
     }
+    let types = types.iter().filter_map(|n| n.text().map(str::to_owned)).collect();
+    (parts.len() == nodes.len()).then_some(match blank {
+        Focus::Combined { how, .. } => Focus::Combined { how, parts },
+        _ => Focus::Enclosed { parts, whole, types },
+    })
+}
 
-    fn mask(&mut self, fields: &Fields) -> Option<Focus> {
-        let (base, height) = (fields.number("base"), fields.number("height"));
-        match (fields.given("image"), fields.given("points")) {
-            (true, false) => {
-                for key in ["corner", "size"].into_iter().filter(|key| !fields.given(key)) {
-                    let message = "is missing: an image needs corner = [x, y] (its south-west corner) and size = [width, height] in metres";
-                    self.checker.note(&fields.place, key, fields.place.line, message);
-                }
-                self.refuse(fields, &["holes"], "has a meaning only with points");
-                let image = self.path(fields, "image", fields.node("image")?)?;
-                Some(Focus::Mask {
-                    image,
-                    corner: plan(fields.node("corner")?)?,
-                    size: plan(fields.node("size")?)?,
-                    base: base?,
-                    height: height?,
-                })
+/// What stands over a polygon, or over the light pixels of an image.
+fn mask(reader: &mut Reader, fields: &Fields) -> Option<Focus> {
+    let (base, height) = (fields.number("base"), fields.number("height"));
+    match (fields.given("image"), fields.given("points")) {
+        (true, false) => {
+            for key in ["corner", "size"].into_iter().filter(|key| !fields.given(key)) {
+                let message = "is missing: an image needs corner = [x, y] (its south-west corner) and size = [width, height] in metres";
+                reader.checker.note(&fields.place, key, fields.place.line, message);
             }
-            (false, true) => {
-                self.refuse(fields, &["corner", "size"], "has a meaning only with image");
-                let rings = fields.node("holes").and_then(Node::list).unwrap_or_default();
-                let points = ring(fields.node("points")?)?;
-                let holes: Vec<_> = rings.iter().filter_map(ring).collect();
-                let (base, height) = (base?, height?);
-                let rings: Vec<_> = std::iter::once(&points).chain(&holes).cloned().collect();
-                let origin = points.first().map_or(DVec3::ZERO, |p| p.round().extend(base));
-                // Its height says nothing of the polygon.
-                if let Err(error) = prism(&rings, base, height.max(1.0), origin) {
-                    self.checker.note(&fields.place, "points", fields.line("points"), error.to_string());
-                }
-                Some(Focus::Prism { points, holes, base, height })
-            }
-            (both, _) => {
-                let message = match both {
-                    true => "is given together with points: a mask is one of them",
-                    false => "is missing: give image = \"FILE\" or points = [[x, y], ...]",
-                };
-                self.checker.note(&fields.place, "image", fields.line("image"), message);
-                None
-            }
+            refuse(reader, fields, &["holes"], "has a meaning only with points");
+            let image = reader.file(fields, "image")?;
+            Some(Focus::Mask {
+                image,
+                corner: plan(fields.node("corner")?)?,
+                size: plan(fields.node("size")?)?,
+                base: base?,
+                height: height?,
+            })
         }
-    }
-
-    fn refuse(&mut self, fields: &Fields, keys: &[&'static str], message: &str) {
-        for key in keys.iter().filter(|key| fields.given(key)) {
-            self.checker.note(&fields.place, key, fields.line(key), message);
-        }
-    }
-
-    pub(super) fn choice(&mut self, fields: &Fields) -> Option<Choice> {
-        let texts = |key| {
-            let list = fields.node(key).and_then(Node::list)?;
-            Some(list.iter().filter_map(|n| n.text().map(str::to_owned)).collect::<Vec<_>>())
-        };
-        let given: Vec<&str> = ["ids", "types", "attribute"].into_iter().filter(|key| fields.given(key)).collect();
-        match given[..] {
-            [] => {
-                let message = "is missing: give ids = [\"ID\", ...], types = [\"TYPE\", ...] or attribute = \"NAME\"";
-                self.checker.note(&fields.place, "ids", fields.place.line, message);
+        (false, true) => {
+            refuse(reader, fields, &["corner", "size"], "has a meaning only with image");
+            let rings = fields.node("holes").and_then(Node::list).unwrap_or_default();
+            let points = ring(fields.node("points")?)?;
+            let holes: Vec<_> = rings.iter().filter_map(ring).collect();
+            let (base, height) = (base?, height?);
+            let rings: Vec<_> = std::iter::once(&points).chain(&holes).cloned().collect();
+            let origin = points.first().map_or(DVec3::ZERO, |p| p.round().extend(base));
+            // Its height says nothing of the polygon.
+            if let Err(error) = prism(&rings, base, height.max(1.0), origin) {
+                reader.checker.note(&fields.place, "points", fields.line("points"), error.to_string());
             }
-            ["attribute"] => {}
-            [_] => self.refuse(fields, &["values", "min", "max"], "has a meaning only with attribute"),
-            [first, ..] => {
-                let message = format!("is given together with {first}: objects are chosen by one of them");
-                for other in &given[1..] {
-                    self.checker.note(&fields.place, other, fields.line(other), message.clone());
-                }
-            }
+            Some(Focus::Prism { points, holes, base, height })
         }
-        for (key, what) in [("ids", "object"), ("types", "type"), ("values", "value")] {
-            if fields.node(key).and_then(Node::list).is_some_and(<[Node]>::is_empty) {
-                self.checker.note(&fields.place, key, fields.line(key), format!("must name at least one {what}"));
-            }
+        (both, _) => {
+            let message = match both {
+                true => "is given together with points: a mask is one of them",
+                false => "is missing: give image = \"FILE\" or points = [[x, y], ...]",
+            };
+            reader.checker.note(&fields.place, "image", fields.line("image"), message);
+            None
         }
-        if let (Some(min), Some(max)) = (fields.number("min"), fields.number("max"))
-            && min > max
-        {
-            let message = format!("must be at least min, {min}, is {max}");
-            self.checker.note(&fields.place, "max", fields.line("max"), message);
-        }
-        Some(Choice {
-            ids: texts("ids").unwrap_or_default(),
-            types: texts("types").unwrap_or_default(),
-            attribute: fields.text("attribute").map(str::to_owned),
-            values: texts("values"),
-            min: fields.number("min"),
-            max: fields.number("max"),
-            except: fields.boolean("except").unwrap_or(false),
-        })
     }
 }
 
@@ -166,97 +183,4 @@ fn plan(node: &Node) -> Option<DVec2> {
 
 fn ring(node: &Node) -> Option<Vec<DVec2>> {
     node.list()?.iter().map(plan).collect()
-}
-
-/// A focus area as its table, where it is no plain shape.
-pub(super) fn written(focus: &Focus, options: &Options) -> Option<String> {
-    let path = |path: &PathBuf| quoted(&options.written(path));
-    let flat = |p: &DVec2| list(p.to_array().map(number));
-    let ring = |points: &Vec<DVec2>| list(points.iter().map(flat));
-    let all = |parts: &[Focus]| list(parts.iter().map(|part| super::write::focus(part, options)));
-    let standing = |base: f64, height: f64| format!("base = {}, height = {}", number(base), number(height));
-    Some(match focus {
-        Focus::Shape(_) => return None,
-        Focus::Mesh { file, at, rotation, scale } => {
-            let mut out = format!("{{ kind = \"mesh\", file = {}", path(file));
-            if *at != DVec3::ZERO {
-                let _ = write!(out, ", at = {}", point(*at));
-            }
-            out.push_str(&turned(*rotation));
-            if *scale != 1.0 {
-                let _ = write!(out, ", scale = {}", number(*scale));
-            }
-            out + " }"
-        }
-        Focus::Sprite { file } => format!("{{ kind = \"sprite\", file = {} }}", path(file)),
-        Focus::Prism { points, holes, base, height } => {
-            let mut out = format!("{{ kind = \"mask\", points = {}", ring(points));
-            if !holes.is_empty() {
-                let _ = write!(out, ", holes = {}", list(holes.iter().map(ring)));
-            }
-            format!("{out}, {} }}", standing(*base, *height))
-        }
-        Focus::Mask { image, corner, size, base, height } => {
-            let (corner, size) = (flat(corner), flat(size));
-            format!(
-                "{{ kind = \"mask\", image = {}, corner = {corner}, size = {size}, {} }}",
-                path(image),
-                standing(*base, *height)
-            )
-        }
-        Focus::Mask3d { images, corner, size } => format!(
-            "{{ kind = \"mask3d\", images = {}, corner = {}, size = {} }}",
-            list(images.iter().map(path)),
-            point(*corner),
-            point(*size)
-        ),
-        Focus::Objects(choice) => choice_written("objects", choice),
-        Focus::Thematic(choice) => choice_written("thematic", choice),
-        Focus::Combined { how, parts } => format!("{{ kind = \"{}\", shapes = {} }}", how.word(), all(parts)),
-        // A lens writes them as keys of its own.
-        Focus::Occluders(_) | Focus::Case { .. } => return None,
-        Focus::Enclosed { parts, whole, types } => {
-            let mut out = format!("{{ kind = \"enclosed\", shapes = {}", all(parts));
-            if *whole {
-                out.push_str(", whole = true");
-            }
-            if !types.is_empty() {
-                let _ = write!(out, ", types = {}", texts(types));
-            }
-            out + " }"
-        }
-    })
-}
-
-fn texts(all: &[String]) -> String {
-    list(all.iter().map(|t| quoted(t)))
-}
-
-/// A choice as its table, of a kind or (empty) of none.
-pub(super) fn choice_written(kind: &str, choice: &Choice) -> String {
-    let mut out = match kind {
-        "" => String::new(),
-        kind => format!(", kind = \"{kind}\""),
-    };
-    if !choice.ids.is_empty() {
-        let _ = write!(out, ", ids = {}", texts(&choice.ids));
-    }
-    if !choice.types.is_empty() {
-        let _ = write!(out, ", types = {}", texts(&choice.types));
-    }
-    if let Some(attribute) = &choice.attribute {
-        let _ = write!(out, ", attribute = {}", quoted(attribute));
-    }
-    if let Some(values) = &choice.values {
-        let _ = write!(out, ", values = {}", texts(values));
-    }
-    for (key, limit) in [("min", choice.min), ("max", choice.max)] {
-        if let Some(limit) = limit {
-            let _ = write!(out, ", {key} = {}", number(limit));
-        }
-    }
-    if choice.except {
-        out.push_str(", except = true");
-    }
-    format!("{{ {} }}", out.trim_start_matches(", "))
 }

@@ -1,83 +1,59 @@
 //! Scene files (TOML) and back, exactly as `docs/scene.md` has them.
 //!
-//! `keys` is the one table of keys; `node` reads TOML with line numbers, `check` holds it against the table, `parse`
-//! makes a [`Scene`], `write` the file again, `set` applies `PATH=VALUE`, `document` makes the docs and the schema.
+//! Each table is a file with the rows of its keys (`row`): what a key takes, its default, unit, text and example, and how its value comes out of
+//! the scene and goes into it. `scene` has the top of the file. `node` reads TOML with line numbers, `check` holds it against the keys, the rows
+//! take it over and give it back, `text` writes it. `edit` changes one value, typed or as `PATH=VALUE`; `save` changes the text of a file and
+//! leaves what it says besides; `document` makes the docs and the schema.
 
 pub mod animation;
 pub mod best_view;
+mod camera;
 pub mod check;
+mod choice;
+mod city;
 mod content;
 pub mod deformation;
 pub mod document;
+pub mod edit;
+mod effects;
 mod figure;
 mod focus;
+mod forms;
 pub mod keys;
-pub(in crate::figure) mod node;
+pub mod lens;
+pub mod node;
 mod occlusion;
 pub mod overlay;
-mod parse;
 mod paths;
+mod poi;
+mod problems;
+mod reader;
 mod rendering;
-mod set;
+mod row;
+mod save;
+pub mod scene;
 pub mod shape_keys;
 pub mod sprite;
+mod style;
 pub mod test_keys;
+mod text;
 mod trajectory;
-mod write;
 
-use std::{fmt, io::Read, path::Path};
+use std::{io::Read, path::Path};
 
 pub use check::Problem;
+pub use edit::{Edit, rename_lens, set, set_within};
 pub(in crate::figure) use figure::text_size;
-pub use parse::{lens_color, rotation};
+pub use forms::{lens_color, rotation};
 pub use paths::{Options, PathProblem};
-pub use set::{rename_lens, set, set_within};
+pub use problems::SceneFileError;
+
+use reader::Reader;
 
 use crate::scene::Scene;
 
 /// Largest scene file, bytes.
 const MAX_BYTES: u64 = 16 << 20;
-/// Problems that are shown; the rest is counted.
-const MAX_SHOWN: usize = 20;
-
-/// Everything that is wrong with a scene file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SceneFileError {
-    /// The file, or `--set PATH=VALUE`.
-    pub name: String,
-    /// All problems, in the order of the file.
-    pub problems: Vec<Problem>,
-    /// Whether lines mean anything to the reader.
-    pub has_lines: bool,
-    /// Whether the only thing missing is `VEDUTA_DATA`: galleries skip such scenes.
-    pub is_data_absent: bool,
-}
-
-impl std::error::Error for SceneFileError {}
-
-impl fmt::Display for SceneFileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, problem) in self.problems.iter().take(MAX_SHOWN).enumerate() {
-            let end = if i == 0 { "" } else { "\n" };
-            match (self.has_lines, problem.line) {
-                (true, 1..) => write!(f, "{end}{}:{}: {problem}", self.name, problem.line)?,
-                _ => write!(f, "{end}{}: {problem}", self.name)?,
-            }
-        }
-        match self.problems.len().saturating_sub(MAX_SHOWN) {
-            0 => Ok(()),
-            more => write!(f, "\n... and {more} more"),
-        }
-    }
-}
-
-impl SceneFileError {
-    pub(in crate::figure) fn whole(name: &str, line: u32, message: impl Into<String>) -> Self {
-        let problem = Problem { line, table: String::new(), key: String::new(), message: message.into() };
-        Self { name: name.into(), problems: vec![problem], has_lines: true, is_data_absent: false }
-    }
-}
-
 /// Reads a scene file (`-`: standard input).
 pub fn read(path: &Path, options: &Options) -> Result<Scene, SceneFileError> {
     let name = path.display().to_string();
@@ -112,26 +88,36 @@ pub fn parse(text: &str, name: &str, options: &Options) -> Result<Scene, SceneFi
     if root.has("veduta_sheet") {
         return Err(SceneFileError::whole(name, 1, "is a sheet and not a scene; `veduta sheet` draws it"));
     }
-    let mut reader = parse::SceneReader::new(options);
-    let scene = reader.scene(&root);
-    let mut problems = reader.checker.problems;
-    if problems.is_empty() {
-        return Ok(scene);
-    }
-    problems.sort_by_key(|p| p.line);
-    let is_data_absent =
-        reader.lacks_data && problems.iter().all(|p| p.message.contains("VEDUTA_DATA, which is not set"));
-    Err(SceneFileError { name: name.into(), problems, has_lines: true, is_data_absent })
+    let mut reader = Reader::new(options);
+    let scene = scene::read(&mut reader, &root);
+    if reader.checker.problems.is_empty() { Ok(scene) } else { Err(reader.error(name)) }
 }
 
 /// The scene as TOML, paths as they are. Reading it with [`Options::for_command_line`] gives the same scene.
 pub fn to_toml(scene: &Scene) -> String {
-    write::write(scene, &Options::default())
+    to_toml_for(scene, &Options::default())
 }
 
 /// The scene as the TOML of a file that is read with `options`: paths relative to its folder where they lie in it.
 pub fn to_toml_for(scene: &Scene, options: &Options) -> String {
-    write::write(scene, options)
+    text::file(&tree(scene, options))
+}
+
+/// The scene as the TOML of a file that is read with `options`, made of the text of a file that is read with `was`: what is another value is changed
+/// in it, and comments, order and empty lines stay. Where that text is no scene, or would not mean this one, the scene is written anew.
+pub fn to_edited(text: &str, was: &Options, scene: &Scene, options: &Options) -> String {
+    let anew = to_toml_for(scene, options);
+    let edited = || {
+        let before = parse(text, "", was).ok()?;
+        let made = save::changed(text, &tree(&before, was), &tree(scene, options))?;
+        (parse(&made, "", options).ok()? == parse(&anew, "", options).ok()?).then_some(made)
+    };
+    edited().unwrap_or(anew)
+}
+
+/// The scene as the tree of that file.
+pub fn tree(scene: &Scene, options: &Options) -> node::Node {
+    scene::written(scene, options)
 }
 
 #[cfg(test)]

@@ -1,12 +1,13 @@
 //! TOML as a tree that remembers lines.
 
+use glam::{DVec2, DVec3};
 use toml::{
-    Spanned,
+    Spanned, Value,
     de::{DeTable, DeValue},
 };
 
 /// A value and where it stands.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     /// Line, from 1.
     pub line: u32,
@@ -14,8 +15,8 @@ pub struct Node {
     pub data: Data,
 }
 
-/// A TOML value.
-#[derive(Clone, Debug)]
+/// A TOML value. What is made of numbers, texts and lists stands in no line: its lines are 0.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Data {
     /// `true`.
     Boolean(bool),
@@ -31,6 +32,115 @@ pub enum Data {
     Table(Vec<(String, u32, Node)>),
     /// A date or time, as written.
     Date(String),
+}
+
+impl Data {
+    /// A text.
+    pub fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+
+    /// A list.
+    pub fn list(items: impl IntoIterator<Item = impl Into<Data>>) -> Self {
+        Self::List(items.into_iter().map(|item| Node::of(item.into())).collect())
+    }
+
+    /// A table of these keys, in this order.
+    pub fn table<K: Into<String>>(entries: impl IntoIterator<Item = (K, Data)>) -> Self {
+        Self::Table(entries.into_iter().map(|(key, data)| (key.into(), 0, Node::of(data))).collect())
+    }
+}
+
+impl Data {
+    /// Adds a key to a table.
+    pub fn push(&mut self, key: &str, data: impl Into<Data>) {
+        if let Self::Table(entries) = self {
+            entries.push((key.to_owned(), 0, Node::of(data.into())));
+        }
+    }
+
+    /// Whether it is a table without keys.
+    pub fn is_empty_table(&self) -> bool {
+        matches!(self, Self::Table(entries) if entries.is_empty())
+    }
+}
+
+impl From<f64> for Data {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<u32> for Data {
+    fn from(number: u32) -> Self {
+        Self::Integer(number.into())
+    }
+}
+
+impl From<bool> for Data {
+    fn from(is: bool) -> Self {
+        Self::Boolean(is)
+    }
+}
+
+impl From<&str> for Data {
+    fn from(text: &str) -> Self {
+        Self::text(text)
+    }
+}
+
+impl From<&String> for Data {
+    fn from(text: &String) -> Self {
+        Self::text(text)
+    }
+}
+
+impl From<DVec3> for Data {
+    fn from(point: DVec3) -> Self {
+        Self::list(point.to_array())
+    }
+}
+
+impl From<DVec2> for Data {
+    fn from(point: DVec2) -> Self {
+        Self::list(point.to_array())
+    }
+}
+
+impl<const N: usize> From<[f64; N]> for Data {
+    fn from(numbers: [f64; N]) -> Self {
+        Self::list(numbers)
+    }
+}
+
+impl From<&Value> for Data {
+    fn from(value: &Value) -> Self {
+        match value {
+            Value::Boolean(is) => Self::Boolean(*is),
+            Value::Integer(number) => Self::Integer(*number),
+            Value::Float(number) => Self::Number(*number),
+            Value::String(text) => Self::text(text),
+            Value::Datetime(date) => Self::Date(date.to_string()),
+            Value::Array(list) => Self::list(list),
+            Value::Table(table) => Self::table(table.iter().map(|(key, value)| (key, value.into()))),
+        }
+    }
+}
+
+impl From<&Data> for Value {
+    fn from(data: &Data) -> Self {
+        match data {
+            Data::Boolean(is) => Self::Boolean(*is),
+            Data::Integer(number) => Self::Integer(*number),
+            Data::Number(number) => Self::Float(*number),
+            Data::Text(text) => Self::String(text.clone()),
+            Data::Date(date) => date.parse().map_or_else(|_| Self::String(date.clone()), Self::Datetime),
+            Data::List(list) => Self::Array(list.iter().map(|node| Self::from(&node.data)).collect()),
+            Data::Table(table) => {
+                Self::Table(table.iter().map(|(key, _, node)| (key.clone(), Self::from(&node.data))).collect())
+            }
+        }
+    }
 }
 
 /// Why a text is no TOML: line and message.
@@ -93,6 +203,11 @@ impl Lines {
 }
 
 impl Node {
+    /// A value that stands in no line.
+    pub fn of(data: Data) -> Self {
+        Self { line: 0, data }
+    }
+
     /// A table without entries.
     pub fn empty_table(line: u32) -> Self {
         Self { line, data: Data::Table(Vec::new()) }
@@ -104,6 +219,42 @@ impl Node {
             Data::Table(entries) => entries.iter().find(|(name, ..)| name == key).map(|(.., node)| node),
             _ => None,
         }
+    }
+
+    /// What a table has under this key, to be changed.
+    pub fn entry_mut(&mut self, key: &str) -> Option<&mut Self> {
+        match &mut self.data {
+            Data::Table(entries) => entries.iter_mut().find(|(name, ..)| name == key).map(|(.., node)| node),
+            _ => None,
+        }
+    }
+
+    /// Takes a key out of a table.
+    pub fn remove(&mut self, key: &str) -> Option<Self> {
+        let Data::Table(entries) = &mut self.data else { return None };
+        let at = entries.iter().position(|(name, ..)| name == key)?;
+        Some(entries.remove(at).2)
+    }
+
+    /// Gives a key of a table another value.
+    pub fn insert(&mut self, key: &str, data: Data) {
+        match self.entry_mut(key) {
+            Some(node) => *node = Self::of(data),
+            None => self.data.push(key, data),
+        }
+    }
+
+    /// What a table has under this key, `data` where it has nothing; `None` where it is no table.
+    pub fn entry_or(&mut self, key: &str, data: Data) -> Option<&mut Self> {
+        if !self.has(key) {
+            self.data.push(key, data);
+        }
+        self.entry_mut(key)
+    }
+
+    /// Whether it is a table.
+    pub fn is_table(&self) -> bool {
+        matches!(self.data, Data::Table(_))
     }
 
     /// Whether it is a table with this key.
@@ -134,6 +285,16 @@ impl Node {
             Data::List(l) => Some(l),
             _ => None,
         }
+    }
+
+    /// The texts of a list.
+    pub fn texts(&self) -> Vec<String> {
+        self.list().into_iter().flatten().filter_map(|node| node.text().map(str::to_owned)).collect()
+    }
+
+    /// The texts of a list, or the one that stands for a list of itself.
+    pub fn names(&self) -> Vec<String> {
+        self.text().map_or_else(|| self.texts(), |one| vec![one.to_owned()])
     }
 
     /// Exactly `N` numbers.

@@ -1,28 +1,26 @@
 //! What occlusion lenses have in scene files: points of interest, a test, choices, a rendering; read and written.
 
-use std::fmt::Write as _;
-
-use glam::DVec3;
-
 use crate::{
     figure::scene_file::{
-        check::{Checker, Fields, Place},
-        focus::{self, Reader},
+        check::Fields,
+        choice::{self, CHOICE},
+        forms::{Form as _, Names},
         node::{Data, Node},
-        test_keys::{CHOICE, TESTS},
-        write::{list, number, point, quoted},
+        paths::Options,
+        reader::Reader,
+        test_keys::{self, test_data},
     },
     geom::combination::Operation,
-    lens::{Focus, Lens, Occluders, chosen::Choice, nearest::did_you_mean},
-    visibility::{Margin, Pace, Reference, Test},
+    lens::{Focus, Occluders, chosen::Choice},
+    visibility::{Margin, Pace, Test},
 };
 
 /// The keys that only occlusion lenses have.
-pub(super) const OWN: [&str; 8] = ["poi", "test", "force", "forbid", "margin", "fade", "render", "poi_effects"];
+pub const OWN: [&str; 8] = ["poi", "test", "force", "forbid", "margin", "fade", "render", "poi_effects"];
 
 /// Whom a lens looks for.
-pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
-    let pois = fields.node("poi").map(texts).unwrap_or_default();
+pub fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
+    let pois = fields.node("poi").map(Node::names).unwrap_or_default();
     let listed = fields.node("poi").and_then(Node::list).unwrap_or_default();
     for (i, node) in listed.iter().enumerate() {
         if let Some(first) = listed[..i].iter().position(|earlier| earlier.text() == node.text()) {
@@ -32,26 +30,26 @@ pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
     }
     let test = match fields.node("test") {
         None => Some(Test::default()),
-        Some(node) => read_test(reader.checker, node, &fields.place.within("test", node.line)),
+        Some(node) => test_keys::read(reader, node, &fields.place.within("test", node.line)),
     };
     let needs_poi = test.as_ref().is_some_and(Test::needs_poi);
     if needs_poi && pois.is_empty() && !(fields.given("poi") && fields.node("poi").is_none()) {
         let message = "is missing: the test asks what hides a point of interest. For example poi = \"hall\", the name of a [[poi]]";
         reader.checker.note(&fields.place, "poi", fields.line("poi"), message);
     }
-    let mut choice = |key: &'static str| {
+    let mut chosen = |key: &'static str| {
         let node = fields.node(key)?;
         let own = reader.checker.fields(node, &CHOICE, &[], fields.place.within(key, node.line));
-        reader.choice(&own)
+        Some(choice::read(reader, &own))
     };
-    let (force, forbid) = (choice("force"), choice("forbid"));
+    let (force, forbid) = (chosen("force"), chosen("forbid"));
     let margin = fields.number("margin").map_or_else(Margin::default, |metres| Margin { metres });
     let pace = fields.number("fade").map_or_else(Pace::default, |fade_s| Pace { fade_s });
     Occluders { pois, test: test.unwrap_or_default(), force, forbid, margin, pace }
 }
 
 /// The focus areas of an occlusion lens of these shapes: its occluders, or what of them is in the shapes.
-pub(super) fn areas(of: Occluders, shapes: Vec<Focus>) -> Vec<Focus> {
+pub fn areas(of: Occluders, shapes: Vec<Focus>) -> Vec<Focus> {
     if shapes.is_empty() {
         return vec![Focus::Occluders(of)];
     }
@@ -60,148 +58,28 @@ pub(super) fn areas(of: Occluders, shapes: Vec<Focus>) -> Vec<Focus> {
     shapes.into_iter().map(within).collect()
 }
 
-pub(super) fn texts(node: &Node) -> Vec<String> {
-    let all = node.list().unwrap_or(std::slice::from_ref(node));
-    all.iter().filter_map(|n| n.text().map(str::to_owned)).collect()
-}
-
-/// A test; `None` where something is wrong (and noted).
-fn read_test(checker: &mut Checker, node: &Node, place: &Place) -> Option<Test> {
-    let Data::Table(entries) = &node.data else {
-        checker.note(place, "", node.line, format!("must be a table {{ kind = ..., ... }}, is {}", node.quoted()));
-        return None;
-    };
-    let find = |name: &str| entries.iter().find(|(k, ..)| k == name).map(|(.., n)| n);
-    let joints = ["any", "all", "not"];
-    let kinds = || TESTS.iter().map(|t| t.name).filter(|name| !joints.contains(name));
-    let table = match (joints.iter().find(|name| find(name).is_some()), find("kind")) {
-        (Some(name), _) => TESTS.iter().find(|t| t.name == *name),
-        (None, Some(kind)) => TESTS.iter().find(|t| kind.text() == Some(t.name) && !joints.contains(&t.name)),
-        (None, None) => None,
-    };
-    let Some(table) = table else {
-        let all = kinds().collect::<Vec<_>>().join(", ");
-        let (line, message) = match find("kind") {
-            None => {
-                let mut hints = entries.iter().map(|(name, ..)| did_you_mean(name, joints.into_iter().chain(["kind"])));
-                let hint = hints.find(|hint| !hint.is_empty()).unwrap_or_default();
-                (
-                    node.line,
-                    format!(
-                        "is missing: one of {all}, or a table {{ any = [...] }}, {{ all = [...] }} or {{ not = ... }}{hint}"
-                    ),
-                )
-            }
-            Some(n) => {
-                let hint = did_you_mean(n.text().unwrap_or_default(), kinds());
-                (n.line, format!("must be one of {all}, is {}{hint}", n.quoted()))
-            }
-        };
-        checker.note(place, "kind", line, message);
-        return None;
-    };
-    let fields = checker.fields(node, table, &[], place.clone());
-    let up = || unit(fields.point("up").unwrap_or(DVec3::Z));
-    let reference = || fields.text("reference").and_then(Reference::of_word).unwrap_or_default();
-    let mut parts = |key: &str| -> Option<Vec<Test>> {
-        let nodes = fields.node(key).and_then(Node::list)?;
-        let part = |(i, node): (usize, &Node)| {
-            read_test(checker, node, &fields.place.within(&format!("{key}.{i}"), node.line))
-        };
-        let read: Vec<Option<Test>> = nodes.iter().enumerate().map(part).collect();
-        read.into_iter().collect()
-    };
-    Some(match table.name {
-        "exact" => Test::Exact {
-            coverage: fields.number("coverage").unwrap_or(0.0),
-            rays: fields.integer("rays").unwrap_or(Test::RAYS),
-        },
-        "view-axis" => Test::ViewAxis,
-        "spherical" => Test::Spherical { radius: fields.number("radius")?, reference: reference() },
-        "cylindrical" => Test::Cylindrical { radius: fields.number("radius")?, up: up()? },
-        "viewer-height" => Test::ViewerHeight { radius: fields.number("radius")?, reference: reference(), up: up()? },
-        "ground" => Test::Ground { radius: fields.number("radius")? },
-        "route" => {
-            let points = fields.node("points").and_then(Node::list)?;
-            Test::Route { points: points.iter().filter_map(|p| p.numbers::<3>().map(DVec3::from)).collect() }
-        }
-        "any" => Test::Any(parts("any")?),
-        "all" => Test::All(parts("all")?),
-        _ => {
-            let inner = fields.node("not")?;
-            Test::Not(Box::new(read_test(checker, inner, &fields.place.within("not", inner.line))?))
-        }
-    })
-}
-
-/// A unit vector; one that is one stays as it is, to the bit.
-fn unit(v: DVec3) -> Option<DVec3> {
-    if (v.length_squared() - 1.0).abs() < 1e-15 { Some(v) } else { v.try_normalize() }
-}
-
-/// The keys of a lens that looks for occluders, but for its rendering.
-pub(super) fn written(lens: &Lens) -> Vec<(&'static str, String)> {
-    lens.shapes.first().and_then(Focus::occluders).map_or_else(Vec::new, occluders_written)
-}
-
-/// The keys of whom to look for.
-pub(super) fn occluders_written(of: &Occluders) -> Vec<(&'static str, String)> {
-    let mut keys = Vec::new();
-    match &of.pois[..] {
-        [] => {}
-        [one] => keys.push(("poi", quoted(one))),
-        many => keys.push(("poi", list(many.iter().map(|name| quoted(name))))),
+/// One of the keys of whom to look for.
+pub fn written(of: &Occluders, key: &str, options: &Options) -> Option<Data> {
+    let choice = |choice: &Choice| choice::written(choice, options);
+    match key {
+        "poi" if of.pois.is_empty() => None,
+        "poi" => Names::data(&of.pois),
+        // The default too: `--set` changes a part of it.
+        "test" => Some(test_data(&of.test)),
+        "force" => of.force.as_ref().map(choice),
+        "forbid" => of.forbid.as_ref().map(choice),
+        "margin" => (of.margin != Margin::default()).then(|| of.margin.metres.into()),
+        "fade" => (of.pace != Pace::default()).then(|| of.pace.fade_s.into()),
+        _ => None,
     }
-    // The default too: `--set` changes a part of it.
-    keys.push(("test", test_written(&of.test)));
-    let choice = |choice: &Choice| focus::choice_written("", choice);
-    keys.extend(of.force.as_ref().map(|c| ("force", choice(c))));
-    keys.extend(of.forbid.as_ref().map(|c| ("forbid", choice(c))));
-    keys.extend((of.margin != Margin::default()).then(|| ("margin", number(of.margin.metres))));
-    keys.extend((of.pace != Pace::default()).then(|| ("fade", number(of.pace.fade_s))));
-    keys
-}
-
-fn test_written(test: &Test) -> String {
-    let all = |parts: &[Test]| list(parts.iter().map(test_written));
-    let mut out = match test {
-        Test::Any(parts) => return format!("{{ any = {} }}", all(parts)),
-        Test::All(parts) => return format!("{{ all = {} }}", all(parts)),
-        Test::Not(part) => return format!("{{ not = {} }}", test_written(part)),
-        one => format!("{{ kind = \"{}\"", one.word()),
-    };
-    let near = |radius: f64, reference: Reference| match reference {
-        Reference::Centre => format!(", radius = {}", number(radius)),
-        other => format!(", radius = {}, reference = \"{}\"", number(radius), other.word()),
-    };
-    let tilted = |up: DVec3| if up == DVec3::Z { String::new() } else { format!(", up = {}", point(up)) };
-    match test {
-        Test::Spherical { radius, reference } => out += &near(*radius, *reference),
-        Test::Cylindrical { radius, up } => out += &(near(*radius, Reference::Centre) + &tilted(*up)),
-        Test::ViewerHeight { radius, reference, up } => out += &(near(*radius, *reference) + &tilted(*up)),
-        Test::Ground { radius } => out += &near(*radius, Reference::Centre),
-        Test::Route { points } => {
-            let _ = write!(out, ", points = {}", list(points.iter().map(|p| point(*p))));
-        }
-        Test::Exact { coverage, rays } => {
-            if *coverage != 0.0 {
-                let _ = write!(out, ", coverage = {}", number(*coverage));
-            }
-            if *rays != Test::RAYS {
-                let _ = write!(out, ", rays = {rays}");
-            }
-        }
-        Test::ViewAxis | Test::Any(_) | Test::All(_) | Test::Not(_) => {}
-    }
-    out + " }"
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{
-        figure::scene_file::{Options, parse},
-        lens::{LensKind, Rendering},
+        figure::scene_file::parse,
+        lens::{Lens, LensKind, Rendering},
     };
 
     fn lens(lines: &str) -> Result<Lens, String> {
@@ -239,10 +117,9 @@ mod tests {
         let of = other.occluders().unwrap();
         assert_eq!((of.margin, of.pace, other.keeps_shadows), (Margin { metres: 0.0 }, Pace { fade_s: 2.5 }, true));
         let keys =
-            |lens: &Lens| written(lens).into_iter().filter(|(key, _)| ["margin", "fade"].contains(key)).collect();
-        let [none, both]: [Vec<_>; 2] = [&plain, &other].map(keys);
-        assert_eq!(none, []);
-        assert_eq!(both, [("margin", "0.0".to_owned()), ("fade", "2.5".to_owned())]);
+            |lens: &Lens| ["margin", "fade"].map(|key| written(lens.occluders().unwrap(), key, &Options::default()));
+        assert_eq!(keys(&plain), [None, None]);
+        assert_eq!(keys(&other), [Some(Data::Number(0.0)), Some(Data::Number(2.5))]);
     }
 
     #[test]

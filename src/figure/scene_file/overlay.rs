@@ -1,12 +1,16 @@
 //! `[[overlay]]` and `[layout]` in scene files: their keys, read and written.
 
+use std::path::PathBuf;
+
 use crate::{
     figure::scene_file::{
         check::Fields,
+        forms::{Color, Degrees, Form, Same, Word, Worded},
         keys::{Kind, Table, key},
-        node::{Data, Node},
+        node::Data,
         paths::Options,
-        write::{degrees, number, quoted, write_color},
+        reader::Reader,
+        row::{self, Given, Row, field, keys_of},
     },
     scene::overlay::{
         Along, BuiltInFrame, CallOut, ContextLine, Frame, Layout, LineEnd, LineKind, Outside, Overlay, Sizes, Stand,
@@ -35,83 +39,89 @@ pub const OVERLAY: Table = Table {
     name: "overlay",
     doc: "How the picture of a best-view lens stands over the main one. A lens of such a kind without a table here has one with every key at \
           its default.",
-    keys: &[
-        key("lens", Kind::Text, "", "", "The name of its lens.", "\"cathedral\""),
-        key(
+    keys: keys_of!(OVERLAY_ROWS),
+};
+
+const OVERLAY_ROWS: &[Row<Overlay>] = &[
+    field!(key("lens", Kind::Text, "", "", "The name of its lens.", "\"cathedral\""), Same, |overlay: Overlay| overlay.lens),
+    field!(key(
             "priority",
             Kind::Number { min: -1e6, max: 1e6 },
             "0.0",
             "",
             "Where there is not room for all, higher ones stay larger; the lowest become markers.",
             "1.0",
-        ),
-        key(
+        ), Same, |overlay: Overlay| overlay.priority),
+    field!(key(
             "interest",
             Kind::Number { min: 0.0, max: 1.0 },
             "0.5",
             "",
             "How large it gets where `[layout]` has `size = \"interest\"`: 0 the smallest, 1 the largest size.",
             "1.0",
-        ),
-        key(
+        ), Same, |overlay: Overlay| overlay.interest),
+    Row::<Overlay>::new(key(
             "at",
             Kind::PicturePlace,
             "where the layout puts it",
             "",
             "A place of its own: where its middle is, as shares of the picture's width and height from the upper left. It keeps its `size`, as far as the picture holds that, and the margin to the border; the others leave it free. Of two that overlap, the one whose lens comes later lies in front.",
             "[0.5, 0.4]",
-        ),
-        key(
+        ), |overlay, _| match overlay.stand { Stand::At(at) => Some(at.into()), _ => None }, |overlay, given| overlay.stand = given.node.numbers::<2>().map_or(Stand::Laid, Stand::At)).after("caption"),
+    Row::<Overlay>::new(key(
             "call_out",
             Kind::Table(&CALL_OUT),
             "none: it lies in the plane of the picture",
             "",
             "Has it stand in the scene, as a tilted board above its first point of interest; see Best-view lenses. Either this or `at`.",
             "{ tilt_deg = 30.0 }",
-        ),
-        key("size", Kind::Size, "[240, 160]", "pixels", "Its preferred size.", "[320, 200]"),
-        key(
+        ), |overlay, options| match &overlay.stand { Stand::Scene(own) => Some(row::written(CALL_OUT_ROWS, own, &CallOut::default(), options)), _ => None }, |overlay, given| overlay.stand = Stand::Scene(call_out(given))).after("at"),
+    field!(key("size", Kind::Size, "[240, 160]", "pixels", "Its preferred size.", "[320, 200]"), Same, |overlay: Overlay| overlay.size),
+    field!(key(
             "min",
             Kind::Size,
             "half of `size`; a card of text keeps its size",
             "pixels",
             "It is made no smaller.",
             "[120, 80]",
-        ),
-        key("max", Kind::Size, "one and a half of `size`", "pixels", "It is made no larger.", "[480, 300]"),
-        key(
+        ), Same, |overlay: Overlay| overlay.min),
+    field!(key("max", Kind::Size, "one and a half of `size`", "pixels", "It is made no larger.", "[480, 300]"), Same, |overlay: Overlay| overlay.max),
+    field!(key(
             "opacity",
             Kind::Number { min: 0.0, max: 1.0 },
             "1.0",
             "",
             "How much of the picture below it hides.",
             "0.8",
-        ),
-        key(
+        ), Same, |overlay: Overlay| overlay.opacity).after("interest"),
+    Row::<Overlay>::new(key(
             "frame",
             Kind::WordOrTable(&FRAMES, &FRAME),
             "\"rounded\"",
             "",
             "What is cut out of it and laid over it: a frame that is built in, or images.",
             "\"print\"",
-        ),
-        key("caption", Kind::Text, "none", "", "A line of text below what it shows.", "\"Town hall, 1893\""),
-        key(
+        ), |overlay, options| Some(frame_data(&overlay.frame, options)), |overlay, given| overlay.frame = frame(given)),
+    field!(key("caption", Kind::Text, "none", "", "A line of text below what it shows.", "\"Town hall, 1893\""), Same, |overlay: Overlay| overlay.caption),
+    Row::<Overlay>::new(key(
             "line",
             Kind::WordOrTable(&["none", LINES[0], LINES[1], LINES[2]], &LINE),
             "\"straight\"",
             "",
             "The context lines from it to its points of interest: how they run, or a table that says more; `none`: it has none.",
             "{ kind = \"curved\", to = \"area\" }",
-        ),
-    ],
-};
+        ), |overlay, options| Some(line_data(overlay.line.as_ref(), options)), |overlay, given| overlay.line = line(given)),
+];
 
 /// `call_out` of an overlay.
 pub const CALL_OUT: Table = Table {
     name: "call_out",
     doc: "A board in the scene that shows an overlay, in perspective, turned to the viewer about the vertical axis. Its frame and its text are on it, as large beside what it shows as they are in an overlay of `size` pixels. Nothing of the city hides it.",
-    keys: &[
+    keys: keys_of!(CALL_OUT_ROWS),
+};
+
+const CALL_OUT_ROWS: &[Row<CallOut>] = &[
+    field!(
         key(
             "height_m",
             Kind::Number { min: 0.0, max: 1e5 },
@@ -120,6 +130,10 @@ pub const CALL_OUT: Table = Table {
             "From the top of the object, or from the point, to the lower edge.",
             "15.0",
         ),
+        Same,
+        |board: CallOut| board.height_m
+    ),
+    field!(
         key(
             "width_m",
             Kind::Number { min: 1e-3, max: 1e5 },
@@ -128,6 +142,10 @@ pub const CALL_OUT: Table = Table {
             "How wide it is.",
             "40.0",
         ),
+        Same,
+        |board: CallOut| board.width_m
+    ),
+    field!(
         key(
             "tilt_deg",
             Kind::Number { min: -90.0, max: 90.0 },
@@ -136,8 +154,10 @@ pub const CALL_OUT: Table = Table {
             "How far its upper edge is tilted away from the viewer: 0 stands upright, 90 lies flat.",
             "45.0",
         ),
-    ],
-};
+        Degrees,
+        |board: CallOut| board.tilt
+    ),
+];
 
 /// `frame` of an overlay.
 pub const FRAME: Table = Table {
@@ -160,7 +180,11 @@ pub const FRAME: Table = Table {
 pub const LINE: Table = Table {
     name: "line",
     doc: "Context lines: how an overlay is tied to its points of interest.",
-    keys: &[
+    keys: keys_of!(LINE_ROWS),
+};
+
+const LINE_ROWS: &[Row<ContextLine>] = &[
+    field!(
         key(
             "kind",
             Kind::Word { now: &LINES, later: &[] },
@@ -169,7 +193,16 @@ pub const LINE: Table = Table {
             "How they run: straight, along the sides of the picture, or in a curve.",
             "\"orthogonal\"",
         ),
+        Word,
+        |line: ContextLine| line.kind
+    )
+    .always(),
+    field!(
         key("color", Kind::Color, "the lens colour", "", "Their colour.", "\"#333333\""),
+        Color,
+        |line: ContextLine| line.color
+    ),
+    field!(
         key(
             "width",
             Kind::Number { min: 0.0, max: 200.0 },
@@ -178,6 +211,10 @@ pub const LINE: Table = Table {
             "How wide they are at the overlay.",
             "10.0",
         ),
+        Same,
+        |line: ContextLine| line.widths[0]
+    ),
+    field!(
         key(
             "end_width",
             Kind::Number { min: 0.0, max: 200.0 },
@@ -186,6 +223,10 @@ pub const LINE: Table = Table {
             "How wide they are at the place.",
             "2.0",
         ),
+        Same,
+        |line: ContextLine| line.widths[1]
+    ),
+    Row::<ContextLine>::new(
         key(
             "skin",
             Kind::Text,
@@ -194,6 +235,10 @@ pub const LINE: Table = Table {
             "An image along them, with alpha; its left end is at the overlay.",
             "\"skin.png\"",
         ),
+        |line, options| file_data(line.skin.as_ref(), options),
+        |line, given| line.skin = given.file(),
+    ),
+    field!(
         key(
             "to",
             Kind::Word { now: &ENDS, later: &[] },
@@ -202,6 +247,10 @@ pub const LINE: Table = Table {
             "What they end at: the middle of the place, or the outline of its object, which is then drawn.",
             "\"area\"",
         ),
+        Word,
+        |line: ContextLine| line.to
+    ),
+    field!(
         key(
             "outside",
             Kind::Word { now: &OUTSIDE, later: &[] },
@@ -210,6 +259,10 @@ pub const LINE: Table = Table {
             "What is drawn for a place that is out of the picture or behind the eye: an arrow at the border, or nothing.",
             "\"hidden\"",
         ),
+        Word,
+        |line: ContextLine| line.outside
+    ),
+    field!(
         key(
             "arrow_distance",
             Kind::Number { min: 0.0, max: 1e9 },
@@ -218,6 +271,10 @@ pub const LINE: Table = Table {
             "For a place that is farther from the eye than this an arrow at the overlay takes the place of the line.",
             "500.0",
         ),
+        Same,
+        |line: ContextLine| line.arrow_distance_m
+    ),
+    field!(
         key(
             "fade",
             Kind::PlanLengths,
@@ -226,14 +283,21 @@ pub const LINE: Table = Table {
             "`[inner, outer]`: lines fade out towards the middle of the picture, from the outer radius to the inner one, within which they are not seen.",
             "[60, 200]",
         ),
-    ],
-};
+        Same,
+        |line: ContextLine| line.fade
+    ),
+];
 
 /// `[layout]`.
 pub const LAYOUT: Table = Table {
     name: "layout",
     doc: "Where overlays stand that have no place of their own. They never overlap, and leave free the points of interest that they can leave free.",
-    keys: &[
+    keys: keys_of!(LAYOUT_ROWS),
+};
+
+/// Its rows.
+pub const LAYOUT_ROWS: &[Row<Layout>] = &[
+    field!(
         key(
             "along",
             Kind::Word { now: &ALONG, later: &[] },
@@ -242,6 +306,10 @@ pub const LAYOUT: Table = Table {
             "In a row at the `top` or the `bottom`, in a column on the `left` or the `right`, in two columns (`sides`), or all around the `border`.",
             "\"right\"",
         ),
+        Word,
+        |layout: Layout| layout.along
+    ),
+    field!(
         key(
             "size",
             Kind::Word { now: &SIZES, later: &[] },
@@ -250,6 +318,10 @@ pub const LAYOUT: Table = Table {
             "What their sizes go by, between `min` and `max` of each: their preferred size, how near their places are (`distance`), or their `interest`.",
             "\"distance\"",
         ),
+        Word,
+        |layout: Layout| layout.sizes
+    ),
+    field!(
         key(
             "exploration_focus",
             Kind::Boolean,
@@ -258,6 +330,10 @@ pub const LAYOUT: Table = Table {
             "The overlay whose place is nearest to the middle of the picture stands in the middle of its row.",
             "true",
         ),
+        Same,
+        |layout: Layout| layout.exploration_focus
+    ),
+    field!(
         key(
             "margin",
             Kind::Number { min: 0.0, max: 4096.0 },
@@ -266,196 +342,85 @@ pub const LAYOUT: Table = Table {
             "To the border of the picture.",
             "24.0",
         ),
+        Same,
+        |layout: Layout| layout.margin_px
+    ),
+    field!(
         key("gap", Kind::Number { min: 0.0, max: 4096.0 }, "12.0", "pixels", "Between overlays.", "8.0"),
-    ],
-};
+        Same,
+        |layout: Layout| layout.gap_px
+    ),
+];
 
-fn of_word<T: Copy + Default>(all: &[(&str, T)], word: Option<&str>) -> T {
-    all.iter().find(|(w, _)| word == Some(*w)).map_or_else(T::default, |(_, value)| *value)
+fn file_data(file: Option<&PathBuf>, options: &Options) -> Option<Data> {
+    file.map(|file| Data::Text(options.written(file)))
 }
 
-fn word_of<T: PartialEq>(all: &[(&'static str, T)], value: &T) -> String {
-    quoted(all.iter().find(|(_, v)| v == value).map_or("", |(word, _)| word))
+fn call_out(given: &mut Given) -> CallOut {
+    if given.fields.given("at") {
+        given.note("is given together with at: an overlay stands in the scene or at a place in the picture");
+    }
+    let own = given.table(&CALL_OUT);
+    let mut board = CallOut::default();
+    row::read(CALL_OUT_ROWS, &own, given.reader, &mut board);
+    board
 }
 
-fn size(node: &Node) -> Option<[u32; 2]> {
-    node.numbers::<2>().map(|size| size.map(|side| side as u32))
-}
-
-/// The layout.
-pub fn layout(fields: &Fields) -> Layout {
-    let default = Layout::default();
-    Layout {
-        along: of_word(&Along::WORDS, fields.text("along")),
-        sizes: of_word(&Sizes::WORDS, fields.text("size")),
-        exploration_focus: fields.boolean("exploration_focus").unwrap_or(default.exploration_focus),
-        margin_px: fields.number("margin").unwrap_or(default.margin_px),
-        gap_px: fields.number("gap").unwrap_or(default.gap_px),
+fn frame(given: &mut Given) -> Frame {
+    match given.node.text() {
+        Some(word) => Frame::BuiltIn(BuiltInFrame::of_word(word).unwrap_or_default()),
+        None => {
+            let own = given.table(&FRAME);
+            Frame::Images { alpha: given.reader.file(&own, "alpha"), frame: given.reader.file(&own, "frame") }
+        }
     }
 }
 
-/// What is read in other tables of an overlay.
-pub struct Parts<'a> {
-    /// `frame`, where it is a table, with its files.
-    pub frame: Option<Frame>,
-    /// `line`, where it is a table, and its skin.
-    pub line: Option<(Fields<'a>, Option<std::path::PathBuf>)>,
-    /// `call_out`.
-    pub call_out: Option<Fields<'a>>,
+fn frame_data(frame: &Frame, options: &Options) -> Data {
+    match frame {
+        Frame::BuiltIn(frame) => frame.word().into(),
+        Frame::Images { alpha, frame } => {
+            let files = [("alpha", alpha), ("frame", frame)].into_iter();
+            Data::table(files.filter_map(|(key, file)| Some((key, file_data(file.as_ref(), options)?))))
+        }
+    }
+}
+
+/// What a line is called that there is none of.
+const NO_LINE: &str = "none";
+
+fn line(given: &mut Given) -> Option<ContextLine> {
+    let mut line = ContextLine::default();
+    match given.node.text() {
+        Some(NO_LINE) => return None,
+        Some(_) => Word::take(given.node, &mut line.kind),
+        None => {
+            let own = given.table(&LINE);
+            row::read(LINE_ROWS, &own, given.reader, &mut line);
+        }
+    }
+    Some(line)
+}
+
+fn line_data(line: Option<&ContextLine>, options: &Options) -> Data {
+    let plain = ContextLine::default();
+    match line {
+        None => NO_LINE.into(),
+        Some(line) if *line == plain => line.kind.word().into(),
+        Some(line) => row::written(LINE_ROWS, line, &plain, options),
+    }
 }
 
 /// An overlay.
-pub fn overlay(fields: &Fields, parts: Parts) -> Overlay {
-    let default = Overlay::of(fields.text("lens").unwrap_or_default());
-    let number = |key: &str, default: f64| fields.number(key).unwrap_or(default);
-    let frame = match fields.node("frame").and_then(Node::text) {
-        Some(word) => Frame::BuiltIn(of_word(&BuiltInFrame::WORDS, Some(word))),
-        None => parts.frame.unwrap_or_default(),
-    };
-    let line = match (fields.node("line").and_then(Node::text), parts.line) {
-        (Some("none"), _) => None,
-        (word, None) => Some(ContextLine { kind: of_word(&LineKind::WORDS, word), ..ContextLine::default() }),
-        (_, Some((own, skin))) => {
-            let plain = ContextLine::default();
-            Some(ContextLine {
-                kind: of_word(&LineKind::WORDS, own.text("kind")),
-                color: own.color("color"),
-                widths: [
-                    own.number("width").unwrap_or(plain.widths[0]),
-                    own.number("end_width").unwrap_or(plain.widths[1]),
-                ],
-                skin,
-                to: of_word(&LineEnd::WORDS, own.text("to")),
-                outside: of_word(&Outside::WORDS, own.text("outside")),
-                arrow_distance_m: own.number("arrow_distance"),
-                fade: own.node("fade").and_then(Node::numbers::<2>),
-            })
-        }
-    };
-    let at = fields.node("at").and_then(Node::numbers::<2>);
-    Overlay {
-        priority: number("priority", default.priority),
-        interest: number("interest", default.interest),
-        stand: parts.call_out.as_ref().map_or(at.map_or(Stand::Laid, Stand::At), |own| Stand::Scene(call_out(own))),
-        size: fields.node("size").and_then(size).unwrap_or(default.size),
-        min: fields.node("min").and_then(size),
-        max: fields.node("max").and_then(size),
-        opacity: number("opacity", default.opacity),
-        frame,
-        caption: fields.text("caption").map(str::to_owned),
-        line,
-        ..default
-    }
+pub fn read(reader: &mut Reader, fields: &Fields) -> Overlay {
+    let mut overlay = Overlay::of("");
+    row::read(OVERLAY_ROWS, fields, reader, &mut overlay);
+    overlay
 }
 
-fn call_out(own: &Fields) -> CallOut {
-    let default = CallOut::default();
-    CallOut {
-        height_m: own.number("height_m"),
-        width_m: own.number("width_m"),
-        tilt: own.number("tilt_deg").map_or(default.tilt, f64::to_radians),
-    }
-}
-
-/// Whether a node is a table.
-pub fn is_table(node: &Node) -> bool {
-    matches!(node.data, Data::Table(_))
-}
-
-/// The keys of an overlay.
-pub(super) fn written(overlay: &Overlay, options: &Options) -> Vec<(&'static str, String)> {
-    let default = Overlay::of(&overlay.lens);
-    let pair = |[a, b]: [u32; 2]| format!("[{a}, {b}]");
-    let mut keys = vec![("lens", quoted(&overlay.lens))];
-    let mut number_if = |name, value: f64, default: f64| {
-        if value != default {
-            keys.push((name, number(value)));
-        }
-    };
-    number_if("priority", overlay.priority, default.priority);
-    number_if("interest", overlay.interest, default.interest);
-    number_if("opacity", overlay.opacity, default.opacity);
-    if overlay.size != default.size {
-        keys.push(("size", pair(overlay.size)));
-    }
-    keys.extend(overlay.min.map(|size| ("min", pair(size))));
-    keys.extend(overlay.max.map(|size| ("max", pair(size))));
-    match &overlay.frame {
-        frame if *frame == Frame::default() => {}
-        Frame::BuiltIn(frame) => keys.push(("frame", word_of(&BuiltInFrame::WORDS, frame))),
-        Frame::Images { alpha, frame } => {
-            let file = |name, file: &Option<std::path::PathBuf>| {
-                file.as_ref().map(|file| format!("{name} = {}", quoted(&options.written(file))))
-            };
-            let own: Vec<String> = file("alpha", alpha).into_iter().chain(file("frame", frame)).collect();
-            keys.push(("frame", format!("{{ {} }}", own.join(", "))));
-        }
-    }
-    keys.extend(overlay.caption.as_ref().map(|text| ("caption", quoted(text))));
-    match &overlay.stand {
-        Stand::Laid => {}
-        Stand::At([x, y]) => keys.push(("at", format!("[{}, {}]", number(*x), number(*y)))),
-        Stand::Scene(own) => keys.push(("call_out", call_out_table(own))),
-    }
-    match &overlay.line {
-        None => keys.push(("line", quoted("none"))),
-        Some(line) if *line == ContextLine::default() => {}
-        Some(line) => keys.push(("line", line_table(line, options))),
-    }
-    keys
-}
-
-fn call_out_table(call_out: &CallOut) -> String {
-    let mut own = Vec::new();
-    own.extend(call_out.height_m.map(|metres| format!("height_m = {}", number(metres))));
-    own.extend(call_out.width_m.map(|metres| format!("width_m = {}", number(metres))));
-    if call_out.tilt != CallOut::default().tilt {
-        own.push(format!("tilt_deg = {}", number(degrees(call_out.tilt))));
-    }
-    if own.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", own.join(", ")) }
-}
-
-fn line_table(line: &ContextLine, options: &Options) -> String {
-    let plain = ContextLine::default();
-    let mut own = vec![format!("kind = {}", word_of(&LineKind::WORDS, &line.kind))];
-    own.extend(line.color.map(|color| format!("color = {}", write_color(color))));
-    for (key, i) in [("width", 0), ("end_width", 1)] {
-        if line.widths[i] != plain.widths[i] {
-            own.push(format!("{key} = {}", number(line.widths[i])));
-        }
-    }
-    own.extend(line.skin.as_ref().map(|file| format!("skin = {}", quoted(&options.written(file)))));
-    if line.to != plain.to {
-        own.push(format!("to = {}", word_of(&LineEnd::WORDS, &line.to)));
-    }
-    if line.outside != plain.outside {
-        own.push(format!("outside = {}", word_of(&Outside::WORDS, &line.outside)));
-    }
-    own.extend(line.arrow_distance_m.map(|metres| format!("arrow_distance = {}", number(metres))));
-    own.extend(line.fade.map(|[a, b]| format!("fade = [{}, {}]", number(a), number(b))));
-    format!("{{ {} }}", own.join(", "))
-}
-
-/// The keys of a layout that is not the default one.
-pub(super) fn layout_written(layout: &Layout) -> Vec<(&'static str, String)> {
-    let default = Layout::default();
-    let mut keys = Vec::new();
-    if layout.along != default.along {
-        keys.push(("along", word_of(&Along::WORDS, &layout.along)));
-    }
-    if layout.sizes != default.sizes {
-        keys.push(("size", word_of(&Sizes::WORDS, &layout.sizes)));
-    }
-    if layout.exploration_focus {
-        keys.push(("exploration_focus", "true".to_owned()));
-    }
-    if layout.margin_px != default.margin_px {
-        keys.push(("margin", number(layout.margin_px)));
-    }
-    if layout.gap_px != default.gap_px {
-        keys.push(("gap", number(layout.gap_px)));
-    }
-    keys
+/// The table of an overlay.
+pub fn written(overlay: &Overlay, options: &Options) -> Data {
+    row::written(OVERLAY_ROWS, overlay, &Overlay::of(""), options)
 }
 
 #[cfg(test)]

@@ -5,23 +5,25 @@ use std::sync::LazyLock;
 use crate::{
     figure::scene_file::{
         check::{Fields, Place},
-        focus::{self, Reader},
+        choice::{self, CHOICE},
+        effects::{self, without_sights},
+        forms::{parameter, parameter_data},
         keys::{FAR_M, Key, Kind, Table, key},
         node::{Data, Node},
-        parse::{SceneReader, parameter},
-        test_keys::CHOICE,
-        write::{effect, list, number, parameter_written, quoted},
+        paths::Options,
+        reader::Reader,
+        text::quoted,
     },
     lens::{
         EffectUse, Rendering,
         nearest::did_you_mean,
         rendering::{Case, Given, ROWS, Row, When},
     },
-    shader::effect::{EffectKind, ParameterDefinition, ParameterKind, PerObject, find as find_effect},
+    shader::effect::{EffectKind, ParameterDefinition, ParameterKind, find as find_effect},
 };
 
 /// The key that says which word it is.
-pub(super) const AS: &str = "as";
+pub const AS: &str = "as";
 
 const NEARER: Key = key(
     "nearer",
@@ -49,7 +51,7 @@ const WHERE: Key = key(
 );
 
 /// A case by effects.
-pub(super) const BY_EFFECTS: Table = Table {
+pub const BY_EFFECTS: Table = Table {
     name: "effects",
     doc: "Effects of your choice, in place of a word.",
     keys: &[
@@ -61,7 +63,7 @@ pub(super) const BY_EFFECTS: Table = Table {
 };
 
 /// The words, each with `as`, its parameters and its conditions.
-pub(super) static WORDS: LazyLock<Vec<Table>> = LazyLock::new(|| ROWS.iter().map(table_of).collect());
+pub static WORDS: LazyLock<Vec<Table>> = LazyLock::new(|| ROWS.iter().map(table_of).collect());
 
 // Tables of keys are static, as all others are; there are as many as words, made once.
 fn table_of(row: &'static Row) -> Table {
@@ -120,185 +122,164 @@ fn does_more(fields: &Fields) -> bool {
     has_body || ["effects", "poi_effects", "content"].iter().any(is_filled)
 }
 
-impl SceneReader<'_> {
-    /// How an occlusion lens with these effects draws occluders and points of interest.
-    pub(super) fn rendering(&mut self, fields: &Fields, effects: &[EffectUse]) -> Rendering {
-        let cases = match fields.node("render") {
-            None => Rendering::default().cases,
-            Some(node) => match (&node.data, node.text().and_then(Row::of_word)) {
-                (_, Some(row)) => vec![Case::of_row(row, Given::new())],
-                (Data::Table(_), _) => self.case(node, &fields.place.within("render", node.line)).into_iter().collect(),
-                (Data::List(nodes), _) if has_cases(nodes) => {
-                    let mut cases = Vec::new();
-                    let mut is_all = false;
-                    for (i, node) in nodes.iter().enumerate() {
-                        let (key, noted) = (format!("render.{i}"), self.checker.problems.len());
-                        let case = self.case(node, &fields.place.within(&key, node.line));
-                        // Where something is wrong in a case, whom it is for is not known.
-                        let is_known = self.checker.problems.len() == noted;
-                        let holds = is_known && case.as_ref().is_some_and(|case| case.when.is_always());
-                        if holds && !is_all && i + 1 < nodes.len() {
-                            is_all = true;
-                            let message = "holds of all occluders: none is left for the cases after it; it would be right as the last";
-                            self.checker.note(&fields.place, &key, node.line, message);
-                        }
-                        cases.extend(case);
+/// How an occlusion lens with these effects draws occluders and points of interest.
+pub fn read(reader: &mut Reader, fields: &Fields, effects: &[EffectUse]) -> Rendering {
+    let cases = match fields.node("render") {
+        None => Rendering::default().cases,
+        Some(node) => match (&node.data, node.text().and_then(Row::of_word)) {
+            (_, Some(row)) => vec![Case::of_row(row, Given::new())],
+            (Data::Table(_), _) => case(reader, node, &fields.place.within("render", node.line)).into_iter().collect(),
+            (Data::List(nodes), _) if has_cases(nodes) => {
+                let mut cases = Vec::new();
+                let mut is_all = false;
+                for (i, node) in nodes.iter().enumerate() {
+                    let (key, noted) = (format!("render.{i}"), reader.checker.problems.len());
+                    let case = case(reader, node, &fields.place.within(&key, node.line));
+                    // Where something is wrong in a case, whom it is for is not known.
+                    let is_known = reader.checker.problems.len() == noted;
+                    let holds = is_known && case.as_ref().is_some_and(|case| case.when.is_always());
+                    if holds && !is_all && i + 1 < nodes.len() {
+                        is_all = true;
+                        let message = "holds of all occluders: none is left for the cases after it; it would be right as the last";
+                        reader.checker.note(&fields.place, &key, node.line, message);
                     }
-                    cases
+                    cases.extend(case);
                 }
-                _ => vec![Case::of_effects(self.own_effects(fields, "render"))],
-            },
-        };
-        if let Some(node) = fields.node("render").filter(|node| is_empty(node) && !does_more(fields)) {
-            let message = "is empty, and so nothing is drawn in another way; a word like \"x-ray\" or a list of effects like [\"sepia\"] would be right";
-            self.checker.note(&fields.place, "render", node.line, message);
-        }
-        let scene_style = |used: &&EffectUse| find_effect(&used.effect).is_some_and(|e| e.kind == EffectKind::Scene);
-        let first = cases.iter().find_map(|case| case.effects.iter().find(scene_style));
-        if let (Some(first), Some(second)) = (first, effects.iter().find(scene_style)) {
-            let message = format!(
-                "\"{}\" is a second scene style beside \"{}\" of render; only one is possible",
-                second.effect, first.effect
-            );
-            self.checker.note(&fields.place, "effects", fields.line("effects"), message);
-        }
-        let poi_effects = self.own_effects(fields, "poi_effects");
-        self.without_sights(fields, "poi_effects", &poi_effects);
-        if !fields.given("poi") {
-            for case in &cases {
-                self.without_sights(fields, "render", &case.effects);
+                cases
             }
-            self.without_sights(fields, "effects", effects);
-            if !poi_effects.is_empty() {
-                let message = "has a meaning only with poi: they are drawn so";
-                self.checker.note(&fields.place, "poi_effects", fields.line("poi_effects"), message);
-            }
-        }
-        Rendering { cases, poi_effects }
+            _ => vec![Case::of_effects(own_effects(reader, fields, "render"))],
+        },
+    };
+    if let Some(node) = fields.node("render").filter(|node| is_empty(node) && !does_more(fields)) {
+        let message = "is empty, and so nothing is drawn in another way; a word like \"x-ray\" or a list of effects like [\"sepia\"] would be right";
+        reader.checker.note(&fields.place, "render", node.line, message);
     }
-
-    /// Notes effects that need points of interest where there are none.
-    pub(super) fn without_sights(&mut self, fields: &Fields, key: &str, effects: &[EffectUse]) {
-        let needs = |used: &&EffectUse| find_effect(&used.effect).is_some_and(|e| e.objects == Some(PerObject::Sights));
-        if let Some(used) = effects.iter().find(needs) {
-            let message = format!(
-                "\"{}\" cuts what stands before a point of interest; a lens of kind = \"occlusion\" with poi would be right",
-                used.effect
-            );
-            self.checker.note(&fields.place, key, fields.line(key), message);
+    let scene_style = |used: &&EffectUse| find_effect(&used.effect).is_some_and(|e| e.kind == EffectKind::Scene);
+    let first = cases.iter().find_map(|case| case.effects.iter().find(scene_style));
+    if let (Some(first), Some(second)) = (first, effects.iter().find(scene_style)) {
+        let message = format!(
+            "\"{}\" is a second scene style beside \"{}\" of render; only one is possible",
+            second.effect, first.effect
+        );
+        reader.checker.note(&fields.place, "effects", fields.line("effects"), message);
+    }
+    let poi_effects = own_effects(reader, fields, "poi_effects");
+    without_sights(reader, fields, "poi_effects", &poi_effects);
+    if !fields.given("poi") {
+        for case in &cases {
+            without_sights(reader, fields, "render", &case.effects);
+        }
+        without_sights(reader, fields, "effects", effects);
+        if !poi_effects.is_empty() {
+            let message = "has a meaning only with poi: they are drawn so";
+            reader.checker.note(&fields.place, "poi_effects", fields.line("poi_effects"), message);
         }
     }
+    Rendering { cases, poi_effects }
+}
 
-    /// Effects that stand for themselves: what a lens shows stands in its `effects`.
-    fn own_effects(&mut self, fields: &Fields, key: &str) -> Vec<EffectUse> {
-        let (effects, lod) = self.effects(fields, key, true);
-        if let Some((_, line)) = lod {
-            let message = "\"lod\" shows something else in a lens; it stands in effects";
-            self.checker.note(&fields.place, key, line, message);
-        }
-        effects
+/// Effects that stand for themselves: what a lens shows stands in its `effects`.
+fn own_effects(reader: &mut Reader, fields: &Fields, key: &str) -> Vec<EffectUse> {
+    let (effects, lod) = effects::effects(reader, fields, key, true);
+    if let Some(shown) = lod {
+        let message = "\"lod\" shows something else in a lens; it stands in effects";
+        reader.checker.note(&fields.place, key, shown.line, message);
     }
+    effects
+}
 
-    /// A case; `None` where it says nothing (and that is noted).
-    fn case(&mut self, node: &Node, place: &Place) -> Option<Case> {
-        let Data::Table(entries) = &node.data else {
-            let message = format!(
-                "must be a case, a table {{ as = ..., ... }} or {{ effects = [...], ... }}, is {}",
-                node.quoted()
-            );
-            self.checker.note(place, "", node.line, message);
+/// A case; `None` where it says nothing (and that is noted).
+fn case(reader: &mut Reader, node: &Node, place: &Place) -> Option<Case> {
+    let Data::Table(entries) = &node.data else {
+        let message =
+            format!("must be a case, a table {{ as = ..., ... }} or {{ effects = [...], ... }}, is {}", node.quoted());
+        reader.checker.note(place, "", node.line, message);
+        return None;
+    };
+    let find = |name: &str| entries.iter().find(|(key, ..)| key == name).map(|(.., node)| node);
+    let row = match (find(AS), find("effects")) {
+        (None, Some(_)) => None,
+        (None, None) => {
+            let hint = entries.iter().map(|(name, ..)| did_you_mean(name, [AS, "effects"]));
+            let hint = hint.into_iter().find(|hint| !hint.is_empty()).unwrap_or_default();
+            let message = format!("is missing: a word, one of {}; or effects = [...]{hint}", words());
+            reader.checker.note(place, AS, node.line, message);
             return None;
-        };
-        let find = |name: &str| entries.iter().find(|(key, ..)| key == name).map(|(.., node)| node);
-        let row = match (find(AS), find("effects")) {
-            (None, Some(_)) => None,
-            (None, None) => {
-                let hint = entries.iter().map(|(name, ..)| did_you_mean(name, [AS, "effects"]));
-                let hint = hint.into_iter().find(|hint| !hint.is_empty()).unwrap_or_default();
-                let message = format!("is missing: a word, one of {}; or effects = [...]{hint}", words());
-                self.checker.note(place, AS, node.line, message);
+        }
+        (Some(word), _) => match word.text().and_then(Row::of_word) {
+            Some(row) => Some(row),
+            None => {
+                let hint = did_you_mean(word.text().unwrap_or_default(), Rendering::words());
+                let message = format!("must be one of {}, is {}{hint}", words(), word.quoted());
+                reader.checker.note(place, AS, word.line, message);
                 return None;
             }
-            (Some(word), _) => match word.text().and_then(Row::of_word) {
-                Some(row) => Some(row),
-                None => {
-                    let hint = did_you_mean(word.text().unwrap_or_default(), Rendering::words());
-                    let message = format!("must be one of {}, is {}{hint}", words(), word.quoted());
-                    self.checker.note(place, AS, word.line, message);
-                    return None;
-                }
-            },
-        };
-        let table = row.and_then(|row| WORDS.iter().find(|table| table.name == row.word)).unwrap_or(&BY_EFFECTS);
-        let fields = self.checker.fields(node, table, &[], place.clone());
-        let mut case = match row {
-            None => Case::of_effects(self.own_effects(&fields, "effects")),
-            Some(row) => {
-                let names = row.parameters().into_iter().map(|parameter| parameter.name);
-                let given = names.filter_map(|name| Some((parameter(fields.node(&name)?)?, name)));
-                Case::of_row(row, given.map(|(value, name)| (name, value)).collect())
-            }
-        };
-        let chosen = fields.node(WHERE.name).map(|node| {
-            let place = fields.place.within(WHERE.name, node.line);
-            self.checker.fields(node, &CHOICE, &[], place)
-        });
-        let (checker, options, lacks_data) = self.parts();
-        let mut reader = Reader { checker, options, lacks_data };
-        let texts =
-            |node: &Node| node.list().into_iter().flatten().filter_map(|n| n.text().map(str::to_owned)).collect();
-        case.when = When {
-            nearer_m: fields.number(NEARER.name),
-            types: fields.node(TYPES.name).map(texts).unwrap_or_default(),
-            of: chosen.and_then(|own| reader.choice(&own)),
-        };
-        if fields.given(TYPES.name) && case.when.types.is_empty() {
-            self.checker.note(&fields.place, TYPES.name, fields.line(TYPES.name), "must name at least one type");
+        },
+    };
+    let table = row.and_then(|row| WORDS.iter().find(|table| table.name == row.word)).unwrap_or(&BY_EFFECTS);
+    let fields = reader.checker.fields(node, table, &[], place.clone());
+    let mut case = match row {
+        None => Case::of_effects(own_effects(reader, &fields, "effects")),
+        Some(row) => {
+            let names = row.parameters().into_iter().map(|parameter| parameter.name);
+            let given = names.filter_map(|name| Some((parameter(fields.node(&name)?)?, name)));
+            Case::of_row(row, given.map(|(value, name)| (name, value)).collect())
         }
-        Some(case)
+    };
+    let chosen = fields.node(WHERE.name).map(|node| {
+        let place = fields.place.within(WHERE.name, node.line);
+        let own = reader.checker.fields(node, &CHOICE, &[], place);
+        choice::read(reader, &own)
+    });
+    case.when = When {
+        nearer_m: fields.number(NEARER.name),
+        types: fields.node(TYPES.name).map(Node::texts).unwrap_or_default(),
+        of: chosen,
+    };
+    if fields.given(TYPES.name) && case.when.types.is_empty() {
+        reader.checker.note(&fields.place, TYPES.name, fields.line(TYPES.name), "must name at least one type");
     }
+    Some(case)
 }
 
 fn words() -> String {
     Rendering::words().collect::<Vec<_>>().join(", ")
 }
 
-/// The keys of a rendering that is not the default.
-pub(super) fn written(render: &Rendering) -> Vec<(&'static str, String)> {
-    // The default too: `--set` changes a part of it.
-    let value = match &render.cases[..] {
-        [one] => case_written(one),
-        several => list(several.iter().map(case_table)),
-    };
-    let mut keys = vec![("render", value)];
-    if !render.poi_effects.is_empty() {
-        keys.push(("poi_effects", list(render.poi_effects.iter().map(effect))));
+/// `render`; the default too: `--set` changes a part of it.
+pub fn written(render: &Rendering, options: &Options) -> Data {
+    match &render.cases[..] {
+        [one] => case_written(one, options),
+        several => Data::list(several.iter().map(|case| case_table(case, options))),
     }
-    keys
 }
 
 /// A case alone, as short as it may be.
-fn case_written(case: &Case) -> String {
+fn case_written(case: &Case, options: &Options) -> Data {
     match case.word {
-        Some(word) if case.when.is_always() && case.given.is_empty() => quoted(word),
-        None if case.when.is_always() => list(case.effects.iter().map(effect)),
-        _ => case_table(case),
+        Some(word) if case.when.is_always() && case.given.is_empty() => word.into(),
+        None if case.when.is_always() => all_effects(case),
+        _ => case_table(case, options),
     }
 }
 
-fn case_table(case: &Case) -> String {
-    let mut keys = match case.word {
-        Some(word) => vec![format!("{AS} = {}", quoted(word))],
-        None => vec![format!("effects = {}", list(case.effects.iter().map(effect)))],
+fn all_effects(case: &Case) -> Data {
+    Data::list(case.effects.iter().map(effects::written))
+}
+
+fn case_table(case: &Case, options: &Options) -> Data {
+    let mut table = match case.word {
+        Some(word) => Data::table([(AS, word.into())]),
+        None => Data::table([("effects", all_effects(case))]),
     };
-    keys.extend(case.given.iter().map(|(name, value)| format!("{name} = {}", parameter_written(value))));
+    case.given.iter().for_each(|(name, value)| table.push(name, parameter_data(value)));
     let When { nearer_m, types, of } = &case.when;
-    keys.extend(nearer_m.map(|nearer| format!("{} = {}", NEARER.name, number(nearer))));
+    nearer_m.iter().for_each(|nearer| table.push(NEARER.name, *nearer));
     if !types.is_empty() {
-        keys.push(format!("{} = {}", TYPES.name, list(types.iter().map(|name| quoted(name)))));
+        table.push(TYPES.name, Data::list(types));
     }
-    keys.extend(of.iter().map(|choice| format!("{} = {}", WHERE.name, focus::choice_written("", choice))));
-    format!("{{ {} }}", keys.join(", "))
+    of.iter().for_each(|chosen| table.push(WHERE.name, choice::written(chosen, options)));
+    table
 }
 
 #[cfg(test)]

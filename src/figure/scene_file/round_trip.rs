@@ -670,9 +670,9 @@ fn half_turns_are_written_alike_whichever_sign_their_rounding_has() {
     for (yaw, pitch) in (0..2).flat_map(|i| (-89..90).map(move |pitch| (360 * i - 180, pitch))) {
         for roll in (-180..=180).step_by(7) {
             let turn = rotation([f64::from(yaw), f64::from(pitch) + 0.1, f64::from(roll) - 0.1]);
-            let once = write::angles(turn);
+            let once = forms::angles(turn);
             assert!(once[0] > 0.0, "{yaw} {pitch} {roll}: {once:?}");
-            assert_eq!(write::angles(rotation(once)), once, "{yaw} {pitch} {roll}: writing again changes nothing");
+            assert_eq!(forms::angles(rotation(once)), once, "{yaw} {pitch} {roll}: writing again changes nothing");
         }
     }
 }

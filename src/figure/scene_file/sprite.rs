@@ -2,15 +2,19 @@
 
 use crate::{
     figure::scene_file::{
-        check::{Checker, Fields},
-        keys::{CAMERA, FAR_M, Kind, Table, key},
-        write::{camera_keys, number, quoted},
+        camera::{self, CAMERA},
+        check::Fields,
+        forms::{Same, Word},
+        keys::{FAR_M, Kind, Table, key},
+        node::Data,
+        paths::Options,
+        reader::Reader,
+        row::{self, Given, Row, field, keys_of},
     },
     lens::{
         LensSprite, OwnEye,
         sprite::{Format, LAYERS, MOST_LAYERS, Mapping},
     },
-    view::Camera,
 };
 
 /// `sprite` of a lens.
@@ -22,7 +26,11 @@ pub const SPRITE: Table = Table {
           be on either side. All shapes of a lens share one sprite; `thematic` ones, alone or in a \
           combination, have none and stay as they are. Other formats and mappings are there to see what they cost \
           (`veduta measure sprites`).",
-    keys: &[
+    keys: keys_of!(SPRITE_ROWS),
+};
+
+const SPRITE_ROWS: &[Row<LensSprite>] = &[
+    Row::<LensSprite>::new(
         key(
             "camera",
             Kind::Table(&SPRITE_CAMERA),
@@ -33,6 +41,10 @@ pub const SPRITE: Table = Table {
              its frame is in none of them: `rest`.",
             "{ eye = [78500.0, 457800.0, 150.0], target = [78600.0, 458000.0, 10.0] }",
         ),
+        |sprite, options| sprite.own.as_ref().map(|own| eye_data(own, options)),
+        |sprite, given| sprite.own = eye(given),
+    ),
+    field!(
         key(
             "resolution",
             Kind::Integer { min: 16, max: 16_384 },
@@ -41,6 +53,10 @@ pub const SPRITE: Table = Table {
             "Texels along the longer side of the picture, or of the frame of `camera`.",
             "512",
         ),
+        Same,
+        |sprite: LensSprite| sprite.resolution
+    ),
+    field!(
         key(
             "format",
             Kind::Word { now: &["unorm8", "unorm16", "uint32", "float16", "float32"], later: &[] },
@@ -49,6 +65,10 @@ pub const SPRITE: Table = Table {
             "What a stored depth is. `uint32` is made from a float: 24 of its bits say something.",
             "\"unorm16\"",
         ),
+        Word,
+        |sprite: LensSprite| sprite.format
+    ),
+    field!(
         key(
             "mapping",
             Kind::Word { now: &["z", "complementary-z", "w", "1/w"], later: &[] },
@@ -58,6 +78,10 @@ pub const SPRITE: Table = Table {
              `complementary-z` n/(f-n)·(f/D-1), `w` D/f, `1/w` n/D.",
             "\"w\"",
         ),
+        Word,
+        |sprite: LensSprite| sprite.mapping
+    ),
+    field!(
         key(
             "near",
             Kind::Number { min: 1e-4, max: FAR_M },
@@ -66,6 +90,10 @@ pub const SPRITE: Table = Table {
             "Near clip plane of stored depths. What lies before it is clamped to it.",
             "10.0",
         ),
+        Same,
+        |sprite: LensSprite| sprite.near_m
+    ),
+    field!(
         key(
             "far",
             Kind::Number { min: 1e-3, max: FAR_M },
@@ -74,6 +102,10 @@ pub const SPRITE: Table = Table {
             "Far clip plane of stored depths, beyond `near`. `1/w` has none.",
             "500.0",
         ),
+        Same,
+        |sprite: LensSprite| sprite.far_m
+    ),
+    field!(
         key(
             "layers",
             Kind::Integer { min: 1, max: MOST_LAYERS as i64 },
@@ -83,6 +115,10 @@ pub const SPRITE: Table = Table {
              layer takes in the rest, and a warning says how many rays do.",
             "8",
         ),
+        Same,
+        |sprite: LensSprite| sprite.layers
+    ),
+    field!(
         key(
             "aggregate",
             Kind::Boolean,
@@ -91,8 +127,10 @@ pub const SPRITE: Table = Table {
             "Keeps where a ray enters first and leaves last and nothing of what is between (V's aggregate), for comparison.",
             "true",
         ),
-    ],
-};
+        Same,
+        |sprite: LensSprite| sprite.aggregate
+    ),
+];
 
 /// `camera` of the sprite of a lens.
 pub const SPRITE_CAMERA: Table = Table {
@@ -118,69 +156,54 @@ pub const SPRITE_CAMERA: Table = Table {
     ],
 };
 
-/// The sprite of a lens, if it has one. `camera` reads the keys of a camera. A lens whose shapes are all of files (`is_saved`) has
-/// their eyes, texels and layers.
-pub fn read(
-    checker: &mut Checker,
-    lens: &Fields,
-    is_saved: bool,
-    camera: impl Fn(&mut Checker, &Fields) -> Option<Camera>,
-) -> Option<LensSprite> {
+/// A sprite of which nothing is said.
+const PLAIN: LensSprite = LensSprite {
+    own: None,
+    resolution: None,
+    format: Format::Float32,
+    mapping: Mapping::InverseW,
+    near_m: None,
+    far_m: None,
+    layers: LAYERS,
+    aggregate: false,
+};
+
+/// The sprite of a lens, if it has one. A lens whose shapes are all of files (`is_saved`) has their eyes, texels and layers.
+pub fn read(reader: &mut Reader, lens: &Fields, is_saved: bool) -> Option<LensSprite> {
     let node = lens.node("sprite")?;
-    let fields = checker.fields(node, &SPRITE, &[], lens.place.within("sprite", node.line));
-    let own = fields.node("camera").and_then(|node| {
-        let own = checker.fields(node, &SPRITE_CAMERA, &[], fields.place.within("camera", node.line));
-        Some(OwnEye { camera: camera(checker, &own)?, aspect: own.number("aspect").unwrap_or(1.0) })
-    });
+    let fields = reader.checker.fields(node, &SPRITE, &[], lens.place.within("sprite", node.line));
+    let mut sprite = PLAIN;
+    row::read(SPRITE_ROWS, &fields, reader, &mut sprite);
     for key in ["camera", "resolution", "layers"].into_iter().filter(|key| is_saved && fields.given(key)) {
         let message = "has no meaning where all shapes are depth sprites of files, which have theirs";
-        checker.note(&fields.place, key, fields.line(key), message);
+        reader.checker.note(&fields.place, key, fields.line(key), message);
     }
-    let sprite = LensSprite {
-        own,
-        resolution: fields.integer("resolution"),
-        format: chosen(&Format::WORDS, fields.text("format")),
-        mapping: chosen(&Mapping::WORDS, fields.text("mapping")),
-        near_m: fields.number("near"),
-        far_m: fields.number("far"),
-        layers: fields.integer("layers").unwrap_or(LAYERS),
-        aggregate: fields.boolean("aggregate").unwrap_or(false),
-    };
     if let (Some(near), Some(far)) = (sprite.near_m, sprite.far_m)
         && far <= near
     {
-        checker.note(&fields.place, "far", fields.line("far"), format!("must lie beyond near, {near} m, is {far}"));
+        let message = format!("must lie beyond near, {near} m, is {far}");
+        reader.checker.note(&fields.place, "far", fields.line("far"), message);
     }
     Some(sprite)
 }
 
-/// What a word stands for; the default without one.
-fn chosen<T: Copy + Default>(words: &[(&str, T)], word: Option<&str>) -> T {
-    words.iter().find(|(w, _)| Some(*w) == word).map(|(_, value)| *value).unwrap_or_default()
+/// The table of a sprite.
+pub fn written(sprite: &LensSprite, options: &Options) -> Data {
+    row::written(SPRITE_ROWS, sprite, &PLAIN, options)
 }
 
-/// As TOML; keys at their default are left out.
-pub fn written(sprite: &LensSprite) -> String {
-    let word = |name: &str, word: &str, is_default: bool| (!is_default).then(|| format!("{name} = {}", quoted(word)));
-    let keys = [
-        sprite.own.as_ref().map(own_written),
-        sprite.resolution.map(|resolution| format!("resolution = {resolution}")),
-        word("format", sprite.format.word(), sprite.format == Format::default()),
-        word("mapping", sprite.mapping.word(), sprite.mapping == Mapping::default()),
-        sprite.near_m.map(|near| format!("near = {}", number(near))),
-        sprite.far_m.map(|far| format!("far = {}", number(far))),
-        (sprite.layers != LAYERS).then(|| format!("layers = {}", sprite.layers)),
-        sprite.aggregate.then(|| "aggregate = true".to_owned()),
-    ];
-    let keys: Vec<String> = keys.into_iter().flatten().collect();
-    if keys.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", keys.join(", ")) }
+/// How wide the frame of an eye is over its height, where nothing is said.
+const ASPECT: f64 = 1.0;
+
+fn eye(given: &mut Given) -> Option<OwnEye> {
+    let own = given.table(&SPRITE_CAMERA);
+    Some(OwnEye { camera: camera::read(given.reader, &own)?, aspect: own.number("aspect").unwrap_or(ASPECT) })
 }
 
-fn own_written(own: &OwnEye) -> String {
-    let mut keys: Vec<String> =
-        camera_keys(&own.camera).into_iter().map(|(key, value)| format!("{key} = {value}")).collect();
-    if own.aspect != 1.0 {
-        keys.push(format!("aspect = {}", number(own.aspect)));
+fn eye_data(own: &OwnEye, options: &Options) -> Data {
+    let mut data = camera::written(&own.camera, options);
+    if own.aspect != ASPECT {
+        data.push("aspect", own.aspect);
     }
-    format!("camera = {{ {} }}", keys.join(", "))
+    data
 }

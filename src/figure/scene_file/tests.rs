@@ -510,7 +510,7 @@ fn all_mistakes_are_told_at_once_and_their_number_is_bounded() {
     assert_eq!(message.lines().count(), 3);
     let many = format!("veduta = 1\n{}", (0..100).map(|i| format!("zz{i} = 1\n")).collect::<String>());
     let message = read_text(&many).unwrap_err();
-    assert!(message.lines().count() == MAX_SHOWN + 1 && message.ends_with("... and 80 more"));
+    assert!(message.lines().count() == problems::MAX_SHOWN + 1 && message.ends_with("... and 80 more"));
 }
 
 #[test]

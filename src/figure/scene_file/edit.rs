@@ -1,15 +1,17 @@
-//! `--set PATH=VALUE`: one value of a scene, as a command.
+//! One value of a scene, as a command: typed, or as `--set PATH=VALUE`.
 //!
-//! The path is walked on the scene's own TOML, which is then read again: the same checks, the same messages.
-
-use toml::{Table, Value};
+//! The table that holds the value is written by its rows, changed and read again: the same checks, the same messages.
 
 use crate::{
     figure::scene_file::{
-        Options, SceneFileError,
         check::Problem,
-        keys::{self, Kind},
-        parse, to_toml_for,
+        keys,
+        node::{self, Data, Node},
+        paths::Options,
+        problems::SceneFileError,
+        reader::Reader,
+        scene::{self, ROOT},
+        text,
     },
     lens::nearest::did_you_mean,
     scene::{Command, Scene},
@@ -17,21 +19,131 @@ use crate::{
 
 /// What as a value takes a key, or an element of a list, away.
 const UNSET: &str = "unset";
+/// Keys of a table of which giving one takes the others away.
+pub const FORMS: [&[&str]; 3] = [&["shape", "shapes"], &["text_px", "text_pt"], &["ids", "types", "attribute"]];
 
-/// The command for `assignment`, `PATH=VALUE`.
-///
-/// A path is keys and, in lists, places from 0 or names: `lens.0.shape.radius`, `lens.NAME.enabled`,
-/// `lens."a.b".color`; the place after the last adds an element. The value is TOML, or a bare word, which is a text;
-/// `unset` takes the key or element away.
+/// Another value for a key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edit {
+    /// The way to it, as it is shown.
+    path: String,
+    segments: Vec<String>,
+    value: Option<Data>,
+}
+
+impl Edit {
+    /// What stands at `path` becomes `value`; `None` takes it away.
+    ///
+    /// A path is keys and, in lists, places from 0 or names: `lens.0.shape.radius`, `lens.NAME.enabled`, `lens."a.b".color`; the place after
+    /// the last adds an element.
+    ///
+    /// # Errors
+    /// What is wrong with the path.
+    pub fn new(path: &str, value: Option<Data>) -> Result<Self, SceneFileError> {
+        let segments = segments_of(path).map_err(|message| failure(path, path, message))?;
+        Ok(Self { path: path.to_owned(), segments, value })
+    }
+
+    /// The edit of `PATH=VALUE`. The value is TOML, or a bare word, which is a text; `unset` takes the key or element away.
+    ///
+    /// # Errors
+    /// What is wrong with the assignment.
+    pub fn of_assignment(assignment: &str) -> Result<Self, SceneFileError> {
+        let name = format!("--set {assignment}");
+        let (path, value) = split(assignment)
+            .ok_or_else(|| failure(&name, "", "must be PATH=VALUE, for example lens.0.shape.radius=80".into()))?;
+        let segments = segments_of(path).map_err(|message| failure(&name, path, message))?;
+        let value = value_of(value.trim()).map_err(|message| failure(&name, path, message))?;
+        Ok(Self { path: path.to_owned(), segments, value })
+    }
+
+    /// The way to the value.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The command that does it; paths of files are written and read with `options`.
+    ///
+    /// # Errors
+    /// There is no such key, or the scene would not be right.
+    pub fn command(&self, scene: &Scene, options: &Options) -> Result<Command, SceneFileError> {
+        Ok(self.command_to(scene, self.after(scene, options)?))
+    }
+
+    /// The scene after it.
+    ///
+    /// # Errors
+    /// As for [`Self::command`].
+    pub fn after(&self, scene: &Scene, options: &Options) -> Result<Scene, SceneFileError> {
+        self.done(scene, &self.path, options, options)
+    }
+
+    fn command_to(&self, scene: &Scene, after: Scene) -> Command {
+        Command::new(format!("set {}", self.path), scene.clone(), after)
+    }
+
+    fn done(&self, scene: &Scene, name: &str, written: &Options, read: &Options) -> Result<Scene, SceneFileError> {
+        if let Some(after) = self.within_table(scene, written, read) {
+            return Ok(after);
+        }
+        let mut root = scene::written(scene, written);
+        assign(&mut root, &self.segments, self.value.as_ref()).map_err(|message| failure(name, &self.path, message))?;
+        self::read(&root, name, read)
+    }
+
+    /// The scene after the edit of one table; `None` where more is to be done, or something is wrong.
+    fn within_table(&self, scene: &Scene, written: &Options, read: &Options) -> Option<Scene> {
+        let (first, rest) = self.segments.split_first()?;
+        let section = scene::section(first)?;
+        let mut reader = Reader::new(read);
+        let mut after = scene.clone();
+        let is_element = rest.first().filter(|_| rest.len() > 1);
+        if let Some(at) = is_element {
+            let index = at.parse().ok().or_else(|| section.place_of(scene, at));
+            if let Some((index, table)) = index.and_then(|i| Some((i, section.element(scene, i, written)?))) {
+                let mut table = Node::of(table);
+                within(&mut table, &format!("{first}.{index}"), &rest[1], &rest[2..], self.value.as_ref()).ok()?;
+                section.read_element(&mut reader, &table, index, &mut after);
+                scene::check(&mut reader, &after, &|_| &[]);
+                return reader.checker.problems.is_empty().then_some(after);
+            }
+        }
+        // The keys of an animation fall back on the camera.
+        let is_alone = section.is_table() && !rest.is_empty() && (first != "camera" || scene.animation.is_none());
+        if !is_alone {
+            return None;
+        }
+        let table = section.written(scene, written).unwrap_or_else(|| Data::Table(Vec::new()));
+        let mut table = Node::of(table);
+        in_table(&mut table, &rest[0], &rest[1..], self.value.as_ref()).ok()?;
+        section.read(&mut reader, &table, &mut after);
+        scene::check(&mut reader, &after, &|_| &[]);
+        reader.checker.problems.is_empty().then_some(after)
+    }
+}
+
+/// The command for `assignment`, `PATH=VALUE`, see [`Edit::of_assignment`].
 ///
 /// Paths are those of the command line: relative to the current folder, and free to lead anywhere.
+///
+/// # Errors
+/// What is wrong with the assignment, or with the scene that it would make.
 pub fn set(scene: &Scene, assignment: &str) -> Result<Command, SceneFileError> {
     set_by(scene, assignment, &Options::default(), &Options::for_command_line())
 }
 
 /// [`set`] for an assignment that stands in a file: its paths are read with `options`.
+///
+/// # Errors
+/// As for [`set`].
 pub fn set_within(scene: &Scene, assignment: &str, options: &Options) -> Result<Command, SceneFileError> {
     set_by(scene, assignment, options, options)
+}
+
+fn set_by(scene: &Scene, assignment: &str, written: &Options, read: &Options) -> Result<Command, SceneFileError> {
+    let edit = Edit::of_assignment(assignment)?;
+    let after = edit.done(scene, &format!("--set {assignment}"), written, read)?;
+    Ok(edit.command_to(scene, after))
 }
 
 /// Gives a lens another name, wherever the scene names it: in its overlay, in views that show it, in what changes over time.
@@ -52,19 +164,18 @@ pub fn rename_lens(scene: &Scene, index: usize, name: &str, options: &Options) -
         let shown = after.lenses.iter_mut().filter_map(|lens| lens.best_view.as_mut()?.lenses.as_mut());
         shown.flatten().for_each(renamed);
         for change in after.animation.iter_mut().flat_map(|animation| &mut animation.changes) {
-            let Ok(mut way) = segments(&change.path) else { continue };
+            let Ok(mut way) = segments_of(&change.path) else { continue };
             if way.len() > 1 && way[0] == "lens" && way[1] == old {
                 way[1] = name.to_owned();
                 change.path = path_of(&way);
             }
         }
     }
-    let after = parse(&to_toml_for(&after, options), title, options)
-        .map_err(|error| SceneFileError { has_lines: false, ..error })?;
+    let after = read(&scene::written(&after, options), title, options)?;
     Ok(Command::new(title, scene.clone(), after))
 }
 
-/// Of segments the path.
+/// The path of some segments.
 fn path_of(segments: &[String]) -> String {
     let quoted = |segment: &String| match segment.contains(['.', '=']) {
         true => format!("\"{segment}\""),
@@ -73,24 +184,32 @@ fn path_of(segments: &[String]) -> String {
     segments.iter().map(quoted).collect::<Vec<_>>().join(".")
 }
 
-fn set_by(scene: &Scene, assignment: &str, written: &Options, read: &Options) -> Result<Command, SceneFileError> {
-    let name = format!("--set {assignment}");
-    let fail = |key: &str, message: String| SceneFileError {
-        name: name.clone(),
+fn failure(name: &str, key: &str, message: String) -> SceneFileError {
+    SceneFileError {
+        name: name.to_owned(),
         problems: vec![Problem { line: 0, table: String::new(), key: key.to_owned(), message }],
         has_lines: false,
         is_data_absent: false,
+    }
+}
+
+/// The scene that a tree means.
+fn read(root: &Node, name: &str, options: &Options) -> Result<Scene, SceneFileError> {
+    let mut reader = Reader::new(options);
+    let scene = scene::read(&mut reader, root);
+    if reader.checker.problems.is_empty() {
+        return Ok(scene);
+    }
+    // Lines bring what is wrong into order, though nobody sees them.
+    let error = match node::parse(&text::file(root)) {
+        Ok(root) => {
+            let mut reader = Reader::new(options);
+            scene::read(&mut reader, &root);
+            reader.error(name)
+        }
+        Err((line, message)) => SceneFileError::whole(name, line, message),
     };
-    let (path, value) =
-        split(assignment).ok_or_else(|| fail("", "must be PATH=VALUE, for example lens.0.shape.radius=80".into()))?;
-    let segments = segments(path).map_err(|message| fail(path, message))?;
-    let value = value_of(value.trim()).map_err(|message| fail(path, message))?;
-    let mut root: Table =
-        to_toml_for(scene, written).parse().map_err(|e: toml::de::Error| fail(path, e.message().to_owned()))?;
-    assign(&mut root, &segments, value).map_err(|message| fail(path, message))?;
-    let text = toml::to_string(&root).map_err(|e| fail(path, e.to_string()))?;
-    let after = parse(&text, &name, read).map_err(|error| SceneFileError { has_lines: false, ..error })?;
-    Ok(Command::new(format!("set {path}"), scene.clone(), after))
+    Err(SceneFileError { has_lines: false, ..error })
 }
 
 /// Splits at the first `=` outside quotes.
@@ -105,7 +224,7 @@ fn split(assignment: &str) -> Option<(&str, &str)> {
 }
 
 /// `a."b.c".d` → a, b.c, d.
-fn segments(path: &str) -> Result<Vec<String>, String> {
+fn segments_of(path: &str) -> Result<Vec<String>, String> {
     let mut segments = vec![String::new()];
     let mut is_quoted = false;
     for c in path.chars() {
@@ -123,84 +242,85 @@ fn segments(path: &str) -> Result<Vec<String>, String> {
 }
 
 /// TOML, or a bare word; `None` for [`UNSET`].
-fn value_of(text: &str) -> Result<Option<Value>, String> {
+fn value_of(text: &str) -> Result<Option<Data>, String> {
     if text == UNSET {
         return Ok(None);
     }
     if text.is_empty() {
         return Err("has no value after the =".into());
     }
-    let parsed = format!("v = {text}").parse::<Table>();
-    match parsed.ok().filter(|t| t.len() == 1).and_then(|mut t| t.remove("v")) {
+    match value_of_toml(text) {
         Some(value) => Ok(Some(value)),
         // What begins like TOML was meant as TOML.
         None if text.starts_with(['[', '{', '"', '\'']) => {
             Err(format!("{text} is not a TOML value; texts and lists need their closing quotes and brackets"))
         }
-        None => Ok(Some(Value::String(text.to_owned()))),
+        None => Ok(Some(Data::text(text))),
     }
 }
 
-fn assign(root: &mut Table, segments: &[String], value: Option<Value>) -> Result<(), String> {
-    let (first, rest) = segments.split_first().ok_or("is empty")?;
-    if let Some(key) = keys::ROOT.keys.iter().find(|k| k.name == first) {
-        // A first lens or point of interest has no list to stand in yet.
-        if matches!(key.kind, Kind::Tables(_)) && !rest.is_empty() {
-            root.entry(first.clone()).or_insert_with(|| Value::Array(Vec::new()));
+/// One TOML value.
+fn value_of_toml(text: &str) -> Option<Data> {
+    match node::parse(&format!("v = {text}")).ok()?.data {
+        Data::Table(mut entries) if entries.len() == 1 => {
+            entries.pop().filter(|(key, ..)| key == "v").map(|e| e.2.data)
         }
-    } else {
-        return Err(format!("there is no \"{first}\" in a scene{}", did_you_mean(first, keys::names(&keys::ROOT))));
+        _ => None,
+    }
+}
+
+fn assign(root: &mut Node, segments: &[String], value: Option<&Data>) -> Result<(), String> {
+    let (first, rest) = segments.split_first().ok_or("is empty")?;
+    let Some(section) = scene::section(first) else {
+        return Err(format!("there is no \"{first}\" in a scene{}", did_you_mean(first, keys::names(&ROOT))));
+    };
+    // A first lens or point of interest has no list to stand in yet.
+    if section.has_tables() && !rest.is_empty() {
+        root.entry_or(first, Data::List(Vec::new()));
     }
     in_table(root, first, rest, value)
 }
 
-fn in_table(table: &mut Table, key: &str, rest: &[String], value: Option<Value>) -> Result<(), String> {
+fn in_table(table: &mut Node, key: &str, rest: &[String], value: Option<&Data>) -> Result<(), String> {
     // One shape is written as `shape`, but may be called `shapes.0` as well.
     if key == "shapes"
         && !rest.is_empty()
-        && !table.contains_key("shapes")
+        && !table.has("shapes")
         && let Some(one) = table.remove("shape")
     {
-        table.insert("shapes".into(), Value::Array(vec![one]));
+        table.insert("shapes", Data::List(vec![one]));
     }
     // Giving the one form takes the other away.
-    for forms in [&["shape", "shapes"][..], &["text_px", "text_pt"], &["ids", "types", "attribute"]] {
+    for forms in FORMS {
         if rest.is_empty() && value.is_some() && forms.contains(&key) {
-            forms.iter().for_each(|form| drop(table.remove(*form)));
+            forms.iter().for_each(|form| drop(table.remove(form)));
         }
     }
     match (rest.split_first(), value) {
-        (None, Some(value)) => {
-            table.insert(key.to_owned(), value);
-            Ok(())
-        }
-        (None, None) => {
-            table.remove(key);
-            Ok(())
-        }
+        (None, Some(value)) => table.insert(key, value.clone()),
+        (None, None) => drop(table.remove(key)),
         (Some((next, rest)), value) => {
-            let child = table.entry(key.to_owned()).or_insert_with(|| match next.as_str() {
-                "0" => Value::Array(Vec::new()),
-                _ => Value::Table(Table::new()),
-            });
-            within(child, key, next, rest, value)
+            let empty = if next == "0" { Data::List(Vec::new()) } else { Data::Table(Vec::new()) };
+            let child = table.entry_or(key, empty).ok_or_else(|| format!("there is no \"{key}\" in it"))?;
+            return within(child, key, next, rest, value);
         }
     }
+    Ok(())
 }
 
 /// Goes one step down into `parent`, which is called `name`.
-fn within(parent: &mut Value, name: &str, key: &str, rest: &[String], value: Option<Value>) -> Result<(), String> {
-    match parent {
-        Value::Table(table) => in_table(table, key, rest, value),
-        Value::Array(list) => in_list(list, name, key, rest, value),
+fn within(parent: &mut Node, name: &str, key: &str, rest: &[String], value: Option<&Data>) -> Result<(), String> {
+    match &mut parent.data {
+        Data::Table(_) => in_table(parent, key, rest, value),
+        Data::List(list) => in_list(list, name, key, rest, value),
         // What has no parameters is written as its word.
-        Value::String(word) if let Some(own) = key_of_word(name, key) => {
-            let mut table = Table::from_iter([(own.to_owned(), Value::String(word.clone()))]);
+        Data::Text(word) if let Some(own) = key_of_word(name, key) => {
+            let mut table = Node::of(Data::table([(own, Data::text(&*word))]));
             in_table(&mut table, key, rest, value)?;
-            *parent = Value::Table(table);
+            *parent = table;
             Ok(())
         }
-        other => Err(format!("\"{name}\" is {other}: there is no \"{key}\" in it")),
+        other => Err(format!("\"{name}\" is {}: there is no \"{key}\" in it", text::value(other))),
     }
 }
 
@@ -213,8 +333,8 @@ fn key_of_word(name: &str, key: &str) -> Option<&'static str> {
     }
 }
 
-fn in_list(list: &mut Vec<Value>, name: &str, key: &str, rest: &[String], value: Option<Value>) -> Result<(), String> {
-    let called = |v: &Value| v.get("name").and_then(Value::as_str).map(str::to_owned);
+fn in_list(list: &mut Vec<Node>, name: &str, key: &str, rest: &[String], value: Option<&Data>) -> Result<(), String> {
+    let called = |node: &Node| node.entry("name").and_then(Node::text).map(str::to_owned);
     let index = match key.parse::<usize>() {
         Ok(index) => index,
         Err(_) => list.iter().position(|v| called(v).as_deref() == Some(key)).ok_or_else(|| {
@@ -226,14 +346,12 @@ fn in_list(list: &mut Vec<Value>, name: &str, key: &str, rest: &[String], value:
         return Err(format!("there is no {name}.{index}: there are {}, from 0", list.len()));
     }
     match (rest.split_first(), value) {
-        (None, Some(value)) if index == list.len() => list.push(value),
-        (None, Some(value)) => list[index] = value,
-        (None, None) => {
-            list.remove(index);
-        }
+        (None, Some(value)) if index == list.len() => list.push(Node::of(value.clone())),
+        (None, Some(value)) => list[index] = Node::of(value.clone()),
+        (None, None) => drop(list.remove(index)),
         (Some((next, rest)), value) => {
             if index == list.len() {
-                list.push(Value::Table(Table::new()));
+                list.push(Node::empty_table(0));
             }
             let child_name = if name == "effects" { name.to_owned() } else { format!("{name}.{index}") };
             within(&mut list[index], &child_name, next, rest, value)?;
@@ -245,8 +363,13 @@ fn in_list(list: &mut Vec<Value>, name: &str, key: &str, rest: &[String], value:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::TextSize;
-    use crate::{geom::Shape, lens::Focus, scene::BaseStyle, view::Projection};
+    use crate::{
+        figure::scene_file::{parse, to_toml_for},
+        geom::Shape,
+        lens::Focus,
+        scene::{BaseStyle, TextSize},
+        view::Projection,
+    };
 
     const SCENE: &str = r#"
 veduta = 1

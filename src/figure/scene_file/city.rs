@@ -1,0 +1,75 @@
+//! `[city]` and `[sun]` in scene files.
+
+use crate::{
+    figure::scene_file::{
+        check::lod,
+        forms::{Degrees, Same},
+        keys::{Kind, Table, key},
+        node::Data,
+        row::{Row, field, keys_of},
+    },
+    scene::{CitySpec, Sun},
+};
+
+/// `[city]`.
+pub const CITY: Table =
+    Table { name: "city", doc: "Which city to load, and how much of it to show.", keys: keys_of!(CITY_ROWS) };
+
+/// Its rows.
+/// Its rows.
+pub const CITY_ROWS: &[Row<CitySpec>] = &[
+    Row::<CitySpec>::new(
+        key(
+            "files",
+            Kind::Texts,
+            "none",
+            "",
+            "City files or folders, relative to the scene file; several make one city. `${VEDUTA_DATA}` stands for the folder that variable names, `builtin:square`, `builtin:town` and `builtin:rooms` for the built-in cities.",
+            "[\"city.city.json\"]",
+        ),
+        |city, options| {
+            (!city.files.is_empty())
+                .then(|| Data::list(city.files.iter().map(|file| Data::Text(options.written(file)))))
+        },
+        |city, given| {
+            let must_exist = given.reader.options().must_exist;
+            city.files = given.reader.files(given.fields, must_exist);
+        },
+    ),
+    Row::<CitySpec>::new(
+        key("lod", Kind::Lod, "the finest there is", "", "Shows no level of detail finer than this.", "\"1.3\""),
+        |city, _| city.lod.as_ref().map(Data::from),
+        |city, given| city.lod = lod(given.node).map(|lod| lod.to_string()),
+    ),
+    field!(
+        key("ground", Kind::Boolean, "true", "", "Puts a plain ground under a city without terrain.", "false"),
+        Same,
+        |city: CitySpec| city.ground
+    ),
+];
+
+/// `[sun]`.
+pub const SUN: Table = Table { name: "sun", doc: "Where the light comes from.", keys: keys_of!(SUN_ROWS) };
+
+/// Its rows.
+pub const SUN_ROWS: &[Row<Sun>] = &[
+    field!(
+        key(
+            "azimuth_deg",
+            Kind::Number { min: -360.0, max: 360.0 },
+            "215.0",
+            "degrees",
+            "Clockwise from north.",
+            "135.0",
+        ),
+        Degrees,
+        |sun: Sun| sun.azimuth
+    ),
+    field!(
+        key("elevation_deg", Kind::Number { min: -90.0, max: 90.0 }, "48.0", "degrees", "Above the horizon.", "30.0"),
+        Degrees,
+        |sun: Sun| sun.elevation
+    ),
+    field!(key("shadows", Kind::Boolean, "true", "", "Whether it casts shadows.", "false"), Same, |sun: Sun| sun
+        .shadows),
+];
