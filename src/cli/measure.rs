@@ -1,5 +1,7 @@
 //! `veduta measure`: what accuracy costs in time.
 
+mod gpu;
+
 use std::{
     path::{Path, PathBuf},
     time::{Duration, SystemTime},
@@ -32,6 +34,7 @@ Examples:
   veduta measure samples -o out
   veduta measure sprites -o out --city city.city.json --size 1280x720 --pairs 101
   veduta measure samples -o out --json | jq '.variants[] | select(.is_pareto) | .label'
+  veduta measure gpu -o out                     hard cases, pictures and frames on this GPU
 
 DIR gets TOPIC.md (a table), TOPIC.json (all figures), TOPIC.svg and TOPIC.png (the plot). docs/measure.md says how to
 read them. Run it while nothing else runs.";
@@ -49,37 +52,77 @@ pub struct Arguments {
     /// The folder to write to; made where it is missing
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// How often all variants are timed in turn
-    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub pairs: u32,
-    /// Width and height of the pictures in pixels
-    #[arg(long, value_name = "WxH", default_value = "640x360")]
-    pub size: Size,
-    /// City files to measure on [default: the built-in town]
+    /// How often all variants are timed in turn [default: 15; gpu: 31]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub pairs: Option<u32>,
+    /// Width and height of the pictures in pixels [default: 640x360; gpu: 1280x720]
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// City files to measure on [default: the built-in town; gpu: 36,000 synthetic buildings]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub city: Vec<PathBuf>,
     /// Write the JSON to stdout as well; without TOPIC, the list of topics
     #[arg(long)]
     pub json: bool,
+    /// gpu: how long it may take at most; what does not fit is left out
+    #[arg(long, value_name = "N", default_value_t = 10.0, value_parser = minutes)]
+    pub minutes: f64,
+    /// gpu: only this check, scene or frame; repeatable
+    #[arg(long, value_name = "NAME")]
+    pub only: Vec<String>,
+    /// gpu: the folder of the scenes and of their references
+    #[arg(long, value_name = "DIR", default_value = "scenes")]
+    pub scenes: PathBuf,
+    /// gpu: draw the references of the scenes anew on a software adapter, OVERWRITING those that are there; measures nothing
+    #[arg(long)]
+    pub write_references: bool,
+}
+
+impl Arguments {
+    /// Width and height of the pictures of topics, pixels.
+    fn size(&self) -> [u32; 2] {
+        self.size.map_or(SIZE, |size| size.0)
+    }
+
+    /// How often the variants of topics are timed.
+    fn pairs(&self) -> u32 {
+        self.pairs.unwrap_or(PAIRS)
+    }
+}
+
+/// What topics are measured with, unless told otherwise.
+const SIZE: [u32; 2] = [640, 360];
+const PAIRS: u32 = 15;
+
+/// A length of time, minutes.
+fn minutes(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n| (0.0..=1e6).contains(n));
+    number.ok_or_else(|| "minutes from 0 to 1,000,000 would be right".to_owned())
 }
 
 /// Lists the topics, or measures one.
 pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let Some(name) = &arguments.topic else { return list(arguments.json) };
+    if arguments.size().iter().any(|side| *side > TILE) {
+        return Err(Failure::usage(format!("measure: --size: at most {TILE} pixels on a side can be measured")));
+    }
+    if name == gpu::NAME {
+        return gpu::run(arguments, global);
+    }
+    if arguments.write_references || !arguments.only.is_empty() {
+        return Err(Failure::usage(format!("measure {name}: --only and --write-references are for `measure gpu`")));
+    }
     let topic = TOPICS.iter().find(|topic| topic.name == name).ok_or_else(|| unknown(name))?;
     let Some(folder) = &arguments.output else {
         return Err(Failure::usage(format!("measure {name}: where to? -o DIR would be right")));
     };
-    if arguments.size.0.iter().any(|side| *side > TILE) {
-        return Err(Failure::usage(format!("measure: --size: at most {TILE} pixels on a side can be measured")));
-    }
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
     let mut scene = Scene::default();
     scene.city.files = if arguments.city.is_empty() { vec![TOWN.into()] } else { arguments.city.clone() };
     let options = Options { allow_outside: global.allow_outside, ..Options::for_command_line() };
     let (mut studio, _) = render::open(&scene, &options, global)?;
     let mut setup =
-        Setup { studio: &mut studio, city: &scene.city, size: arguments.size.0, pairs: arguments.pairs as usize };
+        Setup { studio: &mut studio, city: &scene.city, size: arguments.size(), pairs: arguments.pairs() as usize };
     let measured = watched(topic, &mut setup, global)?;
     let origin = origin(arguments, topic, &scene);
     write(&measured, &origin, folder, arguments.json)
@@ -132,8 +175,8 @@ fn write(measured: &Measurement, origin: &Origin, folder: &Path, to_stdout: bool
 }
 
 fn origin(arguments: &Arguments, topic: &Topic, scene: &Scene) -> Origin {
-    let [width, height] = arguments.size.0;
-    let mut command = format!("veduta measure {} --size {width}x{height} --pairs {}", topic.name, arguments.pairs);
+    let [width, height] = arguments.size();
+    let mut command = format!("veduta measure {} --size {width}x{height} --pairs {}", topic.name, arguments.pairs());
     let city: Vec<String> = scene.city.files.iter().map(|file| file.display().to_string()).collect();
     if !arguments.city.is_empty() {
         let quoted: Vec<String> = city.iter().map(|file| quoted(file)).collect();
@@ -142,8 +185,12 @@ fn origin(arguments: &Arguments, topic: &Topic, scene: &Scene) -> Origin {
     if let Some(folder) = &arguments.output {
         command += &format!(" -o {}", quoted(&folder.display().to_string()));
     }
-    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or(Duration::ZERO);
-    Origin { command, city, date: report::date(now) }
+    Origin { command, city, date: today() }
+}
+
+/// The day, UTC, `2026-11-21`.
+fn today() -> String {
+    report::date(SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or(Duration::ZERO))
 }
 
 /// A word as a shell takes it for one.
@@ -157,7 +204,7 @@ fn quoted(word: &str) -> String {
 }
 
 fn unknown(name: &str) -> Failure {
-    let known = || TOPICS.iter().map(|topic| topic.name);
+    let known = || TOPICS.iter().map(|topic| topic.name).chain([gpu::NAME]);
     let near = did_you_mean(name, known());
     let hint = if near.is_empty() { format!("; there are {}", known().collect::<Vec<_>>().join(", ")) } else { near };
     Failure::usage(format!("measure: no topic \"{name}\"{hint}"))
@@ -184,6 +231,8 @@ fn list(as_json: bool) -> Outcome {
         text +=
             &format!("{}{space}  {} {}\n", paint.strong(topic.name), topic.about, paint.faint(&topic.specs.join(", ")));
     }
+    let space = " ".repeat(widest.saturating_sub(gpu::NAME.len()));
+    text += &format!("{}{space}  {}\n", paint.strong(gpu::NAME), gpu::ABOUT);
     output::print(&text)
 }
 

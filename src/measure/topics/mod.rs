@@ -1,5 +1,6 @@
 //! The topics: one file and one row each.
 
+pub mod gpu;
 mod handlers;
 mod lens_tests;
 mod refinement;
