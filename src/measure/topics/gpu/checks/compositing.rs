@@ -79,13 +79,13 @@ fn ask_orders(found: &mut Findings, studio: &mut Studio, count: usize) -> Result
     let scene = of_context((0..count).map(opacity).collect());
     let first = veil(studio, &scene, SIZE, Backend::Specialised)?;
     for order in 0..20 {
-        studio.renderer.shuffled = Some(order);
+        studio.renderer.settings.shuffled = Some(order);
         let again = veil(studio, &scene, SIZE, Backend::Specialised)?;
         for (i, (a, b)) in first.iter().zip(&again).enumerate() {
             found.ask(a == b, || format!("order {order}, pixel {i}: {b:?}, not {a:?}"));
         }
     }
-    studio.renderer.shuffled = None;
+    studio.renderer.settings.shuffled = None;
     Ok(())
 }
 

@@ -32,7 +32,7 @@ fn run(found: &mut Findings) -> Result<(), RenderError> {
     let fragments: u64 = stacks.iter().map(|stack| stack.len() as u64).sum();
     found.ask((drawn.notes, drawn.excess) == (fragments, 0), || format!("{drawn:?}, {fragments} fragments there are"));
     for (room, has_excess) in [(fragments, false), (fragments - 1, false), (9, false), (1, true), (0, true)] {
-        studio.renderer.most_layers = Some(room);
+        studio.renderer.settings.most_layers = Some(room);
         let banded = veil(&mut studio, &scene, SIZE, Backend::Specialised)?;
         let figures = studio.renderer.layer_figures();
         // With room for one, each pixel's others are missing; without any, all are.
