@@ -67,7 +67,7 @@ impl Studio {
         let Some(targets) = self.renderer.targets().filter(|_| self.renderer.layer_figures().bands > 0) else {
             return Ok(nothing());
         };
-        let bytes = self.renderer.gpu.read_texture(&targets.veil.texture, 0, wgpu::TextureAspect::All)?;
+        let bytes = self.renderer.gpu.read_texture(&targets.transparency.texture, 0, wgpu::TextureAspect::All)?;
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 }

@@ -69,7 +69,7 @@ pub fn enclosed(city: ShownCity, areas: &[Area], whole: bool, types: &[String]) 
     let model = city.model;
     let kinds: Vec<_> = types.iter().filter_map(|name| model.strings.find(name)).collect();
     let is_wanted = |mut object: u32| {
-        // As far as ways up go, whatever files say of who belongs to whom.
+        // As far as ways up go, whatever files say of parents and parts.
         for _ in 0..model.objects.len() {
             let Some(parent) = wholes(city, object).next() else { break };
             object = parent;
@@ -95,7 +95,7 @@ fn all_of(city: ShownCity, objects: &FxHashSet<u32>) -> Vec<bool> {
     let mut marked = vec![false; model.objects.len()];
     let mut next: Vec<u32> = objects.iter().copied().collect();
     while let Some(object) = next.pop() {
-        // Each once, whatever files say of who belongs to whom.
+        // Each once, whatever files say of parents and parts.
         if !std::mem::replace(&mut marked[object as usize], true) {
             let is_group = is_group(city, object);
             let parts = model.objects[object as usize].children.iter().filter(|_| !is_group);

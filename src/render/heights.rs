@@ -72,7 +72,7 @@ pub struct Heights {
     bounds: Option<Aabb>,
 }
 
-/// Whom lenses ask about.
+/// What lenses ask about.
 pub(super) struct Asked<'a> {
     pub city: ShownCity<'a>,
     pub occlusion: &'a mut Occlusion,

@@ -51,7 +51,7 @@ impl Asked<'_> {
 }
 
 impl Studio {
-    /// Draws `scene` and `furniture` over it into the image `number` ([`Renderer::images`]), unless that shows it already. The passes that
+    /// Draws `scene` and `furniture` over it into the image `number` ([`crate::render::renderer::Renderer::images`]), unless that shows it already. The passes that
     /// ran; `None`: it was not drawn. `is_stale`: images of the furniture show something else than before.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::{
-    render::{eye::PictureTile, layout, octagon::Octagon},
+    render::{eye::PictureTile, layout, screen_bound::ScreenBound},
     shader::{Blend, ClassTest, EffectDefinition, EffectKind, Plan, PlanLens, Scope, Step, TILE_PX, scope_number},
 };
 
@@ -161,7 +161,7 @@ impl Invokers {
 
     /// The lists of all tiles of a picture, where the lenses of the plan may be seen in these parts of it: for each tile where
     /// its sections begin and the last one ends, and then the invokers, three words each. First those outside of all lenses.
-    pub fn tile_lists(&self, parts: &[Octagon], size: [u32; 2]) -> Vec<u32> {
+    pub fn tile_lists(&self, parts: &[ScreenBound], size: [u32; 2]) -> Vec<u32> {
         let [across, down] = size.map(|side| side.div_ceil(TILE_PX));
         // Which lenses a tile may show; ascending, as they are gone through in order.
         let mut pairs: Vec<(u32, u32)> = Vec::new();

@@ -43,7 +43,7 @@ pub struct LensVolumes {
 pub(super) struct Tools<'a> {
     /// Solids made so far.
     pub solids: &'a mut Solids,
-    /// Whom lenses found hiding something.
+    /// Occluders that lenses found.
     pub occlusion: &'a mut Occlusion,
     /// What it hides.
     pub pois: &'a [Poi],

@@ -1,4 +1,4 @@
-//! Whom the occlusion lenses of a scene find (O2), and how these come and go over time (O6).
+//! Occluders that the occlusion lenses of a scene find (O2), and how these come and go over time (O6).
 
 use crate::{
     lens::{Lens, rendering::When},
@@ -50,7 +50,7 @@ impl Studio {
         self.known().occlusion.asked()
     }
 
-    /// Whom an occlusion lens finds, with reasons; `None` for other lenses.
+    /// Occluders that an occlusion lens finds, with reasons; `None` for other lenses.
     pub(super) fn occluders(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<Vec<stats::Occluder>> {
         let of = lens.occluders()?;
         let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };

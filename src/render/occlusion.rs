@@ -1,4 +1,4 @@
-//! Who hides what, for the eye of a picture (O2): worked out again only where the eye, a point of interest or the test is another (O6).
+//! Occluders and what they hide, for the eye of a picture (O2): worked out again only where the eye, a point of interest or the test is another (O6).
 //!
 //! A picture knows nothing of what was before it, unless time was made to pass: [`Occlusion::pass`].
 
@@ -29,7 +29,7 @@ pub struct Occlusion {
 #[derive(Debug)]
 struct Remembered {
     memory: Memory,
-    /// For whom and from where the last step was made: pictures of other moments have no history.
+    /// Occluders, points and eye of the last step: pictures of other moments have no history.
     asked: Asked,
     shown: ShownOccluders,
     /// The cases that it draws them in, and of each unit that is drawn which one; one more means none.
@@ -37,7 +37,7 @@ struct Remembered {
     cases: BTreeMap<u32, CaseMemory>,
 }
 
-/// Whom a lens looks for, and from where.
+/// Occluders that a lens looks for, and from where.
 #[derive(Clone, Debug, PartialEq)]
 struct Asked {
     of: Occluders,
@@ -57,7 +57,7 @@ impl Asked {
 pub struct Passing<'a> {
     /// Its name.
     pub name: &'a str,
-    /// Whom it looks for.
+    /// Occluders that it looks for.
     pub of: &'a Occluders,
     /// The cases that it draws them in; none: all in one way.
     pub when: Vec<When>,
@@ -92,7 +92,7 @@ fn by_object<T: Copy + Default>(units: &Units, city: ShownCity, of_unit: impl Fn
 /// The occluders of one lens, or of several that look for the same.
 #[derive(Debug)]
 struct Known {
-    /// Of whom.
+    /// Occluders that it is of.
     of: Occluders,
     places: Vec<PoiPlace>,
     /// What that means in the city.
@@ -104,12 +104,12 @@ struct Known {
     is_wanted: bool,
 }
 
-/// What is worked out beside who is an occluder.
+/// What is worked out beside the occluders.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct How {
     /// Shares also where no test asks for them.
     is_measured: bool,
-    /// Who stays one.
+    /// Objects that stay occluders.
     has_margin: bool,
 }
 

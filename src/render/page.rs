@@ -5,6 +5,7 @@ use crate::{
     gpu::GpuError,
     lens::color::{Srgb, linear_from_srgb},
     render::{
+        diagnostics,
         eye::PictureTile,
         furniture::Furniture,
         furniture_on_gpu::{FurnitureKey, FurnitureOnGpu, Over},
@@ -12,7 +13,6 @@ use crate::{
         parts::{parts, put},
         renderer::Renderer,
         resource::{formats::PICTURE, key::Key, recording::cleared},
-        told,
     },
 };
 
@@ -22,7 +22,9 @@ impl Renderer {
     /// # Errors
     /// Those of the graphics card.
     pub fn page(&mut self, size: [u32; 2], ground: Srgb, furniture: &Furniture) -> Result<Vec<[u8; 4]>, GpuError> {
-        told::boxes(&told::without_glyph(furniture)).iter().for_each(|(_, message)| log::warn!("{message}"));
+        diagnostics::boxes(&diagnostics::without_glyph(furniture))
+            .iter()
+            .for_each(|(_, message)| log::warn!("{message}"));
         let mut rgba = vec![[0; 4]; size[0] as usize * size[1] as usize];
         let mut on_gpu = FurnitureOnGpu::new(&self.gpu)?;
         let [r, g, b] = linear_from_srgb(ground).map(f64::from);

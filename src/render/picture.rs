@@ -28,6 +28,7 @@ use crate::{
         city::Shown,
         deformations::Moved,
         deformed::DeformedFigures,
+        diagnostics,
         eye::PictureTile,
         footprints::OwnFootprints,
         frame::{Backend, FrameInput, ShaderPart},
@@ -42,7 +43,7 @@ use crate::{
         resource::recording::PassRecord,
         stats::{self, Statistics},
         stored::SpriteTexels,
-        told, visible_share,
+        visible_share,
         volume::LensVolume,
     },
     scene::{CitySpec, Drawn, Scene},
@@ -315,13 +316,13 @@ impl Studio {
         for part in parts(request.size) {
             self.render_part(&drawn, request, &resolved, part, furniture, &mut picture, &mut passes)?;
         }
-        picture.open = told::open_shells(self, &resolved.volumes, &resolved.operations);
-        picture.not_derived = told::not_derived(&resolved.contents);
+        picture.open = diagnostics::open_shells(self, &resolved.volumes, &resolved.operations);
+        picture.not_derived = diagnostics::not_derived(&resolved.contents);
         picture.weakened = resolved.deformations.weakened.clone();
         picture.deformed = self.renderer.deformed_figures();
-        picture.without_glyph = told::without_glyph(furniture);
+        picture.without_glyph = diagnostics::without_glyph(furniture);
         picture.fold(&drawn, scene.lenses.len());
-        told::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
+        diagnostics::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
         if request.statistics {
             picture.statistics = self.statistics(scene, &drawn, request, &resolved, &picture, passes);
             let frame = &mut picture.statistics.frame;
@@ -684,7 +685,7 @@ impl Studio {
                 .collect(),
             contents: resolved.contents.figures(drawn, self.shown(), |id| self.renderer.content_city(id)),
             overlays: Vec::new(),
-            warnings: self.warnings().into_iter().chain(told::warnings(scene, picture)).collect(),
+            warnings: self.warnings().into_iter().chain(diagnostics::warnings(scene, picture)).collect(),
             passes,
         }
     }

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::render::{
     eye::PictureTile,
-    octagon::{Mesh, Octagon, merged},
     operations::Filter,
+    screen_bound::{Mesh, ScreenBound, merged},
     seen::{SeenVolume, part_of},
 };
 
@@ -56,9 +56,9 @@ impl PictureParts {
 }
 
 /// Where the uses of a filter may be seen.
-fn areas_of(filter: &Filter, size: [u32; 2], seen: &[SeenVolume]) -> Vec<Octagon> {
+fn areas_of(filter: &Filter, size: [u32; 2], seen: &[SeenVolume]) -> Vec<ScreenBound> {
     let of_use = |(lens, _): &(Option<u32>, u32)| match lens {
-        None => Some(Octagon::whole(size)),
+        None => Some(ScreenBound::whole(size)),
         Some(lens) => part_of(seen.iter().filter(|v| v.lens == *lens)),
     };
     merged(filter.uses.iter().filter_map(of_use).collect())
@@ -66,12 +66,12 @@ fn areas_of(filter: &Filter, size: [u32; 2], seen: &[SeenVolume]) -> Vec<Octagon
 
 /// Where the filters of a frame are drawn, each over what the ones after it read.
 fn filter_parts(filters: &[Filter], size: [u32; 2], seen: &[SeenVolume], mesh: &mut Mesh) -> Vec<FilterParts> {
-    let areas: Vec<Vec<Octagon>> = filters.iter().map(|f| areas_of(f, size, seen)).collect();
+    let areas: Vec<Vec<ScreenBound>> = filters.iter().map(|f| areas_of(f, size, seen)).collect();
     let grown = |k: usize, by: [i32; 2]| areas[k].iter().map(move |area| area.grown(by)).collect::<Vec<_>>();
     let parts_of = |i: usize| {
         let reach = filters[i].reach as i32;
         let mut add =
-            |parts: Vec<Octagon>, block| merged(parts).into_iter().flat_map(|p| mesh.add(p, size, block)).collect();
+            |parts: Vec<ScreenBound>, block| merged(parts).into_iter().flat_map(|p| mesh.add(p, size, block)).collect();
         let unfiltered = match is_first(filters, i) {
             true => with_same_image(filters, i).flat_map(|k| grown(k, [filters[k].reach as i32; 2])).collect(),
             false => Vec::new(),

@@ -8,9 +8,9 @@ use crate::{
     render::{
         frame::FrameInput,
         invokers::{InvokerPlans, Invokers},
-        octagon::Octagon,
         operations::Filter,
         regions::RegionPasses,
+        screen_bound::ScreenBound,
         seen::{SeenVolume, part_of},
     },
     scene::{Technique, technique::MOST_WRITTEN_OUT},
@@ -30,7 +30,7 @@ pub(super) struct Plans {
     pub layering: Option<Plan>,
     /// Lenses in view, in the order of the plans, and where.
     pub seen: Vec<u32>,
-    pub parts: Vec<Octagon>,
+    pub parts: Vec<ScreenBound>,
     /// The boxes in which each acts as *inside*, as [`LensVolume::room`](super::volume::LensVolume::room) has them.
     pub rooms: Vec<[DVec3; 2]>,
     invokers: OnceCell<Invokers>,

@@ -10,7 +10,7 @@ use crate::{
         eye::PictureTile,
         frame::FrameInput,
         hiding::{Reach, reaches_of},
-        occurring::{combinations, may_meet},
+        overlaps::{combinations, may_meet},
         seen::SeenVolume,
         volume::LensVolume,
     },

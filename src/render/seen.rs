@@ -6,7 +6,7 @@ use crate::{
     render::{
         eye::PictureTile,
         frame::FrameInput,
-        octagon::Octagon,
+        screen_bound::ScreenBound,
         sprites::{self, Pages, Place},
         stored::{self, Stored},
     },
@@ -21,7 +21,7 @@ pub(super) struct SeenVolume {
     /// What the leaves of a combination are.
     pub leaves: Vec<VolumeTest>,
     /// Where it may be seen, and the rectangle around that.
-    pub part: Octagon,
+    pub part: ScreenBound,
     pub bounds: PictureTile,
     /// Of one that is tested by its sprite.
     pub sprite: Option<SeenSprite>,
@@ -74,7 +74,7 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: (u64, u32)) -> 
     for (index, volume) in input.volumes.iter().enumerate() {
         // Other classes may be anywhere in the own space of a sprite.
         let has_any_part = masks && volume.has_own_eye();
-        let any_part = has_any_part.then(|| Octagon::whole(input.tile.size));
+        let any_part = has_any_part.then(|| ScreenBound::whole(input.tile.size));
         let Some(part) = any_part.or_else(|| volume.seen_part(&input.view, input.tile)) else { continue };
         let bounds = part.rectangle();
         let (lens, test) = (volume.lens, volume.test(masks));
@@ -124,6 +124,6 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: (u64, u32)) -> 
 }
 
 /// The part of a picture that holds all that may be seen of volumes; `None` without any.
-pub(super) fn part_of<'a>(seen: impl Iterator<Item = &'a SeenVolume>) -> Option<Octagon> {
-    seen.map(|volume| volume.part).reduce(Octagon::with)
+pub(super) fn part_of<'a>(seen: impl Iterator<Item = &'a SeenVolume>) -> Option<ScreenBound> {
+    seen.map(|volume| volume.part).reduce(ScreenBound::with)
 }

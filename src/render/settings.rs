@@ -1,4 +1,4 @@
-//! What those who hold a renderer may set: room, and ways of drawing that leave the picture as it is.
+//! Settings of a renderer: room, and ways of drawing that leave the picture as it is.
 
 /// Settings of a renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -183,7 +183,7 @@ pub struct LensFigures {
     pub pixels: u64,
     /// Pixels by class (L4).
     pub classified: Classified,
-    /// Of an occlusion lens, whom it found (O2).
+    /// Occluders that an occlusion lens found (O2).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub occluders: Option<Vec<Occluder>>,
     /// Of a lens that makes occluders lower, how much of its points of interest is seen (D4); those that are points have no share.

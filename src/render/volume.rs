@@ -9,8 +9,8 @@ use crate::{
         body::{Body, Leaf, PlacedLeaf},
         eye::PictureTile,
         flat, layout,
-        octagon::Octagon,
         operations::HALO_PX,
+        screen_bound::ScreenBound,
     },
     shader::VolumeTest,
     view::View,
@@ -139,8 +139,8 @@ impl LensVolume {
     }
 
     /// The part of the tile it may touch, outline included; `None` where it cannot be seen.
-    pub fn seen_part(&self, view: &View, tile: PictureTile) -> Option<Octagon> {
-        let whole = Octagon::whole(tile.size);
+    pub fn seen_part(&self, view: &View, tile: PictureTile) -> Option<ScreenBound> {
+        let whole = ScreenBound::whole(tile.size);
         // In front of what its own eye sees, or behind it, places may be anywhere.
         if self.everywhere || (self.has_own_eye() && (self.asks_sides || !self.body.is_bounded())) {
             return Some(whole);
@@ -155,7 +155,7 @@ impl LensVolume {
                 // It fades in its plane, however that is seen.
                 return Some(whole);
             }
-            let around = |(low, high)| Octagon::around(low, high).grown([margin; 2]).within(tile);
+            let around = |(low, high)| ScreenBound::around(low, high).grown([margin; 2]).within(tile);
             return flat::projected(flat, view).map_or_else(|all| all.then_some(whole), around);
         }
         if self.bounds.is_empty() || !view.frustum(margin.into()).meets(&self.bounds_of_border(view)) {
@@ -163,7 +163,7 @@ impl LensVolume {
         }
         // What lies beside or behind the eye bounds nothing.
         let Some((low, high)) = self.projected(view) else { return Some(whole) };
-        Octagon::around(low, high).grown([margin; 2]).within(tile)
+        ScreenBound::around(low, high).grown([margin; 2]).within(tile)
     }
 
     /// The box around its projection, pixels; `None` where it may be anywhere.

@@ -143,7 +143,8 @@ pub fn veil(studio: &mut Studio, scene: &Scene, backend: Backend, size: [u32; 2]
     studio.backend = backend;
     studio.redraw(scene, size).expect("a frame");
     let targets = studio.renderer.targets().expect("targets");
-    let bytes = studio.renderer.gpu.read_texture(&targets.veil.texture, 0, wgpu::TextureAspect::All).expect("texels");
+    let bytes =
+        studio.renderer.gpu.read_texture(&targets.transparency.texture, 0, wgpu::TextureAspect::All).expect("texels");
     bytemuck::pod_collect_to_vec(&bytes)
 }
 

@@ -25,8 +25,9 @@ use crate::{
     gpu::Gpu,
     lens::{LensKind, nearest::did_you_mean},
     render::{
+        diagnostics,
         picture::{Aovs, Picture, RenderError, Request, Studio},
-        stats, told,
+        stats,
     },
     scene::{Command, History, Scene, check_against},
     view::Camera,
@@ -108,7 +109,8 @@ fn portal(scene: &Scene, name: &str, from: Camera) -> Outcome<Command> {
 
 /// Puts what is to be warned of into statistics: of the files as it is worded for the command line, the rest about this picture.
 pub fn with_warnings(statistics: &mut stats::Statistics, warnings: &[serde_json::Value]) {
-    let is_of_picture = |w: &serde_json::Value| w["code"].as_str().is_some_and(|code| told::CODES.contains(&code));
+    let is_of_picture =
+        |w: &serde_json::Value| w["code"].as_str().is_some_and(|code| diagnostics::CODES.contains(&code));
     let of_picture = std::mem::take(&mut statistics.warnings).into_iter().filter(is_of_picture);
     statistics.warnings = warnings.iter().cloned().chain(of_picture).collect();
 }

@@ -27,10 +27,10 @@ use crate::{
     lens::{Placement, best_view::Depiction},
     overlay::{Placed, Rect, arrow::border_arrow},
     render::{
+        diagnostics,
         furniture::{Furniture, Piece},
         picture::{Aovs, RenderError, Request, ShownOverlay, Studio},
         stats::Pass,
-        told,
     },
     scene::{
         Scene,
@@ -238,7 +238,7 @@ impl Plan {
             let mut own = Painter::new(spot.em);
             let mut of_board = self.overlay(studio, request, &mut own, one, spot, gathered)?;
             let furniture = Furniture { pieces: own.into_pieces() };
-            gathered.without_glyph.extend(told::without_glyph(&furniture));
+            gathered.without_glyph.extend(diagnostics::without_glyph(&furniture));
             let number = paint::number(self.numbers, one.index, paint::Part::Board);
             gathered.images.push(number);
             of_board.rendered |= studio.renderer.board(number, board.image_size(), &furniture, of_board.rendered)?;

@@ -205,7 +205,8 @@ pub fn composite(
         (3, all_of(&targets.tail_through)),
     ];
     let own = group(gpu, "lists of layers", &frame.pipelines.layout(&LAYER_LISTS), &entries);
-    let colors = [&targets.veil, &targets.shown_code, &targets.shown_depth].map(|target| Some(kept(&target.view)));
+    let colors =
+        [&targets.transparency, &targets.shown_code, &targets.shown_depth].map(|target| Some(kept(&target.view)));
     let pass = DrawnPass {
         name: "composite",
         view: "main",

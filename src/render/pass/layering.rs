@@ -64,7 +64,7 @@ impl<'a> Layering<'a> {
 
     /// Adds the targets of layers.
     pub fn add_needs(plan: &FramePlan, needs: &mut Needs) {
-        needs.veils = true;
+        needs.transparency = true;
         needs.shown_layers = plan.input.wants_shown_layers();
     }
 
@@ -77,7 +77,7 @@ impl<'a> Layering<'a> {
         let clear = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 1.0 };
         let targets = frame.targets;
         let colors = [
-            Some(cleared(&targets.veil.view, clear)),
+            Some(cleared(&targets.transparency.view, clear)),
             Some(cleared(&targets.shown_code.view, wgpu::Color::TRANSPARENT)),
         ];
         recording.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

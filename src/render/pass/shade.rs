@@ -222,7 +222,7 @@ impl Pass for Shade {
     ) -> Result<(), GpuError> {
         let FrameContext { targets, plan, programs, .. } = *frame;
         self.lines.fit(frame.shared.stamp, || {
-            let entries = [(0, all_of(&targets.lines)), (1, all_of(&targets.veil))];
+            let entries = [(0, all_of(&targets.lines)), (1, all_of(&targets.transparency))];
             group(frame.gpu, "lines and layers", &frame.pipelines.layout(&LINES), &entries)
         });
         let view = &target_of(frame).view;

@@ -33,7 +33,7 @@ pub struct Needs {
     /// A layer of lines.
     pub lines: bool,
     /// Translucent layers.
-    pub veils: bool,
+    pub transparency: bool,
     /// One layer of many of them.
     pub tails: bool,
     /// Which of them is the shown surface.
@@ -61,7 +61,7 @@ impl Needs {
             filters: self.filters.max(before.filters),
             filter_images: self.filter_images.max(before.filter_images),
             lines: self.lines || before.lines,
-            veils: self.veils || before.veils,
+            transparency: self.transparency || before.transparency,
             tails: self.tails || before.tails,
             shown_layers: self.shown_layers || before.shown_layers,
             shadow: self.shadow.max(before.shadow),
@@ -121,7 +121,7 @@ pub struct Targets {
     /// Lines over what is shaded, linear colours times opacity (1×1 where not needed).
     pub lines: Target,
     /// Translucent layers over what is shaded, linear colours times opacity; alpha: what is let through (1×1 where not needed).
-    pub veil: Target,
+    pub transparency: Target,
     /// Translucent layers whose order is not known: sums of colours and opacities, weighted (1×1 where not needed).
     pub tail_sums: Target,
     /// What they let through (1×1 where not needed).
@@ -156,7 +156,7 @@ impl Targets {
             half_filtered,
             self.filtered,
             self.lines,
-            self.veil,
+            self.transparency,
             self.tail_sums,
             self.tail_through,
             self.shown_code,
@@ -226,7 +226,7 @@ impl Targets {
                 true,
             ),
             lines: make_any("lines", full(needs.lines), LINES, drawn, false),
-            veil: make_any("translucent layers", full(needs.veils), TRANSPARENCY, drawn, false),
+            transparency: make_any("translucent layers", full(needs.transparency), TRANSPARENCY, drawn, false),
             tail_sums: make_any("sums of layers", full(needs.tails), sums, drawn, false),
             tail_through: make_any("through layers", full(needs.tails), through(sums), drawn, false),
             shown_code: make_any("shown layer", full(needs.shown_layers), SMOOTH_CODES, drawn, false),

@@ -46,7 +46,8 @@ impl StochasticLayers {
             (5, one_of::<layout::City>(&shared.cities)),
         ];
         let view = group(gpu, "fragments", &pipelines.layout(&FORWARD), &entries);
-        let read = ShadedTargets { codes: cities.surfaces(), depth: &targets.shadow.view, colors: &targets.veil.view };
+        let read =
+            ShadedTargets { codes: cities.surfaces(), depth: &targets.shadow.view, colors: &targets.transparency.view };
         let shading = shared.shading(&cities, targets, read);
         [view, group(gpu, "shade without targets", &pipelines.layout(&SHADE), &shading)]
     }

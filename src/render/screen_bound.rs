@@ -1,4 +1,4 @@
-//! What of a picture a lens may touch: an octagon with sides along the rows, the columns and both diagonals. It is what
+//! What of a picture a lens may touch: an 8-DOP with sides along the rows, the columns and both diagonals. It is what
 //! shading and filters are drawn over; a rectangle around a ball holds a quarter more pixels than the ball shows.
 
 use std::ops::Range;
@@ -9,7 +9,7 @@ use crate::render::eye::PictureTile;
 
 /// The pixels between four pairs of parallel lines: x, y, x + y and x - y, pixels from the picture's upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Octagon {
+pub struct ScreenBound {
     low: [i32; 4],
     high: [i32; 4],
 }
@@ -17,7 +17,7 @@ pub struct Octagon {
 /// Beyond any picture, and far from overflowing.
 const FAR: f64 = 1e6;
 
-impl Octagon {
+impl ScreenBound {
     /// The whole picture.
     pub fn whole(size: [u32; 2]) -> Self {
         let [w, h] = size.map(|side| side as i32);
@@ -73,7 +73,7 @@ impl Octagon {
         x0 < x1 && y0 < y1 && s0 < s1 && d0 < d1 && low < high
     }
 
-    /// The rectangle around its first two pairs of lines; of an octagon inside its picture.
+    /// The rectangle around its first two pairs of lines; of an 8-DOP inside its picture.
     pub fn rectangle(&self) -> PictureTile {
         let at = |i: usize| self.low[i].max(0) as u32;
         let length = |i: usize| (self.high[i].max(0) as u32).saturating_sub(at(i));
@@ -189,7 +189,7 @@ pub struct Mesh {
 impl Mesh {
     /// Adds a part of a target whose texels are blocks of so many pixels: all blocks that hold a pixel of it. In as few triangles as it
     /// takes: which corners these are, each cut by a rectangle of texels.
-    pub fn add(&mut self, part: Octagon, size: [u32; 2], block: [u32; 2]) -> Vec<(Range<u32>, PictureTile)> {
+    pub fn add(&mut self, part: ScreenBound, size: [u32; 2], block: [u32; 2]) -> Vec<(Range<u32>, PictureTile)> {
         // A pixel's centre is so near to that of its block.
         let grown = part.grown(block.map(|side| side as i32 / 2));
         let target = in_blocks(size, block);
@@ -205,7 +205,7 @@ impl Mesh {
     }
 
     /// Adds what of a picture a part leaves.
-    pub fn add_beyond(&mut self, part: Octagon, size: [u32; 2]) -> Range<u32> {
+    pub fn add_beyond(&mut self, part: ScreenBound, size: [u32; 2]) -> Range<u32> {
         self.triangles(&part.beyond(size), size)
     }
 
@@ -249,12 +249,12 @@ fn cut(corners: &[DVec2], direction: DVec2, most: f64) -> Vec<DVec2> {
     kept
 }
 
-/// The same octagons; two become one where that is no larger than both.
-pub fn merged(mut parts: Vec<Octagon>) -> Vec<Octagon> {
+/// The same bounds; two become one where that is no larger than both.
+pub fn merged(mut parts: Vec<ScreenBound>) -> Vec<ScreenBound> {
     let mut i = 0;
     while i < parts.len() {
         let joined = |k: usize| (k, parts[i].with(parts[k]));
-        let fits = |(k, all): &(usize, Octagon)| all.area() <= parts[i].area() + parts[*k].area();
+        let fits = |(k, all): &(usize, ScreenBound)| all.area() <= parts[i].area() + parts[*k].area();
         match (i + 1..parts.len()).map(joined).find(fits) {
             Some((k, all)) => {
                 parts.swap_remove(k);
@@ -272,8 +272,8 @@ pub fn merged(mut parts: Vec<Octagon>) -> Vec<Octagon> {
 mod tests {
     use super::*;
 
-    fn octagon(low: [i32; 4], high: [i32; 4]) -> Octagon {
-        Octagon { low, high }
+    fn bound(low: [i32; 4], high: [i32; 4]) -> ScreenBound {
+        ScreenBound { low, high }
     }
 
     /// How many of these triangles hold a point that is on no line between pixels.
@@ -291,29 +291,29 @@ mod tests {
         let size = [23, 17];
         let part = PictureTile::whole(size);
         let mut some = vec![
-            octagon([3, 2, 9, -9], [15, 14, 24, 9]),
-            octagon([3, 2, 5, -11], [15, 14, 29, 13]),
+            bound([3, 2, 9, -9], [15, 14, 24, 9]),
+            bound([3, 2, 5, -11], [15, 14, 29, 13]),
             // A side of no length, a triangle, a sliver, all of it, sides that meet between pixels.
-            octagon([4, 4, 12, -4], [12, 12, 20, 4]),
-            octagon([0, 0, 0, -17], [23, 17, 9, 23]),
-            octagon([-50, 3, 20, -99], [50, 9, 21, 99]),
-            octagon([-9, -9, -99, -99], [99, 99, 99, 99]),
-            octagon([0, 0, 11, -5], [23, 17, 26, 6]),
+            bound([4, 4, 12, -4], [12, 12, 20, 4]),
+            bound([0, 0, 0, -17], [23, 17, 9, 23]),
+            bound([-50, 3, 20, -99], [50, 9, 21, 99]),
+            bound([-9, -9, -99, -99], [99, 99, 99, 99]),
+            bound([0, 0, 11, -5], [23, 17, 26, 6]),
         ];
         some.push(some[0].with(some[4]));
         some.push(some[1].grown([5, 1]));
         let (mut slanted, mut halved, mut in_blocks) = (0, 0, 0);
-        for octagon in some.into_iter().filter_map(|o| o.within(part)) {
-            let (inside, outside, halves) = (octagon.triangles(), octagon.beyond(size), octagon.halves([1, 1]));
+        for bound in some.into_iter().filter_map(|o| o.within(part)) {
+            let (inside, outside, halves) = (bound.triangles(), bound.beyond(size), bound.halves([1, 1]));
             halved += usize::from(halves.is_some());
-            slanted += usize::from(octagon.area() < f64::from(octagon.rectangle().size.iter().product::<u32>()));
+            slanted += usize::from(bound.area() < f64::from(bound.rectangle().size.iter().product::<u32>()));
             let mut area = 0.0;
             for (x, y) in (0..17).flat_map(|y| (0..23).map(move |x| (x, y))) {
                 // Beside the centre, so that no side goes through it.
                 let p = DVec2::new(f64::from(x) + 0.4999, f64::from(y) + 0.49);
                 let lines = [p.x, p.y, p.x + p.y, p.x - p.y];
                 let out = [0.0, 0.0, 0.5, 0.5];
-                let range = |i: usize| f64::from(octagon.low[i]) - out[i]..f64::from(octagon.high[i]) + out[i];
+                let range = |i: usize| f64::from(bound.low[i]) - out[i]..f64::from(bound.high[i]) + out[i];
                 let is_in = (0..4).all(|i| range(i).contains(&lines[i]));
                 let found = [hits(&inside, p), hits(&outside, p)];
                 if let Some(halves) = &halves {
@@ -322,13 +322,13 @@ mod tests {
                         (0..2).all(|i| (t.origin[i]..t.origin[i] + t.size[i]).contains(&at[i]))
                     };
                     let drawn: usize = halves.iter().filter(|(_, t)| holds(t)).map(|(half, _)| hits(half, p)).sum();
-                    assert_eq!(drawn, usize::from(is_in), "halves of {octagon:?} at {x} {y}");
+                    assert_eq!(drawn, usize::from(is_in), "halves of {bound:?} at {x} {y}");
                 }
-                assert_eq!(found, [usize::from(is_in), usize::from(!is_in)], "{octagon:?} at {x} {y}");
+                assert_eq!(found, [usize::from(is_in), usize::from(!is_in)], "{bound:?} at {x} {y}");
                 area += f64::from(u8::from(is_in));
             }
             for block in [[4, 1], [4, 4]] {
-                let Some(halves) = octagon.halves(block) else { continue };
+                let Some(halves) = bound.halves(block) else { continue };
                 for (i, k) in (0..5).flat_map(|k| (0..6).map(move |i| (i, k))) {
                     let centre = |i: u32, side: u32| f64::from(side) * (f64::from(i) + 0.5);
                     // What is drawn of which a side goes through the middle.
@@ -336,12 +336,12 @@ mod tests {
                     let holds =
                         |t: &PictureTile| (0..2).all(|a| (t.origin[a]..t.origin[a] + t.size[a]).contains(&[i, k][a]));
                     let drawn: usize = halves.iter().filter(|(_, t)| holds(t)).map(|(half, _)| hits(half, p)).sum();
-                    assert_eq!(drawn, hits(&inside, p), "texel {i} {k} of {block:?}, {octagon:?}");
+                    assert_eq!(drawn, hits(&inside, p), "texel {i} {k} of {block:?}, {bound:?}");
                     in_blocks += drawn;
                 }
             }
-            assert!((area - octagon.area()).abs() <= 12.0, "{octagon:?}: {area} pixels, {}", octagon.area());
-            assert!(octagon.has_inside() && octagon.area() > 0.0);
+            assert!((area - bound.area()).abs() <= 12.0, "{bound:?}: {area} pixels, {}", bound.area());
+            assert!(bound.has_inside() && bound.area() > 0.0);
         }
         assert!(slanted > 5 && halved > 2 && in_blocks > 50, "{slanted} {halved} {in_blocks}");
     }
@@ -355,7 +355,7 @@ mod tests {
                 ((seed >> 16) % most) as i32
             };
             let low = [number(12), number(12), number(24), number(24) - 12];
-            let one = octagon(low, low.map(|least| least + number(9)));
+            let one = bound(low, low.map(|least| least + number(9)));
             assert_eq!(one.has_inside(), one.area() > 0.0, "{one:?}: {}", one.area());
             *(if one.has_inside() { &mut with } else { &mut without }) += 1;
         }
@@ -364,13 +364,13 @@ mod tests {
 
     #[test]
     fn it_is_nothing_beside_the_picture() {
-        let one = octagon([3, 2, 5, -11], [15, 14, 29, 13]);
+        let one = bound([3, 2, 5, -11], [15, 14, 29, 13]);
         assert_eq!(one.within(PictureTile { origin: [15, 0], size: [9, 9] }), None);
         assert_eq!(one.within(PictureTile { origin: [0, 14], size: [9, 9] }), None);
         // The corner that its slanted side leaves.
         assert_eq!(one.within(PictureTile { origin: [3, 2], size: [0, 9] }), None);
         assert!(
-            octagon([3, 2, 12, -11], [15, 14, 29, 13]).within(PictureTile { origin: [3, 2], size: [2, 2] }).is_none()
+            bound([3, 2, 12, -11], [15, 14, 29, 13]).within(PictureTile { origin: [3, 2], size: [2, 2] }).is_none()
         );
         let part = PictureTile { origin: [2, 4], size: [40, 40] };
         let seen = one.within(part).expect("it is seen");
@@ -379,9 +379,8 @@ mod tests {
 
     #[test]
     fn those_that_overlap_much_become_one_and_nothing_is_lost() {
-        let tile = |x: i32, y: i32, w: i32, h: i32| {
-            octagon([x, y, x + y, x - y - h], [x + w, y + h, x + w + y + h, x + w - y])
-        };
+        let tile =
+            |x: i32, y: i32, w: i32, h: i32| bound([x, y, x + y, x - y - h], [x + w, y + h, x + w + y + h, x + w - y]);
         assert_eq!(merged(vec![tile(0, 0, 10, 10), tile(0, 1, 10, 10)]), [tile(0, 0, 10, 11)]);
         let apart = vec![tile(0, 0, 2, 2), tile(90, 90, 2, 2)];
         assert_eq!(merged(apart.clone()), apart);

@@ -121,9 +121,9 @@ pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &
     open
 }
 
-type Told = (&'static str, fn(&Picture) -> &BTreeMap<u32, u32>, fn(&str, u32) -> String);
+type Diagnostic = (&'static str, fn(&Picture) -> &BTreeMap<u32, u32>, fn(&str, u32) -> String);
 
-const TOLD: [Told; 6] = [
+const DIAGNOSTICS: [Diagnostic; 6] = [
     (
         SPRITE_LAYERS,
         |picture| &picture.excess,
@@ -179,7 +179,7 @@ const TOLD: [Told; 6] = [
     ),
 ];
 
-fn each<'a>(scene: &'a Scene, picture: &'a Picture, (_, counts, message): Told) -> Vec<(&'a str, u32, String)> {
+fn each<'a>(scene: &'a Scene, picture: &'a Picture, (_, counts, message): Diagnostic) -> Vec<(&'a str, u32, String)> {
     let of_lens = |(lens, count): (&u32, &u32)| {
         let name = scene.lenses[*lens as usize].name.as_str();
         (name, *count, message(name, *count))
@@ -187,27 +187,27 @@ fn each<'a>(scene: &'a Scene, picture: &'a Picture, (_, counts, message): Told) 
     counts(picture).iter().map(of_lens).collect()
 }
 
-/// What is told of no lens: code, count, message.
+/// Diagnostics of no lens: code, count, message.
 fn of_pictures(picture: &Picture) -> impl Iterator<Item = (&'static str, u64, String)> {
-    let told =
+    let found =
         [(LAYER_ROOM, missing_layers(picture)), (COARSE, coarse(picture)), (NO_GLYPH, boxes(&picture.without_glyph))];
-    told.into_iter().filter_map(|(code, found)| found.map(|(count, message)| (code, count, message)))
+    found.into_iter().filter_map(|(code, found)| found.map(|(count, message)| (code, count, message)))
 }
 
-/// One line for each thing that is told, and each lens that it is told of.
+/// One line for each diagnostic, and each lens that has it.
 pub(super) fn messages(scene: &Scene, picture: &Picture) -> Vec<String> {
-    let of_lenses = TOLD.into_iter().flat_map(|told| each(scene, picture, told)).map(|(_, _, message)| message);
+    let of_lenses = DIAGNOSTICS.into_iter().flat_map(|of| each(scene, picture, of)).map(|(_, _, message)| message);
     of_lenses.chain(of_pictures(picture).map(|(_, _, message)| message)).collect()
 }
 
 /// The same in the form of warnings of files.
 pub(super) fn warnings(scene: &Scene, picture: &Picture) -> Vec<serde_json::Value> {
-    let warning = |told: Told| {
-        let all = each(scene, picture, told);
+    let warning = |of: Diagnostic| {
+        let all = each(scene, picture, of);
         let lenses: Vec<&str> = all.iter().map(|(lens, ..)| *lens).collect();
         let messages: Vec<&str> = all.iter().map(|(.., message)| message.as_str()).collect();
         let count: u32 = all.iter().map(|(_, count, _)| count).sum();
-        let code = told.0;
+        let code = of.0;
         (count > 0).then(
             || serde_json::json!({ "code": code, "count": count, "objects": lenses, "message": messages.join("; ") }),
         )
@@ -215,5 +215,5 @@ pub(super) fn warnings(scene: &Scene, picture: &Picture) -> Vec<serde_json::Valu
     let of_pictures = of_pictures(picture).map(
         |(code, count, message)| serde_json::json!({ "code": code, "count": count, "objects": [], "message": message }),
     );
-    TOLD.into_iter().filter_map(warning).chain(of_pictures).collect()
+    DIAGNOSTICS.into_iter().filter_map(warning).chain(of_pictures).collect()
 }
