@@ -116,15 +116,13 @@ impl Mode {
             (Value::InlineTable(table), Data::Table(_), Data::Table(_)) => {
                 return self.within_table(table, before, after);
             }
-            (Value::Array(list), Data::List(was), Data::List(now)) if list.len() == was.len() => {
-                if was.len() == now.len() {
-                    let each = was.iter().zip(now).enumerate().filter(|(_, (before, after))| before != after);
-                    return each
-                        .map(|(i, (before, after))| {
-                            list.get_mut(i).is_some_and(|own| self.within_value(own, before, after))
-                        })
-                        .fold(true, |all, one| all && one);
-                }
+            (Value::Array(list), Data::List(was), Data::List(now))
+                if list.len() == was.len() && was.len() == now.len() =>
+            {
+                let mut each = was.iter().zip(now).enumerate().filter(|(_, (before, after))| before != after);
+                return each.all(|(i, (before, after))| {
+                    list.get_mut(i).is_some_and(|own| self.within_value(own, before, after))
+                });
             }
             _ => {}
         }
