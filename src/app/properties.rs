@@ -606,30 +606,45 @@ fn widget(
             }
         }
         (takes, _) => {
-            let is_text = matches!(takes, Takes::Text) && value.is_str();
-            let is_absent = value.as_str() == Some("");
-            let now = match value.as_str().filter(|_| is_text || is_absent) {
-                Some(text) => text.to_owned(),
-                None => value.to_string(),
-            };
-            let mut text = drafts.texts.get(path).cloned().unwrap_or_else(|| now.clone());
-            // What takes it away stands behind it, and no panel gets wider for either.
-            let width = (ui.available_width() - TAKE_AWAY_WIDTH).clamp(40.0, 150.0);
-            let field = egui::TextEdit::singleline(&mut text).desired_width(width).hint_text(hint);
-            let response = ui.add(field).labelled_by(label);
-            if response.changed() {
-                drafts.texts.insert(path.to_owned(), text.clone());
-            }
-            if response.lost_focus() && text != now {
-                let to = match text.trim().is_empty() {
-                    true => To::Nothing,
-                    false if is_text => To::Value(Value::String(text)),
-                    false => To::Typed(text),
-                };
-                changes.push(Change { path: path.to_owned(), to, is_held: false });
-            }
+            let takes_text = matches!(takes, Takes::Text);
+            changes.extend(typed(ui, drafts, takes_text, value, path, hint, label));
         }
     }
+}
+
+/// A field for text, of its own or as TOML, and what becomes of the value when it is done.
+fn typed(
+    ui: &mut Ui,
+    drafts: &mut Drafts,
+    takes_text: bool,
+    value: &Value,
+    path: &str,
+    hint: &str,
+    label: egui::Id,
+) -> Option<Change> {
+    let is_text = takes_text && value.is_str();
+    let is_absent = value.as_str() == Some("");
+    let now = match value.as_str().filter(|_| is_text || is_absent) {
+        Some(text) => text.to_owned(),
+        None => value.to_string(),
+    };
+    let mut text = drafts.texts.get(path).cloned().unwrap_or_else(|| now.clone());
+    // What takes it away stands behind it, and no panel gets wider for either.
+    let width = (ui.available_width() - TAKE_AWAY_WIDTH).clamp(40.0, 150.0);
+    let field = egui::TextEdit::singleline(&mut text).desired_width(width).hint_text(hint);
+    let response = ui.add(field).labelled_by(label);
+    if response.changed() {
+        drafts.texts.insert(path.to_owned(), text.clone());
+    }
+    if response.lost_focus() && text != now {
+        let to = match text.trim().is_empty() {
+            true => To::Nothing,
+            false if is_text => To::Value(Value::String(text)),
+            false => To::Typed(text),
+        };
+        return Some(Change { path: path.to_owned(), to, is_held: false });
+    }
+    None
 }
 
 /// A number as people write it: no more digits than it has.

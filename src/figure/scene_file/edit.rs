@@ -530,4 +530,41 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
             assert!(message.contains(expected), "{assignment}: {message}");
         }
     }
+
+    /// What an edit of ten lenses costs, typed and by way of text: `cargo test --release -- --ignored --nocapture an_edit_costs`.
+    #[test]
+    #[ignore = "a measurement, which prints"]
+    #[allow(clippy::print_stderr, reason = "it is what the measurement is for")]
+    fn what_an_edit_costs() {
+        let options = Options::for_command_line();
+        let lens = |i: usize| {
+            format!(
+                "[[lens]]\nname = \"l{i}\"\nshape = {{ kind = \"sphere\", center = [{i}, 0, 0], radius = 60.0 }}\neffects = [\"sepia\", {{ effect = \"overlay\", color = \"#ff0000\" }}]\n"
+            )
+        };
+        let text: String = std::iter::once("veduta = 1\n".to_owned()).chain((0..10).map(lens)).collect();
+        let scene = parse(&text, "s", &options).unwrap();
+        let by_text = |radius: f64| {
+            let mut root: toml::Table = to_toml_for(&scene, &options).parse().unwrap();
+            root["lens"][0]["shape"]["radius"] = toml::Value::Float(radius);
+            parse(&toml::to_string(&root).unwrap(), "s", &options).unwrap()
+        };
+        let typed = |radius: f64| {
+            Edit::new("lens.0.shape.radius", Some(radius.into())).unwrap().after(&scene, &options).unwrap()
+        };
+        assert_eq!(by_text(7.5), typed(7.5));
+        let median = |edit: &dyn Fn(f64) -> Scene| {
+            let mut times: Vec<f64> = (0..201)
+                .map(|i| {
+                    let start = std::time::Instant::now();
+                    std::hint::black_box(edit(1.0 + f64::from(i)));
+                    start.elapsed().as_secs_f64() * 1e6
+                })
+                .collect();
+            times.sort_by(f64::total_cmp);
+            times[times.len() / 2]
+        };
+        let [text, value] = [median(&by_text), median(&typed)];
+        eprintln!("by text {text:.1} µs, typed {value:.1} µs: {:.1} times as fast", text / value);
+    }
 }

@@ -32,8 +32,14 @@ pub const LENS: Table = Table {
 };
 
 const LENS_ROWS: &[Row<Lens>] = &[
-    field!(key("name", Kind::Text, "`lens-N`, N its place in the file", "", "Its name, unique.", "\"old town\""), Same, |lens: Lens| lens.name).always(),
-    field!(key(
+    field!(
+        key("name", Kind::Text, "`lens-N`, N its place in the file", "", "Its name, unique.", "\"old town\""),
+        Same,
+        |lens: Lens| lens.name
+    )
+    .always(),
+    field!(
+        key(
             "kind",
             Kind::Word {
                 now: &[
@@ -54,255 +60,345 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "",
             "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses, `deformation` moves what is in it, see Deformation lenses. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
             "\"color\"",
-        ), Word, |lens: Lens| lens.kind).always(),
-    field!(key(
-            "enabled",
-            Kind::Boolean,
-            "true",
-            "",
-            "`false`: it keeps its place and its bit in the lens mask, and does nothing.",
-            "false",
-        ), Same, |lens: Lens| lens.enabled),
-    field!(key(
+        ),
+        Word,
+        |lens: Lens| lens.kind
+    )
+    .always(),
+    field!(
+        key("enabled", Kind::Boolean, "true", "", "`false`: it keeps its place and its bit in the lens mask, and does nothing.", "false",),
+        Same,
+        |lens: Lens| lens.enabled
+    ),
+    field!(
+        key(
             "color",
             Kind::Color,
             "a colour of its own by its place",
             "",
             "Its own colour: its outline, its line in a legend.",
             "\"#0072b2\"",
-        ), Color, |lens: Lens| lens.color),
-    Row::<Lens>::joint(key(
+        ),
+        Color,
+        |lens: Lens| lens.color
+    ),
+    Row::<Lens>::joint(
+        key(
             "placement",
             Kind::Word { now: &["scene", "camera"], later: &[] },
             "\"scene\"",
             "",
             "What its shapes are fixed to: the `scene`, or the `camera`, with which they move and in whose view alone they act; see Placement.",
             "\"camera\"",
-        ), |lens, _| (lens.placement == Placement::Camera).then(|| "camera".into())),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, _| (lens.placement == Placement::Camera).then(|| "camera".into()),
+    ),
+    Row::<Lens>::joint(
+        key(
             "attached_to",
             Kind::Table(&ATTACHED_TO),
             "nothing: model coordinates",
             "",
             "A city object or a point of interest, whose middle the coordinates of its shapes are counted from.",
             "{ poi = \"hall\" }",
-        ), |lens, _| match &lens.placement { Placement::Object(id) => Some(Data::table([("object", id.into())])), Placement::Poi(name) => Some(Data::table([("poi", name.into())])), Placement::World | Placement::Camera => None }),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, _| match &lens.placement {
+            Placement::Object(id) => Some(Data::table([("object", id.into())])),
+            Placement::Poi(name) => Some(Data::table([("poi", name.into())])),
+            Placement::World | Placement::Camera => None,
+        },
+    ),
+    Row::<Lens>::joint(
+        key(
             "shape",
             Kind::Shape,
             "",
             "",
             "Its focus area; see Shapes. Or `shapes`. An occlusion lens needs none; with one it acts on what of its occluders is in it.",
             "{ kind = \"sphere\", center = [0, 0, 0], radius = 60.0 }",
-        ), |lens, options| match &shapes_of(lens)[..] { [one] => shape_keys::written(one, options), _ => None }).always().after("fade"),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| match &shapes_of(lens)[..] {
+            [one] => shape_keys::written(one, options),
+            _ => None,
+        },
+    )
+    .always()
+    .after("fade"),
+    Row::<Lens>::joint(
+        key(
             "shapes",
             Kind::Shapes,
             "none",
             "",
             "Several focus areas: it acts inside any of them.",
             "[{ kind = \"sphere\", center = [0, 0, 0], radius = 60.0 }]",
-        ), several).always().after("shape"),
-    Row::<Lens>::joint(key(
-            "effects",
-            Kind::Effects,
-            "none",
-            "",
-            "What it does, in order: names, or tables with parameters; see Effects. At most one scene style.",
-            "[\"sepia\"]",
-        ), |lens, _| effects::listed(&lens.effects)).after("poi_effects"),
-    Row::<Lens>::joint(key(
-            "poi",
-            Kind::Names,
-            "none",
-            "",
-            "The name of a `[[poi]]`, or several. Of an occlusion lens: what shall be seen; it never hides itself. Of a lens with an overlay: what the overlay is tied to by context lines; a view is of the first of them.",
-            "\"hall\"",
-        ), |lens, options| lens.best_view.as_ref().and_then(best_view::pois).or_else(|| occluders(lens, "poi", options))),
-    Row::<Lens>::joint(key(
+        ),
+        several,
+    )
+    .always()
+    .after("shape"),
+    Row::<Lens>::joint(
+        key("effects", Kind::Effects, "none", "", "What it does, in order: names, or tables with parameters; see Effects. At most one scene style.", "[\"sepia\"]"),
+        |lens, _| effects::listed(&lens.effects),
+    )
+    .after("poi_effects"),
+    Row::<Lens>::joint(
+        key("poi", Kind::Names, "none", "", "The name of a `[[poi]]`, or several. Of an occlusion lens: what shall be seen; it never hides itself. Of a lens with an overlay: what the overlay is tied to by context lines; a view is of the first of them.", "\"hall\""),
+        |lens, options| lens.best_view.as_ref().and_then(best_view::pois).or_else(|| occluders(lens, "poi", options)),
+    ),
+    Row::<Lens>::joint(
+        key(
             "view",
             Kind::View,
             "by its kind",
             "",
             "The eye that the overlay of a best-view lens, a map or another view is seen from; see Views.",
             "{ kind = \"best\", normal = [0, -1, 0.5] }",
-        ), |lens, options| lens.best_view.as_ref().and_then(|shown| best_view::view(lens.kind, shown, options))),
-    Row::<Lens>::joint(key(
-            "image",
-            Kind::Text,
-            "none",
-            "",
-            "Of an annotation: the image that it shows, PNG or JPEG.",
-            "\"photo.png\"",
-        ), |lens, options| match &lens.best_view.as_ref()?.depiction { Depiction::Image(file) => Some(Data::Text(options.written(file))), _ => None }),
-    Row::<Lens>::joint(key(
-            "text",
-            Kind::Text,
-            "none",
-            "",
-            "Of an annotation: the text that it shows; `\\n` begins a line.",
-            "\"Town hall\\n1893\"",
-        ), |lens, _| match &lens.best_view.as_ref()?.depiction { Depiction::Text(text) => Some(text.into()), _ => None }),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| lens.best_view.as_ref().and_then(|shown| best_view::view(lens.kind, shown, options)),
+    ),
+    Row::<Lens>::joint(
+        key("image", Kind::Text, "none", "", "Of an annotation: the image that it shows, PNG or JPEG.", "\"photo.png\""),
+        |lens, options| match &lens.best_view.as_ref()?.depiction {
+            Depiction::Image(file) => Some(Data::Text(options.written(file))),
+            _ => None,
+        },
+    ),
+    Row::<Lens>::joint(
+        key("text", Kind::Text, "none", "", "Of an annotation: the text that it shows; `\\n` begins a line.", "\"Town hall\\n1893\""),
+        |lens, _| match &lens.best_view.as_ref()?.depiction {
+            Depiction::Text(text) => Some(text.into()),
+            _ => None,
+        },
+    ),
+    Row::<Lens>::joint(
+        key(
             "lenses",
             Kind::Texts,
             "all that act in every view",
             "",
             "The lenses that act in its view, by name; those that have overlays stand in its overlay as overlays. An empty list: none.",
             "[\"old town\"]",
-        ), |lens, _| Some(Data::list(lens.best_view.as_ref()?.lenses.as_ref()?))),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, _| Some(Data::list(lens.best_view.as_ref()?.lenses.as_ref()?)),
+    ),
+    Row::<Lens>::joint(
+        key(
             "look",
             Kind::Table(&LOOK),
             "as the scene",
             "",
             "How its view looks, in place of the `[style]` of the scene.",
             "{ base = \"clay\" }",
-        ), |lens, options| lens.best_view.as_ref().and_then(|shown| best_view::look(shown, options))),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| lens.best_view.as_ref().and_then(|shown| best_view::look(shown, options)),
+    ),
+    Row::<Lens>::joint(
+        key(
             "test",
             Kind::Test,
             "{ kind = \"exact\" }",
             "",
             "Of an occlusion lens: when a city object hides something; see Detection tests.",
             "{ kind = \"exact\", coverage = 0.05 }",
-        ), |lens, options| occluders(lens, "test", options)),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| occluders(lens, "test", options),
+    ),
+    Row::<Lens>::joint(
+        key(
             "force",
             Kind::Table(&CHOICE),
             "none",
             "",
             "Of an occlusion lens: city objects that hide something whatever the test says; never those of `poi`.",
             "{ attribute = \"measuredHeight\", min = 60.0 }",
-        ), |lens, options| occluders(lens, "force", options)),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| occluders(lens, "force", options),
+    ),
+    Row::<Lens>::joint(
+        key(
             "forbid",
             Kind::Table(&CHOICE),
             "none",
             "",
             "Of an occlusion lens: city objects that stay as they are whatever the test and `force` say.",
             "{ ids = [\"town-hall\"] }",
-        ), |lens, options| occluders(lens, "forbid", options)),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| occluders(lens, "forbid", options),
+    ),
+    Row::<Lens>::joint(
+        key(
             "margin",
             Kind::Number { min: 0.0, max: 1000.0 },
             "1.0",
             "metres",
             "Of an occlusion lens, in animations: how far an occluder must leave the test before it ceases to be one; 0: at once. See Animations.",
             "5.0",
-        ), |lens, options| occluders(lens, "margin", options)),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| occluders(lens, "margin", options),
+    ),
+    Row::<Lens>::joint(
+        key(
             "fade",
             Kind::Number { min: 0.0, max: 60.0 },
             "0.3",
             "seconds",
             "Of an occlusion lens, in animations: how long what becomes an occluder, or ceases to be one, takes to change; 0: at once.",
             "0.5",
-        ), |lens, options| occluders(lens, "fade", options)),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| occluders(lens, "fade", options),
+    ),
+    Row::<Lens>::joint(
+        key(
             "render",
             Kind::Rendering,
             "\"discard\"",
             "",
             "Of an occlusion lens: how occluders are drawn, by a word, a word with parameters, or by cases; see Renderings. Or a list of effects, as `effects` takes them. `effects` come after.",
             "{ as = \"x-ray\", exponent = 0.8 }",
-        ), |lens, options| lens.render.as_ref().map(|render| rendering::written(render, options))),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| lens.render.as_ref().map(|render| rendering::written(render, options)),
+    ),
+    Row::<Lens>::joint(
+        key(
             "poi_effects",
             Kind::Effects,
             "none",
             "",
             "Of an occlusion lens: effects on the points of interest that are city objects, parts included, after all else.",
             "[{ effect = \"overlay\", color = \"#e08a3c\", opacity = 0.4 }]",
-        ), |lens, _| effects::listed(&lens.render.as_ref()?.poi_effects)),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, _| effects::listed(&lens.render.as_ref()?.poi_effects),
+    ),
+    Row::<Lens>::joint(
+        key(
             "deform",
             Kind::Steps,
             "must be given for a deformation lens",
             "",
             "Of a deformation lens: what it does with space, one step after the other; see Deformation lenses.",
             "[{ kind = \"twist\", angle_deg = 90.0 }, { kind = \"taper\", factor = 0.5 }]",
-        ), |lens, options| lens.deform.as_ref().map(|deform| deformation::steps_data(deform, options))).after("look"),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| lens.deform.as_ref().map(|deform| deformation::steps_data(deform, options)),
+    )
+    .after("look"),
+    Row::<Lens>::joint(
+        key(
             "control",
             Kind::WordOrTable(CONTROL_WORDS, &CONTROL),
             "\"smooth\"; over a cylinder or a sphere \"bump\"",
             "",
             "Of a deformation lens: how strong it is over the base of its focus area; along the border it is 0.",
             "{ profile = \"smooth\", border = 0.1 }",
-        ), |lens, options| deformation::control_data(lens.deform.as_ref()?, options)).after("deform"),
-    Row::<Lens>::joint(key(
-            "strength",
-            Kind::Number { min: 0.0, max: 1.0 },
-            "1.0",
-            "",
-            "Of a deformation lens: how much of it; ways, angles and factors are that much of what is given.",
-            "0.5",
-        ), |lens, _| lens.deform.as_ref().map(|deform| deform.strength).filter(|strength| *strength != 1.0).map(Data::from)).after("control"),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| deformation::control_data(lens.deform.as_ref()?, options),
+    )
+    .after("deform"),
+    Row::<Lens>::joint(
+        key("strength", Kind::Number { min: 0.0, max: 1.0 }, "1.0", "", "Of a deformation lens: how much of it; ways, angles and factors are that much of what is given.", "0.5"),
+        |lens, _| {
+            lens.deform.as_ref().map(|deform| deform.strength).filter(|strength| *strength != 1.0).map(Data::from)
+        },
+    )
+    .after("control"),
+    Row::<Lens>::joint(
+        key(
             "content",
             Kind::Table(&CONTENT),
             "what is below",
             "",
             "What it shows in itself in place of what is below it; a lens of any kind may have some, a `content` lens must.",
             "{ lod = \"1.2\" }",
-        ), |lens, options| lens.content.as_ref().map(|content| content::written(content, options))),
-    Row::<Lens>::joint(key(
+        ),
+        |lens, options| lens.content.as_ref().map(|content| content::written(content, options)),
+    ),
+    Row::<Lens>::joint(
+        key(
             "clip",
             Kind::Word { now: &["order", "merge", "discard"], later: &[] },
             "\"order\"",
             "",
             "Where its content shows, what becomes of what is below, the context and contents of lower lenses: by `order` it is clipped; with `merge` it stays and the content is added; with `discard` nothing shows, neither, where a lower lens shows another content.",
             "\"merge\"",
-        ), |lens, _| lens.content.as_ref().map(|content| content.clip).filter(|clip| *clip != Clip::default()).map(|clip| clip.word().into())),
-    Row::<Lens>::new(key(
+        ),
+        |lens, _| {
+            lens.content
+                .as_ref()
+                .map(|content| content.clip)
+                .filter(|clip| *clip != Clip::default())
+                .map(|clip| clip.word().into())
+        },
+    ),
+    Row::<Lens>::new(
+        key(
             "space",
             Kind::Word { now: &["displayed", "rest"], later: &[] },
             "\"displayed\"",
             "",
             "Which position of a surface counts where a deformation moves it: that at which it is shown, or with `rest` that of the city as it is. Then the lens goes with the houses: its body is moved as they are, to a thousandth of its size. Changed heights of objects (`heights`, `lower`) do not move it.",
             "\"rest\"",
-        ), |lens, _| lens.at_rest.then(|| REST.into()), |lens, given| lens.at_rest = given.node.text() == Some(REST)).after("shadows"),
-    field!(key(
+        ),
+        |lens, _| lens.at_rest.then(|| REST.into()),
+        |lens, given| lens.at_rest = given.node.text() == Some(REST),
+    )
+    .after("shadows"),
+    field!(
+        key(
             "body",
             Kind::Word { now: &["outline", "shell", "halo", "none"], later: &[] },
             "\"outline\"; of an occlusion lens \"none\"",
             "",
             "How the lens body itself is drawn, in its colour: a line around it, tinted glass, a glow around it. Thematic and occlusion lenses show a line for all, and so do flat ones and those tested by a sprite for `halo`.",
             "\"none\"",
-        ), Word, |lens: Lens| lens.body),
-    Row::<Lens>::joint(key(
+        ),
+        Word,
+        |lens: Lens| lens.body
+    ),
+    Row::<Lens>::joint(
+        key(
             "sprite",
             Kind::Table(&SPRITE),
             "none: from its shapes",
             "",
             "Has the lens tested by a volumetric depth sprite of it.",
             "{ resolution = 512 }",
-        ), |lens, options| lens.sprite.as_ref().map(|sprite| sprite::written(sprite, options))),
-    Row::<Lens>::new(key(
+        ),
+        |lens, options| lens.sprite.as_ref().map(|sprite| sprite::written(sprite, options)),
+    ),
+    Row::<Lens>::new(
+        key(
             "border",
             Kind::Table(&BORDER),
             "none: it ends at once",
             "",
             "Has what the lens does end gradually.",
             "{ width = 20.0 }",
-        ), |lens, options| lens.border.as_ref().map(|border| row::written(BORDER_ROWS, border, &HARD, options)), |lens, given| { let own = given.table(&BORDER); let mut border = HARD; row::read(BORDER_ROWS, &own, given.reader, &mut border); lens.border = Some(border); }),
-    field!(key(
-            "shadows",
-            Kind::Boolean,
-            "false",
-            "",
-            "Whether what the lens takes away, sees through or replaces still casts the shadow that it has without the lens. Otherwise shadows are those of what is there: an erased or translucent building casts none, one that is flattened or shown as something else that of its new form.",
-            "true",
-        ), Same, |lens: Lens| lens.keeps_shadows),
-    field!(key(
+        ),
+        |lens, options| lens.border.as_ref().map(|border| row::written(BORDER_ROWS, border, &HARD, options)),
+        |lens, given| {
+            let own = given.table(&BORDER);
+            let mut border = HARD;
+            row::read(BORDER_ROWS, &own, given.reader, &mut border);
+            lens.border = Some(border);
+        },
+    ),
+    field!(
+        key("shadows", Kind::Boolean, "false", "", "Whether what the lens takes away, sees through or replaces still casts the shadow that it has without the lens. Otherwise shadows are those of what is there: an erased or translucent building casts none, one that is flattened or shown as something else that of its new form.", "true",),
+        Same,
+        |lens: Lens| lens.keeps_shadows
+    ),
+    field!(
+        key(
             "section",
             Kind::Color,
             "none: what is cut is hollow",
             "",
             "The colour of sections: where the lens takes part of a closed body away, or shows part of one, its surface closes what is left. See Sections.",
             "\"#9c4a3c\"",
-        ), Color, |lens: Lens| lens.section),
+        ),
+        Color,
+        |lens: Lens| lens.section
+    ),
 ];
 
 /// What counts a surface where the city has it at rest.

@@ -108,9 +108,10 @@ pub fn to_toml_for(scene: &Scene, options: &Options) -> String {
 pub fn to_edited(text: &str, was: &Options, scene: &Scene, options: &Options) -> String {
     let anew = to_toml_for(scene, options);
     let edited = || {
-        let before = parse(text, "", was).ok()?;
-        let made = save::changed(text, &tree(&before, was), &tree(scene, options))?;
-        (parse(&made, "", options).ok()? == parse(&anew, "", options).ok()?).then_some(made)
+        let (before, after) = (parse(text, "", was).ok()?, parse(&anew, "", options).ok()?);
+        let (before, now) = (tree(&before, was), tree(scene, options));
+        let means_it = |made: &String| parse(made, "", options).is_ok_and(|made| made == after);
+        [false, true].into_iter().find_map(|strict| save::changed(text, &before, &now, strict).filter(means_it))
     };
     edited().unwrap_or(anew)
 }

@@ -43,74 +43,114 @@ pub const OVERLAY: Table = Table {
 };
 
 const OVERLAY_ROWS: &[Row<Overlay>] = &[
-    field!(key("lens", Kind::Text, "", "", "The name of its lens.", "\"cathedral\""), Same, |overlay: Overlay| overlay.lens),
-    field!(key(
-            "priority",
-            Kind::Number { min: -1e6, max: 1e6 },
-            "0.0",
-            "",
-            "Where there is not room for all, higher ones stay larger; the lowest become markers.",
-            "1.0",
-        ), Same, |overlay: Overlay| overlay.priority),
-    field!(key(
-            "interest",
-            Kind::Number { min: 0.0, max: 1.0 },
-            "0.5",
-            "",
-            "How large it gets where `[layout]` has `size = \"interest\"`: 0 the smallest, 1 the largest size.",
-            "1.0",
-        ), Same, |overlay: Overlay| overlay.interest),
-    Row::<Overlay>::new(key(
+    field!(key("lens", Kind::Text, "", "", "The name of its lens.", "\"cathedral\""), Same, |overlay: Overlay| overlay
+        .lens),
+    field!(
+        key("priority", Kind::Number { min: -1e6, max: 1e6 }, "0.0", "", "Where there is not room for all, higher ones stay larger; the lowest become markers.", "1.0",),
+        Same,
+        |overlay: Overlay| overlay.priority
+    ),
+    field!(
+        key("interest", Kind::Number { min: 0.0, max: 1.0 }, "0.5", "", "How large it gets where `[layout]` has `size = \"interest\"`: 0 the smallest, 1 the largest size.", "1.0",),
+        Same,
+        |overlay: Overlay| overlay.interest
+    ),
+    Row::<Overlay>::new(
+        key(
             "at",
             Kind::PicturePlace,
             "where the layout puts it",
             "",
             "A place of its own: where its middle is, as shares of the picture's width and height from the upper left. It keeps its `size`, as far as the picture holds that, and the margin to the border; the others leave it free. Of two that overlap, the one whose lens comes later lies in front.",
             "[0.5, 0.4]",
-        ), |overlay, _| match overlay.stand { Stand::At(at) => Some(at.into()), _ => None }, |overlay, given| overlay.stand = given.node.numbers::<2>().map_or(Stand::Laid, Stand::At)).after("caption"),
-    Row::<Overlay>::new(key(
+        ),
+        |overlay, _| match overlay.stand {
+            Stand::At(at) => Some(at.into()),
+            _ => None,
+        },
+        |overlay, given| overlay.stand = given.node.numbers::<2>().map_or(Stand::Laid, Stand::At),
+    )
+    .after("caption"),
+    Row::<Overlay>::new(
+        key(
             "call_out",
             Kind::Table(&CALL_OUT),
             "none: it lies in the plane of the picture",
             "",
             "Has it stand in the scene, as a tilted board above its first point of interest; see Best-view lenses. Either this or `at`.",
             "{ tilt_deg = 30.0 }",
-        ), |overlay, options| match &overlay.stand { Stand::Scene(own) => Some(row::written(CALL_OUT_ROWS, own, &CallOut::default(), options)), _ => None }, |overlay, given| overlay.stand = Stand::Scene(call_out(given))).after("at"),
-    field!(key("size", Kind::Size, "[240, 160]", "pixels", "Its preferred size.", "[320, 200]"), Same, |overlay: Overlay| overlay.size),
-    field!(key(
+        ),
+        |overlay, options| match &overlay.stand {
+            Stand::Scene(own) => Some(row::written(CALL_OUT_ROWS, own, &CallOut::default(), options)),
+            _ => None,
+        },
+        |overlay, given| overlay.stand = Stand::Scene(call_out(given)),
+    )
+    .after("at"),
+    field!(
+        key("size", Kind::Size, "[240, 160]", "pixels", "Its preferred size.", "[320, 200]"),
+        Same,
+        |overlay: Overlay| overlay.size
+    ),
+    field!(
+        key(
             "min",
             Kind::Size,
             "half of `size`; a card of text keeps its size",
             "pixels",
             "It is made no smaller.",
             "[120, 80]",
-        ), Same, |overlay: Overlay| overlay.min),
-    field!(key("max", Kind::Size, "one and a half of `size`", "pixels", "It is made no larger.", "[480, 300]"), Same, |overlay: Overlay| overlay.max),
-    field!(key(
+        ),
+        Same,
+        |overlay: Overlay| overlay.min
+    ),
+    field!(
+        key("max", Kind::Size, "one and a half of `size`", "pixels", "It is made no larger.", "[480, 300]"),
+        Same,
+        |overlay: Overlay| overlay.max
+    ),
+    field!(
+        key(
             "opacity",
             Kind::Number { min: 0.0, max: 1.0 },
             "1.0",
             "",
             "How much of the picture below it hides.",
             "0.8",
-        ), Same, |overlay: Overlay| overlay.opacity).after("interest"),
-    Row::<Overlay>::new(key(
+        ),
+        Same,
+        |overlay: Overlay| overlay.opacity
+    )
+    .after("interest"),
+    Row::<Overlay>::new(
+        key(
             "frame",
             Kind::WordOrTable(&FRAMES, &FRAME),
             "\"rounded\"",
             "",
             "What is cut out of it and laid over it: a frame that is built in, or images.",
             "\"print\"",
-        ), |overlay, options| Some(frame_data(&overlay.frame, options)), |overlay, given| overlay.frame = frame(given)),
-    field!(key("caption", Kind::Text, "none", "", "A line of text below what it shows.", "\"Town hall, 1893\""), Same, |overlay: Overlay| overlay.caption),
-    Row::<Overlay>::new(key(
+        ),
+        |overlay, options| Some(frame_data(&overlay.frame, options)),
+        |overlay, given| overlay.frame = frame(given),
+    ),
+    field!(
+        key("caption", Kind::Text, "none", "", "A line of text below what it shows.", "\"Town hall, 1893\""),
+        Same,
+        |overlay: Overlay| overlay.caption
+    ),
+    Row::<Overlay>::new(
+        key(
             "line",
             Kind::WordOrTable(&["none", LINES[0], LINES[1], LINES[2]], &LINE),
             "\"straight\"",
             "",
             "The context lines from it to its points of interest: how they run, or a table that says more; `none`: it has none.",
             "{ kind = \"curved\", to = \"area\" }",
-        ), |overlay, options| Some(line_data(overlay.line.as_ref(), options)), |overlay, given| overlay.line = line(given)),
+        ),
+        |overlay, options| Some(line_data(overlay.line.as_ref(), options)),
+        |overlay, given| overlay.line = line(given),
+    ),
 ];
 
 /// `call_out` of an overlay.

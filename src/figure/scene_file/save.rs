@@ -9,7 +9,9 @@ use crate::figure::scene_file::{
 };
 
 /// The text with the values of `now` where they are others than those of `was`, which it says now; `None` where it is no TOML.
-pub fn changed(file: &str, was: &Node, now: &Node) -> Option<String> {
+/// With `is_strict` a table is written anew where a key that changes does not stand in it: something else may say the same.
+pub fn changed(file: &str, was: &Node, now: &Node, is_strict: bool) -> Option<String> {
+    let mode = Mode { is_strict };
     let mut document: DocumentMut = file.parse().ok()?;
     let root = document.as_table_mut();
     for (key, _) in entries(was).filter(|(key, _)| !now.has(key)) {
@@ -19,7 +21,7 @@ pub fn changed(file: &str, was: &Node, now: &Node) -> Option<String> {
         match (root.get_mut(key), was.entry(key)) {
             (_, Some(before)) if before == after => {}
             (Some(item), Some(before)) => {
-                if !within(item, before, after) {
+                if !mode.within(item, before, after) {
                     *item = section(after)?;
                 }
             }
@@ -63,42 +65,107 @@ fn value(node: &Node) -> Option<Value> {
     text::value(&node.data).parse().ok()
 }
 
-/// Changes what an item has; `false` where it says what `before` is in another way than expected.
-fn within(item: &mut Item, before: &Node, after: &Node) -> bool {
-    match (item, &before.data, &after.data) {
-        (Item::ArrayOfTables(all), Data::List(was), Data::List(now)) => tables(all, was, now),
-        (Item::Value(own), ..) => within_value(own, before, after),
-        (item, Data::Table(_), Data::Table(_)) => {
-            item.as_table_like_mut().is_some_and(|table| within_table(table, before, after))
-        }
-        _ => false,
-    }
+/// How careful changes are made.
+#[derive(Clone, Copy)]
+struct Mode {
+    is_strict: bool,
 }
 
-fn within_table(table: &mut dyn TableLike, was: &Node, now: &Node) -> bool {
-    for (key, _) in entries(was).filter(|(key, _)| !now.has(key)) {
-        if table.remove(key).is_none() {
-            // It is said by another key, or not at all.
-            return false;
-        }
-    }
-    for (key, after) in entries(now) {
-        let before = was.entry(key);
-        if before == Some(after) {
-            continue;
-        }
-        let done = match (table.contains_key(key), before) {
-            (true, Some(before)) => table.get_mut(key).is_some_and(|item| within(item, before, after)),
-            (false, Some(before)) if key == "shape" && table.contains_key("shapes") => {
-                only(table.get_mut("shapes")).is_some_and(|one| within_value(one, before, after))
+impl Mode {
+    /// Changes what an item has; `false` where it says what `before` is in another way than expected.
+    fn within(self, item: &mut Item, before: &Node, after: &Node) -> bool {
+        match (item, &before.data, &after.data) {
+            (Item::ArrayOfTables(all), Data::List(was), Data::List(now)) => self.tables(all, was, now),
+            (Item::Value(own), ..) => self.within_value(own, before, after),
+            (item, Data::Table(_), Data::Table(_)) => {
+                item.as_table_like_mut().is_some_and(|table| self.within_table(table, before, after))
             }
-            _ => insert(table, key, after),
-        };
-        if !done && !replace(table, key, after) {
-            return false;
+            _ => false,
         }
     }
-    true
+
+    fn within_table(self, table: &mut dyn TableLike, was: &Node, now: &Node) -> bool {
+        for (key, _) in entries(was).filter(|(key, _)| !now.has(key)) {
+            if table.remove(key).is_none() {
+                // It is said by another key, or not at all.
+                return false;
+            }
+        }
+        for (key, after) in entries(now) {
+            let before = was.entry(key);
+            if before == Some(after) {
+                continue;
+            }
+            let done = match (table.contains_key(key), before) {
+                (true, Some(before)) => table.get_mut(key).is_some_and(|item| self.within(item, before, after)),
+                (false, Some(before)) if key == "shape" && table.contains_key("shapes") => {
+                    only(table.get_mut("shapes")).is_some_and(|one| self.within_value(one, before, after))
+                }
+                (false, Some(_)) if self.is_strict => return false,
+                _ => insert(table, key, after),
+            };
+            if !done && !replace(table, key, after) {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn within_value(self, own: &mut Value, before: &Node, after: &Node) -> bool {
+        match (&mut *own, &before.data, &after.data) {
+            (Value::InlineTable(table), Data::Table(_), Data::Table(_)) => {
+                return self.within_table(table, before, after);
+            }
+            (Value::Array(list), Data::List(was), Data::List(now))
+                if list.len() == was.len() && was.len() == now.len() =>
+            {
+                let mut each = was.iter().zip(now).enumerate().filter(|(_, (before, after))| before != after);
+                return each.all(|(i, (before, after))| {
+                    list.get_mut(i).is_some_and(|own| self.within_value(own, before, after))
+                });
+            }
+            _ => {}
+        }
+        value(after).map(|value| put(own, value)).is_some()
+    }
+
+    /// Changes tables with heads: those that stay keep what stands in them.
+    fn tables(self, all: &mut ArrayOfTables, was: &[Node], now: &[Node]) -> bool {
+        let old: Vec<Table> = all.iter().cloned().collect();
+        if old.len() != was.len() {
+            return false;
+        }
+        let from = origins(was, now);
+        let kept: Vec<usize> = from.iter().flatten().copied().collect();
+        let is_reordered = !kept.is_sorted();
+        let mut positions: Vec<Option<isize>> = kept.iter().map(|i| old[*i].position()).collect();
+        positions.sort();
+        let mut positions = positions.into_iter();
+        all.clear();
+        for (node, from) in now.iter().zip(from) {
+            let table = match from {
+                None => headed(node),
+                Some(i) => {
+                    let mut table = old[i].clone();
+                    if was[i] != *node && !self.within_table(&mut table, &was[i], node) {
+                        let Some(other) = headed(node) else { return false };
+                        let (decor, position) = (table.decor().clone(), table.position());
+                        table = other;
+                        *table.decor_mut() = decor;
+                        table.set_position(position);
+                    }
+                    let place = positions.next().flatten();
+                    if is_reordered {
+                        table.set_position(place);
+                    }
+                    Some(table)
+                }
+            };
+            let Some(table) = table else { return false };
+            all.push(table);
+        }
+        true
+    }
 }
 
 /// The one element of a list.
@@ -131,60 +198,6 @@ fn replace(table: &mut dyn TableLike, key: &str, node: &Node) -> bool {
 fn put(own: &mut Value, mut value: Value) {
     value.decor_mut().clone_from(own.decor());
     *own = value;
-}
-
-fn within_value(own: &mut Value, before: &Node, after: &Node) -> bool {
-    match (&mut *own, &before.data, &after.data) {
-        (Value::InlineTable(table), Data::Table(_), Data::Table(_)) => return within_table(table, before, after),
-        (Value::Array(list), Data::List(was), Data::List(now)) if list.len() == was.len() => {
-            if was.len() == now.len() {
-                let each = was.iter().zip(now).enumerate().filter(|(_, (before, after))| before != after);
-                return each
-                    .map(|(i, (before, after))| list.get_mut(i).is_some_and(|own| within_value(own, before, after)))
-                    .fold(true, |all, one| all && one);
-            }
-        }
-        _ => {}
-    }
-    value(after).map(|value| put(own, value)).is_some()
-}
-
-/// Changes tables with heads: those that stay keep what stands in them.
-fn tables(all: &mut ArrayOfTables, was: &[Node], now: &[Node]) -> bool {
-    let old: Vec<Table> = all.iter().cloned().collect();
-    if old.len() != was.len() {
-        return false;
-    }
-    let from = origins(was, now);
-    let kept: Vec<usize> = from.iter().flatten().copied().collect();
-    let is_reordered = !kept.is_sorted();
-    let mut positions: Vec<Option<isize>> = kept.iter().map(|i| old[*i].position()).collect();
-    positions.sort();
-    let mut positions = positions.into_iter();
-    all.clear();
-    for (node, from) in now.iter().zip(from) {
-        let table = match from {
-            None => headed(node),
-            Some(i) => {
-                let mut table = old[i].clone();
-                if was[i] != *node && !within_table(&mut table, &was[i], node) {
-                    let Some(other) = headed(node) else { return false };
-                    let (decor, position) = (table.decor().clone(), table.position());
-                    table = other;
-                    *table.decor_mut() = decor;
-                    table.set_position(position);
-                }
-                let place = positions.next().flatten();
-                if is_reordered {
-                    table.set_position(place);
-                }
-                Some(table)
-            }
-        };
-        let Some(table) = table else { return false };
-        all.push(table);
-    }
-    true
 }
 
 /// Which table each of `now` was: by its name, else by its place where none came or went.

@@ -198,7 +198,11 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
               begins in the figure's plane and reaches from there to infinity, away from the eye: the sky behind it is in it, \
               what stands before it is not. Both sides of the figure are alike. An eye in its plane sees it edge on: it holds \
               nothing then. It acts only in the view that the scene is looked at in.",
-        Focus::Shape(Shape::Flat { center: DVec3::ZERO, rotation: DQuat::IDENTITY, figure: FlatFigure::Disc { radius: 0.0 } }),
+        Focus::Shape(Shape::Flat {
+            center: DVec3::ZERO,
+            rotation: DQuat::IDENTITY,
+            figure: FlatFigure::Disc { radius: 0.0 }
+        }),
         Focus::Shape(Shape::Flat { .. }),
         &[
             kind!("flat", "Which shape."),
@@ -211,23 +215,51 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
                 "`[yaw, pitch, roll]`, as of a box: without, the figure lies level; `[yaw, 0, 90]` stands upright, its x along the yaw.",
                 "[30.0, 0.0, 90.0]",
             ), Turn, Focus::Shape(Shape::Flat { rotation, .. }) => rotation),
-            Row::<Focus>::joint(key("radius", Kind::Number { min: 0.0, max: FAR_M }, "none", "m", "Of a disc; 0 holds nothing.", "20.0"), |focus, _| match figure(focus)? { FlatFigure::Disc { radius } => Some((*radius).into()), _ => None }).always(),
-            Row::<Focus>::joint(key(
-                "size",
-                Kind::PlanLengths,
-                "none",
-                "m",
-                "Of a rectangle: full edges along its x and y.",
-                "[40.0, 25.0]",
-            ), |focus, _| match figure(focus)? { FlatFigure::Rectangle { size } => Some((*size).into()), _ => None }).always(),
-            Row::<Focus>::joint(key(
-                "points",
-                Kind::PlanPoints(3),
-                "none",
-                "m",
-                "Of a polygon, convex or not, in the figure's x and y; at most 1024. Where it crosses itself, all that it goes around is in it.",
-                "[[-20, -10], [20, -10], [0, 15]]",
-            ), |focus, _| match figure(focus)? { FlatFigure::Polygon { points } => Same::data(points), _ => None }).always(),
+            Row::<Focus>::joint(
+                key(
+                    "radius",
+                    Kind::Number { min: 0.0, max: FAR_M },
+                    "none",
+                    "m",
+                    "Of a disc; 0 holds nothing.",
+                    "20.0"
+                ),
+                |focus, _| match figure(focus)? {
+                    FlatFigure::Disc { radius } => Some((*radius).into()),
+                    _ => None,
+                }
+            )
+            .always(),
+            Row::<Focus>::joint(
+                key(
+                    "size",
+                    Kind::PlanLengths,
+                    "none",
+                    "m",
+                    "Of a rectangle: full edges along its x and y.",
+                    "[40.0, 25.0]",
+                ),
+                |focus, _| match figure(focus)? {
+                    FlatFigure::Rectangle { size } => Some((*size).into()),
+                    _ => None,
+                }
+            )
+            .always(),
+            Row::<Focus>::joint(
+                key(
+                    "points",
+                    Kind::PlanPoints(3),
+                    "none",
+                    "m",
+                    "Of a polygon, convex or not, in the figure's x and y; at most 1024. Where it crosses itself, all that it goes around is in it.",
+                    "[[-20, -10], [20, -10], [0, 15]]",
+                ),
+                |focus, _| match figure(focus)? {
+                    FlatFigure::Polygon { points } => Same::data(points),
+                    _ => None,
+                }
+            )
+            .always(),
         ]
     ),
     variant!(
@@ -238,14 +270,14 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
         Focus::Mesh { .. },
         &[
             kind!("mesh", "Which shape."),
-            Row::<Focus>::joint(key(
-                "file",
-                Kind::Text,
-                "",
-                "",
-                "The file, of any format that cities are read from, relative to the scene file.",
-                "\"lens.obj\"",
-            ), |focus, options| match focus { Focus::Mesh { file, .. } => Some(path_data(file, options)), _ => None }).always(),
+            Row::<Focus>::joint(
+                key("file", Kind::Text, "", "", "The file, of any format that cities are read from, relative to the scene file.", "\"lens.obj\"",),
+                |focus, options| match focus {
+                    Focus::Mesh { file, .. } => Some(path_data(file, options)),
+                    _ => None,
+                }
+            )
+            .always(),
             part!(Focus, key("at", Kind::Point, "[0, 0, 0]", "m", "Where its origin is put.", "[78600.0, 457950.0, 10.0]"), Same, Focus::Mesh { at, .. } => at),
             part!(Focus, ROTATION, Turn, Focus::Mesh { rotation, .. } => rotation),
             part!(Focus, key(
@@ -266,25 +298,74 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
         Focus::Prism { .. } | Focus::Mask { .. },
         &[
             kind!("mask", "Which shape."),
-            Row::<Focus>::joint(key(
-                "points",
-                Kind::PlanPoints(3),
-                "none: `image`",
-                "m",
-                "The polygon's corners `[x, y]` along its border, either way round.",
-                "[[0, 0], [90, 0], [60, 80]]",
-            ), |focus, _| match focus { Focus::Prism { points, .. } => Same::data(points), _ => None }).always(),
-            Row::<Focus>::joint(key("holes", Kind::Rings, "none", "m", "Corners of its holes.", "[[[40, 10], [50, 10], [50, 20]]]"), |focus, _| match focus { Focus::Prism { holes, .. } if !holes.is_empty() => Same::data(holes), _ => None }).always(),
-            Row::<Focus>::joint(key(
-                "image",
-                Kind::Text,
-                "none: `points`",
-                "",
-                "A PNG or JPEG, relative to the scene file. A pixel is in where it is opaque and at least as light as mid grey. North is up.",
-                "\"district.png\"",
-            ), |focus, options| match focus { Focus::Mask { image, .. } => Some(path_data(image, options)), _ => None }).always(),
-            Row::<Focus>::joint(key("corner", Kind::PlanPoint, "none", "m", "Of an image: its south-west corner.", "[78000.0, 457000.0]"), |focus, _| match focus { Focus::Mask { corner, .. } => Some((*corner).into()), _ => None }).always(),
-            Row::<Focus>::joint(key("size", Kind::PlanLengths, "none", "m", "Of an image: its width and height in plan.", "[400.0, 300.0]"), |focus, _| match focus { Focus::Mask { size, .. } => Some((*size).into()), _ => None }).always(),
+            Row::<Focus>::joint(
+                key(
+                    "points",
+                    Kind::PlanPoints(3),
+                    "none: `image`",
+                    "m",
+                    "The polygon's corners `[x, y]` along its border, either way round.",
+                    "[[0, 0], [90, 0], [60, 80]]",
+                ),
+                |focus, _| match focus {
+                    Focus::Prism { points, .. } => Same::data(points),
+                    _ => None,
+                }
+            )
+            .always(),
+            Row::<Focus>::joint(
+                key("holes", Kind::Rings, "none", "m", "Corners of its holes.", "[[[40, 10], [50, 10], [50, 20]]]"),
+                |focus, _| match focus {
+                    Focus::Prism { holes, .. } if !holes.is_empty() => Same::data(holes),
+                    _ => None,
+                }
+            )
+            .always(),
+            Row::<Focus>::joint(
+                key(
+                    "image",
+                    Kind::Text,
+                    "none: `points`",
+                    "",
+                    "A PNG or JPEG, relative to the scene file. A pixel is in where it is opaque and at least as light as mid grey. North is up.",
+                    "\"district.png\"",
+                ),
+                |focus, options| match focus {
+                    Focus::Mask { image, .. } => Some(path_data(image, options)),
+                    _ => None,
+                }
+            )
+            .always(),
+            Row::<Focus>::joint(
+                key(
+                    "corner",
+                    Kind::PlanPoint,
+                    "none",
+                    "m",
+                    "Of an image: its south-west corner.",
+                    "[78000.0, 457000.0]"
+                ),
+                |focus, _| match focus {
+                    Focus::Mask { corner, .. } => Some((*corner).into()),
+                    _ => None,
+                }
+            )
+            .always(),
+            Row::<Focus>::joint(
+                key(
+                    "size",
+                    Kind::PlanLengths,
+                    "none",
+                    "m",
+                    "Of an image: its width and height in plan.",
+                    "[400.0, 300.0]"
+                ),
+                |focus, _| match focus {
+                    Focus::Mask { size, .. } => Some((*size).into()),
+                    _ => None,
+                }
+            )
+            .always(),
             part!(Focus, BASE, Same, Focus::Prism { base, .. } | Focus::Mask { base, .. } => base),
             part!(Focus, HIGH, Same, Focus::Prism { height, .. } | Focus::Mask { height, .. } => height),
         ]
@@ -297,14 +378,22 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
         Focus::Mask3d { .. },
         &[
             kind!("mask3d", "Which shape."),
-            Row::<Focus>::joint(key(
-                "images",
-                Kind::Texts,
-                "",
-                "",
-                "One PNG or JPEG per layer, bottom to top, all of one size; as for `mask`.",
-                "[\"low.png\", \"high.png\"]",
-            ), |focus, options| match focus { Focus::Mask3d { images, .. } => Some(Data::list(images.iter().map(|file| path_data(file, options)))), _ => None }).always(),
+            Row::<Focus>::joint(
+                key(
+                    "images",
+                    Kind::Texts,
+                    "",
+                    "",
+                    "One PNG or JPEG per layer, bottom to top, all of one size; as for `mask`.",
+                    "[\"low.png\", \"high.png\"]",
+                ),
+                |focus, options| match focus {
+                    Focus::Mask3d { images, .. } =>
+                        Some(Data::list(images.iter().map(|file| path_data(file, options)))),
+                    _ => None,
+                }
+            )
+            .always(),
             part!(Focus, key(
                 "corner",
                 Kind::Point,
@@ -326,7 +415,14 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
         Focus::Sprite { .. },
         &[
             kind!("sprite", "Which shape."),
-            Row::<Focus>::joint(key("file", Kind::Text, "", "", "The file, OpenEXR, relative to the scene file.", "\"hall.exr\""), |focus, options| match focus { Focus::Sprite { file } => Some(path_data(file, options)), _ => None }).always(),
+            Row::<Focus>::joint(
+                key("file", Kind::Text, "", "", "The file, OpenEXR, relative to the scene file.", "\"hall.exr\""),
+                |focus, options| match focus {
+                    Focus::Sprite { file } => Some(path_data(file, options)),
+                    _ => None,
+                }
+            )
+            .always(),
         ]
     ),
     variant!(
@@ -371,14 +467,21 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
         Focus::Enclosed { .. },
         &[
             kind!("enclosed", "Which shape."),
-            Row::<Focus>::joint(key(
-                "shapes",
-                Kind::Shapes,
-                "",
-                "",
-                "What encloses them: shapes of any kind.",
-                "[{ kind = \"sphere\", center = [78600.0, 457950.0, 10.0], radius = 60.0 }]",
-            ), |focus, options| match focus { Focus::Enclosed { parts, .. } => parts_data(parts, options), _ => None }).always(),
+            Row::<Focus>::joint(
+                key(
+                    "shapes",
+                    Kind::Shapes,
+                    "",
+                    "",
+                    "What encloses them: shapes of any kind.",
+                    "[{ kind = \"sphere\", center = [78600.0, 457950.0, 10.0], radius = 60.0 }]",
+                ),
+                |focus, options| match focus {
+                    Focus::Enclosed { parts, .. } => parts_data(parts, options),
+                    _ => None,
+                }
+            )
+            .always(),
             part!(Focus, key(
                 "whole",
                 Kind::Boolean,
@@ -405,7 +508,11 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
         Focus::Combined { how: Operation::Union, .. },
         &[
             kind!("union", "Which shape."),
-            Row::<Focus>::joint(PARTS, |focus, options| match focus { Focus::Combined { parts, .. } => parts_data(parts, options), _ => None }).always(),
+            Row::<Focus>::joint(PARTS, |focus, options| match focus {
+                Focus::Combined { parts, .. } => parts_data(parts, options),
+                _ => None,
+            })
+            .always(),
         ]
     ),
     variant!(
@@ -416,7 +523,11 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
         Focus::Combined { how: Operation::Intersection, .. },
         &[
             kind!("intersection", "Which shape."),
-            Row::<Focus>::joint(PARTS, |focus, options| match focus { Focus::Combined { parts, .. } => parts_data(parts, options), _ => None }).always(),
+            Row::<Focus>::joint(PARTS, |focus, options| match focus {
+                Focus::Combined { parts, .. } => parts_data(parts, options),
+                _ => None,
+            })
+            .always(),
         ]
     ),
     variant!(
@@ -427,7 +538,11 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
         Focus::Combined { how: Operation::Difference, .. },
         &[
             kind!("difference", "Which shape."),
-            Row::<Focus>::joint(PARTS, |focus, options| match focus { Focus::Combined { parts, .. } => parts_data(parts, options), _ => None }).always(),
+            Row::<Focus>::joint(PARTS, |focus, options| match focus {
+                Focus::Combined { parts, .. } => parts_data(parts, options),
+                _ => None,
+            })
+            .always(),
         ]
     ),
 ];

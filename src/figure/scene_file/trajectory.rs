@@ -48,17 +48,34 @@ pub const TRAJECTORY: Table = Table {
 };
 
 const TRAJECTORY_ROWS: &[Row<Trajectory>] = &[
-    field!(key("name", Kind::Text, "`trajectory-N`, N its place in the file", "", "Its name, unique.", "\"tram 1\""), Same, |way: Trajectory| way.name).always(),
-    field!(key("points", Kind::Points(2), "", "m", "What it goes through.", "[[0, 0, 2], [80, 0, 2], [80, 60, 2]]"), Same, |way: Trajectory| way.points),
-    Row::<Trajectory>::joint(key(
+    field!(
+        key("name", Kind::Text, "`trajectory-N`, N its place in the file", "", "Its name, unique.", "\"tram 1\""),
+        Same,
+        |way: Trajectory| way.name
+    )
+    .always(),
+    field!(
+        key("points", Kind::Points(2), "", "m", "What it goes through.", "[[0, 0, 2], [80, 0, 2], [80, 60, 2]]"),
+        Same,
+        |way: Trajectory| way.points
+    ),
+    Row::<Trajectory>::joint(
+        key(
             "speed_m_s",
             Kind::Number { min: SLOWEST, max: FAR_M },
             "by `times_s`",
             "m/s",
             "How fast it goes its way.",
             "8.0",
-        ), |way, _| match way.pace { Pace::Speed(speed) => Some(speed.into()), Pace::Times(_) => None }).always(),
-    Row::<Trajectory>::joint(key(
+        ),
+        |way, _| match way.pace {
+            Pace::Speed(speed) => Some(speed.into()),
+            Pace::Times(_) => None,
+        },
+    )
+    .always(),
+    Row::<Trajectory>::joint(
+        key(
             "times_s",
             Kind::Times(2),
             "by `speed_m_s`",
@@ -66,56 +83,59 @@ const TRAJECTORY_ROWS: &[Row<Trajectory>] = &[
             "When it is at each of `points`, counted from `start_s`; of a closed way one more, when it is back at the first. From point to \
              point it goes at one speed; where the way is `smooth` its speed has no steps either.",
             "[0.0, 10.0, 16.0]",
-        ), |way, _| match &way.pace { Pace::Times(times) => Same::data(times), Pace::Speed(_) => None }).always(),
-    field!(key(
+        ),
+        |way, _| match &way.pace {
+            Pace::Times(times) => Same::data(times),
+            Pace::Speed(_) => None,
+        },
+    )
+    .always(),
+    field!(
+        key(
             "start_s",
             Kind::Number { min: -MOMENTS_S, max: MOMENTS_S },
             "0.0",
             "s",
             "When it sets out; before that it stands at its first point.",
             "-30.0",
-        ), Same, |way: Trajectory| way.start_s),
-    field!(key(
-            "closed",
-            Kind::Boolean,
-            "false",
-            "",
-            "Whether it goes on from the last point to the first, round and round. Else it stands at the last point when it has arrived.",
-            "true",
-        ), Same, |way: Trajectory| way.form.is_closed),
-    field!(key(
-            "smooth",
-            Kind::Boolean,
-            "false",
-            "",
-            "Whether it goes through the points on a centripetal Catmull-Rom curve, as cameras of animations do; else straight from point \
-             to point.",
-            "true",
-        ), Same, |way: Trajectory| way.form.is_smooth),
-    field!(key(
+        ),
+        Same,
+        |way: Trajectory| way.start_s
+    ),
+    field!(
+        key("closed", Kind::Boolean, "false", "", "Whether it goes on from the last point to the first, round and round. Else it stands at the last point when it has arrived.", "true",),
+        Same,
+        |way: Trajectory| way.form.is_closed
+    ),
+    field!(
+        key("smooth", Kind::Boolean, "false", "", "Whether it goes through the points on a centripetal Catmull-Rom curve, as cameras of animations do; else straight from point \
+             to point.", "true",),
+        Same,
+        |way: Trajectory| way.form.is_smooth
+    ),
+    field!(
+        key(
             "color",
             Kind::Color,
             "a categorical colour, by its place",
             "",
             "Of its marker and its trace.",
             "\"#c2185b\"",
-        ), Color, |way: Trajectory| way.color).after("start_s"),
-    field!(key(
-            "marker",
-            Kind::Boolean,
-            "true",
-            "",
-            "Whether a disc shows, in all views, where it is, and an arrow in it where it goes. Nothing hides it.",
-            "false",
-        ), Same, |way: Trajectory| way.marker),
-    field!(key(
-            "trace",
-            Kind::Boolean,
-            "false",
-            "",
-            "Whether a line shows its way, in all views: what it has gone, and paler what lies before it. Nothing hides it.",
-            "true",
-        ), Same, |way: Trajectory| way.trace),
+        ),
+        Color,
+        |way: Trajectory| way.color
+    )
+    .after("start_s"),
+    field!(
+        key("marker", Kind::Boolean, "true", "", "Whether a disc shows, in all views, where it is, and an arrow in it where it goes. Nothing hides it.", "false",),
+        Same,
+        |way: Trajectory| way.marker
+    ),
+    field!(
+        key("trace", Kind::Boolean, "false", "", "Whether a line shows its way, in all views: what it has gone, and paler what lies before it. Nothing hides it.", "true",),
+        Same,
+        |way: Trajectory| way.trace
+    ),
 ];
 
 /// A way that says nothing but its points.
