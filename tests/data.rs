@@ -37,6 +37,7 @@ fn root() -> Option<PathBuf> {
 }
 
 /// A trial that needs the data.
+#[allow(clippy::print_stdout, reason = "times of tests are printed beside their results")]
 fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 'static) -> Trial {
     let root = root();
     let is_absent = root.is_none();

@@ -3,7 +3,7 @@
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use crate::{
-    app::{drawing::Figure, new_lens::NewLens},
+    app::{drawn::Figure, new_lens::NewLens},
     view::navigate::Axis,
 };
 

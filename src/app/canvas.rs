@@ -4,17 +4,18 @@ use std::time::Instant;
 
 use eframe::egui::{
     self, Align2, Color32, ColorImage, Context, CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense,
-    TextureHandle, TextureOptions, Ui, Vec2, pos2, vec2,
+    TextureOptions, Ui, Vec2, pos2, vec2,
 };
 use glam::{DVec2, DVec3};
 
 use crate::{
     app::{
         artist::Frame,
-        handles::{self, Grip},
+        canvas_state::{Canvas, Drag, Hovered},
+        handles::{self},
         landing::EYE_HEIGHT_M,
-        outlines::Outlines,
-        window::{Window, step_of},
+        spots::in_rect,
+        state::Window,
     },
     figure::{overlays::views::POINT_RADIUS_M, scene_file::node::Data},
     geom::Aabb,
@@ -41,50 +42,6 @@ const WALK_M_S: f64 = 3.0;
 const FAST_WALK_M_S: f64 = 12.0;
 /// The longest side of a picture, pixels: what one target takes.
 const MOST_PIXELS: f32 = 4096.0;
-
-/// What a drag does.
-#[derive(Clone, Debug, PartialEq)]
-enum Drag {
-    Orbit {
-        pivot: DVec3,
-    },
-    Pan {
-        at: DVec3,
-    },
-    Look,
-    /// A handle of the chosen lens.
-    Handle(Box<Grip>),
-    /// An overlay: what is held of it is so far from its middle.
-    Overlay {
-        lens: usize,
-        off: Vec2,
-    },
-}
-
-/// What the picture in the window knows.
-#[derive(Default)]
-pub struct Canvas {
-    texture: Option<TextureHandle>,
-    rect: Option<Rect>,
-    drag: Option<Drag>,
-    flight: Option<(Flight, Instant)>,
-    last_step: Option<Instant>,
-    /// Whether the eye moved in the last frames: pictures are to be quick until it rests.
-    moved_at: Option<Instant>,
-    pub(super) hovered: Option<Hovered>,
-    /// The next move is down to the ground.
-    pub(super) step_down: bool,
-    pub(super) outlines: Option<Outlines>,
-}
-
-/// What is under the pointer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hovered {
-    /// The object, by index; `None`: the plain ground, or a part that no object has.
-    pub object: Option<u32>,
-    /// Where it is, metres.
-    pub at: DVec3,
-}
 
 /// How long after the last move the eye rests, seconds.
 const REST_S: f64 = 0.15;
@@ -553,13 +510,10 @@ impl Window {
     }
 }
 
-/// A place of the window in its picture, points from the upper left.
-pub(super) fn in_rect(rect: Rect, at: Pos2) -> DVec2 {
-    let off = at - rect.min;
-    DVec2::new(f64::from(off.x), f64::from(off.y))
-}
-
-/// Where a place is shown in the window; `None`: behind the eye.
-pub(super) fn spot_of(view: &View, rect: Rect, place: DVec3) -> Option<Pos2> {
-    view.pixel(place).map(|pixel| rect.min + vec2(pixel.x as f32, pixel.y as f32))
+/// The time that passed since the last call, seconds; not more than a tenth.
+pub(super) fn step_of(last: &mut Option<Instant>) -> f64 {
+    let now = Instant::now();
+    let step = last.map_or(0.0, |last| (now - last).as_secs_f64());
+    *last = Some(now);
+    step.min(0.1)
 }

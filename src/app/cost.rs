@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Ui};
 
-use crate::app::window::Window;
+use crate::app::state::Window;
 
 /// The panel.
 pub fn show(window: &Window, ui: &mut Ui) {

@@ -5,50 +5,13 @@ use glam::DVec3;
 
 use crate::{
     app::{
+        drawn::{Drawing, Figure},
         new_lens::{free_name, quoted},
-        window::{Window, caption},
+        state::Window,
+        theme::caption,
     },
     view::View,
 };
-
-/// What is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Figure {
-    /// A way: a lens along it.
-    Route,
-    /// A polygon: a lens over it.
-    Area,
-    /// Something to measure.
-    Measure,
-}
-
-impl Figure {
-    /// What it takes at least.
-    fn least(self) -> usize {
-        if self == Self::Area { 3 } else { 2 }
-    }
-
-    fn hint(self) -> &'static str {
-        match self {
-            Self::Route => {
-                "Click along the way. Enter puts the lens, Backspace takes the last point back, Esc ends it."
-            }
-            Self::Area => {
-                "Click around the area. Enter puts the lens, Backspace takes the last point back, Esc ends it."
-            }
-            Self::Measure => "Click from place to place. Backspace takes the last point back, Esc ends it.",
-        }
-    }
-}
-
-/// What is being drawn.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Drawing {
-    /// What.
-    pub figure: Figure,
-    /// Its points so far, metres.
-    pub points: Vec<DVec3>,
-}
 
 impl Window {
     /// Begins to draw.

@@ -5,10 +5,12 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     app::{
-        canvas::{in_rect, spot_of},
+        canvas_state::{Grip, Handle},
         knobs::{self, Knob},
         lens_list::State,
-        window::{Window, caption, color_of},
+        spots::{in_rect, spot_of},
+        state::Window,
+        theme::{caption, color_of},
     },
     geom::Aabb,
     lens::{Focus, Lens, Placement},
@@ -28,32 +30,6 @@ const APART: f32 = 16.0;
 const BEYOND: f32 = 26.0;
 /// Where that is outside the picture: how far from the middle, points.
 const NEAR: f32 = 60.0;
-
-/// Something of a lens that can be held, and where it is in the window.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Handle {
-    /// The lens, by its place.
-    pub lens: usize,
-    /// Which of its shapes.
-    pub shape: usize,
-    /// What of that.
-    pub knob: Knob,
-    /// Where it is, model coordinates.
-    place: DVec3,
-    /// Where it is shown.
-    pub at: Pos2,
-}
-
-/// A handle that is being dragged: everything is worked out from how the lens was at first, so that nothing drifts.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Grip {
-    handle: Handle,
-    /// From the handle to what was pressed.
-    off: Vec2,
-    before: Focus,
-    /// Where the middle was, model coordinates.
-    middle: DVec3,
-}
 
 impl Window {
     /// The origin of a lens' coordinates; `None`: it is fixed to the eye, or to what the city does not have.

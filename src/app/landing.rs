@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    app::window::Window,
+    app::state::Window,
     geom::Ray,
     view::{Camera, navigate},
 };

@@ -2,8 +2,9 @@
 
 use crate::app::{
     actions::{Action, Menu, ROWS},
-    window::Window,
+    state::{Renaming, Window},
 };
+
 use eframe::egui::{self, Align, Color32, Id, Layout, RichText, Sense, Ui};
 
 /// What a lens is to the one who looks (L1).
@@ -17,17 +18,6 @@ pub enum State {
     Selected,
     /// It does nothing.
     Disabled,
-}
-
-/// A lens that is given another name in the list.
-#[derive(Clone, Debug)]
-pub struct Renaming {
-    /// Which.
-    pub lens: usize,
-    /// What is typed so far.
-    pub text: String,
-    /// Nothing is typed yet.
-    pub is_fresh: bool,
 }
 
 impl Window {

@@ -13,10 +13,13 @@
 pub mod actions;
 pub mod artist;
 pub mod canvas;
+pub mod canvas_state;
 mod cost;
 pub mod dialogs;
 pub mod document;
 pub mod drawing;
+pub mod drawn;
+pub mod file_dialog;
 mod finder;
 mod handles;
 mod knobs;
@@ -26,13 +29,16 @@ pub mod new_lens;
 pub mod objects;
 mod outlines;
 pub mod properties;
+mod spots;
+pub mod state;
 mod theme;
 pub mod user_effects;
 pub mod window;
 
 use eframe::egui;
 
-pub use window::{BUILTIN, Start, Window};
+pub use state::Window;
+pub use window::{BUILTIN, Start};
 
 /// What eframe calls.
 struct App {

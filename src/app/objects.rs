@@ -3,7 +3,7 @@
 use eframe::egui::{self, Key, RichText, Ui};
 
 use crate::{
-    app::{document::Document, finder::text_of, new_lens::quoted, window::Window},
+    app::{document::Document, finder::text_of, new_lens::quoted, state::Window},
     city::{Attribute, CityModel},
     lens::{Focus, Lens, chosen::Choice},
     scene::LegendPlace,

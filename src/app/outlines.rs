@@ -5,7 +5,11 @@ use std::{ops::Range, sync::Arc};
 use eframe::egui::{Color32, Mesh, Rect, Shape, Ui, vec2};
 use glam::{DVec2, DVec3};
 
-use crate::{app::window::Window, lens::LensKind, view::View};
+use crate::{
+    app::{canvas_state::Outlines, state::Window},
+    lens::LensKind,
+    view::View,
+};
 
 const HOVERED: Color32 = Color32::WHITE;
 const CHOSEN: Color32 = Color32::from_rgb(255, 140, 0);
@@ -15,14 +19,6 @@ const DASH: usize = 5;
 const APART: usize = 3;
 /// Objects of more triangles are outlined where they are seen only.
 const MOST_TRIANGLES: usize = 200_000;
-
-/// The outlines of the last picture.
-#[derive(Clone, Debug)]
-pub(super) struct Outlines {
-    mesh: Arc<Mesh>,
-    objects: [Option<u32>; 2],
-    rect: Rect,
-}
 
 impl Window {
     /// Draws the outlines of what is hovered and what is chosen.

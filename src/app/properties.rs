@@ -7,7 +7,7 @@ use eframe::egui::{self, DragValue, RichText, Ui};
 use toml::{Table as TomlTable, Value};
 
 use crate::{
-    app::window::Window,
+    app::state::Window,
     figure::scene_file::{
         best_view::VIEWS,
         deformation::STEPS,

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Stroke, Style, TextStyle, Theme,
-    vec2,
+    self, Align2, Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Stroke, Style,
+    TextStyle, Theme, vec2,
 };
 
 use crate::render::text::fonts::{REGULAR, SEMI_BOLD};
@@ -66,4 +66,19 @@ fn common(style: &mut Style, accent: Color32, is_dark: bool) {
     ] {
         widget.corner_radius = CornerRadius::same(4);
     }
+}
+
+/// A colour of the scene, for the window.
+pub(super) fn color_of(rgb: [f32; 3]) -> Color32 {
+    let [r, g, b] = rgb.map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8);
+    Color32::from_rgb(r, g, b)
+}
+
+/// Text at a place of the canvas, with a halo.
+pub(super) fn caption(painter: &egui::Painter, at: egui::Pos2, anchor: Align2, text: &str, size: f32) {
+    let font = egui::FontId::proportional(size);
+    for (dx, dy) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
+        painter.text(at + egui::vec2(dx, dy), anchor, text, font.clone(), Color32::from_white_alpha(220));
+    }
+    painter.text(at, anchor, text, font, Color32::from_gray(20));
 }

@@ -5,23 +5,23 @@ mod doing;
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
-    time::Instant,
 };
 
-use eframe::egui::{self, Align2, Color32, Context, RichText, Ui};
+use eframe::egui::{self, Context, RichText, Ui};
 
 use crate::{
     app::{
         actions::{self, Action, Menu, ROWS},
-        artist::{Artist, Draw, Frame, Notify, Opened, Reply},
-        canvas::Canvas,
-        cost,
-        dialogs::{self, Asking, FileDialog, Purpose},
+        artist::{Artist, Draw, Frame, Notify, Reply},
+        canvas_state::Canvas,
+        cost, dialogs,
         document::Document,
-        drawing::Drawing,
+        drawn::Drawing,
+        file_dialog::{Asking, Purpose},
         finder::Finder,
-        lens_list::{self, Renaming},
-        objects, properties, theme, user_effects,
+        lens_list, objects, properties,
+        state::{Chosen, Message, Window},
+        theme, user_effects,
     },
     city::load::LoadOptions,
     figure::scene_file::{self, Options},
@@ -59,85 +59,6 @@ impl Start {
         };
         folder.map(|folder| folder.join("veduta/recent.txt"))
     }
-}
-
-/// What is chosen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Chosen {
-    /// A lens, by its place.
-    pub lens: Option<usize>,
-    /// A city object, by its index.
-    pub object: Option<u32>,
-}
-
-/// A line at the bottom.
-#[derive(Clone, Debug)]
-pub struct Message {
-    /// What it says.
-    pub text: String,
-    /// What it says to who points at it; may be empty.
-    pub details: String,
-    /// Whether something failed.
-    pub is_error: bool,
-}
-
-/// Everything that the window has.
-pub struct Window {
-    pub(super) artist: Artist,
-    /// What is edited.
-    pub document: Document,
-    /// The city that is shown.
-    pub city: Option<Arc<Opened>>,
-    /// What is being loaded.
-    pub(super) loading: Option<String>,
-    /// What of it is shown, or on its way: another one in the scene is loaded.
-    spec: CitySpec,
-    shown_spec: CitySpec,
-    /// A scene that waits for its city.
-    waiting: Option<Document>,
-    /// The last picture.
-    pub frame: Option<Box<Frame>>,
-    /// What is chosen.
-    pub chosen: Chosen,
-    /// What was chosen in the last frame, and whether of what is now the lens was chosen last.
-    known_chosen: Chosen,
-    pub(super) is_lens_last: bool,
-    pub(super) canvas: Canvas,
-    pub(super) finder: Finder,
-    pub(super) dialog: Option<FileDialog>,
-    pub(super) asking: Option<Asking>,
-    pub(super) message: Option<Message>,
-    pub(super) shows_cost: bool,
-    pub(super) previews: bool,
-    /// What is drawn on the city, point by point.
-    pub(super) drawing: Option<Drawing>,
-    /// Whether one stays on the ground.
-    pub(super) walks: bool,
-    pub(super) shows_shortcuts: bool,
-    /// Lenses that are not to be changed, by name: a state of the window, not of the scene.
-    pub(super) locked: Vec<String>,
-    /// What all lenses were called in the last frame.
-    lens_names: Vec<String>,
-    /// The lens that the pointer is on: as the last frame saw it, and as this one does.
-    pub(super) rolled_over: Option<usize>,
-    pub(super) rolls_over: Option<usize>,
-    pub(super) renaming: Option<Renaming>,
-    pub(super) recent: Vec<PathBuf>,
-    memory: Option<PathBuf>,
-    /// What the last figure was exported to, with the scene it was made of.
-    pub(super) exported: Option<(PathBuf, PathBuf)>,
-    pub(super) statistics: Option<Box<crate::render::stats::Statistics>>,
-    pub(super) times_ms: Vec<f64>,
-    /// The picture that was asked for last.
-    asked: Option<Draw>,
-    title: String,
-    quits: bool,
-    allow_outside: bool,
-    /// Whether what is shown may.
-    allows_outside: bool,
-    /// The field of view of the last perspective, radians.
-    fov_y: f64,
-    error_text: properties::Drafts,
 }
 
 impl Window {
@@ -643,27 +564,4 @@ fn shown_path(path: &Path) -> String {
     let text = path.display().to_string();
     let is_plain = |c: char| c.is_alphanumeric() || "/._-".contains(c);
     if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
-}
-
-/// A colour of the scene, for the window.
-pub(super) fn color_of(rgb: [f32; 3]) -> Color32 {
-    let [r, g, b] = rgb.map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8);
-    Color32::from_rgb(r, g, b)
-}
-
-/// The time that passed since the last call, seconds; not more than a tenth.
-pub(super) fn step_of(last: &mut Option<Instant>) -> f64 {
-    let now = Instant::now();
-    let step = last.map_or(0.0, |last| (now - last).as_secs_f64());
-    *last = Some(now);
-    step.min(0.1)
-}
-
-/// Text at a place of the canvas, with a halo.
-pub(super) fn caption(painter: &egui::Painter, at: egui::Pos2, anchor: Align2, text: &str, size: f32) {
-    let font = egui::FontId::proportional(size);
-    for (dx, dy) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
-        painter.text(at + egui::vec2(dx, dy), anchor, text, font.clone(), Color32::from_white_alpha(220));
-    }
-    painter.text(at, anchor, text, font, Color32::from_gray(20));
 }

@@ -116,7 +116,7 @@ impl Lens {
         cases.flat_map(|case| &case.effects).chain(&self.effects)
     }
 
-    /// Whom it looks for, if it is an occlusion lens.
+    /// The query for occluders, if it is an occlusion lens.
     pub fn occluders(&self) -> Option<&Occluders> {
         let of_deform = || self.deform.as_ref().and_then(Deform::occluders);
         self.shapes.first().and_then(Focus::occluders).or_else(of_deform)

@@ -114,7 +114,7 @@ pub enum Step {
     },
     /// Makes city objects lower that hide a point of interest, so that they do not (D4).
     Lower {
-        /// Whom.
+        /// The occluders.
         of: Box<Occluders>,
         /// What their heights are multiplied with, > 0.
         factor: f64,
@@ -160,7 +160,7 @@ impl Deform {
         self.steps.iter().any(|step| matches!(step, Step::Heights { .. } | Step::Lower { .. }))
     }
 
-    /// Whom it makes lower; of several steps, the first ones.
+    /// The occluders that it makes lower; of several steps, the first ones.
     pub fn occluders(&self) -> Option<&Occluders> {
         self.steps.iter().find_map(|step| if let Step::Lower { of, .. } = step { Some(&**of) } else { None })
     }

@@ -90,7 +90,7 @@ pub enum Focus {
     Occluders(Occluders),
     /// Of those the ones that the last of these holds of, and none before it; scenes draw with it, files have none.
     Case {
-        /// Of whom.
+        /// The occluders that the case is of.
         of: Occluders,
         /// At least one.
         when: Vec<When>,

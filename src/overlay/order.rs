@@ -184,7 +184,7 @@ struct State<'p, 'a> {
 /// A change of rows that was looked at.
 struct Trial {
     rows: Vec<(usize, Vec<usize>)>,
-    /// Those further inward that change: the number there, and whom it is.
+    /// Those further inward that change: the number there, and the overlay.
     inward: Vec<(usize, usize)>,
     /// Overlay, new rectangle, new ways.
     moved: Vec<(usize, Rect, Vec<Way>)>,

@@ -89,7 +89,7 @@ impl Seat {
 pub struct Marker {
     /// Where: the first anchor of the most important of them, moved into the picture; pixels. Of those without an anchor the picture's middle.
     pub at: DVec2,
-    /// Whom it stands for, by id; their number is what it shows.
+    /// The folded overlays, by id; their number is what it shows.
     pub overlays: Vec<u32>,
 }
 

@@ -170,7 +170,7 @@ impl<'a> Problem<'a> {
 /// Who stands where.
 #[derive(Clone, Debug)]
 pub struct Filled {
-    /// Steps of shrinking, 0..[`SHRINK_STEPS`].
+    /// Steps of shrinking, 0..[`crate::overlay::size::SHRINK_STEPS`].
     pub step: u32,
     /// The size of each overlay, pixels.
     pub sizes: Vec<[i32; 2]>,

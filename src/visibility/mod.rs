@@ -1,4 +1,4 @@
-//! What is hidden, and by whom: occluder detection (spec O2; V §3.3.1), on the CPU, in f64.
+//! Occluder detection: objects that hide others (spec O2; V §3.3.1), on the CPU, in f64.
 //!
 //! The unit is the root city object with all its parts ([`Units`]). A [`Test`] says when one is an occluder; [`Scope::detect`]
 //! asks it of a whole city and says of each occluder which parts of the test held ([`Detected`]). [`Memory`] keeps classes from

@@ -99,8 +99,8 @@ fn changes_no_byte(look: Look) {
     // From outside each was looked at; of the rest each look has its own share, unless runs are thorough.
     let share = |i: usize| match look {
         _ if studio::is_thorough() => true,
-        Look::Outside => i % 4 == 0,
-        Look::Inside => i % 2 == 0,
+        Look::Outside => i.is_multiple_of(4),
+        Look::Inside => i.is_multiple_of(2),
         Look::Level => i % 2 == 1,
     };
     for some in lenses.chunks(4).enumerate().filter(|(i, _)| share(*i)).map(|(_, some)| some) {

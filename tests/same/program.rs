@@ -11,6 +11,8 @@
 //!
 //! FOLDER keeps what the reference program wrote, for the next comparison with it.
 
+#![allow(clippy::print_stdout, reason = "what it finds is what it prints")]
+
 mod compare;
 mod jobs;
 mod shown;

@@ -12,7 +12,7 @@ use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::{Harness, kittest::Queryable};
 use glam::DVec2;
 use veduta::{
-    app::{Start, Window, actions::Action, canvas::pick, drawing::Figure},
+    app::{Start, Window, actions::Action, canvas::pick, drawn::Figure},
     figure::{
         self,
         scene_file::{Options, parse},

@@ -12,11 +12,12 @@ use crate::{
     app::{
         actions::Action,
         artist::Export,
-        dialogs::{Asking, FileDialog, Purpose},
+        file_dialog::{Asking, FileDialog, Purpose},
         new_lens::{self, Spot},
         objects,
+        state::{Chosen, Window},
         user_effects::is_effect,
-        window::{BUILTIN, Chosen, Window, shown_path},
+        window::{BUILTIN, shown_path},
     },
     figure::{picture, scene_file},
     geom::Aabb,
@@ -64,22 +65,7 @@ impl Window {
             Action::SaveAs => self.dialog = Some(FileDialog::save(self.folder())),
             Action::Export => self.dialog = Some(FileDialog::export(self.folder())),
             Action::Quit => self.guarded(Purpose::Quit),
-            Action::Undo | Action::Redo => {
-                let before = self.document.scene().lenses.len();
-                let (done, name) = match action {
-                    Action::Undo => ("Undone", self.document.undo()),
-                    _ => ("Done again", self.document.redo()),
-                };
-                if let Some(name) = name {
-                    self.say(format!("{done}: {name}"));
-                }
-                self.keep_chosen();
-                // A lens that came back is the one that is meant.
-                let now = self.document.scene().lenses.len();
-                if now > before && self.chosen.lens.is_none() {
-                    self.chosen.lens = Some(now - 1);
-                }
-            }
+            Action::Undo | Action::Redo => self.undo_or_redo(action),
             Action::AddLens(kind) => {
                 let spot = self.spot();
                 match kind.add(&mut self.document, &spot) {
@@ -104,16 +90,7 @@ impl Window {
                     self.begin_renaming(index);
                 }
             }
-            Action::DeleteLens => {
-                if let Some(index) = self.chosen.lens.take() {
-                    let name = self.document.scene().lenses[index].name.clone();
-                    self.document.edit(format!("remove lens {name}"), |scene| {
-                        scene.overlays.retain(|overlay| overlay.lens != name);
-                        scene.lenses.remove(index);
-                    });
-                    self.keep_chosen();
-                }
-            }
+            Action::DeleteLens => self.delete_chosen_lens(),
             Action::RaiseLens => self.reorder(1),
             Action::LowerLens => self.reorder(-1),
             Action::ToggleLens => {
@@ -135,18 +112,7 @@ impl Window {
                     self.canvas.fly(camera, to);
                 }
             }
-            Action::ToggleProjection => {
-                if let Some(camera) = self.camera() {
-                    let to_orthographic = match camera.projection {
-                        Projection::Perspective { fov_y } => {
-                            self.fov_y = fov_y;
-                            true
-                        }
-                        Projection::Orthographic { .. } => false,
-                    };
-                    self.document.look(navigate::with_projection(&camera, to_orthographic, self.fov_y));
-                }
-            }
+            Action::ToggleProjection => self.toggle_projection(),
             Action::HideObject => objects::hide(self),
             Action::IsolateObject => objects::isolate(self),
             Action::ShowAll => objects::show_all(self),
@@ -162,6 +128,50 @@ impl Window {
             Action::Shortcuts => self.shows_shortcuts = true,
         }
         context.request_repaint();
+    }
+
+    /// Takes back the last edit, or does again what was taken back last.
+    fn undo_or_redo(&mut self, action: Action) {
+        let before = self.document.scene().lenses.len();
+        let (done, name) = match action {
+            Action::Undo => ("Undone", self.document.undo()),
+            _ => ("Done again", self.document.redo()),
+        };
+        if let Some(name) = name {
+            self.say(format!("{done}: {name}"));
+        }
+        self.keep_chosen();
+        // A lens that came back is the one that is meant.
+        let now = self.document.scene().lenses.len();
+        if now > before && self.chosen.lens.is_none() {
+            self.chosen.lens = Some(now - 1);
+        }
+    }
+
+    /// Removes the chosen lens, and the overlays that show it.
+    fn delete_chosen_lens(&mut self) {
+        if let Some(index) = self.chosen.lens.take() {
+            let name = self.document.scene().lenses[index].name.clone();
+            self.document.edit(format!("remove lens {name}"), |scene| {
+                scene.overlays.retain(|overlay| overlay.lens != name);
+                scene.lenses.remove(index);
+            });
+            self.keep_chosen();
+        }
+    }
+
+    /// Changes between perspective and orthographic.
+    fn toggle_projection(&mut self) {
+        if let Some(camera) = self.camera() {
+            let to_orthographic = match camera.projection {
+                Projection::Perspective { fov_y } => {
+                    self.fov_y = fov_y;
+                    true
+                }
+                Projection::Orthographic { .. } => false,
+            };
+            self.document.look(navigate::with_projection(&camera, to_orthographic, self.fov_y));
+        }
     }
 
     /// Where dialogs begin.

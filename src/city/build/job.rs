@@ -183,7 +183,9 @@ fn add_geometry(raw: &Shape<'_>, repeated: &[bool], context: &Context<'_>, scrat
             continue;
         }
         let polygon_number = chunk.polygons + polygon as u32;
-        if let Err((code, why)) = add_face(raw, polygon, polygon_number, grid, scratch, chunk, (id, &place)) {
+        if let Err((code, why)) =
+            add_face(raw, polygon, polygon_number, grid, scratch, chunk, &Called { id, place: &place })
+        {
             dropped += 1;
             chunk.warnings.add(code, id, || format!("{}: {why}; the face is dropped", place()));
         }
@@ -203,6 +205,14 @@ fn add_geometry(raw: &Shape<'_>, repeated: &[bool], context: &Context<'_>, scrat
     });
 }
 
+/// What a face is called in warnings.
+struct Called<'a> {
+    /// The id of its object.
+    id: &'a str,
+    /// Where it is, in words.
+    place: &'a dyn Fn() -> String,
+}
+
 /// Triangulates one polygon into `scratch.faces` and `scratch.triangles`, or says why not.
 fn add_face(
     raw: &Shape<'_>,
@@ -211,8 +221,9 @@ fn add_face(
     grid: &Grid,
     scratch: &mut Scratch,
     chunk: &mut Chunk,
-    (id, place): (&str, &dyn Fn() -> String),
+    called: &Called<'_>,
 ) -> Result<(), (WarningCode, &'static str)> {
+    let Called { id, place } = *called;
     let first_corner = gather(raw, polygon, grid, scratch)?;
     let Scratch { triangulator, points, ring_ends, found, faces, triangles, .. } = scratch;
     found.clear();

@@ -39,7 +39,7 @@ pub struct Polygons {
 /// One geometry of one object, as read.
 #[derive(Clone, Debug)]
 pub struct RawGeometry {
-    /// The object, as returned by [`ModelBuilder::add_object`].
+    /// The object, as returned by [`crate::city::build::ModelBuilder::add_object`].
     pub object: u32,
     /// Its level of detail.
     pub lod: Lod,
@@ -79,7 +79,7 @@ pub(super) fn extent_of(indices: &[u32], pool: &Pool, world: impl Fn([i64; 3]) -
     Aabb::from_points(used().map(&world).filter(|&p| is_trusted(p)))
 }
 
-/// An object as read; links by id are resolved in [`ModelBuilder::finish`], within the object's own file.
+/// An object as read; links by id are resolved in [`crate::city::build::ModelBuilder::finish`], within the object's own file.
 #[derive(Clone, Debug, Default)]
 pub struct RawObject {
     /// Id as the file spells it.
@@ -92,7 +92,7 @@ pub struct RawObject {
     pub parents: Vec<String>,
     /// Ids of its children.
     pub children: Vec<String>,
-    /// Its attributes; strings interned with [`ModelBuilder::intern`].
+    /// Its attributes; strings interned with [`crate::city::build::ModelBuilder::intern`].
     pub attributes: Vec<Attribute>,
 }
 
@@ -102,9 +102,9 @@ pub(super) struct KeptObject {
     pub(super) id: Box<str>,
     pub(super) parents: Box<[String]>,
     pub(super) children: Box<[String]>,
-    /// Index into [`ModelBuilder::kinds`].
+    /// Index into [`crate::city::build::ModelBuilder::kinds`].
     pub(super) kind: u32,
     pub(super) class: ObjectClass,
-    /// In [`ModelBuilder::attributes`].
+    /// In [`crate::city::build::ModelBuilder::attributes`].
     pub(super) attributes: Range<u32>,
 }

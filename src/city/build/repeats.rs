@@ -34,7 +34,7 @@ pub(super) fn mark(raws: &[Shape<'_>], context: &Context<'_>, scratch: &mut Scra
         let mut kept: Vec<(usize, usize)> = Vec::new();
         for &(_, g, p) in same {
             let new = (g as usize, p as usize);
-            match kept.iter_mut().find(|old| are_same(raws, **old, new, context)) {
+            match kept.iter_mut().find(|old| are_same(raws, [**old, new], context)) {
                 None => kept.push(new),
                 Some(old) => {
                     let knows = |(g, p): (usize, usize)| knowledge(&raws[g], p, context.surfaces);
@@ -81,8 +81,8 @@ fn mix(x: u64) -> u64 {
 }
 
 /// Whether two polygons really have the same rings: the sums only point at candidates.
-fn are_same(raws: &[Shape<'_>], a: (usize, usize), b: (usize, usize), context: &Context<'_>) -> bool {
-    let [grid_a, grid_b] = [a, b].map(|(g, _)| context.grid(&raws[g]));
+fn are_same(raws: &[Shape<'_>], pair: [(usize, usize); 2], context: &Context<'_>) -> bool {
+    let [grid_a, grid_b] = pair.map(|(g, _)| context.grid(&raws[g]));
     if grid_a.class != grid_b.class {
         return false;
     }
@@ -104,7 +104,7 @@ fn are_same(raws: &[Shape<'_>], a: (usize, usize), b: (usize, usize), context: &
         }
         rings
     };
-    rings(a) == rings(b)
+    rings(pair[0]) == rings(pair[1])
 }
 
 /// Rotates a ring to its lexicographically smallest form.

@@ -249,9 +249,9 @@ impl SurfaceTable {
         Self { object, known: FxHashMap::default() }
     }
 
-    fn find(&mut self, (kind, detail): Meaning, material: u32, builder: &mut ModelBuilder) -> u32 {
+    fn find(&mut self, meaning: Meaning, material: u32, builder: &mut ModelBuilder) -> u32 {
         debug_assert!(material == NONE || (material as usize) < builder.model.materials.len());
-        let object = self.object;
+        let (object, (kind, detail)) = (self.object, meaning);
         *self
             .known
             .entry((kind, detail, material))

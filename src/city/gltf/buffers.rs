@@ -138,7 +138,8 @@ fn sibling(uri: &str, around: Surroundings<'_>, warnings: &mut Warnings) -> Resu
 pub(super) fn image(
     index: usize,
     image: &Image,
-    (root, buffers): (&Root, &Buffers<'_>),
+    root: &Root,
+    buffers: &Buffers<'_>,
     around: Surroundings<'_>,
     budget: &mut u64,
     warnings: &mut Warnings,

@@ -136,7 +136,7 @@ impl Materials {
                 let sampler = texture.sampler.and_then(|s| root.samplers.get(s.value()));
                 let wrap = sampler.map_or([Wrap::Repeat; 2], |s| [s.wrap_s, s.wrap_t].map(wrap));
                 let budget = &mut self.image_budget;
-                let image = buffers::image(at, image, (root, from.buffers), from.around, budget, &mut city.warnings);
+                let image = buffers::image(at, image, root, from.buffers, from.around, budget, &mut city.warnings);
                 city.textures.push(Texture { image, wrap });
                 (city.textures.len() - 1) as u32
             }

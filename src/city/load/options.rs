@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 pub struct LoadOptions {
     /// Whether paths inside a model (textures, buffers) may leave [`Self::roots`].
     pub allow_outside: bool,
-    /// Folders the user named; the folder of each loaded file and `${VEDUTA_DATA}` are added by [`load`].
+    /// Folders the user named; the folder of each loaded file and `${VEDUTA_DATA}` are added by [`crate::city::load::load`].
     pub roots: Vec<PathBuf>,
 }
 
@@ -18,7 +18,7 @@ pub enum Sibling {
     Found(PathBuf),
     /// Nothing readable there.
     Missing(PathBuf),
-    /// It leaves the folders the user named: note [`WarningCode::OutsidePath`] and do not open it.
+    /// It leaves the folders the user named: note [`crate::city::WarningCode::OutsidePath`] and do not open it.
     Outside(PathBuf),
 }
 

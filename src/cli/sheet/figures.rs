@@ -17,7 +17,7 @@ use crate::{
 pub struct Figures {
     /// The share of the point of interest that is seen; `None` within: it is not in the picture.
     share: Option<Option<f64>>,
-    /// Whom its lenses mean.
+    /// The objects that its lenses mean.
     touched: Option<Touched>,
     /// Time of the frame against that of the plain one.
     ratio: Option<Estimate>,

@@ -105,7 +105,7 @@ impl Region {
     /// What is left of `body` when its middle is a common point; `None` where there is none.
     fn cut_to_a_common_point(&self, mut body: Body) -> Option<Body> {
         for &face in &self.faces {
-            body.cut(face);
+            body.cut(face.0, face.1);
         }
         for _ in 0..MOST_ROUNDS {
             let cuts = self.cuts(body.middle()?);
@@ -113,7 +113,7 @@ impl Region {
                 break;
             }
             for cut in cuts {
-                body.cut(cut);
+                body.cut(cut.0, cut.1);
             }
         }
         (!body.faces.is_empty()).then_some(body)
@@ -254,7 +254,7 @@ impl Body {
     }
 
     /// Leaves what lies behind the plane n · p ≤ d.
-    fn cut(&mut self, (normal, offset): (DVec3, f64)) {
+    fn cut(&mut self, normal: DVec3, offset: f64) {
         let depth = |p: &DVec3| offset - normal.dot(*p);
         if self.faces.iter().flatten().all(|p| depth(p) >= 0.0) {
             return;

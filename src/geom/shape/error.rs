@@ -42,12 +42,12 @@ pub enum ShapeError {
     /// More corners than a pixel can be tested against.
     #[error("a polygon may have at most {max} points, has {0}", max = MAX_CORNERS)]
     ManyCorners(usize),
-    /// What a flat lens holds depends on the eye, [`Shape::volumes_seen`].
+    /// What a flat lens holds depends on the eye, [`crate::geom::shape::Shape::volumes_seen`].
     #[error(
         "a flat lens holds what an eye sees through it: it cannot be asked without one, nor be part of another shape"
     )]
     NeedsEye,
-    /// The shape is the union of several volumes, [`Shape::volumes`].
+    /// The shape is the union of several volumes, [`crate::geom::shape::Shape::volumes`].
     #[error("a corridor is several volumes")]
     Several,
     /// More points than a lens needs.

@@ -6,7 +6,8 @@ use glam::DVec3;
 pub(super) const EVERYWHERE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 /// What two intervals share (empty: entry > exit).
-pub(super) fn both(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+pub(super) fn both(spans: [(f64, f64); 2]) -> (f64, f64) {
+    let [a, b] = spans;
     (a.0.max(b.0), a.1.min(b.1))
 }
 
@@ -44,18 +45,34 @@ pub(super) fn round(o: DVec3, d: DVec3, radius: f64) -> Option<(f64, f64)> {
     })
 }
 
+/// A vector in its parts across an axis and along it.
+#[derive(Clone, Copy)]
+pub(super) struct Parted {
+    pub across: DVec3,
+    pub along: f64,
+}
+
+/// The side of a cone: its radius is `middle + slope·z`, and is ≥ 0 between two `ends` of a ray.
+#[derive(Clone, Copy)]
+pub(super) struct Side {
+    pub middle: f64,
+    pub slope: f64,
+    pub ends: (f64, f64),
+}
+
 /// Where `|o + t·d| ≤ middle + slope·(z_o + t·z_d)` between two ends within which the right side is ≥ 0: o and d across
 /// the axis, and along it.
 ///
 /// The quadratic is set up around the point of the line nearest the middle, as for [`round`].
-pub(super) fn cone(o: (DVec3, f64), d: (DVec3, f64), middle: f64, slope: f64, ends: (f64, f64)) -> Option<(f64, f64)> {
-    let all = d.0.length_squared() + d.1 * d.1;
-    let start = if all > 0.0 { -(o.0.dot(d.0) + o.1 * d.1) / all } else { 0.0 };
-    let (near, z) = (o.0 + start * d.0, o.1 + start * d.1);
-    let (radius, growth) = (middle + slope * z, slope * d.1);
+pub(super) fn cone(o: Parted, d: Parted, side: Side) -> Option<(f64, f64)> {
+    let Side { middle, slope, ends } = side;
+    let all = d.across.length_squared() + d.along * d.along;
+    let start = if all > 0.0 { -(o.across.dot(d.across) + o.along * d.along) / all } else { 0.0 };
+    let (near, z) = (o.across + start * d.across, o.along + start * d.along);
+    let (radius, growth) = (middle + slope * z, slope * d.along);
     // a t² + 2 b t + c ≤ 0
-    let a = (d.0.length() - growth.abs()) * (d.0.length() + growth.abs());
-    let b = near.dot(d.0) - radius * growth;
+    let a = (d.across.length() - growth.abs()) * (d.across.length() + growth.abs());
+    let b = near.dot(d.across) - radius * growth;
     let c = (near.length() - radius.abs()) * (near.length() + radius.abs());
     let ends = (ends.0 - start, ends.1 - start);
     let moved = |(entry, exit): (f64, f64)| Some((entry + start, exit + start));

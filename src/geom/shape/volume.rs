@@ -10,7 +10,7 @@ use crate::geom::{
         flat::{ENDLESS_M, Flat},
         hull::Hull,
         solid::PlacedSolid,
-        span::{EVERYWHERE, across, both, cone, round, slab},
+        span::{EVERYWHERE, Parted, Side, across, both, cone, round, slab},
     },
 };
 
@@ -118,13 +118,13 @@ impl Volume {
             Self::Box { center, half, rotation } => {
                 let back = rotation.conjugate();
                 let (o, d) = (back * (ray.origin - *center), back * ray.direction);
-                (0..3).try_fold(EVERYWHERE, |all, axis| Some(both(all, slab(o[axis], d[axis], half[axis])?)))?
+                (0..3).try_fold(EVERYWHERE, |all, axis| Some(both([all, slab(o[axis], d[axis], half[axis])?])))?
             }
             Self::Cylinder { center, radius, half, axis } => {
                 let (o, d) = (ray.origin - *center, ray.direction);
                 let (along_o, along_d) = (o.dot(*axis), d.dot(*axis));
                 let side = round(o - along_o * *axis, across(d, *axis), *radius)?;
-                both(side, slab(along_o, along_d, *half)?)
+                both([side, slab(along_o, along_d, *half)?])
             }
             Self::Ellipsoid { center, radii, rotation } => {
                 // A ball in its own measure.
@@ -137,8 +137,9 @@ impl Volume {
                 let ends = slab(along_o, along_d, *half)?;
                 let slope = (radii[1] - radii[0]) / (2.0 * half);
                 let middle = 0.5 * (radii[0] + radii[1]);
-                let (o, d) = ((o - along_o * *axis, along_o), (across(d, *axis), along_d));
-                both(ends, cone(o, d, middle, slope, ends)?)
+                let o = Parted { across: o - along_o * *axis, along: along_o };
+                let d = Parted { across: across(d, *axis), along: along_d };
+                both([ends, cone(o, d, Side { middle, slope, ends })?])
             }
             Self::Convex(hull) => hull.entry_exit(ray)?,
             Self::Solid(placed) => {

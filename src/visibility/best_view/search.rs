@@ -39,7 +39,8 @@ fn place(i: i32, j: i32) -> Option<Place> {
 }
 
 /// East, north, up; unit.
-fn direction((i, j): Place) -> DVec3 {
+fn direction(at: Place) -> DVec3 {
+    let (i, j) = at;
     if j == ZENITH {
         return DVec3::Z;
     }

@@ -8,11 +8,10 @@ use super::source::{Function, Module, Modules, closing, functions, split};
 const LINES: usize = 100;
 
 /// Rooms with longer functions, and the most of those that they may have.
-const LONG: &[(&str, usize)] = &[("app", 1), ("render", 5), ("shader", 1)];
+const LONG: &[(&str, usize)] = &[("render", 5), ("shader", 1)];
 
 /// Rooms with functions that take a tuple, and the most of those that they may have.
-const TUPLES: &[(&str, usize)] =
-    &[("app", 4), ("city", 4), ("figure", 1), ("geom", 5), ("overlay", 8), ("render", 43), ("visibility", 1)];
+const TUPLES: &[(&str, usize)] = &[("app", 4), ("figure", 1), ("geom", 2), ("overlay", 8), ("render", 43)];
 
 /// Rooms that replace text in text, and how often they may.
 const REPLACED: &[(&str, usize)] = &[("shader", 67)];

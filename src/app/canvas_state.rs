@@ -1,0 +1,86 @@
+//! What the canvas keeps between frames.
+
+use std::{sync::Arc, time::Instant};
+
+use eframe::egui::{Mesh, Pos2, Rect, TextureHandle, Vec2};
+use glam::DVec3;
+
+use crate::{app::knobs::Knob, lens::Focus, view::navigate::Flight};
+
+/// What a drag does.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Drag {
+    Orbit {
+        pivot: DVec3,
+    },
+    Pan {
+        at: DVec3,
+    },
+    Look,
+    /// A handle of the chosen lens.
+    Handle(Box<Grip>),
+    /// An overlay: what is held of it is so far from its middle.
+    Overlay {
+        lens: usize,
+        off: Vec2,
+    },
+}
+
+/// What the picture in the window knows.
+#[derive(Default)]
+pub struct Canvas {
+    pub(super) texture: Option<TextureHandle>,
+    pub(super) rect: Option<Rect>,
+    pub(super) drag: Option<Drag>,
+    pub(super) flight: Option<(Flight, Instant)>,
+    pub(super) last_step: Option<Instant>,
+    /// Whether the eye moved in the last frames: pictures are to be quick until it rests.
+    pub(super) moved_at: Option<Instant>,
+    pub(super) hovered: Option<Hovered>,
+    /// The next move is down to the ground.
+    pub(super) step_down: bool,
+    pub(super) outlines: Option<Outlines>,
+}
+
+/// What is under the pointer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hovered {
+    /// The object, by index; `None`: the plain ground, or a part that no object has.
+    pub object: Option<u32>,
+    /// Where it is, metres.
+    pub at: DVec3,
+}
+
+/// The outlines of the last picture.
+#[derive(Clone, Debug)]
+pub(super) struct Outlines {
+    pub(super) mesh: Arc<Mesh>,
+    pub(super) objects: [Option<u32>; 2],
+    pub(super) rect: Rect,
+}
+
+/// Something of a lens that can be held, and where it is in the window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Handle {
+    /// The lens, by its place.
+    pub lens: usize,
+    /// Which of its shapes.
+    pub shape: usize,
+    /// What of that.
+    pub knob: Knob,
+    /// Where it is, model coordinates.
+    pub(super) place: DVec3,
+    /// Where it is shown.
+    pub at: Pos2,
+}
+
+/// A handle that is being dragged: everything is worked out from how the lens was at first, so that nothing drifts.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Grip {
+    pub(super) handle: Handle,
+    /// From the handle to what was pressed.
+    pub(super) off: Vec2,
+    pub(super) before: Focus,
+    /// Where the middle was, model coordinates.
+    pub(super) middle: DVec3,
+}
