@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::{
     city::CityModel,
     lens::{Placement, nearest::did_you_mean},
-    scene::{PoiPlace, Scene},
+    scene::model::{PoiPlace, Scene},
 };
 
 /// Why a lens is attached to nothing.

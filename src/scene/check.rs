@@ -10,8 +10,8 @@ use crate::{
         thematic::attribute_names,
     },
     scene::{
-        PoiPlace, Scene,
         anchor::{AnchorProblem, anchor},
+        model::{PoiPlace, Scene},
     },
 };
 
@@ -177,7 +177,7 @@ mod tests {
         city::{Attribute, CityObject, Value},
         geom::combination::Operation,
         lens::{EffectUse, Lens, Parameter, chosen::Choice},
-        scene::Poi,
+        scene::model::Poi,
     };
 
     #[test]

@@ -5,7 +5,7 @@ use crate::{
         BestView, Lens, LensKind,
         best_view::{Depiction, LocalView},
     },
-    scene::Scene,
+    scene::model::Scene,
     view::Camera,
 };
 

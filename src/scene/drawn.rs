@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use crate::{
     lens::{Class, Focus, Lens, LensBody, Rendering, chosen::Choice, rendering::When},
-    scene::{PoiPlace, Scene},
+    scene::model::{PoiPlace, Scene},
 };
 
 /// A scene whose lenses draw in one way each, at its moment.

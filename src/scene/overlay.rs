@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::{
     lens::{Lens, best_view::LocalView, nearest::did_you_mean},
-    scene::{Scene, SceneProblem},
+    scene::{check::SceneProblem, model::Scene},
 };
 
 /// The overlay of a best-view lens. Lengths are pixels of the picture.

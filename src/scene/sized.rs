@@ -2,7 +2,10 @@
 
 use crate::{
     lens::{EffectUse, Lens, Parameter, border::BorderUnit},
-    scene::{Overlay, Scene, TextSize, overlay::ContextLine},
+    scene::{
+        model::{Scene, TextSize},
+        overlay::{ContextLine, Overlay},
+    },
     shader::effect::{DefaultValue, Fallback, ParameterKind, find},
 };
 

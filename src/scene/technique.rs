@@ -3,7 +3,7 @@
 
 use crate::{
     lens::{Class, EffectUse, Lens, LensBody},
-    scene::{Scene, SceneProblem},
+    scene::{check::SceneProblem, model::Scene},
     shader::{EffectKind, effect::find},
 };
 

@@ -4,7 +4,10 @@ use glam::DVec3;
 
 use crate::{
     lens::nearest::did_you_mean,
-    scene::{Poi, PoiPlace, Scene, SceneProblem},
+    scene::{
+        check::SceneProblem,
+        model::{Poi, PoiPlace, Scene},
+    },
     view::path::{Curve, Form, Line},
 };
 

@@ -18,6 +18,7 @@ mod effects;
 mod far_views;
 mod floors;
 mod furniture;
+mod gpu;
 mod handlers;
 mod hiding;
 mod layers;

@@ -182,7 +182,7 @@ fn topics_are_listed() {
     let output = run(&["measure"]);
     assert_eq!(output.status.code(), Some(0));
     let list = text(&output.stdout);
-    assert_eq!(list.lines().count(), TOPICS.len());
+    assert_eq!(list.lines().count(), TOPICS.len() + 1, "and the probe of the GPU");
     for topic in TOPICS {
         assert!(list.contains(topic.name) && list.contains(topic.about));
     }
@@ -205,6 +205,9 @@ fn wrong_usage_is_told() {
     told(&["samples"], "-o DIR");
     told(&["samples", "-o", place, "--pairs", "0"], "1..");
     told(&["samples", "-o", place, "--size", "9000x10"], "4096");
+    told(&["samples", "-o", place, "--write-references"], "measure gpu");
+    told(&["gpu"], "-o DIR");
+    told(&["gpu", "-o", place, "--only", "coplanar face"], "did you mean \"coplanar faces\"?");
     assert!(!nowhere.0.exists(), "nothing is made for a command that is wrong");
     let output = run(&["measure", "samples", "-o", place, "--city", "no/such.city.json"]);
     assert_eq!(output.status.code(), Some(1));

@@ -10,7 +10,7 @@ use crate::{
     },
     figure::file::write_whole,
     lens::nearest::did_you_mean,
-    measure::topics::gpu::{self, Plan, markdown::markdown, report::Report},
+    measure::topics::gpu::{self, Plan, markdown::markdown, patience::Watch, report::Report},
 };
 
 /// How it is called.
@@ -78,7 +78,7 @@ fn plan(arguments: &Arguments, folder: &Path) -> Plan {
 }
 
 /// Works with a progress line.
-fn watched<T>(global: &GlobalArguments, work: impl FnOnce(gpu::Watch<'_>) -> T) -> T {
+fn watched<T>(global: &GlobalArguments, work: impl FnOnce(Watch<'_>) -> T) -> T {
     let mut shown: Option<(String, terminal::Progress)> = None;
     work(&mut |what, done, total| {
         if shown.as_ref().is_none_or(|(at, _)| at != what) {

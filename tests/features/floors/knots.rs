@@ -11,7 +11,7 @@ use super::source::{Modules, children, join, paths};
 const MOST: usize = 6;
 
 /// Rooms with larger knots, and no larger ones than these.
-const LARGER: &[(&str, usize)] = &[("render", 40), ("figure", 17), ("shader", 14), ("scene", 8)];
+const LARGER: &[(&str, usize)] = &[];
 
 /// Which modules each module imports.
 type Imports = BTreeMap<String, BTreeSet<String>>;

@@ -6,8 +6,8 @@
 //! views ─ frames ──────────────────┘                  └ markdown ─> gpu.md
 //! ```
 //!
-//! A probe ends within its limit: parts and their items stop at their share of the time (`clock`), and what was left out is said.
-//! One item that fails, or breaks the program's own rules, does not keep the others from being looked at.
+//! A probe ends within its limit: parts and their items stop at their share of the time (`clock`), what was left out is said, and what
+//! does not answer is not waited for (`patience`). One item that fails does not keep the others from being looked at.
 
 pub mod check;
 pub mod checks;
@@ -18,14 +18,13 @@ pub mod looks;
 pub mod markdown;
 pub mod numbers;
 pub mod panes;
+pub mod patience;
 pub mod pictures;
 pub mod report;
 pub mod shapes;
 pub mod views;
 
 use std::{
-    any::Any,
-    panic::{AssertUnwindSafe, catch_unwind},
     path::{Path, PathBuf},
     sync::Arc,
     time::{Duration, Instant},
@@ -39,6 +38,7 @@ use crate::{
         checks::CHECKS,
         clock::{Clock, Part},
         frames::Timing,
+        patience::Watch,
         pictures::Easel,
         report::{Checked, Compared, Frames, Report},
     },
@@ -51,6 +51,9 @@ use crate::{
 
 /// Buildings of the city that frames are timed on where none is named: 498,000 triangles.
 pub const BENCH_BUILDINGS: u64 = 36_000;
+
+/// How long an item is waited for beyond its turn.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 /// What a probe is to do.
 #[derive(Clone, Debug)]
@@ -78,9 +81,6 @@ impl Plan {
         self.only.is_empty() || self.only.iter().any(|wanted| wanted == name)
     }
 }
-
-/// What a probe is at: what it is called, and how many of how many are done.
-pub type Watch<'a> = &'a mut dyn FnMut(&str, usize, usize);
 
 /// The names that [`Plan::only`] may have.
 pub fn names() -> Vec<String> {
@@ -142,31 +142,35 @@ fn run_checks(plan: &Plan, clock: &Clock, watch: Watch<'_>, report: &mut Report)
 /// Runs one check; it is to end soon after `until`.
 pub fn checked(check: &Check, until: Instant) -> Checked {
     let start = Instant::now();
-    let mut found = Findings::new(until);
-    let trouble = caught(|| (check.run)(&mut found).map_err(|error| error.to_string())).err();
+    let run = check.run;
+    let found = patience::wait(until + PATIENCE, &mut |_, _, _| (), move |_| {
+        let mut found = Findings::new(until);
+        let trouble = run(&mut found).err().map(|error| error.to_string());
+        Ok((found, trouble))
+    });
+    let (found, trouble) = found.unwrap_or_else(|trouble| (Findings::new(until), Some(trouble)));
     Checked { check: *check, found, trouble, seconds: start.elapsed().as_secs_f64() }
-}
-
-/// What breaks the program's own rules is a failure of the item, not of the probe.
-fn caught<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic: Box<dyn Any + Send>| {
-        let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
-        Err(format!("a mistake of the program: {}", text.unwrap_or("it says nothing")))
-    })
 }
 
 fn compare_pictures(plan: &Plan, clock: &Clock, watch: Watch<'_>, report: &mut Report) {
     let mut easel = Easel::default();
     let wanted: Vec<&str> = pictures::SCENES.iter().copied().filter(|name| plan.wants(name)).collect();
-    for (i, name) in wanted.iter().enumerate() {
+    for (i, name) in wanted.iter().copied().enumerate() {
         if !clock.has_time(Part::Pictures) {
             report.skipped.push([format!("picture {name}"), no_time(clock)]);
             continue;
         }
         watch(name, i, wanted.len());
-        let compared = caught(|| Ok(pictures::compare(&mut easel, &plan.scenes, name)));
-        let broken = |trouble| Compared { scene: (*name).to_owned(), trouble: Some(trouble), ..Compared::default() };
-        report.pictures.push(compared.unwrap_or_else(broken));
+        let until = clock.turn(Part::Pictures, wanted.len() - i) + PATIENCE;
+        let (mut own, folder) = (std::mem::take(&mut easel), plan.scenes.clone());
+        let compared = patience::wait(until, &mut |_, _, _| (), move |_| {
+            let compared = pictures::compare(&mut own, &folder, name);
+            Ok((own, compared))
+        });
+        let broken = |trouble| Compared { scene: name.to_owned(), trouble: Some(trouble), ..Compared::default() };
+        let (kept, compared) = compared.unwrap_or_else(|trouble| (Easel::default(), broken(trouble)));
+        easel = kept;
+        report.pictures.push(compared);
     }
 }
 
@@ -178,7 +182,10 @@ fn time_frames(plan: &Plan, clock: &Clock, watch: Watch<'_>, report: &mut Report
         report.skipped.push(["frames".to_owned(), no_time(clock)]);
         return;
     }
-    let timed = caught(|| timed(plan, clock, watch).map_err(|error| error.to_string()));
+    let (own, started) = (plan.clone(), *clock);
+    let until = clock.end(Part::Frames) + clock.limit().mul_f64(0.02);
+    let timed =
+        patience::wait(until, watch, move |watch| timed(&own, &started, watch).map_err(|error| error.to_string()));
     match timed {
         Ok(frames) => report.frames = Some(frames),
         Err(trouble) => report.skipped.push(["frames".to_owned(), trouble]),
@@ -241,12 +248,5 @@ mod tests {
         names.sort();
         names.dedup();
         assert_eq!(names.len(), count);
-    }
-
-    #[test]
-    fn a_mistake_is_told_and_not_passed_on() {
-        assert_eq!(caught(|| Ok::<_, String>(3)), Ok(3));
-        let told = caught(|| -> Result<(), String> { panic!("at {}", 7) });
-        assert_eq!(told, Err("a mistake of the program: at 7".to_owned()));
     }
 }

@@ -26,19 +26,19 @@ use crate::{
 
 /// Scenes of built-in cities that between them use most of what draws: by the names of their files.
 pub const SCENES: &[&str] = &[
+    "rooms",
+    "one-house",
     "town",
     "first-lens",
     "in-the-way",
     "bent-city",
-    "sections",
     "who-hides-the-church",
-    "ropinski-6",
     "trapp-3-1-3",
     "trapp-3-5-1",
     "tiesel-3-7",
     "call-outs",
-    "rooms",
-    "one-house",
+    "sections",
+    "ropinski-6",
 ];
 
 /// Width and height of the pictures, pixels.

@@ -58,14 +58,12 @@ fn run(found: &mut Findings) -> Result<(), RenderError> {
     for (format, mapping) in CODES {
         for (resolution, texel_px) in [(None, 1.0), (Some(50), 4.0)] {
             let sprite = LensSprite { resolution, format, mapping, ..LensSprite::default() };
-            for camera in cameras {
-                for shape in &shapes {
-                    ask_mask(found, &mut studio, camera, shape, sprite, texel_px)?;
+            for (camera, shape) in cameras.iter().flat_map(|camera| shapes.iter().map(move |shape| (camera, shape))) {
+                ask_mask(found, &mut studio, *camera, shape, sprite, texel_px)?;
+                if !found.goes_on() {
+                    return Ok(());
                 }
             }
-        }
-        if !found.goes_on() {
-            break;
         }
     }
     Ok(())
