@@ -180,7 +180,8 @@ fn a_lens_that_is_a_skin_is_where_rays_enter_and_leave_as_f64_says() {
                 assert!(wrong <= most, "shape {i}, {sprite:?}, {camera:?}: {wrong} pixels are wrong");
             }
         }
-        assert!(on > 1_000, "{on} pixels on a skin");
+        let least = if is_first || is_thorough() { 1_000 } else { 300 };
+        assert!(on > least, "{on} pixels on a skin");
     }
 }
 
