@@ -141,7 +141,7 @@ pub struct Timed {
     pub ms: Estimate,
     /// The same against the plain frame of its view, round by round.
     pub ratio: Estimate,
-    /// The sum of its passes by the card's own clock, once, milliseconds; `None` where the card has none.
+    /// The sum of its passes by the card's own clock, once, with its lenses counted, milliseconds; `None` where the card has none.
     pub gpu_ms: Option<f64>,
 }
 
