@@ -13,22 +13,22 @@ mod bench_city;
 
 use std::{cell::Cell, sync::Arc, time::Instant};
 
-use glam::DVec3;
 use veduta::{
     city::load::{LoadOptions, Quiet, load},
     geom::{Aabb, Shape},
     gpu::Gpu,
-    lens::{EffectUse, Focus, Lens},
+    lens::{Focus, Lens},
     measure::{
         ratio::{Estimate, in_turn, ratios},
-        stage::{lens, plain_scene, sphere_around, sphere_covering},
+        stage::plain_scene,
+        topics::gpu::views::{overview, see_through_city, see_through_lens, spread, street, with_lens, with_ten},
     },
     render::{
         frame::Backend,
         picture::{Aovs, Request, Studio},
     },
     scene::{CitySpec, Scene},
-    view::{Camera, View},
+    view::View,
 };
 
 const SIZE: [u32; 2] = [1280, 720];
@@ -65,18 +65,16 @@ fn main() {
     let mut studio = Studio::new(gpu, Arc::new(model), &spec).unwrap_or_else(|error| panic!("{error}"));
     println!("{} triangles", studio.renderer.city().map_or(0, |c| c.triangles));
     let mut frames = Vec::new();
-    for (v, camera) in [("V1", overview(&studio.extent())), ("V2", street(&studio))] {
+    let over = overview(&studio.extent(), SIZE).unwrap_or_else(|error| panic!("{error}"));
+    for (v, camera) in [("V1", over), ("V2", street(&studio))] {
         let scene = plain_scene(camera);
-        let lensed = with_lens(v, &scene, &mut studio);
-        let many = with_ten(v, &lensed, &mut studio);
+        let lensed = with_lens(&scene, &mut studio, SIZE).unwrap_or_else(|error| panic!("{error}"));
+        let many = with_ten(&lensed, &mut studio, SIZE).unwrap_or_else(|error| panic!("{error}"));
+        println!("{v}: lenses of {} m and of {} m cover a tenth of the picture each", radii(&lensed), radii(&many));
         let [few, thousand] = [10, 1000].map(|count| spread(&scene, &studio.extent(), count));
         let moving = (0..8).map(|step| moved(&thousand, f64::from(step)));
-        let through =
-            Scene { lenses: vec![Lens { effects: see_through(), ..lensed.lenses[0].clone() }], ..scene.clone() };
-        let mut city = scene.clone();
-        city.style.effects = see_through();
-        frames.push((format!("{v} see-through"), Frame::Full(through)));
-        frames.push((format!("{v} see-through city"), Frame::Full(city)));
+        frames.push((format!("{v} see-through"), Frame::Full(see_through_lens(&lensed))));
+        frames.push((format!("{v} see-through city"), Frame::Full(see_through_city(&scene))));
         frames.push((format!("{v} moving"), Frame::Turns(moving.collect(), Cell::new(0))));
         let one_moves = (0..8).map(|step| moved(&lensed, f64::from(step)));
         frames.push((format!("{v} lens moving"), Frame::Turns(one_moves.collect(), Cell::new(0))));
@@ -149,59 +147,8 @@ const HOSTS: [(&str, &str); 4] = [
     ("V2 moving", "V2 thousand"),
 ];
 
-/// V1: the whole city in the frustum.
-fn overview(extent: &Aabb) -> Camera {
-    let target = extent.center().with_z(extent.min.z);
-    let reach = extent.size().truncate().length();
-    let mut camera = Camera::looking(target + DVec3::new(-0.45, -0.75, 0.55) * reach, target, 45_f64.to_radians());
-    // Nearer, as long as all corners stay in the picture.
-    for _ in 0..40 {
-        let closer = Camera { eye: target + (camera.eye - target) * 0.97, ..camera };
-        let frustum = View::new(closer, SIZE, extent).expect("a view").frustum(0.0);
-        if !extent.corners().into_iter().all(|c| frustum.contains(c)) {
-            break;
-        }
-        camera = closer;
-    }
-    camera
-}
-
-/// V2: at the city's centre, 1.7 m up.
-fn street(studio: &Studio) -> Camera {
-    let extent = studio.extent();
-    // The nearest place to it where no building stands.
-    let model = &studio.model;
-    let is_free = |p: DVec3| {
-        let near =
-            |b: &Aabb| (b.min.x - 1.0..b.max.x + 1.0).contains(&p.x) && (b.min.y - 1.0..b.max.y + 1.0).contains(&p.y);
-        !studio.geometries.iter().any(|&g| {
-            let geometry = &model.geometries[g as usize];
-            !model.objects[geometry.object as usize].class.is_ground() && near(&geometry.bounds)
-        })
-    };
-    let spiral = (0..20_000).map(|i| {
-        let (turn, reach) = (f64::from(i) * 0.5, f64::from(i) * 0.02);
-        extent.center().with_z(extent.min.z + 1.7) + DVec3::new(turn.cos(), turn.sin(), 0.0) * reach
-    });
-    let eye = spiral.into_iter().find(|p| is_free(*p)).unwrap_or(extent.center());
-    Camera::looking(eye, eye + DVec3::new(80.0, 30.0, 0.0), 45_f64.to_radians())
-}
-
 fn view(scene: &Scene) -> View {
     View::new(scene.camera.expect("a camera"), SIZE, &Aabb::EMPTY).expect("a view")
-}
-
-/// Greyscale lenses all over the city, of which on average one lies over a place on the ground.
-fn spread(scene: &Scene, extent: &Aabb, count: u32) -> Scene {
-    let size = extent.size();
-    let radius = (size.x * size.y / (f64::from(count) * std::f64::consts::PI)).sqrt();
-    let one = |i: u32| {
-        // A sequence that spreads evenly (Roberts, the plastic number).
-        let share = |step: f64| (0.5 + step * f64::from(i)).fract();
-        let center = extent.min + DVec3::new(share(0.754_877_666), share(0.569_840_291), 0.0) * size;
-        lens(&format!("{i}"), Shape::Sphere { center, radius }, &["greyscale"])
-    };
-    Scene { lenses: (0..count).map(one).collect(), ..scene.clone() }
 }
 
 /// The scene with one of its lenses some metres away.
@@ -214,44 +161,13 @@ fn moved(scene: &Scene, metres: f64) -> Scene {
     scene
 }
 
-/// A greyscale lens whose mask covers a tenth of the picture.
-fn with_lens(v: &str, scene: &Scene, studio: &mut Studio) -> Scene {
-    let shape = sphere_covering(studio, scene, SIZE, 0.1).unwrap_or_else(|error| panic!("{error}"));
-    if let Shape::Sphere { radius, .. } = shape {
-        println!("{v}: a lens of {radius:.1} m covers a tenth of the picture");
-    }
-    Scene { lenses: vec![lens("lens", shape, &["greyscale"])], ..scene.clone() }
-}
-
-/// Exactly translucent: every layer counts.
-fn see_through() -> Vec<EffectUse> {
-    lens("", Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }, &["transparent"]).effects
-}
-
-/// The effects of ten colour lenses, two of them neighbourhood filters.
-const TEN: [&str; 10] =
-    ["greyscale", "blur", "sepia", "invert", "darken", "brighten", "saturate", "posterise", "overlay", "blur"];
-
-/// Ten lenses around the one of `lensed`, a fifth of its radius away, each over a tenth of the picture. All overlap.
-fn with_ten(v: &str, lensed: &Scene, studio: &mut Studio) -> Scene {
-    let Some(&Focus::Shape(Shape::Sphere { center, radius })) = lensed.lenses.first().and_then(|l| l.shapes.first())
-    else {
-        panic!("the lens is a sphere");
+/// The radii of a scene's lenses, metres.
+fn radii(scene: &Scene) -> String {
+    let radius = |lens: &Lens| match lens.shapes.first() {
+        Some(Focus::Shape(Shape::Sphere { radius, .. })) => format!("{radius:.1}"),
+        _ => "?".to_owned(),
     };
-    let plain = Scene { lenses: Vec::new(), ..lensed.clone() };
-    let mut lenses = Vec::new();
-    for (i, effect) in TEN.into_iter().enumerate() {
-        let turn = std::f64::consts::TAU * i as f64 / TEN.len() as f64;
-        let center = center + 0.2 * radius * DVec3::new(turn.cos(), turn.sin(), 0.0);
-        let shape = sphere_around(studio, &plain, SIZE, 0.1, center, 4.0 * radius);
-        let shape = shape.unwrap_or_else(|error| panic!("{error}"));
-        if let Shape::Sphere { radius, .. } = shape {
-            print!("{}{radius:.1}", if i == 0 { format!("{v}: ten lenses of ") } else { ", ".to_owned() });
-        }
-        lenses.push(lens(effect, shape, &[effect]));
-    }
-    println!(" m");
-    Scene { lenses, ..plain }
+    scene.lenses.iter().map(radius).collect::<Vec<_>>().join(", ")
 }
 
 /// Prints which part of a frame the host itself computes (the processor time of the thread that draws it), and which part it computes
