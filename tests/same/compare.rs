@@ -72,7 +72,10 @@ fn file_pair(before: &Path, now: &Path) -> io::Result<Option<String>> {
         Some("png") => png_pair(&a, &b),
         Some("json" | "jsonl") => json_pair(&a, &b),
         Some("txt") => Some(format!("was:\n{}\nis:\n{}", String::from_utf8_lossy(&a), String::from_utf8_lossy(&b))),
-        _ => Some(format!("{} and {} bytes", a.len(), b.len())),
+        _ => {
+            let first = a.iter().zip(&b).take_while(|(a, b)| a == b).count();
+            Some(format!("{} bytes, now {}; the first that differs is byte {first}", a.len(), b.len()))
+        }
     };
     Ok(differs)
 }
