@@ -1,4 +1,4 @@
-// Deformations (D1; V 3.6): where places are shown, and what normals become. The same formulas as `geom::deform`, in f32. Which of them a
+// Deformations (Trapp 3.6): where places are shown, and what normals become. The same formulas as `geom::deform`, in f32. Which of them a
 // scene calls for is written out by `shader::deforming`; their numbers stand where `render::deform_words` puts them, in `numbers` and
 // `tables`, which the module that includes this binds.
 //
@@ -192,7 +192,7 @@ fn band_end(q: f32, rate: f32) -> vec2f {
     return smoothed(vec2f(clamp(q, 0.0, 1.0), clamp_slope(q, 0.0, 1.0) * rate));
 }
 
-// Changes of a place by a step: g(p) - p, and its derivative (columns: by x, y, z).
+// Changes of a place by a step: g(p) - p, and its derivative (columns: by x, y, z). Steps are handlers, `shaders/effect`.
 struct Jet {
     way: vec3f,
     slope: mat3x3f,
@@ -206,168 +206,11 @@ fn linear(at: f32, ends: vec2f, values: vec2f) -> vec2f {
 
 const NO_SLOPE = mat3x3f(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 
-fn translated(own: u32, p: vec3f) -> Jet {
-    return Jet(numbers[own].xyz, NO_SLOPE);
+// A way as a user's handler gives it: no farther than it says along each axis, nothing where it is no number, and as strong as asked for.
+fn contained_way(way: vec3f, reach: f32, strength: f32) -> vec3f {
+    let is_number = abs(way) <= vec3f(3e38);
+    return clamp(select(vec3f(0.0), way, is_number), vec3f(-reach), vec3f(reach)) * strength;
 }
-
-fn scaled(own: u32, p: vec3f) -> Jet {
-    let more = numbers[own].xyz;
-    let slope = mat3x3f(vec3f(more.x, 0.0, 0.0), vec3f(0.0, more.y, 0.0), vec3f(0.0, 0.0, more.z));
-    return Jet(more * (p - numbers[own + 1u].xyz), slope);
-}
-
-fn sheared(own: u32, p: vec3f) -> Jet {
-    let slope = vec3f(numbers[own].xy, 0.0);
-    return Jet((p.z - numbers[own].z) * slope, mat3x3f(vec3f(0.0), vec3f(0.0), slope));
-}
-
-fn tapered(own: u32, p: vec3f) -> Jet {
-    let r = linear(p.z, numbers[own].xy, numbers[own].zw);
-    let more = r.x - 1.0;
-    return Jet(vec3f(p.xy * more, 0.0), mat3x3f(vec3f(more, 0.0, 0.0), vec3f(0.0, more, 0.0), vec3f(p.xy * r.y, 0.0)));
-}
-
-fn twisted(own: u32, p: vec3f) -> Jet {
-    let angle = linear(p.z, numbers[own].xy, numbers[own].zw);
-    let t = turn(angle.x);
-    let cos = t.y + 1.0;
-    let by_angle = vec2f(-(p.x * t.x) - p.y * cos, p.x * cos - p.y * t.x);
-    let way = vec3f(p.x * t.y - p.y * t.x, p.x * t.x + p.y * t.y, 0.0);
-    return Jet(way, mat3x3f(vec3f(t.y, t.x, 0.0), vec3f(-t.x, t.y, 0.0), vec3f(by_angle * angle.y, 0.0)));
-}
-
-fn bent(own: u32, p: vec3f) -> Jet {
-    let k = numbers[own].x;
-    let ends = numbers[own].yz;
-    let z = p.z - numbers[own + 1u].x;
-    let y = clamp(p.y, ends.x, ends.y);
-    let u = y - numbers[own].w;
-    let beyond = p.y - y;
-    let angle = u * k;
-    let t = turn(angle);
-    let cos = t.y + 1.0;
-    let half = sinc(0.5 * angle);
-    let rise = u * (0.5 * angle) * half * half;
-    let dy = u * (sinc(angle) - 1.0) - z * t.x + beyond * t.y;
-    let dz = z * t.y + rise + beyond * t.x;
-    let along = 1.0 - z * k * clamp_slope(p.y, ends.x, ends.y);
-    let slope = mat3x3f(vec3f(0.0), vec3f(0.0, cos * along - 1.0, t.x * along), vec3f(0.0, -t.x, t.y));
-    return Jet(vec3f(0.0, dy, dz), slope);
-}
-
-// ---- a street opened along a route (geom/deform/opening.rs)
-
-const NO_TRUST: f32 = 0.05;
-const FULL_TRUST: f32 = 0.2;
-const RADIUS_PER_REACH: f32 = 1.5;
-
-// The integrals over one part of a route and their derivatives, along it and across; all in units of the radius.
-struct Sums {
-    weight: f32,
-    weight_slope: vec2f,
-    mean: vec2f,
-    mean_slope: mat2x2f,    // columns: by a, by b
-}
-
-fn sums_of(a: f32, b: f32, length: f32) -> Sums {
-    let squared = max(1.0 - b * b, 0.0);
-    let h = sqrt(squared);
-    let low = clamp(-a, -h, h);
-    let high = clamp(length - a, -h, h);
-    let rest = max(vec2f(squared) - vec2f(low * low, high * high), vec2f(0.0));
-    let kernel = rest * rest;
-    let weight = weight_up_to(high, h) - weight_up_to(low, h);
-    let cubes = rest * kernel;
-    let first = (cubes.x - cubes.y) * (1.0 / 6.0);
-    let along = kernel.x - kernel.y;
-    let across = -4.0 * b * (high * (squared - high * high * (1.0 / 3.0)) - low * (squared - low * low * (1.0 / 3.0)));
-    let by_a = vec2f(-(high * kernel.y - low * kernel.x), -(b * along));
-    let by_b = vec2f(-(b * along), -weight - b * across);
-    return Sums(weight, vec2f(along, across), vec2f(first, -(b * weight)), mat2x2f(by_a, by_b));
-}
-
-fn weight_up_to(t: f32, h: f32) -> f32 {
-    let s = t * t;
-    let g = h * h;
-    return t * (g * g - (2.0 / 3.0) * g * s + 0.2 * s * s);
-}
-
-fn opened(own: u32, p: vec3f) -> Jet {
-    let nothing = Jet(vec3f(0.0), NO_SLOPE);
-    let half_width = numbers[own].x;
-    let reach = numbers[own].y;
-    let aside = numbers[own].z;
-    let lower = numbers[own].w - 1.0;
-    // First how many parts it has.
-    let route = u32(numbers[own + 1u].y);
-    let parts = u32(tables[route]);
-    let unit = 1.0 / (RADIUS_PER_REACH * reach);
-    var weight = 0.0;
-    var weight_slope = vec2f(0.0);
-    var mean = vec2f(0.0);
-    var mean_slope = mat2x2f(0.0, 0.0, 0.0, 0.0);
-    for (var i = 0u; i < parts; i++) {
-        // Where it begins, which way it goes, how long it is.
-        let at = route + 1u + 5u * i;
-        let along = vec2f(tables[at + 2u], tables[at + 3u]);
-        let way = (p.xy - vec2f(tables[at], tables[at + 1u])) * unit;
-        let a = dot(way, along);
-        let b = way.y * along.x - way.x * along.y;
-        let part = tables[at + 4u] * unit;
-        if abs(b) >= 1.0 || a <= -1.0 || a >= part + 1.0 {
-            continue;
-        }
-        let sums = sums_of(a, b, part);
-        // From along and across to x and y.
-        let back = mat2x2f(along, vec2f(-along.y, along.x));
-        weight += sums.weight;
-        weight_slope += back * sums.weight_slope;
-        mean += back * sums.mean;
-        mean_slope += back * sums.mean_slope * transpose(back);
-    }
-    if weight <= NO_TRUST {
-        return nothing;
-    }
-    let q = (weight - NO_TRUST) / (FULL_TRUST - NO_TRUST);
-    let sure = clamp(q, 0.0, 1.0);
-    let trust = smooth01(sure);
-    let trust_slope =
-        weight_slope * (smooth01_slope(sure) * clamp_slope(q, 0.0, 1.0) * unit / (FULL_TRUST - NO_TRUST));
-    let scale = 1.0 / weight;
-    let unit_way = -clamp(mean * scale, vec2f(-1.0), vec2f(1.0));
-    let by_x = -(mean_slope[0] + unit_way * weight_slope.x) * scale;
-    let by_y = -(mean_slope[1] + unit_way * weight_slope.y) * scale;
-    let way = unit_way / unit;
-    let distance = length(way);
-    if distance >= reach {
-        return nothing;
-    }
-    // Of the push by the distance and of what is lowered: values, and derivatives divided by the distance.
-    var push = aside / half_width * (1.5 - 0.5 * distance * distance / (half_width * half_width));
-    var push_slope = -aside / (half_width * half_width * half_width);
-    var fade = 1.0;
-    var fade_slope = 0.0;
-    if distance > half_width {
-        let rate = 1.0 / (reach - half_width);
-        let t = clamp((distance - half_width) * rate, 0.0, 1.0);
-        let value = 1.0 - smooth01(t);
-        let slope = -smooth01_slope(t) * rate;
-        push = aside * value / distance;
-        push_slope = aside * (slope - value / distance) / (distance * distance);
-        fade = value;
-        fade_slope = slope / distance;
-    }
-    let height = (p.z - numbers[own + 1u].x) * lower;
-    let half_gradient = vec2f(dot(by_x, way), dot(by_y, way));
-    let moved = vec3f(push * way, height * fade);
-    var x = vec3f(push * by_x + push_slope * half_gradient.x * way, height * fade_slope * half_gradient.x);
-    var y = vec3f(push * by_y + push_slope * half_gradient.y * way, height * fade_slope * half_gradient.y);
-    x = x * trust + moved * trust_slope.x;
-    y = y * trust + moved * trust_slope.y;
-    return Jet(moved * trust, mat3x3f(x, y, vec3f(0.0, 0.0, fade * lower * trust)));
-}
-
-// ---- all of it
 
 // What comes after steps that lead to a place with such a derivative.
 fn then(before: Jet, next: Jet) -> Jet {

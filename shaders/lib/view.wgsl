@@ -42,13 +42,8 @@ struct Ray {
     direction: vec3f,           // z = -1
 }
 
-fn ray_of_pixel(pixel: vec2f) -> Ray {
-    let across = pixel * view.across_from_pixel.xy + view.across_from_pixel.zw;
-    if view.orthographic == 1u {
-        return Ray(vec3f(across, 0.0), vec3f(0.0, 0.0, -1.0));
-    }
-    return Ray(vec3f(0.0), vec3f(across, -1.0));
-}
+// Along which ray a pixel looks: handlers say so (shaders/effect).
+//@ray
 
 // Stored depth of distance D: reversed, 1 at the near plane, 0 at the far end.
 fn depth_of_distance(distance: f32) -> f32 {

@@ -523,6 +523,7 @@ impl<'a> Takes<'a> {
             ParameterKind::Text => Self::Text,
             ParameterKind::Word(words) => Self::Words(words.iter().map(String::as_str).collect()),
             ParameterKind::Color => Self::Color,
+            ParameterKind::Vector => Self::Numbers,
             _ => Self::Toml,
         }
     }

@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3};
 
 use crate::{
     city::{Lod, derived::Derive},
-    lens::class::Class,
+    lens::{class::Class, handled::Handled},
     shader::Clip,
 };
 
@@ -29,6 +29,8 @@ pub struct Content {
     pub keep_terrain: bool,
     /// Where it is taken from and put to; `None`: it stands where it is.
     pub copied: Option<Copied>,
+    /// A user's transform about the point that it is put to, after that; `None`: none.
+    pub transform: Option<Handled>,
 }
 
 impl Default for Content {
@@ -41,6 +43,7 @@ impl Default for Content {
             clip: Clip::Order,
             keep_terrain: false,
             copied: None,
+            transform: None,
         }
     }
 }
@@ -67,6 +70,11 @@ impl Content {
     /// The city that it shows.
     pub fn source(&self) -> ContentSource {
         ContentSource { files: self.files.clone(), lod: self.lod, derive: self.derive }
+    }
+
+    /// Whether it stands elsewhere than its city.
+    pub fn is_moved(&self) -> bool {
+        self.copied.is_some() || self.transform.is_some()
     }
 
     /// Whether terrain, roads, water and land use stay as they are below.

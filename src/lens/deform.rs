@@ -9,7 +9,8 @@ use crate::{
         Shape,
         deform::{Control, ControlPlane, Deformation, Frame, Opening, Operator, Profile, Space, Texels},
     },
-    lens::occluders::Occluders,
+    lens::{handled::Handled, occluders::Occluders},
+    shader::effect::{AskedBy, Mode},
 };
 
 /// A corridor's half width over the reach of what opens it: all that it moves is in the corridor.
@@ -119,6 +120,8 @@ pub enum Step {
         /// What their heights are multiplied with, > 0.
         factor: f64,
     },
+    /// What a user's handler does.
+    Map(Handled),
     /// Raises what is far, as panoramas do; seen from the eye.
     Panorama {
         /// What is nearer stays.
@@ -128,6 +131,21 @@ pub enum Step {
         /// By how much.
         angle: f64,
     },
+}
+
+impl Step {
+    /// Whether it changes the heights of city objects.
+    pub fn is_of_objects(&self) -> bool {
+        matches!(self, Self::Heights { .. } | Self::Lower { .. })
+    }
+
+    /// When its handler runs: a user's as its header says, the program's always.
+    fn mode(&self) -> Mode {
+        match self {
+            Self::Map(used) => used.definition(AskedBy::Steps).map_or(Mode::Local, |handler| handler.mode),
+            _ => Mode::Local,
+        }
+    }
 }
 
 /// The eye, as camera deformations are about it.
@@ -157,7 +175,23 @@ impl Deform {
 
     /// Whether it changes the heights of city objects.
     pub fn is_of_objects(&self) -> bool {
-        self.steps.iter().any(|step| matches!(step, Step::Heights { .. } | Step::Lower { .. }))
+        self.steps.iter().any(Step::is_of_objects)
+    }
+
+    /// Whether it moves places by a handler that always does: an optional one then has nothing to do.
+    pub fn always_moves(&self) -> bool {
+        self.steps.iter().any(|step| !step.is_of_objects() && step.mode() == Mode::Local)
+    }
+
+    /// What of it runs: handlers that are never run are left out, and optional ones where `others` of the scene do something.
+    #[must_use]
+    pub fn running(&self, others: bool) -> Self {
+        let runs = |step: &&Step| match step.mode() {
+            Mode::Ignore => false,
+            Mode::Optional => !others,
+            Mode::Local | Mode::Global => true,
+        };
+        Self { steps: self.steps.iter().filter(runs).cloned().collect(), ..self.clone() }
     }
 
     /// The occluders that it makes lower; of several steps, the first ones.
@@ -252,6 +286,7 @@ impl Deform {
                     about: 0.0,
                     base: 0.0,
                 },
+                Step::Map(used) => Operator::Map(used.map(size)?),
                 Step::OpenStreet { .. } => return Err("open-street needs a corridor as its shape".to_owned()),
                 Step::Panorama { .. } => return Err("panorama is about the eye: it has no shape".to_owned()),
                 Step::Heights { .. } | Step::Lower { .. } => return Err(OBJECTS_ALONE.to_owned()),

@@ -3,6 +3,8 @@
 //!
 //! A lens has at most one scene style (K1: how surfaces are drawn); post styles run after it in list order (K3).
 
+use std::collections::BTreeMap;
+
 use crate::{
     lens::{
         color::{Srgb, linear_from_srgb, parse_hex},
@@ -11,7 +13,7 @@ use crate::{
     },
     shader::{
         effect::{
-            DefaultValue, EffectKind, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition, ParameterKind, effects, find,
+            DefaultValue, EffectDefinition, EffectKind, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition, ParameterKind, effects, find,
         },
         effect_file::RESERVED,
     },
@@ -35,24 +37,7 @@ pub fn check(used: &EffectUse) -> Vec<EffectProblem> {
     let Some(definition) = find(&used.effect) else {
         return vec![problem("effect", unknown_effect(&used.effect))];
     };
-    let names = || definition.parameters.iter().map(|p| p.name.as_str());
-    let mut problems = Vec::new();
-    for (key, value) in &used.parameters {
-        match definition.parameters.iter().find(|p| p.name == *key) {
-            None => {
-                let hint = did_you_mean(key, names().chain(RESERVED.iter().copied()));
-                problems.push(problem(key, format!("\"{}\" has no such parameter{hint}", used.effect)));
-            }
-            Some(parameter) => {
-                problems.extend(problem_with(&parameter.kind, value).map(|message| problem(key, message)))
-            }
-        }
-    }
-    for parameter in definition.parameters.iter().filter(|p| p.is_required() && !used.parameters.contains_key(&p.name))
-    {
-        problems
-            .push(problem(&parameter.name, format!("is missing: \"{}\" needs it ({})", used.effect, parameter.doc)));
-    }
+    let mut problems = problems_of_parameters(definition, &used.parameters, RESERVED);
     if let (Some(min), Some(max)) = (used.number("min"), used.number("max"))
         && min >= max
     {
@@ -69,6 +54,34 @@ pub fn check(used: &EffectUse) -> Vec<EffectProblem> {
         && !(0.0..=1.0).contains(&weight)
     {
         problems.push(problem("weight", format!("must be a number 0 to 1, is {weight}")));
+    }
+    problems
+}
+
+/// Everything wrong with the parameters of a handler: unknown, missing and unfit ones; `reserved`: keys that are no parameters.
+pub fn problems_of_parameters(
+    definition: &EffectDefinition,
+    parameters: &BTreeMap<String, Parameter>,
+    reserved: &[&str],
+) -> Vec<EffectProblem> {
+    let names = || definition.parameters.iter().map(|p| p.name.as_str());
+    let problem = |key: &str, message: String| EffectProblem { key: key.to_owned(), message };
+    let mut problems = Vec::new();
+    for (key, value) in parameters {
+        match definition.parameters.iter().find(|p| p.name == *key) {
+            None => {
+                let hint = did_you_mean(key, names().chain(reserved.iter().copied()));
+                problems.push(problem(key, format!("\"{}\" has no such parameter{hint}", definition.name)));
+            }
+            Some(parameter) => {
+                problems.extend(problem_with(&parameter.kind, value).map(|message| problem(key, message)))
+            }
+        }
+    }
+    for parameter in definition.parameters.iter().filter(|p| p.is_required() && !parameters.contains_key(&p.name))
+    {
+        problems
+            .push(problem(&parameter.name, format!("is missing: \"{}\" needs it ({})", definition.name, parameter.doc)));
     }
     problems
 }
@@ -98,6 +111,7 @@ pub fn problem_with(kind: &ParameterKind, value: &Parameter) -> Option<String> {
             did_you_mean(text, words.iter().map(String::as_str))
         )),
         (ParameterKind::Color, value) if color_of(value).is_some() => None,
+        (ParameterKind::Vector, Parameter::Numbers(n)) if n.len() == 3 && n.iter().all(|n| n.is_finite()) => None,
         (ParameterKind::Numbers, Parameter::Numbers(n)) => {
             let ascending = n.windows(2).all(|w| w[0] < w[1]) && n.iter().all(|n| n.is_finite());
             let fits = (1..=MAX_LIST).contains(&n.len()) && ascending;
@@ -149,6 +163,7 @@ pub fn in_floats(parameter: &ParameterDefinition, value: &Parameter) -> Vec<f32>
             vec![words.iter().position(|w| w == text).unwrap_or(0) as f32]
         }
         (ParameterKind::Color, value) => linear_from_srgb(color_of(value).unwrap_or_default()).to_vec(),
+        (ParameterKind::Vector, Parameter::Numbers(n)) if n.len() == 3 => n.iter().map(|n| *n as f32).collect(),
         // What a scene gave to an effect that is another one now.
         (kind, _) => vec![0.0; kind.in_shader().map_or(0, |(_, floats)| floats)],
     }

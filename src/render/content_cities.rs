@@ -84,7 +84,7 @@ impl ContentCities {
         let mut used: Vec<ContentSource> = Vec::new();
         for (i, lens, content) in with_content() {
             let source = content.source();
-            let is_same = |c: &&Content| (c.source(), c.copied) == (source.clone(), None);
+            let is_same = |c: &&Content| !c.is_moved() && !content.is_moved() && c.source() == source;
             let before = numbers.iter().position(is_same);
             let number = before.unwrap_or(numbers.len()) as u32 + 1;
             if before.is_none() {
@@ -283,15 +283,25 @@ fn placement(
     volumes: &[&LensVolume],
     stage: &Stage,
 ) -> Result<Placement, (&'static str, String)> {
-    let Some(copied) = content.copied else { return Ok(Placement::NONE) };
+    if !content.is_moved() {
+        return Ok(Placement::NONE);
+    }
+    let copied = content.copied.unwrap_or_default();
+    let around = || volumes.iter().fold(Aabb::EMPTY, |all, v| all.union(v.bounds));
     let to = match copied.to {
         Some(to) => (stage.motion)(lens).unwrap_or(Motion::NONE).point(to),
         None if volumes.iter().all(|v| v.body.is_bounded()) => {
-            volumes.iter().fold(Aabb::EMPTY, |all, v| all.union(v.bounds)).center()
+            around().center()
         }
         None => return Err(("to", "is missing: a lens without end has no middle to put it to".to_owned())),
     };
-    Ok(Placement { from: copied.from.unwrap_or(to), to, rotation: copied.rotation, scale: copied.scale })
+    let from = copied.from.unwrap_or(to);
+    let Some(transform) = &content.transform else {
+        return Ok(Placement { from, to, rotation: copied.rotation, scale: copied.scale });
+    };
+    let own = transform.similarity(around().size()).map_err(|message| ("transform", message))?;
+    let (rotation, scale) = (own.rotation * copied.rotation, own.scale * copied.scale);
+    Ok(Placement { from, to: to + own.offset, rotation, scale })
 }
 
 impl WantedContent {

@@ -1,13 +1,16 @@
 //! Deformations as numbers that `lib/deform.wgsl` reads.
 
-use glam::{DVec3, IVec3, Vec3};
+use glam::{DVec2, DVec3, IVec3, Vec3};
 
 use crate::{
     geom::{
         Aabb,
         deform::{Control, Deformer, Deformers, Opening, Operator, Profile},
     },
-    shader::{DeformPlan, PlanControl, PlanDeformer, PlanStep},
+    shader::{
+        DeformPlan, PlanControl, PlanDeformer, PlanStep, STEP_HEAD,
+        effect::{handlers, number_of},
+    },
 };
 
 /// Cells of a metre, where the city is not too large for that: 2¹⁵, 31 µm each.
@@ -72,16 +75,9 @@ pub(super) fn plan_of(deformers: &Deformers) -> DeformPlan {
                 (control, plane.band.is_some())
             }
         };
-        let step = |operator: &Operator| match operator {
-            Operator::Translate(_) => PlanStep::Translate,
-            Operator::Scale { .. } => PlanStep::Scale,
-            Operator::Shear { .. } => PlanStep::Shear,
-            Operator::Taper { .. } => PlanStep::Taper,
-            Operator::Twist { .. } => PlanStep::Twist,
-            Operator::Bend { .. } => PlanStep::Bend,
-            Operator::Open(_) => PlanStep::Open,
-        };
-        PlanDeformer { control, has_band, steps: deformation.chain.iter().map(step).collect() }
+        // A handler that went away since the scene was read does nothing.
+        let step = |operator: &Operator| number_of(operator.handler()).map(|n| PlanStep::new(n, handlers()));
+        PlanDeformer { control, has_band, steps: deformation.chain.iter().filter_map(step).collect() }
     };
     DeformPlan(deformers.0.iter().map(deformer).collect())
 }
@@ -150,27 +146,37 @@ impl DeformNumbers {
 
     fn step(&mut self, at: usize, operator: &Operator, spacing: DVec3) {
         self.put(at, &(2.0 / spacing).to_array());
-        let four = |v: DVec3| [v.x, v.y, v.z, 0.0];
+        // In the order of the parameters in the header of its handler.
         let own: Vec<f64> = match operator {
-            Operator::Translate(way) => four(*way).into(),
-            Operator::Scale { factors, about } => [four(*factors - DVec3::ONE), four(*about)].concat(),
+            Operator::Translate(way) => way.to_array().into(),
+            Operator::Scale { factors, about } => [(*factors - DVec3::ONE).to_array(), about.to_array()].concat(),
             Operator::Shear { slope, base } => vec![slope.x, slope.y, *base],
             Operator::Taper { z, factors } => [*z, *factors].concat(),
             Operator::Twist { z, angles } => [*z, *angles].concat(),
             Operator::Bend { curvature, y, about, base } => vec![*curvature, y[0], y[1], *about, *base],
-            Operator::Open(Opening { line, half_width, reach, aside, height, base }) => {
-                let first = self.tables.len();
-                self.tables.push(0.0);
-                for part in line.windows(2) {
-                    let Some(along) = (part[1] - part[0]).try_normalize() else { continue };
-                    let length = part[0].distance(part[1]);
-                    let own = [part[0].x, part[0].y, along.x, along.y, length];
-                    self.tables.extend(own.map(|number| number as f32));
-                }
-                self.tables[first] = ((self.tables.len() - first) / 5) as f32;
-                vec![*half_width, *reach, *aside, *height, *base, first as f64]
+            Operator::Open(opening) => {
+                let Opening { half_width, reach, aside, height, base, .. } = *opening;
+                vec![half_width, reach, aside, height, base, self.route(&opening.line) as f64]
+            }
+            Operator::Map(mapped) => {
+                let size = mapped.map.size();
+                let head = [size.x, size.y, size.z, mapped.reach, mapped.strength, mapped.half_difference(), 0.0, 0.0];
+                head.into_iter().chain(mapped.map.parameters().iter().map(|n| f64::from(*n))).collect()
             }
         };
-        self.put(at + 1, &own);
+        self.put(at + STEP_HEAD, &own);
+    }
+
+    /// Puts a route into the tables, and says where it begins.
+    fn route(&mut self, line: &[DVec2]) -> usize {
+        let first = self.tables.len();
+        self.tables.push(0.0);
+        for part in line.windows(2) {
+            let Some(along) = (part[1] - part[0]).try_normalize() else { continue };
+            let own = [part[0].x, part[0].y, along.x, along.y, part[0].distance(part[1])];
+            self.tables.extend(own.map(|number| number as f32));
+        }
+        self.tables[first] = ((self.tables.len() - first) / 5) as f32;
+        first
     }
 }

@@ -115,6 +115,8 @@ impl KnownDeformations {
         let mut found = SceneDeformations::default();
         let mut deformers = Deformers::default();
         let mut rules = Vec::new();
+        let enabled = || stage.scene.lenses.iter().filter(|lens| lens.enabled);
+        let others = enabled().filter_map(|lens| lens.deform.as_ref()).any(Deform::always_moves);
         for (i, lens) in stage.scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
             let Some(deform) = &lens.deform else { continue };
             let wrong = |message: String| format!("[lens.{i}] {message}");
@@ -128,7 +130,8 @@ impl KnownDeformations {
                 rules.extend(Rule::of_lens(i, &lens.name, deform, &mut asked));
                 continue;
             }
-            let Some(deformation) = self.placed(stage, lens, deform).map_err(wrong)? else { continue };
+            let running = deform.running(others);
+            let Some(deformation) = self.placed(stage, lens, &running).map_err(wrong)? else { continue };
             let own = self.strength(&deformation, &stage.bounds).map_err(wrong)?;
             if own.strength < 1.0 {
                 found.weakened.insert(i as u32, (1000.0 * own.strength).floor() as u32);

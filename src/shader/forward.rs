@@ -10,6 +10,7 @@ use crate::shader::{
     library::{CHANCE, DITHER, FORWARD, FRAGMENT, GEOMETRY, NOTES, SHADE, TAIL, TRANSLUCENT},
     names,
     plan::program::Program,
+    rays,
     shading::Shading,
     table::MOST_SLOTS,
     template::Template,
@@ -62,6 +63,7 @@ impl Forward {
         let shade = SHADE.changed(|text| without_entry(text, "vertex", "corner_of"));
         let text = Template::of_files(&files::of_shading(&self.shading, handlers))
             .then(Template::below_path(SHADE.path, &shade))
+            .fill("ray", rays::source())
             .fill("carried", own.members)
             .fill("handlers", own.functions + &opacity)
             .then(Template::of_files(&[FORWARD]));

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::shader::{
     effect::{
         definition::EffectDefinition,
-        prototype::{EffectKind, Mode},
+        prototype::{EffectKind, Mode, Stage},
     },
     plan::uber::Uber,
 };
@@ -21,7 +21,8 @@ pub(super) fn used<'a>(
         Mode::Global => uber.haze,
         Mode::Ignore => false,
     };
-    handlers.iter().enumerate().map(|(i, h)| (i as u32, h)).filter(is_used)
+    let shades = |(_, h): &(u32, &EffectDefinition)| h.kind.prototype().stage >= Stage::Visibility;
+    handlers.iter().enumerate().map(|(i, h)| (i as u32, h)).filter(shades).filter(is_used)
 }
 
 /// Whether the scene may ask for an effect of this prototype.

@@ -17,7 +17,7 @@ use crate::shader::{
     },
     lining,
     plan::{Plan, program::Program, volume_test::VolumeTest},
-    regions, sections,
+    rays, regions, sections,
     shading::Shading,
     sorting, specialised,
     template::Template,
@@ -97,6 +97,7 @@ impl Module {
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], room: u32) -> String {
         let files = files::with_threshold(self.files(handlers));
         let text = Template::of_files(&files);
+        let text = if files.contains(&VIEW) { text.fill("ray", rays::source()) } else { text };
         let hidden = |program, eye| hiding::source(program, handlers, lenses, eye);
         let filled = match self {
             Self::CombinedSprite(kinds) | Self::StoredLayers(kinds) => return text.text() + &lens_test::leaves(kinds),
@@ -122,7 +123,7 @@ impl Module {
                     .fill("behind-plane", behind_plane("opaque_depth"))
             }
             Self::Lines(program) => text.fill("handlers", lining::source(program, handlers, lenses)),
-            Self::Refine(plan) => text.fill("deformers", plan.shown()).fill("traced", plan.traced()),
+            Self::Refine(plan) => text.fill("deformers", plan.shown(handlers)).fill("traced", plan.traced(handlers)),
             Self::Geometry(None) => geometry::filled(text, Drawn::Surfaces, NOTHING_CUT),
             Self::Geometry(Some(program)) => {
                 let drawn = if program.regions().is_some() { Drawn::Regions } else { Drawn::Surfaces };

@@ -49,7 +49,7 @@ fn by_shapes(mut program: Program) -> Program {
 
 /// The numbers of all effects.
 fn numbers() -> Vec<u32> {
-    let is_effect = |(_, h): &(usize, &EffectDefinition)| h.mode == Mode::Local;
+    let is_effect = |(_, h): &(usize, &EffectDefinition)| effect::find(&h.name).is_some();
     handlers().iter().enumerate().filter(is_effect).map(|(i, _)| i as u32).collect()
 }
 
@@ -152,7 +152,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
 
 /// All controls with all steps, with and without a band.
 fn every_deformer() -> DeformPlan {
-    use PlanStep::{Bend, Open, Scale, Shear, Taper, Translate, Twist};
+    let is_step = |number: &u32| handlers()[*number as usize].kind == EffectKind::Deform;
     let controls = [
         PlanControl::Everywhere,
         PlanControl::Linear,
@@ -161,7 +161,9 @@ fn every_deformer() -> DeformPlan {
         PlanControl::Ring,
         PlanControl::Texels,
     ];
-    let steps = vec![Translate, Scale, Shear, Taper, Twist, Bend, Open];
+    let all = (0..handlers().len() as u32).filter(is_step);
+    let steps: Vec<PlanStep> = all.map(|number| PlanStep::new(number, handlers())).collect();
+    assert_eq!(steps.len(), 7, "translate, scale, shear, taper, twist, bend and open-street");
     let deformer = |control| [false, true].map(|has_band| PlanDeformer { control, has_band, steps: steps.clone() });
     DeformPlan(controls.into_iter().flat_map(deformer).collect())
 }

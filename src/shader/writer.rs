@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::shader::{
     effect::{
         definition::EffectDefinition,
-        prototype::{EffectKind, Mode},
+        prototype::{EffectKind, Mode, Stage},
     },
     lens_test, masks,
     names::one_line,
@@ -46,13 +46,14 @@ impl Writer<'_> {
     /// The handlers that may run, once each: the plan's, and those of the program that it calls for.
     pub(super) fn used(&self) -> impl Iterator<Item = &EffectDefinition> {
         let own = self.plan.effects();
+        let shades = |h: &&EffectDefinition| h.kind.prototype().stage >= Stage::Visibility;
         let is_used = move |(i, h): &(usize, &EffectDefinition)| match h.mode {
             Mode::Local => own.contains(&(*i as u32)) && h.kind != EffectKind::Filter,
             Mode::Optional => self.needs_optional(h.kind),
             Mode::Global => self.plan.haze && self.needs_optional(EffectKind::Scene),
             Mode::Ignore => false,
         };
-        self.handlers.iter().enumerate().filter(is_used).map(|(_, h)| h)
+        self.handlers.iter().enumerate().filter(is_used).map(|(_, h)| h).filter(shades)
     }
 
     /// Whether some surface gets its result from a prototype's optional handler.

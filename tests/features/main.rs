@@ -32,6 +32,7 @@ mod meshes;
 mod occlusion;
 mod over_time;
 mod overlays;
+mod own_handlers;
 #[path = "../panes/mod.rs"]
 mod panes;
 mod picture;

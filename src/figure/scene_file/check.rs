@@ -237,7 +237,7 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         Kind::Size => {
             node.list().is_some_and(|l| l.len() == 2 && l.iter().all(|n| matches!(n.data, Data::Integer(1..=16_384))))
         }
-        Kind::Table(_) | Kind::Shape => matches!(node.data, Data::Table(_)),
+        Kind::Table(_) | Kind::Shape | Kind::Handler => matches!(node.data, Data::Table(_)),
         Kind::Shapes => node.list().is_some_and(|l| !l.is_empty()),
         Kind::Names => match node.list() {
             Some(list) => !list.is_empty() && list.iter().all(|n| n.text().is_some_and(|t| !t.is_empty())),

@@ -8,6 +8,7 @@ use crate::{
         check::{Fields, lod},
         effects::Shown,
         forms::{Form as _, Same, Turn, Word, Worded},
+        handled,
         keys::{CLASSES, Kind, Table, key},
         node::{Data, Node},
         paths::Options,
@@ -15,7 +16,7 @@ use crate::{
         row::{self, Row, field, keys_of},
     },
     lens::{Content, Copied},
-    shader::Clip,
+    shader::{Clip, effect::AskedBy},
 };
 
 /// `content` of a lens.
@@ -201,6 +202,21 @@ const CONTENT_ROWS: &[Row<Content>] = &[
         key("scale", Kind::Number { min: 1e-3, max: 1e3 }, "1.0", "", "Scales it about that point.", "2.0"),
         |content, _| content.copied.filter(says_scale).map(|copied| copied.scale.into()),
         |content, given| Same::take(given.node, &mut copied(content).scale),
+    ),
+    Row::<Content>::new(
+        key(
+            "transform",
+            Kind::Handler,
+            "none",
+            "",
+            "A transform of your own, about the point that it is put to; see Effects of your own (effects.md).",
+            "{ kind = \"upright\" }",
+        ),
+        |content, _| content.transform.as_ref().map(handled::written),
+        |content, given| {
+            let place = given.fields.place.within(given.key, given.node.line);
+            content.transform = handled::required(given.reader, given.node, &place, AskedBy::Contents);
+        },
     ),
 ];
 

@@ -7,6 +7,7 @@ use crate::{
         check::{Checker, Fields},
         choice::CHOICE,
         forms::{Degrees, Same},
+        handled,
         keys::{FAR_M, Kind, Table, key},
         node::{Data, Node},
         occlusion,
@@ -20,6 +21,7 @@ use crate::{
         deform::{BORDER, ControlProfile, Deform, OBJECTS_ALONE, Step},
         nearest::did_you_mean,
     },
+    shader::effect::{AskedBy, asked_for},
 };
 
 /// Most that something is stretched to or pressed from.
@@ -316,11 +318,16 @@ fn steps(reader: &mut Reader, fields: &Fields) -> Vec<Step> {
         let place = fields.place.within(&format!("deform.{i}"), node.line);
         let word = node.entry("kind").and_then(Node::text);
         let Some(kind) = STEP_KINDS.iter().find(|kind| word == Some(kind.table.name)) else {
-            let all = STEPS.iter().map(|table| table.name);
+            if let Some(used) = handled::read(reader, node, &place, AskedBy::Steps) {
+                steps.push(Step::Map(used));
+                continue;
+            }
+            let own = asked_for(AskedBy::Steps).map(|handler| handler.name.as_str());
+            let all: Vec<&str> = STEPS.iter().map(|table| table.name).chain(own).collect();
             let what = node.entry("kind").map_or_else(|| "missing".to_owned(), Node::quoted);
-            let hint = did_you_mean(word.unwrap_or_default(), all.clone());
+            let hint = did_you_mean(word.unwrap_or_default(), all.iter().copied());
             let line = node.entry("kind").map_or(node.line, |kind| kind.line);
-            let message = format!("must be one of {}, is {what}{hint}", all.collect::<Vec<_>>().join(", "));
+            let message = format!("must be one of {}, is {what}{hint}", all.join(", "));
             reader.checker.note(&place, "kind", line, message);
             continue;
         };
@@ -333,7 +340,7 @@ fn steps(reader: &mut Reader, fields: &Fields) -> Vec<Step> {
         };
         steps.extend(step);
     }
-    let of_objects = |step: &&Step| matches!(step, Step::Heights { .. } | Step::Lower { .. });
+    let of_objects = |step: &&Step| step.is_of_objects();
     let count = steps.iter().filter(of_objects).count();
     if count > 0 && (count < steps.len() || fields.given("shape") || fields.given("shapes")) {
         reader.checker.note(&fields.place, "deform", fields.line("deform"), OBJECTS_ALONE.to_owned());
@@ -397,7 +404,10 @@ fn profile(checker: &mut Checker, own: &Fields, word: Option<&str>) -> Option<Co
 
 /// `deform` of a deformation lens.
 pub fn steps_data(deform: &Deform, options: &Options) -> Data {
-    let step = |step: &Step| Variant::of(STEP_KINDS, step).map(|kind| kind.written(step, options));
+    let step = |step: &Step| match step {
+        Step::Map(used) => Some(handled::written(used)),
+        _ => Variant::of(STEP_KINDS, step).map(|kind| kind.written(step, options)),
+    };
     Data::list(deform.steps.iter().filter_map(step))
 }
 

@@ -325,6 +325,7 @@ fn of_kind(kind: &Kind) -> Value {
         }
         Kind::Test => json!({ "$ref": TEST }),
         Kind::View => by(VIEWS, "kind"),
+        Kind::Handler => json!({ "type": "object", "required": ["kind"] }),
         Kind::Steps => json!({ "type": "array", "items": by(STEPS, "kind"), "minItems": 1 }),
         Kind::Tests => json!({ "type": "array", "items": { "$ref": TEST }, "minItems": 1 }),
         Kind::Rendering => {
@@ -427,6 +428,7 @@ fn of_parameter(kind: &ParameterKind) -> Value {
         ParameterKind::Text => json!({ "type": "string" }),
         ParameterKind::Word(words) => json!({ "enum": words }),
         ParameterKind::Color => color(),
+        ParameterKind::Vector => of_kind(&Kind::Point),
         ParameterKind::Numbers => {
             json!({ "type": "array", "items": { "type": "number" }, "minItems": 1, "maxItems": 256 })
         }

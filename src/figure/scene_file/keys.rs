@@ -93,6 +93,8 @@ pub enum Kind {
     Tests,
     /// Steps of a deformation: tables of [`super::deformation::STEPS`].
     Steps,
+    /// A user's handler: a table `{ kind = NAME, ... }`.
+    Handler,
     /// A word of [`crate::lens::rendering::ROWS`], or effects.
     Rendering,
     /// One of the first words, or a table that says more.
@@ -183,7 +185,7 @@ impl Kind {
             Self::Size => "[width, height], two whole numbers 1 to 16384".into(),
             Self::Table(_) => "a table".into(),
             Self::Tables(_) => "a list of tables".into(),
-            Self::Shape => "a table { kind = ..., ... }".into(),
+            Self::Shape | Self::Handler => "a table { kind = ..., ... }".into(),
             Self::Shapes => "a list of at least one shape".into(),
             Self::Numbers => "a number, or a list of numbers".into(),
             Self::Effects => "a list of effects: names or tables { effect = NAME, ... }".into(),

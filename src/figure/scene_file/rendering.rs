@@ -84,6 +84,7 @@ fn key_of(of: ParameterDefinition) -> Key {
             Kind::Word { now: Vec::leak(words), later: &[] }
         }
         ParameterKind::Color => Kind::Color,
+        ParameterKind::Vector => Kind::Point,
         ParameterKind::Text | ParameterKind::Texts => Kind::Names,
         ParameterKind::Numbers => Kind::Numbers,
         ParameterKind::Shares => Kind::Shares,

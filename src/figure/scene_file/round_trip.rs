@@ -229,7 +229,7 @@ prop_compose! {
             false => Copied { from, to, rotation: rotation(angles.map(|a| f64::from(a) / 10.0)), scale },
         });
         let files = files.into_iter().filter(|f| !f.contains("${") && !f.starts_with("builtin:")).map(Into::into).collect();
-        Content { files, lod: tenths.map(|tenths| crate::city::Lod { tenths }), derive, class, clip, keep_terrain, copied }
+        Content { files, lod: tenths.map(|tenths| crate::city::Lod { tenths }), derive, class, clip, keep_terrain, copied, transform: None }
     }
 }
 

@@ -3,14 +3,15 @@
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
-use glam::DVec3;
+use glam::{DVec3, UVec3};
+use rayon::prelude::*;
 
 use crate::geom::{
     aabb::Aabb,
     deform::{
-        Control, Deformation, Deformer, Fault, Interval,
+        Control, Deformation, Deformer, Fault, Interval, Operator,
         deformer::intervals,
-        number::{Vector, determinant},
+        number::{self, Vector, determinant},
     },
 };
 
@@ -18,6 +19,12 @@ use crate::geom::{
 const BOXES: usize = 1 << 12;
 /// Halvings of the range in which the largest safe strength is searched: to a part in a thousand.
 const HALVINGS: usize = 10;
+
+/// Places along each side at which a user's map is looked at.
+const LATTICE: u32 = 16;
+/// How often it is looked closer, three times as close each time, and around how many places.
+const CLOSER: usize = 3;
+const WORST: usize = 16;
 
 /// det J of what is taken for not folded without a proof.
 pub const CLEAR: f64 = 0.25;
@@ -88,6 +95,9 @@ impl Deformer {
         if part.is_empty() || self.deformation.chain.is_empty() {
             return Proof::Proven;
         }
+        if self.deformation.chain.iter().any(|operator| matches!(operator, Operator::Map(_))) {
+            return self.looked_at(&part);
+        }
         let mut doubts = BinaryHeap::new();
         let mut least_seen = f64::INFINITY;
         let mut looked_at = 0;
@@ -122,6 +132,42 @@ impl Deformer {
             }
         }
         Proof::Proven
+    }
+
+    /// What many places say where nothing is known between them: of a user's map. A lattice over a part of the frame, and finer ones around
+    /// the places of it where least is left.
+    fn looked_at(&self, part: &Aabb) -> Proof {
+        if !part.size().is_finite() {
+            return Proof::Unknown { least: 0.0 };
+        }
+        let det = |p: DVec3| number::determinant(&self.jacobian_over(&p.to_array()));
+        let mut step = part.size() / f64::from(LATTICE);
+        let places = |i: u32| {
+            let cell = UVec3::new(i % LATTICE, i / LATTICE % LATTICE, i / (LATTICE * LATTICE));
+            part.min + step * (cell.as_dvec3() + 0.5)
+        };
+        let mut seen: Vec<(f64, DVec3)> =
+            (0..LATTICE.pow(3)).into_par_iter().map(places).map(|p| (det(p), p)).collect();
+        for _ in 0..CLOSER {
+            seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+            seen.truncate(WORST);
+            step /= 3.0;
+            let around = |at: DVec3| {
+                (0..27_u32).map(move |i| {
+                    let aside = DVec3::new(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)) - 1.0;
+                    (at + step * aside).clamp(part.min, part.max)
+                })
+            };
+            seen = seen.iter().flat_map(|(_, at)| around(*at)).map(|p| (det(p), p)).collect();
+        }
+        let least = seen.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        match least {
+            Some((determinant, at)) if *determinant <= 0.0 => {
+                Proof::Folds { at: self.support().frame.to_world(*at), determinant: *determinant }
+            }
+            Some((least, _)) => Proof::Unknown { least: *least },
+            None => Proof::Proven,
+        }
     }
 
     /// The side of which most of the doubt comes: the one that alone makes the bound the worst.
@@ -168,7 +214,9 @@ impl Deformation {
             Proof::Unknown { least } => *least >= CLEAR,
             Proof::Folds { .. } => false,
         };
-        let used = if reason.is_none() { 1.0 } else { largest(0.0, |strength| Ok(prove(strength)? == Proof::Proven))? };
+        // What is only looked at is never proven.
+        let is_looked_at = self.chain.iter().any(|operator| matches!(operator, Operator::Map(_)));
+        let used = if reason.is_none() { 1.0 } else if is_looked_at { 0.0 } else { largest(0.0, |strength| Ok(prove(strength)? == Proof::Proven))? };
         let seen = match &reason {
             Some(proof) if !is_clear(proof) => largest(used, |strength| Ok(is_clear(&prove(strength)?)))?,
             _ => 1.0,

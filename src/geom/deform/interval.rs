@@ -2,7 +2,10 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use crate::geom::deform::number::Number;
+use crate::geom::deform::{
+    Mapped,
+    number::{Matrix, Number, Vector},
+};
 
 /// How far sums of a few numbers about 1, and the platform's sine and cosine, may be off: a few ulps.
 const UNIT_ERROR: f64 = 1e-15;
@@ -208,6 +211,10 @@ impl Number for Interval {
         } else {
             then(Self { low: self.low, high: bound }).union(otherwise(Self { low: bound, high: self.high }))
         }
+    }
+
+    fn of_map(mapped: &Mapped, _place: &Vector<Self>) -> (Vector<Self>, Matrix<Self>) {
+        mapped.bounds()
     }
 
     fn smooth(self) -> Self {

@@ -50,7 +50,7 @@ impl Operator {
                 let up = DVec3::new(0.0, *about, *base);
                 unbent(p - up, *curvature, y.map(|y| y - about)).map(|p| p + up)
             }
-            Self::Open(_) => solved(p, |p| self.value(p) - p, |p| self.jacobian(p)),
+            Self::Open(_) | Self::Map(_) => solved(p, |p| self.value(p) - p, |p| self.jacobian(p)),
         }
         .filter(|p| p.is_finite())
     }

@@ -20,6 +20,7 @@ mod control;
 mod deformer;
 mod interval;
 mod inverse;
+mod map;
 mod number;
 mod opening;
 mod operator;
@@ -33,6 +34,7 @@ pub use certificate::{CLEAR, Proof, Strength};
 pub use control::{Band, Control, ControlPlane, Profile, Texels};
 pub use deformer::{Deformer, Deformers, Support};
 pub use interval::Interval;
+pub use map::{Map, Mapped};
 pub use opening::Opening;
 pub use operator::Operator;
 

@@ -2,6 +2,10 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+use glam::DVec3;
+
+use crate::geom::deform::Mapped;
+
 /// What a formula needs of a number. The f64 gives one value; an [`Interval`](super::Interval) holds the values for all numbers in its arguments.
 /// At kinks an f64 takes the derivative of the inner side.
 pub(super) trait Number:
@@ -32,6 +36,9 @@ pub(super) trait Number:
     fn integral(low: Self, high: Self, h: Self, primitive: impl Fn(f64, f64) -> f64) -> Self;
     /// `then` where this is at most `bound`, else `otherwise`; an interval across the bound holds both.
     fn up_to(self, bound: f64, then: impl FnOnce(Self) -> Self, otherwise: impl FnOnce(Self) -> Self) -> Self;
+
+    /// A user's map at a place, and its derivative.
+    fn of_map(mapped: &Mapped, place: &Vector<Self>) -> (Vector<Self>, Matrix<Self>);
 
     /// 3q² − 2q³ of a number in 0..=1: from 0 to 1, level at both ends.
     fn smooth(self) -> Self {
@@ -102,6 +109,11 @@ impl Number for f64 {
 
     fn up_to(self, bound: f64, then: impl FnOnce(Self) -> Self, otherwise: impl FnOnce(Self) -> Self) -> Self {
         if self <= bound { then(self) } else { otherwise(self) }
+    }
+
+    fn of_map(mapped: &Mapped, place: &Vector<Self>) -> (Vector<Self>, Matrix<Self>) {
+        let (way, slope) = mapped.jet(DVec3::from(*place));
+        (way.to_array(), slope.transpose().to_cols_array_2d())
     }
 }
 

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use crate::geom::{
     aabb::Aabb,
     deform::{
-        Opening,
+        Mapped, Opening,
         number::{Matrix, Number, Vector, determinant, plus_identity, zeros},
     },
 };
@@ -62,6 +62,8 @@ pub enum Operator {
     },
     /// A street opened along a route.
     Open(Opening),
+    /// What a user's handler does; det as its derivative has it.
+    Map(Mapped),
 }
 
 impl Operator {
@@ -105,6 +107,21 @@ impl Operator {
                 let (aside, height) = (strength * opening.aside, factor(opening.height));
                 Self::Open(Opening { aside, height, ..opening.clone() })
             }
+            Self::Map(mapped) => Self::Map(Mapped { strength: strength * mapped.strength, ..mapped.clone() }),
+        }
+    }
+
+    /// The name of its handler (`shaders/effect`).
+    pub fn handler(&self) -> &str {
+        match self {
+            Self::Translate(_) => "translate",
+            Self::Scale { .. } => "scale",
+            Self::Shear { .. } => "shear",
+            Self::Taper { .. } => "taper",
+            Self::Twist { .. } => "twist",
+            Self::Bend { .. } => "bend",
+            Self::Open(_) => "open-street",
+            Self::Map(mapped) => mapped.map.name(),
         }
     }
 
@@ -172,6 +189,7 @@ impl Operator {
                 ([zero, dy, dz], rows)
             }
             Self::Open(opening) => opening.jet(p),
+            Self::Map(mapped) => S::of_map(mapped, p),
         }
     }
 
@@ -189,6 +207,7 @@ impl Operator {
                 S::from(1.0) - p[2].plus(-base).times(*curvature) * p[1].clamp_slope(*low, *high)
             }
             Self::Open(opening) => determinant(&plus_identity(opening.jet(p).1)),
+            Self::Map(_) => determinant(&plus_identity(self.jet(p).1)),
         }
     }
 
@@ -221,6 +240,7 @@ impl Operator {
                     (spacing.x, spacing.y) = (spacing_m, spacing_m);
                 }
             }
+            Self::Map(mapped) => spacing = DVec3::splat(mapped.detail),
         }
         spacing
     }
@@ -261,6 +281,7 @@ impl Operator {
                 Some("a bend is not finite")
             }
             Self::Open(opening) => opening.fault(),
+            Self::Map(mapped) => mapped.fault(),
             _ => None,
         }
     }

@@ -1,10 +1,13 @@
 //! Effects as they are defined: what an effect file says.
 
+use std::sync::Arc;
+
 use crate::shader::{
     effect::{
         parameter::{Fallback, ParameterDefinition, ParameterKind},
         prototype::{EffectKind, Mode},
     },
+    host::HostProgram,
     wgsl::token::identifier,
 };
 
@@ -20,6 +23,16 @@ pub enum PerObject {
     Sights,
     /// Outlines of the ground that they cover (`render::footprints`).
     Footprints,
+}
+
+/// A number of a header: itself, or that of a parameter.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[serde(untagged)]
+pub enum Amount {
+    /// The number.
+    Number(f64),
+    /// The name of a parameter, which is a number.
+    Parameter(String),
 }
 
 /// One effect.
@@ -47,6 +60,14 @@ pub struct EffectDefinition {
     pub reads_below: bool,
     /// Whether it calls `most_layers`: the largest number of layers of a pixel, which a pass must count first.
     pub asks_most_layers: bool,
+    /// Whether its function gives the derivative of what it does, too: one of the program. A user's is made of differences.
+    pub has_derivative: bool,
+    /// Of a deformation, how far a place is moved along each axis at most, metres: what goes farther is held there.
+    pub reach: Amount,
+    /// The shortest way, metres, over which what a user's map does changes; `None`: a sixteenth of the shortest side of its lens.
+    pub detail: Option<Amount>,
+    /// A user's handler as the host runs it, where the host does ([`crate::shader::host`]).
+    pub host: Option<Arc<HostProgram>>,
     /// The WGSL of its functions, names qualified; that of its parameters first.
     pub source: String,
     /// Where the WGSL of its parameters ends in it.

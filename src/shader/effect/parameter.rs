@@ -18,6 +18,8 @@ pub enum ParameterKind {
     Word(Vec<String>),
     /// `"#rrggbb"` or `[r, g, b]`, sRGB 0..1; in WGSL a `vec3f`, linear.
     Color,
+    /// Three finite numbers, `[x, y, z]`; in WGSL a `vec3f`.
+    Vector,
     /// Finite numbers, ascending, at most [`MAX_LIST`]; not for WGSL.
     Numbers,
     /// Texts, at most [`MAX_LIST`]; not for WGSL.
@@ -40,7 +42,7 @@ impl ParameterKind {
             Self::Boolean => Some(("bool", 1)),
             Self::Number { .. } => Some(("f32", 1)),
             Self::Word(_) | Self::Shares | Self::Colors => Some(("u32", 1)),
-            Self::Color => Some(("vec3f", 3)),
+            Self::Color | Self::Vector => Some(("vec3f", 3)),
             Self::Text | Self::Numbers | Self::Texts => None,
         }
     }
@@ -54,6 +56,7 @@ impl ParameterKind {
             Self::Text => "a text".into(),
             Self::Word(words) => format!("one of {}", words.join(", ")),
             Self::Color => "a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
+            Self::Vector => "three numbers [x, y, z]".into(),
             Self::Numbers => format!("1 to {MAX_LIST} ascending numbers"),
             Self::Texts => format!("1 to {MAX_LIST} texts"),
             Self::Shares => format!("1 to {MAX_RAMP} numbers of 0 to 1"),

@@ -3,10 +3,20 @@
 
 use serde::{Deserialize, Deserializer, de::Error as _};
 
-/// The prototype handlers of shading (H1), in the order of their execution: what an effect's `kind` says. Several
+/// The prototype handlers (Trapp §3.7), in the order of their execution: what an effect's `kind` says. Several
 /// handlers of one prototype run in lens order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EffectKind {
+    /// Says which moment a lens shows.
+    Epoch,
+    /// Says where the content of a lens is put.
+    Transform,
+    /// Moves places of the city: a step of a deformation.
+    Deform,
+    /// Says along which ray a pixel looks.
+    Ray,
+    /// Says how far a place is from a region: a shape of a lens.
+    Region,
     /// Takes parts of the city away, before anything is seen of them.
     Hide,
     /// Says how much of a surface stands between the eye and what is behind it; from 1, lens by lens.
@@ -39,9 +49,18 @@ pub enum Mode {
     Ignore,
 }
 
-/// A stage of shading, in the order of execution.
+/// A stage of a frame, in the order of execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
+    /// Lenses, once each, before anything is drawn; on the host.
+    Lens,
+    /// Vertices, where meshes are refined and moved (`shader::deforming`): each deformation finds the place in its frame, its handlers
+    /// move it one after the other, and the control and the normal follow.
+    Vertex,
+    /// Pixels, before anything is seen along their rays.
+    Pixel,
+    /// Places, to tell which lenses they are in.
+    Place,
     /// Fragments of the city, before visibility: by each fragment's own depth (K4).
     Visibility,
     /// The shown surface, before it has a colour.
@@ -67,22 +86,121 @@ pub struct Prototype {
     pub default_mode: Mode,
     /// The first argument in WGSL: name and type.
     pub subject: (&'static str, &'static str),
-    /// Whether the shown surface is the second argument, `point: Point`.
-    pub takes_point: bool,
+    /// The second argument in WGSL, if there is one: name and type.
+    pub context: Option<(&'static str, &'static str)>,
     /// The type that is given back.
     pub result: &'static str,
     /// Whether its handlers take turns in lens order on the colour.
     pub is_style: bool,
     /// Whether its handlers have a say in how a line looks: materials and light have none, nor has what is beside it.
     pub touches_lines: bool,
-    /// Whether users can drop in a handler.
-    pub is_for_users: bool,
+    /// What asks for its handlers by name.
+    pub asked_by: AskedBy,
+    /// The array of `vec4f` that parameters are read from.
+    pub parameters: &'static str,
     /// When it runs, as the docs say it.
     pub when: &'static str,
 }
 
+/// What asks for the handlers of a prototype.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AskedBy {
+    /// `effects` of a lens or of the context.
+    Effects,
+    /// The `kind` of a step of `deform`.
+    Steps,
+    /// The `kind` of a shape.
+    Shapes,
+    /// `transform` of a content.
+    Contents,
+    /// The program alone; users have none of their own.
+    Program,
+}
+
+/// The shown surface.
+const POINT: Option<(&str, &str)> = Some(("point", "Point"));
+/// The extent of the lens along its axes, metres.
+const SIZE: Option<(&str, &str)> = Some(("size", "vec3f"));
+/// Parameters of effects.
+const PARAMETERS: &str = "parameters";
+
 /// All prototypes, in the order of their execution.
-pub const PROTOTYPES: [Prototype; 8] = [
+pub const PROTOTYPES: [Prototype; 13] = [
+    Prototype {
+        kind: EffectKind::Epoch,
+        word: "epoch",
+        name: "epoch",
+        stage: Stage::Lens,
+        default_mode: Mode::Optional,
+        subject: ("moment", "f32"),
+        context: None,
+        result: "f32",
+        is_style: false,
+        touches_lines: false,
+        asked_by: AskedBy::Program,
+        parameters: PARAMETERS,
+        when: "once for each lens: the moment that it shows, of the one that the scene shows; years",
+    },
+    Prototype {
+        kind: EffectKind::Transform,
+        word: "transform",
+        name: "transform",
+        stage: Stage::Lens,
+        default_mode: Mode::Local,
+        subject: ("place", "vec3f"),
+        context: SIZE,
+        result: "vec3f",
+        is_style: false,
+        touches_lines: false,
+        asked_by: AskedBy::Contents,
+        parameters: PARAMETERS,
+        when: "once for each lens: where a place of its content is put; turns, moves and scales, the same along all axes",
+    },
+    Prototype {
+        kind: EffectKind::Deform,
+        word: "deform",
+        name: "deformation",
+        stage: Stage::Vertex,
+        default_mode: Mode::Local,
+        subject: ("place", "vec3f"),
+        context: SIZE,
+        result: "vec3f",
+        is_style: false,
+        touches_lines: false,
+        asked_by: AskedBy::Steps,
+        parameters: "numbers",
+        when: "for every vertex in the lens, and for as many between them as it takes: how far a place is moved, metres",
+    },
+    Prototype {
+        kind: EffectKind::Ray,
+        word: "ray",
+        name: "ray",
+        stage: Stage::Pixel,
+        default_mode: Mode::Optional,
+        subject: ("pixel", "vec2f"),
+        context: None,
+        result: "Ray",
+        is_style: false,
+        touches_lines: false,
+        asked_by: AskedBy::Program,
+        parameters: PARAMETERS,
+        when: "for every pixel: where it looks",
+    },
+    Prototype {
+        kind: EffectKind::Region,
+        word: "region",
+        name: "region test",
+        stage: Stage::Place,
+        default_mode: Mode::Local,
+        subject: ("place", "vec3f"),
+        context: SIZE,
+        result: "f32",
+        is_style: false,
+        touches_lines: false,
+        asked_by: AskedBy::Shapes,
+        parameters: "planes",
+        when: "for every place that is asked: how far it is from the border, metres, negative inside; never more than it is",
+    },
     Prototype {
         kind: EffectKind::Hide,
         word: "hide",
@@ -90,11 +208,12 @@ pub const PROTOTYPES: [Prototype; 8] = [
         stage: Stage::Visibility,
         default_mode: Mode::Local,
         subject: ("fragment", "Fragment"),
-        takes_point: false,
+        context: None,
         result: "bool",
         is_style: false,
         touches_lines: true,
-        is_for_users: true,
+        asked_by: AskedBy::Effects,
+        parameters: PARAMETERS,
         when: "before anything is seen: true where the city is taken away",
     },
     Prototype {
@@ -104,11 +223,12 @@ pub const PROTOTYPES: [Prototype; 8] = [
         stage: Stage::Visibility,
         default_mode: Mode::Local,
         subject: ("opacity", "f32"),
-        takes_point: true,
+        context: POINT,
         result: "f32",
         is_style: false,
         touches_lines: false,
-        is_for_users: true,
+        asked_by: AskedBy::Effects,
+        parameters: PARAMETERS,
         when: "for every translucent layer: 0 is clear, 1 opaque; first 1, then what the rule before said",
     },
     Prototype {
@@ -118,11 +238,12 @@ pub const PROTOTYPES: [Prototype; 8] = [
         stage: Stage::Surface,
         default_mode: Mode::Local,
         subject: ("material", "Material"),
-        takes_point: true,
+        context: POINT,
         result: "Material",
         is_style: false,
         touches_lines: false,
-        is_for_users: true,
+        asked_by: AskedBy::Effects,
+        parameters: PARAMETERS,
         when: "before light: `base` (colour), `emission`, `specular`, `shininess`",
     },
     Prototype {
@@ -132,11 +253,12 @@ pub const PROTOTYPES: [Prototype; 8] = [
         stage: Stage::Surface,
         default_mode: Mode::Local,
         subject: ("arriving", "vec3f"),
-        takes_point: true,
+        context: POINT,
         result: "vec3f",
         is_style: false,
         touches_lines: false,
-        is_for_users: true,
+        asked_by: AskedBy::Effects,
+        parameters: PARAMETERS,
         when: "the light on a white surface",
     },
     Prototype {
@@ -146,11 +268,12 @@ pub const PROTOTYPES: [Prototype; 8] = [
         stage: Stage::Color,
         default_mode: Mode::Local,
         subject: ("color", "vec3f"),
-        takes_point: true,
+        context: POINT,
         result: "vec3f",
         is_style: true,
         touches_lines: true,
-        is_for_users: true,
+        asked_by: AskedBy::Effects,
+        parameters: PARAMETERS,
         when: "how surfaces are drawn; not called for the sky",
     },
     Prototype {
@@ -160,11 +283,12 @@ pub const PROTOTYPES: [Prototype; 8] = [
         stage: Stage::Color,
         default_mode: Mode::Global,
         subject: ("color", "vec3f"),
-        takes_point: true,
+        context: POINT,
         result: "vec3f",
         is_style: false,
         touches_lines: false,
-        is_for_users: false,
+        asked_by: AskedBy::Program,
+        parameters: PARAMETERS,
         when: "after the standard scene style",
     },
     Prototype {
@@ -174,11 +298,12 @@ pub const PROTOTYPES: [Prototype; 8] = [
         stage: Stage::Color,
         default_mode: Mode::Local,
         subject: ("color", "vec3f"),
-        takes_point: true,
+        context: POINT,
         result: "vec3f",
         is_style: true,
         touches_lines: true,
-        is_for_users: true,
+        asked_by: AskedBy::Effects,
+        parameters: PARAMETERS,
         when: "for every pixel, after it",
     },
     Prototype {
@@ -188,11 +313,12 @@ pub const PROTOTYPES: [Prototype; 8] = [
         stage: Stage::Color,
         default_mode: Mode::Local,
         subject: ("offset", "f32"),
-        takes_point: false,
+        context: None,
         result: "f32",
         is_style: true,
         touches_lines: false,
-        is_for_users: true,
+        asked_by: AskedBy::Effects,
+        parameters: PARAMETERS,
         when: "the kernel of a blur or the like: a weight for each distance in pixels; its first parameter is `radius`, at most 64",
     },
 ];
@@ -209,16 +335,21 @@ const WORDS: [&str; PROTOTYPES.len()] = {
 };
 
 impl Prototype {
+    /// Whether users can drop in a handler.
+    pub fn is_for_users(&self) -> bool {
+        self.asked_by != AskedBy::Program
+    }
+
     /// The declaration of a handler's function; `last` is its last parameter: nothing, or one with `, ` before it.
     pub fn signature(&self, last: &str) -> String {
         let (name, type_name) = self.subject;
-        let point = if self.takes_point { ", point: Point" } else { "" };
-        format!("effect({name}: {type_name}{point}{last}) -> {}", self.result)
+        let context = self.context.map_or_else(String::new, |(name, type_name)| format!(", {name}: {type_name}"));
+        format!("effect({name}: {type_name}{context}{last}) -> {}", self.result)
     }
 
     /// The words of the prototypes of which users can drop in handlers, as a sentence lists them.
     pub fn words_for_users() -> String {
-        let words: Vec<&str> = PROTOTYPES.iter().filter(|row| row.is_for_users).map(|row| row.word).collect();
+        let words: Vec<&str> = PROTOTYPES.iter().filter(|row| row.is_for_users()).map(|row| row.word).collect();
         let (last, others) = words.split_last().expect("there are some");
         format!("{} or {last}", others.join(", "))
     }
@@ -226,14 +357,14 @@ impl Prototype {
     /// The kinds of the others, as a header says them.
     pub fn words_not_for_users() -> String {
         let of = |row: &Prototype| format!("kind = \"{}\"", row.word);
-        PROTOTYPES.iter().filter(|row| !row.is_for_users).map(of).collect::<Vec<_>>().join(", ")
+        PROTOTYPES.iter().filter(|row| !row.is_for_users()).map(of).collect::<Vec<_>>().join(", ")
     }
 }
 
 impl EffectKind {
     /// All, in the order of their execution.
     pub const ALL: [Self; PROTOTYPES.len()] = {
-        let mut all = [Self::Hide; PROTOTYPES.len()];
+        let mut all = [Self::Epoch; PROTOTYPES.len()];
         let mut i = 0;
         while i < all.len() {
             all[i] = PROTOTYPES[i].kind;
@@ -302,7 +433,7 @@ mod tests {
     #[test]
     fn the_docs_have_the_table() {
         let page = include_str!("../../../docs/effects.md");
-        let rows = PROTOTYPES.iter().filter(|row| row.is_for_users);
+        let rows = PROTOTYPES.iter().filter(|row| row.is_for_users());
         let row = |row: &Prototype| format!("  | `\"{}\"` | `{}` | {} |\n", row.word, row.signature(""), row.when);
         let table =
             format!("  | kind | function | when |\n  | --- | --- | --- |\n{}\n", rows.map(row).collect::<String>());

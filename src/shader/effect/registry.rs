@@ -3,7 +3,10 @@
 use std::sync::{LazyLock, PoisonError, RwLock};
 
 use crate::shader::{
-    effect::{definition::EffectDefinition, prototype::Mode},
+    effect::{
+        definition::EffectDefinition,
+        prototype::{AskedBy, Mode},
+    },
     effect_file::read,
 };
 
@@ -52,6 +55,15 @@ const FILES: &[(&str, &str)] = &[
     built_in!("lighting"),
     built_in!("lambert"),
     built_in!("haze"),
+    built_in!("present"),
+    built_in!("own-ray"),
+    built_in!("translate"),
+    built_in!("scale"),
+    built_in!("shear"),
+    built_in!("taper"),
+    built_in!("twist"),
+    built_in!("bend"),
+    built_in!("open-street"),
 ];
 
 /// How many handlers the 13 bits of an invoker can tell apart.
@@ -70,9 +82,9 @@ pub fn handlers() -> &'static [EffectDefinition] {
     *EFFECTS.read().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The effects: handlers that a lens, or the context, asks for by name.
+/// The effects: handlers that a lens, or the context, lists by name.
 pub fn effects() -> impl Iterator<Item = &'static EffectDefinition> {
-    handlers().iter().filter(|h| h.mode == Mode::Local)
+    handlers().iter().filter(|h| h.mode == Mode::Local && h.kind.prototype().asked_by == AskedBy::Effects)
 }
 
 /// The effect called `name`.
@@ -80,9 +92,19 @@ pub fn find(name: &str) -> Option<&'static EffectDefinition> {
     effects().find(|e| e.name == name)
 }
 
-/// The number of the effect called `name`.
+/// A user's handler called `name` that is asked for in another place than a list of effects.
+pub fn find_asked_by(asked_by: AskedBy, name: &str) -> Option<&'static EffectDefinition> {
+    asked_for(asked_by).find(|h| h.name == name)
+}
+
+/// Users' handlers that are asked for there.
+pub fn asked_for(asked_by: AskedBy) -> impl Iterator<Item = &'static EffectDefinition> {
+    handlers().iter().filter(move |h| h.is_users && h.kind.prototype().asked_by == asked_by)
+}
+
+/// The number of the handler called `name`, whatever its prototype.
 pub fn number_of(name: &str) -> Option<u32> {
-    handlers().iter().position(|e| e.name == name && e.mode == Mode::Local).map(|i| i as u32)
+    handlers().iter().position(|e| e.name == name).map(|i| i as u32)
 }
 
 /// Takes an effect that has a new name, or with `may_replace` that of another effect of a user, in whose place it comes then.

@@ -1,9 +1,12 @@
 //! Users' effect files checked: that they can do no harm, and that their WGSL is right.
 
+use std::sync::Arc;
+
 use crate::shader::{
+    deforming::{DeformPlan, PlanControl, PlanDeformer, PlanStep},
     effect::{
         definition::EffectDefinition,
-        prototype::{EffectKind, Mode, Prototype},
+        prototype::{AskedBy, EffectKind, Mode, Prototype, Stage},
     },
     effect_file::{
         cost::check_cost,
@@ -11,6 +14,7 @@ use crate::shader::{
         flow::check_control_flow,
         read::{body_of, read_with_names, signature},
     },
+    host::HostProgram,
     module::Module,
     plan::{
         Plan,
@@ -32,29 +36,25 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         let message = format!("an effect file has at most {MOST_LINES} lines and {MOST_BYTES} bytes");
         return Err(file.error(0, message));
     }
-    let (effect, renamed) = read_with_names(path, text, true)?;
+    let (mut effect, renamed) = read_with_names(path, text, true)?;
     if effect.objects.is_some() || effect.parameters.iter().any(|p| p.kind.is_ramp()) {
         let message = "objects, and parameters of type shares and colors, are for effects of the program";
         return Err(file.error(0, message));
     }
     check_control_flow(&file)?;
     check_cost(&file)?;
-    if effect.mode != Mode::Local || !effect.kind.prototype().is_for_users {
+    let row = effect.kind.prototype();
+    // Deformations alone have an order that one may be left out of.
+    let has_mode = effect.mode == Mode::Local || (row.stage == Stage::Vertex && effect.mode != Mode::Global);
+    if !has_mode || effect.has_derivative || !row.is_for_users() {
         let message = format!(
-            "mode, and {}, are for handlers of the program; expected kind = {}",
+            "mode but for deformations, derivative, and {}, are for handlers of the program; expected kind = {}",
             Prototype::words_not_for_users(),
             Prototype::words_for_users()
         );
         return Err(file.error(0, message));
     }
-    let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, blend: None }];
-    let module = match effect.kind {
-        EffectKind::Filter => Module::Filter(0),
-        EffectKind::Hide => Module::Geometry(Some(Program::Specialised(Plan { steps, ..Plan::default() }))),
-        EffectKind::Opacity => Module::Composite(Program::Specialised(Plan { steps, ..Plan::default() })),
-        _ => Module::Shade(Program::Specialised(Plan { steps, ..Plan::default() })),
-    };
-    let source = module.source_with(std::slice::from_ref(&effect));
+    let source = module_of(&effect);
     let body = body_of(&renamed.text).trim_end();
     let Some(own) = source.find(effect.source.trim_end()) else { unreachable!("a module without its only effect") };
     let begin = own + effect.parameters_end;
@@ -84,7 +84,48 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         let at = error.spans().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
         file.error(place(at), own(at, in_words(error.as_inner())))
     })?;
+    if matches!(row.asked_by, AskedBy::Steps | AskedBy::Shapes | AskedBy::Contents) {
+        let program = HostProgram::new(&effect).map_err(|unknown| {
+            let at = unknown.at.map(|range| begin + range.start.saturating_sub(effect.parameters_end));
+            file.error(place(at), unknown.message)
+        })?;
+        effect.host = Some(Arc::new(program));
+    }
     Ok(effect)
+}
+
+/// A module in which a handler alone does something.
+fn module_of(effect: &EffectDefinition) -> String {
+    let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, blend: None }];
+    let plan = Plan { steps, ..Plan::default() };
+    let handlers = std::slice::from_ref(effect);
+    let module = match effect.kind {
+        EffectKind::Filter => Module::Filter(0),
+        EffectKind::Hide => Module::Geometry(Some(Program::Specialised(plan))),
+        EffectKind::Opacity => Module::Composite(Program::Specialised(plan)),
+        EffectKind::Deform => {
+            let steps = vec![PlanStep::new(0, handlers)];
+            let deformer = PlanDeformer { control: PlanControl::Everywhere, has_band: false, steps };
+            Module::Refine(DeformPlan(vec![deformer]))
+        }
+        EffectKind::Region | EffectKind::Transform => return called_alone(effect),
+        _ => Module::Shade(Program::Specialised(plan)),
+    };
+    module.source_with(handlers)
+}
+
+/// A handler with a caller, and nothing else.
+fn called_alone(effect: &EffectDefinition) -> String {
+    let row = effect.kind.prototype();
+    let parameters = if effect.slots() > 0 { format!(", {}(0u)", effect.own("parameters")) } else { String::new() };
+    format!(
+        "var<private> {}: array<vec4f, {}>;\n\n{}\nfn call(place: vec3f, size: vec3f) -> {} {{\n    return {}(place, size{parameters});\n}}\n",
+        row.parameters,
+        effect.slots().max(1),
+        effect.source,
+        row.result,
+        effect.wgsl_name(),
+    )
 }
 
 /// The message of a validator, without the numbers by which it knows things.

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::shader::effect::{
-    definition::PerObject,
+    definition::{Amount, PerObject},
     parameter::{DefaultValue, Fallback, MAX_RAMP, ParameterDefinition, ParameterKind},
     prototype::{EffectKind, Mode},
 };
@@ -29,6 +29,11 @@ pub(super) struct Header {
     pub(super) objects: Option<PerObject>,
     #[serde(default)]
     pub(super) lines: bool,
+    /// Whether its function gives its derivative.
+    #[serde(default)]
+    pub(super) derivative: bool,
+    pub(super) reach: Option<Spanned<Amount>>,
+    pub(super) detail: Option<Spanned<Amount>>,
     #[serde(default, rename = "parameter")]
     pub(super) parameters: Vec<ParameterHeader>,
 }
@@ -58,6 +63,7 @@ enum TypeName {
     Text,
     Word,
     Color,
+    Vector,
     Numbers,
     Texts,
     Shares,
@@ -93,6 +99,7 @@ impl ParameterHeader {
             (TypeName::Boolean, None) => ParameterKind::Boolean,
             (TypeName::Text, None) => ParameterKind::Text,
             (TypeName::Color, None) => ParameterKind::Color,
+            (TypeName::Vector, None) => ParameterKind::Vector,
             (TypeName::Numbers, None) => ParameterKind::Numbers,
             (TypeName::Texts, None) => ParameterKind::Texts,
             (TypeName::Shares, None) => ParameterKind::Shares,
@@ -126,6 +133,7 @@ fn takes(kind: &ParameterKind, value: &DefaultValue) -> bool {
         (ParameterKind::Number { min, max }, DefaultValue::Number(n)) => (*min..=*max).contains(n),
         (ParameterKind::Word(words), DefaultValue::Text(text)) => words.contains(text),
         (ParameterKind::Color, DefaultValue::Text(text)) => is_color(text),
+        (ParameterKind::Vector, DefaultValue::Numbers(list)) => list.len() == 3,
         (ParameterKind::Colors, DefaultValue::Texts(list)) => is_ramp(list.len()) && list.iter().all(|t| is_color(t)),
         (ParameterKind::Shares, DefaultValue::Numbers(list)) => {
             is_ramp(list.len()) && list.iter().all(|n| (0.0..=1.0).contains(n))

@@ -40,7 +40,7 @@ pub(super) fn parameters_source(effect: &EffectDefinition) -> String {
     }
     text.push_str(&format!("fn {}(first: u32) -> {type_name} {{\n", effect.own("parameters")));
     for slot in 0..effect.slots() {
-        text.push_str(&format!("    let s{slot} = parameters[first + {slot}u];\n"));
+        text.push_str(&format!("    let s{slot} = {}[first + {slot}u];\n", effect.kind.prototype().parameters));
     }
     let mut next = 0;
     let mut float = || {

@@ -2,7 +2,7 @@
 
 use crate::shader::{
     effect::{
-        definition::{EffectDefinition, PerObject},
+        definition::{Amount, EffectDefinition, PerObject},
         parameter::{ParameterDefinition, ParameterKind},
         prototype::EffectKind,
     },
@@ -72,12 +72,17 @@ fn of_header(file: &File, is_users: bool) -> Result<EffectDefinition, FileError>
         parameters: Vec::new(),
         objects: header.objects,
         lines: header.lines,
+        has_derivative: header.derivative,
+        reach: Amount::Number(f64::INFINITY),
+        detail: None,
+        host: None,
         is_users,
         reads_below: false,
         asks_most_layers: false,
         source: String::new(),
         parameters_end: 0,
     };
+    let amounts = [("reach", header.reach), ("detail", header.detail)];
     for parameter in header.parameters {
         let (span, name) = (parameter.name.span(), parameter.name.get_ref().clone());
         if !is_parameter_name(&name) || effect.parameters.iter().any(|p| p.name == name) {
@@ -88,6 +93,19 @@ fn of_header(file: &File, is_users: bool) -> Result<EffectDefinition, FileError>
             .parameters
             .push(parameter.definition().map_err(|(place, message)| file.error(place.map_or(at(span), &at), message))?);
     }
+    for (key, amount) in amounts {
+        let Some(amount) = amount else { continue };
+        let (place, amount) = (at(amount.span()), amount.into_inner());
+        check_amount(&effect, key, &amount).map_err(|message| file.error(place, message))?;
+        match key {
+            "reach" => effect.reach = amount,
+            _ => effect.detail = Some(amount),
+        }
+    }
+    if is_users && effect.kind == EffectKind::Deform && effect.reach == Amount::Number(f64::INFINITY) {
+        let message = "expected reach = METRES, or the name of a parameter: how far a place is moved at most";
+        return Err(file.error(0, message));
+    }
     if effect.objects == Some(PerObject::Chosen) {
         let shared: SharedParameters =
             toml::from_str(CHOICE).map_err(|error| file.error(0, format!("choice.toml: {}", error.message())))?;
@@ -96,6 +114,22 @@ fn of_header(file: &File, is_users: bool) -> Result<EffectDefinition, FileError>
         }
     }
     Ok(effect)
+}
+
+/// Refuses a length of a header that is none, or that the prototype has no use for.
+fn check_amount(effect: &EffectDefinition, key: &str, amount: &Amount) -> Result<(), String> {
+    if effect.kind != EffectKind::Deform {
+        return Err(format!("{key} is for kind = \"deform\""));
+    }
+    match amount {
+        Amount::Number(number) if *number > 0.0 && number.is_finite() => Ok(()),
+        Amount::Number(number) => Err(format!("{key} must be more than 0 m, is {number}")),
+        Amount::Parameter(name) => {
+            let is_number = |p: &&ParameterDefinition| matches!(p.kind, ParameterKind::Number { .. });
+            let of_name = effect.parameters.iter().find(|p| p.name == *name).filter(is_number);
+            of_name.map(|_| ()).ok_or_else(|| format!("{key} must be metres or the name of a number among the parameters"))
+        }
+    }
 }
 
 /// Refuses a filter that does not say how far it reaches.

@@ -37,7 +37,7 @@ fn what_is_wrong_is_named_with_its_place() {
         ),
         (
             HEADER.replace("post", "past"),
-            "my.wgsl:2:12: unknown variant `past`, expected one of `hide`, `opacity`, `material`, `light`, `scene`, `air`, `post`, `filter`",
+            "my.wgsl:2:12: unknown variant `past`, expected one of `epoch`, `transform`, `deform`, `ray`, `region`, `hide`, `opacity`, `material`, `light`, `scene`, `air`, `post`, `filter`",
         ),
         (
             format!("{}{good}", HEADER.replace("post", "air")),

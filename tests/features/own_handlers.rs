@@ -1,0 +1,229 @@
+//! Deformations, regions and transforms of users: those that the docs show, as their readers would use them.
+
+use std::sync::Once;
+
+use crate::studio::*;
+use glam::DVec3;
+use veduta::{
+    figure::scene_file::{Options, read},
+    geom::{Aabb, deform::Deformers},
+    render::{
+        frame::Backend,
+        picture::{Picture, Request, Studio},
+    },
+    scene::Scene,
+    shader::effect,
+    view::{Camera, View},
+};
+
+const SIZE: [u32; 2] = [320, 200];
+
+/// The WGSL files that `docs/effects.md` shows, by their names.
+fn documented(name: &str) -> String {
+    let page = include_str!("../../docs/effects.md");
+    let mut blocks = page.split("```wgsl\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let head = format!("//! name = \"{name}\"\n");
+    blocks.find(|block| block.starts_with(&head)).unwrap_or_else(|| panic!("the page shows {name}")).to_owned()
+}
+
+/// Adds those handlers, once.
+fn with_documented() {
+    static ADDED: Once = Once::new();
+    ADDED.call_once(|| {
+        for name in ["ripple", "torus", "tabletop"] {
+            effect::add(&format!("{name}.wgsl"), &documented(name)).unwrap_or_else(|error| panic!("{error}"));
+        }
+    });
+}
+
+/// A scene of a synthetic town with a lens as a scene file has it.
+struct Town {
+    studio: Studio,
+    at: DVec3,
+    camera: Camera,
+}
+
+impl Town {
+    fn new() -> Self {
+        with_documented();
+        let studio = synthetic(60);
+        let at = studio.extent().center();
+        let camera = Camera::looking(at + DVec3::new(40.0, -190.0, 130.0), at, 0.7);
+        Self { studio, at, camera }
+    }
+
+    /// The scene with such lenses.
+    fn scene(&self, lenses: &str) -> Result<Scene, String> {
+        let folder = std::env::temp_dir().join(format!("veduta-own-{}-{:?}", std::process::id(), std::thread::current().id()));
+        std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
+        std::fs::copy(citydata("courtyard.city.json"), folder.join("city.json")).map_err(|error| error.to_string())?;
+        let file = folder.join("scene.toml");
+        let text = format!("veduta = 1\n[city]\nfiles = [\"city.json\"]\n\n{lenses}");
+        std::fs::write(&file, text).map_err(|error| error.to_string())?;
+        let read = read(&file, &Options::for_file(&file)).map_err(|error| error.to_string());
+        let _ = std::fs::remove_dir_all(&folder);
+        let mut scene = read?;
+        scene.camera = Some(self.camera);
+        Ok(scene)
+    }
+
+    fn drawn(&mut self, scene: &Scene, backend: Backend) -> Picture {
+        let request =
+            Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+        self.studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// The picture, which is the same by both back ends.
+    fn picture(&mut self, scene: &Scene) -> Picture {
+        let [a, b] = [Backend::Specialised, Backend::Uber].map(|backend| self.drawn(scene, backend));
+        assert!(a.rgba == b.rgba, "the back ends differ");
+        assert!(a.depth == b.depth && a.lens_mask == b.lens_mask && a.object_id == b.object_id, "the back ends differ in what is not seen");
+        a
+    }
+
+    fn point(&self, at: DVec3) -> String {
+        format!("[{}, {}, {}]", at.x, at.y, at.z)
+    }
+
+    fn pond(&self, rest: &str) -> String {
+        let foot = self.at.with_z(20.0);
+        format!(
+            "[[lens]]\nname = \"pond\"\nkind = \"deformation\"\nshape = {{ kind = \"cylinder\", center = {}, radius = 150.0, height = 60.0 }}\n{rest}\n",
+            self.point(foot)
+        )
+    }
+}
+
+/// Where pixels look to, and what stands there.
+fn places(picture: &Picture, view: &View) -> Vec<Option<DVec3>> {
+    let place = |(i, depth): (usize, &f32)| {
+        let ray = view.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]);
+        let forward = ray.direction.dot(view.basis.forward);
+        depth.is_finite().then(|| ray.origin + ray.direction * (f64::from(*depth) / forward))
+    };
+    picture.depth.as_ref().unwrap().iter().enumerate().map(place).collect()
+}
+
+#[test]
+fn a_deformation_of_the_docs_moves_what_it_says_on_both_back_ends() {
+    let mut town = Town::new();
+    let scene = town.scene(&town.pond("deform = [{ kind = \"ripple\", height = 4.0, spacing = 10.0 }]")).unwrap();
+    let still = Scene { lenses: vec![], ..scene.clone() };
+    let before = town.picture(&still);
+    let after = town.picture(&scene);
+    assert!(before.rgba != after.rgba, "nothing moves");
+    let deformers: std::sync::Arc<Deformers> = town.studio.deformers(&scene, SIZE).unwrap();
+    let view = View::new(town.camera, SIZE, &Aabb::EMPTY).unwrap();
+    // What is shown where, taken back to rest, is where something was seen before: on the ground, z is 0 there.
+    let mut moved = 0;
+    for (i, place) in places(&after, &view).into_iter().enumerate() {
+        let (Some(place), true) = (place, after.object_id.as_ref().unwrap()[i] == u32::MAX) else { continue };
+        let rest = deformers.inverse(place).expect("nothing folds");
+        let ground = rest.z;
+        // A depth of f32 at some 200 m, and the chords of the mesh: half a pixel is some centimetres there.
+        assert!(ground.abs() < 0.15, "pixel {i}: {place} was at {rest}");
+        moved += usize::from((place - rest).length() > 1.0);
+    }
+    assert!(moved > 500, "{moved} pixels of ground are moved");
+}
+
+#[test]
+fn what_is_wrong_with_a_deformation_is_told() {
+    let town = Town::new();
+    let said = |rest: &str| town.scene(&town.pond(rest)).expect_err("it is wrong");
+    let message = said("deform = [{ kind = \"riple\" }]");
+    assert!(message.contains("did you mean \"ripple\"?"), "{message}");
+    let message = said("deform = [{ kind = \"ripple\", hight = 3.0 }]");
+    assert!(message.contains("\"ripple\" has no such parameter; did you mean \"height\"?"), "{message}");
+    let message = said("deform = [{ kind = \"ripple\", height = 3000.0 }]");
+    assert!(message.contains("height") && message.contains("must be a number 0 to 100, is 3000"), "{message}");
+}
+
+#[test]
+fn a_deformation_that_folds_is_weakened_and_says_so() {
+    let mut town = Town::new();
+    let text = documented("ripple").replace("\"ripple\"", "\"crumple\"").replace("vec3f(0.0, 0.0, p.height * wave)", "vec3f(p.height * wave, 0.0, 0.0)");
+    effect::add("crumple.wgsl", &text).unwrap();
+    let scene = town.scene(&town.pond("deform = [{ kind = \"crumple\", height = 40.0, spacing = 10.0 }]")).unwrap();
+    let picture = town.picture(&scene);
+    let warnings = &picture.statistics.warnings;
+    assert!(warnings.iter().any(|w| w["code"] == "deformation-weakened"), "{warnings:?}");
+    // What is used of it folds nothing: its determinant is as large as is asked for wherever one looks.
+    let deformers = town.studio.deformers(&scene, SIZE).unwrap();
+    for i in 0..4000 {
+        let around = DVec3::new(f64::from(i % 63) - 31.0, f64::from(i / 63) - 31.0, 0.4) * DVec3::new(4.7, 4.7, 1.0);
+        let det = deformers.jacobian(town.at.with_z(1.0) + around).determinant();
+        assert!(det > 0.15, "{det} at {around}");
+    }
+}
+
+#[test]
+fn optional_and_ignored_deformations_run_when_their_header_says() {
+    let mut town = Town::new();
+    for mode in ["optional", "ignore"] {
+        let text = documented("ripple")
+            .replace("\"ripple\"", &format!("\"{mode}-ripple\""))
+            .replace("//! kind", &format!("//! mode = \"{mode}\"\n//! kind"));
+        effect::add(&format!("{mode}.wgsl"), &text).unwrap();
+    }
+    let lens = |name: &str, kind: &str| {
+        town.pond(&format!("deform = [{{ kind = \"{kind}\" }}]")).replace("\"pond\"", &format!("\"{name}\""))
+    };
+    let [plain, optional, ignored] = [lens("a", "ripple"), lens("b", "optional-ripple"), lens("c", "ignore-ripple")];
+    let scene = |lenses: &[&String]| town.scene(&lenses.iter().map(|s| s.as_str()).collect::<String>()).unwrap();
+    let scenes = [
+        scene(&[&plain]),
+        scene(&[&optional]),
+        scene(&[&plain, &optional]),
+        scene(&[&ignored]),
+        scene(&[&ignored, &optional]),
+    ];
+    let still = Scene { lenses: vec![], ..scenes[0].clone() };
+    let [plain, optional, both, ignored, rest] = scenes.map(|scene| town.drawn(&scene, Backend::Specialised).rgba);
+    let still = town.drawn(&still, Backend::Specialised).rgba;
+    assert!(plain != still && optional == plain && both == plain, "an optional one runs alone, and only then");
+    assert!(ignored == still && rest == plain, "an ignored one never runs");
+}
+
+#[test]
+fn a_transform_of_the_docs_puts_a_model_where_it_says() {
+    let mut town = Town::new();
+    let [middle, foot] = [30.0, 0.0].map(|z| town.point(town.at.with_z(z)));
+    let lens = |own: &str| {
+        format!(
+            "[[lens]]\nname = \"model\"\nkind = \"content\"\nshape = {{ kind = \"cylinder\", center = {middle}, radius = 50.0, height = 80.0 }}\ncontent = {{ from = {foot}, {own} }}\n"
+        )
+    };
+    // A quarter of the size, turned by 90 degrees: the same as the program's own keys say.
+    let own = lens("transform = { kind = \"tabletop\", turn = 90.0, times = 4.0, table = 0.0 }");
+    let keys = lens("rotation_deg = [90.0, 0.0, 0.0], scale = 0.25");
+    let [own, keys] = [own, keys].map(|lens| town.scene(&lens).unwrap());
+    let [own, keys] = [own, keys].map(|scene| town.picture(&scene));
+    let differ = own.rgba.iter().zip(&keys.rgba).filter(|(a, b)| a != b).count();
+    // A cosine of 90 degrees in f64 is 6e-17 and not 0: edges may fall to the other side of a pixel's middle.
+    assert!(differ < 20, "{differ} pixels differ");
+    let text = documented("tabletop").replace("\"tabletop\"", "\"squash\"").replace("small.z + p.table", "0.5 * small.z");
+    effect::add("squash.wgsl", &text).unwrap();
+    let scene = town.scene(&lens("transform = { kind = \"squash\" }")).unwrap();
+    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend: Backend::default() };
+    let error = town.studio.render(&scene, &request).expect_err("it squashes").to_string();
+    assert!(error.contains("content.transform: \"squash\" does more than turn, move and scale alike along all axes"), "{error}");
+}
+
+#[test]
+fn two_contents_of_one_city_stand_where_each_says() {
+    let mut town = Town::new();
+    let lens = |name: &str, east: f64, own: &str| {
+        format!(
+            "[[lens]]\nname = \"{name}\"\nkind = \"content\"\nshape = {{ kind = \"sphere\", center = {}, radius = 30.0 }}\ncontent = {{ derive = \"box\"{own} }}\n\n",
+            town.point(town.at.with_z(0.0) + DVec3::X * east),
+        )
+    };
+    let moved = lens("b", 40.0, ", scale = 0.4");
+    let [alone, both] = [moved.clone(), lens("a", -40.0, "") + &moved].map(|lenses| town.scene(&lenses).unwrap());
+    let [alone, both] = [alone, both].map(|scene| town.picture(&scene));
+    let inside = bits(&alone, 0);
+    let differ = (0..inside.len()).filter(|&i| inside[i] && alone.rgba[i] != both.rgba[i]).count();
+    let shown = inside.iter().filter(|is| **is).count();
+    assert!(shown > 500 && differ == 0, "{differ} of {shown} pixels of the moved one are others beside the one that stands");
+}
