@@ -20,11 +20,12 @@ const BOXES: usize = 1 << 12;
 /// Halvings of the range in which the largest safe strength is searched: to a part in a thousand.
 const HALVINGS: usize = 10;
 
-/// Places along each side at which a user's map is looked at.
-const LATTICE: u32 = 16;
+/// Places along each side at which a user's map is looked at: half of its detail apart, but so many at least and at most.
+const LEAST_PLACES: f64 = 8.0;
+const MOST_PLACES: f64 = 48.0;
 /// How often it is looked closer, three times as close each time, and around how many places.
-const CLOSER: usize = 3;
-const WORST: usize = 16;
+const CLOSER: usize = 4;
+const WORST: usize = 256;
 
 /// det J of what is taken for not folded without a proof.
 pub const CLEAR: f64 = 0.25;
@@ -141,13 +142,23 @@ impl Deformer {
             return Proof::Unknown { least: 0.0 };
         }
         let det = |p: DVec3| number::determinant(&self.jacobian_over(&p.to_array()));
-        let mut step = part.size() / f64::from(LATTICE);
-        let places = |i: u32| {
-            let cell = UVec3::new(i % LATTICE, i / LATTICE % LATTICE, i / (LATTICE * LATTICE));
-            part.min + step * (cell.as_dvec3() + 0.5)
+        let apart = self.spacing().iter().fold(DVec3::INFINITY, |least, spacing| least.min(*spacing));
+        let counts = (part.size() / (0.5 * apart)).ceil().clamp(DVec3::splat(LEAST_PLACES), DVec3::splat(MOST_PLACES)).as_uvec3();
+        let mut step = part.size() / counts.as_dvec3();
+        let cell = |i: u32| UVec3::new(i % counts.x, i / counts.x % counts.y, i / (counts.x * counts.y));
+        let places = |i: u32| part.min + step * (cell(i).as_dvec3() + 0.5);
+        let all: Vec<f64> = (0..counts.element_product()).into_par_iter().map(|i| det(places(i))).collect();
+        // Those of which no neighbour is worse: of many alike in a row, each is looked at closer.
+        let is_worst = |&i: &u32| {
+            let steps = [1, counts.x, counts.x * counts.y];
+            (0..3).all(|axis| {
+                let (at, step) = (cell(i)[axis], steps[axis]);
+                (at == 0 || all[i as usize] <= all[(i - step) as usize])
+                    && (at + 1 == counts[axis] || all[i as usize] <= all[(i + step) as usize])
+            })
         };
-        let mut seen: Vec<(f64, DVec3)> =
-            (0..LATTICE.pow(3)).into_par_iter().map(places).map(|p| (det(p), p)).collect();
+        let worst = (0..all.len() as u32).filter(is_worst);
+        let mut seen: Vec<(f64, DVec3)> = worst.map(|i| (all[i as usize], places(i))).collect();
         for _ in 0..CLOSER {
             seen.sort_by(|a, b| a.0.total_cmp(&b.0));
             seen.truncate(WORST);
@@ -158,7 +169,8 @@ impl Deformer {
                     (at + step * aside).clamp(part.min, part.max)
                 })
             };
-            seen = seen.iter().flat_map(|(_, at)| around(*at)).map(|p| (det(p), p)).collect();
+            let best = |at: &DVec3| around(*at).map(|p| (det(p), p)).min_by(|a, b| a.0.total_cmp(&b.0));
+            seen = seen.par_iter().filter_map(|(_, at)| best(at)).collect();
         }
         let least = seen.iter().min_by(|a, b| a.0.total_cmp(&b.0));
         match least {
