@@ -3,9 +3,9 @@
 
 var<private> distances: array<f32, 33>;
 
-fn distance_to_combined(s: Shape, sight: Sight, border: vec4f) -> f32 {
+fn distance_to_combined(s: Combination, sight: Sight, border: vec4f) -> f32 {
     var top = 0u;
-    for (var i = 0u; i < u32(s.size_y); i++) {
+    for (var i = 0u; i < s.count; i++) {
         let leaf = leaf_at(s, i);
         distances[top] = distance_to_leaf(leaf, sight, border);
         top += 1u;

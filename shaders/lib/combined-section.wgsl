@@ -1,12 +1,12 @@
 // Where rays leave a combination, or enter it, for its sections: at an end of one of its leaves, where they all have closed forms.
 
-fn end_by_leaves(s: Shape, ray: Ray) -> f32 {
+fn end_by_leaves(s: Combination, ray: Ray) -> f32 {
     find_spans(s, ray);
     let leaves = stage.leaves == 1u;
     var last = 0.0;
     for (var turn = 0u; turn <= stage.turn; turn += 1u) {
         var next = FAR_AWAY;
-        for (var end = 0u; end < 2u * u32(s.size_y); end += 1u) {
+        for (var end = 0u; end < 2u * s.count; end += 1u) {
             let own = spans[end / 2u];
             let t = select(own.enter, own.exit, end % 2u == 1u);
             let before = is_within(s, ray, t, false, NO_LEAF, false);
@@ -19,7 +19,7 @@ fn end_by_leaves(s: Shape, ray: Ray) -> f32 {
     return select(0.0, last, last < FAR_AWAY);
 }
 
-fn end_of_combined(s: Shape, ray: Ray, pixel: vec2i, whole: Span) -> f32 {
+fn end_of_combined(s: Combination, ray: Ray, pixel: vec2i, whole: Span) -> f32 {
     if stage.has_forms == 1u {
         return end_by_leaves(s, ray);
     }

@@ -7,21 +7,23 @@ const UNION: u32 = 1u;
 const INTERSECTION: u32 = 2u;
 const DIFFERENCE: u32 = 3u;
 
+struct Combination {
+    first: u32,                 // b.x: where its leaves begin among the planes, five of these to each
+    count: u32,                 // b.y: how many there are
+    holds_eye: f32,             // b.z: 1: the eye is inside
+}
+
 struct Leaf {
-    shape: Shape,
-    first: f32,                 // of members: where their marks begin; `shape` is the box around them
+    region: Region,
+    first: f32,                 // of members: where their marks begin; `region` is the box around them
     operations: u32,            // two bits each, the first in the lowest; 0 ends them
 }
 
-// Of a combination, `size_x` is where its leaves begin among the planes, five of these to each; `size_y` how many there are.
-fn leaf_at(s: Shape, i: u32) -> Leaf {
-    let at = u32(s.size_x) + 5u * i;
+fn leaf_at(s: Combination, i: u32) -> Leaf {
+    let at = s.first + 5u * i;
     let center = planes[at];
-    let x = planes[at + 1u];
-    let y = planes[at + 2u];
-    let z = planes[at + 3u];
     let own = planes[at + 4u];
-    return Leaf(Shape(center.xyz, u32(own.x), x.xyz, x.w, y.xyz, y.w, z.xyz, z.w), own.z, u32(own.y));
+    return Leaf(Region(center.xyz, u32(own.x), planes[at + 1u], planes[at + 2u], planes[at + 3u]), own.z, u32(own.y));
 }
 
 // Puts a leaf on the stack of bits and does what follows it.
@@ -38,13 +40,13 @@ fn pushed(stack: u32, is_in: bool, operations: u32) -> u32 {
 }
 
 // Loops over leaves leave at the end of their last round: a software adapter goes through a whole round to find that there is none.
-fn inside_combined(s: Shape, sight: Sight) -> u32 {
+fn inside_combined(s: Combination, sight: Sight) -> u32 {
     var bits = 0u;
-    for (var i = 0u; i < u32(s.size_y); i++) {
+    for (var i = 0u; i < s.count; i++) {
         let leaf = leaf_at(s, i);
-        let is_in = leaf_holds(leaf, sight) && (sight.distance < FAR_AWAY || leaf.shape.kind == FLAT);
+        let is_in = leaf_holds(leaf, sight);
         bits = pushed(bits, is_in, leaf.operations);
-        if i + 1u == u32(s.size_y) {
+        if i + 1u == s.count {
             break;
         }
     }
@@ -54,12 +56,12 @@ fn inside_combined(s: Shape, sight: Sight) -> u32 {
 // Where one ray is inside of each leaf; of solids nothing.
 var<private> spans: array<Span, 64>;
 
-fn find_spans(s: Shape, ray: Ray) {
-    for (var i = 0u; i < u32(s.size_y); i++) {
-        let leaf = leaf_at(s, i).shape;
+fn find_spans(s: Combination, ray: Ray) {
+    for (var i = 0u; i < s.count; i++) {
+        let leaf = leaf_at(s, i).region;
         let span = span_of_leaf(ray, leaf);
         spans[i] = Span(span.enter, select(span.exit, span.enter, span.exit < span.enter));
-        if i + 1u == u32(s.size_y) {
+        if i + 1u == s.count {
             break;
         }
     }
@@ -67,17 +69,17 @@ fn find_spans(s: Shape, ray: Ray) {
 
 // Whether that ray is inside just after `t` (just before it): leaves of closed forms by where they begin and end, solids by the
 // place, but `own`, which says itself what it is there.
-fn is_within(s: Shape, ray: Ray, t: f32, is_after: bool, own: u32, is_in_own: bool) -> bool {
+fn is_within(s: Combination, ray: Ray, t: f32, is_after: bool, own: u32, is_in_own: bool) -> bool {
     var bits = 0u;
-    for (var i = 0u; i < u32(s.size_y); i++) {
+    for (var i = 0u; i < s.count; i++) {
         let leaf = leaf_at(s, i);
         let span = spans[i];
         var is_in = select(span.enter < t && t <= span.exit, span.enter <= t && t < span.exit, is_after);
-        if leaf.shape.kind == SOLID {
-            is_in = solid_holds(leaf.shape, ray.origin + t * ray.direction, t);
+        if leaf.region.test == SOLID {
+            is_in = solid_holds(solid_of(leaf.region), ray.origin + t * ray.direction, t);
         }
         bits = pushed(bits, select(is_in, is_in_own, i == own), leaf.operations);
-        if i + 1u == u32(s.size_y) {
+        if i + 1u == s.count {
             break;
         }
     }
@@ -87,10 +89,10 @@ fn is_within(s: Shape, ray: Ray, t: f32, is_after: bool, own: u32, is_in_own: bo
 const NO_LEAF: u32 = 0xffffffffu;
 
 // Where a ray enters first and leaves last, of what lies in front of the eye, by the ends of its closed forms alone.
-fn span_of_forms(s: Shape, ray: Ray, starts_at_eye: bool) -> Span {
+fn span_of_forms(s: Combination, ray: Ray, starts_at_eye: bool) -> Span {
     find_spans(s, ray);
     var span = Span(FAR_AWAY, -FAR_AWAY);
-    for (var end = 0u; end < 2u * u32(s.size_y); end++) {
+    for (var end = 0u; end < 2u * s.count; end++) {
         let own = spans[end / 2u];
         let t = select(own.enter, own.exit, end % 2u == 1u);
         let before = is_within(s, ray, t, false, NO_LEAF, false);
@@ -98,7 +100,7 @@ fn span_of_forms(s: Shape, ray: Ray, starts_at_eye: bool) -> Span {
         let is_end = own.enter < own.exit && before != after && (!starts_at_eye || t > 0.0);
         span.enter = select(span.enter, min(span.enter, t), is_end && after);
         span.exit = select(span.exit, max(span.exit, t), is_end && before);
-        if end + 1u == 2u * u32(s.size_y) {
+        if end + 1u == 2u * s.count {
             break;
         }
     }
@@ -106,17 +108,18 @@ fn span_of_forms(s: Shape, ray: Ray, starts_at_eye: bool) -> Span {
 }
 
 // The same for the ends of its solids too, each face asked: of a place that the picture may not show.
-fn class_by_leaves(s: Shape, sight: Sight) -> u32 {
+fn class_by_leaves(s: Combination, sight: Sight) -> u32 {
     let starts_at_eye = !sight.is_parallel;
     var span = span_of_forms(s, sight.ray, starts_at_eye);
-    for (var i = 0u; i < u32(s.size_y); i++) {
-        let leaf = leaf_at(s, i).shape;
-        if leaf.kind != SOLID {
+    for (var i = 0u; i < s.count; i++) {
+        let leaf = leaf_at(s, i).region;
+        if leaf.test != SOLID {
             continue;
         }
-        let sizes = solids[u32(leaf.size_x) + 1u];
+        let solid = solid_of(leaf);
+        let sizes = solids[solid.first + 1u];
         for (var f = 0u; f < sizes.w; f++) {
-            let hit = face_hit(sight.ray, leaf, f);
+            let hit = face_hit(sight.ray, solid, f);
             if !hit.is_met || (starts_at_eye && hit.t <= 0.0) {
                 continue;
             }
@@ -126,8 +129,7 @@ fn class_by_leaves(s: Shape, sight: Sight) -> u32 {
             span.exit = select(span.exit, max(span.exit, hit.t), before && !after);
         }
     }
-    // 1: the eye is inside.
-    span.enter = select(span.enter, 0.0, starts_at_eye && s.size_z > 0.5 && span.exit > -FAR_AWAY);
+    span.enter = select(span.enter, 0.0, starts_at_eye && s.holds_eye > 0.5 && span.exit > -FAR_AWAY);
     let is_missed = span.enter > span.exit || (starts_at_eye && sight.distance <= 0.0);
     let is_before = sight.distance < span.enter;
     let side = side_of_solid(is_missed, is_before, sight.distance >= span.exit);
@@ -136,7 +138,7 @@ fn class_by_leaves(s: Shape, sight: Sight) -> u32 {
 }
 
 // Whether the ray of a pixel's centre meets it.
-fn covers_by_leaves(s: Shape, pixel: vec2i) -> bool {
+fn covers_by_leaves(s: Combination, pixel: vec2i) -> bool {
     let span = span_of_forms(s, ray_of_pixel(vec2f(pixel) + 0.5), view.orthographic == 0u);
     return span.enter < span.exit;
 }

@@ -18,9 +18,13 @@ struct OwnSprite {
     place: SpritePlace,
 }
 
-// From the rows of numbers that the shape names.
-fn own_sprite(s: Shape) -> OwnSprite {
-    let i = u32(s.size_x);
+// What a region that is tested so has of it.
+struct OwnRows {
+    first: u32,                 // b.x: number of the first of its rows among the planes
+}
+
+fn own_sprite(s: OwnRows) -> OwnSprite {
+    let i = s.first;
     let x = planes[i];
     let y = planes[i + 1u];
     let z = planes[i + 2u];
@@ -40,7 +44,7 @@ fn own_sprite(s: Shape) -> OwnSprite {
                      part.xy + part.zw, reach.x, reach.y, code.w > 0.5, place);
 }
 
-fn class_in_own(s: Shape, sight: Sight) -> u32 {
+fn class_in_own(s: OwnRows, sight: Sight) -> u32 {
     let own = own_sprite(s);
     let p = own.turn * sight.position + own.shift;
     let distance = -p.z;
@@ -132,12 +136,12 @@ fn ends_in_own(own: OwnSprite, ray: Ray, is_first_enough: bool) -> Span {
     return found;
 }
 
-fn span_in_own(s: Shape, ray: Ray) -> Span {
+fn span_in_own(s: OwnRows, ray: Ray) -> Span {
     return ends_in_own(own_sprite(s), ray, false);
 }
 
 // Whether the ray of a pixel's centre meets it.
-fn covers_own(s: Shape, pixel: vec2i) -> bool {
+fn covers_own(s: OwnRows, pixel: vec2i) -> bool {
     let span = ends_in_own(own_sprite(s), ray_of_pixel(vec2f(pixel) + 0.5), true);
     return span.enter <= span.exit;
 }

@@ -10,6 +10,13 @@ struct Sight {
     object: u32,                // that it belongs to, or NO_OBJECT
 }
 
+// With a number for a place, where nothing is shown.
+fn with_place(sight: Sight) -> Sight {
+    var own = sight;
+    own.position = select(sight.position, vec3f(0.0), sight.distance >= FAR_AWAY);
+    return own;
+}
+
 // The place that a pixel shows.
 fn sight_at(pixel: vec2i, ray: Ray, depth: f32, object: u32) -> Sight {
     let distance = select(FAR_AWAY, distance_of_depth(depth), depth > 0.0);

@@ -1,7 +1,7 @@
 // How far a place is from a solid (L9); where that is more than its table is made for, not less than that. Twin:
 // `veduta::geom::shape::solid::Near`, which says how.
 //
-// From `size_y` on: low x, y, z of the grid, cells per metre (f32); cells in x, y and z, fours of words that the next list
+// From `near` on: low x, y, z of the grid, cells per metre (f32); cells in x, y and z, fours of words that the next list
 // takes; fours that the numbers of faces take, how far the table goes (f32, metres); where the faces of each cell begin; their numbers; the corners of all faces.
 
 fn distance_to_face(p: vec3f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
@@ -23,12 +23,12 @@ fn distance_to_face(p: vec3f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
     return sqrt(min(dot(to_ab, to_ab), min(dot(to_bc, to_bc), dot(to_ca, to_ca))));
 }
 
-fn distance_to_solid(s: Shape, sight: Sight) -> f32 {
+fn distance_to_solid(s: Solid, sight: Sight) -> f32 {
     if sight.distance >= FAR_AWAY {
         return FAR_AWAY;
     }
     let o = in_solid(s, sight.position - s.center);
-    let first = u32(s.size_y);
+    let first = s.near;
     let grid = bitcast<vec4f>(solids[first]);
     let sizes = solids[first + 1u];
     let cell = floor((o - grid.xyz) * grid.w);

@@ -17,6 +17,6 @@ fn side_by_sprite(place: SpritePlace, sight: Sight, is_in: bool) -> u32 {
     return select(side, INSIDE | nearer, is_in);
 }
 
-fn class_in_solid(s: Shape, place: SpritePlace, sight: Sight) -> u32 {
+fn class_in_solid(s: Solid, place: SpritePlace, sight: Sight) -> u32 {
     return side_by_sprite(place, sight, inside_solid(s, sight) == INSIDE);
 }

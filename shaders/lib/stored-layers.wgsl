@@ -24,6 +24,11 @@ struct Event {
     step: i32,                  // of the winding number of a solid
 }
 
+// The lens.
+fn whole() -> Combination {
+    return combination_of(stage.region);
+}
+
 var<private> windings: array<i32, 64>;  // of each solid
 var<private> programs: array<u32, 64>;  // of each leaf: its operations, and whether it is a solid
 var<private> here: Event;
@@ -44,7 +49,7 @@ fn visit(event: Event) {
 // Looks at all events.
 fn find_next(list: u32) {
     next = Event(FAR_AWAY, NONE, 0u, 0);
-    let leaves = u32(stage.shape.size_y);
+    let leaves = whole().count;
     for (var i = 0u; i < leaves; i++) {
         if spans[i].enter < spans[i].exit {
             visit(Event(spans[i].enter, 2u * i, i, 0));
@@ -61,7 +66,7 @@ fn find_next(list: u32) {
 // Whether the ray is in the lens just after `t`.
 fn is_in_after(t: f32) -> bool {
     var bits = 0u;
-    for (var i = 0u; i < u32(stage.shape.size_y); i++) {
+    for (var i = 0u; i < whole().count; i++) {
         let is_in_form = spans[i].enter <= t && t < spans[i].exit;
         bits = pushed(bits, select(is_in_form, windings[i] != 0, (programs[i] & IS_SOLID) != 0u), programs[i] & ~IS_SOLID);
     }
@@ -89,20 +94,20 @@ fn add_interval(span: Span, first: u32, code: DepthCode, format: u32) {
     found += 1u;
 }
 
-fn windings_around_eye(solid: Shape) -> i32 {
-    return i32(floor(solid.size_z + 0.5));
+fn windings_around_eye(solid: Solid) -> i32 {
+    return i32(floor(solid.around + 0.5));
 }
 
-fn is_in_doubt(solid: Shape) -> bool {
-    return solid.size_z != floor(solid.size_z + 0.5);
+fn is_in_doubt(solid: Solid) -> bool {
+    return solid.around != floor(solid.around + 0.5);
 }
 
 // Whether the eye is so near a face of a solid that its winding number is in doubt.
 fn is_near_solid() -> bool {
     var is_near = false;
-    for (var i = 0u; i < u32(stage.shape.size_y); i++) {
-        let leaf = leaf_at(stage.shape, i).shape;
-        is_near = is_near || (leaf.kind == SOLID && is_in_doubt(leaf));
+    for (var i = 0u; i < whole().count; i++) {
+        let leaf = leaf_at(whole(), i).region;
+        is_near = is_near || (leaf.test == SOLID && is_in_doubt(solid_of(leaf)));
     }
     return is_near;
 }
@@ -112,14 +117,14 @@ fn follow(ray: Ray, list: u32, first: u32, code: DepthCode, format: u32) -> bool
     let starts_at_eye = view.orthographic == 0u;
     found = 0u;
     is_over = false;
-    find_spans(stage.shape, ray);
-    let leaves = u32(stage.shape.size_y);
+    find_spans(whole(), ray);
+    let leaves = whole().count;
     for (var i = 0u; i < leaves; i++) {
-        let whole = leaf_at(stage.shape, i);
-        let leaf = whole.shape;
-        programs[i] = whole.operations | select(0u, IS_SOLID, leaf.kind == SOLID);
-        windings[i] = select(0, windings_around_eye(leaf), starts_at_eye && leaf.kind == SOLID);
-        if leaf.kind == SOLID {
+        let leaf = leaf_at(whole(), i);
+        let is_solid = leaf.region.test == SOLID;
+        programs[i] = leaf.operations | select(0u, IS_SOLID, is_solid);
+        windings[i] = select(0, windings_around_eye(solid_of(leaf.region)), starts_at_eye && is_solid);
+        if is_solid {
             spans[i] = EMPTY_SPAN;
         }
     }
@@ -133,9 +138,9 @@ fn follow(ray: Ray, list: u32, first: u32, code: DepthCode, format: u32) -> bool
             find_next(list);
         }
         for (var i = 0u; i < leaves; i++) {
-            let leaf = leaf_at(stage.shape, i).shape;
-            let known = windings_around_eye(leaf);
-            windings[i] = select(known, known - windings[i], leaf.kind == SOLID && is_in_doubt(leaf));
+            let leaf = leaf_at(whole(), i).region;
+            let known = windings_around_eye(solid_of(leaf));
+            windings[i] = select(known, known - windings[i], leaf.test == SOLID && is_in_doubt(solid_of(leaf)));
         }
     }
     // A crossing just at the start has happened.

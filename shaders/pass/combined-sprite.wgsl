@@ -10,9 +10,8 @@ fn is_fading_member(first: u32, object: u32, pixel: vec2i) -> bool {
     return true;
 }
 
-fn combination() -> Shape {
-    let first = f32(stage.leaves.x);
-    return Shape(vec3f(0.0), COMBINED, vec3f(0.0), first, vec3f(0.0), f32(stage.leaves.y), vec3f(0.0), 0.0);
+fn combination() -> Combination {
+    return Combination(stage.leaves.x, stage.leaves.y, 0.0);
 }
 
 fn ray_of_texel(at: vec2f) -> Ray {

@@ -78,7 +78,7 @@ fn sight_along(ray: Ray, pixel: vec2i, distance: f32) -> Sight {
 
 // Of a volume without closed form; `whole`: from its first entry to its last exit, as its sprite knows them.
 fn end_by_steps(ray: Ray, pixel: vec2i, whole: Span) -> f32 {
-    let span = meet(span_of_sphere(ray, stage.center, stage.radius), whole);
+    let span = meet(span_of_ball(ray, stage.center, stage.radius), whole);
     let room = (span.exit - span.enter) / 64.0 + SECTION_BESIDE * abs(span.exit);
     let first = max(span.enter - room, 0.0);
     let stride = (span.exit + room - first) / f32(SECTION_STEPS);

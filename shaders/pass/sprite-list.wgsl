@@ -3,7 +3,7 @@
 
 struct ListStage {
     view: View,
-    shape: Shape,
+    region: Region,
     // From the picture's clip space to that of the target.
     clip_scale: vec2f,
     clip_shift: vec2f,
@@ -37,8 +37,8 @@ struct SolidCorner {
 @vertex
 fn vertex(@location(0) corner: vec3f) -> SolidCorner {
     view = stage.view;
-    let s = stage.shape;
-    let p = s.center + corner.x * s.axis_x + corner.y * s.axis_y + corner.z * s.axis_z;
+    let s = solid_of(stage.region);
+    let p = s.center + corner.x * s.x + corner.y * s.y + corner.z * s.z;
     let w = select(-p.z, 1.0, view.orthographic == 1u);
     let in_picture = p.xy * view.projection.xy + view.projection.zw * w;
     // Clipped well before anything is seen, but not in the eye, where nothing has a place in the picture.

@@ -5,7 +5,7 @@
 // misses holds NO_ENTRY and NO_EXIT. An exit without an entry says that the eye, or the near plane, is inside.
 
 struct SpriteStage {
-    shape: Shape,
+    region: Region,
     // Target pixels per sprite texel: a coarser sprite takes the ray of its own texel's centre.
     pixels_per_texel: vec2f,
     // Of the part of the sprite that is kept (the lens' screen bounds), texels.
@@ -13,7 +13,7 @@ struct SpriteStage {
     // From the picture's clip space to the page's.
     clip_scale: vec2f,
     clip_shift: vec2f,
-    // Of a combination: where its leaves begin among the planes, how many there are, which of them `shape` is.
+    // Of a combination: where its leaves begin among the planes, how many there are, which of them `region` is.
     leaves: vec4u,
 }
 
@@ -42,8 +42,8 @@ struct SolidCorner {
 
 @vertex
 fn vertex_of_solid(@location(0) corner: vec3f) -> SolidCorner {
-    let s = stage.shape;
-    let p = s.center + corner.x * s.axis_x + corner.y * s.axis_y + corner.z * s.axis_z;
+    let s = solid_of(stage.region);
+    let p = s.center + corner.x * s.x + corner.y * s.y + corner.z * s.z;
     let w = select(-p.z, 1.0, view.orthographic == 1u);
     let in_picture = p.xy * view.projection.xy + view.projection.zw * w;
     // Fragments write their depth. Clipped well before anything is seen, but not in the eye, where nothing has a place in the

@@ -3,7 +3,7 @@
 
 struct StoredStage {
     view: View,
-    shape: Shape,
+    region: Region,
     // Target pixels per sprite texel: a coarser sprite takes the ray of its own texel's centre.
     pixels_per_texel: vec2f,
     // Of the part of the sprite that is kept (the lens' screen bounds), texels.

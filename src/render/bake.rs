@@ -10,13 +10,12 @@ use crate::{
         seen::{Kept, SeenSprite, SeenVolume},
         stored::{KeptSprite, Stored},
     },
-    shader::VolumeTest,
     view::View,
 };
 
 /// The solids of a body whose crossings are listed, each with its number among the leaves.
 pub(super) fn solids_of(body: &Body) -> impl Iterator<Item = (u32, &PlacedLeaf)> {
-    (0..).zip(body.leaves()).filter(|(_, leaf)| leaf.leaf.test() == VolumeTest::Solid)
+    (0..).zip(body.leaves()).filter(|(_, leaf)| leaf.is_solid())
 }
 
 /// A sprite that is to be made.
@@ -56,13 +55,13 @@ impl BakeRequest<'_> {
         u64::from(self.stored.first_list) + texels
     }
 
-    /// What makes it, of a body whose shape is `shape`; its eye sees it on a target of `target` pixels.
-    pub fn stage(&self, shape: layout::Shape, view: layout::View, target: [u32; 2]) -> layout::StoredStage {
+    /// What makes it, of a body whose numbers are `region`; its eye sees it on a target of `target` pixels.
+    pub fn stage(&self, region: layout::Region, view: layout::View, target: [u32; 2]) -> layout::StoredStage {
         let &Self { size, bounds, stored, .. } = self;
         let (kind, near, far) = stored.numbers();
         layout::StoredStage {
             view,
-            shape,
+            region,
             pixels_per_texel: std::array::from_fn(|i| target[i] as f32 / size[i] as f32),
             origin: bounds.origin.map(|o| o as f32),
             width: stored.width(bounds.size[0]),
@@ -92,7 +91,7 @@ impl BakeRequest<'_> {
         let side = |i: usize| clip_scale[i] - 2.0 * self.bounds.origin[i] as f32 / target[i] as f32 - 1.0;
         let list = |(leaf, of): (u32, &PlacedLeaf)| layout::ListStage {
             view: stage.view,
-            shape: of.figures(own_view, &mut Vec::new()),
+            region: of.figures(own_view, &mut Vec::new()),
             clip_scale,
             clip_shift: [side(0), -side(1)],
             width: stage.width,

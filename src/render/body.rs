@@ -12,7 +12,7 @@ use crate::{
     },
     lens::PlacedSprite,
     render::{flat, layout, solids::SolidPlace},
-    shader::VolumeTest,
+    shader::{Form, LensTest},
     view::View,
 };
 
@@ -128,25 +128,35 @@ impl Body {
         }
     }
 
-    /// How it is tested from its own figures.
-    pub fn test(&self) -> VolumeTest {
+    /// Its form; `None` of a saved depth sprite.
+    pub fn form(&self) -> Option<Form> {
         match self {
-            Self::One(leaf) => leaf.leaf.test(),
-            Self::Combined(_) => VolumeTest::Combined,
+            Self::One(leaf) => leaf.leaf.form(),
+            Self::Combined(_) => Some(Form::Combined),
         }
     }
 
+    /// How it is tested from its own numbers.
+    pub fn test(&self) -> LensTest {
+        self.form().map_or(LensTest::OwnSprite, LensTest::Numbers)
+    }
+
     /// What its leaves are, if it is a combination; ascending, each once.
-    pub fn kinds(&self) -> Vec<VolumeTest> {
-        if matches!(self, Self::One(_)) { Vec::new() } else { self.leaf_kinds() }
+    pub fn forms_in_combination(&self) -> Vec<Form> {
+        if matches!(self, Self::One(_)) { Vec::new() } else { self.leaf_forms() }
     }
 
     /// What its leaves are, ascending, each once.
-    pub fn leaf_kinds(&self) -> Vec<VolumeTest> {
-        let mut kinds: Vec<VolumeTest> = self.leaves().map(|leaf| leaf.leaf.test()).collect();
-        kinds.sort_unstable();
-        kinds.dedup();
-        kinds
+    pub fn leaf_forms(&self) -> Vec<Form> {
+        let mut forms: Vec<Form> = self.leaves().filter_map(|leaf| leaf.leaf.form()).collect();
+        forms.sort_unstable();
+        forms.dedup();
+        forms
+    }
+
+    /// Whether some leaf is a solid.
+    pub fn has_solids(&self) -> bool {
+        self.leaves().any(PlacedLeaf::is_solid)
     }
 
     /// Whether it holds nothing.
@@ -184,14 +194,12 @@ impl Body {
 
     /// Whether its ends along a ray have a closed form.
     pub fn is_form(&self) -> bool {
-        let has_none = |test| matches!(test, VolumeTest::Solid | VolumeTest::OwnSprite);
-        matches!(self, Self::One(leaf) if !has_none(leaf.leaf.test())) && !self.has_members()
+        matches!(self, Self::One(leaf) if leaf.leaf.form().is_some_and(|form| form.closed().is_some()))
     }
 
     /// Intervals that a ray may be in it, at most, if its leaves say so: solids may be gone through any number of times.
     pub fn most_intervals(&self) -> Option<usize> {
-        let is_solid = |leaf: &PlacedLeaf| leaf.leaf.test() == VolumeTest::Solid;
-        (!self.leaves().any(is_solid)).then(|| self.leaves().count())
+        (!self.has_solids()).then(|| self.leaves().count())
     }
 
     /// The union of bodies as one combination; `None` where that is none or too large for one.
@@ -287,7 +295,7 @@ impl Body {
     }
 
     /// Its figures for an eye; planes and leaves are appended to `planes`.
-    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
+    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         match self {
             Self::One(leaf) => leaf.figures(view, planes),
             Self::Combined(_) => self.program_figures(view, planes),
@@ -295,7 +303,7 @@ impl Body {
     }
 
     /// Its figures as a combination, if only of one leaf; leaves are appended to `planes`.
-    pub fn program_figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
+    pub fn program_figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         let alone;
         let program = match self {
             Self::One(leaf) => {
@@ -310,29 +318,26 @@ impl Body {
                 let half = 0.5 * members.bounds.size();
                 let around = Volume::Box { center: members.bounds.center(), half, rotation: glam::DQuat::IDENTITY };
                 let figures = PlacedLeaf::from(Leaf::Volume(around)).figures(view, &mut Vec::new());
-                let kind = leaf.leaf.test().number();
-                (layout::Shape { kind, ..figures }, leaf.place.first as f32, then.clone())
+                let test = leaf.test_number();
+                (layout::Region { test, ..figures }, leaf.place.first as f32, then.clone())
             }
             Leaf::Volume(_) | Leaf::Sprite(_) => (leaf.figures(view, planes), 0.0, then.clone()),
         };
         let leaves: Vec<_> = program.iter().map(leaf).collect();
-        let out = layout::Shape {
-            kind: VolumeTest::Combined.number(),
-            size_x: planes.len() as f32,
-            size_y: leaves.len() as f32,
-            size_z: f32::from(u8::from(self.holds_eye(view))),
+        let out = layout::Region {
+            test: LensTest::Numbers(Form::Combined).number(),
+            b: [planes.len() as f32, leaves.len() as f32, f32::from(u8::from(self.holds_eye(view))), 0.0],
             ..Default::default()
         };
         for (s, first, then) in leaves {
-            let row = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
             // Two bits for each, the first in the lowest.
             let operations = then.iter().rev().fold(0, |all, operation| all << 2 | *operation as u32);
             planes.extend([
-                row(s.center, 0.0),
-                row(s.axis_x, s.size_x),
-                row(s.axis_y, s.size_y),
-                row(s.axis_z, s.size_z),
-                [s.kind as f32, operations as f32, first, 0.0],
+                [s.a[0], s.a[1], s.a[2], 0.0],
+                s.b,
+                s.c,
+                s.d,
+                [s.test as f32, operations as f32, first, 0.0],
             ]);
         }
         out
@@ -340,23 +345,13 @@ impl Body {
 }
 
 impl Leaf {
-    /// How it is tested from its own figures.
-    pub fn test(&self) -> VolumeTest {
-        let volume = match self {
-            Self::Members(Members { thresholds: None, .. }) => return VolumeTest::Members,
-            Self::Members(_) => return VolumeTest::FadingMembers,
-            Self::Sprite(_) => return VolumeTest::OwnSprite,
-            Self::Volume(volume) => volume,
-        };
-        match volume {
-            Volume::Sphere { .. } => VolumeTest::Sphere,
-            Volume::Box { .. } => VolumeTest::Box,
-            Volume::Cylinder { .. } => VolumeTest::Cylinder,
-            Volume::Convex(_) => VolumeTest::Convex,
-            Volume::Ellipsoid { .. } => VolumeTest::Ellipsoid,
-            Volume::Frustum { .. } => VolumeTest::Frustum,
-            Volume::Solid(_) => VolumeTest::Solid,
-            Volume::Flat(_) => VolumeTest::Flat,
+    /// Its form; `None` of a saved depth sprite.
+    pub fn form(&self) -> Option<Form> {
+        match self {
+            Self::Members(Members { thresholds: None, .. }) => Some(Form::Members),
+            Self::Members(_) => Some(Form::FadingMembers),
+            Self::Sprite(_) => None,
+            Self::Volume(volume) => Some(Form::Volume(volume.form())),
         }
     }
 
@@ -380,17 +375,28 @@ impl Leaf {
 }
 
 impl PlacedLeaf {
+    /// Whether it is a solid.
+    pub fn is_solid(&self) -> bool {
+        self.leaf.form().is_some_and(Form::is_solid)
+    }
+
+    /// The number of its test in WGSL.
+    fn test_number(&self) -> u32 {
+        self.leaf.form().map_or(LensTest::OwnSprite, LensTest::Numbers).number()
+    }
+
     /// Its figures for an eye; its planes are appended to `planes`.
-    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
+    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         let view_from_world = view.basis.view_from_world();
         let eye = view.camera.eye;
         let place = |p: DVec3| (view_from_world * (p - eye)).as_vec3().to_array();
-        let turn = |v: DVec3| (view_from_world * v).as_vec3().to_array();
+        let turn = |v: DVec3| (view_from_world * v).as_vec3();
+        let row = |v: DVec3, w: f64| turn(v).extend(w as f32).to_array();
         let first = self.place.first;
-        let mut out = layout::Shape { kind: self.leaf.test().number(), ..Default::default() };
+        let mut out = layout::Region { test: self.test_number(), ..Default::default() };
         let volume = match &self.leaf {
             Leaf::Members(_) => {
-                out.size_x = first as f32;
+                out.b[0] = first as f32;
                 return out;
             }
             // Its rows stand elsewhere (`render::own_sprites`).
@@ -399,46 +405,41 @@ impl PlacedLeaf {
         };
         match volume {
             Volume::Sphere { center, radius } => {
-                out.center = place(*center);
-                out.size_x = *radius as f32;
+                out.a = place(*center);
+                out.b[0] = *radius as f32;
             }
             Volume::Box { center, half, rotation } => {
                 let axes = DMat3::from_quat(*rotation);
-                out.center = place(*center);
-                out.axis_x = turn(axes.x_axis);
-                out.axis_y = turn(axes.y_axis);
-                out.axis_z = turn(axes.z_axis);
-                [out.size_x, out.size_y, out.size_z] = half.as_vec3().to_array();
+                out.a = place(*center);
+                out.b = row(axes.x_axis, half.x);
+                out.c = row(axes.y_axis, half.y);
+                out.d = row(axes.z_axis, half.z);
             }
             Volume::Cylinder { center, radius, half, axis } => {
-                out.center = place(*center);
-                out.axis_z = turn(*axis);
-                out.size_x = *radius as f32;
-                out.size_z = *half as f32;
+                out.a = place(*center);
+                out.b[0] = *radius as f32;
+                out.d = row(*axis, *half);
             }
             Volume::Ellipsoid { center, radii, rotation } => {
                 let axes = DMat3::from_quat(*rotation);
-                out.center = place(*center);
+                out.a = place(*center);
                 // In its own measure it is a ball of radius 1.
-                out.axis_x = turn(axes.x_axis / radii.x);
-                out.axis_y = turn(axes.y_axis / radii.y);
-                out.axis_z = turn(axes.z_axis / radii.z);
+                out.b = row(axes.x_axis / radii.x, 0.0);
+                out.c = row(axes.y_axis / radii.y, 0.0);
+                out.d = row(axes.z_axis / radii.z, 0.0);
             }
             Volume::Frustum { center, radii: [bottom, top], half, axis } => {
-                out.center = place(*center);
-                out.axis_z = turn(*axis);
-                out.size_x = (0.5 * (bottom + top)) as f32;
-                out.size_y = ((top - bottom) / (2.0 * half)) as f32;
-                out.size_z = *half as f32;
+                out.a = place(*center);
+                out.b[0] = (0.5 * (bottom + top)) as f32;
+                out.c[3] = ((top - bottom) / (2.0 * half)) as f32;
+                out.d = row(*axis, *half);
             }
             Volume::Solid(placed) => {
                 let axes = DMat3::from_quat(placed.rotation);
-                out.center = place(placed.at);
-                out.axis_x = turn(axes.x_axis);
-                out.axis_y = turn(axes.y_axis);
-                out.axis_z = turn(axes.z_axis);
-                out.size_x = first as f32;
-                out.size_y = self.place.near as f32;
+                out.a = place(placed.at);
+                out.b = row(axes.x_axis, f64::from(first));
+                out.c = row(axes.y_axis, f64::from(self.place.near));
+                out.d = row(axes.z_axis, 0.0);
                 if !view.is_orthographic() {
                     let own = placed.local(eye);
                     let near = DVec3::splat(view.camera.near_m);
@@ -446,17 +447,15 @@ impl PlacedLeaf {
                     let may_touch = own.cmpge(around.min - near).all() && own.cmple(around.max + near).all();
                     let is_in_doubt = may_touch && placed.solid.distance(own) < view.camera.near_m;
                     // A quarter more says that the eye is all but on a face.
-                    out.size_z = placed.solid.winding(own) as f32 + if is_in_doubt { 0.25 } else { 0.0 };
+                    out.d[3] = placed.solid.winding(own) as f32 + if is_in_doubt { 0.25 } else { 0.0 };
                 }
             }
             Volume::Flat(flat) => flat::figures(flat, view, &mut out, planes),
             Volume::Convex(hull) => {
                 let (center, faces) = hull.planes();
-                out.size_x = planes.len() as f32;
-                out.size_y = faces.len() as f32;
+                out.b = [planes.len() as f32, faces.len() as f32, 0.0, 0.0];
                 planes.extend(faces.iter().map(|&(normal, offset)| {
-                    let [x, y, z] = turn(normal);
-                    [x, y, z, (offset + normal.dot(center - eye)) as f32]
+                    turn(normal).extend((offset + normal.dot(center - eye)) as f32).to_array()
                 }));
             }
         }

@@ -35,7 +35,7 @@ pub(super) struct Cuts {
 /// Shapes of lens volumes for the sun, in the main view's space.
 pub(super) struct Shapes {
     pub eye: layout::View,
-    pub shapes: Vec<layout::Shape>,
+    pub shapes: Vec<layout::Region>,
     pub planes: Vec<[f32; 4]>,
 }
 
@@ -101,7 +101,7 @@ impl Cuts {
             });
             let own = input.volumes.iter().filter(|v| hiding.lenses.contains(&v.lens));
             // What the picture's sprites hold says nothing of what only the sun sees.
-            let own = own.map(|v| (v.lens, v.test_from_sun(), v.body.kinds()));
+            let own = own.map(|v| (v.lens, v.test_from_sun(), v.body.forms_in_combination()));
             let plan = input.operations.lens_plan(&own.collect::<Vec<_>>(), false, false).hiding(handlers());
             // Nor of how wide a border is that is measured in pixels: shadows end at the volume.
             let plan = plan.map(Plan::without_borders);

@@ -8,14 +8,14 @@ use crate::{
     view::View,
 };
 
-/// `size_z` of `lib/shape.wgsl`.
+/// `figure` of `shape/flat.wgsl`.
 const DISC: f32 = 0.0;
 const RECTANGLE: f32 = 1.0;
 const POLYGON: f32 = 2.0;
 
 /// The projective map from the picture to the figure's plane, as `span_of_flat` reads it, and the figure; the sides of a polygon
 /// are appended to `planes`.
-pub(super) fn figures(flat: &Flat, view: &View, out: &mut layout::Shape, planes: &mut Vec<[f32; 4]>) {
+pub(super) fn figures(flat: &Flat, view: &View, out: &mut layout::Region, planes: &mut Vec<[f32; 4]>) {
     let view_from_world = view.basis.view_from_world();
     let axes = view_from_world * flat.axes();
     let (normal, center) = (axes.z_axis, view_from_world * (flat.center() - view.camera.eye));
@@ -35,25 +35,24 @@ pub(super) fn figures(flat: &Flat, view: &View, out: &mut layout::Shape, planes:
         let turned = [axes.x_axis, axes.y_axis].map(|axis| axis * reach - normal * axis.dot(center));
         (normal, DVec3::new(0.0, 0.0, -reach), turned)
     };
-    let signed = |v: DVec3| (side * v).as_vec3().to_array();
-    out.axis_z = signed(weight);
-    out.center = signed(depth);
-    [out.axis_x, out.axis_y] = across.map(signed);
-    match flat.figure() {
-        FlatFigure::Disc { radius } => (out.size_x, out.size_z) = (*radius as f32, DISC),
-        FlatFigure::Rectangle { size } => {
-            [out.size_x, out.size_y] = (0.5 * *size).as_vec2().to_array();
-            out.size_z = RECTANGLE;
-        }
+    let signed = |v: DVec3| (side * v).as_vec3();
+    let (size, kind) = match flat.figure() {
+        FlatFigure::Disc { radius } => ([*radius as f32, 0.0], DISC),
+        FlatFigure::Rectangle { size } => ((0.5 * *size).as_vec2().to_array(), RECTANGLE),
         FlatFigure::Polygon { points } => {
-            (out.size_x, out.size_y, out.size_z) = (planes.len() as f32, points.len() as f32, POLYGON);
+            let size = [planes.len() as f32, points.len() as f32];
             let next = points.iter().cycle().skip(1);
             planes.extend(points.iter().zip(next).map(|(a, b)| {
                 let ([x, y], [z, w]) = (a.as_vec2().to_array(), b.as_vec2().to_array());
                 [x, y, z, w]
             }));
+            (size, POLYGON)
         }
-    }
+    };
+    out.a = signed(depth).to_array();
+    out.b = signed(across[0]).extend(size[0]).to_array();
+    out.c = signed(across[1]).extend(size[1]).to_array();
+    out.d = signed(weight).extend(kind).to_array();
 }
 
 /// The least and the most of x, y, x + y and x - y, pixels, of what is looked through; else whether it may be anywhere: it

@@ -145,18 +145,15 @@ pub struct Triangle {
     pub edges: u32,
 }
 
-/// `lib/shape.wgsl`.
+/// `lib/region.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct Shape {
-    pub center: [f32; 3],
-    pub kind: u32,
-    pub axis_x: [f32; 3],
-    pub size_x: f32,
-    pub axis_y: [f32; 3],
-    pub size_y: f32,
-    pub axis_z: [f32; 3],
-    pub size_z: f32,
+pub struct Region {
+    pub a: [f32; 3],
+    pub test: u32,
+    pub b: [f32; 4],
+    pub c: [f32; 4],
+    pub d: [f32; 4],
 }
 
 /// `pass/sections.wgsl`.
@@ -196,7 +193,7 @@ pub struct Light {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct SpriteStage {
-    pub shape: Shape,
+    pub region: Region,
     pub pixels_per_texel: [f32; 2],
     pub origin: [f32; 2],
     pub clip_scale: [f32; 2],
@@ -227,7 +224,7 @@ pub struct SpritePlace {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct StoredStage {
     pub view: View,
-    pub shape: Shape,
+    pub region: Region,
     pub pixels_per_texel: [f32; 2],
     pub origin: [f32; 2],
     pub width: u32,
@@ -248,7 +245,7 @@ pub struct StoredStage {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ListStage {
     pub view: View,
-    pub shape: Shape,
+    pub region: Region,
     pub clip_scale: [f32; 2],
     pub clip_shift: [f32; 2],
     pub width: u32,
@@ -401,7 +398,10 @@ pub struct StripVertex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::{DeformPlan, Module, Plan, PlanLens, Program, Uber, VolumeTest};
+    use crate::{
+        geom::shape::VolumeForm,
+        shader::{DeformPlan, LensTest, Module, Plan, PlanLens, Program, Uber},
+    };
 
     type Fields = Vec<(&'static str, usize)>;
 
@@ -465,7 +465,7 @@ mod tests {
 
     #[test]
     fn host_and_wgsl_structs_are_the_same() {
-        let lens = PlanLens { number: 0, volumes: vec![VolumeTest::Sprite], leaves: vec![], body: None, border: None };
+        let lens = PlanLens { number: 0, volumes: vec![LensTest::Sprite], leaves: vec![], body: None, border: None };
         let content = crate::shader::PlanContent {
             lens: 0,
             class: crate::shader::ClassTest::Inside,
@@ -498,7 +498,7 @@ mod tests {
                     pad_1
                 }),
             ),
-            (&Module::Sprite, host!(Shape { center, kind, axis_x, size_x, axis_y, size_y, axis_z, size_z })),
+            (&Module::Sprite, host!(Region { a, test, b, c, d })),
             (
                 &shade,
                 host!(Light {
@@ -517,7 +517,7 @@ mod tests {
                     scene_radius
                 }),
             ),
-            (&Module::Sprite, host!(SpriteStage { shape, pixels_per_texel, origin, clip_scale, clip_shift, leaves })),
+            (&Module::Sprite, host!(SpriteStage { region, pixels_per_texel, origin, clip_scale, clip_shift, leaves })),
             (&Module::Filter(blur), host!(FilterStage { step, reach, first, length, layers, layer, pad_0 })),
             (&uber, host!(PackedInvoker { place, call, slots, number })),
             (&Module::Narrow, host!(Reach { x, y, distance })),
@@ -566,10 +566,10 @@ mod tests {
                 }),
             ),
             (
-                &Module::StoredForm,
+                &Module::StoredForm(VolumeForm::Sphere),
                 host!(StoredStage {
                     view,
-                    shape,
+                    region,
                     pixels_per_texel,
                     origin,
                     width,
@@ -586,7 +586,7 @@ mod tests {
             ),
             (
                 &Module::SpriteList,
-                host!(ListStage { view, shape, clip_scale, clip_shift, width, height, first_list, leaf, room, pad_0 }),
+                host!(ListStage { view, region, clip_scale, clip_shift, width, height, first_list, leaf, room, pad_0 }),
             ),
             (&Module::Furniture, host!(StripVertex { at, across, half_width, along, length, ends, color, fade })),
             (

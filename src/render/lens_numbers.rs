@@ -9,20 +9,20 @@ use crate::{
         seen::{Kept, SeenSprite, SeenVolume},
         sprites::Place,
     },
-    shader::VolumeTest,
+    shader::LensTest,
 };
 
 /// Numbers of the volumes of a frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LensNumbers {
     /// Of each volume that is seen.
-    pub shapes: Vec<layout::Shape>,
+    pub shapes: Vec<layout::Region>,
     /// Where the sprite of each stands; zeros where it has none.
     pub places: Vec<layout::SpritePlace>,
     /// Of each whose sides a sprite on a page tells.
-    pub sides: Vec<layout::Shape>,
+    pub sides: Vec<layout::Region>,
     /// Of each sprite that is to be made.
-    pub baked: Vec<layout::Shape>,
+    pub baked: Vec<layout::Region>,
     /// Planes of convex volumes, and other rows that shapes name.
     pub planes: Vec<[f32; 4]>,
 }
@@ -55,7 +55,7 @@ impl LensNumbers {
     ) {
         let body = &input.volumes[volume.index].body;
         let nowhere = bytemuck::Zeroable::zeroed();
-        if volume.test == VolumeTest::OwnSprite {
+        if volume.test == LensTest::OwnSprite {
             self.shapes.push(own.figures(volume.index, &input.view, &mut self.planes));
             self.places.push(nowhere);
             return;
@@ -65,7 +65,7 @@ impl LensNumbers {
             true => body.program_figures(&input.view, &mut self.planes),
             false => body.figures(&input.view, &mut self.planes),
         };
-        self.shapes.push(layout::Shape { kind: volume.test.number(), ..shape });
+        self.shapes.push(layout::Region { test: volume.test.number(), ..shape });
         match volume.sprite.as_ref().map(|sprite| (sprite, &sprite.kept)) {
             None => self.places.push(nowhere),
             Some((sprite, Kept::Page(on))) => {

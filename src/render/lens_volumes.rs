@@ -112,7 +112,7 @@ pub(super) fn volumes_of<'a>(
             let [picture, sun] = volume.tests();
             all.tests.picture.extend(picture);
             all.tests.sun.extend(sun);
-            all.tests.leaves.extend(volume.body.kinds());
+            all.tests.leaves.extend(volume.body.forms_in_combination());
             // A lens without volume shows nothing and costs nothing.
             if lens.enabled && motion.is_some() && !volume.body.is_empty() {
                 all.volumes.push(volume);

@@ -10,8 +10,8 @@ use crate::{
     },
     render::{body::Members, palette},
     shader::{
-        self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, PerObject, Plan, PlanBody, PlanBorder,
-        PlanContent, PlanLens, Scope, Step, Uber, VolumeTest,
+        self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
+        PlanBody, PlanBorder, PlanContent, PlanLens, Scope, Step, Uber,
     },
 };
 
@@ -98,11 +98,11 @@ pub struct LensTables {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AllTests {
     /// In the picture.
-    pub picture: Vec<VolumeTest>,
+    pub picture: Vec<LensTest>,
     /// From the sun.
-    pub sun: Vec<VolumeTest>,
+    pub sun: Vec<LensTest>,
     /// What the leaves of combinations are.
-    pub leaves: Vec<VolumeTest>,
+    pub leaves: Vec<Form>,
 }
 
 /// The operations of a scene.
@@ -124,7 +124,7 @@ pub struct Operations {
     /// What any frame of the scene may ask for, disabled lenses included.
     uber: Uber,
     /// How their volumes are tested where sprites say nothing: for the sun.
-    shape_tests: Vec<VolumeTest>,
+    shape_tests: Vec<LensTest>,
 }
 
 impl Operations {
@@ -241,7 +241,7 @@ impl Operations {
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
     /// tested, and what the leaves of a combination are. With `masks` every pixel's classes are written down.
-    pub fn lens_plan(&self, seen: &[(u32, VolumeTest, Vec<VolumeTest>)], haze: bool, masks: bool) -> Plan {
+    pub fn lens_plan(&self, seen: &[(u32, LensTest, Vec<Form>)], haze: bool, masks: bool) -> Plan {
         let mut lenses: Vec<PlanLens> = Vec::new();
         let mut numbers = Vec::new();
         for (lens, test, leaves) in seen {
@@ -431,7 +431,7 @@ fn of_lens<T: Copy>(of: &[(u32, T)], lens: u32) -> Option<T> {
 }
 
 /// Ascending, each once.
-fn each_once(mut tests: Vec<VolumeTest>) -> Vec<VolumeTest> {
+fn each_once<T: Ord>(mut tests: Vec<T>) -> Vec<T> {
     tests.sort_unstable();
     tests.dedup();
     tests

@@ -20,7 +20,7 @@ use crate::{
         stored::{KeptSprite, Stored, code_of},
         volume::LensVolume,
     },
-    shader::VolumeTest,
+    shader::LensTest,
     view::{CameraError, View},
 };
 
@@ -62,7 +62,7 @@ enum Source {
 #[derive(Debug)]
 struct Shapes {
     view: View,
-    figures: layout::Shape,
+    figures: layout::Region,
     planes: Vec<[f32; 4]>,
     solids: Option<Arc<SolidTable>>,
 }
@@ -207,7 +207,7 @@ impl OwnSprite {
             true => volume.body.figures(&view, &mut planes),
             false => volume.body.program_figures(&view, &mut planes),
         };
-        let has_solids = volume.body.leaves().any(|leaf| leaf.leaf.test() == VolumeTest::Solid);
+        let has_solids = volume.body.has_solids();
         let solids = has_solids.then(|| input.solids.clone());
         let from = Source::Shapes(Box::new(Shapes { view, figures, planes, solids }));
         let reach = reach_of(volume, &view, &code);
@@ -298,11 +298,11 @@ impl OwnSprites {
     }
 
     /// Of a volume that is tested by one, what a shader reads that draws for this eye: rows among the planes, named by the shape.
-    pub fn figures(&self, volume: usize, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
-        let shape = layout::Shape {
-            kind: VolumeTest::OwnSprite.number(),
-            size_x: planes.len() as f32,
-            ..layout::Shape::default()
+    pub fn figures(&self, volume: usize, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+        let shape = layout::Region {
+            test: LensTest::OwnSprite.number(),
+            b: [planes.len() as f32, 0.0, 0.0, 0.0],
+            ..layout::Region::default()
         };
         let Some(one) = self.list.iter().find(|one| one.volume == volume) else {
             // It holds nothing: no texel is kept.

@@ -10,16 +10,16 @@ use crate::{
         sprites::{self, Pages, Place},
         stored::{self, Stored},
     },
-    shader::VolumeTest,
+    shader::{Form, LensTest},
 };
 
 /// A volume that may be seen, with its place among the stages.
 pub(super) struct SeenVolume {
     pub index: usize,
     pub lens: u32,
-    pub test: VolumeTest,
+    pub test: LensTest,
     /// What the leaves of a combination are.
-    pub leaves: Vec<VolumeTest>,
+    pub leaves: Vec<Form>,
     /// Where it may be seen, and the rectangle around that.
     pub part: ScreenBound,
     pub bounds: PictureTile,
@@ -78,7 +78,7 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: (u64, u32)) -> 
         let Some(part) = any_part.or_else(|| volume.seen_part(&input.view, input.tile)) else { continue };
         let bounds = part.rectangle();
         let (lens, test) = (volume.lens, volume.test(masks));
-        let leaves = volume.body.kinds();
+        let leaves = volume.body.forms_in_combination();
         if !test.is_sprite() && !test.has_sides() {
             seen.push(SeenVolume { index, lens, test, leaves, part, bounds, sprite: None });
             continue;

@@ -12,7 +12,7 @@ use crate::{
         operations::HALO_PX,
         screen_bound::ScreenBound,
     },
-    shader::VolumeTest,
+    shader::{Form, LensTest},
     view::View,
 };
 
@@ -70,27 +70,28 @@ impl LensVolume {
     }
 
     /// How it is tested from the sun: the picture's sprites say nothing of what only the sun sees.
-    pub fn test_from_sun(&self) -> VolumeTest {
-        if self.has_own_eye() { VolumeTest::OwnSprite } else { self.body.test() }
+    pub fn test_from_sun(&self) -> LensTest {
+        if self.has_own_eye() { LensTest::OwnSprite } else { self.body.test() }
     }
 
     /// How it is tested in the picture; `masks`: all classes are asked for.
-    pub fn test(&self, masks: bool) -> VolumeTest {
+    pub fn test(&self, masks: bool) -> LensTest {
         if self.has_own_eye() {
-            return VolumeTest::OwnSprite;
+            return LensTest::OwnSprite;
         }
         let with_sides = masks || self.asks_sides || self.drawn != LensBody::None || self.section.is_some();
         match (self.body.test(), self.sprite.filter(|_| !self.body.has_members())) {
-            (_, Some(sprite)) if self.body.is_form() && sprite.is_as_the_target() => VolumeTest::Sprite,
-            (_, Some(_)) => VolumeTest::LayeredSprite,
-            (VolumeTest::Solid, None) if with_sides => VolumeTest::SolidSprite,
-            (VolumeTest::Combined, None) if with_sides => VolumeTest::CombinedSprite,
+            (_, Some(sprite)) if self.body.is_form() && sprite.is_as_the_target() => LensTest::Sprite,
+            (_, Some(_)) => LensTest::LayeredSprite,
+            (LensTest::Numbers(form), None) if with_sides && (form.is_solid() || form == Form::Combined) => {
+                LensTest::Sides(form)
+            }
             (own, None) => own,
         }
     }
 
     /// All ways in which frames may test it, in the picture and from the sun.
-    pub fn tests(&self) -> [Vec<VolumeTest>; 2] {
+    pub fn tests(&self) -> [Vec<LensTest>; 2] {
         let own = self.test_from_sun();
         let picture = match self.test(true) {
             // As a frame asks for its sides or not; whatever its lens asks for, so that lenses may change places.
@@ -101,7 +102,7 @@ impl LensVolume {
     }
 
     /// The body's figures for an eye; planes and leaves are appended to `planes`.
-    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Shape {
+    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         self.body.figures(view, planes)
     }
 

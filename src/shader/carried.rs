@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
-    plan::{Plan, volume_test::VolumeTest},
+    forms::rows_of,
+    plan::Plan,
 };
 
 /// How many vectors `pass/shade.wgsl` itself carries.
@@ -19,6 +20,17 @@ struct Item {
     array: &'static str,
     place: String,
     width: usize,
+}
+
+impl Item {
+    /// Takes these numbers of a vector: WGSL assigns them one by one, where they are not a whole one.
+    fn taken(&self, vector: &str, numbers: &str) -> String {
+        let Some((own, own_numbers)) = self.place.rsplit_once('.') else {
+            return format!("    {}{} = {vector}{numbers};\n", self.array, self.place);
+        };
+        let one = |(to, from): (char, char)| format!("    {}{own}.{to} = {vector}{from};\n", self.array);
+        own_numbers.chars().zip(numbers.chars()).map(one).collect()
+    }
 }
 
 /// Members of `Corner`; `carry`, which fills them; `take_own`, which gives them to what reads them.
@@ -53,8 +65,9 @@ pub(super) fn of_filter(filter: &EffectDefinition) -> Carried {
 pub(super) fn of_plan(plan: &Plan, handlers: &[EffectDefinition], room: u32) -> Carried {
     let mut items = Vec::new();
     for (i, test) in plan.tests().enumerate() {
-        let item = |&(member, width): &(&str, usize)| Item { array: "shapes", place: format!("[{i}].{member}"), width };
-        items.extend(members(test).iter().map(item));
+        let item =
+            |(place, width): (&str, usize)| Item { array: "lens_regions", place: format!("[{i}].{place}"), width };
+        items.extend(rows_of(test).into_iter().flat_map(|rows| rows.places()).map(item));
     }
     for (slot, floats) in slots_read(plan, handlers) {
         match floats {
@@ -67,29 +80,6 @@ pub(super) fn of_plan(plan: &Plan, handlers: &[EffectDefinition], room: u32) -> 
         }
     }
     carried(items, room.saturating_sub(FIRST) as usize)
-}
-
-/// Members that `lib/shape.wgsl` reads of a shape that is tested so, and how many numbers each has.
-fn members(test: VolumeTest) -> &'static [(&'static str, usize)] {
-    match test {
-        VolumeTest::Sphere => &[("center", 3), ("size_x", 1)],
-        VolumeTest::Box => {
-            &[("axis_x", 3), ("size_x", 1), ("axis_y", 3), ("size_y", 1), ("axis_z", 3), ("size_z", 1), ("center", 3)]
-        }
-        VolumeTest::Cylinder => &[("center", 3), ("size_x", 1), ("axis_z", 3), ("size_z", 1)],
-        VolumeTest::Convex => &[("size_x", 1), ("size_y", 1)],
-        VolumeTest::Ellipsoid => &[("center", 3), ("axis_x", 3), ("axis_y", 3), ("axis_z", 3)],
-        VolumeTest::Frustum => &[("center", 3), ("size_x", 1), ("axis_z", 3), ("size_z", 1), ("size_y", 1)],
-        VolumeTest::Solid | VolumeTest::SolidSprite => {
-            &[("center", 3), ("size_x", 1), ("axis_x", 3), ("size_z", 1), ("axis_y", 3), ("size_y", 1), ("axis_z", 3)]
-        }
-        VolumeTest::Combined | VolumeTest::CombinedSprite => &[("size_x", 1), ("size_y", 1), ("size_z", 1)],
-        VolumeTest::Members | VolumeTest::FadingMembers | VolumeTest::OwnSprite => &[("size_x", 1)],
-        VolumeTest::Flat => {
-            &[("center", 3), ("size_x", 1), ("axis_x", 3), ("size_y", 1), ("axis_y", 3), ("size_z", 1), ("axis_z", 3)]
-        }
-        VolumeTest::Sprite | VolumeTest::LayeredSprite => &[],
-    }
 }
 
 /// The parameters' slots that a plan reads, and how many numbers of each, at most 4.
@@ -136,12 +126,16 @@ fn carried(items: Vec<Item>, room: usize) -> Carried {
         let mut at = 0;
         for item in held {
             let of = AXES[at..at + item.width].concat();
-            let _ = writeln!(take, "    {}{} = in.own_{i}.{of};", item.array, item.place);
+            take.push_str(&item.taken(&format!("in.own_{i}."), &of));
             at += item.width;
         }
     }
     for item in &left {
-        let _ = writeln!(take, "    {0}{1} = {0}_uniform{1};", item.array, item.place);
+        let from = item.place.rsplit_once('.');
+        take.push_str(&match from {
+            Some((vector, numbers)) => item.taken(&format!("{}_uniform{vector}.", item.array), numbers),
+            None => format!("    {0}{1} = {0}_uniform{1};\n", item.array, item.place),
+        });
     }
     Carried { members, functions: format!("{carry}}}\n\n{take}}}\n\n") }
 }

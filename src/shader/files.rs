@@ -4,10 +4,10 @@ use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     library::{
         BLEND, BORDER, CITIES, CLASS, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION, COMBINED_SPRITE,
-        DEPTH_CODE, DISTANCE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FRAGMENT, File, GLASS, LENS,
+        DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FORM, FRAGMENT, File, GLASS, LENS,
         LENS_SPRITE, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE,
-        PACKED, POINT, SECTIONS, SHAPE, SHELL_SIDES, SHELL_SPRITE, SIGHT, SOLID, SOLID_DISTANCE, SOLID_SPRITE,
-        STORED_SPRITE, SURFACE, VEIL, VIEW, VIEW_UNIFORM,
+        PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT, SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE,
+        SURFACE, VEIL, VIEW, VIEW_UNIFORM,
     },
     plan::program::Program,
 };
@@ -79,10 +79,10 @@ pub(super) fn vertices(program: &Program) -> File {
 /// The lens tests that a program makes.
 pub(super) fn of_lenses(program: &Program) -> Vec<File> {
     let parts = program.has();
-    used(&[
-        (parts.lenses, CLASS),
-        (parts.lenses, SHAPE),
-        (parts.shapes, LENS),
+    let mut files = used(&[(parts.lenses, CLASS), (parts.lenses, REGION), (parts.lenses, FORM)]);
+    files.extend(program.forms().files());
+    files.extend(used(&[
+        (parts.closed, LENS),
         (parts.sprites || parts.own_sprites || parts.side_sprites, LENS_SPRITE),
         (parts.sprites || parts.own_sprites, DEPTH_CODE),
         (parts.sprites || parts.own_sprites, STORED_SPRITE),
@@ -90,17 +90,16 @@ pub(super) fn of_lenses(program: &Program) -> Vec<File> {
         (parts.members, MEMBERS),
         (parts.borders || parts.fading, DITHER),
         (parts.fading, FADING_MEMBERS),
-        (parts.solids, SOLID),
         (parts.side_sprites, SOLID_SPRITE),
         (parts.combinations, COMBINED),
         (parts.combined_sprites, COMBINED_SPRITE),
         (parts.borders, BORDER),
         (parts.by_ray && parts.side_sprites, SHELL_SIDES),
         (parts.by_ray && parts.sprites, SHELL_SPRITE),
-        (parts.distances, DISTANCE),
         (parts.distances && parts.solids, SOLID_DISTANCE),
         (parts.distances && parts.combinations, COMBINED_DISTANCE),
-    ])
+    ]));
+    files
 }
 
 /// The libraries that tell from sprites where a ray is inside.

@@ -24,7 +24,7 @@ pub(super) enum Eye {
     Layers,
     /// The same, in a module that shades fragments where they are drawn.
     Fragments,
-    /// The sun's: of a place that the picture may not show, the shapes alone say where it is.
+    /// The sun's: of a place that the picture may not show, the regions' numbers alone say where it is.
     Sun,
 }
 
@@ -46,12 +46,9 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         Eye::Sun if !program.has().lenses => {}
         Eye::Sun => {
             text.push_str(
-                "@group(2) @binding(8) var<storage, read> shapes: array<Shape>;  // in the main view's space\n",
+                "@group(2) @binding(8) var<storage, read> lens_regions: array<Region>;  // in the main view's space\n\n",
             );
-            if program.has().combinations {
-                text.push('\n');
-                text.push_str(&lens_test::leaves(&program.leaves()));
-            }
+            text.push_str(&program.forms().functions());
         }
     }
     text.push_str(&cities(program, eye));

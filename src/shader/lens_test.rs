@@ -1,13 +1,14 @@
-//! Lens tests in a module's text: which uniforms they read, and the calls, from the shapes or by depth sprites (S7).
+//! Lens tests in a module's text: which uniforms they read, and the calls, from the regions' numbers or by depth sprites (S7).
 
 use std::fmt::Write as _;
 
 use crate::shader::{
-    plan::{Plan, program::Program, uber::Uber, volume_test::VolumeTest},
+    forms::loaded,
+    plan::{Plan, form::Form, lens_test::LensTest, program::Program, uber::Uber},
     table::MOST_VOLUMES,
 };
 
-/// The uniforms that the tests of a program read in the picture; `carried`: the shapes reach fragments as
+/// The uniforms that the tests of a program read in the picture; `carried`: the regions reach fragments as
 /// [`crate::shader::carried`] has it.
 pub(super) fn bindings(program: &Program, carried: bool) -> String {
     let count = match program {
@@ -20,15 +21,12 @@ pub(super) fn bindings(program: &Program, carried: bool) -> String {
         let _ = writeln!(text, "@group(2) @binding(3) var<uniform> sprite_places: array<SpritePlace, {count}>;");
     }
     // The uber back end reads of each volume there how it is tested.
-    if parts.shapes {
-        text.push_str(&uniform(7, "shapes", &format!("array<Shape, {count}>"), carried));
+    if parts.regions {
+        text.push_str(&uniform(7, "lens_regions", &format!("array<Region, {count}>"), carried));
     }
-    if parts.combinations {
+    if parts.lenses {
         text.push('\n');
-        text.push_str(&leaves(&program.leaves()));
-        if parts.distances {
-            text.push_str(&leaf_distances(&program.leaves()));
-        }
+        text.push_str(&program.forms().functions());
     }
     text
 }
@@ -52,37 +50,39 @@ enum Question {
 }
 
 /// A question to a volume by its number, about a `place`.
-fn call(question: Question, test: VolumeTest, volume: &str, place: &str) -> String {
-    use {Question as Q, VolumeTest as T};
-    let (shape, sprite) = (format!("shapes[{volume}]"), format!("sprite_places[{volume}]"));
+fn call(question: Question, test: LensTest, volume: &str, place: &str) -> String {
+    use {Form as F, LensTest as T, Question as Q};
+    let (region, sprite) = (format!("lens_regions[{volume}]"), format!("sprite_places[{volume}]"));
+    let own = loaded(test, &region);
     match (question, test) {
-        (Q::Covers, T::Members) => format!("covers_members({shape}, {place})"),
-        (_, T::Members) => format!("inside_members({shape}, {place})"),
-        (Q::Covers, T::FadingMembers) => format!("covers_fading_members({shape}, {place})"),
-        (_, T::FadingMembers) => format!("inside_fading_members({shape}, {place})"),
         (Q::Covers, T::Sprite) => format!("covers_sprite({sprite}, {place})"),
         (_, T::Sprite) => format!("class_in_sprite({sprite}, {place})"),
         (Q::Covers, T::LayeredSprite) => format!("covers_layers({sprite}, {place})"),
         (_, T::LayeredSprite) => format!("class_in_layers({sprite}, {place})"),
-        (Q::Covers, T::OwnSprite) => format!("covers_own({shape}, {place})"),
-        (_, T::OwnSprite) => format!("class_in_own({shape}, {place})"),
-        (Q::Covers, T::SolidSprite | T::CombinedSprite) => format!("covers_sides({sprite}, {place})"),
-        (Q::Classes, T::SolidSprite) => format!("class_in_solid({shape}, {sprite}, {place})"),
-        (Q::Inside, T::Combined | T::CombinedSprite) => format!("inside_combined({shape}, {place})"),
-        (Q::Classes, T::CombinedSprite) => format!("class_in_combined({shape}, {sprite}, {place})"),
-        (Q::Classes, T::Combined) => format!("class_by_leaves({shape}, {place})"),
-        (Q::Covers, T::Combined) => format!("covers_by_leaves({shape}, {place})"),
-        (Q::Inside, T::Solid | T::SolidSprite) => format!("inside_solid({shape}, {place})"),
-        (Q::Classes, T::Solid) => format!("class_by_faces({shape}, {place})"),
-        (Q::Covers, T::Solid) => format!("covers_by_faces({shape}, {place})"),
-        (Q::Classes, _) => format!("class_in_shape({shape}, {}, {place})", test.constant()),
-        (Q::Inside, _) => format!("inside_shape({shape}, {}, {place})", test.constant()),
-        (Q::Covers, _) => format!("covers_shape({shape}, {}, {place})", test.constant()),
+        (Q::Covers, T::OwnSprite) => format!("covers_own({own}, {place})"),
+        (_, T::OwnSprite) => format!("class_in_own({own}, {place})"),
+        (Q::Covers, T::Sides(_)) => format!("covers_sides({sprite}, {place})"),
+        (Q::Classes, T::Sides(F::Combined)) => format!("class_in_combined({own}, {sprite}, {place})"),
+        (Q::Classes, T::Sides(_)) => format!("class_in_solid({own}, {sprite}, {place})"),
+        (Q::Covers, T::Numbers(F::Members)) => format!("covers_members({own}, {place})"),
+        (_, T::Numbers(F::Members)) => format!("inside_members({own}, {place})"),
+        (Q::Covers, T::Numbers(F::FadingMembers)) => format!("covers_fading_members({own}, {place})"),
+        (_, T::Numbers(F::FadingMembers)) => format!("inside_fading_members({own}, {place})"),
+        (Q::Inside, T::Numbers(F::Combined) | T::Sides(F::Combined)) => format!("inside_combined({own}, {place})"),
+        (Q::Classes, T::Numbers(F::Combined)) => format!("class_by_leaves({own}, {place})"),
+        (Q::Covers, T::Numbers(F::Combined)) => format!("covers_by_leaves({own}, {place})"),
+        (Q::Inside, T::Sides(_)) => format!("inside_solid({own}, {place})"),
+        (Q::Inside, T::Numbers(form)) if form.is_solid() => format!("inside_solid({own}, {place})"),
+        (Q::Classes, T::Numbers(form)) if form.is_solid() => format!("class_by_faces({own}, {place})"),
+        (Q::Covers, T::Numbers(form)) if form.is_solid() => format!("covers_by_faces({own}, {place})"),
+        (Q::Classes, T::Numbers(form)) => format!("class_in_form({region}, {}, {place})", form.constant()),
+        (Q::Inside, T::Numbers(form)) => format!("inside_form({region}, {}, {place})", form.constant()),
+        (Q::Covers, T::Numbers(form)) => format!("covers_form({region}, {}, {place})", form.constant()),
     }
 }
 
 /// Whether a volume by its number holds the place `sight`.
-pub(super) fn holds(test: VolumeTest, volume: &str) -> String {
+pub(super) fn holds(test: LensTest, volume: &str) -> String {
     format!("is_inside({})", call(Question::Inside, test, volume, "sight"))
 }
 
@@ -129,34 +129,30 @@ pub(super) fn ends_of(plan: &Plan, lens: u32) -> String {
 }
 
 /// Where a ray meets a volume by its number first and last.
-pub(super) fn span(test: VolumeTest, volume: &str) -> String {
+pub(super) fn span(test: LensTest, volume: &str) -> String {
     span_of(test, volume, "pixel", "ray")
 }
 
 /// How far a place is from where its ray enters or leaves a volume by its number.
-fn along_ray(test: VolumeTest, volume: &str) -> String {
+fn along_ray(test: LensTest, volume: &str) -> String {
     format!("distance_to_ends({}, sight)", span_of(test, volume, "sight.pixel", "sight.ray"))
 }
 
-fn span_of(test: VolumeTest, volume: &str, pixel: &str, ray: &str) -> String {
+fn span_of(test: LensTest, volume: &str, pixel: &str, ray: &str) -> String {
     match test {
-        VolumeTest::Members | VolumeTest::FadingMembers | VolumeTest::Solid | VolumeTest::Combined => {
-            "EMPTY_SPAN".to_owned()
-        }
-        VolumeTest::SolidSprite | VolumeTest::CombinedSprite => {
-            format!("span_in_sides(sprite_places[{volume}], {pixel})")
-        }
-        VolumeTest::Sprite | VolumeTest::LayeredSprite => {
-            format!("span_in_layers(sprite_places[{volume}], {pixel})")
-        }
-        VolumeTest::OwnSprite => format!("span_in_own(shapes[{volume}], {ray})"),
-        _ => format!("span_of_shape({ray}, shapes[{volume}], {})", test.constant()),
+        LensTest::Sides(_) => format!("span_in_sides(sprite_places[{volume}], {pixel})"),
+        LensTest::Sprite | LensTest::LayeredSprite => format!("span_in_layers(sprite_places[{volume}], {pixel})"),
+        LensTest::OwnSprite => format!("span_in_own({}, {ray})", loaded(test, &format!("lens_regions[{volume}]"))),
+        LensTest::Numbers(form) => match form.closed() {
+            Some(_) => format!("span_of_form({ray}, lens_regions[{volume}], {})", form.constant()),
+            None => "EMPTY_SPAN".to_owned(),
+        },
     }
 }
 
 /// `ends_of_volume`, for the uber back end.
-pub(super) fn ends_of_volume(tests: &[VolumeTest]) -> String {
-    let head = "fn ends_of_volume(v: u32, pixel: vec2i, ray: Ray) -> Span {\n    switch shapes[v].kind {\n";
+pub(super) fn ends_of_volume(tests: &[LensTest]) -> String {
+    let head = "fn ends_of_volume(v: u32, pixel: vec2i, ray: Ray) -> Span {\n    switch lens_regions[v].test {\n";
     let mut text = head.to_owned();
     for test in tests {
         let _ = writeln!(text, "        case {}: {{ return {}; }}", test.constant(), span(*test, "v"));
@@ -165,27 +161,32 @@ pub(super) fn ends_of_volume(tests: &[VolumeTest]) -> String {
 }
 
 /// How far a place is from a volume by its number, negative inside. What has no distance ends at once.
-fn distance(test: VolumeTest, volume: &str, border: &str) -> String {
-    let shape = format!("shapes[{volume}]");
-    match test {
-        VolumeTest::Members | VolumeTest::FadingMembers | VolumeTest::Sprite | VolumeTest::LayeredSprite => {
+fn distance(test: LensTest, volume: &str, border: &str) -> String {
+    let region = format!("lens_regions[{volume}]");
+    let form = match test {
+        LensTest::OwnSprite => return "FAR_AWAY".to_owned(),
+        LensTest::Sprite | LensTest::LayeredSprite => None,
+        LensTest::Numbers(Form::Members | Form::FadingMembers) => None,
+        LensTest::Numbers(form) | LensTest::Sides(form) => Some(form),
+    };
+    match form {
+        None => {
             let inside = call(Question::Inside, test, volume, "sight");
             format!("select(FAR_AWAY, -FAR_AWAY, is_inside({inside}))")
         }
-        VolumeTest::OwnSprite => "FAR_AWAY".to_owned(),
-        VolumeTest::Solid | VolumeTest::SolidSprite => format!("distance_to_solid({shape}, sight)"),
-        VolumeTest::Combined | VolumeTest::CombinedSprite => format!("distance_to_combined({shape}, sight, {border})"),
-        _ => format!("distance_to_shape({shape}, {}, sight, {border})", test.constant()),
+        Some(Form::Combined) => format!("distance_to_combined({}, sight, {border})", loaded(test, &region)),
+        Some(form) if form.is_solid() => format!("distance_to_solid({}, sight)", loaded(test, &region)),
+        Some(form) => format!("distance_to_form({region}, {}, sight, {border})", form.constant()),
     }
 }
 
 /// For the uber back end: a question to a volume by its number.
-fn by_number(tests: &[VolumeTest], question: Question, place: &str) -> String {
+fn by_number(tests: &[LensTest], question: Question, place: &str) -> String {
     match tests {
         [] => String::new(),
         [only] => format!("    return {};\n", call(question, *only, "v", place)),
         [first, rest @ ..] => {
-            let mut text = "    switch shapes[v].kind {\n".to_owned();
+            let mut text = "    switch lens_regions[v].test {\n".to_owned();
             for test in rest {
                 let answer = call(question, *test, "v", place);
                 let _ = writeln!(text, "        case {}: {{ return {answer}; }}", test.constant());
@@ -197,62 +198,9 @@ fn by_number(tests: &[VolumeTest], question: Question, place: &str) -> String {
     }
 }
 
-/// `leaf_holds` and `span_of_leaf`, for leaves of combinations of these kinds.
-pub(super) fn leaves(kinds: &[VolumeTest]) -> String {
-    let of = |head: &str, kind: &str, end: &str, answer: &dyn Fn(VolumeTest) -> String| {
-        let mut text = format!("fn {head} {{\n");
-        match kinds {
-            [only] => {
-                let _ = writeln!(text, "    return {};", answer(*only));
-            }
-            _ => {
-                let _ = writeln!(text, "    switch {kind} {{");
-                for kind in kinds {
-                    let _ = writeln!(text, "        case {}: {{ return {}; }}", kind.constant(), answer(*kind));
-                }
-                let _ = writeln!(text, "        default: {{ return {end}; }}\n    }}");
-            }
-        }
-        text + "}\n\n"
-    };
-    let holds = |kind: VolumeTest| match kind {
-        VolumeTest::Solid => "solid_holds(leaf.shape, place.position, place.distance)".to_owned(),
-        VolumeTest::Members => "is_chosen(u32(leaf.first), place.object)".to_owned(),
-        VolumeTest::FadingMembers => "is_fading_member(u32(leaf.first), place.object, place.pixel)".to_owned(),
-        VolumeTest::Flat => "flat_holds(leaf.shape, place.ray, place.distance, place.is_parallel)".to_owned(),
-        _ => format!("holds(leaf.shape, {}, place.position, place.distance)", kind.constant()),
-    };
-    // A solid's ends are not asked for here; a choice of objects is the box around them.
-    let span = |kind: VolumeTest| match kind {
-        VolumeTest::Solid => "EMPTY_SPAN".to_owned(),
-        VolumeTest::Members | VolumeTest::FadingMembers => "span_of_shape(ray, s, BOX)".to_owned(),
-        _ => format!("span_of_shape(ray, s, {})", kind.constant()),
-    };
-    let holds = of("leaf_holds(leaf: Leaf, place: Sight) -> bool", "leaf.shape.kind", "false", &holds);
-    holds + &of("span_of_leaf(ray: Ray, s: Shape) -> Span", "s.kind", "EMPTY_SPAN", &span)
-}
-
-/// `distance_to_leaf`, for leaves of combinations of these kinds.
-fn leaf_distances(kinds: &[VolumeTest]) -> String {
-    let head = "fn distance_to_leaf(leaf: Leaf, sight: Sight, border: vec4f) -> f32 {\n    switch leaf.shape.kind {\n";
-    let mut text = head.to_owned();
-    for kind in kinds {
-        let answer = match kind {
-            VolumeTest::Solid => "distance_to_solid(leaf.shape, sight)".to_owned(),
-            VolumeTest::Members => "select(FAR_AWAY, -FAR_AWAY, is_chosen(u32(leaf.first), sight.object))".to_owned(),
-            VolumeTest::FadingMembers => {
-                "select(FAR_AWAY, -FAR_AWAY, is_fading_member(u32(leaf.first), sight.object, sight.pixel))".to_owned()
-            }
-            _ => format!("distance_to_shape(leaf.shape, {}, sight, border)", kind.constant()),
-        };
-        let _ = writeln!(text, "        case {}: {{ return {answer}; }}", kind.constant());
-    }
-    text + "        default: { return FAR_AWAY; }\n    }\n}\n\n"
-}
-
 /// `distance_to`, for the uber back end.
-pub(super) fn distance_to(tests: &[VolumeTest], by_ray: bool) -> String {
-    let head = "fn distance_to(v: u32, sight: Sight, border: vec4f) -> f32 {\n    switch shapes[v].kind {\n";
+pub(super) fn distance_to(tests: &[LensTest], by_ray: bool) -> String {
+    let head = "fn distance_to(v: u32, sight: Sight, border: vec4f) -> f32 {\n    switch lens_regions[v].test {\n";
     let mut text = head.to_owned();
     for test in tests {
         let mut away = distance(*test, "v", "border");
@@ -272,7 +220,7 @@ pub(super) fn class_of(uber: &Uber) -> String {
 }
 
 /// `volume_covers`, for the uber back end.
-pub(super) fn volume_covers(tests: &[VolumeTest]) -> String {
+pub(super) fn volume_covers(tests: &[LensTest]) -> String {
     let body = by_number(tests, Question::Covers, "pixel");
     format!("fn volume_covers(v: u32, pixel: vec2i) -> bool {{\n{body}}}\n\n")
 }

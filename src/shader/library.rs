@@ -1,7 +1,10 @@
-//! The WGSL files that modules are made of: `shaders/lib`, importable and free of side effects, and `shaders/pass`, one file for each
-//! entry point.
+//! The WGSL files that modules are made of: `shaders/lib`, importable and free of side effects; `shaders/shape`, one file for each form of
+//! volumes; and `shaders/pass`, one file for each entry point.
 
-use crate::shader::wgsl::function::FunctionError;
+use crate::{
+    geom::shape::{VolumeForm, form::volume_forms},
+    shader::wgsl::function::FunctionError,
+};
 
 /// A WGSL file that comes with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,20 +40,35 @@ macro_rules! files {
     };
 }
 
+macro_rules! form_files {
+    ($($form:ident = $name:literal, $extent:ident;)*) => {
+        /// The file of a form.
+        pub(super) fn file_of(form: VolumeForm) -> File {
+            match form {
+                $(VolumeForm::$form => File {
+                    path: concat!("shape/", $name, ".wgsl"),
+                    text: include_str!(concat!("../../shaders/shape/", $name, ".wgsl")),
+                },)*
+            }
+        }
+    };
+}
+volume_forms!(form_files);
+
 files! {
     VIEW = "lib/view.wgsl";
     VIEW_UNIFORM = "lib/view-uniform.wgsl";
     SURFACE = "lib/surface.wgsl";
     COLOR = "lib/color.wgsl";
     PACKED = "lib/packed.wgsl";
-    SHAPE = "lib/shape.wgsl";
+    REGION = "lib/region.wgsl";
+    FORM = "lib/form.wgsl";
     LIGHT = "lib/light.wgsl";
     BLEND = "lib/blend.wgsl";
     MATERIAL = "lib/material.wgsl";
     CLASS = "lib/class.wgsl";
     DITHER = "lib/dither.wgsl";
     BORDER = "lib/border.wgsl";
-    DISTANCE = "lib/distance.wgsl";
     SOLID_DISTANCE = "lib/solid-distance.wgsl";
     COMBINED_DISTANCE = "lib/combined-distance.wgsl";
     SIGHT = "lib/sight.wgsl";
@@ -64,7 +82,6 @@ files! {
     STORED_LAYERS = "lib/stored-layers.wgsl";
     SPRITE_LIST = "pass/sprite-list.wgsl";
     CROSSING = "lib/crossing.wgsl";
-    SOLID = "lib/solid.wgsl";
     MEMBERS = "lib/members.wgsl";
     FADING_MEMBERS = "lib/fading-members.wgsl";
     FADING_OUTLINE = "lib/fading-outline.wgsl";

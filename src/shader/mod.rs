@@ -11,6 +11,7 @@ mod deforming;
 pub mod effect;
 pub mod effect_file;
 mod files;
+mod forms;
 mod forward;
 mod geometry;
 mod hiding;
@@ -26,6 +27,7 @@ mod names;
 mod plan;
 mod rays;
 mod regions;
+mod rows;
 mod sections;
 mod shading;
 mod sorting;
@@ -45,12 +47,13 @@ pub use module::Module;
 pub use plan::{
     Plan,
     content::{Clip, MOST_CITIES, PlanContent},
+    form::Form,
     lens::{BodyKind, PlanBody, PlanBorder, PlanLens},
+    lens_test::LensTest,
     program::Program,
     regions::Regions,
     step::{Blend, ClassTest, Scope, Step, scope_number},
     uber::Uber,
-    volume_test::VolumeTest,
 };
 pub use table::{MOST_SLOTS, MOST_VOLUMES, TILE_PX};
 

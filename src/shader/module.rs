@@ -1,27 +1,30 @@
 //! The modules of a frame: which there are, and their texts.
 
-use crate::shader::{
-    backend, carried,
-    deforming::DeformPlan,
-    effect::{definition::EffectDefinition, registry::handlers},
-    files,
-    forward::Forward,
-    geometry::{self, Drawn, NOTHING_CUT},
-    hiding::{self, Eye},
-    lens_test,
-    library::{
-        BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM, DEPTH_CODE, FILTER,
-        FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, NOTES, OBJECTS, ONE_CITY, PACKED,
-        REFINE, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHAPE, SHOWN, SIGHT, SLOTS, SOLID, SORT_LAYERS, SPRITE,
-        SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW, VIEW_UNIFORM,
+use crate::{
+    geom::shape::VolumeForm,
+    shader::{
+        backend, carried,
+        deforming::DeformPlan,
+        effect::{definition::EffectDefinition, registry::handlers},
+        files,
+        forms::{self, Forms},
+        forward::Forward,
+        geometry::{self, Drawn, NOTHING_CUT},
+        hiding::{self, Eye},
+        library::{
+            BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM, DEPTH_CODE, FILTER,
+            FORM, FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, NOTES, OBJECTS, ONE_CITY,
+            PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS,
+            SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW, VIEW_UNIFORM,
+        },
+        lining,
+        plan::{Plan, form::Form, lens_test::LensTest, program::Program},
+        rays, regions, sections,
+        shading::Shading,
+        sorting, specialised,
+        template::Template,
+        translucent::{self, DepthTest, OPAQUE_DEPTH, behind_plane},
     },
-    lining,
-    plan::{Plan, program::Program, volume_test::VolumeTest},
-    rays, regions, sections,
-    shading::Shading,
-    sorting, specialised,
-    template::Template,
-    translucent::{self, DepthTest, OPAQUE_DEPTH, behind_plane},
 };
 
 /// A module of the frame.
@@ -33,14 +36,14 @@ pub enum Module {
     Shadow(Option<Program>),
     /// The sides of a solid.
     Sprite,
-    /// The depth sprite of a volume that has a closed form.
-    StoredForm,
+    /// The depth sprite of a volume of this closed form.
+    StoredForm(VolumeForm),
     /// That of a lens of several leaves, or of a solid, and what the leaves are.
-    StoredLayers(Vec<VolumeTest>),
+    StoredLayers(Vec<Form>),
     /// Where rays go through the faces of its solids.
     SpriteList,
     /// The sides of a combination, and what its leaves are.
-    CombinedSprite(Vec<VolumeTest>),
+    CombinedSprite(Vec<Form>),
     /// Deferred shading, and what the lenses make of it.
     Shade(Program),
     /// Edges as lines, and what lenses make of them.
@@ -100,7 +103,11 @@ impl Module {
         let text = if files.contains(&VIEW) { text.fill("ray", rays::source()) } else { text };
         let hidden = |program, eye| hiding::source(program, handlers, lenses, eye);
         let filled = match self {
-            Self::CombinedSprite(kinds) | Self::StoredLayers(kinds) => return text.text() + &lens_test::leaves(kinds),
+            Self::CombinedSprite(leaves) | Self::StoredLayers(leaves) => {
+                return text.text() + &Forms::of_leaves(leaves).functions();
+            }
+            Self::StoredForm(form) => return text.text() + &forms::of_stage(*form),
+            Self::Sprite | Self::SpriteList => return text.text() + &forms::numbers_of(VolumeForm::Solid),
             Self::Forward(own) => return own.source(handlers, lenses),
             Self::Shade(program) => {
                 let own = backend::shading(program, handlers, lenses, &Shading::of_surfaces(room));
@@ -152,14 +159,25 @@ impl Module {
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, GEOMETRY]),
             Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SHADOW],
             Self::Shadow(Some(program)) => return files::of_city(program, &[SHADOW_CUT]),
-            Self::Sprite => &[VIEW, VIEW_UNIFORM, SHAPE, SPRITE],
-            Self::StoredForm => &[VIEW, SHAPE, DEPTH_CODE, STORED_PASS, STORED_FORM],
-            Self::StoredLayers(_) => {
-                &[VIEW, SIGHT, CLASS, SHAPE, SOLID, COMBINED, DEPTH_CODE, CROSSING, STORED_PASS, STORED_LAYERS]
+            Self::Sprite => &[VIEW, VIEW_UNIFORM, REGION, SPRITE],
+            Self::StoredForm(form) => {
+                let form = Forms { tests: vec![LensTest::volume(*form)], ..Forms::default() }.files();
+                return [&[VIEW, SIGHT, REGION, FORM], &form[..], &[DEPTH_CODE, STORED_PASS, STORED_FORM]].concat();
             }
-            Self::SpriteList => &[VIEW, SHAPE, CROSSING, SPRITE_LIST],
-            Self::CombinedSprite(_) => {
-                &[VIEW, VIEW_UNIFORM, SIGHT, CLASS, SHAPE, SOLID, COMBINED, SPRITE, COMBINED_PASS]
+            Self::StoredLayers(leaves) => {
+                let forms = Forms::of_leaves(leaves).files();
+                let stored = [COMBINED, DEPTH_CODE, CROSSING, STORED_PASS, STORED_LAYERS];
+                return [&[VIEW, SIGHT, CLASS, REGION, FORM], &forms[..], &stored].concat();
+            }
+            Self::SpriteList => &[VIEW, REGION, CROSSING, SPRITE_LIST],
+            Self::CombinedSprite(leaves) => {
+                let forms = Forms::of_leaves(leaves).files();
+                return [
+                    &[VIEW, VIEW_UNIFORM, SIGHT, CLASS, REGION, FORM],
+                    &forms[..],
+                    &[COMBINED, SPRITE, COMBINED_PASS],
+                ]
+                .concat();
             }
             Self::Shade(program) => return [files::of_shading(program, handlers), vec![SHADE]].concat(),
             Self::Composite(program) => {

@@ -10,7 +10,7 @@ impl Module {
             Self::Geometry(hidden) => format!("geometry{}", hidden_name(hidden.as_ref())),
             Self::Shadow(hidden) => format!("shadow{}", hidden_name(hidden.as_ref())),
             Self::Sprite => "sprite".to_owned(),
-            Self::StoredForm => "stored sprite".to_owned(),
+            Self::StoredForm(_) => "stored sprite".to_owned(),
             Self::StoredLayers(_) => "stored sprite in layers".to_owned(),
             Self::SpriteList => "crossings of a sprite".to_owned(),
             Self::CombinedSprite(_) => "sprite of a combination".to_owned(),

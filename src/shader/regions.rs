@@ -131,11 +131,19 @@ pub(super) fn marks(plan: &Plan, regions: &Regions, names: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::plan::{lens::PlanLens, step::Step, volume_test::VolumeTest};
+    use crate::{
+        geom::shape::VolumeForm,
+        shader::plan::{lens::PlanLens, lens_test::LensTest, step::Step},
+    };
 
     fn plan(scopes: &[(u32, ClassTest)]) -> Plan {
-        let lens =
-            |number| PlanLens { number, volumes: vec![VolumeTest::Sphere], leaves: vec![], body: None, border: None };
+        let lens = |number| PlanLens {
+            number,
+            volumes: vec![LensTest::volume(VolumeForm::Sphere)],
+            leaves: vec![],
+            body: None,
+            border: None,
+        };
         let step = |(i, &(lens, class)): (usize, &(u32, ClassTest))| Step {
             effect: i as u32,
             scope: Scope::Lens(lens, class),

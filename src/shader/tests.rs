@@ -5,30 +5,35 @@ use std::{
 };
 
 use super::*;
+use crate::geom::shape::VolumeForm;
 
 fn step(effect: u32, scope: Scope, blend: Option<Blend>) -> Step {
     Step { effect, scope, parameters: 0, blend }
 }
 
 /// All that a combination may be made of.
-const LEAVES: [VolumeTest; 9] = [
-    VolumeTest::Sphere,
-    VolumeTest::Box,
-    VolumeTest::Cylinder,
-    VolumeTest::Convex,
-    VolumeTest::Ellipsoid,
-    VolumeTest::Frustum,
-    VolumeTest::Solid,
-    VolumeTest::Members,
-    VolumeTest::FadingMembers,
+const LEAVES: [Form; 9] = [
+    Form::Volume(VolumeForm::Sphere),
+    Form::Volume(VolumeForm::Box),
+    Form::Volume(VolumeForm::Cylinder),
+    Form::Volume(VolumeForm::Convex),
+    Form::Volume(VolumeForm::Ellipsoid),
+    Form::Volume(VolumeForm::Frustum),
+    Form::Volume(VolumeForm::Solid),
+    Form::Members,
+    Form::FadingMembers,
 ];
+
+/// All lens tests.
+fn tests() -> Vec<LensTest> {
+    LensTest::all().collect()
+}
 
 /// As the sun asks: no sprite tells it anything.
 fn by_shapes(mut program: Program) -> Program {
-    let by_shape = |test: &mut VolumeTest| match test {
-        VolumeTest::Sprite | VolumeTest::LayeredSprite => *test = VolumeTest::Sphere,
-        VolumeTest::SolidSprite => *test = VolumeTest::Solid,
-        VolumeTest::CombinedSprite => *test = VolumeTest::Combined,
+    let by_shape = |test: &mut LensTest| match test {
+        LensTest::Sprite | LensTest::LayeredSprite => *test = LensTest::volume(VolumeForm::Sphere),
+        LensTest::Sides(form) => *test = LensTest::Numbers(*form),
         _ => {}
     };
     match &mut program {
@@ -78,7 +83,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
     }
     let lens = |number, volumes: &[usize], body| PlanLens {
         number,
-        volumes: volumes.iter().map(|v| VolumeTest::ALL[(seed + v) % VolumeTest::ALL.len()]).collect(),
+        volumes: volumes.iter().map(|v| tests()[(seed + v) % tests().len()]).collect(),
         leaves: LEAVES[seed % 8..].to_vec(),
         body,
         border: seed.is_multiple_of(5).then_some(PlanBorder {
@@ -101,7 +106,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
     let uber = Uber {
         effects: plan.effects(),
         tests: {
-            let mut tests: Vec<VolumeTest> = plan.tests().collect();
+            let mut tests: Vec<LensTest> = plan.tests().collect();
             tests.sort_unstable();
             tests
         },
@@ -174,7 +179,6 @@ fn all_modules() -> Vec<Module> {
         Module::Geometry(None),
         Module::Shadow(None),
         Module::Sprite,
-        Module::StoredForm,
         Module::Resolve,
         Module::Narrow,
         Module::Refine(DeformPlan::default()),
@@ -183,6 +187,9 @@ fn all_modules() -> Vec<Module> {
     ];
     modules.extend(plain.map(Module::Shade));
     modules.push(Module::SpriteList);
+    modules.extend(
+        VolumeForm::ALL.iter().filter(|f| Form::Volume(**f).closed().is_some()).map(|f| Module::StoredForm(*f)),
+    );
     modules.extend(LEAVES[..7].iter().map(|kind| Module::StoredLayers(vec![*kind])));
     modules.push(Module::StoredLayers(LEAVES[..7].to_vec()));
     modules.push(Module::CombinedSprite(LEAVES.to_vec()));
@@ -196,11 +203,16 @@ fn all_modules() -> Vec<Module> {
 
 #[test]
 fn contents_alone_make_modules_that_are_valid() {
-    let lens =
-        |number| PlanLens { number, volumes: vec![VolumeTest::Sphere], leaves: vec![], body: None, border: None };
+    let lens = |number| PlanLens {
+        number,
+        volumes: vec![LensTest::volume(VolumeForm::Sphere)],
+        leaves: vec![],
+        body: None,
+        border: None,
+    };
     for contents in [contents_of(1), contents_of(3), contents_of(5)] {
         let plan = Plan { lenses: vec![lens(0), lens(1)], contents, ..Plan::default() };
-        let uber = Uber { tests: vec![VolumeTest::Sphere], contents: true, ..Uber::default() };
+        let uber = Uber { tests: vec![LensTest::volume(VolumeForm::Sphere)], contents: true, ..Uber::default() };
         let hiding = [
             Program::Specialised(plan.hiding(handlers()).expect("something is clipped")),
             Program::Uber(uber.hiding(handlers()).expect("something may be clipped")),
@@ -290,7 +302,7 @@ fn covering_triples() -> Vec<Vec<u32>> {
 #[test]
 fn regions_of_all_kinds_are_told_apart_by_valid_wgsl() {
     let [sepia, gloss, cel] = ["sepia", "gloss", "cel"].map(|name| effect::number_of(name).expect("there is one"));
-    for (seed, test) in VolumeTest::ALL.into_iter().enumerate() {
+    for (seed, test) in LensTest::all().enumerate() {
         let lens = |number| PlanLens { number, volumes: vec![test], leaves: LEAVES.to_vec(), body: None, border: None };
         let steps = vec![
             step(sepia, Scope::Everywhere, None),
@@ -314,30 +326,27 @@ fn regions_of_all_kinds_are_told_apart_by_valid_wgsl() {
 
 #[test]
 fn what_finds_no_room_is_read_where_it_stands() {
-    let lens = |number| PlanLens {
-        number,
-        volumes: VolumeTest::ALL.to_vec(),
-        leaves: LEAVES.to_vec(),
-        body: None,
-        border: None,
-    };
+    let lens = |number| PlanLens { number, volumes: tests(), leaves: LEAVES.to_vec(), body: None, border: None };
     let plan = Plan { lenses: (0..9).map(lens).collect(), ..Plan::default() };
     let module = Module::Shade(Program::Specialised(plan));
     for room in [14, LEAST_CARRIED, 31, 1000] {
         let source = module.source_for_people(handlers(), &[], room);
         validate_text(&module.name(), &source);
         let members = source.matches("@interpolate(flat, either)").count() as u32;
-        let left = source.matches(" = shapes_uniform[").count();
+        let left = source.matches(" = lens_regions_uniform[").count();
         assert!(members <= room.max(14), "{members} vectors where {room} fit");
         assert_eq!(left > 0, room < 1000, "{left} are left with room for {room}");
     }
 }
 
 #[test]
-fn lens_tests_have_their_numbers_in_wgsl() {
-    for test in VolumeTest::ALL {
-        let line = format!("const {}: u32 = {}u;\n", test.constant(), test.number());
-        assert!(library::SHAPE.text.contains(&line), "lib/shape.wgsl lacks {line}");
+fn lens_tests_have_numbers_of_their_own_in_wgsl() {
+    let (mut numbers, mut constants) = (BTreeSet::new(), BTreeSet::new());
+    for test in LensTest::all() {
+        assert!(numbers.insert(test.number()) && constants.insert(test.constant()), "{test:?}");
+        let uber = Uber { tests: vec![test], leaves: LEAVES.to_vec(), ..Uber::default() };
+        let source = Module::Shade(Program::Uber(uber)).source();
+        assert!(source.contains(&format!("const {}: u32 = {}u;\n", test.constant(), test.number())), "{test:?}");
     }
 }
 
@@ -345,16 +354,18 @@ fn lens_tests_have_their_numbers_in_wgsl() {
 fn every_file_of_the_library_is_in_the_table_and_has_sound_hooks() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
     let mut found = Vec::new();
-    for part in ["lib", "pass"] {
+    for part in ["lib", "pass", "shape"] {
         for entry in std::fs::read_dir(folder.join(part)).expect("a folder").flatten() {
             found.push(format!("{part}/{}", entry.file_name().to_string_lossy()));
         }
     }
-    let mut listed: Vec<_> = library::ALL.iter().map(|file| file.path.to_owned()).collect();
+    let forms = VolumeForm::ALL.iter().map(|form| library::file_of(*form));
+    let files: Vec<_> = library::ALL.iter().copied().chain(forms).collect();
+    let mut listed: Vec<_> = files.iter().map(|file| file.path.to_owned()).collect();
     found.sort();
     listed.sort();
     assert_eq!(found, listed);
-    for file in library::ALL {
+    for file in &files {
         let hooks = template::Template::of_files(&[*file]).hooks();
         let mut filled = template::Template::of_files(&[*file]);
         for hook in hooks {

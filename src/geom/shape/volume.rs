@@ -8,6 +8,7 @@ use crate::geom::{
     shape::{
         border::{distance_of_ellipsoid, distance_of_frustum},
         flat::{ENDLESS_M, Flat},
+        form::VolumeForm,
         hull::Hull,
         solid::PlacedSolid,
         span::{EVERYWHERE, Parted, Side, across, both, cone, round, slab},
@@ -73,6 +74,20 @@ pub enum Volume {
 }
 
 impl Volume {
+    /// Its form.
+    pub fn form(&self) -> VolumeForm {
+        match self {
+            Self::Sphere { .. } => VolumeForm::Sphere,
+            Self::Box { .. } => VolumeForm::Box,
+            Self::Cylinder { .. } => VolumeForm::Cylinder,
+            Self::Convex(_) => VolumeForm::Convex,
+            Self::Ellipsoid { .. } => VolumeForm::Ellipsoid,
+            Self::Frustum { .. } => VolumeForm::Frustum,
+            Self::Solid(_) => VolumeForm::Solid,
+            Self::Flat(_) => VolumeForm::Flat,
+        }
+    }
+
     /// Whether it has no volume: it holds no point and no ray meets it (hard case 21).
     pub fn is_empty(&self) -> bool {
         match self {

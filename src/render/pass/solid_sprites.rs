@@ -26,7 +26,7 @@ use crate::{
         seen::{Kept, SeenSprite, SeenVolume},
         sprites::Place,
     },
-    shader::{Module, VolumeTest},
+    shader::{Form, Module},
 };
 
 /// Group 2: the stage, at a dynamic offset.
@@ -79,7 +79,7 @@ impl Side {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct SideKey {
     side: Side,
-    leaves: Option<Vec<VolumeTest>>,
+    leaves: Option<Vec<Form>>,
 }
 
 impl SideKey {
@@ -129,11 +129,11 @@ fn keys_of(body: &Body) -> Vec<SideKey> {
     match body {
         Body::One(_) => [Side::Missed, Side::Nearest, Side::Farthest].map(SideKey::of_solid).to_vec(),
         Body::Combined(_) => {
-            let kinds = body.kinds();
+            let forms_of_leaves = body.forms_in_combination();
             let forms = [Side::NearestForm, Side::FarthestForm].into_iter();
             let faces = [Side::NearestFace, Side::FarthestFace].into_iter();
-            let wanted = forms.chain(faces.filter(|_| kinds.contains(&VolumeTest::Solid)));
-            let keys = wanted.map(|side| SideKey { side, leaves: Some(kinds.clone()) });
+            let wanted = forms.chain(faces.filter(|_| body.has_solids()));
+            let keys = wanted.map(|side| SideKey { side, leaves: Some(forms_of_leaves.clone()) });
             std::iter::once(SideKey::of_solid(Side::Missed)).chain(keys).collect()
         }
     }
@@ -142,7 +142,7 @@ fn keys_of(body: &Body) -> Vec<SideKey> {
 /// The leaves of a body that have draws of their own: the solids of a combination, by their places in it.
 fn own_draws(body: &Body) -> impl Iterator<Item = (u32, &PlacedLeaf)> {
     let is_combined = matches!(body, Body::Combined(_));
-    (0..).zip(body.leaves()).filter(move |(_, leaf)| is_combined && leaf.leaf.test() == VolumeTest::Solid)
+    (0..).zip(body.leaves()).filter(move |(_, leaf)| is_combined && leaf.is_solid())
 }
 
 /// A volume whose sides a sprite tells, with the sprite and its place.
@@ -152,7 +152,7 @@ pub struct OnPage<'a> {
     body: &'a Body,
     sprite: &'a SeenSprite,
     place: Place,
-    shape: layout::Shape,
+    region: layout::Region,
 }
 
 /// What makes a sprite on pages of `page` texels: one stage for the body and one for each solid of a combination.
@@ -161,19 +161,19 @@ fn stages_of(on: &OnPage, input: &FrameInput, page: [u32; 2]) -> Vec<layout::Spr
     // Texels count down the page, clip space up.
     let clip_scale: [f32; 2] = std::array::from_fn(|i| on.sprite.size[i] as f32 / page[i] as f32);
     let side = |i: usize| clip_scale[i] + 2.0 * shift[i] / page[i] as f32 - 1.0;
-    let stage = |shape, leaves| layout::SpriteStage {
-        shape,
+    let stage = |region, leaves| layout::SpriteStage {
+        region,
         pixels_per_texel: scale.map(|s| 1.0 / s),
         origin: shift.map(|s| -s),
         clip_scale,
         clip_shift: [side(0), -side(1)],
         leaves,
     };
-    let [first, last] = [on.shape.size_x as u32, on.shape.size_y as u32];
+    let [first, last] = [on.region.b[0] as u32, on.region.b[1] as u32];
     // A solid has no planes.
     let of_leaf =
         |(i, leaf): (u32, &PlacedLeaf)| stage(leaf.figures(&input.view, &mut Vec::new()), [first, last, i, 0]);
-    std::iter::once(stage(on.shape, [first, last, 0, 0])).chain(own_draws(on.body).map(of_leaf)).collect()
+    std::iter::once(stage(on.region, [first, last, 0, 0])).chain(own_draws(on.body).map(of_leaf)).collect()
 }
 
 /// A draw of a sprite pass.
@@ -204,8 +204,8 @@ fn draws_of<'a>(sprites: &[OnPage<'a>], input: &FrameInput) -> Vec<SideDraw<'a>>
                 }
             }
             Body::Combined(_) => {
-                let kinds = body.kinds();
-                let key = |side| SideKey { side, leaves: Some(kinds.clone()) };
+                let forms_of_leaves = body.forms_in_combination();
+                let key = |side| SideKey { side, leaves: Some(forms_of_leaves.clone()) };
                 let forms = [Side::NearestForm, Side::FarthestForm];
                 forms.into_iter().filter(enters).for_each(|of| add(key(of), first_stage, 0..3));
                 for (i, (_, leaf)) in own_draws(body).enumerate() {
@@ -292,12 +292,12 @@ impl Pass for SolidSprites {
             _ => None,
         };
         let volumes = plan.seen.volumes.iter().filter_map(on_page).zip(&plan.numbers.sides);
-        let sprites = volumes.map(|((volume, sprite, place), shape)| OnPage {
+        let sprites = volumes.map(|((volume, sprite, place), region)| OnPage {
             lens: volume.lens,
             body: &plan.input.volumes[volume.index].body,
             sprite,
             place,
-            shape: *shape,
+            region: *region,
         });
         (plan.seen.pages.count > 0).then(|| sprites.collect())
     }

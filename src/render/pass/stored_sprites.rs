@@ -5,6 +5,7 @@ use glam::DVec2;
 use wgpu::ShaderStages as S;
 
 use crate::{
+    geom::shape::VolumeForm,
     gpu::{Gpu, GpuError},
     lens::sprite::Format,
     render::{
@@ -28,7 +29,7 @@ use crate::{
         shared::{COARSER, Shared},
         stored::{KeptSprite, SpriteTexels},
     },
-    shader::{Module, VolumeTest},
+    shader::{Form, Module},
 };
 
 /// Group 2: the stage, at a dynamic offset, the sprites, lists of crossings, crossings, counts.
@@ -56,9 +57,9 @@ const GROUP: u32 = 8;
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum StoredKey {
     /// That of a volume that has a closed form, by its kind.
-    Form(VolumeTest),
+    Form(VolumeForm),
     /// That of a lens of several leaves, or of a solid, and what the leaves are.
-    Layers(Vec<VolumeTest>),
+    Layers(Vec<Form>),
     /// Where rays go through the faces of its solids.
     List,
 }
@@ -66,14 +67,17 @@ enum StoredKey {
 impl StoredKey {
     /// What makes the sprite of a body.
     fn of(body: &Body) -> Self {
-        if body.is_form() { Self::Form(body.test()) } else { Self::Layers(body.leaf_kinds()) }
+        match body.form().and_then(Form::closed) {
+            Some(form) => Self::Form(form),
+            None => Self::Layers(body.leaf_forms()),
+        }
     }
 }
 
 impl PipelineKey for StoredKey {
     fn name(&self) -> String {
         match self {
-            Self::Form(kind) => format!("depth sprite of a {}", kind.constant().to_lowercase()),
+            Self::Form(form) => format!("depth sprite of a {}", form.name()),
             Self::Layers(_) => "depth sprite in layers".to_owned(),
             Self::List => "crossings of a sprite".to_owned(),
         }
@@ -81,8 +85,8 @@ impl PipelineKey for StoredKey {
 
     fn parts(&self, _: wgpu::TextureFormat) -> Parts {
         let module = match self {
-            Self::Form(_) => Module::StoredForm,
-            Self::Layers(kinds) => Module::StoredLayers(kinds.clone()),
+            Self::Form(form) => Module::StoredForm(*form),
+            Self::Layers(forms) => Module::StoredLayers(forms.clone()),
             Self::List => {
                 let unwritten =
                     wgpu::ColorTargetState { format: LIST_TARGET, blend: None, write_mask: wgpu::ColorWrites::empty() };
@@ -98,12 +102,8 @@ impl PipelineKey for StoredKey {
                 };
             }
         };
-        let constants = match self {
-            Self::Form(kind) => vec![("KIND", f64::from(kind.number()))],
-            _ => Vec::new(),
-        };
         let groups = vec![None, Some(&PLANES), Some(&STORED)];
-        Parts { module, groups, constants, stage: Stage::Compute("store") }
+        Parts { module, groups, constants: Vec::new(), stage: Stage::Compute("store") }
     }
 }
 

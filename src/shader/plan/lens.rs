@@ -1,6 +1,6 @@
 //! Lenses of a plan: how they are tested, where they end softly, and how their bodies are drawn.
 
-use crate::shader::plan::volume_test::VolumeTest;
+use crate::shader::plan::{form::Form, lens_test::LensTest};
 
 /// `vec4f` that a body's parameters take: colour and opacity; width of the line or the glow in pixels.
 pub const BODY_SLOTS: u32 = 2;
@@ -11,9 +11,9 @@ pub struct PlanLens {
     /// Its bit in the masks.
     pub number: u32,
     /// How each of its volumes is tested; among the frame's volumes they follow those of the lenses before it.
-    pub volumes: Vec<VolumeTest>,
-    /// Lens tests of the leaves of its combinations, ascending, each once.
-    pub leaves: Vec<VolumeTest>,
+    pub volumes: Vec<LensTest>,
+    /// Forms of the leaves of its combinations, ascending, each once.
+    pub leaves: Vec<Form>,
     /// How its body is drawn, if it is.
     pub body: Option<PlanBody>,
     /// Its soft border, if it has one.

@@ -4,21 +4,22 @@
 //! moves or a slider that is dragged compiles nothing. Equal plans share a pipeline.
 
 pub(super) mod content;
+pub(super) mod form;
 pub(super) mod lens;
+pub(super) mod lens_test;
 pub(super) mod program;
 pub(super) mod regions;
 pub(super) mod step;
 pub(super) mod uber;
-pub(super) mod volume_test;
 
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     plan::{
         content::PlanContent,
         lens::{BODY_SLOTS, BodyKind, PlanBorder, PlanLens},
+        lens_test::LensTest,
         regions::Regions,
         step::{ClassTest, Scope, Step},
-        volume_test::VolumeTest,
     },
 };
 
@@ -100,7 +101,7 @@ impl Plan {
     }
 
     /// How they are tested.
-    pub fn tests(&self) -> impl Iterator<Item = VolumeTest> {
+    pub fn tests(&self) -> impl Iterator<Item = LensTest> {
         self.lenses.iter().flat_map(|l| &l.volumes).copied()
     }
 
@@ -113,7 +114,7 @@ impl Plan {
     }
 
     /// The volumes of one of its lenses: how many come before them, and how they are tested.
-    pub fn volumes_of(&self, lens: u32) -> (u32, &[VolumeTest]) {
+    pub fn volumes_of(&self, lens: u32) -> (u32, &[LensTest]) {
         let before = self.lenses[..lens as usize].iter().map(|l| l.volumes.len() as u32).sum();
         (before, &self.lenses[lens as usize].volumes)
     }

@@ -1,6 +1,9 @@
 //! A plan on one of the back ends, and which libraries it calls.
 
-use crate::shader::plan::{Plan, lens::BodyKind, regions::Regions, uber::Uber, volume_test::VolumeTest};
+use crate::shader::{
+    forms::Forms,
+    plan::{Plan, form::Form, lens::BodyKind, lens_test::LensTest, regions::Regions, uber::Uber},
+};
 
 /// A plan on one of the back ends (H3). Both make the same picture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -46,16 +49,18 @@ impl Program {
         Parts {
             lenses: has_lenses,
             // The uber back end reads there which test it is.
-            shapes: tests.iter().any(|t| !t.is_sprite()) || (matches!(self, Self::Uber(_)) && has_lenses),
-            members: tests.contains(&VolumeTest::Members),
-            fading_members: tests.contains(&VolumeTest::FadingMembers),
-            fading: tests.iter().chain(&self.leaves()).any(|test| *test == VolumeTest::FadingMembers),
+            regions: tests.iter().any(|t| !t.is_sprite()) || (matches!(self, Self::Uber(_)) && has_lenses),
+            closed: tests.iter().any(|t| t.closed().is_some()),
+            members: tests.contains(&LensTest::Numbers(Form::Members)),
+            fading_members: tests.contains(&LensTest::Numbers(Form::FadingMembers)),
+            fading: tests.contains(&LensTest::Numbers(Form::FadingMembers))
+                || self.leaves().contains(&Form::FadingMembers),
             sprites: tests.iter().any(|t| t.is_sprite()),
-            own_sprites: tests.contains(&VolumeTest::OwnSprite),
+            own_sprites: tests.contains(&LensTest::OwnSprite),
             solids: tests.iter().any(|t| t.has_faces()),
             side_sprites: tests.iter().any(|t| t.has_sides()),
             combinations: tests.iter().any(|t| t.has_leaves()),
-            combined_sprites: tests.contains(&VolumeTest::CombinedSprite),
+            combined_sprites: tests.contains(&LensTest::Sides(Form::Combined)),
             bodies: !bodies.is_empty(),
             outlines: bodies.iter().any(|b| b.has_outline()),
             shells: has_body(BodyKind::Shell),
@@ -70,11 +75,22 @@ impl Program {
         }
     }
 
-    /// Lens tests of the leaves of its combinations, ascending, each once.
-    pub fn leaves(&self) -> Vec<VolumeTest> {
+    /// What it asks of regions.
+    pub(in crate::shader) fn forms(&self) -> Forms {
+        let mut tests: Vec<LensTest> = match self {
+            Self::Specialised(plan) => plan.tests().collect(),
+            Self::Uber(uber) => uber.tests.clone(),
+        };
+        tests.sort_unstable();
+        tests.dedup();
+        Forms { tests, leaves: self.leaves(), distances: self.has().distances }
+    }
+
+    /// Forms of the leaves of its combinations, ascending, each once.
+    pub fn leaves(&self) -> Vec<Form> {
         match self {
             Self::Specialised(plan) => {
-                let mut all: Vec<VolumeTest> = plan.lenses.iter().flat_map(|l| &l.leaves).copied().collect();
+                let mut all: Vec<Form> = plan.lenses.iter().flat_map(|l| &l.leaves).copied().collect();
                 all.sort_unstable();
                 all.dedup();
                 all
@@ -97,8 +113,10 @@ impl Program {
 pub struct Parts {
     /// The classes of lenses.
     pub lenses: bool,
-    /// The lens test from shapes.
-    pub shapes: bool,
+    /// The rows of regions.
+    pub regions: bool,
+    /// The lens test from closed forms.
+    pub closed: bool,
     /// The lens test by depth sprites.
     pub sprites: bool,
     /// By those that have their own eye.

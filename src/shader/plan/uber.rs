@@ -2,7 +2,7 @@
 
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
-    plan::{lens::BodyKind, volume_test::VolumeTest},
+    plan::{form::Form, lens::BodyKind, lens_test::LensTest},
 };
 
 /// Contents of a module of the uber back end: whatever any plan of the scene may name.
@@ -11,9 +11,9 @@ pub struct Uber {
     /// The scene's effects, ascending, each once; those of disabled lenses too.
     pub effects: Vec<u32>,
     /// How the volumes of the scene's lenses are tested, ascending, each once; none: there are no lenses.
-    pub tests: Vec<VolumeTest>,
-    /// Lens tests of the leaves of their combinations, ascending, each once.
-    pub leaves: Vec<VolumeTest>,
+    pub tests: Vec<LensTest>,
+    /// Forms of the leaves of their combinations, ascending, each once.
+    pub leaves: Vec<Form>,
     /// Kinds of their bodies, ascending, each once.
     pub bodies: Vec<BodyKind>,
     /// Whether something may act on other classes of them than *inside*.

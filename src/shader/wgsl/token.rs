@@ -138,6 +138,18 @@ pub fn identifier(name: &str) -> String {
     name.chars().map(|c| if c == '-' { '_' } else { c }).collect()
 }
 
+/// The name of a function in the words of a type's: `FadingMembers` is `fading_members`.
+pub fn snake(name: &str) -> String {
+    let mut out = String::new();
+    for (i, c) in name.chars().enumerate() {
+        if c.is_ascii_uppercase() && i > 0 {
+            out.push('_');
+        }
+        out.push(c.to_ascii_lowercase());
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,16 @@
 // Solids of any form (L3): the winding number of their surface about a place, counted along the line straight up from it in the
 // solid's own coordinates. Twin: `veduta::geom::shape::Solid`, which says how.
 
+struct Solid {
+    center: vec3f,              // a.xyz: where its own origin is, metres
+    x: vec3f,                   // b.xyz: its axes, unit
+    first: u32,                 // b.w: number of its first entry
+    y: vec3f,                   // c.xyz
+    near: u32,                  // c.w: number of the first entry of the table of its distances
+    z: vec3f,                   // d.xyz
+    around: f32,                // d.w: how often it goes around the eye, and a quarter more where that is in doubt
+}
+
 // Each solid has: low x, y of the columns, columns per metre in x, y (f32); columns in x and y, fours of words that the next
 // list takes, number of faces; where the faces of each column begin; the faces, four entries each: corners by x, and whether
 // that is their turn (1 or -1); upward normal, and how much higher than its first corner an upright face counts as above.
@@ -15,8 +25,8 @@ struct SolidFace {
     rise: f32,
 }
 
-fn in_solid(s: Shape, v: vec3f) -> vec3f {
-    return vec3f(dot(v, s.axis_x), dot(v, s.axis_y), dot(v, s.axis_z));
+fn in_solid(s: Solid, v: vec3f) -> vec3f {
+    return vec3f(dot(v, s.x), dot(v, s.y), dot(v, s.z));
 }
 
 fn solid_face(at: u32) -> SolidFace {
@@ -45,10 +55,10 @@ const BESIDE: f32 = 1.0 / 32768.0;
 
 // `distance`: D of the place. A solid holds what lies on its faces, as other shapes do on flat ones: those that look up or down
 // by their height, upright ones by asking for the places beside it as well.
-fn solid_holds(s: Shape, p: vec3f, distance: f32) -> bool {
+fn solid_holds(s: Solid, p: vec3f, distance: f32) -> bool {
     let on_face = ON_FACE * max(abs(distance), length(s.center));
     let o = in_solid(s, p - s.center);
-    let first = u32(s.size_x);
+    let first = s.first;
     let grid = bitcast<vec4f>(solids[first]);
     let sizes = solids[first + 1u];
     let column = floor((o.xy - grid.xy) * grid.zw);
@@ -79,7 +89,7 @@ fn solid_holds(s: Shape, p: vec3f, distance: f32) -> bool {
     return winding != 0 || any(beside != vec4i(0));
 }
 
-fn inside_solid(s: Shape, sight: Sight) -> u32 {
+fn inside_solid(s: Solid, sight: Sight) -> u32 {
     return select(MISSED, INSIDE, sight.distance < FAR_AWAY && solid_holds(s, sight.position, sight.distance));
 }
 
@@ -90,10 +100,10 @@ struct FaceHit {
     t: f32,
 }
 
-fn face_hit(ray: Ray, s: Shape, number: u32) -> FaceHit {
+fn face_hit(ray: Ray, s: Solid, number: u32) -> FaceHit {
     let origin = in_solid(s, ray.origin - s.center);
     let direction = in_solid(s, ray.direction);
-    let first = u32(s.size_x);
+    let first = s.first;
     let face = solid_face(first + 2u + solids[first + 1u].z + 4u * number);
     let along_b = face.b - face.a;
     let along_c = face.c - face.a;
@@ -108,17 +118,17 @@ fn face_hit(ray: Ray, s: Shape, number: u32) -> FaceHit {
     return FaceHit(is_met, slope * f32(face.turn) > 0.0, dot(along_c, around) / slope);
 }
 
-// First and last crossing of a ray with the surface, each face asked; `size_z` is how often it goes around the eye. What lies behind
+// First and last crossing of a ray with the surface, each face asked; `around` is how often it goes around the eye. What lies behind
 // the eye is not seen.
-fn span_of_solid(ray: Ray, s: Shape, starts_at_eye: bool) -> Span {
-    let sizes = solids[u32(s.size_x) + 1u];
+fn span_of_solid(ray: Ray, s: Solid, starts_at_eye: bool) -> Span {
+    let sizes = solids[s.first + 1u];
     var span = Span(FAR_AWAY, -FAR_AWAY);
     for (var i = 0u; i < sizes.w; i++) {
         let hit = face_hit(ray, s, i);
         let is_seen = hit.is_met && (!starts_at_eye || hit.t > 0.0);
         span = Span(select(span.enter, min(span.enter, hit.t), is_seen), select(span.exit, max(span.exit, hit.t), is_seen));
     }
-    if span.exit > -FAR_AWAY && starts_at_eye && abs(s.size_z) > 0.5 {
+    if span.exit > -FAR_AWAY && starts_at_eye && abs(s.around) > 0.5 {
         span.enter = 0.0;
     }
     return span;
@@ -131,7 +141,7 @@ fn side_of_solid(is_missed: bool, is_before: bool, is_after: bool) -> u32 {
 }
 
 // From the faces alone: of a place that the picture may not show.
-fn class_by_faces(s: Shape, sight: Sight) -> u32 {
+fn class_by_faces(s: Solid, sight: Sight) -> u32 {
     let span = span_of_solid(sight.ray, s, !sight.is_parallel);
     let is_missed = span.enter > span.exit || (!sight.is_parallel && sight.distance <= 0.0);
     let is_before = sight.distance < span.enter;
@@ -141,7 +151,7 @@ fn class_by_faces(s: Shape, sight: Sight) -> u32 {
 }
 
 // Whether the ray of a pixel's centre meets it.
-fn covers_by_faces(s: Shape, pixel: vec2i) -> bool {
+fn covers_by_faces(s: Solid, pixel: vec2i) -> bool {
     let span = span_of_solid(ray_of_pixel(vec2f(pixel) + 0.5), s, view.orthographic == 0u);
     return span.enter <= span.exit;
 }
