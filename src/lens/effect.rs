@@ -13,7 +13,8 @@ use crate::{
     },
     shader::{
         effect::{
-            DefaultValue, EffectDefinition, EffectKind, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition, ParameterKind, effects, find,
+            DefaultValue, EffectDefinition, EffectKind, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition,
+            ParameterKind, effects, find,
         },
         effect_file::RESERVED,
     },
@@ -78,10 +79,11 @@ pub fn problems_of_parameters(
             }
         }
     }
-    for parameter in definition.parameters.iter().filter(|p| p.is_required() && !parameters.contains_key(&p.name))
-    {
-        problems
-            .push(problem(&parameter.name, format!("is missing: \"{}\" needs it ({})", definition.name, parameter.doc)));
+    for parameter in definition.parameters.iter().filter(|p| p.is_required() && !parameters.contains_key(&p.name)) {
+        problems.push(problem(
+            &parameter.name,
+            format!("is missing: \"{}\" needs it ({})", definition.name, parameter.doc),
+        ));
     }
     problems
 }

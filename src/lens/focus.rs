@@ -13,6 +13,7 @@ use crate::{
     },
     lens::{
         chosen::Choice,
+        handled::Handled,
         occluders::Occluders,
         rendering::When,
         solids::{Place, ShownCity, Solids},
@@ -72,6 +73,17 @@ pub enum Focus {
     Sprite {
         /// The file, as [`crate::lens::sprite_file`] has it.
         file: PathBuf,
+    },
+    /// What a user's handler says is inside, in a box.
+    Own {
+        /// The handler.
+        used: Handled,
+        /// The middle of the box, metres.
+        center: DVec3,
+        /// Its full edges, metres, ≥ 0.
+        size: DVec3,
+        /// Turns its axes into the world's.
+        rotation: DQuat,
     },
     /// The union of the volumes of city objects.
     Objects(Choice),
@@ -185,7 +197,7 @@ impl Focus {
         match self {
             Self::Prism { height, .. } => *height <= 0.0,
             Self::Mask { size, height, .. } => size.min_element().min(*height) <= 0.0,
-            Self::Mask3d { size, .. } => size.min_element() <= 0.0,
+            Self::Mask3d { size, .. } | Self::Own { size, .. } => size.min_element() <= 0.0,
             _ => false,
         }
     }

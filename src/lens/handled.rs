@@ -30,6 +30,11 @@ pub struct Handled {
 const DETAIL: f64 = 1.0 / 16.0;
 
 impl Handled {
+    /// A use of nothing.
+    pub const fn nameless() -> Self {
+        Self { handler: String::new(), parameters: BTreeMap::new() }
+    }
+
     /// A use without parameters.
     pub fn named(handler: &str) -> Self {
         Self { handler: handler.to_owned(), parameters: BTreeMap::new() }
@@ -42,7 +47,10 @@ impl Handled {
     pub fn definition(&self, asked_by: AskedBy) -> Result<&'static EffectDefinition, String> {
         find_asked_by(asked_by, &self.handler).ok_or_else(|| {
             let hint = did_you_mean(&self.handler, asked_for(asked_by).map(|h| h.name.as_str()));
-            format!("there is no handler \"{}\"{hint}; those of your own come from a folder: --effects DIR", self.handler)
+            format!(
+                "there is no handler \"{}\"{hint}; those of your own come from a folder: --effects DIR",
+                self.handler
+            )
         })
     }
 

@@ -142,6 +142,7 @@ impl Solids {
             | Focus::Occluders(_)
             | Focus::Case { .. }
             | Focus::Sprite { .. }
+            | Focus::Own { .. }
             | Focus::Combined { .. } => {
                 return Ok(Vec::new());
             }
@@ -341,6 +342,7 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
         | Focus::Case { .. }
         | Focus::Enclosed { .. }
         | Focus::Sprite { .. }
+        | Focus::Own { .. }
         | Focus::Combined { .. } => Ok((None, DVec3::ZERO)),
     }
 }

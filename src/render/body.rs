@@ -10,7 +10,7 @@ use crate::{
         combination::{self, Operation},
         shape::flat::ENDLESS_M,
     },
-    lens::PlacedSprite,
+    lens::{OwnRegion, PlacedSprite},
     render::{flat, layout, solids::SolidPlace},
     shader::{Form, LensTest},
     view::View,
@@ -34,6 +34,8 @@ pub enum Leaf {
     Members(Members),
     /// A saved depth sprite.
     Sprite(PlacedSprite),
+    /// A user's region test.
+    Own(OwnRegion),
 }
 
 /// City objects, with all that belongs to them wherever it is.
@@ -235,6 +237,7 @@ impl Body {
     pub fn holds_eye(&self, view: &View) -> bool {
         let holds = |leaf: &PlacedLeaf| match &leaf.leaf {
             Leaf::Volume(volume) => volume.contains(view.camera.eye),
+            Leaf::Own(own) => own.distance(view.camera.eye) <= 0.0,
             Leaf::Members(members) => {
                 let eye = view.camera.eye;
                 eye.cmpge(members.bounds.min).all() && eye.cmple(members.bounds.max).all()
@@ -244,7 +247,7 @@ impl Body {
         };
         !view.is_orthographic()
             && match self {
-                Self::One(leaf) => matches!(leaf.leaf, Leaf::Volume(_)) && holds(leaf),
+                Self::One(leaf) => matches!(leaf.leaf, Leaf::Volume(_) | Leaf::Own(_)) && holds(leaf),
                 Self::Combined(program) => combination::holds(program, holds),
             }
     }
@@ -255,6 +258,7 @@ impl Body {
             Self::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) => volume.meets_triangle(corners),
             Self::One(PlacedLeaf { leaf: Leaf::Members(members), .. }) => members.has(object),
             Self::One(PlacedLeaf { leaf: Leaf::Sprite(sprite), .. }) => sprite.meets_triangle(corners),
+            Self::One(leaf) => self.meets_part(&[(leaf.clone(), Vec::new())], corners, object),
             Self::Combined(program) => self.meets_part(program, corners, object),
         }
     }
@@ -267,6 +271,7 @@ impl Body {
             let middle = (a + b + c) / 3.0;
             let distance = |leaf: &PlacedLeaf| match &leaf.leaf {
                 Leaf::Volume(volume) => volume.signed_distance(middle),
+                Leaf::Own(own) => own.distance(middle),
                 Leaf::Members(members) if members.has(object) => f64::NEG_INFINITY,
                 // Saved depth sprites are no parts of combinations.
                 Leaf::Members(_) | Leaf::Sprite(_) => f64::INFINITY,
@@ -321,7 +326,7 @@ impl Body {
                 let test = leaf.test_number();
                 (layout::Region { test, ..figures }, leaf.place.first as f32, then.clone())
             }
-            Leaf::Volume(_) | Leaf::Sprite(_) => (leaf.figures(view, planes), 0.0, then.clone()),
+            Leaf::Volume(_) | Leaf::Sprite(_) | Leaf::Own(_) => (leaf.figures(view, planes), 0.0, then.clone()),
         };
         let leaves: Vec<_> = program.iter().map(leaf).collect();
         let out = layout::Region {
@@ -352,6 +357,7 @@ impl Leaf {
             Self::Members(_) => Some(Form::FadingMembers),
             Self::Sprite(_) => None,
             Self::Volume(volume) => Some(Form::Volume(volume.form())),
+            Self::Own(own) => Some(Form::Own(own.handler)),
         }
     }
 
@@ -361,6 +367,7 @@ impl Leaf {
             Self::Volume(volume) => volume.is_empty(),
             Self::Members(members) => members.bounds.is_empty(),
             Self::Sprite(sprite) => sprite.bounds.is_empty(),
+            Self::Own(own) => own.is_empty(),
         }
     }
 
@@ -370,6 +377,7 @@ impl Leaf {
             Self::Volume(volume) => volume.bounds(),
             Self::Members(members) => members.bounds,
             Self::Sprite(sprite) => sprite.bounds,
+            Self::Own(own) => own.bounds(),
         }
     }
 }
@@ -401,6 +409,18 @@ impl PlacedLeaf {
             }
             // Its rows stand elsewhere (`render::own_sprites`).
             Leaf::Sprite(_) => return out,
+            Leaf::Own(own) => {
+                let axes = DMat3::from_quat(own.rotation);
+                out.a = place(own.center);
+                out.b = row(axes.x_axis, planes.len() as f64);
+                out.c = row(axes.y_axis, 0.0);
+                out.d = row(axes.z_axis, 0.0);
+                let [x, y, z] = own.half.as_vec3().to_array();
+                planes.push([x, y, z, 0.0]);
+                let four = |four: &[f32]| std::array::from_fn(|i| four.get(i).copied().unwrap_or(0.0));
+                planes.extend(own.parameters.chunks(4).map(four));
+                return out;
+            }
             Leaf::Volume(volume) => volume,
         };
         match volume {

@@ -290,9 +290,7 @@ fn placement(
     let around = || volumes.iter().fold(Aabb::EMPTY, |all, v| all.union(v.bounds));
     let to = match copied.to {
         Some(to) => (stage.motion)(lens).unwrap_or(Motion::NONE).point(to),
-        None if volumes.iter().all(|v| v.body.is_bounded()) => {
-            around().center()
-        }
+        None if volumes.iter().all(|v| v.body.is_bounded()) => around().center(),
         None => return Err(("to", "is missing: a lens without end has no middle to put it to".to_owned())),
     };
     let from = copied.from.unwrap_or(to);

@@ -183,7 +183,7 @@ pub(super) fn tables(
             volumes.iter().any(|volume| {
                 volume.body.leaves().any(|leaf| match &leaf.leaf {
                     Leaf::Members(members) => members.has(object),
-                    Leaf::Volume(_) | Leaf::Sprite(_) => true,
+                    Leaf::Volume(_) | Leaf::Sprite(_) | Leaf::Own(_) => true,
                 })
             })
         };

@@ -10,7 +10,7 @@ use crate::{
         shape::{Motion, solid},
     },
     lens::{
-        Border, BorderUnit, Class, Focus, Lens, LensBody, LensSprite,
+        Border, BorderUnit, Class, Focus, Lens, LensBody, LensSprite, OwnRegion,
         chosen::members,
         solids::{FocusError, Place, ShownCity, Solids},
     },
@@ -97,6 +97,11 @@ pub(super) fn volumes_of<'a>(
         }
         of_lens.retain(|body| !body.is_empty());
         // One sprite for all of a lens (S3).
+        let has_own = of_lens.iter().flat_map(Body::leaves).any(|leaf| matches!(leaf.leaf, Leaf::Own(_)));
+        if lens.sprite.is_some() && has_own {
+            let message = "a region of your own is tested by its function, not by a depth sprite";
+            return Err(format!("[lens.{}] sprite: {message}", drawn.owner(i as u32)));
+        }
         if lens.sprite.is_some() {
             // Those of files stay as they are.
             let (mut saved, others): (Vec<Body>, _) = of_lens.into_iter().partition(|body| body.saved().is_some());
@@ -140,7 +145,10 @@ fn move_leaf(leaf: &mut Leaf, lens: &Lens, tools: &mut Tools) -> Result<(), Stri
         Leaf::Sprite(_) if lens.at_rest => {
             return Err("a saved sprite stands where it is; \"displayed\" would be right".into());
         }
-        Leaf::Volume(_) | Leaf::Sprite(_) => {}
+        Leaf::Own(_) if lens.at_rest => {
+            return Err("a region of your own stands where it is; \"displayed\" would be right".into());
+        }
+        Leaf::Volume(_) | Leaf::Sprite(_) | Leaf::Own(_) => {}
     }
     Ok(())
 }
@@ -263,6 +271,10 @@ fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -
         }
         Focus::Enclosed { parts, whole, types } => {
             objects_in(parts, Held { whole: *whole, types }, city, place, tools)?.into()
+        }
+        Focus::Own { used, center, size, rotation } => {
+            let own = OwnRegion::new(used, *center, *size, *rotation, &place.motion);
+            return own.map(|own| vec![Leaf::Own(own)]).map_err(|message| ("kind".to_owned(), message));
         }
         Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(tools.solids.sprite(file, city, &place.motion)?)]),
         _ => return Ok(tools.solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),

@@ -98,8 +98,8 @@ impl PlanStep {
         let (definition, own) = (&handlers[self.handler as usize], at + STEP_HEAD);
         let name = definition.wgsl_name();
         match (self.is_map, is_way) {
-            (true, true) => format!("{}({own}u, {place})", definition.own("way")),
-            (true, false) => format!("{}({own}u, {place})", definition.own("jet")),
+            (true, true) => format!("way_of_{name}({own}u, {place})"),
+            (true, false) => format!("jet_of_{name}({own}u, {place})"),
             (false, _) if self.slots == 0 => format!("{name}({place}){}", if is_way { ".way" } else { "" }),
             (false, _) => {
                 let parameters = definition.own("parameters");
@@ -112,7 +112,9 @@ impl PlanStep {
 /// What is made of a user's map: its way, contained, and its derivative by differences. With samples a sixty-fourth of the detail apart,
 /// of a wave of four details the error of the derivative is 10⁻⁴ of its largest value, and rounding adds as much.
 fn of_map(definition: &EffectDefinition) -> String {
-    let (name, way) = (definition.wgsl_name(), definition.own("way"));
+    // No name of the handler's own begins so.
+    let name = definition.wgsl_name();
+    let (way, jet) = (format!("way_of_{name}"), format!("jet_of_{name}"));
     let parameters = match definition.slots() {
         0 => String::new(),
         _ => format!(", {}(own + 2u)", definition.own("parameters")),
@@ -121,14 +123,13 @@ fn of_map(definition: &EffectDefinition) -> String {
         "// Its numbers: the extent of the lens and how far it reaches, metres; its strength, and half of how far apart differences are.\n\
          fn {way}(own: u32, place: vec3f) -> vec3f {{\n    \
          return contained_way({name}(place, numbers[own].xyz{parameters}), numbers[own].w, numbers[own + 1u].x);\n}}\n\n\
-         fn {}(own: u32, place: vec3f) -> Jet {{\n    \
+         fn {jet}(own: u32, place: vec3f) -> Jet {{\n    \
          let half = numbers[own + 1u].y;\n    \
          var slope = NO_SLOPE;\n    \
          for (var i = 0; i < 3; i++) {{\n        \
          var low = place;\n        var high = place;\n        low[i] -= half;\n        high[i] += half;\n        \
          slope[i] = ({way}(own, high) - {way}(own, low)) / (high[i] - low[i]);\n    }}\n    \
          return Jet({way}(own, place), slope);\n}}\n\n",
-        definition.own("jet"),
     )
 }
 

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use crate::{
     geom::shape::VolumeForm,
     shader::{
-        library::{COMBINED, FADING_MEMBERS, File, MEMBERS, OWN_SPRITE, file_of},
+        library::{COMBINED, FADING_MEMBERS, File, MEMBERS, OWN, OWN_SPRITE, file_of},
+        own_region,
         plan::{form::Form, lens_test::LensTest},
         rows::Rows,
     },
@@ -28,9 +29,18 @@ impl Forms {
         Self { tests: vec![LensTest::Numbers(Form::Combined)], leaves: leaves.to_vec(), distances: false }
     }
 
-    /// Volumes that are tested in closed form, not as leaves.
-    fn closed(&self) -> Vec<VolumeForm> {
-        self.tests.iter().filter_map(|test| test.closed()).collect()
+    /// Forms that know where rays enter and leave, which are tested by that, not as leaves.
+    fn spanned(&self) -> Vec<Form> {
+        self.tests.iter().filter_map(|test| test.spanned()).collect()
+    }
+
+    /// Users' region tests that are called for, as their handlers' numbers, ascending.
+    fn own(&self) -> Vec<u32> {
+        let forms = self.tests.iter().filter_map(|test| test.form()).chain(self.leaves.iter().copied());
+        let mut all: Vec<u32> = forms.filter_map(|form| if let Form::Own(n) = form { Some(n) } else { None }).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
     }
 
     fn has_combinations(&self) -> bool {
@@ -46,7 +56,7 @@ impl Forms {
                 Form::Volume(form) => all.push(form),
                 // Combinations ask for the faces of solids.
                 Form::Combined => all.push(VolumeForm::Solid),
-                Form::Members | Form::FadingMembers => {}
+                Form::Members | Form::FadingMembers | Form::Own(_) => {}
             }
         }
         // The box around them stands for them there.
@@ -60,12 +70,14 @@ impl Forms {
 
     /// The files of volumes.
     pub(super) fn files(&self) -> Vec<File> {
-        self.volumes().into_iter().map(file_of).collect()
+        let own = (!self.own().is_empty()).then_some(OWN);
+        self.volumes().into_iter().map(file_of).chain(own).collect()
     }
 
     /// Constants, loaders, and the functions that choose between forms.
     pub(super) fn functions(&self) -> String {
-        self.constants() + &self.loaders() + &self.choices() + &self.leaf_choices()
+        let own: String = self.own().into_iter().map(own_region::functions).collect();
+        self.constants() + &self.loaders() + &own + &self.choices() + &self.leaf_choices()
     }
 
     fn constants(&self) -> String {
@@ -82,6 +94,9 @@ impl Forms {
 
     fn loaders(&self) -> String {
         let mut text: String = self.volumes().into_iter().map(|form| rows_of_volume(form).loader()).collect();
+        if let Some(own) = self.own().first() {
+            text.extend(rows_of(LensTest::Numbers(Form::Own(*own))).map(|rows| rows.loader()));
+        }
         for test in [Form::Members, Form::FadingMembers].map(LensTest::Numbers).into_iter().chain([LensTest::OwnSprite])
         {
             if self.tests.contains(&test) {
@@ -96,12 +111,12 @@ impl Forms {
 
     /// `form_holds`, `span_of_form` and `distance_to_form`.
     fn choices(&self) -> String {
-        let closed = self.closed();
-        if closed.is_empty() {
+        let spanned = self.spanned();
+        if spanned.is_empty() {
             return String::new();
         }
-        let choice = |head: &str, answer: &dyn Fn(VolumeForm) -> String| {
-            let answers: Vec<_> = closed.iter().map(|f| (LensTest::volume(*f).constant(), answer(*f))).collect();
+        let choice = |head: &str, answer: &dyn Fn(Form) -> String| {
+            let answers: Vec<_> = spanned.iter().map(|f| (f.constant(), answer(*f))).collect();
             choice(head, "form", &answers)
         };
         let mut text = choice("form_holds(s: Region, form: u32, sight: Sight) -> bool", &|f| holds(f, "s", "sight"));
@@ -134,31 +149,26 @@ impl Forms {
             }
             text + "}\n\n"
         };
-        let mut text = choice("leaf_holds(leaf: Leaf, sight: Sight) -> bool", "leaf.region", "false", &|form| match (
-            form,
-            form.closed(),
-        ) {
-            (_, Some(form)) => holds(form, "leaf.region", "sight"),
-            (Form::Members | Form::FadingMembers, _) => {
-                format!("sight.distance < FAR_AWAY && {}", is_member(form))
-            }
-            _ => "sight.distance < FAR_AWAY && solid_holds(solid_of(leaf.region), sight.position, sight.distance)"
-                .to_owned(),
-        });
+        let mut text =
+            choice("leaf_holds(leaf: Leaf, sight: Sight) -> bool", "leaf.region", "false", &|form| match form {
+                _ if form.has_span() => holds(form, "leaf.region", "sight"),
+                Form::Members | Form::FadingMembers => {
+                    format!("sight.distance < FAR_AWAY && {}", is_member(form))
+                }
+                _ => "sight.distance < FAR_AWAY && solid_holds(solid_of(leaf.region), sight.position, sight.distance)"
+                    .to_owned(),
+            });
         // A solid's ends are not asked for here; a choice of objects is the box around them.
-        text += &choice("span_of_leaf(ray: Ray, s: Region) -> Span", "s", "EMPTY_SPAN", &|form| match (
-            form,
-            form.closed(),
-        ) {
-            (_, Some(form)) => span(form, "ray", "s"),
-            (Form::Members | Form::FadingMembers, _) => span(VolumeForm::Box, "ray", "s"),
+        text += &choice("span_of_leaf(ray: Ray, s: Region) -> Span", "s", "EMPTY_SPAN", &|form| match form {
+            _ if form.has_span() => span(form, "ray", "s"),
+            Form::Members | Form::FadingMembers => span(Form::Volume(VolumeForm::Box), "ray", "s"),
             _ => "EMPTY_SPAN".to_owned(),
         });
         if self.distances {
             let head = "distance_to_leaf(leaf: Leaf, sight: Sight, border: vec4f) -> f32";
-            text += &choice(head, "leaf.region", "FAR_AWAY", &|form| match (form, form.closed()) {
-                (_, Some(form)) => distance(form, "leaf.region"),
-                (Form::Members | Form::FadingMembers, _) => {
+            text += &choice(head, "leaf.region", "FAR_AWAY", &|form| match form {
+                _ if form.has_span() => distance(form, "leaf.region"),
+                Form::Members | Form::FadingMembers => {
                     format!("select(FAR_AWAY, -FAR_AWAY, {})", is_member(form))
                 }
                 _ => "distance_to_solid(solid_of(leaf.region), sight)".to_owned(),
@@ -212,6 +222,7 @@ pub(super) fn rows_of(test: LensTest) -> Option<Rows<'static>> {
         Form::Members => Rows::of(&MEMBERS, "Members"),
         Form::FadingMembers => Rows::of(&FADING_MEMBERS, "FadingMembers"),
         Form::Combined => Rows::of(&COMBINED, "Combination"),
+        Form::Own(_) => Rows::of(&OWN, "OwnRegion"),
     })
 }
 
@@ -228,29 +239,43 @@ pub(super) fn numbers_of(form: VolumeForm) -> String {
 
 /// `span_of_stage`, for `lib/stored-form.wgsl`.
 pub(super) fn of_stage(form: VolumeForm) -> String {
-    let span = span(form, "ray", "stage.region");
+    let span = span(Form::Volume(form), "ray", "stage.region");
     rows_of_volume(form).loader() + &format!("fn span_of_stage(ray: Ray) -> Span {{\n    return {span};\n}}\n")
 }
 
-fn volume(form: VolumeForm, region: &str) -> String {
-    loaded(LensTest::volume(form), region)
+/// What the functions about a form are called after.
+fn name(form: Form) -> String {
+    match form {
+        Form::Volume(form) => form.name().to_owned(),
+        Form::Own(handler) => own_region::name(handler),
+        Form::Members | Form::FadingMembers | Form::Combined => form.constant().to_lowercase(),
+    }
 }
 
-/// Whether a volume of closed form holds a place. What has no end holds also where nothing is.
-fn holds(form: VolumeForm, region: &str, sight: &str) -> String {
-    let own = format!("{}_holds({}, {sight})", form.name(), volume(form, region));
-    if Form::Volume(form).is_convex() { format!("{sight}.distance < FAR_AWAY && {own}") } else { own }
+/// Whether a form holds no place where nothing is: flat lenses do.
+fn ends(form: Form) -> bool {
+    form.is_convex() || matches!(form, Form::Own(_))
 }
 
-/// Where a ray is in a volume of closed form.
-pub(super) fn span(form: VolumeForm, ray: &str, region: &str) -> String {
-    format!("span_of_{}({ray}, {})", form.name(), volume(form, region))
+fn region_of(form: Form, region: &str) -> String {
+    loaded(LensTest::Numbers(form), region)
 }
 
-/// How far a place is from a volume of closed form.
-fn distance(form: VolumeForm, region: &str) -> String {
-    let own = |sight| format!("distance_to_{}({}, {sight}, border)", form.name(), volume(form, region));
-    match Form::Volume(form).is_convex() {
+/// Whether a form that has a span holds a place. What has no end holds also where nothing is.
+fn holds(form: Form, region: &str, sight: &str) -> String {
+    let own = format!("{}_holds({}, {sight})", name(form), region_of(form, region));
+    if ends(form) { format!("{sight}.distance < FAR_AWAY && {own}") } else { own }
+}
+
+/// Where a ray is in a form that has a span.
+pub(super) fn span(form: Form, ray: &str, region: &str) -> String {
+    format!("span_of_{}({ray}, {})", name(form), region_of(form, region))
+}
+
+/// How far a place is from a form that has a span.
+fn distance(form: Form, region: &str) -> String {
+    let own = |sight| format!("distance_to_{}({}, {sight}, border)", name(form), region_of(form, region));
+    match ends(form) {
         true => format!("select({}, FAR_AWAY, sight.distance >= FAR_AWAY)", own("with_place(sight)")),
         false => own("sight"),
     }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use crate::shader::{
     forms::loaded,
+    own_region,
     plan::{Plan, form::Form, lens_test::LensTest, program::Program, uber::Uber},
     table::MOST_VOLUMES,
 };
@@ -75,6 +76,7 @@ fn call(question: Question, test: LensTest, volume: &str, place: &str) -> String
         (Q::Inside, T::Numbers(form)) if form.is_solid() => format!("inside_solid({own}, {place})"),
         (Q::Classes, T::Numbers(form)) if form.is_solid() => format!("class_by_faces({own}, {place})"),
         (Q::Covers, T::Numbers(form)) if form.is_solid() => format!("covers_by_faces({own}, {place})"),
+        (Q::Classes, T::Numbers(F::Own(handler))) => format!("class_of_{}({own}, {place})", own_region::name(handler)),
         (Q::Classes, T::Numbers(form)) => format!("class_in_form({region}, {}, {place})", form.constant()),
         (Q::Inside, T::Numbers(form)) => format!("inside_form({region}, {}, {place})", form.constant()),
         (Q::Covers, T::Numbers(form)) => format!("covers_form({region}, {}, {place})", form.constant()),
@@ -143,9 +145,9 @@ fn span_of(test: LensTest, volume: &str, pixel: &str, ray: &str) -> String {
         LensTest::Sides(_) => format!("span_in_sides(sprite_places[{volume}], {pixel})"),
         LensTest::Sprite | LensTest::LayeredSprite => format!("span_in_layers(sprite_places[{volume}], {pixel})"),
         LensTest::OwnSprite => format!("span_in_own({}, {ray})", loaded(test, &format!("lens_regions[{volume}]"))),
-        LensTest::Numbers(form) => match form.closed() {
-            Some(_) => format!("span_of_form({ray}, lens_regions[{volume}], {})", form.constant()),
-            None => "EMPTY_SPAN".to_owned(),
+        LensTest::Numbers(form) => match form.has_span() {
+            true => format!("span_of_form({ray}, lens_regions[{volume}], {})", form.constant()),
+            false => "EMPTY_SPAN".to_owned(),
         },
     }
 }

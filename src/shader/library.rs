@@ -88,6 +88,7 @@ files! {
     MEMBER_OUTLINE = "lib/member-outline.wgsl";
     SOLID_SPRITE = "lib/solid-sprite.wgsl";
     COMBINED = "lib/combined.wgsl";
+    OWN = "shape/own.wgsl";
     COMBINED_SECTION = "lib/combined-section.wgsl";
     COMBINED_SPRITE = "lib/combined-sprite.wgsl";
     COMBINED_PASS = "pass/combined-sprite.wgsl";

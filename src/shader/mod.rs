@@ -24,6 +24,7 @@ mod masks;
 mod module;
 mod module_name;
 mod names;
+mod own_region;
 mod plan;
 mod rays;
 mod regions;

@@ -54,7 +54,8 @@ impl Town {
 
     /// The scene with such lenses.
     fn scene(&self, lenses: &str) -> Result<Scene, String> {
-        let folder = std::env::temp_dir().join(format!("veduta-own-{}-{:?}", std::process::id(), std::thread::current().id()));
+        let folder =
+            std::env::temp_dir().join(format!("veduta-own-{}-{:?}", std::process::id(), std::thread::current().id()));
         std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
         std::fs::copy(citydata("courtyard.city.json"), folder.join("city.json")).map_err(|error| error.to_string())?;
         let file = folder.join("scene.toml");
@@ -68,8 +69,7 @@ impl Town {
     }
 
     fn drawn(&mut self, scene: &Scene, backend: Backend) -> Picture {
-        let request =
-            Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+        let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
         self.studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}"))
     }
 
@@ -77,7 +77,10 @@ impl Town {
     fn picture(&mut self, scene: &Scene) -> Picture {
         let [a, b] = [Backend::Specialised, Backend::Uber].map(|backend| self.drawn(scene, backend));
         assert!(a.rgba == b.rgba, "the back ends differ");
-        assert!(a.depth == b.depth && a.lens_mask == b.lens_mask && a.object_id == b.object_id, "the back ends differ in what is not seen");
+        assert!(
+            a.depth == b.depth && a.lens_mask == b.lens_mask && a.object_id == b.object_id,
+            "the back ends differ in what is not seen"
+        );
         a
     }
 
@@ -121,7 +124,8 @@ fn a_deformation_of_the_docs_moves_what_it_says_on_both_back_ends() {
         let (Some(place), object) = (place, after.object_id.as_ref().unwrap()[i]) else { continue };
         let rest = deformers.inverse(place).expect("nothing folds");
         // The chords of the mesh are half a pixel off at most: some 30 cm at 300 m.
-        let on = triangles.iter().filter(|t| t.object + 1 == object && is_on(&t.corners, rest, 0.4)).collect::<Vec<_>>();
+        let on =
+            triangles.iter().filter(|t| t.object + 1 == object && is_on(&t.corners, rest, 0.4)).collect::<Vec<_>>();
         assert!(object == 0 || !on.is_empty(), "pixel {i}: {place} of {object} was at {rest}");
         moved += usize::from((place - rest).length() > 1.0);
         let cofactor = veduta::geom::deform::cofactor(&deformers.jacobian(rest));
@@ -163,7 +167,9 @@ fn what_is_wrong_with_a_deformation_is_told() {
 #[test]
 fn a_deformation_that_folds_is_weakened_and_says_so() {
     let mut town = Town::new();
-    let text = documented("ripple").replace("\"ripple\"", "\"crumple\"").replace("vec3f(0.0, 0.0, p.height * wave)", "vec3f(p.height * wave, 0.0, 0.0)");
+    let text = documented("ripple")
+        .replace("\"ripple\"", "\"crumple\"")
+        .replace("vec3f(0.0, 0.0, p.height * wave)", "vec3f(p.height * wave, 0.0, 0.0)");
     effect::add("crumple.wgsl", &text).unwrap();
     let scene = town.scene(&town.pond("deform = [{ kind = \"crumple\", height = 40.0, spacing = 10.0 }]")).unwrap();
     let picture = town.picture(&scene);
@@ -223,12 +229,23 @@ fn a_transform_of_the_docs_puts_a_model_where_it_says() {
     let differ = own.rgba.iter().zip(&keys.rgba).filter(|(a, b)| a != b).count();
     // A cosine of 90 degrees in f64 is 6e-17 and not 0: edges may fall to the other side of a pixel's middle.
     assert!(differ < 20, "{differ} pixels differ");
-    let text = documented("tabletop").replace("\"tabletop\"", "\"squash\"").replace("small.z + p.table", "0.5 * small.z");
+    let text =
+        documented("tabletop").replace("\"tabletop\"", "\"squash\"").replace("small.z + p.table", "0.5 * small.z");
     effect::add("squash.wgsl", &text).unwrap();
     let scene = town.scene(&lens("transform = { kind = \"squash\" }")).unwrap();
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend: Backend::default() };
+    let request = Request {
+        size: SIZE,
+        samples: 1,
+        transparent: false,
+        aovs: ALL,
+        statistics: true,
+        backend: Backend::default(),
+    };
     let error = town.studio.render(&scene, &request).expect_err("it squashes").to_string();
-    assert!(error.contains("content.transform: \"squash\" does more than turn, move and scale alike along all axes"), "{error}");
+    assert!(
+        error.contains("content.transform: \"squash\" does more than turn, move and scale alike along all axes"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -246,5 +263,8 @@ fn two_contents_of_one_city_stand_where_each_says() {
     let inside = bits(&alone, 0);
     let differ = (0..inside.len()).filter(|&i| inside[i] && alone.rgba[i] != both.rgba[i]).count();
     let shown = inside.iter().filter(|is| **is).count();
-    assert!(shown > 500 && differ == 0, "{differ} of {shown} pixels of the moved one are others beside the one that stands");
+    assert!(
+        shown > 500 && differ == 0,
+        "{differ} of {shown} pixels of the moved one are others beside the one that stands"
+    );
 }

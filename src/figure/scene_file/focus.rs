@@ -8,12 +8,14 @@ use crate::{
     figure::scene_file::{
         check::{Fields, Place},
         choice::{self, refuse},
+        handled, keys,
         node::{Data, Node},
         reader::Reader,
-        shape_keys::{SHAPES, kind_of},
+        shape_keys::{OWN, SHAPES, kind_of},
     },
     geom::{Shape, shape::FlatFigure, shape::solid::prism},
     lens::{Focus, nearest::did_you_mean},
+    shader::effect::{AskedBy, asked_for},
 };
 
 /// A shape of its table; `None` where something is wrong (and noted).
@@ -28,9 +30,13 @@ pub fn read(reader: &mut Reader, node: &Node, place: &Place) -> Option<Focus> {
         return None;
     };
     let kind = entries.iter().find(|(k, ..)| k == "kind").map(|(.., n)| n);
-    let names = || SHAPES.iter().map(|own| own.name);
+    let own = || asked_for(AskedBy::Shapes).map(|handler| handler.name.as_str());
+    let names = || SHAPES.iter().map(|own| own.name).chain(own());
     let all = names().collect::<Vec<_>>().join(", ");
     let Some(own) = kind.and_then(Node::text).and_then(kind_of) else {
+        if let Some(focus) = own_region(reader, node, entries, place) {
+            return focus;
+        }
         let (line, message) = match kind {
             None => (node.line, format!("is missing: one of {all}")),
             Some(n) => {
@@ -58,6 +64,25 @@ pub fn read(reader: &mut Reader, node: &Node, place: &Place) -> Option<Focus> {
     };
     check(reader, &fields, &focus);
     Some(focus)
+}
+
+/// The region test of a user's; `None`: there is none of that name.
+fn own_region(
+    reader: &mut Reader,
+    node: &Node,
+    entries: &[(String, u32, Node)],
+    place: &Place,
+) -> Option<Option<Focus>> {
+    let others: Vec<&str> = std::iter::once("kind").chain(keys::names(&OWN.table)).collect();
+    let used = handled::read_beside(reader, node, place, AskedBy::Shapes, &others)?;
+    let of_box = entries.iter().filter(|(key, ..)| key != "kind" && others.contains(&key.as_str())).cloned();
+    let of_box = Node { data: Data::Table(of_box.collect()), line: node.line };
+    let fields = reader.checker.fields(&of_box, &OWN.table, &[], place.clone());
+    let read = OWN.read(&fields, reader);
+    Some(read.map(|focus| match focus {
+        Focus::Own { center, size, rotation, .. } => Focus::Own { used, center, size, rotation },
+        other => other,
+    }))
 }
 
 /// Notes what the shape itself finds wrong with it.

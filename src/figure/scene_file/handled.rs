@@ -16,10 +16,21 @@ const KIND: &str = "kind";
 
 /// The use of a handler that a table names; `None`: there is none of that name. What is wrong with its parameters is noted.
 pub fn read(reader: &mut Reader, node: &Node, place: &Place, asked_by: AskedBy) -> Option<Handled> {
+    read_beside(reader, node, place, asked_by, &[KIND])
+}
+
+/// The same of a table that has keys of others, too.
+pub fn read_beside(
+    reader: &mut Reader,
+    node: &Node,
+    place: &Place,
+    asked_by: AskedBy,
+    others: &[&str],
+) -> Option<Handled> {
     let Data::Table(entries) = &node.data else { return None };
     let mut used = Handled::named(node.entry(KIND)?.text()?);
     let definition = used.definition(asked_by).ok()?;
-    for (key, line, value) in entries.iter().filter(|(key, ..)| key != KIND) {
+    for (key, line, value) in entries.iter().filter(|(key, ..)| !others.contains(&key.as_str())) {
         match parameter(value) {
             Some(value) => {
                 used.parameters.insert(key.clone(), value);
@@ -27,7 +38,7 @@ pub fn read(reader: &mut Reader, node: &Node, place: &Place, asked_by: AskedBy) 
             None => reader.checker.note(place, key, *line, format!("{} is no value of a parameter", value.quoted())),
         }
     }
-    for problem in used.problems(definition, &[KIND]) {
+    for problem in used.problems(definition, others) {
         let line = entries.iter().find(|(key, ..)| *key == problem.key).map_or(node.line, |(_, line, _)| *line);
         reader.checker.note(place, &problem.key, line, problem.message);
     }
@@ -53,4 +64,12 @@ pub fn required(reader: &mut Reader, node: &Node, place: &Place, asked_by: Asked
 pub fn written(used: &Handled) -> Data {
     let parameters = used.parameters.iter().map(|(key, value)| (key.clone(), parameter_data(value)));
     Data::table(std::iter::once((KIND.to_owned(), Data::text(&used.handler))).chain(parameters))
+}
+
+/// The same with the keys of others.
+pub fn written_over(used: &Handled, others: Data) -> Data {
+    let (Data::Table(mut own), Data::Table(others)) = (written(used), others) else { unreachable!("both are tables") };
+    // Behind its name.
+    own.splice(1..1, others);
+    Data::Table(own)
 }

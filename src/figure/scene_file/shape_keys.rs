@@ -8,13 +8,14 @@ use crate::{
     figure::scene_file::{
         choice::{self, CHOICE},
         forms::{Axis, Form as _, Same, Turn},
+        handled,
         keys::{FAR_M, Key, Kind, Table, key},
         node::{Data, Node},
         paths::Options,
         row::{Row, Variant, kind, part, tables, variant},
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
-    lens::{Focus, chosen::Choice},
+    lens::{Focus, Handled, chosen::Choice},
 };
 
 const CENTER: Key = key("center", Kind::Point, "", "m", "The middle of the body.", "[78600.0, 457950.0, 10.0]");
@@ -547,6 +548,20 @@ const SHAPE_KINDS: &[Variant<Focus>] = &[
     ),
 ];
 
+/// The box of a user's region test; its other keys are its handler's.
+pub const OWN: Variant<Focus> = variant!(
+    Focus,
+    "own",
+    "A region test of your own, in a box.",
+    Focus::Own { used: Handled::nameless(), center: DVec3::ZERO, size: DVec3::ZERO, rotation: DQuat::IDENTITY },
+    Focus::Own { .. },
+    &[
+        part!(Focus, CENTER, Same, Focus::Own { center, .. } => center),
+        part!(Focus, key("size", Kind::Lengths, "", "m", "Full edges along its own x, y, z.", "[40.0, 20.0, 30.0]"), Same, Focus::Own { size, .. } => size),
+        part!(Focus, ROTATION, Turn, Focus::Own { rotation, .. } => rotation),
+    ]
+);
+
 /// The kind of shape that a table is by this name.
 pub fn kind_of(name: &str) -> Option<&'static Variant<Focus>> {
     SHAPE_KINDS.iter().find(|own| own.table.name == name)
@@ -554,6 +569,9 @@ pub fn kind_of(name: &str) -> Option<&'static Variant<Focus>> {
 
 /// A focus area as its table; `None` where a lens has it as keys of its own.
 pub fn written(focus: &Focus, options: &Options) -> Option<Data> {
+    if let Focus::Own { used, .. } = focus {
+        return Some(handled::written_over(used, OWN.written(focus, options)));
+    }
     Some(Variant::of(SHAPE_KINDS, focus)?.written(focus, options))
 }
 

@@ -143,7 +143,10 @@ impl Deformer {
         }
         let det = |p: DVec3| number::determinant(&self.jacobian_over(&p.to_array()));
         let apart = self.spacing().iter().fold(DVec3::INFINITY, |least, spacing| least.min(*spacing));
-        let counts = (part.size() / (0.5 * apart)).ceil().clamp(DVec3::splat(LEAST_PLACES), DVec3::splat(MOST_PLACES)).as_uvec3();
+        let counts = (part.size() / (0.5 * apart))
+            .ceil()
+            .clamp(DVec3::splat(LEAST_PLACES), DVec3::splat(MOST_PLACES))
+            .as_uvec3();
         let mut step = part.size() / counts.as_dvec3();
         let cell = |i: u32| UVec3::new(i % counts.x, i / counts.x % counts.y, i / (counts.x * counts.y));
         let places = |i: u32| part.min + step * (cell(i).as_dvec3() + 0.5);
@@ -228,7 +231,13 @@ impl Deformation {
         };
         // What is only looked at is never proven.
         let is_looked_at = self.chain.iter().any(|operator| matches!(operator, Operator::Map(_)));
-        let used = if reason.is_none() { 1.0 } else if is_looked_at { 0.0 } else { largest(0.0, |strength| Ok(prove(strength)? == Proof::Proven))? };
+        let used = if reason.is_none() {
+            1.0
+        } else if is_looked_at {
+            0.0
+        } else {
+            largest(0.0, |strength| Ok(prove(strength)? == Proof::Proven))?
+        };
         let seen = match &reason {
             Some(proof) if !is_clear(proof) => largest(used, |strength| Ok(is_clear(&prove(strength)?)))?,
             _ => 1.0,

@@ -127,7 +127,9 @@ fn check_amount(effect: &EffectDefinition, key: &str, amount: &Amount) -> Result
         Amount::Parameter(name) => {
             let is_number = |p: &&ParameterDefinition| matches!(p.kind, ParameterKind::Number { .. });
             let of_name = effect.parameters.iter().find(|p| p.name == *name).filter(is_number);
-            of_name.map(|_| ()).ok_or_else(|| format!("{key} must be metres or the name of a number among the parameters"))
+            of_name
+                .map(|_| ())
+                .ok_or_else(|| format!("{key} must be metres or the name of a number among the parameters"))
         }
     }
 }

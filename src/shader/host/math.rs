@@ -142,9 +142,8 @@ pub fn binary(op: B, left: &Value, right: &Value) -> Option<Value> {
 
 /// A matrix times a vector.
 fn combined(columns: &[Value], vector: &Value) -> Option<Value> {
-    let parts = columns.iter().zip(vector.scalars()).map(|(column, share)| {
-        binary(B::Multiply, column, &Value::Scalar(*share))
-    });
+    let parts =
+        columns.iter().zip(vector.scalars()).map(|(column, share)| binary(B::Multiply, column, &Value::Scalar(*share)));
     let parts: Option<Vec<Value>> = parts.collect();
     let mut parts = parts?.into_iter();
     let first = parts.next()?;
@@ -242,12 +241,9 @@ pub fn function(fun: M, arguments: &[Value]) -> Option<Value> {
         (M::Distance, [b]) => function(M::Length, &[binary(B::Subtract, a, b)?]),
         (M::Normalize, []) => binary(B::Divide, a, &function(M::Length, std::slice::from_ref(a))?),
         (M::Cross, [b]) => {
-            let ([a, b], two) = ([a.reals::<3>()?, b.reals::<3>()?], |a: Dual, b: Dual, c: Dual, d: Dual| a * b - c * d);
-            Some(Value::vector([
-                two(a[1], b[2], a[2], b[1]),
-                two(a[2], b[0], a[0], b[2]),
-                two(a[0], b[1], a[1], b[0]),
-            ]))
+            let ([a, b], two) =
+                ([a.reals::<3>()?, b.reals::<3>()?], |a: Dual, b: Dual, c: Dual, d: Dual| a * b - c * d);
+            Some(Value::vector([two(a[1], b[2], a[2], b[1]), two(a[2], b[0], a[0], b[2]), two(a[0], b[1], a[1], b[0])]))
         }
         (M::Reflect, [normal]) => {
             let twice = dot(a, normal)? * Dual::constant(2.0);
@@ -273,7 +269,8 @@ fn of_two(fun: M, x: Scalar, y: Scalar) -> Option<Scalar> {
         (M::Step, Real(edge), Real(x)) => Real(Dual::constant(f64::from(u8::from(x.value >= edge.value)))),
         (M::Atan2, Real(y), Real(x)) => {
             let squared = x.value * x.value + y.value * y.value;
-            let slope = if squared > 0.0 { (y.slope * x.value - x.slope * y.value) / squared } else { glam::DVec3::ZERO };
+            let slope =
+                if squared > 0.0 { (y.slope * x.value - x.slope * y.value) / squared } else { glam::DVec3::ZERO };
             Real(Dual { value: y.value.atan2(x.value), slope })
         }
         (M::Pow, Real(x), Real(e)) => {

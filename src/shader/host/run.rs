@@ -1,8 +1,8 @@
 //! Functions of WGSL run on the host, statement by statement.
 
 use wgpu::naga::{
-    Block, Constant, Expression, Function, Handle, Literal, LocalVariable, Module, RelationalFunction, ScalarKind, Span,
-    Statement, SwitchValue, Type, TypeInner,
+    Block, Constant, Expression, Function, Handle, Literal, LocalVariable, Module, RelationalFunction, ScalarKind,
+    Span, Statement, SwitchValue, Type, TypeInner,
 };
 
 use crate::shader::host::{

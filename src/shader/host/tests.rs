@@ -68,11 +68,15 @@ fn what_the_host_does_not_run_is_told_with_its_place() {
     assert_eq!(error, "mine.wgsl:6:4: expected `fn effect(place: vec3f, size: vec3f) -> vec3f`");
     let header = file("deform", "", "fn effect(place: vec3f, size: vec3f) -> vec3f { return place; }");
     let error = checked("mine.wgsl", &header).expect_err("how far?").to_string();
-    assert_eq!(error, "mine.wgsl:1:1: expected reach = METRES, or the name of a parameter: how far a place is moved at most");
+    assert_eq!(
+        error,
+        "mine.wgsl:1:1: expected reach = METRES, or the name of a parameter: how far a place is moved at most"
+    );
     let header = file("post", "//! reach = 3", "fn effect(color: vec3f, point: Point) -> vec3f { return color; }");
     let error = checked("mine.wgsl", &header).expect_err("no use").to_string();
     assert_eq!(error, "mine.wgsl:5:13: reach is for kind = \"deform\"");
-    let header = file("deform", "//! reach = \"far\"", "fn effect(place: vec3f, size: vec3f) -> vec3f { return place; }");
+    let header =
+        file("deform", "//! reach = \"far\"", "fn effect(place: vec3f, size: vec3f) -> vec3f { return place; }");
     let error = checked("mine.wgsl", &header).expect_err("no such parameter").to_string();
     assert_eq!(error, "mine.wgsl:5:13: reach must be metres or the name of a number among the parameters");
 }

@@ -13,10 +13,12 @@ pub enum Form {
     FadingMembers,
     /// The leaves of a combination.
     Combined,
+    /// A user's region test: the number of its handler.
+    Own(u32),
 }
 
 impl Form {
-    /// All of them.
+    /// All of them but users'.
     pub fn all() -> impl Iterator<Item = Self> {
         VolumeForm::ALL.iter().map(|form| Self::Volume(*form)).chain([
             Self::Members,
@@ -32,6 +34,7 @@ impl Form {
             Self::Members => 0x100,
             Self::FadingMembers => 0x101,
             Self::Combined => 0x102,
+            Self::Own(handler) => 0x4000 + handler,
         }
     }
 
@@ -42,6 +45,7 @@ impl Form {
             Self::Members => "MEMBERS".to_owned(),
             Self::FadingMembers => "FADING_MEMBERS".to_owned(),
             Self::Combined => "COMBINED".to_owned(),
+            Self::Own(handler) => format!("OWN_{handler}"),
         }
     }
 
@@ -51,6 +55,11 @@ impl Form {
             Self::Volume(form) => Some(form).filter(|form| form.extent() != Extent::Faces),
             _ => None,
         }
+    }
+
+    /// Whether WGSL says where rays enter it first and leave it last: in closed form, or step by step.
+    pub fn has_span(self) -> bool {
+        self.closed().is_some() || matches!(self, Self::Own(_))
     }
 
     /// Whether it is a solid.

@@ -59,10 +59,10 @@ impl LensTest {
         }
     }
 
-    /// The volume that has a closed form, where that is what it asks.
-    pub fn closed(self) -> Option<VolumeForm> {
+    /// The form that knows where rays enter and leave, where that is what it asks.
+    pub fn spanned(self) -> Option<Form> {
         match self {
-            Self::Numbers(form) => form.closed(),
+            Self::Numbers(form) => Some(form).filter(|form| form.has_span()),
             _ => None,
         }
     }

@@ -50,7 +50,7 @@ impl Program {
             lenses: has_lenses,
             // The uber back end reads there which test it is.
             regions: tests.iter().any(|t| !t.is_sprite()) || (matches!(self, Self::Uber(_)) && has_lenses),
-            closed: tests.iter().any(|t| t.closed().is_some()),
+            closed: tests.iter().any(|t| t.spanned().is_some()),
             members: tests.contains(&LensTest::Numbers(Form::Members)),
             fading_members: tests.contains(&LensTest::Numbers(Form::FadingMembers)),
             fading: tests.contains(&LensTest::Numbers(Form::FadingMembers))
