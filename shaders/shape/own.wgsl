@@ -11,7 +11,7 @@ struct OwnRegion {
 
 // Steps to where a ray enters or leaves, at most; and how near that is found, in longest half edges.
 const OWN_STEPS: i32 = 128;
-const OWN_EXACT: f32 = 1e-4;
+const OWN_EXACT: f32 = 1e-5;
 
 fn in_own(s: OwnRegion, v: vec3f) -> vec3f {
     return vec3f(dot(v, s.x), dot(v, s.y), dot(v, s.z));
