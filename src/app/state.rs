@@ -11,7 +11,7 @@ use crate::{
         drawn::Drawing,
         file_dialog::{Asking, FileDialog},
         finder::Finder,
-        properties,
+        properties::edits::Drafts,
     },
     scene::CitySpec,
 };
@@ -92,7 +92,7 @@ pub struct Window {
     pub(super) allows_outside: bool,
     /// The field of view of the last perspective, radians.
     pub(super) fov_y: f64,
-    pub(super) error_text: properties::Drafts,
+    pub(super) drafts: Drafts,
 }
 
 /// A lens that is given another name in the list.

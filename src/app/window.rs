@@ -108,7 +108,7 @@ impl Window {
             fov_y: 45.0_f64.to_radians(),
             allow_outside: start.allow_outside,
             allows_outside: start.allow_outside,
-            error_text: properties::Drafts::default(),
+            drafts: properties::edits::Drafts::default(),
         };
         window.artist.watch(&start.effects, true);
         let files = if start.files.is_empty() { vec![PathBuf::from(BUILTIN)] } else { start.files.clone() };
@@ -422,9 +422,9 @@ impl Window {
     }
 
     fn properties(&mut self, ui: &mut Ui) {
-        let mut drafts = std::mem::take(&mut self.error_text);
+        let mut drafts = std::mem::take(&mut self.drafts);
         properties::show(self, &mut drafts, ui);
-        self.error_text = drafts;
+        self.drafts = drafts;
     }
 
     /// Asks for the picture of what is edited, where it is another than the last one that was asked for. `size`: pixels; `meant_for`: the

@@ -98,5 +98,5 @@ pub fn unease(problem: &Problem, item: usize, lane: &Lane, row: &[usize], sizes:
     let from_first = ((problem.wish[item][d] - f64::from(problem.board.inner.min[d])) / extent(d)).clamp(0.0, 1.0);
     let far = if lane.side.is_first() { from_first } else { 1.0 - from_first };
     let taken: i32 = row.iter().map(|i| sizes[*i][a] + problem.board.gap).sum();
-    far + 0.5 * f64::from(taken) / f64::from((lane.span.1 - lane.span.0).max(1))
+    far + 0.5 * f64::from(taken) / f64::from(lane.span.length().max(1))
 }

@@ -397,7 +397,7 @@ fn lane_for(problem: &Problem, filled: &Filled, item: usize, clearance: f64) -> 
         let inner = board.inner.size();
         let length: i32 = row.iter().map(|i| filled.sizes[*i][a] + board.gap).sum();
         // Before any windows: a full row has no room, whatever the points are.
-        if filled.sizes[item][d] > inner[d] || length - board.gap > lane.span.1 - lane.span.0 {
+        if filled.sizes[item][d] > inner[d] || length - board.gap > lane.span.length() {
             return None;
         }
         let mut of_size: Vec<([i32; 2], Windows)> = Vec::new();

@@ -17,7 +17,7 @@ use crate::{
         frame::FrameInput,
         layout,
         solids::SolidTable,
-        stored::{KeptSprite, Stored, code_of},
+        stored::{KeptSprite, SpriteRoom, Stored, code_of},
         volume::LensVolume,
     },
     shader::VolumeTest,
@@ -247,9 +247,9 @@ impl OwnSprites {
     }
 
     /// Words that they take among those of all sprites, and how many there are.
-    pub fn room(&self) -> (u64, u32) {
+    pub fn room(&self) -> SpriteRoom {
         let words = self.list.iter().map(|one| one.stored.words(one.bounds.size)).sum();
-        (words, self.list.len() as u32)
+        SpriteRoom { words, counts: self.list.len() as u32 }
     }
 
     /// Whether some of them count rays with more intervals than layers.

@@ -8,7 +8,7 @@ use crate::{
         frame::FrameInput,
         screen_bound::ScreenBound,
         sprites::{self, Pages, Place},
-        stored::{self, Stored},
+        stored::{self, SpriteRoom, Stored},
     },
     shader::VolumeTest,
 };
@@ -65,11 +65,11 @@ fn sprite_size(input: &FrameInput, sprite: LensSprite) -> [u32; 2] {
     size.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, 16_384))
 }
 
-/// The volumes of a frame that its picture may show; `city`: the box around what is drawn; `own`: words and counts of the sprites
-/// that come first, those with eyes of their own.
-pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: (u64, u32)) -> Seen {
+/// The volumes of a frame that its picture may show; `city`: the box around what is drawn; `own`: what the sprites take that come
+/// first, those with eyes of their own.
+pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom) -> Seen {
     let mut seen: Vec<SeenVolume> = Vec::new();
-    let (mut words, mut lists, mut counts) = (own.0, 0, own.1);
+    let (mut words, mut lists, mut counts) = (own.words, 0, own.counts);
     let masks = input.masks && input.sample == 0;
     for (index, volume) in input.volumes.iter().enumerate() {
         // Other classes may be anywhere in the own space of a sprite.

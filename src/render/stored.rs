@@ -46,6 +46,15 @@ impl Stored {
     }
 }
 
+/// Room that sprites take in the buffers of all.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SpriteRoom {
+    /// Words of what is stored.
+    pub words: u64,
+    /// Counts of rays with more intervals than layers.
+    pub counts: u32,
+}
+
 /// Two planes at least this part of the distance apart.
 const APART: f64 = 1e-3;
 

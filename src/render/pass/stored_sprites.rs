@@ -263,7 +263,7 @@ impl StoredSprites {
         let mut clear = |first: u32, count| recording.encoder.clear_buffer(counts, 4 * u64::from(first), count);
         clear(0, Some(4));
         OwnSprites::counts_of(requests).for_each(|own| clear(own, Some(4)));
-        clear(1 + frame.plan.own_sprites.room().1, None);
+        clear(1 + frame.plan.own_sprites.room().counts, None);
         let solids: Vec<(u32, &PlacedLeaf)> =
             requests.iter().flat_map(|m| solids_of(m.body).map(move |(_, leaf)| (m.lens, leaf))).collect();
         let (Some(target), false) = (&self.list_target, solids.is_empty()) else { return };
