@@ -1,6 +1,6 @@
 //! name = "marble"
 //! kind = "material"
-//! spec = "C5, C8"
+//! spec = "Tiesel §3"
 //! doc = "Polished marble: clouds and veins that run through the whole block, and sharp highlights of the sun."
 //!
 //! [[parameter]]

@@ -1,4 +1,4 @@
-// Where what is noted of translucent fragments (O7) is kept, as words: of as many notes as there is `room` for, first the depth and
+// Where what is noted of translucent fragments is kept, as words: of as many notes as there is `room` for, first the depth and
 // the number of each, side by side; then of each the next in its list; then, where the picture has them, a normal of each, and
 // last a colour of each. A software adapter fetches words for one pixel after the other, two side by side as fast as one.
 

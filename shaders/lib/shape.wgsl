@@ -1,4 +1,4 @@
-// Lens volumes, in view space (L3): whether they hold a place, and where they are along a ray (S1). The host computes every figure relative to the
+// Lens volumes, in view space: whether they hold a place, and where they are along a ray. The host computes every figure relative to the
 // eye in f64 before it rounds to f32; `crate::geom::Shape` is the f64 twin of the functions here.
 
 struct Shape {
@@ -82,7 +82,7 @@ fn meet(a: Span, b: Span) -> Span {
 }
 
 // A place on a flat face is in the volume (closed bodies), and a wall that lies in a face's plane comes with the rounding of
-// its depth: so flat faces hold half of the band of analytic tests more (S7: 8 * 2^-23 of the larger distance from the eye).
+// its depth: so flat faces hold half of the band of analytic tests more (8 * 2^-23 of the larger distance from the eye).
 const ON_FACE: f32 = 4.0 * 1.1920929e-7;
 
 // For a volume around `center`, seen at distance D, metres. |x| + |y| + |z| is at most 1.73 of the length.
@@ -237,7 +237,7 @@ const POLYGON: f32 = 2.0;
 // Where a flat lens is never left.
 const NO_END: f32 = FAR_AWAY;
 
-// What is seen through a figure in a plane (L3), from the plane to infinity. Where a sight line crosses the plane is a projective
+// What is seen through a figure in a plane, from the plane to infinity. Where a sight line crosses the plane is a projective
 // map of where it crosses the picture, a = (x, y, -1): D = center.a / axis_z.a, and in the figure's own coordinates
 // (axis_x.a, axis_y.a) / axis_z.a. The host makes it in f64, so that axis_z.a > 0 where the plane is seen; 0: edge on.
 fn span_of_flat(ray: Ray, s: Shape) -> Span {

@@ -1,4 +1,4 @@
-// The nearest translucent fragments of each pixel, a fixed number of them (O7): K-buffer and peeling. Two or three passes over the
+// The nearest translucent fragments of each pixel, a fixed number of them: K-buffer and peeling. Two or three passes over the
 // city find them whatever the order in which it is drawn.
 //
 //   depths   each fragment goes down the slots of its pixel; a slot keeps the nearest depth that came by, the other goes on

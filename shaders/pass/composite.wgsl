@@ -1,4 +1,4 @@
-// Translucent layers of a pixel (O7), as `pass/layers.wgsl` noted them: sorted by their full depth, each shaded as what is opaque
+// Translucent layers of a pixel, as `pass/layers.wgsl` noted them: sorted by their full depth, each shaded as what is opaque
 // is, with its own place in the lenses, and laid one over the other in f32, nearest first.
 //
 // The nearest notes are found several at a time, in one walk through the list; that goes on from the last of them until all are

@@ -1,4 +1,4 @@
-// How many layers the pixel has that has most, for opacity rules that ask for it (O1): the longest list.
+// How many layers the pixel has that has most, for opacity rules that ask for it: the longest list.
 
 @group(0) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
 @group(0) @binding(1) var<storage, read_write> notes: array<u32>;

@@ -1,4 +1,4 @@
-// Translucent layers (O7): every fragment that is seen through is noted in a list of its pixel. `pass/composite.wgsl` sorts them.
+// Translucent layers: every fragment that is seen through is noted in a list of its pixel. `pass/composite.wgsl` sorts them.
 //
 // A list begins at `heads` and goes on from note to note. A note has three words and, where the picture has them, a normal per
 // vertex and a colour of a texture, in places that `lib/notes.wgsl` tells.

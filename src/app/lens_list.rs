@@ -7,7 +7,7 @@ use crate::app::{
 
 use eframe::egui::{self, Align, Color32, Id, Layout, RichText, Sense, Ui};
 
-/// What a lens is to the one who looks (L1).
+/// What a lens is to the one who looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// Nothing special.

@@ -1,4 +1,4 @@
-//! Boolean combinations of bodies (L3), as the operations of a stack machine.
+//! Boolean combinations of bodies, as the operations of a stack machine.
 
 /// What two bodies become.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

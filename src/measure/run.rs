@@ -342,7 +342,7 @@ mod tests {
             name: "test",
             title: "",
             about: "",
-            specs: &[],
+            sources: &[],
             reference: "",
             knobs: &[Knob { name: "k", unit: "" }],
             x: Quantity::Flip,

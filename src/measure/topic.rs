@@ -22,8 +22,8 @@ pub struct Topic {
     pub title: &'static str,
     /// One sentence: what is varied, and what for.
     pub about: &'static str,
-    /// Ids of the specification (`lenses.md`).
-    pub specs: &'static [&'static str],
+    /// Where what is varied comes from: author and section (docs/sources.md).
+    pub sources: &'static [&'static str],
     /// What every variant is compared with, in words that follow "the reference is".
     pub reference: &'static str,
     /// What is turned; a variant has one value for each.

@@ -1,4 +1,4 @@
-//! Who stands where: on which lane, further inward, or nowhere (B6).
+//! Who stands where: on which lane, further inward, or nowhere.
 //!
 //! Overlays are placed by priority, the higher first. All shrink together, by eighths of the way from the size that they want to their smallest, until the
 //! lanes hold all of them; if that is not enough, again until all find a place on the lanes or further inward; at their smallest size, who finds no place is

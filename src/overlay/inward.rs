@@ -1,4 +1,4 @@
-//! Places further inward (B6): the least depth at a side at which an overlay has room.
+//! Places further inward: the least depth at a side at which an overlay has room.
 //!
 //! In the plane of depth and place along the side, each point and each overlay closes a rectangle of places to an overlay
 //! of a given size. A sweep over depth raises the depth at which each place along the side opens, by one rectangle after

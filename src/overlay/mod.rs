@@ -1,4 +1,4 @@
-//! Where overlays stand in a picture, and the context lines that tie them to their places (B6, B7).
+//! Where overlays stand in a picture, and the context lines that tie them to their places (Trapp §3.4).
 //!
 //! Plain data in, plain data out: pixels of one picture, x right, y down, (0, 0) its upper left corner. Nothing here knows lenses, scenes or the GPU.
 //! [`place()`] does it all in one call, because the order of the overlays decides which lines cross:

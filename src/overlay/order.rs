@@ -1,4 +1,4 @@
-//! The order on the lanes that makes least lines cross (B7).
+//! The order on the lanes that makes least lines cross.
 //!
 //! For overlays of one size with one line each, the order of least total length has no crossing, where lines are straight: if two cross, the overlays change
 //! places, and both lines together become shorter, so this ends. It is how the search begins. Where overlays differ in size, have many lines or lines with

@@ -1,4 +1,4 @@
-//! The skin of a context line: trapezoids with projective texture coordinates, and how it fades (B7; Trapp 3.4.3).
+//! The skin of a context line: trapezoids with projective texture coordinates, and how it fades (Trapp §3.4.3).
 
 use glam::DVec2;
 

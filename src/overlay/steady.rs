@@ -1,4 +1,4 @@
-//! Overlays keep still while the camera moves: what of the frame before stays (B6).
+//! Overlays keep still while the camera moves: what of the frame before stays.
 //!
 //! Overlays stay on their lanes, in their order, and at their size; where they would best stand is worked out anew with that. As long as none of
 //! these places along

@@ -1,4 +1,4 @@
-//! Translucent layers composited in f64, from the colour and the opacity of each: what methods are measured against (O7, U1).
+//! Translucent layers composited in f64, from the colour and the opacity of each: what methods are measured against.
 
 use crate::{
     render::picture::{RenderError, Studio},

@@ -1,4 +1,4 @@
-//! Contents of lenses on the graphics card (C3): cities that are drawn beside the scene's own, and where they stand.
+//! Contents of lenses on the graphics card: cities that are drawn beside the scene's own, and where they stand.
 //!
 //! A content is a city on the card, a placement and a number. Several contents may show one city: vertices are the same, only
 //! the uniform `City` differs. The surfaces of all stand in one table, the scene's own first, so that a pixel's code says

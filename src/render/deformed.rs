@@ -1,4 +1,4 @@
-//! The deformed city (D1, D2): what deformation lenses move, made fine enough and moved on the card, as sections beside those of what
+//! The deformed city: what deformation lenses move, made fine enough and moved on the card, as sections beside those of what
 //! they leave.
 //!
 //! ```text

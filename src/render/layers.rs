@@ -1,4 +1,4 @@
-//! What frames had of translucent layers (O1, O7), and how much memory they may take.
+//! What frames had of translucent layers, and how much memory they may take.
 
 /// What notes take at most, bytes: what exceeds it is drawn in bands.
 pub const LAYER_BYTES: u64 = 96 << 20;

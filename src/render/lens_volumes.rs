@@ -96,7 +96,7 @@ pub(super) fn volumes_of<'a>(
                 .map_err(|message| format!("[lens.{}] space: {message}", drawn.owner(i as u32)))?;
         }
         of_lens.retain(|body| !body.is_empty());
-        // One sprite for all of a lens (S3).
+        // One sprite for all of a lens.
         if lens.sprite.is_some() {
             // Those of files stay as they are.
             let (mut saved, others): (Vec<Body>, _) = of_lens.into_iter().partition(|body| body.saved().is_some());

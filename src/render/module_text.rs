@@ -1,4 +1,4 @@
-//! The text of the modules that a frame runs, for people to read (H4).
+//! The text of the modules that a frame runs, for people to read.
 
 use crate::{
     geom::Aabb,

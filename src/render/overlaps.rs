@@ -1,5 +1,5 @@
 //! Which combinations of lenses a place can be inside of: what Best and Borst's region analyzer finds with solid geometry (Tiesel
-//! 2009, §1.4), here by distances. A cell of space is inside of a lens, outside, or undecided; one with two undecided lenses is cut
+//! §1.4), here by distances. A cell of space is inside of a lens, outside, or undecided; one with two undecided lenses is cut
 //! into eight, down to a 64th of the space. So none is missed, and few are too many.
 
 use rustc_hash::FxHashSet;

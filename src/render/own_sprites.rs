@@ -1,4 +1,4 @@
-//! Sprites that have an eye of their own (S2), made from shapes or read from files (S8). They do not depend on the picture's eye:
+//! Sprites that have an eye of their own, made from shapes or read from files. They do not depend on the picture's eye:
 //! they are kept between frames, and made again only when what they are made of changes.
 
 use std::sync::Arc;

@@ -397,7 +397,7 @@ impl Studio {
     }
 
     /// Makes block models of all objects, once, for views that may show no more triangles than `most`, where
-    /// the city has more (B8). All insets are drawn again.
+    /// the city has more. All insets are drawn again.
     pub(super) fn find_blocks(&mut self, most: u64) -> Result<(), RenderError> {
         if self.renderer.city().is_none_or(|city| city.has_blocks || city.triangles <= most) {
             return Ok(());
@@ -418,7 +418,7 @@ impl Studio {
         Ok(())
     }
 
-    /// The WGSL of a module that runs where the scene's lenses are in the picture, or everywhere where none is (H4).
+    /// The WGSL of a module that runs where the scene's lenses are in the picture, or everywhere where none is.
     pub fn shader(
         &self,
         scene: &Scene,

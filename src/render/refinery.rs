@@ -1,4 +1,4 @@
-//! Refines what deformations meet, on the card (D2): `pass/refine.wgsl` in rounds, and [`crate::geom::deform::refine`] is its reference.
+//! Refines what deformations meet, on the card: `pass/refine.wgsl` in rounds, and [`crate::geom::deform::refine`] is its reference.
 //!
 //! ```text
 //!   host: triangles that a support reaches ── gather ──▶ corners (cells of a lattice), triangles

@@ -1,4 +1,4 @@
-//! The regions of a frame: what techniques go by that draw the city once for each region (C2), kept for comparison with accumulation: one
+//! The regions of a frame: what techniques go by that draw the city once for each region, kept for comparison with accumulation: one
 //! pass per combination of lenses, or Ropinski and Hinrichs' three ([`crate::render::pass::reference`]).
 //!
 //! What the geometry passes leave is what accumulation's one pass leaves.

@@ -181,15 +181,15 @@ pub struct LensFigures {
     pub covered: u64,
     /// Those of them on which an effect ran.
     pub pixels: u64,
-    /// Pixels by class (L4).
+    /// Pixels by class.
     pub classified: Classified,
-    /// Occluders that an occlusion lens found (O2).
+    /// Occluders that an occlusion lens found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub occluders: Option<Vec<Occluder>>,
-    /// Of a lens that makes occluders lower, how much of its points of interest is seen (D4); those that are points have no share.
+    /// Of a lens that makes occluders lower, how much of its points of interest is seen; those that are points have no share.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seen: Option<Vec<Visible>>,
-    /// Of an occlusion lens in a frame of an animation, how many come and go (O6).
+    /// Of an occlusion lens in a frame of an animation, how many come and go.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over_time: Option<OverTime>,
 }
@@ -232,7 +232,7 @@ pub struct Occluder {
     /// Of a lens that draws occluders by cases, the one that it is drawn in, from 1 on in the order of `render`; `null`: in none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub case: Option<Option<usize>>,
-    /// In a frame of an animation, how far it has come or gone, 0 to 1 (O6); one that no test holds for is `kept` by its margin, or
+    /// In a frame of an animation, how far it has come or gone, 0 to 1; one that no test holds for is `kept` by its margin, or
     /// fades.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weight: Option<f64>,

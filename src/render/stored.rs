@@ -1,4 +1,4 @@
-//! How the depth sprites of lenses are stored (S1, S4).
+//! How the depth sprites of lenses are stored.
 
 use glam::DVec3;
 

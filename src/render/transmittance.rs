@@ -1,4 +1,4 @@
-//! What is opaque in a picture, and how much of its light comes through what stands before it (O1, O7).
+//! What is opaque in a picture, and how much of its light comes through what stands before it.
 
 use crate::{
     render::picture::{RenderError, Studio},

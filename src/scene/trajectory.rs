@@ -1,4 +1,4 @@
-//! Things that move (L2, B5): where on its way one is at a moment, and where it is headed.
+//! Things that move: where on its way one is at a moment, and where it is headed.
 
 use glam::DVec3;
 

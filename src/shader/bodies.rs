@@ -1,4 +1,4 @@
-//! Bodies of lenses (L5) and what else is laid over the shaded picture, on the specialised back end: `outlines` and what it calls.
+//! Bodies of lenses and what else is laid over the shaded picture, on the specialised back end: `outlines` and what it calls.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,4 @@
-//! Translucent fragments shaded where they are drawn: the modules of methods that know no order of layers (O7), put together from
+//! Translucent fragments shaded where they are drawn: the modules of methods that know no order of layers, put together from
 //! what shades a pixel, what tells which fragments are translucent, and what draws the city.
 
 use crate::shader::{

@@ -92,7 +92,7 @@ impl Module {
         self.source_for_people(handlers, &[], carried::LEAST_CARRIED)
     }
 
-    /// The whole WGSL text with the names of a plan's lenses in comments (H4), for an adapter that carries so many vectors
+    /// The whole WGSL text with the names of a plan's lenses in comments, for an adapter that carries so many vectors
     /// from vertices to fragments: [`carried::LEAST_CARRIED`] or more.
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], room: u32) -> String {
         let files = files::with_threshold(self.files(handlers));

@@ -1,4 +1,4 @@
-//! The walk of `pass/composite.wgsl` through the list of a pixel (O7), written out: a few notes at a time are put in order by a sorting
+//! The walk of `pass/composite.wgsl` through the list of a pixel, written out: a few notes at a time are put in order by a sorting
 //! network and merged into the nearest so far by a bitonic one (Batcher 1968). A loop over them would keep all of them in memory
 //! that is indexed by each pixel on its own.
 

@@ -1,5 +1,5 @@
-//! The uber back end (H3): every handler the scene may ask for in one module; which of them run, where, and with which
-//! parameters stands in the invoker table (H2), a uniform. Whatever lenses do, nothing is compiled.
+//! The uber back end (Trapp §3.7): every handler the scene may ask for in one module; which of them run, where, and with which
+//! parameters stands in the invoker table, a uniform. Whatever lenses do, nothing is compiled.
 
 use std::fmt::Write as _;
 

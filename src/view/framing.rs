@@ -1,4 +1,4 @@
-//! A camera that a ball just fits into: that of a best-view lens (B2; V eq. 3.23 and below it).
+//! A camera that a ball just fits into: that of a best-view lens (Trapp, eq. 3.23 and below it).
 //!
 //! ```text
 //!          near         far
@@ -113,7 +113,7 @@ impl Framing {
 }
 
 /// What is up in a picture looked at from the direction `normal` (unit): the world's up. Along the vertical, of a viewer with direction
-/// of view f and up u, B3's normalise((I − n·nᵀ)(f − (f·n)u)): where f leads is the top of the picture, and where f is the vertical
+/// of view f and up u, normalise((I − n·nᵀ)(f − (f·n)u)): where f leads is the top of the picture, and where f is the vertical
 /// too, u is. Without a viewer, or where that is nothing, north.
 pub fn up_along(normal: DVec3, viewer: Option<[DVec3; 2]>) -> DVec3 {
     /// Below this sine they count as parallel, as for [`crate::view::basis::Basis`].

@@ -1,4 +1,4 @@
-//! Cases over time (O6): which of several ways an occluder is drawn in changes by the same margin and fade as whether it is one.
+//! Cases over time: which of several ways an occluder is drawn in changes by the same margin and fade as whether it is one.
 
 use crate::visibility::memory::Pace;
 

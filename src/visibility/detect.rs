@@ -45,7 +45,7 @@ pub struct Query<'a> {
     pub forbidden: &'a Set,
     /// Whether shares are measured also where no test asks for them.
     pub measured: bool,
-    /// How far an occluder may leave its test before it ceases to be one (O6).
+    /// How far an occluder may leave its test before it ceases to be one.
     pub margin: Option<Margin>,
 }
 

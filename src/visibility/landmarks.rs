@@ -1,4 +1,4 @@
-//! Landmarks: the objects of a city that stand out (B9, **beyond** V §5.3.2).
+//! Landmarks: the objects of a city that stand out (beyond Trapp §5.3.2).
 //!
 //! An object is a root city object with its parts; what others stand on (terrain, water, roads, land use) and plants are none. Four
 //! terms, each 0..=1, make its score, after the structural and semantic measures of Raubal and Winter (2002):

@@ -1,4 +1,4 @@
-//! Classes over time (O6): what is an occluder stays one until it has left its test by a margin, and comes and goes gradually.
+//! Classes over time: what is an occluder stays one until it has left its test by a margin, and comes and goes gradually.
 
 use crate::visibility::{detect::Detected, set::Set};
 

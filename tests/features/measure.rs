@@ -288,7 +288,7 @@ fn handlers() {
     for variant in trial.variants.iter().filter(|v| effects(v) == 2) {
         let reference = variant.reference.as_ref().unwrap();
         let [right, found] = [reference, &variant.shot].map(|shot| studio.render(&shot.scene, &shot.request).unwrap());
-        // Both back ends make one picture (H3), and there is something in it.
+        // Both back ends make one picture, and there is something in it.
         assert_eq!(Difference::between(&right, &found).max_steps, 0, "{}", variant.label);
         let share = Difference::between(&plain, &found).wrong_pixels as f64 / (64.0 * 36.0);
         assert!((0.05..0.2).contains(&share), "{}: a lens over a tenth changes {share}", variant.label);

@@ -1,4 +1,4 @@
-//! The methods of laying translucent layers one over the other (O7), against the exact one and against their formulas.
+//! The methods of laying translucent layers one over the other, against the exact one and against their formulas.
 
 use crate::panes::*;
 use crate::studio::*;

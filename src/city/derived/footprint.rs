@@ -1,4 +1,4 @@
-//! Footprints: what objects cover of the ground, seen from above, by its outline (O5).
+//! Footprints: what objects cover of the ground, seen from above, by its outline.
 //!
 //! A footprint is the union of the faces that lie on the ground where the object is pressed flat (`flat`), on a lattice of millimetres;
 //! [`outline::union`] says how exact that is. What has too many faces over one another for an outline has that of its convex hull.

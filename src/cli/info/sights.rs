@@ -143,7 +143,7 @@ impl LandmarkFacts {
     }
 }
 
-/// A scene of a city of files in which each landmark has a best-view lens (B9), as the text of `file`: paths are relative to it where they
+/// A scene of a city of files in which each landmark has a best-view lens, as the text of `file`: paths are relative to it where they
 /// can be.
 pub fn scene<'a>(files: &[PathBuf], landmarks: impl Iterator<Item = &'a LandmarkFacts>, file: &Path) -> String {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());

@@ -70,7 +70,7 @@ pub struct Arguments {
     pub shaders: Shaders,
 }
 
-/// Back ends of the shader handlers (H3).
+/// Back ends of the shader handlers.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shaders {
     /// Made for this scene

@@ -1,4 +1,4 @@
-//! Where and how much a deformation acts: κ over a lens plane (S6; Trapp, section 3.2.2).
+//! Where and how much a deformation acts: κ over a lens plane (Trapp §3.2.2).
 
 use glam::{DVec2, DVec3};
 
@@ -68,9 +68,9 @@ pub enum Profile {
     Texels(Texels),
 }
 
-/// A grid of κ: f32 in 0..=1, filtered by hand at p = s·size − ½ (S6).
+/// A grid of κ: f32 in 0..=1, filtered by hand at p = s·size − ½.
 ///
-/// Between the outermost texels' middles and the border of the rectangle, half a texel away, κ goes to 0 linearly (S6 leaves open what
+/// Between the outermost texels' middles and the border of the rectangle, half a texel away, κ goes to 0 linearly (Trapp leaves open what
 /// is there): any picture may be a lens, and none of them tears.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texels {

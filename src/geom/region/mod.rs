@@ -1,4 +1,4 @@
-//! Regions (C1): what several lens volumes have in common. A volume that is several bodies in union makes several regions.
+//! Regions: what several lens volumes have in common. A volume that is several bodies in union makes several regions.
 //!
 //! A convex volume is flat faces (half spaces) and at most one round part, which every point outside can be parted from by
 //! a plane. The planes of all volumes together bound the region, so flat volumes need nothing but clipping. Round parts are

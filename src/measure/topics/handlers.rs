@@ -1,4 +1,4 @@
-//! The two back ends of handlers (H3): one module for all that a scene may ask for, or one for just what it does.
+//! The two back ends of handlers: one module for all that a scene may ask for, or one for just what it does.
 
 use crate::{
     geom::Shape,
@@ -25,7 +25,7 @@ pub const TOPIC: Topic = Topic {
     name: "handlers",
     title: "Uber shader or specialised shaders",
     about: "What effects and overlapping lenses cost in the uber and in the specialised back end, drawn and compiled.",
-    specs: &["U1", "U3", "H3"],
+    sources: &["Trapp §3.7"],
     reference: "the same scene in the specialised back end",
     knobs: &[
         Knob { name: "effects", unit: "" },

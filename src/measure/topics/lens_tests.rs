@@ -1,6 +1,6 @@
-//! Lens tests (S7): from the shape or by a depth sprite, for every kind of shape, and for lenses that are many, overlap or move.
+//! Lens tests: from the shape or by a depth sprite, for every kind of shape, and for lenses that are many, overlap or move.
 //!
-//! A technique is one row of [`TECHNIQUES`]; those that are kept for reference (C2) have theirs.
+//! A technique is one row of [`TECHNIQUES`]; those that are kept for reference have theirs.
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -33,7 +33,7 @@ pub const TOPIC: Topic = Topic {
     name: "lens-tests",
     title: "How lenses are tested",
     about: "What a lens test from the shape and one by a depth sprite cost, and what the techniques of the literature do, for each kind of shape, and for 1 to 10 lenses.",
-    specs: &["U1", "S7", "C2"],
+    sources: &["Trapp §3.2", "Tiesel §3.4.5"],
     reference: "the same lenses, standing still, tested from their shapes",
     knobs: &[
         Knob { name: "shape", unit: "" },

@@ -1,4 +1,4 @@
-//! Refinement of what deformations bend (D2): how far edges are off, against triangles and time.
+//! Refinement of what deformations bend: how far edges are off, against triangles and time.
 
 use crate::{
     geom::Shape,
@@ -26,7 +26,7 @@ pub const TOPIC: Topic = Topic {
     name: "refinement",
     title: "How fine what is deformed is split",
     about: "How many triangles and how much time it takes that edges are as near to where they should be as is asked for, in a view that is drawn for the first time.",
-    specs: &["U1", "D1", "D2"],
+    sources: &["Trapp §3.6"],
     reference: "the same deformation with edges that are at most 1/32 pixel off",
     knobs: &[Knob { name: "deformation", unit: "" }, Knob { name: "asked for", unit: "px" }],
     x: Quantity::Chord,

@@ -14,7 +14,7 @@ pub const TOPIC: Topic = Topic {
     name: "samples",
     title: "Samples per pixel",
     about: "How many samples per pixel smooth edges need, and what they cost.",
-    specs: &["U1"],
+    sources: &[],
     reference: "the same picture with 64 samples per pixel",
     knobs: &[Knob { name: "samples", unit: "" }],
     x: Quantity::Flip,

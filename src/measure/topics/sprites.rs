@@ -1,4 +1,4 @@
-//! Depth sprites (S4): formats, mappings and resolutions against the lens in f64. Ropinski and Hinrichs' Table 1, with accuracy.
+//! Depth sprites: formats, mappings and resolutions against the lens in f64. Ropinski and Hinrichs' Table 1, with accuracy.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub const TOPIC: Topic = Topic {
     name: "sprites",
     title: "Formats, mappings and resolutions of depth sprites",
     about: "What format, mapping and resolution of a lens' depth sprite cost, and how many pixels they put on its wrong side.",
-    specs: &["U1", "S2", "S4"],
+    sources: &["Trapp §3.1", "Ropinski & Hinrichs, table 1"],
     reference: "the lens tested from its shape; for its mask, the shape in f64 at the shown places",
     knobs: &[
         Knob { name: "shape", unit: "" },

@@ -1,4 +1,4 @@
-//! Methods of laying translucent layers one over the other (O7): what each costs and leaves out.
+//! Methods of laying translucent layers one over the other: what each costs and leaves out.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub const TOPIC: Topic = Topic {
     name: "transparency",
     title: "How translucent layers are laid one over the other",
     about: "What the methods for translucent layers cost and leave out, by how many layers or samples they take, in five views.",
-    specs: &["U1", "O1", "O7"],
+    sources: &["Trapp §3.3"],
     reference: "all layers in their order (`exact`), with as many samples",
     knobs: &[
         Knob { name: "scene", unit: "" },

@@ -1,4 +1,4 @@
-//! What all methods of laying translucent layers one over the other share in a frame (O1, O7).
+//! What all methods of laying translucent layers one over the other share in a frame.
 
 use crate::{
     gpu::{Gpu, GpuError},

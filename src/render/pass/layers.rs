@@ -1,4 +1,4 @@
-//! Translucent layers (O1, O7): fragment nodes in a list per pixel, sorted, shaded and laid one over the other, exactly.
+//! Translucent layers: fragment nodes in a list per pixel, sorted, shaded and laid one over the other, exactly.
 //!
 //! How much memory the lists take is bounded: what does not fit is drawn in bands, halved until each fits. How many nodes there
 //! are is read back before they are sorted, so nothing is ever left out in silence: what a single pixel has too much is counted.

@@ -39,7 +39,7 @@
 //! furniture over          its layer, where the picture is transparent
 //! ```
 //!
-//! A pass that the scene does not call for is not recorded (U3): [`Inputs::of`] asks each what the plan of a frame wants of it. Another pass
+//! A pass that the scene does not call for is not recorded: [`Inputs::of`] asks each what the plan of a frame wants of it. Another pass
 //! is a file here and a row in the table.
 
 use crate::{

@@ -1,4 +1,4 @@
-//! Sections (L5): where lenses lay closed shells open, their volumes' surfaces close them again (`pass/sections.wgsl`).
+//! Sections: where lenses lay closed shells open, their volumes' surfaces close them again (`pass/sections.wgsl`).
 
 use wgpu::ShaderStages as S;
 

@@ -1,4 +1,4 @@
-//! The depth sprites that lenses are tested by (S1, S4): crossings of rays with solids, listed, and sprites made of these and of closed
+//! The depth sprites that lenses are tested by: crossings of rays with solids, listed, and sprites made of these and of closed
 //! forms.
 
 use glam::DVec2;

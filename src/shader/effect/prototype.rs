@@ -1,9 +1,9 @@
-//! The table of prototypes (H1): what handlers do, when they run and what their functions look like. Parsing of effect files, messages
+//! The table of prototypes (Trapp §3.7): what handlers do, when they run and what their functions look like. Parsing of effect files, messages
 //! and the table in `docs/effects.md` come from it.
 
 use serde::{Deserialize, Deserializer, de::Error as _};
 
-/// The prototype handlers of shading (H1), in the order of their execution: what an effect's `kind` says. Several
+/// The prototype handlers of shading, in the order of their execution: what an effect's `kind` says. Several
 /// handlers of one prototype run in lens order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EffectKind {
@@ -25,7 +25,7 @@ pub enum EffectKind {
     Filter,
 }
 
-/// When a handler runs (H1).
+/// When a handler runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
@@ -42,7 +42,7 @@ pub enum Mode {
 /// A stage of shading, in the order of execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// Fragments of the city, before visibility: by each fragment's own depth (K4).
+    /// Fragments of the city, before visibility: by each fragment's own depth.
     Visibility,
     /// The shown surface, before it has a colour.
     Surface,
@@ -267,7 +267,7 @@ impl EffectKind {
         self.prototype().touches_lines
     }
 
-    /// Whether its handlers decide what the geometry pass shows, by each fragment's own depth (K4).
+    /// Whether its handlers decide what the geometry pass shows, by each fragment's own depth.
     pub fn decides_visibility(self) -> bool {
         self.prototype().stage == Stage::Visibility
     }

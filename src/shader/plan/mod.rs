@@ -1,4 +1,4 @@
-//! Plans: what a scene asks of shading, the invoker table (H2), from which both back ends are made.
+//! Plans: what a scene asks of shading, the invoker table, from which both back ends are made.
 //!
 //! A [`Plan`] names handlers, lenses and classes, never positions or parameters: those stand in uniforms, so a lens that
 //! moves or a slider that is dragged compiles nothing. Equal plans share a pipeline.
@@ -22,7 +22,7 @@ use crate::shader::{
     },
 };
 
-/// Lenses and effects of one part of the picture, bottom lens first (L6).
+/// Lenses and effects of one part of the picture, bottom lens first.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Plan {
     /// Lenses that may be seen there.
@@ -37,9 +37,9 @@ pub struct Plan {
     pub lines: bool,
     /// Whether something is seen through: what shading lays over its picture.
     pub veils: bool,
-    /// The contents of its lenses, bottom lens first (C6).
+    /// The contents of its lenses, bottom lens first.
     pub contents: Vec<PlanContent>,
-    /// How places are told apart, for the techniques that are kept for reference (C2); `None`: by accumulation.
+    /// How places are told apart, for the techniques that are kept for reference; `None`: by accumulation.
     pub regions: Option<Regions>,
 }
 

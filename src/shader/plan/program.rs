@@ -2,7 +2,7 @@
 
 use crate::shader::plan::{Plan, lens::BodyKind, regions::Regions, uber::Uber, volume_test::VolumeTest};
 
-/// A plan on one of the back ends (H3). Both make the same picture.
+/// A plan on one of the back ends. Both make the same picture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Program {
     /// The plan, written out.

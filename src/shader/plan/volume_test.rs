@@ -1,6 +1,6 @@
 //! Lens tests: how it is decided where a place is with regard to a volume.
 
-/// How it is decided where a place is with regard to a lens volume (S7).
+/// How it is decided where a place is with regard to a lens volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum VolumeTest {
     /// From the figures of a sphere.

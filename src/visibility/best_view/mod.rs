@@ -1,4 +1,4 @@
-//! Best views of city objects (B2, **beyond** V §3.4, which takes the best-view normal as given).
+//! Best views of city objects (beyond Trapp §3.4, which takes the best-view normal as given).
 //!
 //! ```text
 //! object ─> subject: its faces, the ball around them, samples of its facades
