@@ -1,4 +1,4 @@
-//! The picture in the window: it is looked at, moved around in, and its lenses have handles.
+//! The picture in the window: it is looked at, moved around in, and its lenses have gizmos.
 
 use std::time::Instant;
 
@@ -10,10 +10,10 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     app::{
-        artist::Frame,
         canvas_state::{Canvas, Drag, Hovered},
-        handles::{self},
+        gizmo,
         landing::EYE_HEIGHT_M,
+        render_thread::Frame,
         spots::in_rect,
         state::Window,
     },
@@ -164,7 +164,7 @@ impl Window {
         // The figure has none of what is only held and chosen.
         if !self.previews {
             self.draw_outlines(ui, rect);
-            self.draw_handles(ui, rect);
+            self.draw_gizmos(ui, rect);
         }
         self.go_on_drawing(ui);
         if let Some(view) = self.view_in(rect) {
@@ -264,9 +264,9 @@ impl Window {
         let (Some(at), Some(camera)) = (at, self.camera()) else { return };
         let (modifiers, primary) =
             ui.input(|input| (input.modifiers, input.pointer.button_down(PointerButton::Primary)));
-        let held = self.view_in(rect).filter(|_| primary).and_then(|view| self.handle_at(&view, rect, at));
-        if let Some(grip) = held.and_then(|handle| self.grip(handle, at)) {
-            self.canvas.drag = Some(Drag::Handle(Box::new(grip)));
+        let held = self.view_in(rect).filter(|_| primary).and_then(|view| self.gizmo_at(&view, rect, at));
+        if let Some(grip) = held.and_then(|gizmo| self.grip(gizmo, at)) {
+            self.canvas.drag = Some(Drag::Gizmo(Box::new(grip)));
             return;
         }
         if let (true, Some((overlay, own))) = (primary, self.overlay_at(rect, at)) {
@@ -302,7 +302,7 @@ impl Window {
                     self.document.look(to);
                 }
             }
-            Drag::Handle(grip) => {
+            Drag::Gizmo(grip) => {
                 let shift = ui.input(|input| input.modifiers.shift);
                 if let Some(view) = self.view_in(rect) {
                     self.drag_grip(&grip, &view, rect, now, shift);
@@ -455,8 +455,8 @@ impl Window {
     fn roll_over(&mut self, response: &Response, rect: Rect, at: Pos2) {
         let Some(view) = self.view_in(rect) else { return };
         let held = || {
-            let handle = self.handle_at(&view, rect, at)?;
-            Some((handle.lens, handles::cursor(&handle)))
+            let gizmo = self.gizmo_at(&view, rect, at)?;
+            Some((gizmo.lens, gizmo::cursor(&gizmo)))
         };
         let disc = || self.lens_at(&view, rect, at).map(|lens| (lens, CursorIcon::Grab));
         let overlay =

@@ -26,7 +26,7 @@ pub struct Document {
     file: Option<PathBuf>,
     /// Whether that file names files outside its folder.
     leads_outside: bool,
-    /// An edit that goes on: a handle or a slider that is held.
+    /// An edit that goes on: a gizmo or a slider that is held.
     live: Option<(String, Scene)>,
     /// When the eye was moved last.
     looked: Option<Instant>,

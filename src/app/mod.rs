@@ -4,14 +4,13 @@
 //!  menu · actions            one table of what can be done, with keys
 //!  ┌─────────┬───────────────────────┬─────────┐
 //!  │ lenses  │ canvas                │ objects │   each panel changes the document by commands;
-//!  │ proper- │ the last picture,     │ colours │   the canvas asks the artist for a picture of it,
-//!  │ ties    │ pointer, handles      │ costs   │   who draws on a thread and a device of their own
+//!  │ proper- │ the last picture,     │ colours │   the canvas asks the render thread for a picture,
+//!  │ ties    │ pointer, gizmos       │ costs   │   which has a device of its own
 //!  └─────────┴───────────────────────┴─────────┘
 //!  status
 //! ```
 
 pub mod actions;
-pub mod artist;
 pub mod canvas;
 pub mod canvas_state;
 mod cost;
@@ -21,14 +20,14 @@ pub mod drawing;
 pub mod drawn;
 pub mod file_dialog;
 mod finder;
-mod handles;
-mod knobs;
+mod gizmo;
 mod landing;
 pub mod lens_list;
 pub mod new_lens;
 pub mod objects;
 mod outlines;
 pub mod properties;
+pub mod render_thread;
 mod spots;
 pub mod state;
 mod theme;

@@ -5,13 +5,13 @@ use std::{path::PathBuf, sync::Arc};
 
 use crate::{
     app::{
-        artist::{Artist, Draw, Frame, Opened},
         canvas_state::Canvas,
         document::Document,
         drawn::Drawing,
         file_dialog::{Asking, FileDialog},
         finder::Finder,
         properties::edits::Drafts,
+        render_thread::{Draw, Frame, Opened, RenderThread},
     },
     scene::CitySpec,
 };
@@ -38,7 +38,7 @@ pub struct Message {
 
 /// Everything that the window has.
 pub struct Window {
-    pub(super) artist: Artist,
+    pub(super) render_thread: RenderThread,
     /// What is edited.
     pub document: Document,
     /// The city that is shown.

@@ -1,4 +1,4 @@
-//! The window: its state, how the panels stand, and what comes back from the artist.
+//! The window: its state, how the panels stand, and what comes back from the render thread.
 
 mod doing;
 
@@ -12,7 +12,6 @@ use eframe::egui::{self, Context, RichText, Ui};
 use crate::{
     app::{
         actions::{self, Action, Menu, ROWS},
-        artist::{Artist, Draw, Frame, Notify, Reply},
         canvas_state::Canvas,
         cost, dialogs,
         document::Document,
@@ -20,6 +19,7 @@ use crate::{
         file_dialog::{Asking, Purpose},
         finder::Finder,
         lens_list, objects, properties,
+        render_thread::{Draw, Frame, Notify, RenderThread, Reply},
         state::{Chosen, Message, Window},
         theme, user_effects,
     },
@@ -71,7 +71,7 @@ impl Window {
         let own = context.clone();
         let notify: Notify = Arc::new(move || own.request_repaint());
         let mut window = Self {
-            artist: Artist::new(notify)?,
+            render_thread: RenderThread::new(notify)?,
             document: Document::default(),
             city: None,
             loading: None,
@@ -110,7 +110,7 @@ impl Window {
             allows_outside: start.allow_outside,
             drafts: properties::edits::Drafts::default(),
         };
-        window.artist.watch(&start.effects, true);
+        window.render_thread.watch(&start.effects, true);
         let files = if start.files.is_empty() { vec![PathBuf::from(BUILTIN)] } else { start.files.clone() };
         window.open(&files);
         Ok(window)
@@ -183,7 +183,7 @@ impl Window {
     fn without_effects(&self, files: &[PathBuf]) -> Vec<PathBuf> {
         let (effects, others): (Vec<PathBuf>, Vec<PathBuf>) =
             files.iter().cloned().partition(|path| user_effects::is_effect(path));
-        self.artist.watch(&effects, false);
+        self.render_thread.watch(&effects, false);
         others
     }
 
@@ -202,7 +202,7 @@ impl Window {
         let mut roots: Vec<PathBuf> = self.spec.files.iter().filter(|path| path.is_dir()).cloned().collect();
         roots.push(document.options().base);
         self.loading = Some("Reading".to_owned());
-        self.artist.open(self.spec.clone(), LoadOptions { allow_outside: self.allows_outside, roots });
+        self.render_thread.open(self.spec.clone(), LoadOptions { allow_outside: self.allows_outside, roots });
     }
 
     /// Loads again what edits of the scene ask for: other files, another level of detail.
@@ -265,7 +265,7 @@ impl Window {
     }
 
     fn hear(&mut self, context: &Context) {
-        for reply in self.artist.replies() {
+        for reply in self.render_thread.replies() {
             match reply {
                 Reply::Loading(what) => self.loading = self.loading.is_some().then_some(what),
                 Reply::Opened(opened) => {
@@ -439,7 +439,7 @@ impl Window {
         }
         let draw = Draw { scene: Arc::new(scene), size, meant_for, is_moving, is_measured: self.shows_cost };
         if self.asked.as_ref() != Some(&draw) {
-            self.artist.draw(draw.clone());
+            self.render_thread.draw(draw.clone());
             self.asked = Some(draw);
         }
     }
@@ -495,7 +495,7 @@ impl Window {
                 ui.spinner();
                 ui.label(what);
                 if ui.button("Cancel").clicked() {
-                    self.artist.cancel_opening();
+                    self.render_thread.cancel_opening();
                     if self.waiting.take().is_none() && self.document.scene().city != self.shown_spec {
                         self.document.undo();
                     }

@@ -7,11 +7,12 @@
 //! 2. [`lane`]: a side of the picture is a lane, along which overlays stand in a row, past the points that they must not cover.
 //! 3. [`fill`]: who stands on which lane, by priority; who finds no room there stands further inward, or is folded to a marker.
 //! 4. [`order`]: the order on the lanes that makes least lines cross, told by exact predicates ([`crossings`], [`grid`]).
-//! 5. [`steady`]: with the frame before, overlays keep still, or glide.
+//! 5. [`coherence`]: with the frame before, overlays keep still, or glide.
 //!
 //! Beside it the geometry of drawing: [`mod@line`] (the ways of lines), [`ribbon`] (their skins), [`arrow`] (for points outside of the picture).
 
 pub mod arrow;
+pub mod coherence;
 pub mod crossings;
 pub mod fill;
 pub mod grid;
@@ -26,7 +27,6 @@ pub mod rect;
 pub mod request;
 pub mod ribbon;
 pub mod size;
-pub mod steady;
 
 pub use place::place;
 pub use placed::{Fact, Marker, Placed, Placement};

@@ -1,13 +1,13 @@
-//! Overlays keep still while the camera moves: what of the frame before stays.
+//! Temporal coherence of overlays: what of the frame before stays while the camera moves.
 //!
-//! Overlays stay on their lanes, in their order, and at their size; where they would best stand is worked out anew with that. As long as none of
-//! these places along
-//! a side is further away than the dead band, nothing moves there; otherwise all of that side glide together, each by the same share of its way, so that none
-//! meet on it. An overlay stays between the points between which it stands, and a point that walks into it pushes it along.
-//! The order changes only where a line has crossed another by more than the dead band, and another order has less crossings; what was shrunk,
-//! folded or put inward comes back when there would be room even if all points came nearer by the dead band. Such a change is made at once, in one
-//! step, by those
-//! of the sides that it changes; [`crate::overlay::placed::Jump`] tells of it.
+//! Overlays stay on their lanes, in their order, and at their size; where they would best stand is worked out anew with that. As long as
+//! none of these places along a side is further away than the dead band, nothing moves there; otherwise all of that side glide together,
+//! each by the same share of its way, so that none meet on it. An overlay stays between the points between which it stands, and a point
+//! that walks into it pushes it along.
+//!
+//! The order changes only where a line has crossed another by more than the dead band, and another order has less crossings; what was
+//! shrunk, folded or put inward comes back when there would be room even if all points came nearer by the dead band. Such a change is
+//! made at once, in one step, by those of the sides that it changes; [`crate::overlay::placed::Jump`] tells of it.
 
 use crate::overlay::{
     crossings::Way,
