@@ -2,7 +2,7 @@
 
 use super::{
     job::{Context, corner_ranges},
-    shelf::Shape,
+    staging::Shape,
 };
 use crate::city::model::{NONE, Surface};
 

@@ -11,7 +11,7 @@ use crate::city::{
         attributes,
         geometry::{GeometryRead, each_member, text},
         kinds,
-        stowage::Stowage,
+        packed::PackedGeometries,
         vertices::{Transform, Vertices},
     },
     json::{Json, JsonError, Kind, Step},
@@ -48,7 +48,7 @@ pub struct Document {
     /// Attributes of all objects: a list for each would scatter them over the heap.
     pub attributes: Vec<Attribute>,
     /// Geometries of the objects, in order.
-    pub geometries: Stowage,
+    pub geometries: PackedGeometries,
     /// The geometry being read: a buffer.
     geometry: GeometryRead,
     /// `vertices`.
