@@ -222,7 +222,7 @@ fn parts(studio: &mut Studio, frame: &Frame) -> [f64; 2] {
     [processor_ms() - before, whole]
 }
 
-/// Prints the median time of each pass of a frame, by the card's clock.
+/// Prints the median time of each pass of a frame, by the GPU's clock.
 fn pass_times(studio: &mut Studio, frame: &Frame, pairs: usize) {
     let (Frame::Full(scene) | Frame::Unculled(scene)) = frame else { panic!("a scene is drawn in passes") };
     let request = Request {

@@ -22,7 +22,7 @@ use crate::{
 /// What is measured on.
 #[derive(Debug)]
 pub struct Setup<'a> {
-    /// The city, on the graphics card.
+    /// The city, on the GPU.
     pub studio: &'a mut Studio,
     /// What of it is shown.
     pub city: &'a CitySpec,
@@ -54,7 +54,7 @@ pub struct Measurement {
     pub objects: u64,
     /// Triangles that can be drawn.
     pub triangles: u64,
-    /// What the city holds on the graphics card, bytes.
+    /// What the city holds on the GPU, bytes.
     pub city_bytes: u64,
     /// Width and height of all pictures, pixels.
     pub size: [u32; 2],
@@ -83,7 +83,7 @@ pub struct Row {
     pub ratio: Estimate,
     /// What its first frame on a fresh device takes longer than a later one, milliseconds; where the topic starts them afresh.
     pub start_ms: Option<Estimate>,
-    /// What its first frame allocated on the graphics card, bytes; all of it is held at once.
+    /// What its first frame allocated on the GPU, bytes; all of it is held at once.
     pub gpu_bytes: u64,
     /// What deformations made of the city.
     pub refined: Option<Refined>,
@@ -286,7 +286,7 @@ fn start(
     Ok(cold)
 }
 
-/// What each variant takes on a card that has the city and the pipelines: its first frame after all targets and lists were dropped.
+/// What each variant takes on a GPU that has the city and the pipelines: its first frame after all targets and lists were dropped.
 fn allocate(
     studio: &mut Studio,
     trial: &Trial,

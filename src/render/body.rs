@@ -48,7 +48,7 @@ pub struct Members {
     pub bounds: Aabb,
 }
 
-/// A leaf, and where the card has what belongs to it.
+/// A leaf, and where the GPU has what belongs to it.
 #[derive(Clone, Debug)]
 pub struct PlacedLeaf {
     /// The leaf.

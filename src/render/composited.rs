@@ -21,7 +21,7 @@ pub fn error(found: [f64; 4], right: [f64; 4]) -> [f64; 3] {
 }
 
 impl Studio {
-    /// The layers of the exact method, each shaded on the card in f32 and laid here in f64; unjittered, `size` fits one target
+    /// The layers of the exact method, each shaded on the GPU in f32 and laid here in f64; unjittered, `size` fits one target
     /// ([`crate::render::parts::TILE`]). Draws as many frames as the deepest pixel has layers.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ pub struct LayerFigures {
 /// What the method of a frame took and left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MethodFigures {
-    /// What it holds on the card, bytes, beside the targets that the exact method has too.
+    /// What it holds on the GPU, bytes, beside the targets that the exact method has too.
     pub bytes: u64,
     /// Rounds of peeling, all bands together.
     pub rounds: u32,

@@ -68,7 +68,7 @@ impl Lens<'_> {
                 return Side::Outside;
             }
             let Some(own) = volume.body.volume() else { return Side::Undecided };
-            // And what rounds on the card.
+            // And what rounds on the GPU.
             let radius = 0.5 * cell.size().length() * (1.0 + 1e-6) + 1e-3;
             match own.signed_distance(cell.center()) {
                 d if d > radius => Side::Outside,

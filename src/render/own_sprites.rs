@@ -58,7 +58,7 @@ enum Source {
     File(Arc<SpriteVolume>),
 }
 
-/// The shapes of a lens as the card reads them, seen by an eye.
+/// The shapes of a lens as the GPU reads them, seen by an eye.
 #[derive(Debug)]
 struct Shapes {
     view: View,

@@ -56,7 +56,7 @@ const HAZE: f64 = 0.035;
 /// What can go wrong while drawing.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// The graphics card.
+    /// The GPU.
     #[error(transparent)]
     Gpu(#[from] GpuError),
     /// The camera.
@@ -151,7 +151,7 @@ pub struct Picture {
     pub normal: Option<Vec<[f32; 3]>>,
     /// One bit per lens, 32 lenses per plane.
     pub lens_mask: Option<Vec<Vec<u32>>>,
-    /// Class bits as the card holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
+    /// Class bits as the GPU holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
     pub(super) classes: Vec<Vec<u32>>,
     /// Rays that have more intervals than the sprite of their lens has layers, by lens.
     pub(super) excess: BTreeMap<u32, u32>,
@@ -177,7 +177,7 @@ pub struct Picture {
     pub statistics: Statistics,
 }
 
-/// A city on the graphics card, ready for any number of pictures.
+/// A city on the GPU, ready for any number of pictures.
 #[derive(Debug)]
 pub struct Studio {
     /// The renderer.
@@ -211,7 +211,7 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// Chooses what is shown and puts it on the card.
+    /// Chooses what is shown and puts it on the GPU.
     pub fn new(gpu: Gpu, model: Arc<CityModel>, spec: &CitySpec) -> Result<Self, RenderError> {
         let cap = match &spec.lod {
             None => None,
@@ -385,7 +385,7 @@ impl Studio {
         Ok(self.renderer.read_sprites(drawn.whole(lens as u32))?)
     }
 
-    /// Puts contents of lenses on the card, and edges the first time that something draws lines.
+    /// Puts contents of lenses on the GPU, and edges the first time that something draws lines.
     fn find_cities(&mut self, resolved: &Resolved) -> Result<(), RenderError> {
         let edges = resolved.operations.draws_lines();
         self.renderer.set_contents(&resolved.contents.wanted, self.ground.as_ref(), edges)?;
@@ -607,7 +607,7 @@ impl Studio {
     fn read_masks(&self, scene_lens_count: usize, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
         let Some(targets) = self.renderer.targets() else { return Ok(()) };
         let size = picture.size;
-        // The card holds all three classes, whether or not they were asked for.
+        // The GPU holds all three classes, whether or not they were asked for.
         let per_word = picture.classes.len() / scene_lens_count.max(1).div_ceil(32);
         for (i, plane) in picture.classes.iter_mut().enumerate() {
             let layer = (i / per_word * 3 + i % per_word) as u32;

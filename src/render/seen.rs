@@ -93,7 +93,7 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom) -> 
         let mut kept = Kept::Page(Place::default());
         if test.is_sprite() {
             let code = stored::code_of(&wanted, volume, &input.view, city);
-            // Beyond what any card holds; such a buffer is refused.
+            // Beyond what any GPU holds; such a buffer is refused.
             let number = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
             let layers = wanted.layers_of(&volume.body);
             let mut stored = Stored { code, layers, first: number(words), first_list: number(lists), excess: 0 };

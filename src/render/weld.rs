@@ -1,6 +1,6 @@
 //! Vertices that faces share.
 //!
-//! The model keeps a vertex per corner and face, because faces differ in surface and normal. On the card
+//! The model keeps a vertex per corner and face, because faces differ in surface and normal. On the GPU
 //! whatever is flat over a face comes from the triangle's *provoking* vertex alone, so faces may share
 //! every other corner: a box needs eight or nine vertices, not twenty-four. On an adapter that is
 //! bound by vertices, that is most of the frame.

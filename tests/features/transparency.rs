@@ -157,7 +157,7 @@ fn the_order_in_which_the_city_is_drawn_does_not_matter_to_slots() {
     let mut studio = studio_of(&all);
     let scenes = [k_buffer(4), k_buffer(16), peel(6)].map(|method| by(method, &unlike(14)));
     let first = scenes.each_ref().map(|scene| veil(&mut studio, scene, Backend::Specialised, SIZE));
-    // In the file, and on the card.
+    // In the file, and on the GPU.
     for order in 0..20 {
         studio.renderer.settings.shuffled = Some(order);
         for i in (1..all.len()).rev() {

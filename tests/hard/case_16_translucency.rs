@@ -58,10 +58,10 @@ fn the_order_in_which_the_city_is_drawn_does_not_matter() {
     let opacity = |i: usize| rule("transparent", &[("opacity", 0.1 + 0.05 * i as f64)], Some(&[i]), false);
     let scene = of_context((0..all.len()).map(opacity).collect());
     let first = veil(&mut studio, &scene, Backend::Specialised, SIZE);
-    // In the file, and on the card.
+    // In the file, and on the GPU.
     for order in 0..100 {
         studio.renderer.settings.shuffled = Some(order);
-        assert_eq!(first, veil(&mut studio, &scene, Backend::Specialised, SIZE), "the card's order {order}: {all:?}");
+        assert_eq!(first, veil(&mut studio, &scene, Backend::Specialised, SIZE), "the GPU's order {order}: {all:?}");
         for i in (1..all.len()).rev() {
             all.swap(i, random.below(i as u64 + 1) as usize);
         }

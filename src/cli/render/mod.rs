@@ -159,7 +159,7 @@ fn check_masks(aovs: &[AovRequest], scene: &Scene) -> Outcome {
     }
 }
 
-/// Loads the scene's city and puts it on the graphics card; with what is to be warned of.
+/// Loads the scene's city and puts it on the GPU; with what is to be warned of.
 pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outcome<(Studio, Vec<serde_json::Value>)> {
     if scene.city.files.is_empty() {
         return Err(Failure::failed("the scene names no city; [city] files = [\"FILE\"] would be right"));

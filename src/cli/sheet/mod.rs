@@ -235,7 +235,7 @@ fn studio_of<'k>(
     global: &GlobalArguments,
 ) -> Outcome<&'k mut Studio> {
     if kept.as_ref().is_none_or(|(city, _)| *city != scene.city) {
-        // The old one goes first: two cities may be more than the card holds.
+        // The old one goes first: two cities may be more than the GPU holds.
         *kept = None;
         *kept = Some((scene.city.clone(), render::open(scene, options, global)?.0));
     }

@@ -212,7 +212,7 @@ impl ExactLayers {
         (self.lists, self.longest) = (None, 0);
     }
 
-    /// Gives back what it takes on the card.
+    /// Gives back what it takes on the GPU.
     pub fn drop_lists(&mut self) {
         self.lists = None;
     }
@@ -220,7 +220,7 @@ impl ExactLayers {
     /// Whether lists of the last frame are longer than it was made for, and the next one has to sort them; that it then does.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn sorts_longer(&mut self, gpu: &Gpu) -> Result<bool, GpuError> {
         let Some(own) = self.lists.as_ref().filter(|_| self.figures.notes > 0) else { return Ok(false) };
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("longest list") };

@@ -146,7 +146,7 @@ impl StoredSprites {
     /// The stored sprites of a lens as the last frame made them.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn read(&self, gpu: &Gpu, shared: &Shared, lens: u32) -> Result<Vec<SpriteTexels>, GpuError> {
         let own: Vec<&KeptSprite> = self.kept.iter().filter(|s| s.lens == lens).collect();
         if own.is_empty() {
@@ -160,7 +160,7 @@ impl StoredSprites {
     /// Whether the last frame met more crossings than there was room for, and the next has room for them.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn makes_room(&mut self, gpu: &Gpu, own_sprites: &mut OwnSprites) -> Result<bool, GpuError> {
         if !self.lists_crossings {
             return Ok(false);
@@ -180,7 +180,7 @@ impl StoredSprites {
     /// of those that have eyes of their own.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn read_excess(&self, gpu: &Gpu, own: bool) -> Result<Vec<(u32, u32)>, GpuError> {
         if self.kept.iter().all(|s| s.stored.excess == 0) {
             return Ok(Vec::new());

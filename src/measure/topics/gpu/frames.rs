@@ -98,8 +98,8 @@ pub fn time(
         rounds += more;
         longest = longest.max(start.elapsed().as_secs_f64());
     }
-    let by_card = card_times(studio, &shots, timing);
-    let rows = shots.iter().zip(&times).zip(by_card).map(|((shot, own), gpu_ms)| {
+    let by_gpu = gpu_times(studio, &shots, timing);
+    let rows = shots.iter().zip(&times).zip(by_gpu).map(|((shot, own), gpu_ms)| {
         let of = |values: &[f64]| {
             Estimate::of(values)
                 .ok_or_else(|| RenderError::Scene("no frame was timed; one round or more would be right".to_owned()))
@@ -155,8 +155,8 @@ fn drawn(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Result<f64, Rend
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }
 
-/// What each frame takes by the card's clock where its lenses are counted too, as far as there is time and the card has one.
-fn card_times(studio: &mut Studio, shots: &[Shot], timing: &Timing<'_>) -> Vec<Option<f64>> {
+/// What each frame takes by the GPU's clock where its lenses are counted too, as far as there is time and the GPU has one.
+fn gpu_times(studio: &mut Studio, shots: &[Shot], timing: &Timing<'_>) -> Vec<Option<f64>> {
     let mut one = |shot: &Shot| {
         if !timing.clock.has_time(Part::Frames) {
             return None;

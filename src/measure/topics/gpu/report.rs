@@ -25,7 +25,7 @@ pub struct Report {
     pub adapter: stats::Adapter,
     /// The driver and its version, as far as it tells.
     pub driver: String,
-    /// Whether the adapter is a program, not a card.
+    /// Whether the adapter is a program, not a GPU.
     pub is_software: bool,
     /// How long the probe was to take at most, and took, seconds.
     pub seconds: [f64; 2],
@@ -141,7 +141,7 @@ pub struct Timed {
     pub ms: Estimate,
     /// The same against the plain frame of its view, round by round.
     pub ratio: Estimate,
-    /// The sum of its passes by the card's own clock, once, with its lenses counted, milliseconds; `None` where the card has none.
+    /// The sum of its passes by the GPU's own clock, once, with its lenses counted, milliseconds; `None` where the GPU has none.
     pub gpu_ms: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Methods of laying translucent layers one over the other that are not exact or not fast, for comparison and for small cards
+//! Methods of laying translucent layers one over the other that are not exact or not fast, for comparison and for small GPUs
 //! ([`crate::scene::Transparency`]): the same fragments, classes, opacities and shading as the exact one ([`super::layers`]).
 //!
 //! ```text

@@ -57,7 +57,7 @@ impl PipelineKey for LinkKey {
     }
 }
 
-/// What the card has of slots between frames.
+/// What the GPU has of slots between frames.
 #[derive(Debug)]
 struct SlotLists {
     /// Heads and records of pixels, slots, and what is read of them.
@@ -130,7 +130,7 @@ pub struct SlotLayers {
 }
 
 impl SlotLayers {
-    /// Gives back what it takes on the card.
+    /// Gives back what it takes on the GPU.
     pub fn drop_lists(&mut self) {
         self.own = None;
     }
