@@ -151,13 +151,13 @@ pub fn landmarks(model: &CityModel, shown: &[u32], n: usize) -> Vec<Landmark> {
         .filter(|&unit| can_be(units.roots[unit as usize]) && !units.boxes[unit as usize].is_empty())
         .collect();
     let town = Town::new(model, &units, &chosen);
-    let told = Told::new(model, &units);
+    let facts = UnitFacts::new(model, &units);
     let landmark = |at: usize| {
         let (height_m, footprint_m2) = (town.heights[at], town.areas[at]);
         let [neighbours_m, usual_m2] = town.neighbourhood(at);
         let isolation_m = town.isolation(at);
         let unit = chosen[at];
-        let (attributes, name) = told.of(unit);
+        let (attributes, name) = facts.of(unit);
         let over = |own: f64, others: f64, house: f64| ((own - others) / (own + others + house)).max(0.0);
         let terms = Terms {
             height: over(height_m, neighbours_m, HOUSE.0),
@@ -260,7 +260,7 @@ fn area_of(ring: &[DVec2]) -> f64 {
 }
 
 /// What attributes say, per unit.
-struct Told<'a> {
+struct UnitFacts<'a> {
     model: &'a CityModel,
     /// The objects of each unit, its root first.
     members: FxHashMap<u32, Vec<u32>>,
@@ -268,7 +268,7 @@ struct Told<'a> {
     names: FxHashMap<StringId, usize>,
 }
 
-impl<'a> Told<'a> {
+impl<'a> UnitFacts<'a> {
     fn new(model: &'a CityModel, units: &Units) -> Self {
         let mut members: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
         units.roots.iter().zip(0..).for_each(|(&root, unit)| members.entry(unit).or_default().push(root));

@@ -43,12 +43,12 @@ impl Findings {
         Self { tried: 0, wrong: 0, first: None, is_cut: false, until }
     }
 
-    /// Compares one answer; `told` says what is wrong with it.
-    pub fn ask(&mut self, is_right: bool, told: impl FnOnce() -> String) {
+    /// Compares one answer; `message` says what is wrong with it.
+    pub fn ask(&mut self, is_right: bool, message: impl FnOnce() -> String) {
         self.tried += 1;
         if !is_right {
             self.wrong += 1;
-            self.first.get_or_insert_with(told);
+            self.first.get_or_insert_with(message);
         }
     }
 
