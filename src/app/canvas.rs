@@ -29,13 +29,13 @@ use crate::{
 
 /// Radians that a drag over a point of the window turns.
 const TURN: f64 = 0.006;
-/// What a point of the wheel makes distances smaller by.
+/// The factor by which a point of the wheel makes distances smaller.
 const ZOOM: f64 = 0.0025;
-/// What arrows turn in a second, radians; what they move along in it, heights of the picture; what + makes distances smaller by.
+/// The turn by arrows in a second, radians; the way along with them, heights of the picture; the factor by which + makes distances smaller.
 const KEY_TURN: f64 = 1.2;
 const KEY_PAN: f64 = 0.6;
 const KEY_ZOOM: f64 = 1.2;
-/// How much nearer a double click goes.
+/// The factor by which a double click goes nearer.
 const NEARER: f64 = 0.5;
 /// A brisk walk, and a ride.
 const WALK_M_S: f64 = 3.0;
@@ -43,7 +43,7 @@ const FAST_WALK_M_S: f64 = 12.0;
 /// The longest side of a picture, pixels: what one target takes.
 const MOST_PIXELS: f32 = 4096.0;
 
-/// How long after the last move the eye rests, seconds.
+/// The time after the last move until the eye rests, seconds.
 const REST_S: f64 = 0.15;
 
 impl Canvas {
@@ -80,18 +80,18 @@ impl Canvas {
         self.flight = Some((Flight { from, to }, Instant::now()));
     }
 
-    /// What is in the middle of the picture, metres.
+    /// The place in the middle of the picture, metres.
     pub fn middle(&self, frame: Option<&Frame>) -> Option<DVec3> {
         let frame = frame?;
         pick(frame, frame.view.size.map(|side| f64::from(side) / 2.0).into()).map(|hovered| hovered.at)
     }
 
-    /// What the pointer is on, metres.
+    /// The place that the pointer is on, metres.
     pub fn pointed(&self) -> Option<DVec3> {
         self.hovered.map(|hovered| hovered.at)
     }
 
-    /// What is under the pointer, in words.
+    /// The thing under the pointer, in words.
     pub fn place_text(&self) -> Option<String> {
         let Hovered { at, .. } = self.hovered?;
         Some(format!("{:.2}  {:.2}  {:.2} m", at.x, at.y, at.z))
@@ -104,7 +104,7 @@ impl Canvas {
     }
 }
 
-/// What a picture shows at a place of it, pixels from its upper left corner; `None`: nothing, or it is not known yet.
+/// The thing that a picture shows at a place of it, pixels from its upper left corner; `None`: nothing, or it is not known yet.
 pub fn pick(frame: &Frame, at: DVec2) -> Option<Hovered> {
     let (ids, depths) = frame.shown.as_ref()?;
     let [w, h] = frame.view.size;
@@ -199,7 +199,7 @@ impl Window {
         View::new(self.camera()?, size, &Aabb::EMPTY).ok()
     }
 
-    /// What is at a place of the window, from the last picture that tells.
+    /// The thing at a place of the window, from the last picture that tells.
     fn pick_at(&self, rect: Rect, at: Pos2) -> Option<Hovered> {
         let frame = self.frame.as_deref()?;
         let [w, h] = frame.view.size.map(f64::from);
@@ -451,7 +451,7 @@ impl Window {
         }
     }
 
-    /// What the pointer is on of lenses, and what could be done there.
+    /// Finds the lens that the pointer is on, and the action that is possible there.
     fn roll_over(&mut self, response: &Response, rect: Rect, at: Pos2) {
         let Some(view) = self.view_in(rect) else { return };
         let held = || {

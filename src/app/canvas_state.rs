@@ -1,4 +1,4 @@
-//! What the canvas keeps between frames.
+//! State of the canvas that stays between frames.
 
 use std::{sync::Arc, time::Instant};
 
@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::{app::gizmo::places::GizmoKind, lens::Focus, view::navigate::Flight};
 
-/// What a drag does.
+/// The effect of a drag.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Drag {
     Orbit {
@@ -26,7 +26,7 @@ pub(super) enum Drag {
     },
 }
 
-/// What the picture in the window knows.
+/// The state of the picture in the window.
 #[derive(Default)]
 pub struct Canvas {
     pub(super) texture: Option<TextureHandle>,
@@ -42,7 +42,7 @@ pub struct Canvas {
     pub(super) outlines: Option<Outlines>,
 }
 
-/// What is under the pointer.
+/// The thing under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hovered {
     /// The object, by index; `None`: the plain ground, or a part that no object has.
@@ -66,7 +66,7 @@ pub(super) struct Gizmo {
     pub lens: usize,
     /// Which of its shapes.
     pub shape: usize,
-    /// What of that.
+    /// The kind of gizmo there.
     pub kind: GizmoKind,
     /// Where it is, model coordinates.
     pub(super) place: DVec3,

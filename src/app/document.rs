@@ -63,7 +63,7 @@ impl Document {
         self.file.as_deref()
     }
 
-    /// What it is called.
+    /// Its name.
     pub fn title(&self) -> String {
         let name = self.file.as_ref().or(self.scene().city.files.first());
         let name = name.and_then(|file| file.file_name()).map(|name| name.to_string_lossy().into_owned());
@@ -76,7 +76,7 @@ impl Document {
         still(self.scene()) != still(&self.saved)
     }
 
-    /// How its paths are read and written: relative to its file, and free to lead anywhere, as who edits it says where.
+    /// The rules by which its paths are read and written: relative to its file, and free to lead anywhere, as the person who edits it says where.
     pub fn options(&self) -> Options {
         match &self.file {
             Some(file) => Options { allow_outside: true, ..Options::for_file(file) },
@@ -151,7 +151,7 @@ impl Document {
         self.history.redo().map(str::to_owned)
     }
 
-    /// What would be taken back, and done again.
+    /// The names of the edits that would be taken back, and done again.
     pub fn names(&self) -> [Option<&str>; 2] {
         self.history.next().map(|command| command.map(Command::name))
     }
@@ -244,7 +244,7 @@ impl Document {
     }
 }
 
-/// What an edit does, for a menu: `radius of crate`, `figure size`.
+/// The name of an edit, for a menu: `radius of crate`, `figure size`.
 fn name_of(scene: &Scene, path: &str) -> String {
     let mut segments = path.split('.').map(str::trim);
     let first = segments.next().unwrap_or_default();

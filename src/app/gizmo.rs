@@ -28,7 +28,7 @@ const SQUARE: f32 = 4.5;
 const REACH: f32 = 11.0;
 /// Gizmos that are nearer to each other than this are not all shown: the first of them is.
 const APART: f32 = 16.0;
-/// How far beyond what it turns about its end the turning gizmo stands, points.
+/// The distance of the turning gizmo beyond the end of the shape, points.
 const BEYOND: f32 = 26.0;
 /// Where that is outside the picture: how far from the middle, points.
 const NEAR: f32 = 60.0;
@@ -83,7 +83,7 @@ impl Window {
         shown
     }
 
-    /// What of the chosen lens is at a place of the window.
+    /// The gizmo of the chosen lens at a place of the window.
     pub(super) fn gizmo_at(&self, view: &View, rect: Rect, at: Pos2) -> Option<Gizmo> {
         let index = self
             .chosen
@@ -301,7 +301,7 @@ fn dragged_to(view: &View, rect: Rect, at: Pos2, from: DVec3, is_vertical: bool)
     (t > 0.0 && to.distance(from) < 20.0 * view.camera.eye.distance(from).max(1.0)).then_some(to)
 }
 
-/// How far along a line, from a place on it in a unit direction, the pointer is: where the line is nearest to what the pointer is on.
+/// The distance along a line, from a place on it in a unit direction, at which the line is nearest to what the pointer is on.
 fn along_line(view: &View, rect: Rect, at: Pos2, from: DVec3, way: DVec3) -> Option<f64> {
     let ray = view.ray(in_rect(rect, at));
     let sight = ray.direction.try_normalize()?;

@@ -39,7 +39,7 @@ use eframe::egui;
 pub use state::Window;
 pub use window::{BUILTIN, Start};
 
-/// What eframe calls.
+/// The program that eframe runs.
 struct App {
     window: Window,
 }

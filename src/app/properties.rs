@@ -27,9 +27,9 @@ mod tables;
 mod values;
 mod widget;
 
-/// What the scene has that stands elsewhere in the window: in the list of lenses, and with the chosen one.
+/// Keys of the scene that stand elsewhere in the window: in the list of lenses, and with the chosen one.
 const ELSEWHERE: &[&str] = &["veduta", "lens", "overlay"];
-/// What a person asks for most.
+/// The keys that are needed most.
 const FIRST: &[&str] = &["camera", "sun", "style", "poi", "figure"];
 
 /// The panel.
@@ -83,7 +83,7 @@ pub fn show(window: &mut Window, drafts: &mut Drafts, ui: &mut Ui) {
     }
 }
 
-/// How the picture of the chosen lens stands, if it has one.
+/// The properties of the chosen lens' overlay, if it has one.
 fn overlay(ui: &mut Ui, edits: &mut Edits, window: &Window, root: &TomlTable, lens: usize) {
     let scene = window.document.scene();
     let Some(lens) = scene.lenses.get(lens).filter(|lens| lens.best_view.is_some()) else { return };

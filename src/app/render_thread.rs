@@ -59,7 +59,7 @@ const QUICK: f64 = 0.4;
 /// A picture to draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
-    /// Of what.
+    /// The scene.
     pub scene: Arc<Scene>,
     /// Width and height, pixels, each at least 1.
     pub size: [u32; 2],
@@ -74,18 +74,18 @@ pub struct Draw {
 /// A picture to write.
 #[derive(Clone, Debug)]
 pub struct Export {
-    /// Of what, with size and samples.
+    /// The scene, with size and samples.
     pub scene: Arc<Scene>,
     /// Where to.
     pub file: PathBuf,
-    /// What the file says of itself.
+    /// The metadata of the file.
     pub notes: Notes,
 }
 
-/// What comes back.
+/// A reply of the threads.
 #[derive(Debug)]
 pub enum Reply {
-    /// What the loader is at.
+    /// The stage of loading, in words.
     Loading(String),
     /// A city is there.
     Opened(Box<Opened>),
@@ -110,7 +110,7 @@ pub enum Reply {
 pub struct Opened {
     /// The city.
     pub model: Arc<CityModel>,
-    /// Of each object the one that it is part of, or itself.
+    /// For each object the one that it is part of, or itself.
     pub roots: Vec<u32>,
     /// Names of attributes that objects have, sorted.
     pub attributes: Vec<String>,
@@ -124,7 +124,7 @@ pub struct Opened {
     pub extent: Aabb,
     /// Kinds of warnings about its files.
     pub warnings: Vec<String>,
-    /// Who draws.
+    /// The adapter that draws.
     pub adapter: String,
     /// Whether that is the processor.
     pub is_software: bool,
@@ -133,13 +133,13 @@ pub struct Opened {
 /// A picture, and what it shows.
 #[derive(Debug)]
 pub struct Frame {
-    /// Of what.
+    /// The scene that it shows.
     pub scene: Arc<Scene>,
     /// The eye.
     pub view: View,
     /// Rows of sRGB texels, the upper left first; as many as `view.size` says.
     pub rgba: Vec<[u8; 4]>,
-    /// Of each pixel the object's index + 1 and metres along the view axis (+∞: nothing); only of pictures that stand still.
+    /// For each pixel the object's index + 1 and metres along the view axis (+∞: nothing); only of pictures that stand still.
     pub shown: Option<(Vec<u32>, Vec<f32>)>,
     /// Where overlays stand in it; only of pictures that stand still.
     pub overlays: Vec<ShownOverlay>,
@@ -147,13 +147,13 @@ pub struct Frame {
     pub samples: u32,
     /// Whether the next one of the same scene is better.
     pub is_final: bool,
-    /// What it cost, where that was asked for.
+    /// Its cost, where that was asked for.
     pub statistics: Option<Box<Statistics>>,
-    /// How long it took.
+    /// The time that it took, milliseconds.
     pub ms: f64,
 }
 
-/// What is wanted of the render thread.
+/// The work that is wanted of the render thread.
 #[derive(Default)]
 struct Wanted {
     city: Option<Loaded>,
@@ -171,7 +171,7 @@ struct Loaded {
     stats: LoadStats,
 }
 
-/// What both sides hold.
+/// The state that both sides share.
 #[derive(Default)]
 struct Shared {
     wanted: Mutex<Wanted>,
@@ -301,7 +301,7 @@ impl RenderThread {
         }
     }
 
-    /// What came back meanwhile.
+    /// The replies since the last call.
     pub fn replies(&self) -> Vec<Reply> {
         self.replies.try_iter().collect()
     }
@@ -381,7 +381,7 @@ fn renewed(studio: &Studio, spec: &CitySpec) -> Result<Studio, RenderError> {
     Ok(again)
 }
 
-/// Of a panic, what people can do with it.
+/// The message about a panic, with what people can do.
 fn our_mistake(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
     format!("this is a mistake of Veduta itself, please report it: {}", text.unwrap_or("it does not say which"))
@@ -396,7 +396,7 @@ fn beside_the_window<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// What to do next.
+/// The next thing to do.
 enum Task {
     City(Box<Loaded>),
     Effects(Vec<PathBuf>),
@@ -416,7 +416,7 @@ struct Worker {
     spec: CitySpec,
     /// Where overlays stand, and in pictures of which size.
     standing: (Standing, [u32; 2]),
-    /// What could be drawn better once nothing else is wanted.
+    /// A picture that could be drawn better once nothing else is wanted.
     refine: Option<Draw>,
     /// Which of [`SCALES`].
     scale: usize,
@@ -634,7 +634,7 @@ impl Worker {
 mod tests {
     use super::*;
 
-    /// Who draws the built-in city.
+    /// A worker that draws the built-in city.
     fn worker() -> (Worker, Receiver<Reply>) {
         let (sender, replies) = channel();
         let mut worker = Worker::new(Arc::default(), sender, Arc::new(|| {}));

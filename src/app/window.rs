@@ -34,7 +34,7 @@ pub const BUILTIN: &str = "builtin:square";
 /// Files that are remembered.
 const MOST_RECENT: usize = 10;
 
-/// What the window begins with.
+/// The state that the window begins with.
 #[derive(Clone, Debug, Default)]
 pub struct Start {
     /// A scene file, or city files; none: the built-in city.
@@ -116,7 +116,7 @@ impl Window {
         Ok(window)
     }
 
-    /// What is being drawn on the city.
+    /// The figure that is being drawn on the city.
     pub fn drawing(&self) -> Option<&Drawing> {
         self.drawing.as_ref()
     }
@@ -187,7 +187,7 @@ impl Window {
         others
     }
 
-    /// What cannot be remembered is forgotten: no reason to disturb anybody.
+    /// Remembers the window; failures are ignored, as they are no reason to disturb anybody.
     fn remember(&self) {
         let Some(file) = &self.memory else { return };
         let lines: Vec<String> = self.recent.iter().map(|path| format!("{}\n", path.display())).collect();
@@ -550,7 +550,7 @@ impl Window {
     }
 }
 
-/// How a message begins that holds until something can be drawn again.
+/// The beginning of a message that holds until something can be drawn again.
 const NOT_DRAWN: &str = "Cannot be drawn: ";
 
 /// Files that were opened before and still are there.

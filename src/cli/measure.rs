@@ -84,13 +84,13 @@ impl Arguments {
         self.size.map_or(SIZE, |size| size.0)
     }
 
-    /// How often the variants of topics are timed.
+    /// The number of times that the variants of topics are timed.
     fn pairs(&self) -> u32 {
         self.pairs.unwrap_or(PAIRS)
     }
 }
 
-/// What topics are measured with, unless told otherwise.
+/// The size that topics are measured with, unless told otherwise.
 const SIZE: [u32; 2] = [640, 360];
 const PAIRS: u32 = 15;
 

@@ -40,13 +40,13 @@ use crate::{app, city::builtin};
     override_usage = "veduta COMMAND [OPTIONS]\n       veduta [FILE...] [--scene S.toml]"
 )]
 pub struct Cli {
-    /// What to do; nothing means `view`.
+    /// The command; none means `view`.
     #[command(subcommand)]
     pub command: Option<Command>,
     /// A scene to view, when no command is named
     #[arg(long, value_name = "S.toml", hide = true)]
     pub scene: Option<PathBuf>,
-    /// What holds for every command.
+    /// Arguments of every command.
     #[command(flatten)]
     pub global: GlobalArguments,
 }

@@ -27,7 +27,7 @@ pub const SCHEMA: u32 = 1;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// How this program was compiled: times of a debug build say little.
+/// The build profile of this program: times of a debug build say little.
 const PROFILE: &str = if cfg!(debug_assertions) { "debug" } else { "release" };
 
 /// The table, in Markdown.

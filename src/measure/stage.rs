@@ -16,7 +16,7 @@ use crate::{
     view::{Camera, View},
 };
 
-/// What a topic works with.
+/// The stage of a topic: what it draws with.
 #[derive(Debug)]
 pub struct Stage<'a> {
     /// The city on the GPU.

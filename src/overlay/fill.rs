@@ -1,4 +1,4 @@
-//! Who stands where: on which lane, further inward, or nowhere.
+//! The place of each overlay: on a lane, further inward, or nowhere.
 //!
 //! Overlays are placed by priority, the higher first. All shrink together, by eighths of the way from the size that they want to their smallest, until the
 //! lanes hold all of them; if that is not enough, again until all find a place on the lanes or further inward; at their smallest size, who finds no place is
@@ -91,7 +91,7 @@ fn fill_at(problem: &Problem, step: u32, inward: bool, folds: bool) -> Option<Fi
     Some(filled)
 }
 
-/// How badly a side suits an overlay: how far its wish is from the side, as a share of the picture, and half of the share of the lane that is taken.
+/// The cost of a side for an overlay: how far its wish is from the side, as a share of the picture, and half of the share of the lane that is taken.
 pub fn unease(problem: &Problem, item: usize, lane: &Lane, row: &[usize], sizes: &[[i32; 2]]) -> f64 {
     let (d, a) = (lane.side.depth_axis(), lane.side.along_axis());
     let extent = |i: usize| f64::from(problem.board.inner.size()[i].max(1));

@@ -17,7 +17,7 @@ use crate::overlay::{
     rect::{Interval, Rect, closed_by},
 };
 
-/// What is known of the room further inward: for overlays of a size, or of a larger one, the least depth at each side at
+/// Knowledge of the room further inward: for overlays of a size, or of a larger one, the least depth at each side at
 /// which there may be some.
 ///
 /// It holds for one board as long as obstacles are only added.
@@ -120,7 +120,7 @@ fn room(board: &Board, side: Side, size: [i32; 2], obstacles: &[Rect], depths: I
     found.map(|depth| (depth, windows(depth)))
 }
 
-/// What is closed to an overlay of `size` at some of the `depths` of a side.
+/// The places that are closed to an overlay of `size` at some of the `depths` of a side.
 fn closed(board: &Board, side: Side, size: [i32; 2], obstacles: &[Rect], depths: Interval) -> Vec<Closed> {
     let (d, a) = (side.depth_axis(), side.along_axis());
     // The depths of places of the upper or left end; `None` if they are others.

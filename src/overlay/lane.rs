@@ -53,11 +53,11 @@ pub struct Board {
     pub inner: Rect,
     /// Between overlays, pixels.
     pub gap: i32,
-    /// Of points, pixels, finite, 0 and up.
+    /// Distance from points, pixels, finite, 0 and up.
     pub clearance: f64,
     /// The points not to be covered, finite, in the picture or just beside it.
     pub points: Vec<DVec2>,
-    /// What is left free like an overlay that stands there, pixels.
+    /// Rectangles that are left free like an overlay that stands there, pixels.
     pub blocked: Vec<Rect>,
 }
 
@@ -81,7 +81,7 @@ impl Board {
         Self { clearance, points, blocked: self.blocked.clone(), ..*self }
     }
 
-    /// How many points an overlay covers that stands there.
+    /// The number of points that an overlay covers that stands there.
     pub fn covered(&self, rect: &Rect) -> usize {
         self.points.iter().filter(|p| rect.covers(**p, self.clearance)).count()
     }

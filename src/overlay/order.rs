@@ -35,7 +35,7 @@ const KEPT_PROVEN: usize = 5;
 /// Stands for a lane where an overlay is further inward.
 const INWARD: usize = usize::MAX;
 
-/// What was found.
+/// The result of a search.
 #[derive(Clone, Debug)]
 pub struct Ordered {
     /// The overlays on each lane.
@@ -208,7 +208,7 @@ struct Trial {
     /// Overlay, new rectangle, new ways.
     moved: Vec<(usize, Rect, Vec<Way>)>,
     crossings: u32,
-    /// Of all lines, lattice steps: how much longer they become.
+    /// The change of the length of all lines together, lattice steps; positive: longer.
     longer: f64,
 }
 

@@ -23,7 +23,7 @@ pub struct Lane {
 /// A request made ready: overlays in order of priority, all numbers finite.
 #[derive(Clone, Debug)]
 pub struct Problem<'a> {
-    /// What was asked for.
+    /// The request.
     pub request: &'a Request,
     /// The overlays, the highest priority first, then the lowest id. Elsewhere an overlay is its number in this list.
     pub overlays: Vec<&'a Overlay>,
@@ -100,7 +100,7 @@ impl<'a> Problem<'a> {
         min[0] > room[0] || min[1] > room[1]
     }
 
-    /// What it is placed by, higher before lower.
+    /// The number that it is placed by, higher before lower.
     pub fn rank(&self, item: usize) -> f64 {
         rank(self.overlays[item])
     }
@@ -167,7 +167,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Who stands where.
+/// The place of each overlay.
 #[derive(Clone, Debug)]
 pub struct Filled {
     /// Steps of shrinking, 0..[`crate::overlay::size::SHRINK_STEPS`].

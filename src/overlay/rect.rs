@@ -37,7 +37,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// What is of both, if anything is.
+    /// The part of both, if there is any.
     pub fn overlap(self, other: Self) -> Option<Self> {
         let both = Self { first: self.first.max(other.first), last: self.last.min(other.last) };
         (both.first <= both.last).then_some(both)
@@ -55,7 +55,7 @@ impl Rect {
         [self.max[0] - self.min[0], self.max[1] - self.min[1]]
     }
 
-    /// What it takes along an axis (0 x, 1 y).
+    /// Its extent along an axis (0 x, 1 y).
     pub fn span(&self, axis: usize) -> Span {
         Span { low: self.min[axis], high: self.max[axis] }
     }

@@ -7,9 +7,9 @@ use glam::{DVec2, DVec3};
 
 use crate::view::camera::{Camera, Projection, default_near_m};
 
-/// How far sights of a camera may lie from the eye plane to count as level, sine.
+/// The largest sine of the angle between sights of a camera and the eye plane that counts as level.
 const LEVEL: f64 = 1e-9;
-/// How far from the eye the target of a level camera is, metres.
+/// The distance of the target of a level camera from the eye, metres.
 const LEVEL_REACH_M: f64 = 50.0;
 
 /// A camera `distance_m` from the viewer along `normal` that looks at the viewer (multiple centres of projection).
@@ -104,7 +104,7 @@ pub fn heading(viewer: &Camera) -> DVec2 {
     level.normalize_or(DVec2::Y)
 }
 
-/// What is up in a camera that looks against `normal`, a unit vector, for a viewer who looks along f with u up: (I − n nᵀ)(f − (f·n) u), normalised.
+/// The upward direction in a camera that looks against `normal`, a unit vector, for a viewer that looks along f with u up: (I − n nᵀ)(f − (f·n) u), normalised.
 /// It turns evenly while the normal goes from behind the viewer over its head, and is the viewer's own up where the camera looks the same
 /// way. From two directions below the viewer this is 0: there the viewer's right is taken for up.
 pub fn upright(normal: DVec3, viewer: &Camera) -> DVec3 {

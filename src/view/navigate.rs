@@ -33,11 +33,11 @@ pub const MIN_DISTANCE_M: f64 = 0.2;
 pub const MAX_DISTANCE_M: f64 = 1e7;
 /// Least and greatest height of an orthographic picture, metres: those of [`Camera::check`].
 const HEIGHTS_M: (f64, f64) = (1e-3, 1e7);
-/// How far ahead one looks who has come down to the ground, metres.
+/// The distance of the target after a descent to the ground, metres.
 const LANDED_M: f64 = 30.0;
 /// Part of the picture's half width and height that a framed box may fill: a margin of 3 % of the picture on each side.
 const FILL: f64 = 0.94;
-/// How far a flight that rises looks down half way, radians above the horizon (−40°), unless its ends look down
+/// The pitch half way along a flight that rises, radians above the horizon (−40°), unless its ends look down
 /// farther.
 const FLIGHT_PITCH: f64 = -40.0 * PI / 180.0;
 /// Shortest and longest time of a flight, seconds.
@@ -182,7 +182,7 @@ impl Axis {
         }
     }
 
-    /// What is up in the picture, unit.
+    /// The upward direction of the picture, unit.
     pub fn up(self) -> DVec3 {
         if self == Self::Top { DVec3::Y } else { DVec3::Z }
     }
@@ -347,7 +347,7 @@ impl Flight {
         if there.check().is_ok() { there } else { *from }
     }
 
-    /// How long it should take, 0.25..=1.2 seconds: the longer, the more the picture changes.
+    /// The time that it should take, 0.25..=1.2 seconds: the longer, the more the picture changes.
     pub fn duration_s(&self) -> f64 {
         let (Ok(start), Ok(end)) = (self.from.basis(), self.to.basis()) else { return FLIGHT_S.0 };
         let turn = start.forward.angle_between(end.forward).max(start.right.angle_between(end.right)) / FRAC_PI_2;
@@ -358,7 +358,7 @@ impl Flight {
         if part.is_finite() { FLIGHT_S.0 + (FLIGHT_S.1 - FLIGHT_S.0) * part.clamp(0.0, 1.0) } else { FLIGHT_S.0 }
     }
 
-    /// How far the target goes, in heights of the picture (the geometric mean of both).
+    /// The way of the target, in heights of the picture (the geometric mean of both).
     fn way(&self) -> f64 {
         let height_m = (picture_height_m(&self.from).ln() * 0.5 + picture_height_m(&self.to).ln() * 0.5).exp();
         self.from.target.distance(self.to.target) / height_m
@@ -413,7 +413,7 @@ impl Look {
         -self.pitch.signum() * DVec3::new(sin, cos, 0.0)
     }
 
-    /// How far axes with this direction of view are turned about it, radians, −π..=π: 0 where up is up.
+    /// The turn of axes with this direction of view about it, radians, −π..=π: 0 where up is up.
     fn roll_of(self, basis: &Basis) -> f64 {
         let level = self.basis();
         basis.up.dot(level.right).atan2(basis.up.dot(level.up))
@@ -444,7 +444,7 @@ fn moved(camera: &Camera, by: DVec3) -> Camera {
     settled(camera, Camera { eye: camera.eye + by, target: camera.target + by, ..*camera })
 }
 
-/// What `camera` becomes: `there`, with the near plane that belongs there; `camera` itself where either is no camera.
+/// The camera at the end: `there`, with the near plane that belongs there; `camera` itself where either is no camera.
 fn settled(camera: &Camera, there: Camera) -> Camera {
     let near_m =
         if has_default_near(camera) { default_near_m(there.eye.distance(there.target)) } else { camera.near_m };

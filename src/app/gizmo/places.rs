@@ -14,7 +14,7 @@ use crate::{
 
 /// Shapes with more corners than this are held by their middle only: gizmos would cover them.
 pub const MOST_CORNERS: usize = 64;
-/// What is held gets no smaller than this.
+/// The least size that dragging leaves.
 pub const LEAST_M: f64 = 0.1;
 
 /// The part of a shape that a gizmo holds, and so what dragging it does.
@@ -133,7 +133,7 @@ fn within(plan: DVec2, [low, high]: [f64; 2], ground: &dyn Fn(DVec2) -> Option<f
     plan.extend(ground(plan).map_or(0.5 * (low + high), |z| z.clamp(low, high.max(low))))
 }
 
-/// How far the ring is from the middle.
+/// The distance of the ring from the middle.
 pub fn radius(focus: &Focus) -> Option<f64> {
     match focus {
         Focus::Shape(
@@ -146,7 +146,7 @@ pub fn radius(focus: &Focus) -> Option<f64> {
     }
 }
 
-/// What its sides bound.
+/// The block that its sides bound.
 pub fn block(focus: &Focus) -> Option<Block> {
     let upright = |axis: DVec3| DQuat::from_rotation_arc(DVec3::Z, axis.normalize_or(DVec3::Z));
     let block = |center, half, turn, has| Block { center, half, turn, has, is_centered: false };
@@ -373,7 +373,7 @@ pub fn extent(focus: &Focus) -> Aabb {
     bounds
 }
 
-/// What is held by hand is no finer than millimetres, so that files stay readable.
+/// A place rounded to millimetres, so that files stay readable.
 fn to_mm(at: DVec3) -> DVec3 {
     DVec3::from(at.to_array().map(round_mm))
 }

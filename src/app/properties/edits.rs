@@ -6,7 +6,7 @@ use toml::{Table as TomlTable, Value};
 
 use crate::{app::document::Document, figure::scene_file::tree, scene::Scene};
 
-/// What is typed and not done yet, and what was wrong with it, by path.
+/// Texts that are typed and not done yet, and what was wrong with them, by path.
 #[derive(Debug, Default)]
 pub struct Drafts {
     of: Option<(Scene, Rc<TomlTable>)>,
@@ -30,31 +30,31 @@ impl Drafts {
     }
 }
 
-/// What a value becomes.
+/// The value that a key gets.
 #[derive(Clone, Debug)]
 pub enum To {
     /// Another value.
     Value(Value),
-    /// What somebody typed.
+    /// A text that a person typed.
     Typed(String),
     /// It is taken away.
     Nothing,
 }
 
-/// What a widget asks for.
+/// A change that a widget asks for.
 #[derive(Clone, Debug)]
 pub struct Change {
     /// The path of the value's key.
     pub path: String,
-    /// What it becomes.
+    /// The new value.
     pub to: To,
     /// Whether it goes on.
     pub is_held: bool,
 }
 
-/// What the widgets of a frame ask for, in order, and what is typed in them.
+/// The changes that the widgets of a frame ask for, in order, and the texts that are typed in them.
 pub struct Edits<'a> {
-    /// What is typed and not done yet.
+    /// Texts that are typed and not done yet.
     pub drafts: &'a mut Drafts,
     /// Changes that are to be made.
     pub changes: Vec<Change>,

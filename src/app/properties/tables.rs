@@ -285,7 +285,7 @@ fn new_effect(definition: &effect::EffectDefinition) -> Value {
     Value::String(definition.name.clone())
 }
 
-/// What was wrong with what was typed for a key, if anything was.
+/// Shows what was wrong with the text for a key, if anything was.
 fn wrong(ui: &mut Ui, drafts: &Drafts, path: &str) {
     if let Some(problem) = drafts.wrong.get(path) {
         ui.colored_label(ui.visuals().error_fg_color, problem);

@@ -16,7 +16,7 @@ use crate::{
 /// The button that takes a value away, with the space before it, points.
 const TAKE_AWAY_WIDTH: f32 = 36.0;
 
-/// What a widget is made for.
+/// The kind of value that a widget is made for.
 pub enum Takes<'a> {
     /// A number within bounds.
     Number {
@@ -78,13 +78,13 @@ impl<'a> Takes<'a> {
     }
 }
 
-/// What stands around a widget.
+/// The surroundings of a widget.
 pub struct Setting<'a> {
     /// The path of its value's key.
     pub path: &'a str,
     /// The unit of its value; empty for none.
     pub unit: &'a str,
-    /// What an empty field for text says.
+    /// The text of an empty field.
     pub hint: &'a str,
     /// Its name.
     pub label: egui::Id,

@@ -1,4 +1,4 @@
-//! What actions do.
+//! Effects of actions.
 
 use std::{
     path::{Path, PathBuf},

@@ -28,7 +28,7 @@ use crate::{
 /// Faces bent by less than this are not reported as non-planar: float formats are all bent by a little.
 const FLAT_M: f64 = 1e-3;
 
-/// What all jobs read.
+/// The data that all jobs read.
 pub(super) struct Context<'a> {
     pub(super) objects: &'a [CityObject],
     pub(super) surfaces: &'a [Surface],
@@ -51,7 +51,7 @@ impl<'a> Context<'a> {
     }
 }
 
-/// What a job makes; ranges and geometry numbers start at 0.
+/// The result of a job; ranges and geometry numbers start at 0.
 #[derive(Debug, Default)]
 pub(super) struct Chunk {
     pub(super) geometries: Vec<Geometry>,
@@ -205,7 +205,7 @@ fn add_geometry(raw: &Shape<'_>, repeated: &[bool], context: &Context<'_>, scrat
     });
 }
 
-/// What a face is called in warnings.
+/// The name of a face in warnings.
 struct Called<'a> {
     /// The id of its object.
     id: &'a str,

@@ -110,7 +110,7 @@ struct State<'a> {
     waiting_polygons: usize,
     /// The number of the chunk to be appended next.
     due: usize,
-    /// What is appended to; `None` while a worker does it.
+    /// The parts so far, which are appended to; `None` while a worker does it.
     built: Option<Built>,
     /// Appended chunks, to be used again: allocators keep what each thread frees apart, so asking anew for each job
     /// would hold several times as much.

@@ -39,7 +39,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// How many polygons it has.
+    /// The number of its polygons.
     pub(super) fn polygon_count(&self) -> usize {
         self.polygon_ends.len()
     }

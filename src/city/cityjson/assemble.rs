@@ -33,11 +33,11 @@ const MAX_INSTANCED: usize = 1 << 26;
 pub struct Templates {
     /// The geometries.
     pub geometries: Vec<GeometryRead>,
-    /// What they index into.
+    /// The vertices that they index into.
     pub vertices: Vec<DVec3>,
 }
 
-/// What turns the objects of one document into the builder's.
+/// The assembly of one document's objects into those of the builder.
 pub struct Assembly<'a> {
     /// Where they go.
     pub builder: &'a mut ModelBuilder,
@@ -49,7 +49,7 @@ pub struct Assembly<'a> {
     pub templates: &'a Templates,
     /// Materials and textures of the templates, of where those are declared.
     pub template_appearance: &'a AppearanceTable,
-    /// How numbers become metres.
+    /// The way from numbers to metres.
     pub placing: Placing,
     /// Indices instanced so far.
     pub instanced: &'a mut usize,

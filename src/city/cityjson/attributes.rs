@@ -34,7 +34,7 @@ pub fn read(
     Ok(())
 }
 
-/// Of attributes with one name the last stays, as in other readers; those from `start` on are one object's.
+/// Keeps the last of attributes with one name, as other readers do; those from `start` on are one object's.
 fn drop_repeated(attributes: &mut Vec<Attribute>, start: usize, builder: &mut ModelBuilder, object: &str) {
     let own = &attributes[start..];
     let has_few = own.len() <= 12;

@@ -26,7 +26,7 @@ pub struct ObjectRead {
     pub raw: RawObject,
     /// Its attributes, in [`Document::attributes`].
     pub attributes: Range<usize>,
-    /// How many geometries it has, of those stowed.
+    /// The number of its geometries, of those that are packed.
     pub geometries: u32,
 }
 

@@ -243,7 +243,7 @@ impl<'a> File<'a> {
         .add(document);
     }
 
-    /// How this document's numbers become metres; the first vertex in degrees decides the zone of the whole city.
+    /// The way from this document's numbers to metres; the first vertex in degrees decides the zone of the whole city.
     fn placing(&mut self, document: &Document) -> Placing {
         let first = document.vertices.transformed(0, &self.transform);
         let degrees = match self.axes {

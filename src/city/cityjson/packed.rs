@@ -1,6 +1,6 @@
 //! Packed staging of a document's geometries between reading and assembly: one list of numbers.
 //!
-//! What a geometry means is known only when the document is complete: vertices and appearance mostly come last. Until
+//! The meaning of a geometry is known only when the document is complete: vertices and appearance mostly come last. Until
 //! then a dozen lists for each of a hundred thousand geometries would cost several times what is in them.
 
 use crate::city::{

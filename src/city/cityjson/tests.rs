@@ -1,4 +1,4 @@
-//! What the hand-made files of `citydata/` must become; numbers known by thought.
+//! The results that the hand-made files of `citydata/` must have; numbers known by thought.
 
 use std::path::{Path, PathBuf};
 

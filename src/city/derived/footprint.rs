@@ -22,7 +22,7 @@ use crate::{
 /// Lattice units per metre.
 const PER_M: f64 = 1000.0;
 
-/// What some objects cover of the ground.
+/// The ground that some objects cover.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Footprint {
     /// The objects whose faces it is made of: a root with its parts, or one object.

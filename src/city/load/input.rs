@@ -61,7 +61,7 @@ pub fn read(path: &Path) -> Result<Input, LoadError> {
     from_bytes(path, bytes)
 }
 
-/// What [`read`] does with the bytes it read.
+/// Makes an input of bytes that were read, as [`read`] does.
 pub fn from_bytes(path: &Path, mut bytes: Vec<u8>) -> Result<Input, LoadError> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(path));

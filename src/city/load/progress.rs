@@ -1,8 +1,8 @@
-//! How far loading is.
+//! The progress of loading.
 
 use std::path::Path;
 
-/// What loading is busy with.
+/// The stage of loading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
     /// Bytes come from the disk, and are decompressed.

@@ -115,7 +115,7 @@ pub fn with_warnings(statistics: &mut stats::Statistics, warnings: &[serde_json:
     statistics.warnings = warnings.iter().cloned().chain(of_picture).collect();
 }
 
-/// How paths of a scene file, or of the command line, are read.
+/// The rules by which paths of a scene file, or of the command line, are read.
 pub fn options_of(scene: Option<&PathBuf>, global: &GlobalArguments) -> Options {
     match scene {
         Some(file) => Options { allow_outside: global.allow_outside, must_exist: true, ..Options::for_file(file) },

@@ -61,13 +61,13 @@ pub struct Arguments {
 
 /// A sheet and all that it takes to draw it.
 pub struct Task {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// The sheet.
     pub sheet: Sheet,
     /// The scene it varies.
     pub scene: Scene,
-    /// How paths in the scene are read.
+    /// The rules by which paths in the scene are read.
     pub options: Options,
 }
 
@@ -243,7 +243,7 @@ fn studio_of<'k>(
     Ok(studio)
 }
 
-/// What `veduta render` asks for.
+/// The request that `veduta render` makes.
 fn request(scene: &Scene) -> Request {
     Request {
         size: scene.figure.size,

@@ -14,10 +14,10 @@ use crate::{
 /// Share of the picture that the lens covers.
 const SHARE: f64 = 0.1;
 
-/// How many effects.
+/// The numbers of effects.
 const COUNTS: [usize; 6] = [0, 1, 2, 4, 8, 16];
 
-/// What the effects are, over and over.
+/// The effects, over and over.
 const EFFECTS: [&str; 8] = ["sepia", "saturate", "darken", "posterise", "brighten", "invert", "greyscale", "overlay"];
 
 /// See the module.
@@ -43,7 +43,7 @@ pub const TOPIC: Topic = Topic {
     make,
 };
 
-/// How many effects come together.
+/// The way in which effects come together.
 #[derive(Clone, Copy)]
 enum Arrangement {
     /// One lens with all of them.

@@ -18,7 +18,7 @@ use crate::{
 /// Share of the city's plan that the lens is over.
 const SHARE: f64 = 0.1;
 
-/// How far edges may be off, pixels; the last one is what all others are compared with.
+/// The distances by which edges may be off, pixels; the last one is what all others are compared with.
 const CHORDS_PX: [f64; 8] = [16.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625];
 
 /// See the module.
@@ -40,7 +40,7 @@ pub const TOPIC: Topic = Topic {
     make,
 };
 
-/// What is done to the middle of the city.
+/// The deformations of the middle of the city.
 fn kinds() -> Vec<(&'static str, Vec<Step>)> {
     let taper = Step::Taper { factor: 0.8 };
     let twist = |degrees: f64| Step::Twist { angle: degrees.to_radians() };

@@ -50,7 +50,7 @@ pub const TOPIC: Topic = Topic {
     make,
 };
 
-/// What is compared of a shape: all formats with all mappings (`is_full`) or the default one, and all resolutions.
+/// The sprites that are compared for a shape: all formats with all mappings (`is_full`) or the default one, and all resolutions.
 fn sprites(is_full: bool) -> Vec<LensSprite> {
     let at = |resolution, format, mapping| LensSprite {
         resolution: Some(resolution),

@@ -56,7 +56,7 @@ fn rule(effect: &str, number: Option<(&str, f64)>) -> EffectUse {
     }
 }
 
-/// What is drawn: the whole city from above, translucent and nearly opaque, from a street, along the ground through all of it, and a
+/// The scenes that are drawn: the whole city from above, translucent and nearly opaque, from a street, along the ground through all of it, and a
 /// lens.
 fn scenes(stage: &mut Stage<'_>) -> Result<Vec<(&'static str, Scene)>, RenderError> {
     let plain = stage.plain_scene();
@@ -86,7 +86,7 @@ fn low(extent: &Aabb, away: f64, height_m: f64) -> Camera {
     Camera::looking(eye, middle, 45_f64.to_radians())
 }
 
-/// What is compared: methods, how many layers or samples stand in the table, and samples.
+/// The methods that are compared, how many layers or samples stand in the table, and samples.
 fn methods() -> Vec<(Transparency, Option<u32>, u32)> {
     let peel = |layers: u32| (Transparency::Peel { layers }, Some(layers).filter(|layers| *layers > 0), 1);
     let slots = |layers| (Transparency::KBuffer { layers }, Some(layers), 1);

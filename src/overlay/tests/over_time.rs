@@ -1,4 +1,4 @@
-//! What waits for a place, or for a better one, with a frame before: who comes, when, and in which order.
+//! Overlays that wait for a place, or for a better one, with a frame before: which come, when, and in which order.
 
 use std::collections::BTreeSet;
 

@@ -19,15 +19,15 @@ const DOWN: f64 = -0.966;
 pub(super) struct Sample {
     /// Metres.
     pub at: DVec3,
-    /// Of its face, unit.
+    /// The normal of its face, unit.
     pub normal: DVec3,
     /// Its triangle, by index into [`CityModel::planes`].
     pub triangle: u32,
-    /// How much it counts: 1 − ½·n_z².
+    /// Its weight: 1 − ½·n_z².
     pub weight: f64,
 }
 
-/// What is seen of an object, if it is seen.
+/// Samples of the facades of an object.
 #[derive(Debug)]
 pub(super) struct Facades {
     /// [`SAMPLES`] of them, each of the same area.
@@ -45,7 +45,7 @@ struct Face {
 }
 
 impl Facades {
-    /// Of some geometries: all faces but those that nobody outside sees; all where these are all. `None` where nothing has an area.
+    /// The facades of some geometries: all faces but those that nobody outside sees; all where these are all. `None` where nothing has an area.
     pub fn new(model: &CityModel, geometries: &[u32]) -> Option<Self> {
         let [unseen, outer] = [&UNSEEN[..], &OUTER]
             .map(|names| -> Vec<StringId> { names.iter().filter_map(|name| model.strings.find(name)).collect() });

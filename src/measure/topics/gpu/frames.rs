@@ -39,7 +39,7 @@ pub fn names() -> Vec<String> {
 
 const VIEWS: [&str; 2] = ["V1", "V2"];
 
-/// What is drawn in each view; the first is the plain frame.
+/// The frames that are drawn in each view; the first is the plain frame.
 const KINDS: [(&str, &str); 7] = [
     ("plain", "the plain frame"),
     ("lens", "one greyscale lens over a tenth of the picture"),
@@ -50,12 +50,12 @@ const KINDS: [(&str, &str); 7] = [
     ("see-through city", "translucent everywhere"),
 ];
 
-/// What is timed and for how long.
+/// The size of frames, and how often and how long they are timed.
 #[derive(Clone, Copy, Debug)]
 pub struct Timing<'a> {
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// How often all frames are drawn at most.
+    /// The number of times that all frames are drawn at most.
     pub rounds: usize,
     /// The time there is.
     pub clock: &'a Clock,
@@ -155,7 +155,7 @@ fn drawn(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Result<f64, Rend
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }
 
-/// What each frame takes by the GPU's clock where its lenses are counted too, as far as there is time and the GPU has one.
+/// The time of each frame by the GPU's clock where its lenses are counted too, as far as there is time and the GPU has one.
 fn gpu_times(studio: &mut Studio, shots: &[Shot], timing: &Timing<'_>) -> Vec<Option<f64>> {
     let mut one = |shot: &Shot| {
         if !timing.clock.has_time(Part::Frames) {

@@ -1,4 +1,4 @@
-//! What checks draw: scenes and lenses by one line, and pictures with all that is known of each pixel.
+//! Scenes that checks draw: scenes and lenses by one line, and pictures with all that is known of each pixel.
 
 use std::collections::BTreeMap;
 
@@ -62,7 +62,7 @@ pub fn orthographic(eye: DVec3, target: DVec3, height_m: f64) -> Camera {
     Camera { projection: Projection::Orthographic { height_m }, ..Camera::looking(eye, target, 1.0) }
 }
 
-/// What a camera projects on a picture of `size` pixels, whatever is in it.
+/// The view of a camera on a picture of `size` pixels, whatever is in it.
 ///
 /// # Errors
 /// Cameras without a picture.
@@ -91,7 +91,7 @@ pub fn picture_by(
     studio.render(scene, &Request { aovs: ALL, backend, ..Request::plain(size) })
 }
 
-/// What lies over the opaque picture, of one of the back ends.
+/// The layers over the opaque picture, of one of the back ends.
 ///
 /// # Errors
 /// What drawing cannot do.

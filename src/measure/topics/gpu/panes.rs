@@ -37,7 +37,7 @@ pub fn studio_of(panes: &[Solid]) -> Result<Studio, RenderError> {
     of_solids(DVec3::ZERO, panes)
 }
 
-/// What is drawn with these effects, from before the first pane.
+/// A scene that is drawn with these effects, from before the first pane.
 pub fn of_context(effects: Vec<EffectUse>) -> Scene {
     let eye = DVec3::new(-20.0, 5.0, 5.0);
     let mut made = scene(orthographic(eye, eye.with_x(0.0), 11.0), Vec::new());

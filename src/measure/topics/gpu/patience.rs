@@ -8,10 +8,10 @@ use std::{
     time::Instant,
 };
 
-/// What hears how far work has come: what it is at, and how many of how many are done.
+/// A listener that hears how far work has come: what it is at, and how many of how many are done.
 pub type Watch<'a> = &'a mut dyn FnMut(&str, usize, usize);
 
-/// What comes from the thread that works.
+/// A message from the thread that works.
 enum Sign<T> {
     At(String, usize, usize),
     Done(Result<T, String>),
@@ -45,7 +45,7 @@ fn finish<T>(sender: &Sender<Sign<T>>, result: Result<T, String>) {
     drop(sender.send(Sign::Done(result)));
 }
 
-/// What the work says at its end; `None` if time is up before.
+/// The result of the work at its end; `None` if time is up before.
 fn heard<T>(signs: &Receiver<Sign<T>>, until: Instant, watch: Watch<'_>) -> Option<Result<T, String>> {
     loop {
         match signs.recv_timeout(until.saturating_duration_since(Instant::now())) {

@@ -1,4 +1,4 @@
-//! What benchmarks of frames draw: two views of a city, and lenses in them.
+//! Scenes that benchmarks of frames draw: two views of a city, and lenses in them.
 
 use glam::DVec3;
 

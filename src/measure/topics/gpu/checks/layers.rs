@@ -1,4 +1,4 @@
-//! How many translucent layers a pixel has: rays through shared edges and corners of closed bodies.
+//! The numbers of translucent layers of pixels: rays through shared edges and corners of closed bodies.
 
 use glam::DVec3;
 
@@ -66,7 +66,7 @@ fn octahedron(center: Corner) -> Vec<Vec<Corner>> {
     faces
 }
 
-/// How many layers each pixel has, 23 at most: each lets half of the light through, and powers of two are exact. `None` where what is
+/// The number of layers of each pixel, 23 at most: each lets half of the light through, and powers of two are exact. `None` where what is
 /// let through is no such power.
 fn layers(
     studio: &mut Studio,
