@@ -474,7 +474,7 @@ impl Window {
             self.canvas.flight = None;
             self.document.apply(command);
         } else if let Some(camera) = overlay.camera {
-            // What a view cuts away in front of it stays in the way of who goes there: it is a near plane of its own.
+            // What a view cuts away in front of it stays in the way of a person that goes there: it is a near plane of its own.
             let near_m = default_near_m(camera.eye.distance(camera.target));
             self.canvas.fly(from, Camera { near_m, ..camera });
         } else {

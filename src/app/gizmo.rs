@@ -195,7 +195,7 @@ impl Window {
         let painter = ui.painter_at(rect);
         for (index, lens) in self.document.scene().lenses.iter().enumerate() {
             let state = self.state_of(index);
-            // One that is off shows where it is only to who chose it.
+            // One that is off shows where it is only while it is chosen.
             if state == State::Disabled && self.chosen.lens != Some(index) {
                 continue;
             }

@@ -26,8 +26,8 @@ const HEIGHTS_AWAY: f64 = 1.5;
 const AWAY_M: (f64, f64) = (20.0, 80.0);
 
 impl Window {
-    /// The camera of who comes down to the ground: before the chosen object, on the side of the eye, looking at it; without
-    /// one where the eye looks; an eye that is low already where it is. Nobody lands in a building where there is room
+    /// The camera after coming down to the ground: before the chosen object, on the side of the eye, looking at it; without
+    /// one where the eye looks; an eye that is low already where it is. It never lands in a building where there is room
     /// beside it.
     pub(super) fn landing(&self, camera: &Camera) -> Camera {
         let Some(city) = &self.city else { return *camera };

@@ -61,7 +61,7 @@ pub fn has_display() -> bool {
 /// Opens the window and stays until it is closed.
 ///
 /// # Errors
-/// What the system says where no window can be opened.
+/// The message of the system where no window can be opened.
 pub fn run(start: Start) -> Result<(), String> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("Veduta")

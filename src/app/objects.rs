@@ -35,7 +35,7 @@ pub fn show(window: &mut Window, ui: &mut Ui) {
     let goes = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     let found = window.finder.find(model, &city.attributes);
     if goes && found.objects.is_empty() {
-        // Somebody types on: letters are no commands then.
+        // A person types on: letters are no commands then.
         field.request_focus();
     }
     if found.count > 0 {

@@ -541,7 +541,7 @@ impl Worker {
         }
     }
 
-    /// A GPU that went away is asked for once more, before anybody hears of it.
+    /// A GPU that went away is asked for once more, before that is reported.
     fn with_studio<T>(
         &mut self,
         work: impl Fn(&mut Studio, &mut Standing) -> Result<T, RenderError>,
@@ -593,7 +593,7 @@ impl Worker {
             }
         }
         if is_refined && let Some(studio) = &self.studio {
-            // For who walks.
+            // For a person that walks.
             studio.find_triangles();
         }
         self.refine = still.then(|| draw.clone());

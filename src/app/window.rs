@@ -29,7 +29,7 @@ use crate::{
     view::Camera,
 };
 
-/// The city that is shown where nobody names another.
+/// The city that is shown where no other is named.
 pub const BUILTIN: &str = "builtin:square";
 /// Files that are remembered.
 const MOST_RECENT: usize = 10;

@@ -1,6 +1,6 @@
 //! Edges of polygons: what a line drawing of the city shows, never the diagonals of triangulation.
 //!
-//! Found when somebody asks, from the triangles alone. Polygons do not share vertices in the model, and all triangles
+//! Found when they are asked for, from the triangles alone. Polygons do not share vertices in the model, and all triangles
 //! of one name its corners by the same vertices, so in a tile a pair of vertices that two triangles name is a diagonal,
 //! and one that a single triangle names is part of a ring. Where tiles cut a polygon, [`CityModel::cut_polygons`]
 //! tells. Polygons of one geometry meet where positions are equal to the bit.

@@ -107,7 +107,7 @@ pub struct CityModel {
     pub extent_as_read: Aabb,
     /// Faces that loaders could not even hand over, each with a warning; [`Geometry::dropped`] counts the others.
     pub faces_dropped: u64,
-    /// Members of the file nobody here reads, kept as JSON: (where, text).
+    /// Members of the file that are not read, kept as JSON: (where, text).
     pub unknown: Vec<(String, String)>,
     /// The faults that were lived with.
     pub warnings: Warnings,

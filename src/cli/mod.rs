@@ -1,7 +1,7 @@
 //! Commands, options, messages and exit codes (contract.md, "The program").
 //!
 //! One file per command: a clap struct of its arguments and a `run` that gives `Ok` or one readable [`Failure`].
-//! What a command prints goes through [`output`], what it says meanwhile through [`terminal`].
+//! Output of a command goes through [`output`], messages meanwhile go through [`terminal`].
 
 pub mod animate;
 pub mod arguments;

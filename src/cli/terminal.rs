@@ -78,7 +78,7 @@ static LOG: StderrLog = StderrLog;
 impl log::Log for StderrLog {
     fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
         // The GPU stack tells its life at `info`; ours is what `-v` asks for. What its shader compiler finds wrong comes back as
-        // an error, and is told once. That a processor draws the window is no reason to worry: the panel of costs says who draws.
+        // an error, and is told once. That a processor draws the window is no reason to worry: the panel of costs says what draws.
         let is_told_elsewhere =
             ["naga", "egui", "eframe", "winit"].iter().any(|own| metadata.target().starts_with(own));
         (metadata.level() <= log::Level::Warn && !is_told_elsewhere)

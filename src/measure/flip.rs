@@ -1,4 +1,4 @@
-//! FLIP for low dynamic range: how different two pictures look to somebody who flips between them, 0..1.
+//! FLIP for low dynamic range: how different two pictures look to a person that flips between them, 0..1.
 //!
 //! After P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild, *FLIP: A Difference
 //! Evaluator for Alternating Images*, HPG 2020; section numbers below are the paper's.
@@ -42,7 +42,7 @@ pub fn mean(size: [u32; 2], reference: &[[u8; 4]], test: &[[u8; 4]]) -> f64 {
     if map.is_empty() { 0.0 } else { map.iter().sum::<f64>() / map.len() as f64 }
 }
 
-/// FLIP of every pixel, for a viewer who sees so many pixels per degree.
+/// FLIP of every pixel, for a viewer that sees so many pixels per degree.
 pub fn map(size: [u32; 2], reference: &[[u8; 4]], test: &[[u8; 4]], pixels_per_degree: f64) -> Vec<f64> {
     let pixels = size[0] as usize * size[1] as usize;
     if pixels == 0 || reference.len() != pixels || test.len() != pixels {

@@ -103,7 +103,7 @@ pub struct Refined {
 /// Measures a topic; `watch` hears how many of how many steps are done.
 ///
 /// # Errors
-/// What the topic or drawing cannot do.
+/// The topic or drawing fails.
 pub fn measure(
     topic: &'static Topic,
     setup: &mut Setup<'_>,
@@ -160,7 +160,7 @@ pub fn measure(
 /// Time of a scene's frame, one sample, against that of another of the same size: drawn in turn, so many times.
 ///
 /// # Errors
-/// What drawing cannot do, and pictures larger than a target.
+/// Drawing fails, or pictures are larger than a target.
 pub fn frame_ratio(
     studio: &mut Studio,
     scene: &Scene,
@@ -303,7 +303,7 @@ fn allocate(
     Ok(cold)
 }
 
-/// Marks who is on the Pareto front of those that may be compared.
+/// Marks the variants on the Pareto front of those that may be compared.
 pub fn mark_front(topic: &Topic, rows: &mut [Row]) {
     let group = |row: &Row| -> Vec<Value> { topic.alike.iter().filter_map(|&k| row.knobs.get(k).cloned()).collect() };
     for i in 0..rows.len() {

@@ -32,7 +32,7 @@ pub struct Topic {
     pub x: Quantity,
     /// The quantities along y, one panel each; the first is the time.
     pub y: &'static [Quantity],
-    /// The two figures, both better when smaller, that decide who is on the Pareto front.
+    /// The two figures, both better when smaller, that decide which variants are on the Pareto front.
     pub front: [Quantity; 2],
     /// Knobs that variants must agree in to be compared: a picture of more effects does not lose against one of fewer.
     pub alike: &'static [usize],

@@ -1,7 +1,7 @@
 //! The place of each overlay: on a lane, further inward, or nowhere.
 //!
 //! Overlays are placed by priority, the higher first. All shrink together, by eighths of the way from the size that they want to their smallest, until the
-//! lanes hold all of them; if that is not enough, again until all find a place on the lanes or further inward; at their smallest size, who finds no place is
+//! lanes hold all of them; if that is not enough, again until all find a place on the lanes or further inward; at their smallest size, one that finds no place is
 //! folded. An overlay stands as little inward as it can: no place in the whole picture is missed, as one that touches nothing could be pushed outwards until
 //! it does. With n overlays and p points this takes O(n² + n p) where lanes hold all, and for each overlay that stands
 //! further inward a sweep over what is near ([`crate::overlay::inward`]).

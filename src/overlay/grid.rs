@@ -114,7 +114,7 @@ struct Known {
     name: Segment,
 }
 
-/// Pairs that were chosen of many, without a branch for each: which one is, nobody could foretell.
+/// Pairs that were chosen of many, without a branch for each: which one is cannot be foretold.
 #[derive(Default)]
 struct Chosen {
     pairs: Vec<[u32; 2]>,

@@ -5,7 +5,7 @@
 //!
 //! 1. [`size`]: each overlay gets a size; all shrink together until there is room.
 //! 2. [`lane`]: a side of the picture is a lane, along which overlays stand in a row, past the points that they must not cover.
-//! 3. [`fill`]: who stands on which lane, by priority; who finds no room there stands further inward, or is folded to a marker.
+//! 3. [`fill`]: which overlay stands on which lane, by priority; one that finds no room there stands further inward, or is folded to a marker.
 //! 4. [`order`]: the order on the lanes that makes least lines cross, told by exact predicates ([`crossings`], [`grid`]).
 //! 5. [`coherence`]: with the frame before, overlays keep still, or glide.
 //!

@@ -1,4 +1,4 @@
-//! Where to look from when nobody said: an oblique view that fills the picture with the city.
+//! The first view, where none is given: an oblique one that fills the picture with the city.
 
 use glam::{DVec2, DVec3};
 

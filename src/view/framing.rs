@@ -186,7 +186,7 @@ mod tests {
         assert_eq!(up_along(DVec3::X, Some([DVec3::Y, DVec3::Z])), DVec3::Z);
         assert_eq!(up_along(DVec3::Z, None), DVec3::Y, "north");
         assert_eq!(up_along(-DVec3::Z, None), DVec3::Y, "from below too");
-        // A viewer that looks straight down has its own up; one for whom nothing is left, north.
+        // A viewer that looks straight down has its own up; one for which nothing is left, north.
         assert_eq!(up_along(DVec3::Z, Some([-DVec3::Z, DVec3::X])), DVec3::X);
         let (n_u, m_u) = (0.5 * (1.0 - 5_f64.sqrt()), (0.5 * (5_f64.sqrt() - 1.0)).sqrt());
         let (forward, up) = (DVec3::new(-n_u, 0.0, m_u), DVec3::new(m_u, 0.0, n_u));

@@ -35,7 +35,7 @@ pub fn from_viewer(viewer: &Camera, direction: DVec3, fov_y: f64) -> Camera {
     }
 }
 
-/// A direction given on the viewer's axes - x to the right of its picture, y to its top, z out of it to whoever looks - on the model's.
+/// A direction given on the viewer's axes - x to the right of its picture, y to its top, z out of it towards the eye - on the model's.
 pub fn of_viewer(viewer: &Camera, direction: DVec3) -> DVec3 {
     viewer
         .basis()

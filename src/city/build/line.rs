@@ -115,7 +115,7 @@ struct State<'a> {
     /// Appended chunks, to be used again: allocators keep what each thread frees apart, so asking anew for each job
     /// would hold several times as much.
     spare: Vec<Chunk>,
-    /// A worker panicked: nobody waits for it.
+    /// A worker panicked: none waits for it.
     has_failed: bool,
 }
 

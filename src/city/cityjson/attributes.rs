@@ -1,4 +1,4 @@
-//! Attribute values, and members that nobody here reads.
+//! Attribute values, and members that are not read.
 
 use crate::city::{
     build::ModelBuilder,
@@ -117,7 +117,7 @@ fn nested(kind: Kind, raw: &[u8], builder: &mut ModelBuilder, object: &str) -> V
     }
 }
 
-/// Keeps a member that nobody here reads as JSON text.
+/// Keeps a member that is not read as JSON text.
 pub fn keep_unknown(json: &mut Json<'_>, builder: &mut ModelBuilder, place: String) -> Step<()> {
     let text = json::compact(json.raw()?);
     builder.model.unknown.push((place, text));

@@ -131,7 +131,7 @@ impl GeometryRead {
         self.semantics.clear();
     }
 
-    /// Reads one in place of another. The builder gets what nobody here reads.
+    /// Reads one in place of another. The builder gets what is not read.
     pub fn read_again(&mut self, json: &mut Json<'_>, builder: &mut ModelBuilder, object: &str) -> Step<()> {
         self.clear();
         if json.peek()? != Kind::Object {

@@ -1,4 +1,4 @@
-//! Closed forms: volumes, areas, heights; and who a face belongs to.
+//! Closed forms: volumes, areas, heights; and the object that a face belongs to.
 
 use glam::{DVec2, DVec3, Vec3};
 

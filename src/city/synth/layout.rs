@@ -455,7 +455,7 @@ impl Row {
         }
     }
 
-    /// A house in the row; sizes are filled in by who asked.
+    /// A house in the row; sizes are filled in by the caller.
     fn house(&self, shape: Shape, at: i64) -> House {
         House {
             shape,

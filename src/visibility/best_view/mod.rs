@@ -194,7 +194,7 @@ fn family(model: &CityModel, object: u32) -> Vec<bool> {
     let mut is_own = vec![false; model.objects.len()];
     let mut open = vec![object];
     while let Some(member) = open.pop() {
-        // Each once, whatever files say of who belongs to whom.
+        // Each once, whatever files say of which belongs to which.
         if !std::mem::replace(&mut is_own[member as usize], true) {
             open.extend(&model.objects[member as usize].children);
         }

@@ -7,7 +7,7 @@ use crate::city::{CityModel, NONE, StringId, Tile};
 /// Samples of an object.
 pub(super) const SAMPLES: usize = 512;
 
-/// Semantic surfaces that nobody outside sees: below the object, or in it.
+/// Semantic surfaces that are not seen from outside: below the object, or in it.
 const UNSEEN: [&str; 4] = ["GroundSurface", "InteriorWallSurface", "FloorSurface", "CeilingSurface"];
 /// Those that are seen whichever way they look.
 const OUTER: [&str; 2] = ["RoofSurface", "WallSurface"];
@@ -45,7 +45,7 @@ struct Face {
 }
 
 impl Facades {
-    /// The facades of some geometries: all faces but those that nobody outside sees; all where these are all. `None` where nothing has an area.
+    /// The facades of some geometries: all faces but those that are not seen from outside; all where these are all. `None` where nothing has an area.
     pub fn new(model: &CityModel, geometries: &[u32]) -> Option<Self> {
         let [unseen, outer] = [&UNSEEN[..], &OUTER]
             .map(|names| -> Vec<StringId> { names.iter().filter_map(|name| model.strings.find(name)).collect() });

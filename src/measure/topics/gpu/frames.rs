@@ -65,7 +65,7 @@ pub struct Timing<'a> {
 /// names what is shown.
 ///
 /// # Errors
-/// What drawing cannot do.
+/// Drawing fails.
 pub fn time(
     studio: &mut Studio,
     city: String,

@@ -73,7 +73,7 @@ pub fn view(camera: Camera, size: [u32; 2]) -> Result<View, RenderError> {
 /// One unjittered sample with all AOVs.
 ///
 /// # Errors
-/// What drawing cannot do.
+/// Drawing fails.
 pub fn picture(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Result<Picture, RenderError> {
     picture_by(studio, scene, size, Backend::default())
 }
@@ -81,7 +81,7 @@ pub fn picture(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Result<Pic
 /// The same with shaders made by one of the back ends.
 ///
 /// # Errors
-/// What drawing cannot do.
+/// Drawing fails.
 pub fn picture_by(
     studio: &mut Studio,
     scene: &Scene,
@@ -94,7 +94,7 @@ pub fn picture_by(
 /// The layers over the opaque picture, of one of the back ends.
 ///
 /// # Errors
-/// What drawing cannot do.
+/// Drawing fails.
 pub fn veil(
     studio: &mut Studio,
     scene: &Scene,

@@ -215,7 +215,7 @@ fn timed(plan: &Plan, clock: &Clock, watch: Watch<'_>) -> Result<Frames, RenderE
 /// Draws all references anew and stores them over those that are there; gives their files.
 ///
 /// # Errors
-/// What cannot be drawn or written; an adapter that is no software.
+/// It cannot be drawn or written; an adapter that is no software.
 pub fn write_references(scenes: &Path, only: &[String], watch: Watch<'_>) -> Result<Vec<PathBuf>, String> {
     let gpu = Gpu::open().map_err(|error| error.to_string())?;
     if !gpu.is_software() {

@@ -32,7 +32,7 @@ pub fn panes(count: usize, numbers: &mut Numbers) -> Vec<Solid> {
 /// A studio over them.
 ///
 /// # Errors
-/// What the adapter refuses.
+/// The adapter refuses it.
 pub fn studio_of(panes: &[Solid]) -> Result<Studio, RenderError> {
     of_solids(DVec3::ZERO, panes)
 }
@@ -48,7 +48,7 @@ pub fn of_context(effects: Vec<EffectUse>) -> Scene {
 /// Layers of each pixel, from near to far.
 ///
 /// # Errors
-/// What drawing cannot do.
+/// Drawing fails.
 pub fn stacks(studio: &mut Studio, panes: &[Solid]) -> Result<Vec<Vec<Layer>>, RenderError> {
     let mut stacks = vec![Vec::new(); (SIZE[0] * SIZE[1]) as usize];
     for pane in panes {

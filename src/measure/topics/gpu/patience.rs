@@ -21,7 +21,7 @@ enum Sign<T> {
 /// not answer cannot be stopped.
 ///
 /// # Errors
-/// What the work says, what breaks the program's own rules, and that time was up.
+/// The error of the work, a broken rule of the program itself, and that time was up.
 pub fn wait<T: Send + 'static>(
     until: Instant,
     watch: Watch<'_>,
@@ -41,7 +41,7 @@ pub fn wait<T: Send + 'static>(
 }
 
 fn finish<T>(sender: &Sender<Sign<T>>, result: Result<T, String>) {
-    // Who does not wait any more does not listen.
+    // A receiver that does not wait any more does not listen.
     drop(sender.send(Sign::Done(result)));
 }
 
