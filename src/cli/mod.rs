@@ -1,4 +1,4 @@
-//! Commands, options, messages and exit codes (contract.md, "The program").
+//! Commands, options, messages and exit codes.
 //!
 //! One file per command: a clap struct of its arguments and a `run` that gives `Ok` or one readable [`Failure`].
 //! Output of a command goes through [`output`], messages meanwhile go through [`terminal`].
