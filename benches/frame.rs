@@ -272,8 +272,8 @@ fn compare<'a>(studio: &mut Studio, pairs: usize, named: impl Fn(&str) -> &'a Fr
     );
     timed(studio, a);
     let layers = studio.renderer.layer_figures();
-    if layers.notes > 0 {
-        let each = (of_a - of_b) * 1e6 / layers.notes as f64;
-        println!("    {} translucent fragments in {} bands, {each:.0} ns each", layers.notes, layers.bands);
+    if layers.nodes > 0 {
+        let each = (of_a - of_b) * 1e6 / layers.nodes as f64;
+        println!("    {} translucent fragments in {} bands, {each:.0} ns each", layers.nodes, layers.bands);
     }
 }

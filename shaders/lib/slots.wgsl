@@ -6,7 +6,7 @@
 //   rest     normals and colours of textures, where the picture has them
 //
 // `pass/link-slots.wgsl` makes lists of them as `pass/layers.wgsl` does, in order. Peeling does this again and again, with what
-// is behind all that was laid before. A slot is a note as `lib/notes.wgsl` has them; while slots are filled the bits of the number
+// is behind all that was laid before. A slot is a node as `lib/fragment-nodes.wgsl` has them; while slots are filled the bits of the number
 // are inverted: the smaller the number the nearer.
 
 override STAGE: u32 = 0u;

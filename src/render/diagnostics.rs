@@ -77,7 +77,7 @@ pub(super) fn boxes(missing: &BTreeSet<char>) -> Option<(u64, String)> {
 /// What is missing of translucent layers, of all samples and parts of a picture.
 fn missing_layers(picture: &Picture) -> Option<(u64, String)> {
     let count = picture.layers.excess;
-    let all = picture.layers.notes;
+    let all = picture.layers.nodes;
     (count > 0).then(|| (count, format!("{count} of {all} translucent fragments found no room and are missing")))
 }
 

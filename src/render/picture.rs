@@ -525,7 +525,7 @@ impl Studio {
                 records = self.renderer.draw(&input, timer.as_mut())?;
             }
             let layers = self.renderer.layer_figures();
-            picture.layers.notes += layers.notes;
+            picture.layers.nodes += layers.nodes;
             picture.layers.bands += layers.bands;
             picture.layers.excess += layers.excess;
             picture.method.add(&self.renderer.method_figures());
@@ -657,7 +657,7 @@ impl Studio {
                 samples: request.samples,
                 peak_gpu_bytes: gpu.allocated_bytes(),
                 layers: (picture.layers.bands > 0).then_some(stats::Layers {
-                    fragments: picture.layers.notes,
+                    fragments: picture.layers.nodes,
                     bands: picture.layers.bands,
                     missing: picture.layers.excess,
                     method: scene.style.transparency.word(),

@@ -7,7 +7,7 @@ use crate::shader::{
     files,
     geometry::{self, Drawn, NOTHING_CUT},
     hiding::{self, Eye},
-    library::{CHANCE, DITHER, FORWARD, FRAGMENT, GEOMETRY, NOTES, SHADE, TAIL, TRANSLUCENT},
+    library::{CHANCE, DITHER, FORWARD, FRAGMENT, GEOMETRY, FRAGMENT_NODES, SHADE, TAIL, TRANSLUCENT},
     names,
     plan::program::Program,
     shading::Shading,
@@ -66,7 +66,7 @@ impl Forward {
             .fill("handlers", own.functions + &opacity)
             .then(Template::of_files(&[FORWARD]));
         match self.kind {
-            ForwardKind::Tail => text.then(Template::of_files(&[NOTES, TAIL])),
+            ForwardKind::Tail => text.then(Template::of_files(&[FRAGMENT_NODES, TAIL])),
             ForwardKind::Chance(is_of_plane) => {
                 let (member, set) = match is_of_plane {
                     true => ("    @builtin(frag_depth) depth: f32,\n", "    laid.depth = depth;\n"),

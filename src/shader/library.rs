@@ -97,7 +97,7 @@ files! {
     SPRITE = "pass/sprite.wgsl";
     SHADE = "pass/shade.wgsl";
     LINES = "pass/lines.wgsl";
-    NOTES = "lib/notes.wgsl";
+    FRAGMENT_NODES = "lib/fragment-nodes.wgsl";
     LAYERS = "pass/layers.wgsl";
     COMPOSITE = "pass/composite.wgsl";
     COUNT_LAYERS = "pass/count-layers.wgsl";

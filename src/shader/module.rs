@@ -11,7 +11,7 @@ use crate::shader::{
     lens_test,
     library::{
         BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM, DEPTH_CODE, FILTER,
-        FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, NOTES, OBJECTS, ONE_CITY, PACKED,
+        FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, FRAGMENT_NODES, OBJECTS, ONE_CITY, PACKED,
         REFINE, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHAPE, SHOWN, SIGHT, SLOTS, SOLID, SORT_LAYERS, SPRITE,
         SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW, VIEW_UNIFORM,
     },
@@ -112,12 +112,12 @@ impl Module {
             }
             Self::Layers(program, is_early) => {
                 let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
-                translucent::filled(text, DepthTest::of_notes(*is_early), "return;")
+                translucent::filled(text, DepthTest::of_nodes(*is_early), "return;")
             }
             Self::Slots(program, is_early) => {
                 let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
                 // They are of a pass that has something to return.
-                translucent::filled(text, DepthTest::of_notes(*is_early), "discard;")
+                translucent::filled(text, DepthTest::of_nodes(*is_early), "discard;")
                     .fill("opaque-depth", OPAQUE_DEPTH)
                     .fill("behind-plane", behind_plane("opaque_depth"))
             }
@@ -162,7 +162,7 @@ impl Module {
             }
             Self::Shade(program) => return [files::of_shading(program, handlers), vec![SHADE]].concat(),
             Self::Composite(program) => {
-                return [files::of_shading(program, handlers), vec![SHADE, NOTES, COMPOSITE]].concat();
+                return [files::of_shading(program, handlers), vec![SHADE, FRAGMENT_NODES, COMPOSITE]].concat();
             }
             Self::Lines(program) => return files::of_lines(program),
             Self::Regions(plan) => {
@@ -170,14 +170,14 @@ impl Module {
                 return [&[VIEW, VIEW_UNIFORM, SIGHT], &lenses[..], &[SURFACE, OBJECTS, REGIONS]].concat();
             }
             Self::Sections(program) => return files::of_sections(program),
-            Self::Layers(program, _) => return files::of_translucent_city(program, &[GEOMETRY, NOTES, LAYERS]),
+            Self::Layers(program, _) => return files::of_translucent_city(program, &[GEOMETRY, FRAGMENT_NODES, LAYERS]),
             Self::Slots(program, _) => {
-                return files::of_translucent_city(program, &[GEOMETRY, NOTES, SLOTS, TRANSLUCENT]);
+                return files::of_translucent_city(program, &[GEOMETRY, FRAGMENT_NODES, SLOTS, TRANSLUCENT]);
             }
-            Self::CountLayers => &[NOTES, COUNT_LAYERS],
-            Self::SortLayers => &[NOTES, SORT_LAYERS],
+            Self::CountLayers => &[FRAGMENT_NODES, COUNT_LAYERS],
+            Self::SortLayers => &[FRAGMENT_NODES, SORT_LAYERS],
             Self::ShownLayers => &[SHOWN],
-            Self::LinkSlots => &[NOTES, LINK_SLOTS],
+            Self::LinkSlots => &[FRAGMENT_NODES, LINK_SLOTS],
             // Two texts, merged.
             Self::Forward(_) => &[],
             Self::Filter(_) => &[PACKED, FILTER],

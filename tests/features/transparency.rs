@@ -54,11 +54,11 @@ fn peeling_until_nothing_is_left_is_exact_to_the_bit() {
     {
         for backend in BOTH {
             let exact = veil(&mut studio, &scene, backend, SIZE);
-            let fragments = studio.renderer.layer_figures().notes;
+            let fragments = studio.renderer.layer_figures().nodes;
             let found = veil(&mut studio, &by(PEEL, &scene), backend, SIZE);
             assert_eq!(exact, found, "{backend:?}");
             let (figures, layers) = (studio.renderer.method_figures(), studio.renderer.layer_figures());
-            assert_eq!((layers.notes, layers.excess, figures.dropped, figures.merged), (fragments, 0, 0, None));
+            assert_eq!((layers.nodes, layers.excess, figures.dropped, figures.merged), (fragments, 0, 0, None));
             assert!(figures.rounds >= 3, "{figures:?}");
             // In bands too.
             studio.renderer.settings.most_layers = Some(u64::from(SIZE[0]) * 4 * 7);
@@ -84,11 +84,11 @@ fn peeling_until_nothing_is_left_is_exact_in_a_town() {
             let mut scene = scene(camera, vec![]);
             scene.style.effects = vec![used];
             let exact = veil(&mut studio, &scene, Backend::Specialised, size);
-            let fragments = studio.renderer.layer_figures().notes;
+            let fragments = studio.renderer.layer_figures().nodes;
             let found = veil(&mut studio, &by(PEEL, &scene), Backend::Specialised, size);
             let off = exact.iter().zip(&found).filter(|(a, b)| a != b).count();
             assert_eq!(off, 0, "pixels of view {view}");
-            assert_eq!(studio.renderer.layer_figures().notes, fragments);
+            assert_eq!(studio.renderer.layer_figures().nodes, fragments);
             // What a figure makes of it, too: of four samples, in the order of all passes.
             if view < 2 {
                 let asked = Request { size, samples: 4, aovs: Aovs::default(), ..request(Backend::Specialised) };

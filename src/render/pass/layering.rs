@@ -94,7 +94,7 @@ pub fn shows_layers(plan: &FramePlan) -> bool {
     plan.input.wants_shown_layers() && plan.input.transparency != Transparency::Stochastic
 }
 
-/// Words of a note of a layer.
+/// Words of a fragment node.
 pub fn words(plan: &FramePlan) -> u32 {
     3 + u32::from(plan.smooth) + u32::from(plan.is_textured())
 }

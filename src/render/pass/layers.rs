@@ -222,7 +222,7 @@ impl ExactLayers {
     /// # Errors
     /// What the GPU cannot read back.
     pub fn sorts_longer(&mut self, gpu: &Gpu) -> Result<bool, GpuError> {
-        let Some(own) = self.lists.as_ref().filter(|_| self.figures.notes > 0) else { return Ok(false) };
+        let Some(own) = self.lists.as_ref().filter(|_| self.figures.nodes > 0) else { return Ok(false) };
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("longest list") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER);
@@ -392,7 +392,7 @@ impl ExactLayers {
             if fitting.is_empty() {
                 recording.encoder.clear_buffer(lists.heads.buffer(), 4, Some(8));
             }
-            figures.notes += found.nodes;
+            figures.nodes += found.nodes;
             figures.bands += 1;
             figures.excess += excess;
             let band = limits.band(tile, room);
