@@ -130,18 +130,18 @@ fn take_node(walk: ptr<function, Walk>, last: FragmentNode, laid: u32) -> Fragme
 }
 
 struct Composite {
-    @location(0) veil: vec4f,   // colours times opacity; a: what is let through
+    @location(0) transparency: vec4f,   // colours times opacity; a: what is let through
     @location(1) shown: vec2u,  // number and normal of the layer that is the shown surface, as the geometry target has them; 0: none
     @location(2) depth: f32,    // its stored depth
 }
 
 @fragment
-fn veil(in: Corner) -> @location(0) vec4f {
-    return composite(in).veil;
+fn transparency(in: Corner) -> @location(0) vec4f {
+    return composite(in).transparency;
 }
 
 @fragment
-fn veil_and_shown(in: Corner) -> Composite {
+fn transparency_and_shown(in: Corner) -> Composite {
     return composite(in);
 }
 

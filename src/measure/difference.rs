@@ -51,7 +51,7 @@ impl Against {
     }
 
     /// The difference of what a method laid over its picture.
-    pub fn veil(found: &[[f32; 4]], right: &[[f64; 4]]) -> Self {
+    pub fn transparency(found: &[[f32; 4]], right: &[[f64; 4]]) -> Self {
         Self::of(found.iter().zip(right).map(|(found, right)| error(found.map(f64::from), *right)))
     }
 

@@ -233,11 +233,11 @@ fn compare(
         if let (Some(mask), Some(bits)) = (&variant.mask, &picture.lens_mask) {
             difference.wrong_mask_pixels = Some(difference::wrong_bits(mask, &bits[0]));
         }
-        if let Some(veil) = &variant.veil {
+        if let Some(composited) = &variant.composited {
             let Shot { scene, request, .. } = &variant.shot;
             difference.against_f64 = Some(match scene.style.transparency {
                 Transparency::Stochastic => Against::pictures(&picture, &right),
-                _ => Against::veil(&studio.veil(scene, request.size)?, &veil.veil),
+                _ => Against::transparency(&studio.transparency(scene, request.size)?, &composited.transparency),
             });
         }
         let figures = studio.renderer.deformed_figures();

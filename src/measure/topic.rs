@@ -100,7 +100,7 @@ pub struct Variant {
     /// The picture that it is compared with; `None`: the trial's reference.
     pub reference: Option<Shot>,
     /// The translucent layers in f64.
-    pub veil: Option<Arc<Composited>>,
+    pub composited: Option<Arc<Composited>>,
     /// For a picture with one lens: whether each pixel is in it, where something better than the reference says so.
     pub mask: Option<Arc<Vec<bool>>>,
 }

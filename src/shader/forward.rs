@@ -7,7 +7,7 @@ use crate::shader::{
     files,
     geometry::{self, Drawn, NOTHING_CUT},
     hiding::{self, Eye},
-    library::{CHANCE, DITHER, FORWARD, FRAGMENT, GEOMETRY, FRAGMENT_NODES, SHADE, TAIL, TRANSLUCENT},
+    library::{CHANCE, DITHER, FORWARD, FRAGMENT, FRAGMENT_NODES, GEOMETRY, SHADE, TAIL, TRANSLUCENT},
     names,
     plan::program::Program,
     shading::Shading,

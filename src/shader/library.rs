@@ -77,7 +77,7 @@ files! {
     OBJECTS = "lib/objects.wgsl";
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
-    VEIL = "lib/veil.wgsl";
+    TRANSPARENCY = "lib/transparency.wgsl";
     EDGE = "lib/edge.wgsl";
     ONE_CITY = "lib/one-city.wgsl";
     CITIES = "lib/cities.wgsl";

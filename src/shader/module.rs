@@ -11,9 +11,9 @@ use crate::shader::{
     lens_test,
     library::{
         BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM, DEPTH_CODE, FILTER,
-        FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, FRAGMENT_NODES, OBJECTS, ONE_CITY, PACKED,
-        REFINE, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHAPE, SHOWN, SIGHT, SLOTS, SOLID, SORT_LAYERS, SPRITE,
-        SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW, VIEW_UNIFORM,
+        FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY,
+        PACKED, REFINE, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHAPE, SHOWN, SIGHT, SLOTS, SOLID, SORT_LAYERS,
+        SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW, VIEW_UNIFORM,
     },
     lining,
     plan::{Plan, program::Program, volume_test::VolumeTest},
@@ -170,7 +170,9 @@ impl Module {
                 return [&[VIEW, VIEW_UNIFORM, SIGHT], &lenses[..], &[SURFACE, OBJECTS, REGIONS]].concat();
             }
             Self::Sections(program) => return files::of_sections(program),
-            Self::Layers(program, _) => return files::of_translucent_city(program, &[GEOMETRY, FRAGMENT_NODES, LAYERS]),
+            Self::Layers(program, _) => {
+                return files::of_translucent_city(program, &[GEOMETRY, FRAGMENT_NODES, LAYERS]);
+            }
             Self::Slots(program, _) => {
                 return files::of_translucent_city(program, &[GEOMETRY, FRAGMENT_NODES, SLOTS, TRANSLUCENT]);
             }

@@ -14,14 +14,14 @@ fn what_has_no_room_is_drawn_in_bands_or_counted() {
     let all = panes(9, &mut random);
     let mut studio = studio_of(&all);
     let scene = of_context(vec![rule("transparent", &[("opacity", 0.3)], None, false)]);
-    let whole = veil(&mut studio, &scene, Backend::Specialised, SIZE);
+    let whole = transparency(&mut studio, &scene, Backend::Specialised, SIZE);
     let figures = studio.renderer.layer_figures();
     let stacks = stacks(&mut studio, &all);
     let nodes: u64 = stacks.iter().map(|s| s.len() as u64).sum();
     assert_eq!(figures, LayerFigures { nodes, bands: 1, excess: 0 });
     let mut at = |capacity: u64| {
         studio.renderer.settings.most_layers = Some(capacity);
-        (veil(&mut studio, &scene, Backend::Specialised, SIZE), studio.renderer.layer_figures())
+        (transparency(&mut studio, &scene, Backend::Specialised, SIZE), studio.renderer.layer_figures())
     };
     assert_eq!(at(nodes), (whole.clone(), LayerFigures { nodes, bands: 1, excess: 0 }));
     assert_eq!(at(nodes - 1), (whole.clone(), LayerFigures { nodes, bands: 2, excess: 0 }));

@@ -95,7 +95,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                     shot,
                     reference: Some(specialised.clone()),
                     mask: None,
-                    veil: None,
+                    composited: None,
                 });
             }
         }

@@ -147,7 +147,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot,
                 reference: Some(reference.clone()),
                 mask: None,
-                veil: None,
+                composited: None,
             });
         }
     }

@@ -76,7 +76,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot,
                 reference: Some(stage.shot(of(&steps, 0.03125), 1)),
                 mask: None,
-                veil: None,
+                composited: None,
             });
         }
     }

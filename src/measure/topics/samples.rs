@@ -37,7 +37,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
         shot: shot(samples),
         reference: None,
         mask: None,
-        veil: None,
+        composited: None,
     };
     Ok(Trial { plain: shot(1), reference: shot(64), variants: [1, 2, 4, 8, 16, 32].map(variant).into() })
 }

@@ -95,7 +95,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot: stage.shot(scene.clone(), 1),
                 reference: Some(analytic.clone()),
                 mask: Some(mask.clone()),
-                veil: None,
+                composited: None,
             });
         }
     }

@@ -100,7 +100,7 @@ fn methods() -> Vec<(Transparency, Option<u32>, u32)> {
 fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
     let mut variants = Vec::new();
     for (name, scene) in scenes(stage)? {
-        let veil = Arc::new(stage.studio.composited_in_f64(&scene, stage.size)?);
+        let composited = Arc::new(stage.studio.composited_in_f64(&scene, stage.size)?);
         for (method, number, samples) in methods() {
             let mut own = scene.clone();
             own.style.transparency = method;
@@ -115,7 +115,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot: stage.shot(own, samples),
                 reference: Some(stage.shot(scene.clone(), samples)),
                 mask: None,
-                veil: Some(Arc::clone(&veil)),
+                composited: Some(Arc::clone(&composited)),
             });
         }
     }

@@ -121,7 +121,7 @@ impl PipelineKey for CompositeKey {
             stage: Stage::Draw(Draw {
                 buffers: vec![vertices::picture_corners()],
                 targets: targets[..if self.shown { 3 } else { 1 }].to_vec(),
-                ..Draw::new("vertex", Some(if self.shown { "veil_and_shown" } else { "veil" }))
+                ..Draw::new("vertex", Some(if self.shown { "transparency_and_shown" } else { "transparency" }))
             }),
         }
     }

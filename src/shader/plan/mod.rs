@@ -36,7 +36,7 @@ pub struct Plan {
     /// Whether some effect draws lines.
     pub lines: bool,
     /// Whether something is seen through: what shading lays over its picture.
-    pub veils: bool,
+    pub transparency: bool,
     /// The contents of its lenses, bottom lens first.
     pub contents: Vec<PlanContent>,
     /// How places are told apart, for the techniques that are kept for reference; `None`: by accumulation.
@@ -164,7 +164,7 @@ impl Plan {
 
     /// The part that decides how surfaces look.
     pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
-        self.veils = self.is_seen_through(handlers);
+        self.transparency = self.is_seen_through(handlers);
         self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
         self.contents.clear();
         self

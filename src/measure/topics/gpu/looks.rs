@@ -95,14 +95,14 @@ pub fn picture_by(
 ///
 /// # Errors
 /// Drawing fails.
-pub fn veil(
+pub fn transparency(
     studio: &mut Studio,
     scene: &Scene,
     size: [u32; 2],
     backend: Backend,
 ) -> Result<Vec<[f32; 4]>, RenderError> {
     studio.backend = backend;
-    let found = studio.veil(scene, size);
+    let found = studio.transparency(scene, size);
     studio.backend = Backend::default();
     found
 }

@@ -6,7 +6,7 @@ use crate::{
     lens::EffectUse,
     measure::topics::gpu::{
         cities::{Solid, numbered, of_solids, pane},
-        looks::{for_numbers, orthographic, scene, used, veil, with_number},
+        looks::{for_numbers, orthographic, scene, transparency, used, with_number},
         numbers::Numbers,
     },
     render::{
@@ -54,7 +54,7 @@ pub fn stacks(studio: &mut Studio, panes: &[Solid]) -> Result<Vec<Vec<Layer>>, R
     for pane in panes {
         let only = for_numbers(used("eraser"), &[pane.number], true);
         let scene = of_context(vec![only, with_number("transparent", "opacity", 1.0)]);
-        let seen = veil(studio, &scene, SIZE, Backend::Specialised)?;
+        let seen = transparency(studio, &scene, SIZE, Backend::Specialised)?;
         for (stack, v) in stacks.iter_mut().zip(seen) {
             stack.extend((v[3] == 0.0).then_some((pane.number, [v[0], v[1], v[2]])));
         }

@@ -6,7 +6,7 @@ use crate::{
     measure::topics::gpu::{
         check::{Check, Findings},
         cities::{Corner, DUTCH, numbered, of_solids},
-        looks::{orthographic, translucent, veil},
+        looks::{orthographic, translucent, transparency},
     },
     render::{
         frame::Backend,
@@ -74,7 +74,7 @@ fn layers(
     method: Transparency,
     backend: Backend,
 ) -> Result<Vec<Option<u32>>, RenderError> {
-    let found = veil(studio, &translucent(camera, 0.5, method), SIZE, backend)?;
+    let found = transparency(studio, &translucent(camera, 0.5, method), SIZE, backend)?;
     let of = |v: &[f32; 4]| {
         let count = -v[3].log2();
         (count.fract() == 0.0 && (0.0..=23.0).contains(&count)).then_some(count as u32)
