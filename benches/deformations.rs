@@ -1,4 +1,4 @@
-//! What deformation lenses cost (D2), in parts of a plain frame of the same run: 500,000 triangles, a lens over a tenth of the city, and no
+//! What deformation lenses cost, in parts of a plain frame of the same run: 500,000 triangles, a lens over a tenth of the city, and no
 //! edge more than a quarter of a pixel from where it should be. While nothing moves; while the camera does, so that all is refined anew in
 //! every frame; and while the lens does, so that what it meets is found anew, too.
 //!

@@ -222,7 +222,7 @@ fn parts(studio: &mut Studio, frame: &Frame) -> [f64; 2] {
     [processor_ms() - before, whole]
 }
 
-/// Prints the median time of each pass of a frame, by the card's clock.
+/// Prints the median time of each pass of a frame, by the GPU's clock.
 fn pass_times(studio: &mut Studio, frame: &Frame, pairs: usize) {
     let (Frame::Full(scene) | Frame::Unculled(scene)) = frame else { panic!("a scene is drawn in passes") };
     let request = Request {
@@ -272,8 +272,8 @@ fn compare<'a>(studio: &mut Studio, pairs: usize, named: impl Fn(&str) -> &'a Fr
     );
     timed(studio, a);
     let layers = studio.renderer.layer_figures();
-    if layers.notes > 0 {
-        let each = (of_a - of_b) * 1e6 / layers.notes as f64;
-        println!("    {} translucent fragments in {} bands, {each:.0} ns each", layers.notes, layers.bands);
+    if layers.nodes > 0 {
+        let each = (of_a - of_b) * 1e6 / layers.nodes as f64;
+        println!("    {} translucent fragments in {} bands, {each:.0} ns each", layers.nodes, layers.bands);
     }
 }

@@ -1,4 +1,4 @@
-//! What overlays cost (B6, B7, B8), in parts of a plain frame of the same run: the layout of 200 labels, from nothing and from the frame before on a
+//! What overlays cost, in parts of a plain frame of the same run: the layout of 200 labels, from nothing and from the frame before on a
 //! walk; twelve overlays that show what they showed before, while the main view is drawn again; and twelve that are drawn again, in parts of what a
 //! model says (so much for each view, each triangle and each pixel), whose constants are fitted in the same run.
 //!

@@ -1,6 +1,6 @@
 //! name = "blur"
 //! kind = "filter"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "Out of focus, by a Gaussian: with class = \"rest\" and \"behind\" the eye goes to what stays sharp (semantic depth of field)."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "brick"
 //! kind = "material"
-//! spec = "C8"
+//! spec = "Tiesel §3"
 //! doc = "Walls of brick, made of numbers alone; roofs and ground keep their colour."
 //!
 //! [[parameter]]

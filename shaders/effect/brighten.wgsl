@@ -1,6 +1,6 @@
 //! name = "brighten"
 //! kind = "post"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "Lifts colours towards white, like a veil of light; contrast falls, hues stay."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "cel"
 //! kind = "scene"
-//! spec = "K2"
+//! spec = "Trapp §3.5"
 //! doc = "Light in few steps with hard borders, like a drawn film."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "clay"
 //! kind = "scene"
-//! spec = "K2"
+//! spec = "Trapp §3.5"
 //! doc = "One matt colour for everything, as if the city were an architect's model."
 //!
 //! [[parameter]]

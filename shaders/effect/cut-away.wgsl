@@ -1,6 +1,6 @@
 //! name = "cut-away"
 //! kind = "hide"
-//! spec = "O3"
+//! spec = "Trapp §3.3"
 //! doc = "Cuts a hole with a torn rim into what stands before the points of interest of its lens."
 //! objects = "sights"
 //!

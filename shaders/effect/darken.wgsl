@@ -1,6 +1,6 @@
 //! name = "darken"
 //! kind = "post"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "Takes lightness away evenly; hues stay, so that what is beside it comes forward."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "discard-color"
 //! kind = "post"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "Turns colours like the given one to grey; or, with keep, all others."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "edges"
 //! kind = "post"
-//! spec = "K2, K3"
+//! spec = "Trapp §3.5"
 //! doc = "Lines where objects, faces or depths meet, as one would draw them (Saito and Takahashi 1990)."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "engraving"
 //! kind = "post"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "Lines as wide as the picture is dark, as on a banknote: ink and paper give back its lightness."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "eraser"
 //! kind = "hide"
-//! spec = "O3, C8"
+//! spec = "Trapp §3.3, Tiesel §3"
 //! doc = "Takes parts of the city away: all of it, walls or roofs alone, or the objects that an attribute chooses."
 //! objects = "chosen"
 //!

@@ -1,6 +1,6 @@
 //! name = "film"
 //! kind = "opacity"
-//! spec = "O5"
+//! spec = "Trapp §3.3"
 //! doc = "Makes what lies on the ground a translucent film on it: of faces in one plane the uppermost alone is seen, not all of them one through the other."
 //! objects = "chosen"
 //!

@@ -1,6 +1,6 @@
 //! name = "flat"
 //! kind = "scene"
-//! spec = "K2"
+//! spec = "Trapp §3.5"
 //! doc = "Surfaces in their own colours, without light: a map seen in perspective."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "gloss"
 //! kind = "material"
-//! spec = "K2, C5"
+//! spec = "Trapp §3.5, Tiesel §3"
 //! doc = "Polished surfaces: highlights of the sun (Phong, with Blinn's halfway vector)."
 //!
 //! [[parameter]]

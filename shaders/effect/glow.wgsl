@@ -1,6 +1,6 @@
 //! name = "glow"
 //! kind = "material"
-//! spec = "C5"
+//! spec = "Tiesel §3"
 //! doc = "Light of its own, strongest where a surface turns away from the eye; it stays whatever another lens makes of the colour."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "gooch"
 //! kind = "scene"
-//! spec = "K2"
+//! spec = "Trapp §3.5"
 //! doc = "From cool to warm as surfaces turn to the sun: form without black or white (Gooch et al. 1998)."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "greyscale"
 //! kind = "post"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "Keeps lightness (Rec. 709 luminance), drops colour."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "haze"
 //! kind = "air"
-//! spec = "K2"
+//! spec = "Trapp §3.5"
 //! doc = "What is beyond the scene fades into the horizon."
 
 fn effect(color: vec3f, point: Point) -> vec3f {

@@ -1,6 +1,6 @@
 //! name = "hidden-line"
 //! kind = "scene"
-//! spec = "K2, K4, C8"
+//! spec = "Trapp §3.5, Tiesel §3"
 //! doc = "A line drawing: edges of polygons and creases that are seen, on paper."
 //! lines = true
 //!

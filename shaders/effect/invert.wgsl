@@ -1,6 +1,6 @@
 //! name = "invert"
 //! kind = "post"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "Turns light into dark and every hue into its opposite, like a photographic negative."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "iso-lines"
 //! kind = "post"
-//! spec = "C8"
+//! spec = "Tiesel §3"
 //! doc = "Lines of equal distance, or of equal height."
 //!
 //! [[parameter]]

@@ -1,7 +1,7 @@
 //! name = "lambert"
 //! kind = "scene"
 //! mode = "optional"
-//! spec = "K2"
+//! spec = "Trapp §3.5"
 //! doc = "Matt surfaces in their own colours."
 
 fn effect(color: vec3f, point: Point) -> vec3f {

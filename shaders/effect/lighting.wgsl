@@ -1,6 +1,6 @@
 //! name = "lighting"
 //! kind = "light"
-//! spec = "C8"
+//! spec = "Tiesel §3"
 //! doc = "Another light: a sun of one's own, or a lamp at the eye that leaves nothing in the dark."
 //!
 //! [[parameter]]

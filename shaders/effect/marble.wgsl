@@ -1,6 +1,6 @@
 //! name = "marble"
 //! kind = "material"
-//! spec = "C5, C8"
+//! spec = "Tiesel §3"
 //! doc = "Polished marble: clouds and veins that run through the whole block, and sharp highlights of the sun."
 //!
 //! [[parameter]]
@@ -114,7 +114,7 @@ fn wool(place: Place, seed: u32, pixel: f32) -> vec4f {
     return sum * (1.0 - smoothstep(0.3, 0.8, pixel));
 }
 
-// Four numbers -1..1 that belong to a corner of the lattice. Mixing of integers is exact, and the same on every card.
+// Four numbers -1..1 that belong to a corner of the lattice. Mixing of integers is exact, and the same on every GPU.
 fn number_of(corner: vec3i, seed: u32) -> vec4f {
     let c = vec3u(corner);
     var h = (c.x * 0x8da6b343u) ^ (c.y * 0xd8163841u) ^ (c.z * 0xcb1ab31fu) ^ (seed * 0x9e3779b9u);

@@ -1,6 +1,6 @@
 //! name = "overlay"
 //! kind = "post"
-//! spec = "K3, C5"
+//! spec = "Trapp §3.5, Tiesel §3"
 //! doc = "Lays a colour over the picture."
 //!
 //! [[parameter]]

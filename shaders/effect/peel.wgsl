@@ -1,6 +1,6 @@
 //! name = "peel"
 //! kind = "opacity"
-//! spec = "O1"
+//! spec = "Trapp §3.3"
 //! doc = "Layers grow denser with their number along the ray: the nearest is clear, the last one opaque."
 //! objects = "chosen"
 //!

@@ -1,6 +1,6 @@
 //! name = "posterise"
 //! kind = "post"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "Few steps of lightness instead of many, like a print of few inks."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "saturate"
 //! kind = "post"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "Makes colours stronger or weaker; lightness and hue stay."
 //!
 //! [[parameter]]

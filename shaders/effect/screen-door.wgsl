@@ -1,6 +1,6 @@
 //! name = "screen-door"
 //! kind = "hide"
-//! spec = "O3"
+//! spec = "Trapp §3.3"
 //! doc = "Thins the city out by a pattern of pixels, a screen door: a share of them shows it, the others what is behind. Samples smooth it."
 //! objects = "chosen"
 //!

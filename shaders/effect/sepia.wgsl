@@ -1,6 +1,6 @@
 //! name = "sepia"
 //! kind = "post"
-//! spec = "K3"
+//! spec = "Trapp §3.5"
 //! doc = "The warm brown of an albumen print; luminance is kept."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "soft-film"
 //! kind = "opacity"
-//! spec = "O5"
+//! spec = "Trapp §3.3"
 //! doc = "As `film`, but clear at the rim of what each object covers of the ground, seen from above, and denser towards its middle."
 //! objects = "footprints"
 //!

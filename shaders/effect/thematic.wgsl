@@ -1,6 +1,6 @@
 //! name = "thematic"
 //! kind = "scene"
-//! spec = "K2"
+//! spec = "Trapp §3.5"
 //! doc = "Colours objects by an attribute; light changes lightness alone, hue and chroma stay the legend's."
 //! objects = "colors"
 //!

@@ -1,6 +1,6 @@
 //! name = "transparent"
 //! kind = "opacity"
-//! spec = "O1, O3"
+//! spec = "Trapp §3.3"
 //! doc = "Makes the city translucent, the same everywhere; order does not matter, every layer counts."
 //! objects = "chosen"
 //!

@@ -1,6 +1,6 @@
 //! name = "velvet"
 //! kind = "material"
-//! spec = "C5, C8"
+//! spec = "Tiesel §3"
 //! doc = "Cloth with a pile: deep where one looks onto it, and a sheen where one looks along it."
 //!
 //! [[parameter]]

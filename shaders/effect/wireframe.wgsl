@@ -1,6 +1,6 @@
 //! name = "wireframe"
 //! kind = "hide"
-//! spec = "K2, K4, C8"
+//! spec = "Trapp §3.5, Tiesel §3"
 //! doc = "Edges of polygons and creases as lines, in front and behind, without the surfaces between them."
 //! lines = true
 //!

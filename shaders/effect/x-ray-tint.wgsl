@@ -1,6 +1,6 @@
 //! name = "x-ray-tint"
 //! kind = "scene"
-//! spec = "O4"
+//! spec = "Trapp §3.3"
 //! doc = "Colours surfaces by a ramp, from those that look at the eye to those seen edge on; light changes nothing."
 //!
 //! [[parameter]]

@@ -1,6 +1,6 @@
 //! name = "x-ray"
 //! kind = "opacity"
-//! spec = "O3, O4"
+//! spec = "Trapp §3.3"
 //! doc = "Faces that look at the eye are clear, those seen edge on are dense: what stands in front is known by its form."
 //! objects = "chosen"
 //!

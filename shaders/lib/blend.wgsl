@@ -1,4 +1,4 @@
-// Blend modes (C5), channel by channel, and what is made of them.
+// Blend modes, channel by channel, and what is made of them.
 
 fn blend_replace(below: vec3f, above: vec3f) -> vec3f {
     return above;

@@ -1,4 +1,4 @@
-// Soft borders of lenses (L9): the degree of interest by how far a place is from a lens. Twin: `veduta::lens::border`.
+// Soft borders of lenses: the degree of interest by how far a place is from a lens. Twin: `veduta::lens::border`.
 
 // The parameters of a border: x the width, y 1 where that is in pixels, z 1 where what cannot be had by halves is dithered, w 1 where
 // distances are along the ray.
@@ -16,7 +16,7 @@ fn degree_of_interest(distance: f32, border: vec4f, sight: Sight) -> f32 {
     return t * t * (3.0 - 2.0 * t);
 }
 
-// How far a place is along its ray from where that enters or leaves a volume (S5, Equal). A perspective ray starts at the eye: in a
+// How far a place is along its ray from where that enters or leaves a volume. A perspective ray starts at the eye: in a
 // volume that holds the eye it begins there.
 fn distance_to_ends(ends: Span, sight: Sight) -> f32 {
     let is_met = ends.enter <= ends.exit && (sight.is_parallel || ends.exit > 0.0);
@@ -25,7 +25,7 @@ fn distance_to_ends(ends: Span, sight: Sight) -> f32 {
     return select(FAR_AWAY, away, is_met && sight.distance < FAR_AWAY);
 }
 
-// The share of a class of L4 that a place has. Inside of a volume one of the sides is named, too: so that inside and outside share what
+// The share of a class that a place has. Inside of a volume one of the sides is named, too: so that inside and outside share what
 // there is.
 fn share_inside(classes: u32, interest: f32) -> f32 {
     return interest;

@@ -1,4 +1,4 @@
-// Where vertices stand, in modules that draw contents of lenses beside the scene's own city (C3). Each city is one set of
+// Where vertices stand, in modules that draw contents of lenses beside the scene's own city. Each city is one set of
 // draws with a `city` of its own.
 //
 // What is not moved is counted from the eye, turned by nothing and scaled by 1: to the bit as `relative_to_eye` has it, so

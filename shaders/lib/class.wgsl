@@ -1,6 +1,6 @@
-// The classes of L4. A point has one bit per class and lens; the bits of several volumes of one lens are ORed: inside any of
-// them is inside the lens, in front only before the first, behind only after the last. What is inside may have the bit of the
-// side that is nearer, too.
+// Classes: inside of a lens, in front of it, behind it, and the rest. A point has one bit per class and lens; the bits of several
+// volumes of one lens are ORed: inside any of them is inside the lens, in front only before the first, behind only after the last.
+// What is inside may have the bit of the side that is nearer, too.
 
 const MISSED: u32 = 0u;
 const INSIDE: u32 = 1u;

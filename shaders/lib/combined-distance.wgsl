@@ -1,4 +1,4 @@
-// How far a place is from a combination (L9): what it is from its leaves, joined as they are. It is exact where only one of them
+// How far a place is from a combination: what it is from its leaves, joined as they are. It is exact where only one of them
 // is near, and never more than it is. `distance_to_leaf` knows the kinds of leaves that a module needs.
 
 var<private> distances: array<f32, 33>;

@@ -1,4 +1,4 @@
-// Boolean combinations of volumes (L3): their leaves in the order of a stack machine. A leaf is pushed; then come the
+// Boolean combinations of volumes: their leaves in the order of a stack machine. A leaf is pushed; then come the
 // operations that follow it. What is inside is decided at the place; the sides, along the ray, by the ends of the leaves, at
 // which alone a combination can begin or end. A choice of objects counts as the box around them there. `leaf_holds` and `span_of_leaf`
 // know the kinds of leaves that a module needs. Twin: `veduta::geom::combination`.

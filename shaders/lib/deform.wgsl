@@ -1,4 +1,4 @@
-// Deformations (Trapp 3.6): where places are shown, and what normals become. The same formulas as `geom::deform`, in f32. Which of them a
+// Deformations (Trapp §3.6): where places are shown, and what normals become. The same formulas as `geom::deform`, in f32. Which of them a
 // scene calls for is written out by `shader::deforming`; their numbers stand where `render::deform_words` puts them, in `numbers` and
 // `tables`, which the module that includes this binds.
 //
@@ -123,7 +123,7 @@ fn texel(first: u32, x: u32, y: u32, count: vec2u) -> f32 {
     return select(0.0, tables[first + at], is_inside);
 }
 
-// Profiles: value and derivatives by s and t. Texels are filtered by hand (S6).
+// Profiles: value and derivatives by s and t. Texels are filtered by hand.
 fn texels(lens: u32, st: vec2f) -> vec3f {
     let count = vec2u(numbers[lens + SIDES].zw);
     let first = u32(numbers[lens + TEXELS].x);

@@ -1,4 +1,4 @@
-// How distances are stored in depth sprites (S2, S4). Twin: `veduta::lens::sprite::DepthCode`, which says what the codes mean.
+// How distances are stored in depth sprites. Twin: `veduta::lens::sprite::DepthCode`, which says what the codes mean.
 
 struct DepthCode {
     kind: u32,                  // format; mapping from bit 4 on

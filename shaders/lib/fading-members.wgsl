@@ -1,4 +1,4 @@
-// Membership by object (L3) where members come or go over time (O6): the values are two per object, 0 to 1. What belongs to an object is
+// Membership by object where members come or go over time: the values are two per object, 0 to 1. What belongs to an object is
 // inside where the threshold of the pixel is at least the first and below the second, so that whatever the lens does or shows comes in by
 // a pattern, and what is inside in one pass is outside in none. Twin of the thresholds: `veduta::lens::dither`.
 

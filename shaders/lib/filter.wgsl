@@ -1,4 +1,4 @@
-// Images of neighbourhood filters (K3): each is one lens' own image, filtered before anything masks it. Its pixels stand
+// Images of neighbourhood filters: each is one lens' own image, filtered before anything masks it. Its pixels stand
 // where `pass/filter.wgsl` put them. Of a transparent picture there are two images: colours times opacity, and opacity.
 
 @group(2) @binding(6) var filtered: texture_2d_array<u32>;

@@ -1,4 +1,4 @@
-// Fragments of the city that are shaded where they are drawn, without a place in the order of layers (O7): what `pass/shade.wgsl`
+// Fragments of the city that are shaded where they are drawn, without a place in the order of layers: what `pass/shade.wgsl`
 // has of a pixel these have of a fragment. Which of them are translucent, and that they are shaded as the exact method does, is of
 // the scene.
 

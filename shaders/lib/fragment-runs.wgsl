@@ -1,4 +1,4 @@
-// Whether an invoker runs at a fragment, by the fragment's own depth (K4).
+// Whether an invoker runs at a fragment, by the fragment's own depth.
 fn runs(by: Invoker, fragment: Fragment) -> bool {
     if by.scope == 0u {
         return true;

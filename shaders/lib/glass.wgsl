@@ -1,4 +1,4 @@
-// The glass of the bodies of lenses (L5).
+// The glass of the bodies of lenses.
 
 // On the side towards the sun it is lighter; seen at a slant there is more of it.
 fn glazed(paint: vec4f, normal: vec3f, ray: Ray, color: vec3f, most: f32) -> vec4f {

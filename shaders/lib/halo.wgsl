@@ -1,4 +1,4 @@
-// A glow around the silhouette of a lens (L5): how close its ray comes to it, in pixels, found by going along the ray by what is
+// A glow around the silhouette of a lens: how close its ray comes to it, in pixels, found by going along the ray by what is
 // free around each place (Hart 1996).
 
 fn halo(lens: u32, paint: vec4f, pixel: vec2i, color: vec4f, width: f32) -> vec4f {

@@ -1,4 +1,4 @@
-// The lens test from the shapes themselves (S7), for whatever has a closed form.
+// The lens test from the shapes themselves, for whatever has a closed form.
 //
 // Inside is asked of the place and needs no ray. Only what is not inside asks on which side of the volume it lies, and
 // whether its ray meets the volume at all. The volumes are convex: what is outside and nearer than the middle of the ray's

@@ -7,7 +7,7 @@ struct Material {
     shininess: f32,             // exponent of Blinn and Phong, at least 1
 }
 
-// Light that does not come out of the diffuse colour: it stays when another lens changes that (C5).
+// Light that does not come out of the diffuse colour: it stays when another lens changes that.
 fn highlights(material: Material, point: Point) -> vec3f {
     let halfway = normalize(light.to_sun - normalize(point.relative));
     let gloss = pow(max(dot(point.normal, halfway), 0.0), material.shininess);

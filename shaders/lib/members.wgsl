@@ -1,4 +1,4 @@
-// Membership by object (L3, thematic lens): what belongs to chosen objects is inside, wherever it is; the rest is *rest*.
+// Membership by object, of thematic lenses: what belongs to chosen objects is inside, wherever it is; the rest is *rest*.
 
 struct Members {
     first: u32,                 // b.x: where their marks begin among the values of objects

@@ -1,4 +1,4 @@
-// The silhouettes of lenses (L5).
+// The silhouettes of lenses.
 
 // `share`: how much of the pixel the line covers; `color`: and its opacity.
 fn outlined(paint: vec4f, share: f32, color: vec4f) -> vec4f {

@@ -1,4 +1,4 @@
-// The volumetric depth test by a sprite that has its own eye (S2): a shown place is looked for in the sprite's own space, and its
+// The volumetric depth test by a sprite that has its own eye: a shown place is looked for in the sprite's own space, and its
 // distance along the sprite's axis compared with those of the texel it falls on. Behind that eye and beside its frame nothing is
 // in the lens, nor before it or behind it.
 

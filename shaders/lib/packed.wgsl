@@ -1,4 +1,4 @@
-// A linear colour in 32 bits, as neighbourhood filters read and write it (K3): square roots, of red and green to 11 bits
+// A linear colour in 32 bits, as neighbourhood filters read and write it: square roots, of red and green to 11 bits
 // and of blue to 10. What rounding costs is below 0.09 of a step of the picture's bytes, in blue 0.18, each time. Channels
 // above 1 are cut, as the picture cuts them: a filter reads what is shown.
 

@@ -1,4 +1,4 @@
-// Regions of lenses (L3) as buffers hold them: four rows of numbers in view space. The host computes every number relative to the eye in f64
+// Regions of lenses as buffers hold them: four rows of numbers in view space. The host computes every number relative to the eye in f64
 // before it rounds to f32. What the numbers are, the struct of the region's form says (`shape/`, and those of members and combinations): its
 // members name their places in the rows, by which they are loaded (`shader::rows`).
 

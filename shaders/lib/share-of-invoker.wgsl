@@ -1,4 +1,4 @@
-// Share of an invoker at a place with these classes, 0 to 1, where lenses have soft borders (L9).
+// Share of an invoker at a place with these classes, 0 to 1, where lenses have soft borders.
 fn share_of(by: Invoker, all: u32, sight: Sight) -> f32 {
     if by.border == 0u {
         return 1.0;

@@ -1,4 +1,4 @@
-// The body of a lens as tinted glass (L5): of its surface what each ray meets first and last, as far as nothing stands before.
+// The body of a lens as tinted glass: of its surface what each ray meets first and last, as far as nothing stands before.
 
 // Which way the surface of a lens looks at a place: how its distance grows, from four places around (a tetrahedron).
 fn lens_normal(lens: u32, pixel: vec2i, ray: Ray, t: f32) -> vec3f {

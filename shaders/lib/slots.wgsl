@@ -1,4 +1,4 @@
-// The nearest translucent fragments of each pixel, a fixed number of them (O7): K-buffer and peeling. Two or three passes over the
+// The nearest translucent fragments of each pixel, a fixed number of them: K-buffer and peeling. Two or three passes over the
 // city find them whatever the order in which it is drawn.
 //
 //   depths   each fragment goes down the slots of its pixel; a slot keeps the nearest depth that came by, the other goes on
@@ -6,7 +6,7 @@
 //   rest     normals and colours of textures, where the picture has them
 //
 // `pass/link-slots.wgsl` makes lists of them as `pass/layers.wgsl` does, in order. Peeling does this again and again, with what
-// is behind all that was laid before. A slot is a note as `lib/notes.wgsl` has them; while slots are filled the bits of the number
+// is behind all that was laid before. A slot is a node as `lib/fragment-nodes.wgsl` has them; while slots are filled the bits of the number
 // are inverted: the smaller the number the nearer.
 
 override STAGE: u32 = 0u;

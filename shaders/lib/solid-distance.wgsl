@@ -1,4 +1,4 @@
-// How far a place is from a solid (L9); where that is more than its table is made for, not less than that. Twin:
+// How far a place is from a solid; where that is more than its table is made for, not less than that. Twin:
 // `veduta::geom::shape::solid::Near`, which says how.
 //
 // From `near` on: low x, y, z of the grid, cells per metre (f32); cells in x, y and z, fours of words that the next list

@@ -1,4 +1,4 @@
-// The depth sprite of a lens that is no convex volume (S3): the ends of its closed forms and the crossings with the faces of its solids, in their
+// The depth sprite of a lens that is no convex volume: the ends of its closed forms and the crossings with the faces of its solids, in their
 // order along the ray; an entry into a solid counts 1, an exit -1, and the ray is in the solid where the sum is not 0. Where the
 // combination of the leaves begins or ends to hold, an interval does. Twin: `veduta::lens::classify::intervals_of`.
 //

@@ -1,11 +1,11 @@
-// The volumetric depth test (S5), on the sprites of lenses. A texel has layers, each an entry and an exit, ascending along the
+// The volumetric depth test, on the sprites of lenses. A texel has layers, each an entry and an exit, ascending along the
 // ray; an exit at the nearest code says that there are no more.
 
 @group(2) @binding(10) var<storage, read> sprites: array<u32>;
 
 // ---- one layer, stored as the depth target stores depth: no distance is worked out
 
-// Twin: `veduta::lens::classify`. Stored depths fall with distance: every comparison of S5 is turned round. An entry of 1 says
+// Twin: `veduta::lens::classify`. Stored depths fall with distance: every comparison of distances is turned round. An entry of 1 says
 // that the eye is inside; a depth of 0, that nothing is there; an exit of 0, that there is none.
 fn classify(depth: f32, entry: f32, exit: f32) -> u32 {
     return select(select(BEHIND, INSIDE, depth > exit || exit == 0.0), FRONT, depth > entry);

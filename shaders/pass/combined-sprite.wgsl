@@ -1,4 +1,4 @@
-// The depth sprite of a combination (S1), drawn like that of a solid: the ends of its closed forms in one draw, the faces of its
+// The depth sprite of a combination, drawn like that of a solid: the ends of its closed forms in one draw, the faces of its
 // solids in one each. A place where a leaf begins or ends counts where the combination does too.
 
 // No object is known here, and none is asked for.

@@ -1,17 +1,17 @@
-// Translucent layers of a pixel (O7), as `pass/layers.wgsl` noted them: sorted by their full depth, each shaded as what is opaque
+// Translucent layers of a pixel, as `pass/layers.wgsl` noted them: sorted by their full depth, each shaded as what is opaque
 // is, with its own place in the lenses, and laid one over the other in f32, nearest first.
 //
-// The nearest notes are found several at a time, in one walk through the list; that goes on from the last of them until all are
-// laid or nothing more would be seen. A walk takes a few notes at a time, puts them in order by a sorting network and merges them
+// The nearest nodes are found several at a time, in one walk through the list; that goes on from the last of them until all are
+// laid or nothing more would be seen. A walk takes a few nodes at a time, puts them in order by a sorting network and merges them
 // into the nearest so far, with no more branches than the walk itself. What is not done after MOST_ROUNDS is told; the host has
-// lists sorted then (`pass/sort-layers.wgsl`). Equal depths are told apart by the number of the surface, and by what else a note
+// lists sorted then (`pass/sort-layers.wgsl`). Equal depths are told apart by the number of the surface, and by what else a node
 // has, so the order in which the city is drawn does not matter.
 
 @group(3) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
-@group(3) @binding(1) var<storage, read> notes: array<vec2u>;
+@group(3) @binding(1) var<storage, read> nodes: array<vec2u>;
 
 const FIRST_HEAD: u32 = 272u;
-const NOTED_CODE: u32 = 0x07ffffffu;
+const NODE_CODE: u32 = 0x07ffffffu;
 override SORTED: bool = false;  // whether lists are in order
 // Words of a record that methods keep of each pixel behind the heads, as `lib/slots.wgsl` has it; 0: none. One says how many layers
 // there are; with more of them lists go on where others ended.
@@ -37,11 +37,11 @@ const MOST_LAYERS: u32 = 1u;    // the word of `heads` that has the largest numb
 const NOTHING_SEEN: f32 = 5.9604645e-8;     // 2^-24
 
 //@kept
-const NO_NOTE = Note(0u);
-// Where lists begin: before all notes, and no note.
-const BEFORE_ALL = Note(0xffffffffu, 0u, 0u, 0u);
+const NO_NODE = FragmentNode(0u);
+// Where lists begin: before all nodes, and no node.
+const BEFORE_ALL = FragmentNode(0xffffffffu, 0u, 0u, 0u);
 
-fn note_words() -> u32 {
+fn node_words() -> u32 {
     return 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
 }
 
@@ -57,8 +57,8 @@ fn contained_opacity(opacity: f32) -> f32 {
 
 //@opacity
 
-// Whether a note comes before another: it is nearer, or stands in the plane of the other and is put before it.
-fn precedes(a: Note, b: Note) -> bool {
+// Whether a node comes before another: it is nearer, or stands in the plane of the other and is put before it.
+fn precedes(a: FragmentNode, b: FragmentNode) -> bool {
     var is_before = a.x > b.x || (a.x == b.x && a.y < b.y);
     if SMOOTH || TEXTURED {
         let is_alike = all(a.xy == b.xy);
@@ -67,81 +67,81 @@ fn precedes(a: Note, b: Note) -> bool {
     return is_before;
 }
 
-// What a note of this picture has.
-fn note_of(key: vec2u, normal: u32, color: u32) -> Note {
-    return Note(key, select(0u, normal, SMOOTH), select(0u, color, TEXTURED));
+// What a node of this picture has.
+fn node_of(key: vec2u, normal: u32, color: u32) -> FragmentNode {
+    return FragmentNode(key, select(0u, normal, SMOOTH), select(0u, color, TEXTURED));
 }
 
-// How many notes there is room for.
+// How many nodes there is room for.
 fn room() -> u32 {
-    return 2u * arrayLength(&notes) / note_words();
+    return 2u * arrayLength(&nodes) / node_words();
 }
 
 fn word_at(place: u32) -> u32 {
-    return notes[place >> 1u][place & 1u];
+    return nodes[place >> 1u][place & 1u];
 }
 
 fn link_of(number: u32) -> u32 {
     return word_at(link_place(room(), number - 1u));
 }
 
-fn note_at(number: u32) -> Note {
+fn node_at(number: u32) -> FragmentNode {
     var normal = 0u;
     var color = 0u;
     if SMOOTH {
         normal = word_at(normal_place(room(), number - 1u));
     }
     if TEXTURED {
-        color = word_at(color_place(room(), number - 1u, note_words()));
+        color = word_at(color_place(room(), number - 1u, node_words()));
     }
-    return note_of(notes[number - 1u], normal, color);
+    return node_of(nodes[number - 1u], normal, color);
 }
 
 // Puts the nearer one first.
-fn order(first: ptr<function, Note>, second: ptr<function, Note>) {
+fn order(first: ptr<function, FragmentNode>, second: ptr<function, FragmentNode>) {
     let is_wrong = precedes(*second, *first);
     let nearer = select(*first, *second, is_wrong);
     *second = select(*second, *first, is_wrong);
     *first = nearer;
 }
 
-fn nearer_of(a: Note, b: Note) -> Note {
+fn nearer_of(a: FragmentNode, b: FragmentNode) -> FragmentNode {
     return select(a, b, precedes(b, a));
 }
 
 // A walk through a list.
 struct Walk {
     next: u32,
-    count: u32,                 // notes so far
+    count: u32,                 // nodes so far
     twins: u32,                 // of them that are alike with the last that was laid
 }
 
-// The next note of a list, if it comes after `last`, of which `laid` that are alike were laid; otherwise, and at the end, none.
-fn take_note(walk: ptr<function, Walk>, last: Note, laid: u32) -> Note {
+// The next node of a list, if it comes after `last`, of which `laid` that are alike were laid; otherwise, and at the end, none.
+fn take_node(walk: ptr<function, Walk>, last: FragmentNode, laid: u32) -> FragmentNode {
     let is_there = (*walk).next != 0u;
-    // A software adapter goes through both sides of a branch: the end of a list reads the first of all notes.
+    // A software adapter goes through both sides of a branch: the end of a list reads the first of all nodes.
     let number = max((*walk).next, 1u);
-    let note = note_at(number);
-    let is_twin = is_there && all(note == last);
+    let node = node_at(number);
+    let is_twin = is_there && all(node == last);
     (*walk).twins += select(0u, 1u, is_twin);
     (*walk).count += select(0u, 1u, is_there);
     (*walk).next = select(0u, link_of(number), is_there);
-    return select(NO_NOTE, note, is_there && (precedes(last, note) || (is_twin && (*walk).twins > laid)));
+    return select(NO_NODE, node, is_there && (precedes(last, node) || (is_twin && (*walk).twins > laid)));
 }
 
 struct Composite {
-    @location(0) veil: vec4f,   // colours times opacity; a: what is let through
+    @location(0) transparency: vec4f,   // colours times opacity; a: what is let through
     @location(1) shown: vec2u,  // number and normal of the layer that is the shown surface, as the geometry target has them; 0: none
     @location(2) depth: f32,    // its stored depth
 }
 
 @fragment
-fn veil(in: Corner) -> @location(0) vec4f {
-    return composite(in).veil;
+fn transparency(in: Corner) -> @location(0) vec4f {
+    return composite(in).transparency;
 }
 
 @fragment
-fn veil_and_shown(in: Corner) -> Composite {
+fn transparency_and_shown(in: Corner) -> Composite {
     return composite(in);
 }
 
@@ -166,7 +166,7 @@ fn composite(in: Corner) -> Composite {
     var rounds = 0u;            // of walks
     var picked = vec4f(0.0, 0.0, 0.0, 1.0);
     let least_seen = select(NOTHING_SEEN, 0.0, PICKS);
-    var listed = head;          // of a list in order: the next note
+    var listed = head;          // of a list in order: the next node
     var is_left = head != 0u;
     if SORTED {
         for (var next = head; next != 0u; next = link_of(next)) {
@@ -186,14 +186,14 @@ fn composite(in: Corner) -> Composite {
         through = recorded(record + RECORD_THROUGH);
         shown = vec2u(atomicLoad(&heads[record + RECORD_SHOWN]), atomicLoad(&heads[record + RECORD_SHOWN + 1u]));
         shown_depth = recorded(record + RECORD_SHOWN_DEPTH);
-        // The notes in the list come after it.
+        // The nodes in the list come after it.
         last.x = atomicLoad(&heads[record + RECORD_BEFORE]);
     }
     while is_left {
         var walk = Walk(select(head, 0u, SORTED), 0u, 0u);
         //@first
         if SORTED {
-            kept_0 = note_at(listed);
+            kept_0 = node_at(listed);
             listed = link_of(listed);
         }
         while walk.next != 0u {
@@ -210,20 +210,20 @@ fn composite(in: Corner) -> Composite {
         var is_kept = kept_0.x != 0u;
         while is_kept {
             //@pick
-            let depth = bitcast<f32>(note.x);
-            let normal = note.z;
-            let code = note.y & NOTED_CODE;
+            let depth = bitcast<f32>(node.x);
+            let normal = node.z;
+            let code = node.y & NODE_CODE;
             var point = point_of(pixel, ray, depth, vec2u(code, normal));
             point.base = point.natural;
             if TEXTURED {
-                point.base = unpacked(note.w);
+                point.base = unpacked(node.w);
             }
             if CLAY {
                 point.base = CLAY_COLOR;
             }
             point.layer = laid;
             point.last_layer = count - 1u;
-            point.is_covered = note.x == last.x;
+            point.is_covered = node.x == last.x;
             let classes = classes_at(sight_at(pixel, ray, depth, point.object), in.part.x);
             let opacity = opacity_at(point, classes);
             let paint = shade(&point, classes);
@@ -238,8 +238,8 @@ fn composite(in: Corner) -> Composite {
                 write_classes(pixel, point, classes);
             }
             laid += 1u;
-            twins = select(1u, twins + 1u, all(note == last));
-            last = note;
+            twins = select(1u, twins + 1u, all(node == last));
+            last = node;
             place += 1u;
             is_kept = place < most && through >= least_seen;
             if !is_kept {

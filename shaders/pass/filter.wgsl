@@ -1,4 +1,4 @@
-// One direction of a separable neighbourhood filter (K3). The kernel is the effect's: a weight for each offset, in pixels.
+// One direction of a separable neighbourhood filter. The kernel is the effect's: a weight for each offset, in pixels.
 //
 // What a pixel costs is the texels it reads. So a texel holds four pixels that lie side by side across the filter's
 // direction, and an invocation makes four of these that follow each other in it: 16 pixels of 4 + 2 r reads. It writes them

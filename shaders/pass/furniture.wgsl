@@ -1,6 +1,6 @@
 // Titles, captions and legends over the finished picture (architecture, decision 13): panels with round corners, and
 // lines of text whose coverage was made pixel by pixel on the host. One instance per item, drawn in order; colours are
-// linear, the result is premultiplied. Overlays and their context lines (B6, B7) are furniture too: pictures, texel by texel,
+// linear, the result is premultiplied. Overlays and their context lines are furniture too: pictures, texel by texel,
 // and strips of triangles.
 
 struct Frame {
@@ -157,7 +157,7 @@ fn opaque_picture(shown: Shown) -> @location(0) vec4f {
     return vec4f(textureLoad(picture, clamp(place, vec2i(0), vec2i(textureDimensions(picture)) - 1), 0).rgb, 1.0);
 }
 
-// A board in the scene (B6): its picture, here premultiplied, mapped projectively. The rows by which a place of the
+// A board in the scene: its picture, here premultiplied, mapped projectively. The rows by which a place of the
 // target, from `low`, becomes (u w, v w, w) are its colour without the alpha, its halo without the last, and that with
 // radius and softness; w is positive before the eye.
 @fragment
@@ -209,7 +209,7 @@ fn strip_vertex(corner: StripVertex) -> StripShown {
     return StripShown(vec4f(clip, 0.0, 1.0), c.across, c.half_width, c.along, c.length, c.ends, c.color, c.fade);
 }
 
-// How much of a strip is seen at this distance from what it fades towards (B7): 0 ≤ e ≤ r, t²(3 - 2t).
+// How much of a strip is seen at this distance from what it fades towards: 0 ≤ e ≤ r, t²(3 - 2t).
 fn faded(distance: f32, inner: f32, outer: f32) -> f32 {
     let beyond = select(0.0, 1.0, distance > outer);
     let t = select(beyond, clamp((distance - inner) / max(outer - inner, 1e-6), 0.0, 1.0), outer > inner);
@@ -232,7 +232,7 @@ fn strip(shown: StripShown) -> @location(0) vec4f {
     return vec4f(shown.color.rgb * alpha, alpha);
 }
 
-// With a skin: a picture whose corners are those of the strip, mapped projectively (B7: u·w and v·w over w, w by the end width), so
+// With a skin: a picture whose corners are those of the strip, mapped projectively (u·w and v·w over w, w by the end width), so
 // that it does not shear where the strip gets narrower. Its colour is the strip's times that of the skin.
 @fragment
 fn strip_skin(shown: StripShown) -> @location(0) vec4f {

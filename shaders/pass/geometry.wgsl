@@ -6,7 +6,7 @@
 //                       plane takes its tested depth from the plane; its AOV must not depend on what else
 //                       the city holds, so it is always the face's own.
 //
-// Chunks that a hiding lens may reach have pipelines of their own, whose `cut` discards what is not there (K4: by its own
+// Chunks that a hiding lens may reach have pipelines of their own, whose `cut` discards what is not there (by its own
 // depth, before visibility): a discard anywhere costs early depth tests everywhere (decision 3).
 
 override SMOOTH: bool = false;  // whether some faces have a normal per vertex

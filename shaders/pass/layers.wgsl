@@ -1,50 +1,50 @@
-// Translucent layers (O7): every fragment that is seen through is noted in a list of its pixel. `pass/composite.wgsl` sorts them.
+// Translucent layers: every fragment that is seen through is noted in a list of its pixel. `pass/composite.wgsl` sorts them.
 //
-// A list begins at `heads` and goes on from note to note. A note has three words and, where the picture has them, a normal per
-// vertex and a colour of a texture, in places that `lib/notes.wgsl` tells.
+// A list begins at `heads` and goes on from node to node. A node has three words and, where the picture has them, a normal per
+// vertex and a colour of a texture, in places that `lib/fragment-nodes.wgsl` tells.
 //
 // Where there is much room, it is shared out between pools, one for each tile of the picture in turn, and what a pool has no
 // room for spills into the rest: processors that draw different tiles neither count with the same counter nor write
-// side by side. Notes that find no room are counted all the same: the host sees it, and draws what did not fit in narrower bands.
+// side by side. Nodes that find no room are counted all the same: the host sees it, and draws what did not fit in narrower bands.
 
 override TEXTURED: bool = false;    // whether the picture has textures
 override ALL: bool = false;         // whether all that is drawn is translucent
 
 // The first words of `heads`; those of the pixels follow.
-const SPILLED: u32 = 0u;            // how many notes their pool had no room for
-const FIRST_POOL: u32 = 16u;        // how many notes a pool was to take, those that spilled included; each in a line of its own
+const SPILLED: u32 = 0u;            // how many nodes their pool had no room for
+const FIRST_POOL: u32 = 16u;        // how many nodes a pool was to take, those that spilled included; each in a line of its own
 const FIRST_HEAD: u32 = 272u;
 
 // As the host counts (`render::layers`).
 const POOLS: u32 = 16u;
-const MANY: u32 = 65536u;           // notes that there is room for: with less there is one pool
+const MANY: u32 = 65536u;           // nodes that there is room for: with less there is one pool
 const TILE_SHIFT: u32 = 6u;         // tiles of 64 pixels, as software adapters draw them
 // The bits of a noted number that are that of the surface. Above them is how many layers of a plane may be over this one.
-const NOTED_CODE: u32 = 0x07ffffffu;
+const NODE_CODE: u32 = 0x07ffffffu;
 const PLANE_SHIFT: u32 = 27u;
 const MOST_IN_PLANE: u32 = 31u;
 const ALONE: u32 = 0xf8000000u;     // in its plane: as the lowest
 
-@group(0) @binding(1) var<storage, read_write> heads: array<atomic<u32>>;   // number of the note + 1; 0: none
-@group(0) @binding(2) var<storage, read_write> notes: array<vec2u>;
+@group(0) @binding(1) var<storage, read_write> heads: array<atomic<u32>>;   // number of the node + 1; 0: none
+@group(0) @binding(2) var<storage, read_write> nodes: array<vec2u>;
 @group(0) @binding(3) var opaque_depth: texture_depth_2d;
 
-fn note_words() -> u32 {
+fn node_words() -> u32 {
     return 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
 }
 
 fn write_word(place: u32, word: u32) {
-    notes[place >> 1u][place & 1u] = word;
+    nodes[place >> 1u][place & 1u] = word;
 }
 
 // `plane`: what is noted with the number, of its layer in a plane.
-fn note(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) {
+fn add_node(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) {
     if !ALL && !is_layer(fragment_at(at, depth, code)) {
         return;
     }
     let pixel = vec2u(at);
     let tile = pixel >> vec2u(TILE_SHIFT);
-    let room = 2u * arrayLength(&notes) / note_words();
+    let room = 2u * arrayLength(&nodes) / node_words();
     let has_pools = room >= MANY;
     let pool = select(0u, (tile.x + 5u * tile.y) % POOLS, has_pools);
     let each = select(room, room / 64u * 3u, has_pools);
@@ -57,14 +57,14 @@ fn note(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) {
     if number >= room {
         return;
     }
-    notes[number] = vec2u(bitcast<u32>(depth), code | plane);
+    nodes[number] = vec2u(bitcast<u32>(depth), code | plane);
     let before = atomicExchange(&heads[FIRST_HEAD + pixel.y * u32(view.size.x) + pixel.x], number + 1u);
     write_word(link_place(room, number), before);
     if SMOOTH {
         write_word(normal_place(room, number), normal);
     }
     if TEXTURED {
-        write_word(color_place(room, number, note_words()), color);
+        write_word(color_place(room, number, node_words()), color);
     }
 }
 
@@ -78,13 +78,13 @@ fn natural_color(code: u32) -> u32 {
 @fragment //@early
 fn note_plain(in: Varying) {
     //@behind
-    note(in.clip.xy, in.clip.z, in.code, ALONE, 0u, natural_color(in.code));
+    add_node(in.clip.xy, in.clip.z, in.code, ALONE, 0u, natural_color(in.code));
 }
 
 @fragment //@early
 fn note_smooth(in: SmoothVarying) {
     //@behind
-    note(in.clip.xy, in.clip.z, in.code, ALONE, normal_code(in.normal, in.code), natural_color(in.code));
+    add_node(in.clip.xy, in.clip.z, in.code, ALONE, normal_code(in.normal, in.code), natural_color(in.code));
 }
 
 @fragment //@early
@@ -95,14 +95,14 @@ fn note_textured(in: TexturedVarying) {
         return;
     }
     let normal = select(0u, encode_normal(in.normal), SMOOTH);
-    note(in.clip.xy, in.clip.z, in.code, ALONE, normal, packed(texel.rgb * surface_at(in.code - 1u).color));
+    add_node(in.clip.xy, in.clip.z, in.code, ALONE, normal, packed(texel.rgb * surface_at(in.code - 1u).color));
 }
 
 // The instance is the layer of the face in its plane: of equal depths the upper one is nearer. It is told with the number.
 @vertex
 fn vertex_coplanar_layer(in: Vertex, plane: Plane, @builtin(instance_index) layer: u32) -> CoplanarVarying {
     var face = coplanar(in, plane);
-    face.code = (face.code & NOTED_CODE) | ((MOST_IN_PLANE - min(layer, MOST_IN_PLANE)) << PLANE_SHIFT);
+    face.code = (face.code & NODE_CODE) | ((MOST_IN_PLANE - min(layer, MOST_IN_PLANE)) << PLANE_SHIFT);
     return face;
 }
 
@@ -113,7 +113,7 @@ fn note_coplanar(in: CoplanarVarying) {
     if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) > depth {
         return;
     }
-    let code = in.code & NOTED_CODE;
+    let code = in.code & NODE_CODE;
     let normal = select(0u, normal_code(in.normal, code), SMOOTH);
-    note(in.clip.xy, depth, code, in.code & ~NOTED_CODE, normal, natural_color(code));
+    add_node(in.clip.xy, depth, code, in.code & ~NODE_CODE, normal, natural_color(code));
 }

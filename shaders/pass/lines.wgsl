@@ -1,6 +1,6 @@
-// Edges of the city as lines, where a lens draws them (K2).
+// Edges of the city as lines, where a lens draws them.
 //
-// A fragment of a line has classes by its own depth, not by that of the surface behind it (K4), and goes through the styles
+// A fragment of a line has classes by its own depth, not by that of the surface behind it, and goes through the styles
 // of the lenses above the one that draws it.
 
 struct LineStage {

@@ -1,4 +1,4 @@
-// The lists of invokers, tile by tile, narrowed to what the tile shows (L8): what acts inside of a lens alone is left out where no
+// The lists of invokers, tile by tile, narrowed to what the tile shows: what acts inside of a lens alone is left out where no
 // shown place of the tile lies in the box around the lens. First the depths that each tile shows are found, by an invocation for each
 // two columns of it; then an invocation for each tile goes through its list. No invocation waits for another or counts with it: software
 // adapters are slow at both. Loops leave at the end of their last round: such an adapter goes through a whole round to find that there

@@ -1,4 +1,4 @@
-// Meshes fine enough for deformations (D2), in rounds: `geom::deform::refine` is the reference and says why.
+// Meshes fine enough for deformations, in rounds: `geom::deform::refine` is the reference and says why.
 //
 // In each round every edge that is not known to be fine enough is asked (`ask`), triangles without halved edges are looked into
 // (`look_inside`), what each becomes is counted and added up (`add_up`, `add_groups`), and written where it belongs (`split`). The host

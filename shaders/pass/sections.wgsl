@@ -1,4 +1,4 @@
-// Sections (L5): where a lens takes part of a closed body away, or shows part of one, its own surface closes what is left.
+// Sections: where a lens takes part of a closed body away, or shows part of one, its own surface closes what is left.
 //
 // Volume by volume, three draws:
 //   ends    where each pixel's ray leaves the volume (or enters it), by its own lens test

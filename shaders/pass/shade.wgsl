@@ -1,7 +1,7 @@
 // Deferred shading of the shown surface, and what the lenses make of it.
 //
 // The effects of the context and of lenses stand in `shade` and `styled`, which are put together from the scene: by the
-// specialised back end, which writes out what is asked for and nothing else (U3), or by the uber back end, which reads
+// specialised back end, which writes out what is asked for and nothing else, or by the uber back end, which reads
 // it from a table. Moving a lens or turning a parameter changes uniforms only.
 
 override SUMMED: bool = false;      // weighted by coverage, to be summed over samples

@@ -1,33 +1,33 @@
-// One step of sorting long lists of layers: runs of `WIDTH` notes that are in order become runs of twice as many. For lists of more
-// notes than `pass/composite.wgsl` looks through again and again; software adapters end loops after 65535 rounds in all.
+// One step of sorting long lists of layers: runs of `WIDTH` nodes that are in order become runs of twice as many. For lists of more
+// nodes than `pass/composite.wgsl` looks through again and again; software adapters end loops after 65535 rounds in all.
 
 @group(0) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
-@group(0) @binding(1) var<storage, read_write> notes: array<u32>;
+@group(0) @binding(1) var<storage, read_write> nodes: array<u32>;
 
 const LONGEST: u32 = 2u;
 const FIRST_HEAD: u32 = 272u;
-override WORDS: u32 = 3u;           // of a note
+override WORDS: u32 = 3u;           // of a node
 override WIDTH: u32 = 1u;
 
 fn room() -> u32 {
-    return arrayLength(&notes) / WORDS;
+    return arrayLength(&nodes) / WORDS;
 }
 
 fn next_of(number: u32) -> u32 {
-    return notes[link_place(room(), number - 1u)];
+    return nodes[link_place(room(), number - 1u)];
 }
 
-// As in `pass/composite.wgsl`, of the numbers of two notes.
+// As in `pass/composite.wgsl`, of the numbers of two nodes.
 fn comes_before(a: u32, b: u32) -> bool {
     let place = vec2u(key_place(a - 1u), key_place(b - 1u));
-    let depth = vec2u(notes[place.x], notes[place.y]);
-    let code = vec2u(notes[place.x + 1u], notes[place.y + 1u]);
+    let depth = vec2u(nodes[place.x], nodes[place.y]);
+    let code = vec2u(nodes[place.x + 1u], nodes[place.y + 1u]);
     var is_before = depth.x > depth.y || (depth.x == depth.y && code.x < code.y);
     var is_alike = all(vec2u(depth.x, code.x) == vec2u(depth.y, code.y));
     // A normal and a colour, as many as there are.
     for (var word = 3u; word < WORDS; word += 1u) {
-        let first = notes[word * room() + a - 1u];
-        let second = notes[word * room() + b - 1u];
+        let first = nodes[word * room() + a - 1u];
+        let second = nodes[word * room() + b - 1u];
         is_before = is_before || (is_alike && first < second);
         is_alike = is_alike && first == second;
     }
@@ -70,7 +70,7 @@ fn sort(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
             if last == 0u {
                 atomicStore(&heads[place], taken);
             } else {
-                notes[link_place(room(), last - 1u)] = taken;
+                nodes[link_place(room(), last - 1u)] = taken;
             }
             last = taken;
             count += 1u;
@@ -78,7 +78,7 @@ fn sort(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
         rest = right;
     }
     if last != 0u {
-        notes[link_place(room(), last - 1u)] = 0u;
+        nodes[link_place(room(), last - 1u)] = 0u;
     }
     atomicMax(&heads[LONGEST], count);
 }

@@ -1,4 +1,4 @@
-// Where rays go through the faces of the solids of a lens (S3): each crossing is put on a list of its texel. The faces are drawn;
+// Where rays go through the faces of the solids of a lens: each crossing is put on a list of its texel. The faces are drawn;
 // nothing is coloured. What finds no room marks its texel; the host makes room for as many as there were.
 
 struct ListStage {

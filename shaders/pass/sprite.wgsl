@@ -1,4 +1,4 @@
-// The sides of a solid in a depth sprite (S1, V §3.1, the source's two stages): per texel the stored depth of the nearest entry and of
+// The sides of a solid in a depth sprite (Trapp §3.1, in its two stages): per texel the stored depth of the nearest entry and of
 // the farthest exit. Its faces are drawn with a depth test, nearest first and then farthest, each into its own channel.
 //
 // Stored depth decreases with distance, as in the picture's depth target. It is clamped, not clipped. A texel that the solid

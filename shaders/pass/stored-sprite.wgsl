@@ -1,4 +1,4 @@
-// The volumetric depth sprite of a lens (S1, V §3.1): per texel where its ray enters and leaves, as codes. The ends of the
+// The volumetric depth sprite of a lens (Trapp §3.1): per texel where its ray enters and leaves, as codes. The ends of the
 // volumes that have a closed form are worked out here, so both of the source's stages, nearest and then farthest, are one.
 
 struct StoredStage {

@@ -1,4 +1,4 @@
-// Translucent fragments of the city (O7) one by one, for the methods that keep no list of all of them: `lay` says what becomes of
+// Translucent fragments of the city one by one, for the methods that keep no list of all of them: `lay` says what becomes of
 // each, as `lib/slots.wgsl` or `lib/tail.wgsl` has it. What is opaque is there already; what is behind it is left out.
 
 override TEXTURED: bool = false;    // whether the picture has textures

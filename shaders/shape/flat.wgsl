@@ -1,4 +1,4 @@
-// What is seen through a figure in a plane (L3), from the plane to infinity. Where a sight line crosses the plane is a projective
+// What is seen through a figure in a plane, from the plane to infinity. Where a sight line crosses the plane is a projective
 // map of where it crosses the picture, a = (x, y, -1): D = depth.a / weight.a, and in the figure's own coordinates
 // (x.a, y.a) / weight.a. The host makes it in f64, so that weight.a > 0 where the plane is seen; 0: edge on.
 

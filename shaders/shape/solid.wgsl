@@ -1,4 +1,4 @@
-// Solids of any form (L3): the winding number of their surface about a place, counted along the line straight up from it in the
+// Solids of any form: the winding number of their surface about a place, counted along the line straight up from it in the
 // solid's own coordinates. Twin: `veduta::geom::shape::Solid`, which says how.
 
 struct Solid {

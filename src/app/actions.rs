@@ -1,4 +1,4 @@
-//! What the window can do: one table that menus, keys and the list of shortcuts are made from.
+//! Actions of the window: one table that menus, keys and the list of shortcuts are made from.
 
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
@@ -60,9 +60,9 @@ pub enum Action {
     IsolateObject,
     /// All is shown.
     ShowAll,
-    /// What it is made of is searched.
+    /// Searches the objects it is made of.
     Find,
-    /// What the picture costs.
+    /// Shows or hides the costs of the picture.
     ToggleCost,
     /// The figure as it will be.
     TogglePreview,
@@ -104,7 +104,7 @@ impl Menu {
 /// One of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// What.
+    /// The action.
     pub action: Action,
     /// Where.
     pub menu: Menu,
@@ -183,7 +183,7 @@ pub const ROWS: &[Row] = &[
     row(Action::Shortcuts, Menu::Help, "Keys and mouse", plain(Key::F1)),
 ];
 
-/// What the mouse does, for the list.
+/// Uses of the mouse, for the list.
 pub const MOUSE: &[(&str, &str)] = &[
     ("Drag", "Orbit around the place under the pointer"),
     ("Right or middle drag, Shift drag", "Move the city along"),
@@ -203,7 +203,7 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Drop files", "Open them; effects (*.wgsl) are added, and read again when they change"),
 ];
 
-/// What the keys of this frame ask for; none while a text is written, but for those with Ctrl.
+/// The actions that the keys of this frame ask for; none while a text is written, but for those with Ctrl.
 pub fn asked(context: &Context) -> Vec<Action> {
     let writes = context.text_edit_focused();
     let is_asked = |row: &&Row| {

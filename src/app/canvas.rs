@@ -1,4 +1,4 @@
-//! The picture in the window: it is looked at, moved around in, and its lenses have handles.
+//! The picture in the window: it is looked at, moved around in, and its lenses have gizmos.
 
 use std::time::Instant;
 
@@ -10,10 +10,10 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     app::{
-        artist::Frame,
         canvas_state::{Canvas, Drag, Hovered},
-        handles::{self},
+        gizmo,
         landing::EYE_HEIGHT_M,
+        render_thread::Frame,
         spots::in_rect,
         state::Window,
     },
@@ -29,13 +29,13 @@ use crate::{
 
 /// Radians that a drag over a point of the window turns.
 const TURN: f64 = 0.006;
-/// What a point of the wheel makes distances smaller by.
+/// The factor by which a point of the wheel makes distances smaller.
 const ZOOM: f64 = 0.0025;
-/// What arrows turn in a second, radians; what they move along in it, heights of the picture; what + makes distances smaller by.
+/// The turn by arrows in a second, radians; the way along with them, heights of the picture; the factor by which + makes distances smaller.
 const KEY_TURN: f64 = 1.2;
 const KEY_PAN: f64 = 0.6;
 const KEY_ZOOM: f64 = 1.2;
-/// How much nearer a double click goes.
+/// The factor by which a double click goes nearer.
 const NEARER: f64 = 0.5;
 /// A brisk walk, and a ride.
 const WALK_M_S: f64 = 3.0;
@@ -43,7 +43,7 @@ const FAST_WALK_M_S: f64 = 12.0;
 /// The longest side of a picture, pixels: what one target takes.
 const MOST_PIXELS: f32 = 4096.0;
 
-/// How long after the last move the eye rests, seconds.
+/// The time after the last move until the eye rests, seconds.
 const REST_S: f64 = 0.15;
 
 impl Canvas {
@@ -80,18 +80,18 @@ impl Canvas {
         self.flight = Some((Flight { from, to }, Instant::now()));
     }
 
-    /// What is in the middle of the picture, metres.
+    /// The place in the middle of the picture, metres.
     pub fn middle(&self, frame: Option<&Frame>) -> Option<DVec3> {
         let frame = frame?;
         pick(frame, frame.view.size.map(|side| f64::from(side) / 2.0).into()).map(|hovered| hovered.at)
     }
 
-    /// What the pointer is on, metres.
+    /// The place that the pointer is on, metres.
     pub fn pointed(&self) -> Option<DVec3> {
         self.hovered.map(|hovered| hovered.at)
     }
 
-    /// What is under the pointer, in words.
+    /// The thing under the pointer, in words.
     pub fn place_text(&self) -> Option<String> {
         let Hovered { at, .. } = self.hovered?;
         Some(format!("{:.2}  {:.2}  {:.2} m", at.x, at.y, at.z))
@@ -104,7 +104,7 @@ impl Canvas {
     }
 }
 
-/// What a picture shows at a place of it, pixels from its upper left corner; `None`: nothing, or it is not known yet.
+/// The thing that a picture shows at a place of it, pixels from its upper left corner; `None`: nothing, or it is not known yet.
 pub fn pick(frame: &Frame, at: DVec2) -> Option<Hovered> {
     let (ids, depths) = frame.shown.as_ref()?;
     let [w, h] = frame.view.size;
@@ -164,7 +164,7 @@ impl Window {
         // The figure has none of what is only held and chosen.
         if !self.previews {
             self.draw_outlines(ui, rect);
-            self.draw_handles(ui, rect);
+            self.draw_gizmos(ui, rect);
         }
         self.go_on_drawing(ui);
         if let Some(view) = self.view_in(rect) {
@@ -199,7 +199,7 @@ impl Window {
         View::new(self.camera()?, size, &Aabb::EMPTY).ok()
     }
 
-    /// What is at a place of the window, from the last picture that tells.
+    /// The thing at a place of the window, from the last picture that tells.
     fn pick_at(&self, rect: Rect, at: Pos2) -> Option<Hovered> {
         let frame = self.frame.as_deref()?;
         let [w, h] = frame.view.size.map(f64::from);
@@ -264,9 +264,9 @@ impl Window {
         let (Some(at), Some(camera)) = (at, self.camera()) else { return };
         let (modifiers, primary) =
             ui.input(|input| (input.modifiers, input.pointer.button_down(PointerButton::Primary)));
-        let held = self.view_in(rect).filter(|_| primary).and_then(|view| self.handle_at(&view, rect, at));
-        if let Some(grip) = held.and_then(|handle| self.grip(handle, at)) {
-            self.canvas.drag = Some(Drag::Handle(Box::new(grip)));
+        let held = self.view_in(rect).filter(|_| primary).and_then(|view| self.gizmo_at(&view, rect, at));
+        if let Some(grip) = held.and_then(|gizmo| self.grip(gizmo, at)) {
+            self.canvas.drag = Some(Drag::Gizmo(Box::new(grip)));
             return;
         }
         if let (true, Some((overlay, own))) = (primary, self.overlay_at(rect, at)) {
@@ -302,7 +302,7 @@ impl Window {
                     self.document.look(to);
                 }
             }
-            Drag::Handle(grip) => {
+            Drag::Gizmo(grip) => {
                 let shift = ui.input(|input| input.modifiers.shift);
                 if let Some(view) = self.view_in(rect) {
                     self.drag_grip(&grip, &view, rect, now, shift);
@@ -451,12 +451,12 @@ impl Window {
         }
     }
 
-    /// What the pointer is on of lenses, and what could be done there.
+    /// Finds the lens that the pointer is on, and the action that is possible there.
     fn roll_over(&mut self, response: &Response, rect: Rect, at: Pos2) {
         let Some(view) = self.view_in(rect) else { return };
         let held = || {
-            let handle = self.handle_at(&view, rect, at)?;
-            Some((handle.lens, handles::cursor(&handle)))
+            let gizmo = self.gizmo_at(&view, rect, at)?;
+            Some((gizmo.lens, gizmo::cursor(&gizmo)))
         };
         let disc = || self.lens_at(&view, rect, at).map(|lens| (lens, CursorIcon::Grab));
         let overlay =
@@ -474,7 +474,7 @@ impl Window {
             self.canvas.flight = None;
             self.document.apply(command);
         } else if let Some(camera) = overlay.camera {
-            // What a view cuts away in front of it stays in the way of who goes there: it is a near plane of its own.
+            // What a view cuts away in front of it stays in the way of a person that goes there: it is a near plane of its own.
             let near_m = default_near_m(camera.eye.distance(camera.target));
             self.canvas.fly(from, Camera { near_m, ..camera });
         } else {

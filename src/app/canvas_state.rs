@@ -1,13 +1,13 @@
-//! What the canvas keeps between frames.
+//! State of the canvas that stays between frames.
 
 use std::{sync::Arc, time::Instant};
 
 use eframe::egui::{Mesh, Pos2, Rect, TextureHandle, Vec2};
 use glam::DVec3;
 
-use crate::{app::knobs::Knob, lens::Focus, view::navigate::Flight};
+use crate::{app::gizmo::places::GizmoKind, lens::Focus, view::navigate::Flight};
 
-/// What a drag does.
+/// The effect of a drag.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Drag {
     Orbit {
@@ -17,8 +17,8 @@ pub(super) enum Drag {
         at: DVec3,
     },
     Look,
-    /// A handle of the chosen lens.
-    Handle(Box<Grip>),
+    /// A gizmo of the chosen lens.
+    Gizmo(Box<Grip>),
     /// An overlay: what is held of it is so far from its middle.
     Overlay {
         lens: usize,
@@ -26,7 +26,7 @@ pub(super) enum Drag {
     },
 }
 
-/// What the picture in the window knows.
+/// The state of the picture in the window.
 #[derive(Default)]
 pub struct Canvas {
     pub(super) texture: Option<TextureHandle>,
@@ -42,7 +42,7 @@ pub struct Canvas {
     pub(super) outlines: Option<Outlines>,
 }
 
-/// What is under the pointer.
+/// The thing under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hovered {
     /// The object, by index; `None`: the plain ground, or a part that no object has.
@@ -61,24 +61,24 @@ pub(super) struct Outlines {
 
 /// Something of a lens that can be held, and where it is in the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Handle {
+pub(super) struct Gizmo {
     /// The lens, by its place.
     pub lens: usize,
     /// Which of its shapes.
     pub shape: usize,
-    /// What of that.
-    pub knob: Knob,
+    /// The kind of gizmo there.
+    pub kind: GizmoKind,
     /// Where it is, model coordinates.
     pub(super) place: DVec3,
     /// Where it is shown.
     pub at: Pos2,
 }
 
-/// A handle that is being dragged: everything is worked out from how the lens was at first, so that nothing drifts.
+/// A gizmo that is being dragged: everything is worked out from how the lens was at first, so that nothing drifts.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grip {
-    pub(super) handle: Handle,
-    /// From the handle to what was pressed.
+    pub(super) gizmo: Gizmo,
+    /// From the gizmo to what was pressed.
     pub(super) off: Vec2,
     pub(super) before: Focus,
     /// Where the middle was, model coordinates.

@@ -1,4 +1,4 @@
-//! What the picture costs: times, passes, pipelines, lenses.
+//! Costs of the picture: times, passes, pipelines, lenses.
 
 use eframe::egui::{self, Ui};
 

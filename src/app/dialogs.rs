@@ -9,7 +9,7 @@ use crate::app::{
     state::Window,
 };
 
-/// What became of a dialog.
+/// The end of a dialog.
 enum End {
     Goes,
     Done(Vec<PathBuf>),
@@ -41,7 +41,7 @@ pub fn show(window: &mut Window, context: &Context) {
     ask(window, context);
 }
 
-/// What the figure will be.
+/// A line about the figure that will be written.
 fn figure_note(window: &Window, dialog: &FileDialog) -> Option<String> {
     let figure = &window.document.scene().figure;
     let [w, h] = figure.size;
@@ -143,7 +143,7 @@ fn body(dialog: &mut FileDialog, note: Option<&str>, ui: &mut Ui) -> End {
     end
 }
 
-/// What is meant, if that can be: folders that are typed are entered.
+/// Ends the dialog with the files that are meant, if that can be: folders that are typed are entered.
 fn finished(dialog: &mut FileDialog) -> End {
     let meant = dialog.meant();
     match &meta(&meant) {

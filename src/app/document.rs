@@ -26,7 +26,7 @@ pub struct Document {
     file: Option<PathBuf>,
     /// Whether that file names files outside its folder.
     leads_outside: bool,
-    /// An edit that goes on: a handle or a slider that is held.
+    /// An edit that goes on: a gizmo or a slider that is held.
     live: Option<(String, Scene)>,
     /// When the eye was moved last.
     looked: Option<Instant>,
@@ -63,7 +63,7 @@ impl Document {
         self.file.as_deref()
     }
 
-    /// What it is called.
+    /// Its name.
     pub fn title(&self) -> String {
         let name = self.file.as_ref().or(self.scene().city.files.first());
         let name = name.and_then(|file| file.file_name()).map(|name| name.to_string_lossy().into_owned());
@@ -76,7 +76,7 @@ impl Document {
         still(self.scene()) != still(&self.saved)
     }
 
-    /// How its paths are read and written: relative to its file, and free to lead anywhere, as who edits it says where.
+    /// The rules by which its paths are read and written: relative to its file, and free to lead anywhere, as the person who edits it says where.
     pub fn options(&self) -> Options {
         match &self.file {
             Some(file) => Options { allow_outside: true, ..Options::for_file(file) },
@@ -84,7 +84,7 @@ impl Document {
         }
     }
 
-    /// Whether its file, as it was opened or saved last, names files outside its folder: who reads it has to allow that.
+    /// Whether its file, as it was opened or saved last, names files outside its folder: reading it has to be allowed.
     pub fn leads_outside(&self) -> bool {
         self.leads_outside
     }
@@ -151,7 +151,7 @@ impl Document {
         self.history.redo().map(str::to_owned)
     }
 
-    /// What would be taken back, and done again.
+    /// The names of the edits that would be taken back, and done again.
     pub fn names(&self) -> [Option<&str>; 2] {
         self.history.next().map(|command| command.map(Command::name))
     }
@@ -159,7 +159,7 @@ impl Document {
     /// Sets one value as `--set` does: `lens.0.shape.radius=80`.
     ///
     /// # Errors
-    /// What is wrong with it, in one message.
+    /// The fault, in one message.
     pub fn set(&mut self, assignment: &str) -> Result<(), String> {
         self.do_edit(&Edit::of_assignment(assignment).map_err(message)?)
     }
@@ -167,7 +167,7 @@ impl Document {
     /// Gives a key another value: `lens.0.shape.radius`, a number; `None` takes it away.
     ///
     /// # Errors
-    /// What is wrong with it, in one message.
+    /// The fault, in one message.
     pub fn set_value(&mut self, path: &str, value: Option<Data>) -> Result<(), String> {
         self.do_edit(&Edit::new(path, value).map_err(message)?)
     }
@@ -175,7 +175,7 @@ impl Document {
     /// Shows what that would make; [`Self::settle`] does it.
     ///
     /// # Errors
-    /// What is wrong with it, in one message.
+    /// The fault, in one message.
     pub fn preview_value(&mut self, path: &str, value: Option<Data>) -> Result<(), String> {
         let edit = Edit::new(path, value).map_err(message)?;
         // Several values may be held at once: each goes on from what is shown.
@@ -194,7 +194,7 @@ impl Document {
     /// Gives a lens another name, wherever the scene names it.
     ///
     /// # Errors
-    /// What is wrong with the name, in one message.
+    /// The fault of the name, in one message.
     pub fn rename_lens(&mut self, index: usize, name: &str) -> Result<(), String> {
         self.settle();
         let command = scene_file::rename_lens(self.scene(), index, name, &self.options()).map_err(message)?;
@@ -202,16 +202,16 @@ impl Document {
         Ok(())
     }
 
-    /// The scene as whoever reads its file gets it.
+    /// The scene as a reader of its file gets it.
     ///
     /// # Errors
-    /// What cannot be written.
+    /// The scene cannot be written.
     pub fn as_written(&self) -> Result<Scene, String> {
         let options = self.options();
         scene_file::parse(&scene_file::to_toml_for(self.scene(), &options), &self.title(), &options).map_err(message)
     }
 
-    /// The eye as its file says it: one that the file did not say, and that nobody moved, it does not say now.
+    /// The eye as its file says it: one that the file did not say, and that has not moved, it does not say now.
     fn said_eye(&self) -> Option<Camera> {
         let camera = self.scene().camera;
         let is_unsaid = self.file.is_some() && !self.says_eye && camera == self.begun;
@@ -231,7 +231,7 @@ impl Document {
     /// Writes the scene; it has this file from now on. What its text says besides stays.
     ///
     /// # Errors
-    /// What the system says, with the file.
+    /// The message of the system, with the file.
     pub fn save(&mut self, file: &Path) -> Result<(), String> {
         self.settle();
         let text = self.text_for(file);
@@ -244,7 +244,7 @@ impl Document {
     }
 }
 
-/// What an edit does, for a menu: `radius of crate`, `figure size`.
+/// The name of an edit, for a menu: `radius of crate`, `figure size`.
 fn name_of(scene: &Scene, path: &str) -> String {
     let mut segments = path.split('.').map(str::trim);
     let first = segments.next().unwrap_or_default();
@@ -260,7 +260,7 @@ fn name_of(scene: &Scene, path: &str) -> String {
     }
 }
 
-/// Whether a scene, written to `file`, can only be read by who lets it lead out of that file's folder.
+/// Whether a scene, written to `file`, can only be read where it may lead out of that file's folder.
 fn leads_outside(scene: &Scene, file: &Path) -> bool {
     let strict = Options::for_file(file);
     let text = scene_file::to_toml_for(scene, &strict);

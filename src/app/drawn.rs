@@ -1,8 +1,8 @@
-//! What is drawn on the city, point by point.
+//! Drawing on the city, point by point.
 
 use glam::DVec3;
 
-/// What is drawn.
+/// The figure that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
     /// A way: a lens along it.
@@ -14,7 +14,7 @@ pub enum Figure {
 }
 
 impl Figure {
-    /// What it takes at least.
+    /// The least number of points that it takes.
     pub(super) fn least(self) -> usize {
         if self == Self::Area { 3 } else { 2 }
     }
@@ -32,10 +32,10 @@ impl Figure {
     }
 }
 
-/// What is being drawn.
+/// A figure that is being drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// What.
+    /// The figure.
     pub figure: Figure,
     /// Its points so far, metres.
     pub points: Vec<DVec3>,

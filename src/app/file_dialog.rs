@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// What waits until edits may be lost.
+/// The action that waits until edits may be lost.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Purpose {
     /// The window closes.
@@ -22,7 +22,7 @@ pub enum Asking {
     Outside(Vec<PathBuf>, String),
 }
 
-/// What is written.
+/// The file that is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Writing {
     /// The scene.
@@ -31,7 +31,7 @@ pub enum Writing {
     Figure,
 }
 
-/// What a file is chosen for.
+/// The purpose of a choice of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
     Read,
@@ -48,11 +48,11 @@ pub(super) const READABLE: &[&str] = &["toml", "json", "jsonl", "gz", "gltf", "g
 pub struct FileDialog {
     pub(super) wanted: Wanted,
     pub(super) folder: PathBuf,
-    /// What is typed: a name, or a path.
+    /// The text that is typed: a name, or a path.
     pub(super) typed: String,
     /// Files that are chosen together.
     pub(super) chosen: Vec<PathBuf>,
-    /// What the folder has, folders first.
+    /// The entries of the folder, folders first.
     pub(super) entries: Vec<(PathBuf, bool)>,
     pub(super) problem: Option<String>,
     pub(super) is_fresh: bool,
@@ -130,7 +130,7 @@ impl FileDialog {
         }
     }
 
-    /// What is meant by what is typed or chosen; empty: nothing yet.
+    /// The files that are meant by the text or the choice; empty: none yet.
     pub(super) fn meant(&self) -> Vec<PathBuf> {
         let typed = self.typed.trim();
         if typed.is_empty() {
@@ -146,7 +146,7 @@ impl FileDialog {
         vec![path]
     }
 
-    /// What it is for.
+    /// The heading, which says its purpose.
     pub fn title(&self) -> &'static str {
         match self.wanted {
             Wanted::Read => "Open city files, a scene or effects",

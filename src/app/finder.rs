@@ -1,4 +1,4 @@
-//! What is searched for among the objects of a city, and what is found.
+//! The search among the objects of a city, and its results.
 
 use std::cmp::Ordering;
 
@@ -13,19 +13,19 @@ const MOST_FOUND: usize = 200;
 /// A search, and what it found last.
 #[derive(Debug, Default)]
 pub struct Finder {
-    /// What is searched for: a part of an id, a type or a value, or an attribute, a relation and a value.
+    /// The text to search for: a part of an id, a type or a value, or an attribute, a relation and a value.
     pub text: String,
     found: Option<(String, Found)>,
     /// Whether the field is to be written into.
     pub wants_focus: bool,
 }
 
-/// What was found.
+/// The result of a search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Found {
     /// The first 200 objects, each with the value by which it was found where one attribute was asked for.
     pub objects: Vec<(u32, Option<String>)>,
-    /// How many there are in all.
+    /// The number of objects in all.
     pub count: usize,
     /// Why there are none.
     pub why_none: String,
@@ -37,7 +37,7 @@ impl Finder {
         self.found = None;
     }
 
-    /// What the text means in a city with these attributes; searched again only when the text is another.
+    /// Finds the objects that the text means in a city with these attributes; searches again only when the text is another.
     pub fn find(&mut self, model: &CityModel, attributes: &[String]) -> Found {
         match &self.found {
             Some((text, found)) if *text == self.text => found.clone(),
@@ -50,7 +50,7 @@ impl Finder {
     }
 }
 
-/// How a value is to stand to the one that is asked for.
+/// The relation that a value is to have to the one that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Relation {
     Equal,
@@ -87,7 +87,7 @@ fn parts(text: &str) -> Option<(&str, Relation, &str)> {
     (!name.is_empty()).then(|| (name, relation, rest[length..].trim()))
 }
 
-/// How two values stand to each other: as numbers where the second is one (what is neither a number nor a day of some year
+/// The order of two values: as numbers where the second is one (what is neither a number nor a day of some year
 /// then stands in no order to it), else as texts, so that days have their order.
 fn order(value: &str, wanted: &str) -> Option<Ordering> {
     let Ok(number) = wanted.parse::<f64>() else { return Some(value.cmp(wanted)) };

@@ -10,24 +10,24 @@ use crate::{
     view::{Camera, navigate},
 };
 
-/// How high eyes are, metres.
+/// The height of eyes, metres.
 pub const EYE_HEIGHT_M: f64 = 1.7;
 /// An eye higher than this above the ground comes down where it looks, else where it is, metres.
 const LOW_M: f64 = 10.0;
-/// What is free around a place to stand, metres.
+/// The free distance around a place to stand, metres.
 const ROOM_M: f64 = 1.0;
-/// How far around a place a free one is looked for, metres, and how far apart: metres, and that share of how far it is
+/// The distance around a place up to which a free one is looked for, metres, and the steps: metres, and that share of how far it is
 /// already, so that where nothing is free some 1,400 places are tried.
 const REACH_M: f64 = 100.0;
 const APART_M: f64 = 2.0;
 const APART_SHARE: f64 = 0.1;
-/// How far from an object one stands to look at it: so many of its heights, at least and at most so many metres.
+/// The distance from an object to look at it from: so many of its heights, at least and at most so many metres.
 const HEIGHTS_AWAY: f64 = 1.5;
 const AWAY_M: (f64, f64) = (20.0, 80.0);
 
 impl Window {
-    /// The camera of who comes down to the ground: before the chosen object, on the side of the eye, looking at it; without
-    /// one where the eye looks; an eye that is low already where it is. Nobody lands in a building where there is room
+    /// The camera after coming down to the ground: before the chosen object, on the side of the eye, looking at it; without
+    /// one where the eye looks; an eye that is low already where it is. It never lands in a building where there is room
     /// beside it.
     pub(super) fn landing(&self, camera: &Camera) -> Camera {
         let Some(city) = &self.city else { return *camera };

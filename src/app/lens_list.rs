@@ -7,7 +7,7 @@ use crate::app::{
 
 use eframe::egui::{self, Align, Color32, Id, Layout, RichText, Sense, Ui};
 
-/// What a lens is to the one who looks (L1).
+/// The state of a lens for the person at the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// Nothing special.
@@ -21,7 +21,7 @@ pub enum State {
 }
 
 impl Window {
-    /// What a lens is now; of one that is switched off that goes before all else.
+    /// The state of a lens now; that it is switched off goes before all else.
     pub fn state_of(&self, lens: usize) -> State {
         let is_enabled = self.document.scene().lenses.get(lens).is_some_and(|lens| lens.enabled);
         match (self.chosen.lens == Some(lens), self.rolled_over == Some(lens)) {

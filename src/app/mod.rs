@@ -4,14 +4,13 @@
 //!  menu · actions            one table of what can be done, with keys
 //!  ┌─────────┬───────────────────────┬─────────┐
 //!  │ lenses  │ canvas                │ objects │   each panel changes the document by commands;
-//!  │ proper- │ the last picture,     │ colours │   the canvas asks the artist for a picture of it,
-//!  │ ties    │ pointer, handles      │ costs   │   who draws on a thread and a device of their own
+//!  │ proper- │ the last picture,     │ colours │   the canvas asks the render thread for a picture,
+//!  │ ties    │ pointer, gizmos       │ costs   │   which has a device of its own
 //!  └─────────┴───────────────────────┴─────────┘
 //!  status
 //! ```
 
 pub mod actions;
-pub mod artist;
 pub mod canvas;
 pub mod canvas_state;
 mod cost;
@@ -21,14 +20,14 @@ pub mod drawing;
 pub mod drawn;
 pub mod file_dialog;
 mod finder;
-mod handles;
-mod knobs;
+mod gizmo;
 mod landing;
 pub mod lens_list;
 pub mod new_lens;
 pub mod objects;
 mod outlines;
 pub mod properties;
+pub mod render_thread;
 mod spots;
 pub mod state;
 mod theme;
@@ -40,7 +39,7 @@ use eframe::egui;
 pub use state::Window;
 pub use window::{BUILTIN, Start};
 
-/// What eframe calls.
+/// The program that eframe runs.
 struct App {
     window: Window,
 }
@@ -62,7 +61,7 @@ pub fn has_display() -> bool {
 /// Opens the window and stays until it is closed.
 ///
 /// # Errors
-/// What the system says where no window can be opened.
+/// The message of the system where no window can be opened.
 pub fn run(start: Start) -> Result<(), String> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("Veduta")

@@ -37,7 +37,7 @@ pub enum NewLens {
 pub struct Spot {
     /// Its middle, on the ground or on what was picked, metres.
     pub at: DVec3,
-    /// How large it is, metres.
+    /// Its size, metres.
     pub radius: f64,
     /// The object it is about, by id.
     pub object: Option<String>,

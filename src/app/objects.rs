@@ -35,7 +35,7 @@ pub fn show(window: &mut Window, ui: &mut Ui) {
     let goes = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     let found = window.finder.find(model, &city.attributes);
     if goes && found.objects.is_empty() {
-        // Somebody types on: letters are no commands then.
+        // A person types on: letters are no commands then.
         field.request_focus();
     }
     if found.count > 0 {
@@ -193,7 +193,7 @@ fn attributes(ui: &mut Ui, model: &CityModel, all: &[Attribute], object: u32) {
     });
 }
 
-/// How wide a text is in one line, points.
+/// The width of a text in one line, points.
 fn width_of(ui: &Ui, text: &str) -> f32 {
     let font = egui::TextStyle::Body.resolve(ui.style());
     ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE).size().x.ceil() + 1.0

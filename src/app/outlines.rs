@@ -15,7 +15,7 @@ const HOVERED: Color32 = Color32::WHITE;
 const CHOSEN: Color32 = Color32::from_rgb(255, 140, 0);
 /// Pixels of a dash, and of a gap.
 const DASH: usize = 5;
-/// What of the outline of a hidden part is so near to what is seen of the object has that one's outline, pixels.
+/// The least distance between the outline of a hidden part and what is seen of the object, which has an outline of its own, pixels.
 const APART: usize = 3;
 /// Objects of more triangles are outlined where they are seen only.
 const MOST_TRIANGLES: usize = 200_000;
@@ -101,12 +101,12 @@ fn add_pixel(mesh: &mut Mesh, i: usize, [w, h]: [usize; 2], rect: Rect, color: C
     mesh.add_colored_rect(Rect::from_min_size(at, scale), color);
 }
 
-/// What a picture shows.
+/// The depths and objects that a picture shows.
 struct Picture<'a> {
     size: [usize; 2],
-    /// Of each pixel the family.
+    /// The family at each pixel.
     shown: &'a [Option<u32>],
-    /// Of each pixel metres along the view axis.
+    /// Metres along the view axis at each pixel.
     depths: &'a [f32],
 }
 

@@ -1,4 +1,4 @@
-//! How the window looks: the letters of the figures, quiet panels, in light and dark.
+//! The look of the window: the letters of the figures, quiet panels, in light and dark.
 
 use std::sync::Arc;
 

@@ -7,7 +7,7 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// How often they are looked at.
+/// The time between two looks at them.
 pub const EVERY: Duration = Duration::from_millis(300);
 
 /// When a file was written, and how long it is.

@@ -1,4 +1,4 @@
-//! The window: its state, how the panels stand, and what comes back from the artist.
+//! The window: its state, how the panels stand, and what comes back from the render thread.
 
 mod doing;
 
@@ -12,7 +12,6 @@ use eframe::egui::{self, Context, RichText, Ui};
 use crate::{
     app::{
         actions::{self, Action, Menu, ROWS},
-        artist::{Artist, Draw, Frame, Notify, Reply},
         canvas_state::Canvas,
         cost, dialogs,
         document::Document,
@@ -20,6 +19,7 @@ use crate::{
         file_dialog::{Asking, Purpose},
         finder::Finder,
         lens_list, objects, properties,
+        render_thread::{Draw, Frame, Notify, RenderThread, Reply},
         state::{Chosen, Message, Window},
         theme, user_effects,
     },
@@ -29,12 +29,12 @@ use crate::{
     view::Camera,
 };
 
-/// The city that is shown where nobody names another.
+/// The city that is shown where no other is named.
 pub const BUILTIN: &str = "builtin:square";
 /// Files that are remembered.
 const MOST_RECENT: usize = 10;
 
-/// What the window begins with.
+/// The state that the window begins with.
 #[derive(Clone, Debug, Default)]
 pub struct Start {
     /// A scene file, or city files; none: the built-in city.
@@ -71,7 +71,7 @@ impl Window {
         let own = context.clone();
         let notify: Notify = Arc::new(move || own.request_repaint());
         let mut window = Self {
-            artist: Artist::new(notify)?,
+            render_thread: RenderThread::new(notify)?,
             document: Document::default(),
             city: None,
             loading: None,
@@ -108,15 +108,15 @@ impl Window {
             fov_y: 45.0_f64.to_radians(),
             allow_outside: start.allow_outside,
             allows_outside: start.allow_outside,
-            error_text: properties::Drafts::default(),
+            drafts: properties::edits::Drafts::default(),
         };
-        window.artist.watch(&start.effects, true);
+        window.render_thread.watch(&start.effects, true);
         let files = if start.files.is_empty() { vec![PathBuf::from(BUILTIN)] } else { start.files.clone() };
         window.open(&files);
         Ok(window)
     }
 
-    /// What is being drawn on the city.
+    /// The figure that is being drawn on the city.
     pub fn drawing(&self) -> Option<&Drawing> {
         self.drawing.as_ref()
     }
@@ -183,11 +183,11 @@ impl Window {
     fn without_effects(&self, files: &[PathBuf]) -> Vec<PathBuf> {
         let (effects, others): (Vec<PathBuf>, Vec<PathBuf>) =
             files.iter().cloned().partition(|path| user_effects::is_effect(path));
-        self.artist.watch(&effects, false);
+        self.render_thread.watch(&effects, false);
         others
     }
 
-    /// What cannot be remembered is forgotten: no reason to disturb anybody.
+    /// Remembers the window; failures are ignored, as they are no reason to disturb anybody.
     fn remember(&self) {
         let Some(file) = &self.memory else { return };
         let lines: Vec<String> = self.recent.iter().map(|path| format!("{}\n", path.display())).collect();
@@ -202,7 +202,7 @@ impl Window {
         let mut roots: Vec<PathBuf> = self.spec.files.iter().filter(|path| path.is_dir()).cloned().collect();
         roots.push(document.options().base);
         self.loading = Some("Reading".to_owned());
-        self.artist.open(self.spec.clone(), LoadOptions { allow_outside: self.allows_outside, roots });
+        self.render_thread.open(self.spec.clone(), LoadOptions { allow_outside: self.allows_outside, roots });
     }
 
     /// Loads again what edits of the scene ask for: other files, another level of detail.
@@ -265,7 +265,7 @@ impl Window {
     }
 
     fn hear(&mut self, context: &Context) {
-        for reply in self.artist.replies() {
+        for reply in self.render_thread.replies() {
             match reply {
                 Reply::Loading(what) => self.loading = self.loading.is_some().then_some(what),
                 Reply::Opened(opened) => {
@@ -422,9 +422,9 @@ impl Window {
     }
 
     fn properties(&mut self, ui: &mut Ui) {
-        let mut drafts = std::mem::take(&mut self.error_text);
+        let mut drafts = std::mem::take(&mut self.drafts);
         properties::show(self, &mut drafts, ui);
-        self.error_text = drafts;
+        self.drafts = drafts;
     }
 
     /// Asks for the picture of what is edited, where it is another than the last one that was asked for. `size`: pixels; `meant_for`: the
@@ -439,7 +439,7 @@ impl Window {
         }
         let draw = Draw { scene: Arc::new(scene), size, meant_for, is_moving, is_measured: self.shows_cost };
         if self.asked.as_ref() != Some(&draw) {
-            self.artist.draw(draw.clone());
+            self.render_thread.draw(draw.clone());
             self.asked = Some(draw);
         }
     }
@@ -495,7 +495,7 @@ impl Window {
                 ui.spinner();
                 ui.label(what);
                 if ui.button("Cancel").clicked() {
-                    self.artist.cancel_opening();
+                    self.render_thread.cancel_opening();
                     if self.waiting.take().is_none() && self.document.scene().city != self.shown_spec {
                         self.document.undo();
                     }
@@ -550,7 +550,7 @@ impl Window {
     }
 }
 
-/// How a message begins that holds until something can be drawn again.
+/// The beginning of a message that holds until something can be drawn again.
 const NOT_DRAWN: &str = "Cannot be drawn: ";
 
 /// Files that were opened before and still are there.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::city::synth::{SynthOptions, write_cityjson};
 
-/// What names of built-in cities begin with.
+/// The beginning of the names of built-in cities.
 pub const PREFIX: &str = "builtin:";
 
 /// Where a built-in city comes from.

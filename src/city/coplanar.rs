@@ -34,7 +34,7 @@ pub struct CoplanarTriangle {
     pub group: u32,
     /// Within the group, 0 and up, no two alike; of triangles at one place the highest is seen.
     pub priority: u32,
-    /// How many triangles lie below it at most, one on the other: triangles of one layer do not overlap, and one that
+    /// The number of triangles that lie below it at most, one on the other: triangles of one layer do not overlap, and one that
     /// overlaps another has the higher layer if it has the higher priority.
     pub layer: u32,
 }
@@ -182,7 +182,7 @@ fn is_above(a: &Raised, b: &Raised) -> Option<bool> {
     (difference.abs() > 1e-3).then_some(difference > 0.0)
 }
 
-/// What stands on the ground above it; among the ground, what is laid on what.
+/// The rank of a class: above the ground what stands on it; among the ground, what is laid on what.
 fn class_rank(class: ObjectClass) -> u8 {
     match class {
         ObjectClass::Terrain => 0,

@@ -12,11 +12,11 @@ use glam::DVec3;
 pub struct Crs {
     /// `EPSG:7415`, compound `EPSG:25832+5783`, `OGC:CRS84`.
     pub name: String,
-    /// What the coordinates are.
+    /// The meaning of the coordinates.
     pub axes: Axes,
 }
 
-/// What the first two coordinates are; the third is always metres up.
+/// The meaning of the first two coordinates; the third is always metres up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// East, north in metres.

@@ -1,6 +1,6 @@
 //! Edges of polygons: what a line drawing of the city shows, never the diagonals of triangulation.
 //!
-//! Found when somebody asks, from the triangles alone. Polygons do not share vertices in the model, and all triangles
+//! Found when they are asked for, from the triangles alone. Polygons do not share vertices in the model, and all triangles
 //! of one name its corners by the same vertices, so in a tile a pair of vertices that two triangles name is a diagonal,
 //! and one that a single triangle names is part of a ring. Where tiles cut a polygon, [`CityModel::cut_polygons`]
 //! tells. Polygons of one geometry meet where positions are equal to the bit.
@@ -21,7 +21,7 @@ const SAME_NORMAL_DEG: f64 = 3.0;
 /// An edge this sharp is a crease although its normals were smoothed, degrees: exporters average those of boxes too.
 const SHARP_DEG: f64 = 75.0;
 
-/// What an edge is to the faces at it.
+/// The relation of an edge to the faces at it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum EdgeClass {
@@ -33,7 +33,7 @@ pub enum EdgeClass {
     Flat = 2,
 }
 
-/// How far faces must turn at an edge for it to be a crease, degrees.
+/// The angle by which faces must turn at an edge for it to be a crease, degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CreaseAngles {
     /// Between polygons.
@@ -50,7 +50,7 @@ impl Default for CreaseAngles {
     }
 }
 
-/// How far a face goes from its edge, metres; never less, and more where the face is slanted in its box.
+/// The extent of a face from its edge, metres; never less, and more where the face is slanted in its box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// Inward, across the edge.
@@ -69,7 +69,7 @@ pub struct Edge {
     /// Normals of its first face and of the one that turns most from it, packed as in [`crate::city::model::Vertex`]; where
     /// the file turns the two differently, the second one's is reversed, so that they agree. A border repeats the first.
     pub normals: [u32; 2],
-    /// How far the two faces go from the edge.
+    /// The extents of the two faces from the edge.
     pub extents: [Extent; 2],
     /// Index of the tile, which says the geometry and so the object.
     pub tile: u32,
@@ -77,7 +77,7 @@ pub struct Edge {
     pub triangle: u32,
     /// A triangle of the second face, and its tile; those of the first at a border.
     pub other: (u32, u32),
-    /// What it is.
+    /// Its class.
     pub class: EdgeClass,
 }
 
@@ -333,7 +333,7 @@ fn edge_of(model: &CityModel, sides: &[Side], boxes: &[(Vec3, Vec3)], crease_deg
     }
 }
 
-/// How far the box of a face goes from its edge; `is_opposed`: the edge goes from the side's end to its start.
+/// The extent of the box of a face from its edge; `is_opposed`: the edge goes from the side's end to its start.
 fn extent_of(model: &CityModel, side: &Side, face: &Face, boxes: &[(Vec3, Vec3)], is_opposed: bool) -> Extent {
     let mut ends =
         [side.corner, next_corner(side.corner)].map(|corner| Vec3::from(vertex(model, side.tile, corner).position));

@@ -1,4 +1,4 @@
-//! What is in a city, counted: the object behind `veduta info --json` (contract.md) and its text form.
+//! Facts about a city, counted: the object behind `veduta info --json` and its text form.
 //!
 //! Everything is taken from the loaded [`CityModel`]: counts are counted, never copied from a header.
 
@@ -10,13 +10,13 @@ use crate::{
     geom::Aabb,
 };
 
-/// How many distinct values of an attribute are listed at most.
+/// The number of distinct values of an attribute that are listed at most.
 const LISTED_VALUES: usize = 64;
 
-/// How many steps of parents the type tree goes down at most.
+/// The number of steps of parents that the type tree goes down at most.
 const TREE_DEPTH: usize = 8;
 
-/// What is in a city. Fields marked *text only* are for people and not part of the JSON object.
+/// Facts about a city. Fields marked *text only* are for people and not part of the JSON object.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Facts {
     /// `CityJSON`, `CityJSONSeq`, `glTF`, `OBJ`; several files of several formats: each once, joined by `+`.
@@ -41,7 +41,7 @@ pub struct Facts {
     pub textures: TextureFacts,
     /// Faces that are in the files but not drawn, because something is wrong with them.
     pub faces_dropped: u64,
-    /// What was wrong and lived with.
+    /// The faults that were lived with.
     pub warnings: Vec<WarningFacts>,
     /// *Text only*: types below the types of their parents, depth first.
     #[serde(skip)]
@@ -137,7 +137,7 @@ pub struct AttributeFacts {
 pub struct TextureFacts {
     /// Named by the files.
     pub declared: u64,
-    /// Of those, found.
+    /// The number of those that were found.
     pub found: u64,
 }
 
@@ -146,7 +146,7 @@ pub struct TextureFacts {
 pub struct WarningFacts {
     /// Code of the closed table (docs/warnings.md).
     pub code: &'static str,
-    /// How often it happened.
+    /// The number of times that it happened.
     pub count: u64,
     /// The first objects it happened to.
     pub objects: Vec<String>,

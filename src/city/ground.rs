@@ -14,7 +14,7 @@ use crate::{
     geom::Aabb,
 };
 
-/// How far the ground lies below the bases, metres: enough for depth to tell it from ground floors.
+/// The distance of the ground below the bases, metres: enough for depth to tell it from ground floors.
 pub const BELOW_M: f64 = 0.05;
 /// The ground reaches at least this far beyond the buildings, metres, ...
 const LEAST_MARGIN_M: f64 = 60.0;

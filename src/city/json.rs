@@ -11,7 +11,7 @@ use std::borrow::Cow;
 pub struct JsonError {
     /// Byte offset.
     pub at: usize,
-    /// What would be right there.
+    /// The text that would be right there.
     pub message: &'static str,
 }
 
@@ -37,7 +37,7 @@ impl Number {
     }
 }
 
-/// What comes next.
+/// The kind of value that comes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// `{`
@@ -104,7 +104,7 @@ impl<'a> Json<'a> {
         found
     }
 
-    /// What comes next.
+    /// The kind of value that comes next.
     pub fn peek(&mut self) -> Step<Kind> {
         Ok(match self.next_byte() {
             Some(b'{') => Kind::Object,
@@ -196,7 +196,7 @@ impl<'a> Json<'a> {
         }
     }
 
-    /// What follows a backslash.
+    /// The character that an escape stands for, after its backslash.
     fn escape(&mut self) -> Step<char> {
         let Some(&byte) = self.bytes.get(self.at) else { return self.error("expected an escape") };
         self.at += 1;

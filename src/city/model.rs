@@ -78,7 +78,7 @@ pub struct CityModel {
     pub attributes: Vec<Attribute>,
     /// Geometries, grouped by object in object order, LoD ascending as read.
     pub geometries: Vec<Geometry>,
-    /// What triangles are part of: an object's semantic surface in one material.
+    /// The surfaces that triangles are part of: an object's semantic surface in one material.
     pub surfaces: Vec<Surface>,
     /// Semantic surfaces that carry attributes or links of their own.
     pub details: Vec<SurfaceDetail>,
@@ -107,9 +107,9 @@ pub struct CityModel {
     pub extent_as_read: Aabb,
     /// Faces that loaders could not even hand over, each with a warning; [`Geometry::dropped`] counts the others.
     pub faces_dropped: u64,
-    /// Members of the file nobody here reads, kept as JSON: (where, text).
+    /// Members of the file that are not read, kept as JSON: (where, text).
     pub unknown: Vec<(String, String)>,
-    /// What was wrong and lived with.
+    /// The faults that were lived with.
     pub warnings: Warnings,
 }
 
@@ -131,7 +131,7 @@ pub struct CityObject {
     pub id: Box<str>,
     /// Type as the file names it: `Building`, `+NoiseBarrier`, ...
     pub kind: StringId,
-    /// What kind of thing it is.
+    /// Its class.
     pub class: ObjectClass,
     /// Parents, object indices.
     pub parents: Vec<u32>,
@@ -143,7 +143,7 @@ pub struct CityObject {
     pub geometries: Range<u32>,
 }
 
-/// What kind of thing a city object is, across formats.
+/// The class of a city object, across formats.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ObjectClass {
     /// Buildings, their parts, installations, rooms.
@@ -332,7 +332,7 @@ pub fn decode_normal(packed: u32) -> DVec3 {
     DVec3::new(toward_zero(u), toward_zero(v), z).normalize_or(DVec3::Z)
 }
 
-/// What a triangle is part of. Unique per (object, semantics, material).
+/// The surface that a triangle is part of. Unique per (object, semantics, material).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Surface {
     /// The object that carries the geometry.
@@ -354,7 +354,7 @@ pub struct SurfaceDetail {
     pub parent: u32,
 }
 
-/// How a surface looks when it is not restyled.
+/// The look of a surface that is not restyled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name, may be empty.
@@ -392,7 +392,7 @@ impl Default for Material {
 pub struct Texture {
     /// Where the pixels are.
     pub image: TextureImage,
-    /// What happens outside 0..1.
+    /// The rule outside 0..1.
     pub wrap: [Wrap; 2],
 }
 

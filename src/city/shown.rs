@@ -92,7 +92,7 @@ mod tests {
         model
     }
 
-    /// What is shown, as (object, lod).
+    /// The geometries that are shown, as (object, lod).
     fn shown(objects: &[(&[u32], &[&str])], cap: Option<&str>) -> Vec<(u32, String)> {
         let model = model(objects);
         let cap = cap.map(|c| Lod::parse(c).unwrap());

@@ -68,7 +68,7 @@ impl SpatialIndex {
         self.top.in_box(region, |item| visit(self.tiles[item as usize]));
     }
 
-    /// Visits every triangle (by index) that shares a point with `region`, once (C1), with its tile. `visit` says whether
+    /// Visits every triangle (by index) that shares a point with `region`, once, with its tile. `visit` says whether
     /// more triangles of that tile are wanted; of which tiles any are is for `wanted` to say.
     pub fn triangles_meeting(
         &self,

@@ -45,7 +45,7 @@ impl Strings {
         (0..self.ends.len()).map(|index| self.at(index))
     }
 
-    /// How many strings there are.
+    /// The number of strings.
     pub fn len(&self) -> usize {
         self.ends.len()
     }

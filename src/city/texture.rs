@@ -19,7 +19,7 @@ use crate::city::model::{Texture, TextureImage};
 pub const MAX_SIDE: u32 = 8192;
 /// The longest side that is decoded at all.
 const MAX_DECODED_SIDE: u32 = 32_768;
-/// What decoding may allocate.
+/// The memory that decoding may allocate.
 const MAX_DECODED_BYTES: u64 = 1 << 30;
 
 /// A decoded texture.

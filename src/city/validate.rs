@@ -1,4 +1,4 @@
-//! What always holds in a city model, whatever was read.
+//! Properties that always hold in a city model, whatever was read.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! What was wrong in a file but could be lived with: a documented, closed table of codes.
+//! Faults of a file that could be lived with: a documented, closed table of codes.
 
 use std::collections::BTreeMap;
 
@@ -76,7 +76,7 @@ warning_codes! {
     Malformed = "malformed",
 }
 
-/// How many objects a warning names.
+/// The number of objects that a warning names.
 const NAMED_OBJECTS: usize = 8;
 
 /// The longest message: ids and texts of a file may be of any length.
@@ -97,7 +97,7 @@ pub(crate) fn one_line(message: String) -> String {
 /// All occurrences of one code.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warning {
-    /// How often it happened.
+    /// The number of times that it happened.
     pub count: u64,
     /// Ids of the first objects it happened to, at most eight.
     pub objects: Vec<String>,
@@ -140,7 +140,7 @@ impl Warnings {
         }
     }
 
-    /// How often `code` happened.
+    /// The number of times that `code` happened.
     pub fn count(&self, code: WarningCode) -> u64 {
         self.entries.get(&code).map_or(0, |w| w.count)
     }

@@ -170,8 +170,8 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             .map_err(|error| at_frame(error.to_string()))?;
         if arguments.stats.is_some() {
             render::with_warnings(&mut drawn.statistics, &warnings);
-            let told = Told { number: frame, at_s: f64::from(frame) / film.fps(), statistics: &drawn.statistics };
-            serde_json::to_writer(&mut lines, &told).map_err(|error| at_frame(error.to_string()))?;
+            let line = FrameLine { number: frame, at_s: f64::from(frame) / film.fps(), statistics: &drawn.statistics };
+            serde_json::to_writer(&mut lines, &line).map_err(|error| at_frame(error.to_string()))?;
             lines.push(b'\n');
         }
         let notes = picture::notes_of(&scene, &options);
@@ -189,7 +189,7 @@ const SMOOTH: u32 = 8;
 
 /// A line of statistics.
 #[derive(Serialize)]
-struct Told<'a> {
+struct FrameLine<'a> {
     number: u32,
     at_s: f64,
     #[serde(flatten)]

@@ -1,4 +1,4 @@
-//! How a command fails: one readable message and an exit code.
+//! The failure of a command: one readable message and an exit code.
 
 use std::{fmt::Display, process::ExitCode};
 
@@ -19,7 +19,7 @@ enum Kind {
     ClosedPipe,
 }
 
-/// What a command gives.
+/// The result of a command.
 pub type Outcome<T = ()> = Result<T, Failure>;
 
 impl Failure {

@@ -130,12 +130,12 @@ pub const IMAGES: &[(&str, &[u8])] = &[
 ];
 
 /// The folder that scenes find their images in: where the program was cloned, that of the scenes; else one for now.
-struct Shelf {
+struct ImageFolder {
     folder: PathBuf,
     is_own: bool,
 }
 
-impl Shelf {
+impl ImageFolder {
     fn new() -> Outcome<Self> {
         let scenes = PathBuf::from("scenes");
         if IMAGES.iter().all(|(name, _)| scenes.join(name).is_file()) {
@@ -151,7 +151,7 @@ impl Shelf {
     }
 }
 
-impl Drop for Shelf {
+impl Drop for ImageFolder {
     fn drop(&mut self) {
         if self.is_own {
             // What is left there the system clears.
@@ -183,10 +183,10 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let folder = &arguments.output;
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
     let is_asked = |name: &str| arguments.names.is_empty() || arguments.names.iter().any(|asked| asked == name);
-    let shelf = Shelf::new()?;
+    let images = ImageFolder::new()?;
     let mut scenes = Vec::new();
     for (name, text) in SCENES.iter().filter(|(name, _)| is_asked(name)) {
-        let options = Options::for_file(&shelf.folder.join(name));
+        let options = Options::for_file(&images.folder.join(name));
         scenes.extend(parsed(name, name, text, &options)?.map(|scene| (name, scene, options)));
     }
     // Scenes of one city follow each other: it is loaded once.
@@ -216,7 +216,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         last = Some((scene.city, studio));
     }
     for (name, text) in SHEETS.iter().filter(|(name, _)| is_asked(name)) {
-        let Some(task) = task_of(name, text, &shelf)? else { continue };
+        let Some(task) = task_of(name, text, &images)? else { continue };
         let file = folder.join(format!("{name}.png"));
         sheet::save(&file, &sheet::draw(&task, &mut last, global)?)?;
         output::print(&format!("{}\n", file.display()))?;
@@ -237,14 +237,14 @@ fn parsed(name: &str, scene: &str, text: &str, options: &Options) -> Outcome<Opt
 }
 
 /// A sheet that ships, with its scene.
-fn task_of(name: &str, text: &str, shelf: &Shelf) -> Outcome<Option<sheet::Task>> {
+fn task_of(name: &str, text: &str, images: &ImageFolder) -> Outcome<Option<sheet::Task>> {
     let file = format!("scenes/{name}.sheet.toml");
     let sheet = figure::sheet::file::parse(text, &file).map_err(Failure::failed)?;
     let stem = sheet.scene.trim_end_matches(".toml");
     let Some((known, text)) = SCENES.iter().find(|(known, _)| *known == stem) else {
         return Err(Failure::failed(format!("{file}: scene: there is no {} in the gallery", sheet.scene)));
     };
-    let options = Options::for_file(&shelf.folder.join(known));
+    let options = Options::for_file(&images.folder.join(known));
     let scene = parsed(name, known, text, &options)?;
     Ok(scene.map(|scene| sheet::Task { name: file, sheet, scene, options }))
 }

@@ -65,10 +65,10 @@ pub struct Arguments {
     pub landmarks: Option<u32>,
 }
 
-/// What is said: facts, and what was asked for beside them.
+/// The answer: facts, and what was asked for beside them.
 #[derive(Clone, Debug, Serialize)]
 pub struct Answer {
-    /// What is in the city.
+    /// The facts about the city.
     #[serde(flatten)]
     pub facts: Facts,
     /// The best views of the object asked for, best first.

@@ -84,13 +84,13 @@ impl Arguments {
         self.size.map_or(SIZE, |size| size.0)
     }
 
-    /// How often the variants of topics are timed.
+    /// The number of times that the variants of topics are timed.
     fn pairs(&self) -> u32 {
         self.pairs.unwrap_or(PAIRS)
     }
 }
 
-/// What topics are measured with, unless told otherwise.
+/// The size that topics are measured with, unless told otherwise.
 const SIZE: [u32; 2] = [640, 360];
 const PAIRS: u32 = 15;
 
@@ -214,7 +214,7 @@ fn list(as_json: bool) -> Outcome {
     if as_json {
         let topic = |t: &Topic| {
             serde_json::json!({
-                "name": t.name, "title": t.title, "about": t.about, "specs": t.specs, "reference": t.reference,
+                "name": t.name, "title": t.title, "about": t.about, "sources": t.sources, "reference": t.reference,
                 "knobs": t.knobs,
             })
         };
@@ -228,8 +228,12 @@ fn list(as_json: bool) -> Outcome {
     let mut text = String::new();
     for topic in TOPICS {
         let space = " ".repeat(widest - topic.name.len());
-        text +=
-            &format!("{}{space}  {} {}\n", paint.strong(topic.name), topic.about, paint.faint(&topic.specs.join(", ")));
+        text += &format!(
+            "{}{space}  {} {}\n",
+            paint.strong(topic.name),
+            topic.about,
+            paint.faint(&topic.sources.join(", "))
+        );
     }
     let space = " ".repeat(widest.saturating_sub(gpu::NAME.len()));
     text += &format!("{}{space}  {}\n", paint.strong(gpu::NAME), gpu::ABOUT);

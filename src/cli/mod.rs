@@ -1,7 +1,7 @@
-//! Commands, options, messages and exit codes (contract.md, "The program").
+//! Commands, options, messages and exit codes.
 //!
 //! One file per command: a clap struct of its arguments and a `run` that gives `Ok` or one readable [`Failure`].
-//! What a command prints goes through [`output`], what it says meanwhile through [`terminal`].
+//! Output of a command goes through [`output`], messages meanwhile go through [`terminal`].
 
 pub mod animate;
 pub mod arguments;
@@ -40,13 +40,13 @@ use crate::{app, city::builtin};
     override_usage = "veduta COMMAND [OPTIONS]\n       veduta [FILE...] [--scene S.toml]"
 )]
 pub struct Cli {
-    /// What to do; nothing means `view`.
+    /// The command; none means `view`.
     #[command(subcommand)]
     pub command: Option<Command>,
     /// A scene to view, when no command is named
     #[arg(long, value_name = "S.toml", hide = true)]
     pub scene: Option<PathBuf>,
-    /// What holds for every command.
+    /// Arguments of every command.
     #[command(flatten)]
     pub global: GlobalArguments,
 }

@@ -1,4 +1,4 @@
-//! What commands put out: files that appear whole or not at all, and standard output.
+//! Output of commands: files that appear whole or not at all, and standard output.
 
 use std::{
     io::Write,

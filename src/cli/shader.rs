@@ -1,4 +1,4 @@
-//! `veduta shader`: the generated WGSL of a scene (H4).
+//! `veduta shader`: the generated WGSL of a scene.
 
 use std::path::PathBuf;
 

@@ -42,7 +42,7 @@ pub struct Arguments {
     pub output: PathBuf,
 }
 
-/// How much each building has.
+/// The detail of each building.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Detail {
     /// LoD2 shells, three attributes, streets

@@ -1,4 +1,4 @@
-//! What a person sees meanwhile: colours, log lines and progress, all on stderr, none of it in a pipe.
+//! Messages for a person meanwhile: colours, log lines and progress, all on stderr, none of it in a pipe.
 
 use std::{
     io::{IsTerminal, Write},
@@ -39,12 +39,12 @@ impl Paint {
         self.wrap("1;36", text)
     }
 
-    /// What matters most.
+    /// A text that matters most.
     pub fn strong(self, text: &str) -> String {
         self.wrap("1", text)
     }
 
-    /// What matters least.
+    /// A text that matters least.
     pub fn faint(self, text: &str) -> String {
         self.wrap("2", text)
     }
@@ -78,7 +78,7 @@ static LOG: StderrLog = StderrLog;
 impl log::Log for StderrLog {
     fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
         // The GPU stack tells its life at `info`; ours is what `-v` asks for. What its shader compiler finds wrong comes back as
-        // an error, and is told once. That a processor draws the window is no reason to worry: the panel of costs says who draws.
+        // an error, and is told once. That a processor draws the window is no reason to worry: the panel of costs says what draws.
         let is_told_elsewhere =
             ["naga", "egui", "eframe", "winit"].iter().any(|own| metadata.target().starts_with(own));
         (metadata.level() <= log::Level::Warn && !is_told_elsewhere)
@@ -119,7 +119,7 @@ pub fn start_log(global: &GlobalArguments) {
 
 // --- progress ---------------------------------------------------------------------------------
 
-/// How far long work has come; shown on a terminal only, and gone when done.
+/// The progress of long work; shown on a terminal only, and gone when done.
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
@@ -148,7 +148,7 @@ impl Progress {
         Self { bar }
     }
 
-    /// What the work is at now.
+    /// Shows the step that the work is at now.
     pub fn says(&self, message: String) {
         self.bar.set_message(message);
     }

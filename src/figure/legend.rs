@@ -1,4 +1,4 @@
-//! What the legends of a scene say (K2): one for each scale of colours that can be seen.
+//! What the legends of a scene say: one for each scale of colours that can be seen.
 
 use crate::{
     city::CityModel,

@@ -27,7 +27,7 @@ impl Aabb {
         points.into_iter().fold(Self::EMPTY, Self::grown)
     }
 
-    /// How far its nearest point is from a point; 0 inside.
+    /// The distance of its nearest point from a point; 0 inside.
     pub fn distance_to(&self, point: DVec3) -> f64 {
         point.distance(point.max(self.min).min(self.max))
     }

@@ -215,7 +215,7 @@ impl Bvh {
 struct Slabs {
     origin: DVec3,
     direction: DVec3,
-    /// What the change of origin may have moved the ray by, metres.
+    /// The distance by which the change of origin may have moved the ray, metres.
     pad: f64,
 }
 

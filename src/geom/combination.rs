@@ -1,13 +1,13 @@
-//! Boolean combinations of bodies (L3), as the operations of a stack machine.
+//! Boolean combinations of bodies, as the operations of a stack machine.
 
-/// What two bodies become.
+/// An operation that joins two bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
-    /// What is in either.
+    /// The points that are in either.
     Union = 1,
-    /// What is in both.
+    /// The points that are in both.
     Intersection = 2,
-    /// What is in the first alone.
+    /// The points that are in the first alone.
     Difference = 3,
 }
 
@@ -37,7 +37,7 @@ impl Operation {
 /// A tree of operations over leaves.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Tree<T> {
-    /// What holds nothing.
+    /// A body that holds nothing.
     Nothing,
     /// A leaf.
     Leaf(T),
@@ -85,7 +85,7 @@ pub fn holds<T>(program: &[(T, Vec<Operation>)], holds: impl Fn(&T) -> bool) -> 
     fold(program, |leaf| holds(leaf), |operation, a, b| operation.joins(a, b)).unwrap_or(false)
 }
 
-/// What a stack machine makes of a program: each leaf's value, joined by its operations. `None` without leaves.
+/// The value that a stack machine makes of a program: each leaf's value, joined by its operations. `None` without leaves.
 pub fn fold<T, V: Clone>(
     program: &[(T, Vec<Operation>)],
     value: impl Fn(&T) -> V,
@@ -105,7 +105,7 @@ pub fn fold<T, V: Clone>(
     stack.pop()
 }
 
-/// How many values a program keeps on the stack at most.
+/// The number of values that a program keeps on the stack at most.
 pub fn depth<T>(program: &[(T, Vec<Operation>)]) -> usize {
     let (mut now, mut most) = (0_usize, 0);
     for (_, operations) in program {

@@ -1,4 +1,4 @@
-//! Whether a triangle and a lens volume share a point (C1), in f64: also where the triangle spans the
+//! Whether a triangle and a lens volume share a point, in f64: also where the triangle spans the
 //! volume with no corner and no edge inside.
 
 use glam::{DMat3, DVec2, DVec3};

@@ -28,7 +28,7 @@ const MOST_OVERLAID: usize = 2000;
 /// Gaps and notches narrower than this are closed, lattice units: what rounding to the lattice opens between neighbours.
 const GAP: f64 = 2.0;
 
-/// What triangles cover together, whichever way they turn.
+/// The area that triangles cover together, whichever way they turn.
 ///
 /// Where they neither overlap nor enclose a hole the outline is exact, with the very corners of the triangles. Elsewhere crossings of
 /// edges are rounded to the lattice (by half a unit per axis at most) and gaps narrower than two units are closed; more than 2,000

@@ -1,4 +1,4 @@
-//! What lies between an eye and what it looks at, decided exactly.
+//! Objects between an eye and what it looks at, decided exactly.
 //!
 //! ```text
 //!   eye ─────╲───────────┌───┐      the shaft: all sight lines from the eye to the base, without the base itself

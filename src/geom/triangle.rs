@@ -33,7 +33,7 @@ pub(super) fn nearest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     a + ab * (vb / sum) + ac * (vc / sum)
 }
 
-/// What is left of a convex polygon inside all half spaces n·p ≤ d (Sutherland & Hodgman).
+/// The part of a convex polygon inside all half spaces n·p ≤ d (Sutherland & Hodgman).
 pub(crate) fn clipped(corners: &[DVec3], planes: impl IntoIterator<Item = (DVec3, f64)>) -> Vec<DVec3> {
     let mut polygon = corners.to_vec();
     let mut next = Vec::with_capacity(8);

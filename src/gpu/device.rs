@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use wgpu::util::DeviceExt;
 
-/// What can go wrong between here and the graphics card.
+/// What can go wrong between here and the GPU.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// No adapter at all, or none of the wanted name.
@@ -155,7 +155,7 @@ impl Gpu {
         describe(&self.info)
     }
 
-    /// Whether the adapter is a program, not a card.
+    /// Whether the adapter is a program, not a GPU.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }

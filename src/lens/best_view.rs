@@ -1,4 +1,4 @@
-//! What best-view lenses show (B1 to B5; V §3.4.1): a picture of its own, placed over the main one and tied to points of interest.
+//! What best-view lenses show (Trapp §3.4.1): a picture of its own, placed over the main one and tied to points of interest.
 
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub struct BestView {
     /// What is shown.
     pub depiction: Depiction,
     /// Names of the lenses that act in its view, best-view lenses among them: those become overlays of its overlay. `None`: all lenses of the
-    /// scene that act in every view (L2).
+    /// scene that act in every view.
     pub lenses: Option<Vec<String>>,
     /// How its view looks; `None`: as the scene.
     pub look: Option<Look>,
@@ -29,25 +29,25 @@ pub struct BestView {
 /// What an overlay is a picture of.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Depiction {
-    /// An image of a file (B1).
+    /// An image of a file.
     Image(PathBuf),
-    /// Text; `\n` begins a line (B1).
+    /// Text; `\n` begins a line.
     Text(String),
-    /// The city, from an eye of its own (B2 to B5).
+    /// The city, from an eye of its own.
     View(LocalView),
 }
 
 /// An eye of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LocalView {
-    /// All of the first point of interest (B2), from `normal`, a direction from it; `None`: from where it is seen best.
+    /// All of the first point of interest, from `normal`, a direction from it; `None`: from where it is seen best.
     Best {
         /// From the object to the eye, not 0.
         normal: Option<DVec3>,
         /// Vertical field of view, radians.
         fov_y: f64,
     },
-    /// The main eye, looked at from outside (B3, multiple centres of projection).
+    /// The main eye, looked at from outside (multiple centres of projection).
     Mcop {
         /// From the main eye to this one, not 0.
         normal: DVec3,
@@ -56,7 +56,7 @@ pub enum LocalView {
         /// Vertical field of view, radians.
         fov_y: f64,
     },
-    /// From the main eye in another direction (B3, single centre of projection).
+    /// From the main eye in another direction (single centre of projection).
     Scop {
         /// Where it looks, not 0.
         direction: DVec3,
@@ -67,19 +67,19 @@ pub enum LocalView {
         /// Vertical field of view, radians.
         fov_y: f64,
     },
-    /// A map of what lies around the main eye (B4).
+    /// A map of what lies around the main eye.
     Map {
         /// What is at its top.
         mode: MapMode,
         /// Metres of ground from the lower to the upper border.
         height_m: f64,
-        /// Fisheye: how many times larger its middle is than it would be without, 1..=[`MOST_MAGNIFIED`]; 1: none (B4).
+        /// Fisheye: how many times larger its middle is than it would be without, 1..=[`MOST_MAGNIFIED`]; 1: none.
         magnification: f64,
-        /// Lazy tracking: how far the main eye may be from the map's middle before the map follows, as a share of the way to its border, 0..1
-        /// (B4); 0: it always does.
+        /// Lazy tracking: how far the main eye may be from the map's middle before the map follows, as a share of the way to its border, 0..1;
+        /// 0: it always does.
         lazy: f64,
     },
-    /// A small model that can be turned (B5): the first point of interest and what is within `margin_m` of it, alone.
+    /// A small model that can be turned: the first point of interest and what is within `margin_m` of it, alone.
     Worldlet {
         /// Where it is looked at from: radians clockwise from north.
         azimuth: f64,
@@ -90,7 +90,7 @@ pub enum LocalView {
         /// Vertical field of view, radians.
         fov_y: f64,
     },
-    /// What moves with the first point of interest, followed from behind (B5); behind one that does not move is the side of the main eye.
+    /// What moves with the first point of interest, followed from behind; behind one that does not move is the side of the main eye.
     Follow {
         /// How far behind it, in plan, metres.
         distance_m: f64,
@@ -108,7 +108,7 @@ pub enum LocalView {
         /// Vertical field of view, radians.
         fov_y: f64,
     },
-    /// Any eye: a region of the picture that shows another place (B5, Through-The-Lens).
+    /// Any eye: a region of the picture that shows another place (Through-The-Lens).
     Camera(Camera),
 }
 
@@ -127,7 +127,7 @@ impl LocalView {
     }
 }
 
-/// How a map is turned (B4).
+/// How a map is turned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum MapMode {
     /// North is up.

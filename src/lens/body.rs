@@ -2,7 +2,7 @@
 
 use crate::lens::kind::LensKind;
 
-/// How a lens body is drawn (L5).
+/// How a lens body is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LensBody {
     /// Not at all.

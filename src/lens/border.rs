@@ -1,4 +1,4 @@
-//! Soft borders of lenses: the degree of interest (L9).
+//! Soft borders of lenses: the degree of interest.
 
 use crate::view::View;
 
@@ -21,8 +21,7 @@ pub enum BorderUnit {
     Metres,
     /// Pixels at the distance of what is shown: the width in metres grows with it.
     Pixels,
-    /// Metres along the ray: a lens is all there within half the width of where the ray enters and leaves it, and nowhere else (S5,
-    /// *Equal*).
+    /// Metres along the ray: a lens is all there within half the width of where the ray enters and leaves it, and nowhere else.
     Ray,
 }
 
@@ -68,7 +67,7 @@ fn metres_per_pixel(view: &View, distance_m: f64) -> f64 {
 }
 
 /// The degree of interest at a signed distance from a lens, outside +, of a border `width` wide: 1 inside, 0 outside,
-/// smooth between (L9). Both in the same unit.
+/// smooth between. Both in the same unit.
 pub fn degree_of_interest(distance: f64, width: f64) -> f64 {
     if width <= 0.0 {
         return f64::from(u8::from(distance <= 0.0));

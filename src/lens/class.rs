@@ -1,6 +1,6 @@
 //! Where a place is with regard to a lens.
 
-/// Where the shown surface is with regard to a lens (L4).
+/// Where the shown surface is with regard to a lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Class {
     /// D_F ≤ D < D_B.

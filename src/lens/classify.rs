@@ -1,4 +1,4 @@
-//! The volumetric depth test on the CPU: where a surface lies with regard to a lens (L4, S3, S5).
+//! The volumetric depth test (Trapp §3.2) on the CPU: where a surface lies with regard to a lens.
 
 use crate::{
     geom::{Ray, Volume, shape::solid::FaceCrossing},
@@ -14,8 +14,8 @@ pub struct Crossing {
     pub step: i32,
 }
 
-/// The intervals `[entry, exit)` in which a sight line is inside, ascending and apart, from its crossings in any order
-/// (S3): inside where the sum of steps is not 0. Exits without an entry mean that the eye is inside: D_F = 0 (S1).
+/// The intervals `[entry, exit)` in which a sight line is inside, ascending and apart, from its crossings in any order:
+/// inside where the sum of steps is not 0. Exits without an entry mean that the eye is inside: D_F = 0.
 /// Entries without an exit reach to infinity. Crossings at NaN are left out.
 pub fn intervals_of(crossings: &[Crossing]) -> Vec<(f64, f64)> {
     let mut sorted: Vec<Crossing> = crossings.iter().filter(|c| !c.depth.is_nan()).copied().collect();

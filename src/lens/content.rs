@@ -1,6 +1,6 @@
-//! What a lens shows in itself in place of what is below it (C3, C6): the city in another level of detail, another data set,
-//! something made of its objects (O3, O5), or a part of it elsewhere, turned and scaled (Tiesel's object-level effects, section
-//! 3.4.3, and the source box of Borst et al. 2007).
+//! What a lens shows in itself in place of what is below it: the city in another level of detail, another data set,
+//! something made of its objects, or a part of it elsewhere, turned and scaled (object-level effects, Tiesel
+//! §3.4.3, and the source box of Borst et al. 2007).
 
 use std::path::PathBuf;
 
@@ -21,7 +21,7 @@ pub struct Content {
     pub lod: Option<Lod>,
     /// What its objects are shown as; `None`: as themselves. Terrain, roads, water and land use stay as they are below.
     pub derive: Option<Derive>,
-    /// Where along the sight line it shows (L4).
+    /// Where along the sight line it shows.
     pub class: Class,
     /// What becomes of what is below.
     pub clip: Clip,

@@ -9,7 +9,7 @@ use crate::{
     },
 };
 
-/// A lens (L1).
+/// A lens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lens {
     /// Its name, unique.
@@ -20,29 +20,29 @@ pub struct Lens {
     pub enabled: bool,
     /// Its own colour, sRGB 0..1: outline, legend, halo.
     pub color: [f32; 3],
-    /// What its shapes are fixed to (L2).
+    /// What its shapes are fixed to.
     pub placement: Placement,
-    /// Its focus areas: inside where any of them is (L1).
+    /// Its focus areas: inside where any of them is.
     pub shapes: Vec<Focus>,
-    /// How the occluders of an occlusion lens are drawn (O3).
+    /// How the occluders of an occlusion lens are drawn.
     pub render: Option<Rendering>,
-    /// What it does, in order (K1: at most one scene style), after what it is drawn by.
+    /// What it does, in order (at most one scene style), after what it is drawn by.
     pub effects: Vec<EffectUse>,
-    /// What its overlay shows, if it has one (B1 to B5).
+    /// What its overlay shows, if it has one.
     pub best_view: Option<BestView>,
-    /// What it does with space, if it is a deformation lens (D1).
+    /// What it does with space, if it is a deformation lens.
     pub deform: Option<Deform>,
-    /// What it shows in place of what is below it (C6); `None`: it acts on that.
+    /// What it shows in place of what is below it; `None`: it acts on that.
     pub content: Option<Content>,
-    /// How the lens body itself is drawn (L5).
+    /// How the lens body itself is drawn.
     pub body: LensBody,
-    /// The volumetric depth sprite that it is tested by; `None`: from its shapes (S7).
+    /// The volumetric depth sprite that it is tested by; `None`: from its shapes.
     pub sprite: Option<LensSprite>,
-    /// How it ends (L9); `None`: at once.
+    /// How it ends; `None`: at once.
     pub border: Option<Border>,
     /// Whether what it takes away, sees through or replaces still casts the shadow that it has without the lens.
     pub keeps_shadows: bool,
-    /// Whether its focus area is of the city at rest and goes with what deformations move, or stands where it is (L10).
+    /// Whether its focus area is of the city at rest and goes with what deformations move, or stands where it is.
     pub at_rest: bool,
     /// The colour, sRGB 0..1, of the sections through closed shells where it ends; `None`: what is cut is hollow.
     pub section: Option<[f32; 3]>,
@@ -77,7 +77,7 @@ impl Lens {
         self.border.filter(|b| b.width > 0.0)
     }
 
-    /// Whether some of its shapes are depth sprites of files (S8).
+    /// Whether some of its shapes are depth sprites of files.
     pub fn has_sprite_file(&self) -> bool {
         self.shapes.iter().any(|s| s.any(&|f| matches!(f, Focus::Sprite { .. })))
     }

@@ -1,4 +1,4 @@
-//! Deformation lenses (D1, D3; V §3.6): what their steps mean in the frame of their focus area.
+//! Deformation lenses (Trapp §3.6): what their steps mean in the frame of their focus area.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ pub struct Deform {
     pub strength: f64,
 }
 
-/// How strong a deformation is over the base of its focus area (S6): 0 along its border, but for the first.
+/// How strong a deformation is over the base of its focus area: 0 along its border, but for the first.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ControlProfile {
     /// All of it everywhere, far beyond the focus area, too.
@@ -113,7 +113,7 @@ pub enum Step {
         /// What heights are multiplied with there, > 0; between them as much in between.
         to: [f64; 2],
     },
-    /// Makes city objects lower that hide a point of interest, so that they do not (D4).
+    /// Makes city objects lower that hide a point of interest, so that they do not.
     Lower {
         /// The occluders.
         of: Box<Occluders>,

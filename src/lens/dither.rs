@@ -1,4 +1,4 @@
-//! Ordered dithering: how what is there or not comes and goes gradually (L9, O6).
+//! Ordered dithering: how what is there or not comes and goes gradually.
 
 /// Interleaved gradient noise's weights of x and y, and what their sum is multiplied by (Jimenez 2014).
 const WEIGHTS: [f64; 3] = [0.067_110_56, 0.005_837_15, 52.982_918_9];

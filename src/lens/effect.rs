@@ -1,7 +1,7 @@
 //! Uses of effects: whether they are right, and what they tell the shader. The effects themselves are files
 //! ([`crate::shader::effect`]).
 //!
-//! A lens has at most one scene style (K1: how surfaces are drawn); post styles run after it in list order (K3).
+//! A lens has at most one scene style (how surfaces are drawn); post styles run after it in list order.
 
 use std::collections::BTreeMap;
 

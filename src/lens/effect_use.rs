@@ -9,9 +9,9 @@ use crate::{lens::class::Class, shader::Blend};
 pub struct EffectUse {
     /// Its name in the table of effects ([`crate::lens::effect`]).
     pub effect: String,
-    /// What it acts on, seen along the pixel's ray (L4).
+    /// What it acts on, seen along the pixel's ray.
     pub class: Class,
-    /// How it is laid over what is below (C5); `None`: it replaces that.
+    /// How it is laid over what is below; `None`: it replaces that.
     pub blend: Option<Blend>,
     /// How much of it, 0 to 1; `None`: all.
     pub weight: Option<f64>,

@@ -1,4 +1,4 @@
-//! Where a lens acts: its focus areas (L1, L3).
+//! Where a lens acts: its focus areas.
 
 use std::{path::PathBuf, sync::OnceLock};
 
@@ -69,7 +69,7 @@ pub enum Focus {
         /// Extent, metres, ≥ 0.
         size: DVec3,
     },
-    /// What a saved depth sprite holds (S8).
+    /// What a saved depth sprite holds.
     Sprite {
         /// The file, as [`crate::lens::sprite_file`] has it.
         file: PathBuf,
@@ -89,7 +89,7 @@ pub enum Focus {
     Objects(Choice),
     /// Everything that belongs to city objects, wherever it is.
     Thematic(Choice),
-    /// Everything that belongs to the city objects that lie in some shapes, wherever it is (S6, by object).
+    /// Everything that belongs to the city objects that lie in some shapes, wherever it is.
     Enclosed {
         /// The shapes; at least one.
         parts: Vec<Focus>,
@@ -98,7 +98,7 @@ pub enum Focus {
         /// Only objects of these types, as their files call them; parts are of the type that they are part of. Empty: all.
         types: Vec<String>,
     },
-    /// Everything that belongs to the city objects that hide something, wherever it is (O2).
+    /// Everything that belongs to the city objects that hide something, wherever it is.
     Occluders(Occluders),
     /// Of those the ones that the last of these holds of, and none before it; scenes draw with it, files have none.
     Case {

@@ -3,26 +3,26 @@
 /// Kinds of lenses this version has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LensKind {
-    /// Restyles what is in it (K1).
+    /// Restyles what is in it.
     #[default]
     Color,
-    /// Shows something else in it (C3).
+    /// Shows something else in it.
     Content,
-    /// Draws what hides a point of interest so that it can be seen (O2, O3).
+    /// Draws what hides a point of interest so that it can be seen.
     Occlusion,
-    /// Moves what is in it (D1).
+    /// Moves what is in it.
     Deformation,
-    /// Shows an image or a text (B1).
+    /// Shows an image or a text.
     Annotation,
-    /// Shows the city from an eye of its own (B2, B3).
+    /// Shows the city from an eye of its own.
     BestView,
-    /// Shows a map of what lies around the main eye (B4).
+    /// Shows a map of what lies around the main eye.
     MapView,
-    /// Shows a small model of a place that can be turned (B5).
+    /// Shows a small model of a place that can be turned.
     Worldlet,
-    /// Shows another place in a region of the picture (B5).
+    /// Shows another place in a region of the picture.
     SeeThrough,
-    /// Shows another place that one can go to (B5).
+    /// Shows another place that one can go to.
     Portal,
 }
 
@@ -51,7 +51,7 @@ impl LensKind {
         Self::WORDS.iter().find(|(w, _)| *w == word).map(|(_, kind)| *kind)
     }
 
-    /// Whether its lenses have an overlay in place of a focus area (V §3.4).
+    /// Whether its lenses have an overlay in place of a focus area (Trapp §3.4).
     pub fn has_overlay(self) -> bool {
         !matches!(self, Self::Color | Self::Content | Self::Occlusion | Self::Deformation)
     }

@@ -1,4 +1,4 @@
-//! What to show where: a lens = shapes + effects + order (V §3).
+//! What to show where: a lens = shapes + effects + order (Trapp §3).
 
 pub mod best_view;
 pub mod body;

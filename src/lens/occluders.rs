@@ -1,4 +1,4 @@
-//! Who hides what shall be seen: the focus area of occlusion lenses (O2).
+//! Who hides what shall be seen: the focus area of occlusion lenses.
 
 use crate::{
     lens::chosen::Choice,
@@ -16,7 +16,7 @@ pub struct Occluders {
     pub force: Option<Choice>,
     /// Those that never are one, forced or not.
     pub forbid: Option<Choice>,
-    /// Over time (O6), how far one may leave the test before it ceases to be one.
+    /// Over time, how far one may leave the test before it ceases to be one.
     pub margin: Margin,
     /// Over time, how fast they come and go.
     pub pace: Pace,

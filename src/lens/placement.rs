@@ -1,6 +1,6 @@
 //! What lenses are fixed to.
 
-/// What the shapes of a lens are fixed to, whose origin and axes their coordinates are of (L2); metres.
+/// What the shapes of a lens are fixed to, whose origin and axes their coordinates are of; metres.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum Placement {
     /// The world: model coordinates.

@@ -1,4 +1,4 @@
-//! How occluders are drawn (O3): words for effects and forms, with parameters; by distance and kind of object, if asked.
+//! How occluders are drawn: words for effects and forms, with parameters; by distance and kind of object, if asked.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use crate::{
 pub struct Row {
     /// What scene files call it.
     pub word: &'static str,
-    /// Where the spec has it.
+    /// Where it comes from: author and section.
     pub spec: &'static str,
     /// What one sees.
     pub doc: &'static str,
@@ -104,127 +104,133 @@ const BLUE: (&str, &[(&str, Preset)]) = ("clay", &[("color", Preset::Text("#8fb4
 pub const ROWS: &[Row] = &[
     Row {
         word: "discard",
-        spec: "O3",
+        spec: "Trapp §3.3",
         doc: "Occluders are not there, nor are their shadows.",
         effects: &[("eraser", &[])],
         form: None,
     },
     Row {
         word: "box",
-        spec: "O3",
+        spec: "Trapp §3.3",
         doc: "The edges of their bounding boxes.",
         effects: &[("wireframe", &[])],
         form: BOX,
     },
-    Row { word: "edges", spec: "O3", doc: "Their own edges and creases.", effects: &[("wireframe", &[])], form: None },
+    Row {
+        word: "edges",
+        spec: "Trapp §3.3",
+        doc: "Their own edges and creases.",
+        effects: &[("wireframe", &[])],
+        form: None,
+    },
     Row {
         word: "transparent",
-        spec: "O1, O3",
+        spec: "Trapp §3.3",
         doc: "Translucent, with their textures and colours.",
         effects: &[("transparent", &[("opacity", Preset::Number(0.18))])],
         form: None,
     },
     Row {
         word: "transparent-plain",
-        spec: "O1, O3",
+        spec: "Trapp §3.3",
         doc: "Translucent, without them.",
         effects: &[("transparent", &[("opacity", Preset::Number(0.18))]), ("clay", &[])],
         form: None,
     },
     Row {
         word: "transparent-box",
-        spec: "O1, O3",
+        spec: "Trapp §3.3",
         doc: "Their bounding boxes, translucent.",
         effects: &[("transparent", &[("opacity", Preset::Number(0.12))]), ("clay", &[])],
         form: BOX,
     },
     Row {
         word: "x-ray",
-        spec: "O3, O4",
+        spec: "Trapp §3.3",
         doc: "Clear where they face the eye, dense where they are seen edge on, in their own colours.",
         effects: &[("x-ray", &[])],
         form: None,
     },
     Row {
         word: "x-ray-color",
-        spec: "O3, O4",
+        spec: "Trapp §3.3",
         doc: "The same in one colour.",
         effects: &[("x-ray", &[]), BLUE],
         form: None,
     },
     Row {
         word: "x-ray-shape",
-        spec: "O3, O4",
+        spec: "Trapp §3.3",
         doc: "The same of their footprints' prisms: colour and shape are left out.",
         effects: &[("x-ray", &[]), BLUE],
         form: PRISM,
     },
     Row {
         word: "flatten",
-        spec: "O3, O5",
+        spec: "Trapp §3.3",
         doc: "Pressed flat to the ground: what is seen of them from above.",
         effects: &[],
         form: FLAT,
     },
     Row {
         word: "dither",
-        spec: "O3",
+        spec: "Trapp §3.3",
         doc: "Thinned out by a pattern of pixels.",
         effects: &[("screen-door", &[])],
         form: None,
     },
     Row {
         word: "x-ray-ramp",
-        spec: "O3, O4",
+        spec: "Trapp §3.3",
         doc: "As `x-ray`, in colours of a ramp, from faces that look at the eye to those seen edge on; opacity has one too.",
         effects: &[("x-ray", &[]), ("x-ray-tint", &[])],
         form: None,
     },
     Row {
         word: "cut-away",
-        spec: "O3",
+        spec: "Trapp §3.3",
         doc: "What is before a point of interest is cut out of them, with a torn rim; the rest of them stays.",
         effects: &[("cut-away", &[])],
         form: None,
     },
     Row {
         word: "lod1",
-        spec: "O3",
+        spec: "Trapp §3.3",
         doc: "Their blocks of level of detail 1, translucent; of what has none the prism over its footprint.",
         effects: &[("transparent", &[("opacity", Preset::Number(0.12))]), ("clay", &[])],
         form: LOD1,
     },
     Row {
         word: "flatten-top",
-        spec: "O3, O5",
+        spec: "Trapp §3.3",
         doc: "As `flatten`, in the light in which they stood: a picture from straight above.",
         effects: &[],
         form: TOP,
     },
     Row {
         word: "flatten-film",
-        spec: "O3, O5",
+        spec: "Trapp §3.3",
         doc: "The same as a translucent film on the ground.",
         effects: &[("film", &[])],
         form: TOP,
     },
     Row {
         word: "flatten-soft",
-        spec: "O3, O5",
+        spec: "Trapp §3.3",
         doc: "The same, clear at its rim and dense inside, by how far the outline of what they cover is.",
         effects: &[("soft-film", &[])],
         form: TOP,
     },
     Row {
         word: "hull",
-        spec: "O3",
+        spec: "Trapp §3.3",
         doc: "Their convex hulls, translucent.",
         effects: &[("transparent", &[("opacity", Preset::Number(0.12))]), ("clay", &[])],
         form: HULL,
     },
     Row {
         word: "low",
-        spec: "O3",
+        spec: "Trapp §3.3",
         doc: "As high as `height` says, three metres without it, whatever their height.",
         effects: &[],
         form: LOW,
@@ -355,7 +361,7 @@ impl Case {
 pub struct Rendering {
     /// Of each occluder the first that holds; those of which none does stay as they are.
     pub cases: Vec<Case>,
-    /// What is done to the points of interest (V §5.3.1).
+    /// What is done to the points of interest (Trapp §5.3.1).
     pub poi_effects: Vec<EffectUse>,
 }
 

@@ -1,4 +1,4 @@
-//! Volumetric depth sprites, CPU side: how a distance becomes a stored depth, and back (S2).
+//! Volumetric depth sprites (Trapp §3.1), CPU side: how a distance becomes a stored depth, and back.
 //!
 //! ```text
 //! mapping          λ(D)                 D(λ)               λ grows with D   D = far or ∞
@@ -9,17 +9,17 @@
 //! ```
 //!
 //! Lenses compare distances in metres, never stored depths: sprites of other clip settings then just work
-//! (V eq. 3.1 holds for linear depth only).
+//! (Trapp, eq. 3.1, holds for linear depth only).
 
 use crate::{
     geom::shape::Motion,
     view::{Camera, MAX_SIZE},
 };
 
-/// The volumetric depth sprite that a lens is tested by (S1).
+/// The volumetric depth sprite that a lens is tested by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensSprite {
-    /// The eye that it is made from; `None`: the picture's (S2).
+    /// The eye that it is made from; `None`: the picture's.
     pub own: Option<OwnEye>,
     /// Texels along the longer side of the picture, or of its own frame; `None`: one per pixel, or [`OWN_RESOLUTION`].
     pub resolution: Option<u32>,
@@ -123,7 +123,7 @@ impl Mapping {
     }
 }
 
-/// What a stored depth is (S4). All are rows of codes 0 to [`Format::top`] that grow with the depth.
+/// What a stored depth is. All are rows of codes 0 to [`Format::top`] that grow with the depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Format {
     /// 255 steps.
@@ -223,7 +223,7 @@ const SMALLEST_NORMAL_HALF: f32 = 1.0 / 16_384.0;
 ///
 /// Two codes are no distances. That of the near plane says of an entry that there is none before the eye (or the near plane),
 /// and of an exit that the ray misses the lens. That of the far plane says of an exit that the lens has no end. What lies nearer
-/// or further away than the planes is clamped to the codes between (S1).
+/// or further away than the planes is clamped to the codes between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthCode {
     /// The mapping.
@@ -240,12 +240,12 @@ pub struct DepthCode {
 const HALF_ULP: f64 = 1.0 / 16_777_216.0;
 
 impl DepthCode {
-    /// Whether stored depths grow with distance; if not, every comparison of stored depths reverses (S5).
+    /// Whether stored depths grow with distance; if not, every comparison of stored depths reverses.
     pub fn is_increasing(&self) -> bool {
         matches!(self.mapping, Mapping::Z | Mapping::W)
     }
 
-    /// The stored depth of distance `d`, which is clamped to the clip range, not clipped (S1).
+    /// The stored depth of distance `d`, which is clamped to the clip range, not clipped.
     pub fn encode(&self, d: f64) -> f64 {
         let (n, f) = (self.near_m, self.far_m);
         let lambda = match self.mapping {

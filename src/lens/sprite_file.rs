@@ -1,4 +1,4 @@
-//! Files of depth sprites (S8): OpenEXR, as `docs/sprites.md` describes them.
+//! Files of depth sprites: OpenEXR, as `docs/sprites.md` describes them.
 
 use std::{io::Cursor, path::Path};
 

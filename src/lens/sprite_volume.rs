@@ -1,4 +1,4 @@
-//! Depth sprites with an eye of their own: where their texels are in the world, and the volume that a saved one holds (S2, S8).
+//! Depth sprites with an eye of their own: where their texels are in the world, and the volume that a saved one holds.
 
 use std::sync::Arc;
 
@@ -169,7 +169,7 @@ impl PlacedSprite {
         Self { sprite, space, bounds }
     }
 
-    /// Whether a closed triangle shares a point with what a ray of some texel is inside of, in f64 (C1).
+    /// Whether a closed triangle shares a point with what a ray of some texel is inside of, in f64.
     pub fn meets_triangle(&self, corners: &[DVec3; 3]) -> bool {
         let (sprite, space) = (&*self.sprite, &self.space);
         let Some([near, far]) = sprite.depths() else { return false };

@@ -1,4 +1,4 @@
-//! Thematic colour (K2): an attribute becomes a legend and a colour per object.
+//! Thematic colour: an attribute becomes a legend and a colour per object.
 //!
 //! Colours are the legend's, before light. The renderer lets light change lightness alone and leaves hue and chroma
 //! (architecture, decision 13).

@@ -1,4 +1,4 @@
-//! How far a picture is from its reference.
+//! The difference of a picture from its reference.
 
 use serde::Serialize;
 
@@ -31,17 +31,17 @@ pub struct Difference {
     pub against_f64: Option<Against>,
 }
 
-/// How far translucent layers are from f64, over any background from black to white.
+/// The difference of translucent layers from f64, over any background from black to white.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Against {
-    /// Of all pixels and channels.
+    /// The largest of all pixels and channels.
     pub max: f64,
     /// Over all of them.
     pub mean: f64,
 }
 
 impl Against {
-    /// Of the errors of pixels.
+    /// The largest and the mean of the errors of pixels.
     fn of(errors: impl Iterator<Item = [f64; 3]>) -> Self {
         let (mut sum, mut max, mut count) = (0.0, 0.0_f64, 0_u64);
         for error in errors.flatten() {
@@ -50,12 +50,12 @@ impl Against {
         Self { max, mean: sum / count.max(1) as f64 }
     }
 
-    /// Of what a method laid over its picture.
-    pub fn veil(found: &[[f32; 4]], right: &[[f64; 4]]) -> Self {
+    /// The difference of what a method laid over its picture.
+    pub fn transparency(found: &[[f32; 4]], right: &[[f64; 4]]) -> Self {
         Self::of(found.iter().zip(right).map(|(found, right)| error(found.map(f64::from), *right)))
     }
 
-    /// Of pictures, where a method lays nothing over: colours in 8 bits, whose steps are at most 0.009 of linear light.
+    /// The difference of pictures, where a method lays nothing over: colours in 8 bits, whose steps are at most 0.009 of linear light.
     pub fn pictures(found: &Picture, right: &Picture) -> Self {
         let linear = |[r, g, b, _]: [u8; 4]| linear_from_srgb([r, g, b].map(|c| f32::from(c) / 255.0)).map(f64::from);
         Self::of(found.rgba.iter().zip(&right.rgba).map(|(found, right)| {
@@ -66,7 +66,7 @@ impl Against {
 }
 
 impl Difference {
-    /// Of two pictures of one size.
+    /// The difference of two pictures of one size.
     pub fn between(reference: &Picture, test: &Picture) -> Self {
         let mut found = Self { pixels: reference.rgba.len() as u64, ..Self::default() };
         let mut sum = 0_u64;

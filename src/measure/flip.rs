@@ -1,4 +1,4 @@
-//! FLIP for low dynamic range: how different two pictures look to somebody who flips between them, 0..1.
+//! FLIP for low dynamic range: how different two pictures look to a person that flips between them, 0..1.
 //!
 //! After P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild, *FLIP: A Difference
 //! Evaluator for Alternating Images*, HPG 2020; section numbers below are the paper's.
@@ -42,7 +42,7 @@ pub fn mean(size: [u32; 2], reference: &[[u8; 4]], test: &[[u8; 4]]) -> f64 {
     if map.is_empty() { 0.0 } else { map.iter().sum::<f64>() / map.len() as f64 }
 }
 
-/// FLIP of every pixel, for a viewer who sees so many pixels per degree.
+/// FLIP of every pixel, for a viewer that sees so many pixels per degree.
 pub fn map(size: [u32; 2], reference: &[[u8; 4]], test: &[[u8; 4]], pixels_per_degree: f64) -> Vec<f64> {
     let pixels = size[0] as usize * size[1] as usize;
     if pixels == 0 || reference.len() != pixels || test.len() != pixels {
@@ -123,7 +123,7 @@ fn opponent_planes(size: [u32; 2], picture: &[[u8; 4]]) -> [Plane; 3] {
     [0, 1, 2].map(|k| Plane { width, values: pixels.iter().map(|p| p[k]).collect() })
 }
 
-/// What the eye makes of each pixel's colour: blurred by its contrast sensitivity, then L*a*b* with Hunt.
+/// The colour of each pixel as the eye perceives it: blurred by its contrast sensitivity, then L*a*b* with Hunt.
 fn perceived(planes: &[Plane; 3], pixels_per_degree: f64) -> Vec<[f64; 3]> {
     let blurred = [0, 1, 2].map(|k| blurred(&planes[k], SENSITIVITY[k], pixels_per_degree));
     let lab = |i: usize| {
@@ -154,7 +154,7 @@ fn blurred(plane: &Plane, gaussians: [[f64; 2]; 2], pixels_per_degree: f64) -> P
 
 // --- features ---------------------------------------------------------------------------------
 
-/// How much of an edge, and of a point, there is at every pixel (§4.2).
+/// The strength of an edge, and of a point, at every pixel (§4.2).
 fn features(luma: &Plane, pixels_per_degree: f64) -> Vec<[f64; 2]> {
     let sigma = 0.5 * FEATURE_WIDTH * pixels_per_degree;
     let radius = (3.0 * sigma).ceil() as i32;
@@ -255,7 +255,7 @@ mod tests {
         assert!(step > 0.0 && step < 0.03, "{step}");
     }
 
-    /// What the authors' own program (flip-evaluator 1.7, LDR, default viewer) says of the same two pictures.
+    /// Compares with the authors' own program (flip-evaluator 1.7, LDR, default viewer) on the same two pictures.
     #[test]
     fn it_is_what_its_authors_compute() {
         let found = map(SIZE, &pattern(1), &pattern(9), PIXELS_PER_DEGREE);

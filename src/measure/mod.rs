@@ -1,4 +1,4 @@
-//! What accuracy costs in time (U1): every knob that trades one for the other, measured by one command.
+//! The cost of accuracy in time: every knob that trades one for the other, measured by one command.
 //!
 //! ```text
 //! topic (topics/NAME.rs) ─ makes ─> plain frame, reference, variants ─ run ─> Measurement ─ report ─> .md .json

@@ -46,8 +46,8 @@ mod tests {
     proptest! {
         #![proptest_config(crate::seeds::config())]
 
-        /// By definition: sorted by one figure, the other falls along the front; and who is not on it is beaten by
-        /// somebody who is.
+        /// By definition: sorted by one figure, the other falls along the front; and what is not on it is beaten by
+        /// something that is.
         #[test]
         fn the_front_falls_and_beats_the_rest(points in prop::collection::vec([0_u8..8, 0_u8..8], 1..40)) {
             let points: Vec<[f64; 2]> = points.iter().map(|p| p.map(f64::from)).collect();

@@ -1,4 +1,4 @@
-//! What is measured of a variant: one list for columns, axes and the Pareto front.
+//! Quantities that are measured of a variant: one list for columns, axes and the Pareto front.
 
 use crate::measure::{
     ratio::Estimate,
@@ -29,20 +29,20 @@ pub enum Quantity {
     Ratio,
     /// Time, milliseconds.
     Ms,
-    /// What the first frame takes longer than a later one, milliseconds.
+    /// The time by which the first frame takes longer than a later one, milliseconds.
     StartMs,
     /// Graphics memory beside the city, MiB.
     Memory,
     /// Triangles of what is deformed.
     Triangles,
-    /// How far its edges are from where they should be at worst, pixels.
+    /// The largest distance of its edges from where they should be, pixels.
     Chord,
     /// The same in the median of those that are bent.
     MedianChord,
 }
 
 impl Quantity {
-    /// What stands at an axis: name, then unit.
+    /// The title of an axis: name, then unit.
     pub fn title(self, knobs: &[Knob]) -> String {
         match self {
             Self::Knob(i) => match knobs.get(i) {

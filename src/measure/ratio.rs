@@ -17,7 +17,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Of these values, in any order. Fewer than six have no 95 % interval: then it is the least to the greatest.
+    /// The estimate from these values, in any order. Fewer than six have no 95 % interval: then it is the least to the greatest.
     /// `None` of no values, or where one is not finite.
     pub fn of(values: &[f64]) -> Option<Self> {
         if values.is_empty() || values.iter().any(|v| !v.is_finite()) {

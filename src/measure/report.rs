@@ -27,14 +27,18 @@ pub const SCHEMA: u32 = 1;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// How this program was compiled: times of a debug build say little.
+/// The build profile of this program: times of a debug build say little.
 const PROFILE: &str = if cfg!(debug_assertions) { "debug" } else { "release" };
 
 /// The table, in Markdown.
 pub fn markdown(measured: &Measurement, origin: &Origin) -> String {
     let topic = measured.topic;
     let [width, height] = measured.size;
-    let mut text = format!("# {}\n\n{} ({})\n\n", topic.title, topic.about, topic.specs.join(", "));
+    let sources = match topic.sources {
+        [] => String::new(),
+        sources => format!(" ({})", sources.join(", ")),
+    };
+    let mut text = format!("# {}\n\n{}{sources}\n\n", topic.title, topic.about);
     let facts = [
         ("Command", format!("`{}`", origin.command.replace('`', "'"))),
         ("Program", format!("Veduta {VERSION} ({PROFILE} build), {}", origin.date)),
@@ -197,7 +201,7 @@ pub fn json(measured: &Measurement, origin: &Origin) -> Json {
             "name": topic.name,
             "title": topic.title,
             "about": topic.about,
-            "specs": topic.specs,
+            "sources": topic.sources,
             "reference": topic.reference,
             "knobs": topic.knobs,
             "front": titles(&topic.front),

@@ -19,20 +19,20 @@ use crate::{
     scene::{CitySpec, Scene, Transparency},
 };
 
-/// What is measured on.
+/// The set-up of a measurement.
 #[derive(Debug)]
 pub struct Setup<'a> {
-    /// The city, on the graphics card.
+    /// The city, on the GPU.
     pub studio: &'a mut Studio,
-    /// What of it is shown.
+    /// The part of it that is shown.
     pub city: &'a CitySpec,
     /// Width and height of all pictures, pixels, at most [`crate::render::parts::TILE`].
     pub size: [u32; 2],
-    /// How often all variants are timed, at least once.
+    /// The number of times that all variants are timed, at least one.
     pub pairs: usize,
 }
 
-/// What measuring is at.
+/// The step that measuring is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
     /// Comparing pictures.
@@ -54,13 +54,13 @@ pub struct Measurement {
     pub objects: u64,
     /// Triangles that can be drawn.
     pub triangles: u64,
-    /// What the city holds on the graphics card, bytes.
+    /// The memory of the city on the GPU, bytes.
     pub city_bytes: u64,
     /// Width and height of all pictures, pixels.
     pub size: [u32; 2],
-    /// How often all variants were timed.
+    /// The number of times that all variants were timed.
     pub pairs: usize,
-    /// How often they were started afresh.
+    /// The number of times that they were started afresh.
     pub starts: usize,
     /// Time of the plain frame, milliseconds.
     pub plain_ms: Estimate,
@@ -68,10 +68,10 @@ pub struct Measurement {
     pub rows: Vec<Row>,
 }
 
-/// What was measured of one variant.
+/// The measurements of one variant.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// What stands beside its point.
+    /// The text beside its point.
     pub label: String,
     /// Values of the topic's knobs.
     pub knobs: Vec<Value>,
@@ -81,29 +81,29 @@ pub struct Row {
     pub ms: Estimate,
     /// Time against the plain frame of the same round.
     pub ratio: Estimate,
-    /// What its first frame on a fresh device takes longer than a later one, milliseconds; where the topic starts them afresh.
+    /// The time by which its first frame on a fresh device takes longer than a later one, milliseconds; where the topic starts them afresh.
     pub start_ms: Option<Estimate>,
-    /// What its first frame allocated on the graphics card, bytes; all of it is held at once.
+    /// The memory that its first frame allocated on the GPU, bytes; all of it is held at once.
     pub gpu_bytes: u64,
-    /// What deformations made of the city.
+    /// The refinement of the city by deformations.
     pub refined: Option<Refined>,
     /// Whether nothing it may be compared with beats it.
     pub is_pareto: bool,
 }
 
-/// What deformations made of the city in a picture.
+/// The refinement of the city by deformations, in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refined {
-    /// How many.
+    /// The number of triangles.
     pub triangles: u64,
-    /// How far its edges are from where they should be, pixels: the median of those that are bent, and the largest.
+    /// The distances of its edges from where they should be, pixels: the median of those that are bent, and the largest.
     pub chords_px: [f64; 2],
 }
 
 /// Measures a topic; `watch` hears how many of how many steps are done.
 ///
 /// # Errors
-/// What the topic or drawing cannot do.
+/// The topic or drawing fails.
 pub fn measure(
     topic: &'static Topic,
     setup: &mut Setup<'_>,
@@ -160,7 +160,7 @@ pub fn measure(
 /// Time of a scene's frame, one sample, against that of another of the same size: drawn in turn, so many times.
 ///
 /// # Errors
-/// What drawing cannot do, and pictures larger than a target.
+/// Drawing fails, or pictures are larger than a target.
 pub fn frame_ratio(
     studio: &mut Studio,
     scene: &Scene,
@@ -233,11 +233,11 @@ fn compare(
         if let (Some(mask), Some(bits)) = (&variant.mask, &picture.lens_mask) {
             difference.wrong_mask_pixels = Some(difference::wrong_bits(mask, &bits[0]));
         }
-        if let Some(veil) = &variant.veil {
+        if let Some(composited) = &variant.composited {
             let Shot { scene, request, .. } = &variant.shot;
             difference.against_f64 = Some(match scene.style.transparency {
                 Transparency::Stochastic => Against::pictures(&picture, &right),
-                _ => Against::veil(&studio.veil(scene, request.size)?, &veil.veil),
+                _ => Against::transparency(&studio.transparency(scene, request.size)?, &composited.transparency),
             });
         }
         let figures = studio.renderer.deformed_figures();
@@ -286,7 +286,7 @@ fn start(
     Ok(cold)
 }
 
-/// What each variant takes on a card that has the city and the pipelines: its first frame after all targets and lists were dropped.
+/// Measures the memory of each variant on a GPU that has the city and the pipelines: its first frame after all targets and lists were dropped.
 fn allocate(
     studio: &mut Studio,
     trial: &Trial,
@@ -303,7 +303,7 @@ fn allocate(
     Ok(cold)
 }
 
-/// Marks who is on the Pareto front of those that may be compared.
+/// Marks the variants on the Pareto front of those that may be compared.
 pub fn mark_front(topic: &Topic, rows: &mut [Row]) {
     let group = |row: &Row| -> Vec<Value> { topic.alike.iter().filter_map(|&k| row.knobs.get(k).cloned()).collect() };
     for i in 0..rows.len() {
@@ -342,7 +342,7 @@ mod tests {
             name: "test",
             title: "",
             about: "",
-            specs: &[],
+            sources: &[],
             reference: "",
             knobs: &[Knob { name: "k", unit: "" }],
             x: Quantity::Flip,

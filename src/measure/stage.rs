@@ -16,10 +16,10 @@ use crate::{
     view::{Camera, View},
 };
 
-/// What a topic works with.
+/// The stage of a topic: what it draws with.
 #[derive(Debug)]
 pub struct Stage<'a> {
-    /// The city on the graphics card.
+    /// The city on the GPU.
     pub studio: &'a mut Studio,
     /// Width and height of all pictures, pixels.
     pub size: [u32; 2],
@@ -49,7 +49,7 @@ impl Stage<'_> {
     }
 
     /// Whether the shown place of each pixel of a picture of `scene`, which has no lenses, is in a focus area: by its definition,
-    /// in f64, from the depth that the picture has. Nothing of the lens tests on the card has a part in it.
+    /// in f64, from the depth that the picture has. Nothing of the lens tests on the GPU has a part in it.
     pub fn mask_in_f64(&mut self, scene: &Scene, focus: &Focus) -> Result<Vec<bool>, RenderError> {
         let mut request = Request::plain(self.size);
         request.aovs.depth = true;

@@ -1,4 +1,4 @@
-//! What a topic is: a name, and what it has drawn. One file each in [`crate::measure::topics`].
+//! A topic: a name, and what it has drawn. One file each in [`crate::measure::topics`].
 
 use std::{fmt, sync::Arc};
 
@@ -22,17 +22,17 @@ pub struct Topic {
     pub title: &'static str,
     /// One sentence: what is varied, and what for.
     pub about: &'static str,
-    /// Ids of the specification (`lenses.md`).
-    pub specs: &'static [&'static str],
-    /// What every variant is compared with, in words that follow "the reference is".
+    /// Where what is varied comes from: author and section (docs/sources.md).
+    pub sources: &'static [&'static str],
+    /// The thing that every variant is compared with, in words that follow "the reference is".
     pub reference: &'static str,
-    /// What is turned; a variant has one value for each.
+    /// The knobs that are turned; a variant has one value for each.
     pub knobs: &'static [Knob],
-    /// What the plot has along x.
+    /// The quantity along x in the plot.
     pub x: Quantity,
-    /// What it has along y, one panel each; the first is the time.
+    /// The quantities along y, one panel each; the first is the time.
     pub y: &'static [Quantity],
-    /// The two figures, both better when smaller, that decide who is on the Pareto front.
+    /// The two figures, both better when smaller, that decide which variants are on the Pareto front.
     pub front: [Quantity; 2],
     /// Knobs that variants must agree in to be compared: a picture of more effects does not lose against one of fewer.
     pub alike: &'static [usize],
@@ -80,38 +80,38 @@ impl fmt::Display for Value {
 /// A picture that can be drawn again and again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shot {
-    /// Of what.
+    /// The scene.
     pub scene: Scene,
-    /// How.
+    /// The request.
     pub request: Request,
-    /// What the frame before the timed one shows, where something moves.
+    /// The scene of the frame before the timed one, where something moves.
     pub before: Option<Scene>,
 }
 
 /// One of the things that are compared.
 #[derive(Clone, Debug)]
 pub struct Variant {
-    /// What stands beside its point in the plot: short, and unlike the others'.
+    /// The text beside its point in the plot: short, and unlike the others'.
     pub label: String,
     /// One value per knob of the topic, in their order.
     pub knobs: Vec<Value>,
-    /// What is drawn.
+    /// The picture that is drawn.
     pub shot: Shot,
-    /// What it is compared with; `None`: the trial's reference.
+    /// The picture that it is compared with; `None`: the trial's reference.
     pub reference: Option<Shot>,
-    /// Of translucent layers: what they are in f64.
-    pub veil: Option<Arc<Composited>>,
-    /// Of a picture with one lens: whether each pixel is in it, where something better than the reference says so.
+    /// The translucent layers in f64.
+    pub composited: Option<Arc<Composited>>,
+    /// For a picture with one lens: whether each pixel is in it, where something better than the reference says so.
     pub mask: Option<Arc<Vec<bool>>>,
 }
 
-/// What a topic has drawn.
+/// The pictures that a topic has drawn.
 #[derive(Clone, Debug)]
 pub struct Trial {
     /// The frame whose time is 1.
     pub plain: Shot,
-    /// What is right.
+    /// The picture that is right.
     pub reference: Shot,
-    /// What is compared, in the order of the table.
+    /// The variants that are compared, in the order of the table.
     pub variants: Vec<Variant>,
 }

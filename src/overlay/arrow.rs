@@ -1,4 +1,4 @@
-//! Arrows at the picture's border for what is outside of it, or behind the camera (B7).
+//! Arrows at the picture's border for what is outside of it, or behind the camera.
 
 use glam::DVec2;
 

@@ -36,7 +36,7 @@ pub struct Way {
 }
 
 impl Way {
-    /// Of points that may repeat; `None` if all are one.
+    /// Makes a way of points that may repeat; `None` if all are one.
     pub fn new(mut points: Vec<Lattice>) -> Option<Self> {
         points.dedup();
         let (first, rest) = points.split_first()?;
@@ -140,7 +140,7 @@ pub fn on_lattice(rect: &Rect) -> [Lattice; 2] {
     [rect.min, rect.max].map(|corner| corner.map(|v| i64::from(v) * STEPS))
 }
 
-/// How many crossings there are between two overlays and their lines: pairs of lines, and lines over the other's rectangle.
+/// The crossings between two overlays and their lines: pairs of lines, and lines over the other's rectangle.
 pub fn between(rect: &Rect, ways: &[Way], other_rect: &Rect, other_ways: &[Way]) -> u32 {
     let lines = ways.iter().map(|a| other_ways.iter().filter(|b| a.crosses(b)).count()).sum::<usize>();
     let over = ways.iter().filter(|a| a.crosses_overlay(other_rect)).count();

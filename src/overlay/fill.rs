@@ -1,7 +1,7 @@
-//! Who stands where: on which lane, further inward, or nowhere (B6).
+//! The place of each overlay: on a lane, further inward, or nowhere.
 //!
 //! Overlays are placed by priority, the higher first. All shrink together, by eighths of the way from the size that they want to their smallest, until the
-//! lanes hold all of them; if that is not enough, again until all find a place on the lanes or further inward; at their smallest size, who finds no place is
+//! lanes hold all of them; if that is not enough, again until all find a place on the lanes or further inward; at their smallest size, one that finds no place is
 //! folded. An overlay stands as little inward as it can: no place in the whole picture is missed, as one that touches nothing could be pushed outwards until
 //! it does. With n overlays and p points this takes O(n² + n p) where lanes hold all, and for each overlay that stands
 //! further inward a sweep over what is near ([`crate::overlay::inward`]).
@@ -91,12 +91,12 @@ fn fill_at(problem: &Problem, step: u32, inward: bool, folds: bool) -> Option<Fi
     Some(filled)
 }
 
-/// How badly a side suits an overlay: how far its wish is from the side, as a share of the picture, and half of the share of the lane that is taken.
+/// The cost of a side for an overlay: how far its wish is from the side, as a share of the picture, and half of the share of the lane that is taken.
 pub fn unease(problem: &Problem, item: usize, lane: &Lane, row: &[usize], sizes: &[[i32; 2]]) -> f64 {
     let (d, a) = (lane.side.depth_axis(), lane.side.along_axis());
     let extent = |i: usize| f64::from(problem.board.inner.size()[i].max(1));
     let from_first = ((problem.wish[item][d] - f64::from(problem.board.inner.min[d])) / extent(d)).clamp(0.0, 1.0);
     let far = if lane.side.is_first() { from_first } else { 1.0 - from_first };
     let taken: i32 = row.iter().map(|i| sizes[*i][a] + problem.board.gap).sum();
-    far + 0.5 * f64::from(taken) / f64::from((lane.span.1 - lane.span.0).max(1))
+    far + 0.5 * f64::from(taken) / f64::from(lane.span.length().max(1))
 }

@@ -24,7 +24,7 @@ const MOST_CELLS: i64 = 64;
 /// Crossings, and where they are.
 #[derive(Clone, Debug, Default)]
 pub struct Counted {
-    /// How many.
+    /// The number of crossings.
     pub crossings: Crossings,
     /// Pairs of lines that cross: segments that meet.
     pub lines: Vec<[Segment; 2]>,
@@ -106,7 +106,7 @@ pub fn count(rects: &[Option<Rect>], ways: &[Vec<Way>]) -> Counted {
     counted
 }
 
-/// What is to know of a segment.
+/// Facts about a segment.
 struct Known {
     ends: [Lattice; 2],
     /// Whether its line ends with it.
@@ -114,7 +114,7 @@ struct Known {
     name: Segment,
 }
 
-/// Pairs that were chosen of many, without a branch for each: which one is, nobody could foretell.
+/// Pairs that were chosen of many, without a branch for each: which one is cannot be foretold.
 #[derive(Default)]
 struct Chosen {
     pairs: Vec<[u32; 2]>,
@@ -137,7 +137,7 @@ impl Chosen {
     }
 }
 
-/// What of a segment or of an overlay is in a cell.
+/// The piece of a segment or of an overlay that is in a cell.
 #[derive(Clone, Copy, Debug, Default)]
 struct Piece {
     /// A box: parts of a cell from the grid's corner on.
@@ -270,7 +270,7 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Of numbers below `rows` and below `columns`.
+    /// Makes an empty one for numbers below `rows` and below `columns`.
     fn new(rows: usize, columns: usize) -> Self {
         Self { columns, bits: vec![0; (rows * columns).div_ceil(64)] }
     }

@@ -1,4 +1,4 @@
-//! Places further inward (B6): the least depth at a side at which an overlay has room.
+//! Places further inward: the least depth at a side at which an overlay has room.
 //!
 //! In the plane of depth and place along the side, each point and each overlay closes a rectangle of places to an overlay
 //! of a given size. A sweep over depth raises the depth at which each place along the side opens, by one rectangle after
@@ -14,10 +14,10 @@ use crate::overlay::{
     crossings::FURTHEST,
     lane::{Board, Side, Windows, nearest},
     problem::Problem,
-    rect::{Rect, closed_by},
+    rect::{Interval, Rect, closed_by},
 };
 
-/// What is known of the room further inward: for overlays of a size, or of a larger one, the least depth at each side at
+/// Knowledge of the room further inward: for overlays of a size, or of a larger one, the least depth at each side at
 /// which there may be some.
 ///
 /// It holds for one board as long as obstacles are only added.
@@ -45,11 +45,11 @@ impl Depths {
 /// A depth of which there is none.
 const NOWHERE: i32 = i32::MAX;
 
-/// Places that something closes: depths and places along the side, first and last of each.
+/// Places that something closes: depths, and places along the side.
 #[derive(Clone, Copy, Debug)]
 struct Closed {
-    depth: (i32, i32),
-    along: (i32, i32),
+    depth: Interval,
+    along: Interval,
 }
 
 impl Problem<'_> {
@@ -82,14 +82,15 @@ impl Problem<'_> {
             if least[k] > limit {
                 continue;
             }
-            let Some((depth, windows)) = room(board, side, size, obstacles, (least[k], limit)) else {
+            let looked_at = Interval { first: least[k], last: limit };
+            let Some((depth, windows)) = room(board, side, size, obstacles, looked_at) else {
                 least[k] = if limit < deepest { limit + 1 } else { NOWHERE };
                 continue;
             };
             least[k] = depth;
-            let span = (board.inner.min[a], board.inner.max[a]);
+            let span = board.inner.span(a);
             let wish = (self.wish[item][a] - f64::from(size[a]) * 0.5).clamp(-FURTHEST, FURTHEST) as i32;
-            if let Some(at) = nearest(&windows, wish, span.0, span.1) {
+            if let Some(at) = nearest(&windows, wish, span.low, span.high) {
                 let found = (depth, (at - wish).abs(), k);
                 if best.is_none_or(|best| found < best.0) {
                     best = Some((found, board.rect(side, at, depth, size)));
@@ -101,71 +102,70 @@ impl Problem<'_> {
     }
 }
 
-/// The least of the `depths` (first and last) at which an overlay of `size` has room at a side, and where along it.
-fn room(
-    board: &Board,
-    side: Side,
-    size: [i32; 2],
-    obstacles: &[Rect],
-    (first, last): (i32, i32),
-) -> Option<(i32, Windows)> {
+/// The least of the `depths` at which an overlay of `size` has room at a side, and where along it.
+fn room(board: &Board, side: Side, size: [i32; 2], obstacles: &[Rect], depths: Interval) -> Option<(i32, Windows)> {
     let (d, a) = (side.depth_axis(), side.along_axis());
-    let span = (board.inner.min[a], board.inner.max[a]);
+    let Interval { first, last } = depths;
+    let span = board.inner.span(a);
+    let places = Interval { first: span.low, last: span.high - size[a] };
     let windows = |depth: i32| board.windows(side, depth, size, span, obstacles);
     let here = windows(first);
     if !here.is_empty() {
         return Some((first, here));
     }
     let near = last.min(first + size[d] + board.gap);
-    let found = [(first + 1, near), (near + 1, last)].into_iter().find_map(|depths| {
-        let closed = closed(board, side, size, obstacles, depths);
-        least_depth(closed, (span.0, span.1 - size[a]), depths)
-    });
+    let behind = [Interval { first: first + 1, last: near }, Interval { first: near + 1, last }];
+    let found =
+        behind.into_iter().find_map(|depths| least_depth(closed(board, side, size, obstacles, depths), places, depths));
     found.map(|depth| (depth, windows(depth)))
 }
 
-/// What is closed to an overlay of `size` at some of the `depths` of a side, first and last.
-fn closed(board: &Board, side: Side, size: [i32; 2], obstacles: &[Rect], (first, last): (i32, i32)) -> Vec<Closed> {
+/// The places that are closed to an overlay of `size` at some of the `depths` of a side.
+fn closed(board: &Board, side: Side, size: [i32; 2], obstacles: &[Rect], depths: Interval) -> Vec<Closed> {
     let (d, a) = (side.depth_axis(), side.along_axis());
-    // Of places of the upper or left end, the depths; `None` if they are others.
-    let depths = |(low, high): (i32, i32)| {
-        let depths = if side.is_first() {
-            (low - board.inner.min[d], high - board.inner.min[d])
+    // The depths of places of the upper or left end; `None` if they are others.
+    let depth_of = |places: Interval| {
+        let inward = if side.is_first() {
+            let edge = board.inner.min[d];
+            Interval { first: places.first - edge, last: places.last - edge }
         } else {
-            (board.inner.max[d] - size[d] - high, board.inner.max[d] - size[d] - low)
+            let edge = board.inner.max[d] - size[d];
+            Interval { first: edge - places.last, last: edge - places.first }
         };
-        (depths.0 <= last && first <= depths.1).then(|| (depths.0.max(first), depths.1.min(last)))
+        inward.overlap(depths)
     };
-    let beside = |o: &Rect, i: usize| (o.min[i] - board.gap - size[i] + 1, o.max[i] + board.gap - 1);
-    let of_obstacle = |o: &Rect| Some(Closed { depth: depths(beside(o, d))?, along: beside(o, a) });
+    let beside =
+        |o: &Rect, i: usize| Interval { first: o.min[i] - board.gap - size[i] + 1, last: o.max[i] + board.gap - 1 };
+    let of_obstacle = |o: &Rect| Some(Closed { depth: depth_of(beside(o, d))?, along: beside(o, a) });
     let closes = |p: f64, i: usize| closed_by(p, board.clearance, size[i]);
-    let of_point = |p: &DVec2| Some(Closed { depth: depths(closes(p[d], d))?, along: closes(p[a], a) });
+    let of_point = |p: &DVec2| Some(Closed { depth: depth_of(closes(p[d], d))?, along: closes(p[a], a) });
     let points = board.points.iter().filter_map(of_point);
     points.chain(obstacles.iter().chain(&board.blocked).filter_map(of_obstacle)).collect()
 }
 
-/// The least of the depths from `first` to `last` at which not all places from `low` to `high` are closed.
-fn least_depth(mut closed: Vec<Closed>, (low, high): (i32, i32), (first, last): (i32, i32)) -> Option<i32> {
-    if low > high {
+/// The least of the `depths` at which not all `places` are closed.
+fn least_depth(mut closed: Vec<Closed>, places: Interval, depths: Interval) -> Option<i32> {
+    let Interval { first, last } = places;
+    if first > last {
         return None;
     }
-    closed.retain(|c| c.along.0 <= high && low <= c.along.1);
-    closed.sort_unstable_by_key(|c| c.depth.0);
+    closed.retain(|c| c.along.overlap(places).is_some());
+    closed.sort_unstable_by_key(|c| c.depth.first);
     // By place, the least depth that is open as far as has been looked; and the least of all, as it was last worked out.
-    let mut open = vec![first; (high - low) as usize + 1];
-    let mut least = first;
+    let mut open = vec![depths.first; (last - first) as usize + 1];
+    let mut least = depths.first;
     for c in closed {
         // What comes now begins here or further inward, and closes nothing before.
-        if c.depth.0 > least {
+        if c.depth.first > least {
             least = open.iter().fold(i32::MAX, |a, b| a.min(*b));
-            if c.depth.0 > least {
+            if c.depth.first > least {
                 break;
             }
         }
-        let along = (c.along.0.max(low) - low) as usize..=(c.along.1.min(high) - low) as usize;
-        open[along].iter_mut().for_each(|depth| *depth = (*depth).max(c.depth.1 + 1));
+        let along = (c.along.first.max(first) - first) as usize..=(c.along.last.min(last) - first) as usize;
+        open[along].iter_mut().for_each(|depth| *depth = (*depth).max(c.depth.last + 1));
     }
-    open.into_iter().min().filter(|least| *least <= last)
+    open.into_iter().min().filter(|least| *least <= depths.last)
 }
 
 #[cfg(test)]
@@ -182,21 +182,20 @@ mod tests {
             let number = |k: i32, most: i32| (seed * 31 + k * k * 17 + k * 7).rem_euclid(most);
             let one = |k: i32| {
                 let (depth, along) = (number(k, 30) - 5, number(k + 50, 40) - 5);
-                Closed { depth: (depth, depth + number(k + 9, 12)), along: (along, along + number(k + 3, 25)) }
+                let from = |first: i32, more: i32| Interval { first, last: first + more };
+                Closed { depth: from(depth, number(k + 9, 12)), along: from(along, number(k + 3, 25)) }
             };
             let closed: Vec<Closed> = (0..seed % 14).map(one).collect();
             let is_open = |depth: i32, at: i32| {
-                let over = |range: (i32, i32), v: i32| (range.0..=range.1).contains(&v);
+                let over = |range: Interval, v: i32| (range.first..=range.last).contains(&v);
                 !closed.iter().any(|c| over(c.depth, depth) && over(c.along, at))
             };
             for first in [0, 7] {
-                let of_these = |c: &Closed| {
-                    let depth = (c.depth.0.max(first), c.depth.1.min(20));
-                    (depth.0 <= depth.1).then_some(Closed { depth, ..*c })
-                };
+                let (places, depths) = (Interval { first: 3, last: 30 }, Interval { first, last: 20 });
+                let of_these = |c: &Closed| Some(Closed { depth: c.depth.overlap(depths)?, ..*c });
                 let clipped = closed.iter().filter_map(of_these).collect();
                 let tried = (first..=20).find(|depth| (3..=30).any(|at| is_open(*depth, at)));
-                assert_eq!(least_depth(clipped, (3, 30), (first, 20)), tried, "{closed:?}");
+                assert_eq!(least_depth(clipped, places, depths), tried, "{closed:?}");
             }
         }
     }

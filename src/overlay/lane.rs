@@ -5,7 +5,7 @@
 //! pass finds that out. Both are linear in the overlays and their windows.
 
 use crate::overlay::{
-    rect::{Rect, closed_by},
+    rect::{Interval, Rect, Span, closed_by},
     request::Along,
 };
 use glam::DVec2;
@@ -53,11 +53,11 @@ pub struct Board {
     pub inner: Rect,
     /// Between overlays, pixels.
     pub gap: i32,
-    /// Of points, pixels, finite, 0 and up.
+    /// Distance from points, pixels, finite, 0 and up.
     pub clearance: f64,
     /// The points not to be covered, finite, in the picture or just beside it.
     pub points: Vec<DVec2>,
-    /// What is left free like an overlay that stands there, pixels.
+    /// Rectangles that are left free like an overlay that stands there, pixels.
     pub blocked: Vec<Rect>,
 }
 
@@ -81,7 +81,7 @@ impl Board {
         Self { clearance, points, blocked: self.blocked.clone(), ..*self }
     }
 
-    /// How many points an overlay covers that stands there.
+    /// The number of points that an overlay covers that stands there.
     pub fn covered(&self, rect: &Rect) -> usize {
         self.points.iter().filter(|p| rect.covers(**p, self.clearance)).count()
     }
@@ -96,16 +96,9 @@ impl Board {
         !self.is_blocked(rect) && self.covered(rect) == 0
     }
 
-    /// Where an overlay can stand along a side at a depth, from `low` up to `high`, pixels: covering no point and keeping the gap from
-    /// `obstacles` and from what is blocked.
-    pub fn windows(
-        &self,
-        side: Side,
-        depth: i32,
-        size: [i32; 2],
-        (low, high): (i32, i32),
-        obstacles: &[Rect],
-    ) -> Windows {
+    /// Where an overlay can stand along a side at a depth, within `span`: covering no point and keeping the gap from `obstacles` and from
+    /// what is blocked.
+    pub fn windows(&self, side: Side, depth: i32, size: [i32; 2], span: Span, obstacles: &[Rect]) -> Windows {
         let (d, a) = (side.depth_axis(), side.along_axis());
         let length = size[a];
         let strip = self.rect(side, 0, depth, size);
@@ -119,13 +112,13 @@ impl Board {
             if !strip.covers_in(d, *point, self.clearance) {
                 continue;
             }
-            let (first, last) = closed_by(point[a], self.clearance, length);
+            let Interval { first, last } = closed_by(point[a], self.clearance, length);
             closed.push((first, last));
         }
         closed.sort_unstable();
-        let last_place = high - length;
+        let last_place = span.high - length;
         let mut windows = Windows::new();
-        let mut from = low;
+        let mut from = span.low;
         for (first, last) in closed {
             if first > from && from <= last_place {
                 windows.push((from, (first - 1).min(last_place)));
@@ -194,22 +187,23 @@ pub fn pack(row: &[Seat], gap: i32) -> Option<Vec<i32>> {
     row.iter().zip(latest).map(place).collect()
 }
 
-/// Where the overlays of a row would like to begin on a side from `low` to `high`: `lengths` pixels long, with anchors at `anchors` along the side.
+/// Where the overlays of a row would like to begin on a lane: `lengths` pixels long, with anchors at `anchors` along the side.
 ///
 /// `focused` (its number in the row) shall stand in the middle, those before and after it share what is left.
 pub fn wishes(
     along: Along,
-    (low, high): (i32, i32),
+    span: Span,
     lengths: &[i32],
     anchors: &[f64],
     gap: i32,
     focused: Option<usize>,
 ) -> Vec<i32> {
     if let Some(k) = focused {
-        let middle = low + (high - low - lengths[k]) / 2;
-        let mut all = wishes(along, (low, middle - gap), &lengths[..k], &anchors[..k], gap, None);
+        let middle = span.low + (span.length() - lengths[k]) / 2;
+        let before = Span { high: middle - gap, ..span };
+        let mut all = wishes(along, before, &lengths[..k], &anchors[..k], gap, None);
         all.push(middle);
-        let rest = (middle + lengths[k] + gap, high);
+        let rest = Span { low: middle + lengths[k] + gap, ..span };
         all.extend(wishes(along, rest, &lengths[k + 1..], &anchors[k + 1..], gap, None));
         return all;
     }
@@ -217,23 +211,23 @@ pub fn wishes(
     let count = lengths.len() as i32;
     match along {
         Along::Even => {
-            let room = high - low - total;
+            let room = span.length() - total;
             // Shares of the room, rounded one by one, so that the pixels that are left over are spread too.
-            let even = |k: i32| low + (i64::from(room) * i64::from(k + 1) / i64::from(count + 1)) as i32;
-            let tight = |k: i32| low + (room - gap * (count - 1)) / 2 + gap * k;
+            let even = |k: i32| span.low + (i64::from(room) * i64::from(k + 1) / i64::from(count + 1)) as i32;
+            let tight = |k: i32| span.low + (room - gap * (count - 1)) / 2 + gap * k;
             let is_tight = room < gap * (count + 1);
             let before = lengths.iter().scan(0, |sum, length| Some(std::mem::replace(sum, *sum + length)));
             before.zip(0..).map(|(before, k)| before + if is_tight { tight(k) } else { even(k) }).collect()
         }
         Along::Start => {
-            lengths.iter().scan(low, |at, length| Some(std::mem::replace(at, *at + length + gap))).collect()
+            lengths.iter().scan(span.low, |at, length| Some(std::mem::replace(at, *at + length + gap))).collect()
         }
-        Along::Anchors => near_anchors((low, high), lengths, anchors, gap),
+        Along::Anchors => near_anchors(span, lengths, anchors, gap),
     }
 }
 
 /// Least squares: each as near to the middle at its anchor as the others let it (pool adjacent violators; linear).
-fn near_anchors((low, high): (i32, i32), lengths: &[i32], anchors: &[f64], gap: i32) -> Vec<i32> {
+fn near_anchors(span: Span, lengths: &[i32], anchors: &[f64], gap: i32) -> Vec<i32> {
     // Less what stands before it each place must only not decrease.
     let before: Vec<i32> =
         lengths.iter().scan(0, |sum, length| Some(std::mem::replace(sum, *sum + length + gap))).collect();
@@ -247,17 +241,19 @@ fn near_anchors((low, high): (i32, i32), lengths: &[i32], anchors: &[f64], gap: 
         }
         pools.push(pool);
     }
-    let slack = high - low - lengths.iter().sum::<i32>() - gap * (lengths.len() as i32 - 1);
-    let last = f64::from(low) + f64::from(slack.max(0));
-    let places = pools
-        .iter()
-        .flat_map(|(mean, count)| std::iter::repeat_n(mean.clamp(f64::from(low), last).round() as i32, *count));
+    let slack = span.length() - lengths.iter().sum::<i32>() - gap * (lengths.len() as i32 - 1);
+    let low = f64::from(span.low);
+    let last = low + f64::from(slack.max(0));
+    let places =
+        pools.iter().flat_map(|(mean, count)| std::iter::repeat_n(mean.clamp(low, last).round() as i32, *count));
     places.zip(before).map(|(at, before)| at + before).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const SIDE: Span = Span { low: 10, high: 210 };
 
     fn board(points: &[[f64; 2]], clearance: f64) -> Board {
         Board {
@@ -278,21 +274,17 @@ mod tests {
 
     #[test]
     fn windows_leave_out_what_covers_a_point() {
-        let windows = |x: f64, y: f64, c: f64| board(&[[x, y]], c).windows(Side::Left, 0, [30, 20], (10, 210), &[]);
+        let windows = |x: f64, y: f64, c: f64| board(&[[x, y]], c).windows(Side::Left, 0, [30, 20], SIDE, &[]);
         assert_eq!(windows(20.0, 100.0, 6.0), [(10, 74), (106, 190)]);
         assert_eq!(windows(20.0, 100.5, 6.0), [(10, 74), (107, 190)]);
         assert_eq!(windows(20.0, 100.0, 0.0), [(10, 79), (101, 190)], "a point on the border is covered");
         assert_eq!(windows(46.0, 100.0, 6.0), [(10, 190)], "just beyond");
         assert_eq!(windows(20.0, 15.0, 6.0), [(21, 190)]);
         let obstacle = [Rect::new([35, 50], [10, 10])];
-        assert_eq!(board(&[], 0.0).windows(Side::Left, 0, [30, 20], (10, 210), &obstacle), [(10, 25), (65, 190)]);
-        assert_eq!(board(&[], 0.0).windows(Side::Left, 0, [21, 20], (10, 210), &obstacle), [(10, 25), (65, 190)]);
-        assert_eq!(
-            board(&[], 0.0).windows(Side::Left, 0, [20, 20], (10, 210), &obstacle),
-            [(10, 190)],
-            "the gap is kept"
-        );
-        assert!(board(&[], 0.0).windows(Side::Left, 0, [20, 201], (10, 210), &[]).is_empty());
+        assert_eq!(board(&[], 0.0).windows(Side::Left, 0, [30, 20], SIDE, &obstacle), [(10, 25), (65, 190)]);
+        assert_eq!(board(&[], 0.0).windows(Side::Left, 0, [21, 20], SIDE, &obstacle), [(10, 25), (65, 190)]);
+        assert_eq!(board(&[], 0.0).windows(Side::Left, 0, [20, 20], SIDE, &obstacle), [(10, 190)], "the gap is kept");
+        assert!(board(&[], 0.0).windows(Side::Left, 0, [20, 201], SIDE, &[]).is_empty());
     }
 
     #[test]
@@ -319,17 +311,18 @@ mod tests {
 
     #[test]
     fn wishes_share_the_room() {
-        let wish = |along, focused| wishes(along, (0, 100), &[10, 20, 10], &[90.0, 90.0, 10.0], 5, focused);
+        let wish =
+            |along, focused| wishes(along, Span { low: 0, high: 100 }, &[10, 20, 10], &[90.0, 90.0, 10.0], 5, focused);
         assert_eq!(wish(Along::Even, None), [15, 40, 75]);
         assert_eq!(wish(Along::Start, None), [0, 15, 40]);
         // By least squares the means of the three, less what is before each, are one: (85 + 65 − 35) / 3.
         assert_eq!(wish(Along::Anchors, None), [38, 53, 78]);
         assert_eq!(wish(Along::Even, Some(1)), [12, 40, 77], "the second in the middle");
         assert_eq!(
-            wishes(Along::Even, (0, 44), &[10; 4], &[0.0; 4], 5, None),
+            wishes(Along::Even, Span { low: 0, high: 44 }, &[10; 4], &[0.0; 4], 5, None),
             [-5, 10, 25, 40],
             "too many: tight, about the middle"
         );
-        assert_eq!(wishes(Along::Anchors, (0, 100), &[10, 10], &[-50.0, 400.0], 5, None), [0, 90]);
+        assert_eq!(wishes(Along::Anchors, Span { low: 0, high: 100 }, &[10, 10], &[-50.0, 400.0], 5, None), [0, 90]);
     }
 }

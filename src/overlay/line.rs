@@ -12,7 +12,7 @@ use crate::overlay::{
     request::{Focus, LineKind},
 };
 
-/// How far from the corners of an overlay lines begin, pixels; a quarter of the edge where that is less.
+/// The distance of the beginnings of lines from the corners of an overlay, pixels; a quarter of the edge where that is less.
 pub const INSET: i64 = 14;
 
 /// Segments of a curve.

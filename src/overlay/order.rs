@@ -1,4 +1,4 @@
-//! The order on the lanes that makes least lines cross (B7).
+//! The order on the lanes that makes least lines cross.
 //!
 //! For overlays of one size with one line each, the order of least total length has no crossing, where lines are straight: if two cross, the overlays change
 //! places, and both lines together become shorter, so this ends. It is how the search begins. Where overlays differ in size, have many lines or lines with
@@ -35,7 +35,7 @@ const KEPT_PROVEN: usize = 5;
 /// Stands for a lane where an overlay is further inward.
 const INWARD: usize = usize::MAX;
 
-/// What was found.
+/// The result of a search.
 #[derive(Clone, Debug)]
 pub struct Ordered {
     /// The overlays on each lane.
@@ -181,6 +181,25 @@ struct State<'p, 'a> {
     work: Cell<usize>,
 }
 
+/// Where an overlay stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Stand {
+    item: usize,
+    /// The lane; [`INWARD`] for one further inward.
+    lane: usize,
+    /// The number in the row, or among those further inward.
+    number: usize,
+}
+
+/// A change to try for one overlay.
+#[derive(Clone, Copy)]
+enum Change {
+    /// It changes places with another.
+    Swap(Stand),
+    /// It moves to a place of a lane.
+    Move { lane: usize, number: usize },
+}
+
 /// A change of rows that was looked at.
 struct Trial {
     rows: Vec<(usize, Vec<usize>)>,
@@ -189,7 +208,7 @@ struct Trial {
     /// Overlay, new rectangle, new ways.
     moved: Vec<(usize, Rect, Vec<Way>)>,
     crossings: u32,
-    /// Of all lines, lattice steps: how much longer they become.
+    /// The change of the length of all lines together, lattice steps; positive: longer.
     longer: f64,
 }
 
@@ -277,17 +296,22 @@ impl<'p, 'a> State<'p, 'a> {
         self.crossings = trial.crossings;
     }
 
-    /// Where each overlay stands: lane and number in the row; [`INWARD`] and the number there.
-    fn places(&self) -> Vec<(usize, usize, usize)> {
-        let row = |(k, row): (usize, &Vec<usize>)| row.iter().enumerate().map(|(n, i)| (*i, k, n)).collect::<Vec<_>>();
-        let mut places: Vec<_> = self.rows.iter().enumerate().flat_map(row).collect();
-        places.extend(self.inward.iter().enumerate().map(|(n, i)| (i.0, INWARD, n)));
+    /// Where each overlay stands.
+    fn places(&self) -> Vec<Stand> {
+        let of_row = |(lane, row): (usize, &Vec<usize>)| {
+            row.iter().enumerate().map(|(number, &item)| Stand { item, lane, number }).collect::<Vec<_>>()
+        };
+        let mut places: Vec<_> = self.rows.iter().enumerate().flat_map(of_row).collect();
+        let inward = self.inward.iter().enumerate();
+        places.extend(inward.map(|(number, &(item, ..))| Stand { item, lane: INWARD, number }));
         places.sort_unstable();
         places
     }
 
     /// Two overlays change places; further inward only those of one size can.
-    fn swapped(&self, (i, k, m): (usize, usize, usize), (j, l, n): (usize, usize, usize)) -> Option<Trial> {
+    fn swapped(&self, one: Stand, other: Stand) -> Option<Trial> {
+        let Stand { item: i, lane: k, number: m } = one;
+        let Stand { item: j, lane: l, number: n } = other;
         let sizes = &self.packer.filled.sizes;
         if (k == INWARD || l == INWARD) && sizes[i] != sizes[j] {
             return None;
@@ -311,7 +335,8 @@ impl<'p, 'a> State<'p, 'a> {
     }
 
     /// An overlay of a lane moves to place `n` of lane `l`.
-    fn moved(&self, (item, k, m): (usize, usize, usize), (l, n): (usize, usize)) -> Option<Trial> {
+    fn moved(&self, from: Stand, l: usize, n: usize) -> Option<Trial> {
+        let Stand { item, lane: k, number: m } = from;
         if k == INWARD {
             return None;
         }
@@ -334,7 +359,7 @@ impl<'p, 'a> State<'p, 'a> {
             let places = self.places();
             'pairs: for (a, first) in places.iter().enumerate() {
                 for second in &places[a + 1..] {
-                    if self.counts[first.0][second.0] == 0 {
+                    if self.counts[first.item][second.item] == 0 {
                         continue;
                     }
                     if self.work.get() > work {
@@ -359,19 +384,19 @@ impl<'p, 'a> State<'p, 'a> {
             let places = self.places();
             let troubled = |i: usize| self.counts[i].iter().any(|c| *c > 0);
             let mut best: Option<Trial> = None;
-            'all: for first in places.iter().filter(|p| troubled(p.0)) {
-                let others = places.iter().filter(|p| p.0 != first.0).map(|p| (*p, true));
-                let gaps = self
-                    .rows
-                    .iter()
-                    .enumerate()
-                    .flat_map(|(k, row)| (0..=row.len()).map(move |n| ((usize::MAX, k, n), false)));
-                for (second, swap) in others.chain(gaps) {
+            'all: for first in places.iter().filter(|p| troubled(p.item)) {
+                let swaps = places.iter().filter(|p| p.item != first.item).map(|p| Change::Swap(*p));
+                let gaps = self.rows.iter().enumerate();
+                let moves =
+                    gaps.flat_map(|(lane, row)| (0..=row.len()).map(move |number| Change::Move { lane, number }));
+                for change in swaps.chain(moves) {
                     if self.work.get() > work {
                         break 'all;
                     }
-                    let trial =
-                        if swap { self.swapped(*first, second) } else { self.moved(*first, (second.1, second.2)) };
+                    let trial = match change {
+                        Change::Swap(other) => self.swapped(*first, other),
+                        Change::Move { lane, number } => self.moved(*first, lane, number),
+                    };
                     let Some(trial) = trial.filter(|t| t.crossings < self.crossings) else { continue };
                     let is_better = |b: &Trial| (trial.crossings, trial.longer) < (b.crossings, b.longer);
                     if best.as_ref().is_none_or(is_better) {

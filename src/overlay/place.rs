@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::overlay::{
+    coherence::{Kept, Turns, all_ways, dead_band, keep},
     crossings::{Way, pixels},
     fill::fill,
     grid::count,
@@ -12,7 +13,6 @@ use crate::overlay::{
     problem::{Filled, Problem},
     rect::Rect,
     request::Request,
-    steady::{Kept, Turns, all_ways, dead_band, keep},
 };
 
 /// Folded overlays whose anchors are nearer to each other than this share a marker, pixels.
@@ -21,7 +21,7 @@ pub const MARKER_RADIUS: f64 = 24.0;
 /// Places overlays and draws their lines. `before`: what this call gave for the frame before; without it, the result depends on the request alone.
 ///
 /// Overlays keep the gap between each other and the margin to the border, and cover no point that they could avoid. With a frame before they keep still
-/// ([`crate::overlay::steady`]), but never at the price of these promises.
+/// ([`crate::overlay::coherence`]), but never at the price of these promises.
 ///
 /// From nothing O(n² + n p) for n overlays and p points where lanes hold them all, for each that stands further inward a sweep over what is near
 /// ([`crate::overlay::inward`]), and a bounded search for the order. With a frame before O(n² + n p), all of it comparisons of boxes.

@@ -1,4 +1,4 @@
-//! What a layout is: places, markers, context lines and their crossings, and what could not be done.
+//! A layout: places, markers, context lines and their crossings, and what could not be done.
 
 use crate::overlay::{lane::Side, rect::Rect, request::Request};
 use glam::DVec2;
@@ -10,7 +10,7 @@ pub struct Placed {
     pub placements: Vec<Placement>,
     /// Those that have none, by id.
     pub folded: Vec<u32>,
-    /// What stands for those that are folded.
+    /// Markers that stand for those that are folded.
     pub markers: Vec<Marker>,
     /// The context lines, by overlay and anchor.
     pub lines: Vec<ContextLine>,
@@ -19,7 +19,7 @@ pub struct Placed {
     /// Whether no other order along the lanes has less crossings, with as many overlays on each. True only where there are none, or where this call
     /// tried all orders.
     pub is_least: bool,
-    /// What could not be done, by overlay.
+    /// The wishes that could not be met, by overlay.
     pub facts: Vec<Fact>,
     /// The sides along which overlays are on their way: the next call moves them further, even if nothing else changes.
     pub gliding: Vec<Side>,
@@ -29,15 +29,15 @@ pub struct Placed {
     pub jump: Option<Jump>,
     /// Eighths of the way from wanted to smallest sizes, 0..8.
     pub step: u32,
-    /// What was asked for.
+    /// The request.
     pub request: Request,
     /// The overlay in the exploration focus.
     pub focused: Option<u32>,
     /// Crossings for which no better order was found: it is not looked for again until their number changes.
     pub(crate) hopeless: u32,
-    /// Who of those that wait for a place, or for a better one, had its turn last.
+    /// The overlay that had the last turn, of those that wait for a place, or for a better one.
     pub(crate) turn: Option<u32>,
-    /// How many of them had theirs since the request or a place has changed.
+    /// The number of them that had a turn since the request or a place has changed.
     pub(crate) tried: usize,
 }
 
@@ -67,7 +67,7 @@ pub struct Placement {
     pub seat: Seat,
 }
 
-/// How an overlay stands at its side.
+/// The way in which an overlay stands at its side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seat {
     /// In the row along it; the number counts from the top or from the left.
@@ -96,7 +96,7 @@ pub struct Marker {
 /// A context line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContextLine {
-    /// Whose.
+    /// The overlay.
     pub overlay: u32,
     /// Which of its anchors, by number.
     pub anchor: usize,
@@ -120,7 +120,7 @@ impl Crossings {
     }
 }
 
-/// What could not be done.
+/// A wish that could not be met.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fact {
     /// The overlay covers points, which it would wherever it stood; numbers in [`Request::avoid`].

@@ -4,7 +4,7 @@ use crate::overlay::{
     crossings::{FURTHEST, pixels},
     lane::{Board, Side, nearest},
     line::Target,
-    rect::Rect,
+    rect::{Rect, Span},
     request::{Align, Arrangement, Order, Overlay, Request},
     size::{Sizes, sizes_of},
 };
@@ -16,14 +16,14 @@ use glam::DVec2;
 pub struct Lane {
     /// The side.
     pub side: Side,
-    /// First and last pixel of the part, without the corners where lanes would meet.
-    pub span: (i32, i32),
+    /// The part, without the corners where lanes would meet.
+    pub span: Span,
 }
 
 /// A request made ready: overlays in order of priority, all numbers finite.
 #[derive(Clone, Debug)]
 pub struct Problem<'a> {
-    /// What was asked for.
+    /// The request.
     pub request: &'a Request,
     /// The overlays, the highest priority first, then the lowest id. Elsewhere an overlay is its number in this list.
     pub overlays: Vec<&'a Overlay>,
@@ -89,7 +89,7 @@ impl<'a> Problem<'a> {
             let a = side.along_axis();
             let corner = |crossing: Side| if sides.contains(&crossing) { thick[a] + gap } else { 0 };
             let (first, last) = (Side::ALL[a * 2], Side::ALL[a * 2 + 1]);
-            Lane { side, span: (inner.min[a] + corner(first), inner.max[a] - corner(last)) }
+            Lane { side, span: Span { low: inner.min[a] + corner(first), high: inner.max[a] - corner(last) } }
         };
         sides.iter().map(lane).collect()
     }
@@ -100,7 +100,7 @@ impl<'a> Problem<'a> {
         min[0] > room[0] || min[1] > room[1]
     }
 
-    /// What it is placed by, higher before lower.
+    /// The number that it is placed by, higher before lower.
     pub fn rank(&self, item: usize) -> f64 {
         rank(self.overlays[item])
     }
@@ -142,7 +142,7 @@ impl<'a> Problem<'a> {
             depths.push(0);
             depths.sort_unstable();
             depths.dedup();
-            let span = (board.inner.min[a], board.inner.max[a]);
+            let span = board.inner.span(a);
             let wish = (self.wish[item][a] - f64::from(size[a]) * 0.5).clamp(-FURTHEST, FURTHEST) as i32;
             for depth in depths.into_iter().filter(|at| *at >= 0 && at + size[d] <= board.inner.size()[d]) {
                 let windows = bare.windows(side, depth, size, span, obstacles);
@@ -151,7 +151,7 @@ impl<'a> Problem<'a> {
                     [(p[a] + board.clearance).ceil(), (p[a] - board.clearance).floor() - f64::from(size[a])]
                 });
                 let wishes = ends.chain(beside.map(|at| at as i32)).chain([wish]);
-                for at in wishes.filter_map(|at| nearest(&windows, at, span.0, span.1)) {
+                for at in wishes.filter_map(|at| nearest(&windows, at, span.low, span.high)) {
                     let rect = board.rect(side, at, depth, size);
                     let cost = (
                         board.points.iter().filter(|p| rect.covers(**p, board.clearance)).count(),
@@ -167,7 +167,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Who stands where.
+/// The place of each overlay.
 #[derive(Clone, Debug)]
 pub struct Filled {
     /// Steps of shrinking, 0..[`crate::overlay::size::SHRINK_STEPS`].

@@ -11,6 +11,39 @@ pub struct Rect {
     pub max: [i32; 2],
 }
 
+/// A stretch along an axis, whole pixels; `high` is the first pixel that is no more of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// Where it begins.
+    pub low: i32,
+    /// Where it ends.
+    pub high: i32,
+}
+
+impl Span {
+    /// Its length, pixels.
+    pub fn length(self) -> i32 {
+        self.high - self.low
+    }
+}
+
+/// Whole numbers from the first to the last, both included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Interval {
+    /// The least.
+    pub first: i32,
+    /// The largest.
+    pub last: i32,
+}
+
+impl Interval {
+    /// The part of both, if there is any.
+    pub fn overlap(self, other: Self) -> Option<Self> {
+        let both = Self { first: self.first.max(other.first), last: self.last.min(other.last) };
+        (both.first <= both.last).then_some(both)
+    }
+}
+
 impl Rect {
     /// From its upper left corner and its size, pixels.
     pub fn new(min: [i32; 2], size: [i32; 2]) -> Self {
@@ -20,6 +53,11 @@ impl Rect {
     /// Width and height, pixels.
     pub fn size(&self) -> [i32; 2] {
         [self.max[0] - self.min[0], self.max[1] - self.min[1]]
+    }
+
+    /// Its extent along an axis (0 x, 1 y).
+    pub fn span(&self, axis: usize) -> Span {
+        Span { low: self.min[axis], high: self.max[axis] }
     }
 
     /// Its middle, pixels.
@@ -68,7 +106,7 @@ fn covers(low: i32, high: i32, at: f64, clearance: f64) -> bool {
 }
 
 /// The first and the last pixel from which an interval of `length` pixels (1 and up) covers a coordinate: asked of the same predicate as all else.
-pub fn closed_by(at: f64, clearance: f64, length: i32) -> (i32, i32) {
+pub fn closed_by(at: f64, clearance: f64, length: i32) -> Interval {
     // Truncation is at most one off, and this is cheaper than rounding.
     let near = if at < f64::from(at as i32) { at as i32 - 1 } else { at as i32 };
     let (mut first, mut last) = ((at - clearance) as i32 - length - 1, (at + clearance) as i32 + 1);
@@ -78,7 +116,7 @@ pub fn closed_by(at: f64, clearance: f64, length: i32) -> (i32, i32) {
     while last > near && !covers(last, last + length, at, clearance) {
         last -= 1;
     }
-    (first, last)
+    Interval { first, last }
 }
 
 #[cfg(test)]

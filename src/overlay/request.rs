@@ -1,4 +1,4 @@
-//! What a layout is asked for: overlays, their limits and their anchors, and how they are to be arranged.
+//! The request for a layout: overlays, their limits and their anchors, and their arrangement.
 
 use glam::DVec2;
 
@@ -13,13 +13,12 @@ pub struct Request {
     pub overlays: Vec<Overlay>,
     /// Points that no overlay should cover, pixels: all points of interest that are seen. What is not finite is left out.
     pub avoid: Vec<DVec2>,
-    /// How far, in x or in y, an overlay stays from each of those points, pixels, 0 and up; 6 looks well.
+    /// The distance, in x or in y, that an overlay keeps from each of those points, pixels, 0 and up; 6 looks well.
     pub clearance: f64,
-    /// What overlays leave free as they do one another, with the gap: a title, a legend. Pixels, each `max` above its `min`; what is outside of the
-    /// picture does not
-    /// matter. Who has no room beside them is folded.
+    /// Rectangles that overlays leave free as they do one another, with the gap: a title, a legend. Pixels, each `max` above its `min`; what is outside of the
+    /// picture does not matter. An overlay that has no room beside them is folded.
     pub blocked: Vec<Rect>,
-    /// How they are arranged.
+    /// Their arrangement.
     pub layout: Layout,
 }
 
@@ -56,29 +55,29 @@ pub enum Focus {
     Area(Vec<DVec2>),
 }
 
-/// How overlays are arranged.
+/// The arrangement of overlays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// The sides of the picture along which they stand.
     pub arrangement: Arrangement,
     /// Their order along a side.
     pub order: Order,
-    /// How the room of a side is shared.
+    /// The rule by which the room of a side is shared.
     pub along: Along,
-    /// How large they are.
+    /// The rule for their sizes.
     pub size: SizeRule,
     /// Between overlays and the picture's border, whole pixels.
     pub margin: u32,
     /// Between two overlays, whole pixels.
     pub gap: u32,
-    /// How far inward overlays may stand that have no room along their side, as a share of the picture, 0..1. At 1 they go wherever there is room,
+    /// The distance inward up to which overlays may stand that have no room along their side, as a share of the picture, 0..1. At 1 they go wherever there is room,
     /// at 0 they are folded.
     pub reach: f64,
     /// Exploration focus: the overlay whose first anchor is nearest to this centre of interest (pixels) stands in the middle of its side.
     pub centre_of_interest: Option<DVec2>,
     /// An overlay keeps still until its best place is further away than this, pixels, 0 and up.
     pub dead_band: f64,
-    /// How far an overlay glides per call, pixels, 1 and up; infinite: in one step.
+    /// The distance that an overlay glides per call, pixels, 1 and up; infinite: in one step.
     pub glide: f64,
     /// Up to how many overlays the least number of crossings is proven, where it is not zero: all orders are tried, which takes
     /// a millisecond for 6, and nine times as long for each more. At most 9, and at most 5 with a frame before.
@@ -138,7 +137,7 @@ pub enum Order {
     Id,
 }
 
-/// How the room of a side is shared.
+/// The rule by which the room of a side is shared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// With equal room between them, and at the ends.
@@ -149,7 +148,7 @@ pub enum Along {
     Anchors,
 }
 
-/// How large overlays are before they have to shrink.
+/// The rule for the sizes of overlays before they have to shrink.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SizeRule {
     /// As they prefer.

@@ -1,4 +1,4 @@
-//! The skin of a context line: trapezoids with projective texture coordinates, and how it fades (B7; Trapp 3.4.3).
+//! The skin of a context line: trapezoids with projective texture coordinates, and how it fades (Trapp §3.4.3).
 
 use glam::DVec2;
 
@@ -57,7 +57,7 @@ pub fn ribbon(points: &[DVec2], width_overlay: f64, width_focus: f64) -> Vec<[Co
     crosscuts.windows(2).map(|c| [c[0][0], c[0][1], c[1][1], c[1][0]]).collect()
 }
 
-/// How visible a fragment of a line at `fragment` is near the centre of interest `centre` (both pixels): 0 up to the distance `inner`, 1 from
+/// The visibility of a fragment of a line at `fragment` near the centre of interest `centre` (both pixels): 0 up to the distance `inner`, 1 from
 /// `outer` on, t²(3 − 2t) between; where the two are equal, a step. 0 ≤ inner ≤ outer, pixels; an inner radius above the outer counts as equal to it.
 pub fn fade(centre: DVec2, fragment: DVec2, inner: f64, outer: f64) -> f64 {
     let distance = centre.distance(fragment);

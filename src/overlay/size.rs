@@ -1,4 +1,4 @@
-//! Sizes of overlays (B6): as they prefer, by distance or by interest, and shrunk where there is no room.
+//! Sizes of overlays: as they prefer, by distance or by interest, and shrunk where there is no room.
 
 use glam::DVec2;
 

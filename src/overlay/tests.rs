@@ -51,11 +51,11 @@ fn check(request: &Request, placed: &Placed) -> Result<(), String> {
         }
         let covered: Vec<usize> =
             (0..request.avoid.len()).filter(|&n| a.rect.covers(request.avoid[n], request.clearance)).collect();
-        let told = placed.facts.iter().find_map(|f| match f {
+        let said = placed.facts.iter().find_map(|f| match f {
             Fact::Covers { overlay, points } if *overlay == a.id => Some(points.clone()),
             _ => None,
         });
-        if told.unwrap_or_default() != covered {
+        if said.unwrap_or_default() != covered {
             return Err(format!("{a:?} covers {covered:?} and does not tell"));
         }
         if !covered.is_empty() && avoidable(request, a.id) {
@@ -95,8 +95,8 @@ fn avoidable(request: &Request, id: u32) -> bool {
     (margin..=margin + room[0] - size[0]).any(|x| (margin..=margin + room[1] - size[1]).any(|y| free(x, y)))
 }
 
-/// All of a frame but what the next one needs to know.
-fn told(placed: &Placed) -> Placed {
+/// A frame without what only the next one needs to know.
+fn seen_part(placed: &Placed) -> Placed {
     Placed { settled: true, jump: None, request: Request::default(), turn: None, tried: 0, ..placed.clone() }
 }
 
@@ -201,7 +201,7 @@ fn nothing_and_degenerate_requests_are_defined() {
         let placed = place(&asked, None);
         assert_eq!(placed.folded.len(), if picture[0] > 2000 { 0 } else { 5 }, "{picture:?}");
         assert!(placed.lines.is_empty() && placed.facts.contains(&Fact::NoAnchor { overlay: 0, anchor: 0 }));
-        assert_eq!(told(&placed), told(&place(&asked, Some(&placed))));
+        assert_eq!(seen_part(&placed), seen_part(&place(&asked, Some(&placed))));
     }
     let mut asked =
         request(vec![overlay(0, sized(5000.0, 3000.0), [-1e9, f64::INFINITY])], Arrangement::Horizontal(Align::Both));
@@ -266,7 +266,7 @@ fn orders_that_are_asked_for_are_kept() {
         ids.sort_by_key(|id| rect_of(&placed, *id).min[1]);
         assert_eq!(ids, expected, "{order:?}");
         assert_eq!(placed.crossings.lines > 0, order != Order::Anchors);
-        assert_eq!(told(&place(&asked, Some(&placed))), told(&placed));
+        assert_eq!(seen_part(&place(&asked, Some(&placed))), seen_part(&placed));
     }
 }
 
@@ -502,7 +502,7 @@ proptest! {
         let mut turned = asked.clone();
         let count = turned.overlays.len().max(1);
         turned.overlays.rotate_left(turn % count);
-        prop_assert_eq!(&told(&place(&turned, None)), &told(&placed));
+        prop_assert_eq!(&seen_part(&place(&turned, None)), &seen_part(&placed));
         turned.avoid.reverse();
         prop_assert_eq!(&place(&turned, None).placements, &placed.placements);
         // If nothing changes, overlays come to rest; from nothing they may still grow.
@@ -515,7 +515,7 @@ proptest! {
         prop_assert!(rest.is_some());
         // What would be, did the frame not know that it is settled.
         let asked_again = place(&asked, Some(&Placed { settled: false, ..last.clone() }));
-        prop_assert_eq!(&told(&asked_again), &told(&last));
+        prop_assert_eq!(&seen_part(&asked_again), &seen_part(&last));
         check(&asked, &last).map_err(TestCaseError::fail)?;
     }
 

@@ -1,4 +1,4 @@
-//! Depth sprites that a frame has to make: bake requests, and the numbers that the card makes each from.
+//! Depth sprites that a frame has to make: bake requests, and the numbers that the GPU makes each from.
 
 use crate::{
     lens::SpriteSpace,

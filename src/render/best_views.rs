@@ -1,4 +1,4 @@
-//! The balls around objects, and the directions that they are seen best from, found once (B2).
+//! The balls around objects, and the directions that they are seen best from, found once.
 
 use std::{
     collections::HashMap,

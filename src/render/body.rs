@@ -43,14 +43,14 @@ pub enum Leaf {
 pub struct Members {
     /// One per object of the city: whether it is one, be it in part.
     pub objects: Arc<[bool]>,
-    /// Where some come or go (O6), from which threshold of a pixel on and below which each object is in, 0 to 1; `None`: members are
+    /// Where some come or go, from which threshold of a pixel on and below which each object is in, 0 to 1; `None`: members are
     /// wholly in.
     pub thresholds: Option<Arc<[[f32; 2]]>>,
     /// Box around what is shown of them, metres.
     pub bounds: Aabb,
 }
 
-/// A leaf, and where the card has what belongs to it.
+/// A leaf, and where the GPU has what belongs to it.
 #[derive(Clone, Debug)]
 pub struct PlacedLeaf {
     /// The leaf.

@@ -1,6 +1,6 @@
-//! Cells: the objects of a city in groups that stand near each other, and in which detail a view draws each of them (B8).
+//! Cells: the objects of a city in groups that stand near each other, and in which detail a view draws each of them.
 //!
-//! The order of a city's triangles on the card is that of its cells: near numbers are near places. What is terrain belongs to none.
+//! The order of a city's triangles on the GPU is that of its cells: near numbers are near places. What is terrain belongs to none.
 
 use std::ops::Range;
 

@@ -56,7 +56,7 @@ impl DrawnSection<'_> {
 }
 
 impl<'a> Cities<'a> {
-    /// All that the card holds.
+    /// All that the GPU holds.
     pub fn all(&self) -> impl Iterator<Item = &'a CityOnGpu> + use<'a> {
         self.own_ones().chain(self.contents.others())
     }

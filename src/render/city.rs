@@ -1,4 +1,4 @@
-//! The city on the graphics card: made once, then only read.
+//! The city on the GPU: made once, then only read.
 //!
 //! Tiles are put in the order of their cells ([`crate::render::cells`]) and cut into chunks of about [`CHUNK_TRIANGLES`] triangles; a
 //! view draws the chunks its frustum meets, near ones first. Block models, once small views ask for them, are chunks beside the others. Textured faces stand apart by texture, and those that
@@ -109,7 +109,7 @@ pub struct CityBuffers {
     pub triangles: u64,
     /// Drawn vertices, the plain ground included.
     pub vertices: u64,
-    /// Bytes on the card.
+    /// Bytes on the GPU.
     pub bytes: u64,
     /// Box around everything drawn.
     pub bounds: Aabb,

@@ -1,4 +1,4 @@
-//! A city on the graphics card: its buffers, what binds them, and its edges once something drew lines.
+//! A city on the GPU: its buffers, what binds them, and its edges once something drew lines.
 
 use crate::{
     city::CityModel,
@@ -31,7 +31,7 @@ pub(super) struct CityOnGpu {
 }
 
 impl CityOnGpu {
-    /// Puts what is shown of a city on the card, and the block models of its objects where there are some.
+    /// Puts what is shown of a city on the GPU, and the block models of its objects where there are some.
     pub fn new(gpu: &Gpu, pipelines: &Pipelines, shown: &Shown, blocks: Option<&CityModel>) -> Result<Self, GpuError> {
         let buffers = CityBuffers::new(gpu, shown, blocks)?;
         let surfaces = wgpu::BindingResource::TextureView(&buffers.surfaces);
@@ -45,7 +45,7 @@ impl CityOnGpu {
         Self { group: of.group.clone(), images, buffers, edges: None, sources: None, edge_sources: None }
     }
 
-    /// Puts the edges of what it shows on the card, if they are not there.
+    /// Puts the edges of what it shows on the GPU, if they are not there.
     pub fn find_edges(&mut self, gpu: &Gpu, shown: &Shown) -> Result<(), GpuError> {
         if self.edges.is_none() {
             self.edges = Some(EdgeBuffers::new(gpu, shown, &self.buffers, &Default::default())?);

@@ -21,7 +21,7 @@ pub(super) struct Source {
 }
 
 impl Source {
-    /// What the card has of a section.
+    /// What the GPU has of a section.
     pub fn read(gpu: &Gpu, section: &Section) -> Result<Self, GpuError> {
         let of = |buffer: &wgpu::Buffer| gpu.read_buffer(buffer);
         let texcoords = match (section.kind, &section.extra) {

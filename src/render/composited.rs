@@ -1,4 +1,4 @@
-//! Translucent layers composited in f64, from the colour and the opacity of each: what methods are measured against (O7, U1).
+//! Translucent layers composited in f64, from the colour and the opacity of each: what methods are measured against.
 
 use crate::{
     render::picture::{RenderError, Studio},
@@ -9,19 +9,19 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Composited {
     /// Colours times opacity, linear light, and what is let through.
-    pub veil: Vec<[f64; 4]>,
+    pub transparency: Vec<[f64; 4]>,
     /// How many layers the pixel has that has most.
     pub most_layers: u32,
 }
 
-/// What a veil may be off over any background from black to white: the larger of what colours are off over these, linear light.
+/// The error of transparency over any background from black to white: the larger of what colours are off over these, linear light.
 pub fn error(found: [f64; 4], right: [f64; 4]) -> [f64; 3] {
     let over_white = found[3] - right[3];
     [0, 1, 2].map(|i| (found[i] - right[i]).abs().max((found[i] - right[i] + over_white).abs()))
 }
 
 impl Studio {
-    /// The layers of the exact method, each shaded on the card in f32 and laid here in f64; unjittered, `size` fits one target
+    /// The layers of the exact method, each shaded on the GPU in f32 and laid here in f64; unjittered, `size` fits one target
     /// ([`crate::render::parts::TILE`]). Draws as many frames as the deepest pixel has layers.
     ///
     /// # Errors
@@ -29,22 +29,26 @@ impl Studio {
     pub fn composited_in_f64(&mut self, scene: &Scene, size: [u32; 2]) -> Result<Composited, RenderError> {
         let mut exact = scene.clone();
         exact.style.transparency = Transparency::Exact;
-        let mut found =
-            Composited { veil: vec![[0.0, 0.0, 0.0, 1.0]; size[0] as usize * size[1] as usize], most_layers: 0 };
+        let mut found = Composited {
+            transparency: vec![[0.0, 0.0, 0.0, 1.0]; size[0] as usize * size[1] as usize],
+            most_layers: 0,
+        };
         loop {
             self.renderer.settings.picked_layer = Some(found.most_layers);
-            let layer = self.veil(&exact, size);
+            let layer = self.transparency(&exact, size);
             self.renderer.settings.picked_layer = None;
             // None of a pixel is 1; an opacity comes as its negative.
             let mut is_any = false;
-            for (veil, [r, g, b, opacity]) in found.veil.iter_mut().zip(layer?).filter(|(_, layer)| layer[3] <= 0.0) {
+            for (over, [r, g, b, opacity]) in
+                found.transparency.iter_mut().zip(layer?).filter(|(_, layer)| layer[3] <= 0.0)
+            {
                 is_any = true;
                 let a = -f64::from(opacity);
-                let through = veil[3];
-                for (sum, c) in veil.iter_mut().zip([r, g, b]) {
+                let through = over[3];
+                for (sum, c) in over.iter_mut().zip([r, g, b]) {
                     *sum += through * a * f64::from(c);
                 }
-                veil[3] *= 1.0 - a;
+                over[3] *= 1.0 - a;
             }
             if !is_any {
                 return Ok(found);
@@ -58,7 +62,7 @@ impl Studio {
     ///
     /// # Errors
     /// What drawing cannot do.
-    pub fn veil(&mut self, scene: &Scene, size: [u32; 2]) -> Result<Vec<[f32; 4]>, RenderError> {
+    pub fn transparency(&mut self, scene: &Scene, size: [u32; 2]) -> Result<Vec<[f32; 4]>, RenderError> {
         self.redraw(scene, size)?;
         while self.renderer.makes_room()? | self.renderer.sorts_longer()? {
             self.redraw(scene, size)?;

@@ -41,7 +41,7 @@ pub struct ContentCities {
 /// The contents of a scene in a frame.
 #[derive(Clone, Debug, Default)]
 pub struct SceneContents {
-    /// What the card is to hold.
+    /// What the GPU is to hold.
     pub wanted: Vec<WantedContent>,
     /// What its lenses show, bottom lens first.
     pub uses: Vec<ContentUse>,

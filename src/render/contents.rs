@@ -1,6 +1,6 @@
-//! Contents of lenses on the graphics card (C3): cities that are drawn beside the scene's own, and where they stand.
+//! Contents of lenses on the GPU: cities that are drawn beside the scene's own, and where they stand.
 //!
-//! A content is a city on the card, a placement and a number. Several contents may show one city: vertices are the same, only
+//! A content is a city on the GPU, a placement and a number. Several contents may show one city: vertices are the same, only
 //! the uniform `City` differs. The surfaces of all stand in one table, the scene's own first, so that a pixel's code says
 //! all there is to know; directions in it are those after turning.
 
@@ -29,7 +29,7 @@ use crate::{
 /// A city as contents show it.
 #[derive(Debug)]
 pub struct ContentCity {
-    /// Names it for the card; no other ever has the same, none is 0.
+    /// Names it for the GPU; no other ever has the same, none is 0.
     pub id: u64,
     /// The model.
     pub model: Arc<CityModel>,
@@ -135,7 +135,7 @@ impl WantedContent {
 /// A part of the table of surfaces: of one city, its objects counted from here, turned so.
 type Part = (u64, u32, DQuat);
 
-/// What the card holds of contents.
+/// What the GPU holds of contents.
 #[derive(Debug, Default)]
 pub(super) struct Contents {
     cities: Vec<(u64, CityOnGpu)>,
@@ -143,7 +143,7 @@ pub(super) struct Contents {
     parts: Vec<Part>,
     /// Of the scene's own city and of all parts after it.
     table: Vec<layout::Surface>,
-    /// The same on the card; `None` without contents.
+    /// The same on the GPU; `None` without contents.
     pub surfaces: Option<wgpu::TextureView>,
 }
 
@@ -173,7 +173,7 @@ pub(super) struct PlacedCity<'a> {
 }
 
 impl Contents {
-    /// Makes the card hold these contents beside the scene's `own` city, whose plain ground is `ground`, and no others; with their
+    /// Makes the GPU hold these contents beside the scene's `own` city, whose plain ground is `ground`, and no others; with their
     /// edges where something draws lines. Between frames with the same contents nothing is made. Whether the table of surfaces is another
     /// one now.
     pub fn set(
@@ -274,7 +274,7 @@ impl Contents {
         table.get(number as usize).copied()
     }
 
-    /// The cities beside the scene's own that the card holds.
+    /// The cities beside the scene's own that the GPU holds.
     pub fn others(&self) -> impl Iterator<Item = &CityOnGpu> {
         self.cities.iter().map(|(_, city)| city)
     }

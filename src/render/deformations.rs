@@ -1,4 +1,4 @@
-//! The deformations of a scene's lenses, in the world and safe (D1): where they stand in a picture, and at which part of their strength they
+//! The deformations of a scene's lenses, in the world and safe: where they stand in a picture, and at which part of their strength they
 //! fold nothing.
 
 use std::{

@@ -1,4 +1,4 @@
-//! The deformed city (D1, D2): what deformation lenses move, made fine enough and moved on the card, as sections beside those of what
+//! The deformed city: what deformation lenses move, made fine enough and moved on the GPU, as sections beside those of what
 //! they leave.
 //!
 //! ```text
@@ -62,7 +62,7 @@ const LIFT: f64 = 0.5;
 /// What is narrower in the picture, of its longest side, is not drawn: corners are rounded to f32 before slopes are told from them.
 const NARROWEST: f64 = 4.0 / (1 << 23) as f64;
 
-/// By how much supports are taken to be wider where triangles are found: what the card's numbers may be off, of the way to the pivot, and
+/// By how much supports are taken to be wider where triangles are found: what the GPU's numbers may be off, of the way to the pivot, and
 /// at least.
 const SUPPORT_ERROR: f64 = 4.0 / (1 << 23) as f64;
 const LEAST_SUPPORT_ERROR_M: f64 = 1e-3;
@@ -185,7 +185,7 @@ impl Deforming {
     /// off at all, and the farthest. `None`: nothing is refined.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn chords(&self, gpu: &Gpu, deformed: &Deformed) -> Result<Option<[f64; 2]>, GpuError> {
         let (Some(refinery), Some(met)) = (&self.refinery, &self.met) else { return Ok(None) };
         let Of { moved, view, .. } = &deformed.of;

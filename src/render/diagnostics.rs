@@ -77,7 +77,7 @@ pub(super) fn boxes(missing: &BTreeSet<char>) -> Option<(u64, String)> {
 /// What is missing of translucent layers, of all samples and parts of a picture.
 fn missing_layers(picture: &Picture) -> Option<(u64, String)> {
     let count = picture.layers.excess;
-    let all = picture.layers.notes;
+    let all = picture.layers.nodes;
     (count > 0).then(|| (count, format!("{count} of {all} translucent fragments found no room and are missing")))
 }
 
@@ -121,70 +121,77 @@ pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &
     open
 }
 
-type Diagnostic = (&'static str, fn(&Picture) -> &BTreeMap<u32, u32>, fn(&str, u32) -> String);
+/// A diagnostic of lenses.
+struct Diagnostic {
+    code: &'static str,
+    /// What is counted, by lens.
+    counts: fn(&Picture) -> &BTreeMap<u32, u32>,
+    /// The message, from a lens' name and its count.
+    message: fn(&str, u32) -> String,
+}
 
-const DIAGNOSTICS: [Diagnostic; 6] = [
-    (
-        SPRITE_LAYERS,
-        |picture| &picture.excess,
-        |lens, rays| {
+const DIAGNOSTICS: &[Diagnostic] = &[
+    Diagnostic {
+        code: SPRITE_LAYERS,
+        counts: |picture| &picture.excess,
+        message: |lens, rays| {
             format!(
                 "{rays} rays enter lens \"{lens}\" more often than its sprite has layers; more (sprite.layers) would be right"
             )
         },
-    ),
-    (
-        OPEN_SHELLS,
-        |picture| &picture.open,
-        |lens, objects| {
+    },
+    Diagnostic {
+        code: OPEN_SHELLS,
+        counts: |picture| &picture.open,
+        message: |lens, objects| {
             let are = if objects == 1 { "object that lens" } else { "objects that lens" };
             let what =
                 if objects == 1 { "is no closed shell: it shows its" } else { "are no closed shells: they show their" };
             format!("{objects} {are} \"{lens}\" meets {what} inside where it is cut, and no section")
         },
-    ),
-    (
-        NOT_DERIVED,
-        |picture| &picture.not_derived[0],
-        |lens, objects| {
+    },
+    Diagnostic {
+        code: NOT_DERIVED,
+        counts: |picture| &picture.not_derived[0],
+        message: |lens, objects| {
             let are = if objects == 1 { "object has" } else { "objects have" };
             format!("{objects} {are} no such form as lens \"{lens}\" asks for (flat, without area); shown unchanged")
         },
-    ),
-    (
-        NOTHING_DERIVED,
-        |picture| &picture.not_derived[1],
-        |lens, objects| {
+    },
+    Diagnostic {
+        code: NOTHING_DERIVED,
+        counts: |picture| &picture.not_derived[1],
+        message: |lens, objects| {
             let are = if objects == 1 { "object" } else { "objects" };
             format!("{objects} {are} of which lens \"{lens}\" leaves nothing (upright faces only)")
         },
-    ),
-    (
-        DERIVED_INSTEAD,
-        |picture| &picture.not_derived[2],
-        |lens, objects| {
+    },
+    Diagnostic {
+        code: DERIVED_INSTEAD,
+        counts: |picture| &picture.not_derived[2],
+        message: |lens, objects| {
             let (have, prisms) = if objects == 1 { ("object has", "a prism") } else { ("objects have", "prisms") };
             format!(
                 "{objects} {have} no level of detail 1, as lens \"{lens}\" asks for; shown as {prisms} over the footprint"
             )
         },
-    ),
-    (
-        WEAKENED,
-        |picture| &picture.weakened,
-        |lens, permille| {
+    },
+    Diagnostic {
+        code: WEAKENED,
+        counts: |picture| &picture.weakened,
+        message: |lens, permille| {
             let percent = f64::from(permille) / 10.0;
             format!("lens \"{lens}\" would fold space: used at {percent} % of its strength")
         },
-    ),
+    },
 ];
 
-fn each<'a>(scene: &'a Scene, picture: &'a Picture, (_, counts, message): Diagnostic) -> Vec<(&'a str, u32, String)> {
+fn each<'a>(scene: &'a Scene, picture: &'a Picture, of: &Diagnostic) -> Vec<(&'a str, u32, String)> {
     let of_lens = |(lens, count): (&u32, &u32)| {
         let name = scene.lenses[*lens as usize].name.as_str();
-        (name, *count, message(name, *count))
+        (name, *count, (of.message)(name, *count))
     };
-    counts(picture).iter().map(of_lens).collect()
+    (of.counts)(picture).iter().map(of_lens).collect()
 }
 
 /// Diagnostics of no lens: code, count, message.
@@ -196,18 +203,18 @@ fn of_pictures(picture: &Picture) -> impl Iterator<Item = (&'static str, u64, St
 
 /// One line for each diagnostic, and each lens that has it.
 pub(super) fn messages(scene: &Scene, picture: &Picture) -> Vec<String> {
-    let of_lenses = DIAGNOSTICS.into_iter().flat_map(|of| each(scene, picture, of)).map(|(_, _, message)| message);
+    let of_lenses = DIAGNOSTICS.iter().flat_map(|of| each(scene, picture, of)).map(|(_, _, message)| message);
     of_lenses.chain(of_pictures(picture).map(|(_, _, message)| message)).collect()
 }
 
 /// The same in the form of warnings of files.
 pub(super) fn warnings(scene: &Scene, picture: &Picture) -> Vec<serde_json::Value> {
-    let warning = |of: Diagnostic| {
+    let warning = |of: &Diagnostic| {
         let all = each(scene, picture, of);
         let lenses: Vec<&str> = all.iter().map(|(lens, ..)| *lens).collect();
         let messages: Vec<&str> = all.iter().map(|(.., message)| message.as_str()).collect();
         let count: u32 = all.iter().map(|(_, count, _)| count).sum();
-        let code = of.0;
+        let code = of.code;
         (count > 0).then(
             || serde_json::json!({ "code": code, "count": count, "objects": lenses, "message": messages.join("; ") }),
         )
@@ -215,5 +222,5 @@ pub(super) fn warnings(scene: &Scene, picture: &Picture) -> Vec<serde_json::Valu
     let of_pictures = of_pictures(picture).map(
         |(code, count, message)| serde_json::json!({ "code": code, "count": count, "objects": [], "message": message }),
     );
-    DIAGNOSTICS.into_iter().filter_map(warning).chain(of_pictures).collect()
+    DIAGNOSTICS.iter().filter_map(warning).chain(of_pictures).collect()
 }

@@ -1,4 +1,4 @@
-//! Edges on the graphics card, for whoever draws lines: made when first asked for, then only read.
+//! Edges on the GPU, for whoever draws lines: made when first asked for, then only read.
 //!
 //! One instance of [`Edge`] per edge, in the order of the city's tiles, cut into chunks as triangles are. A pass binds
 //! [`EdgeBuffers::instances`] with [`Edge::LAYOUT`] and draws [`VERTICES`] vertices, a triangle strip, per instance;
@@ -31,7 +31,7 @@ const CLASS_SHIFT: u32 = 30;
 /// `lib/edge.wgsl`: no surface of the table (none has this number: the table would have 16 GiB).
 pub const NO_SURFACE: u32 = (1 << CLASS_SHIFT) - 1;
 
-/// An edge as the card reads it: `Edge` in `lib/edge.wgsl`, where the members are explained.
+/// An edge as the GPU reads it: `Edge` in `lib/edge.wgsl`, where the members are explained.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[expect(missing_docs, reason = "each member is documented once, in its WGSL file")]
@@ -108,7 +108,7 @@ pub struct EdgeBuffers {
     pub chunks: Vec<(Draw, Aabb)>,
     /// How many edges there are.
     pub count: u32,
-    /// Bytes on the card.
+    /// Bytes on the GPU.
     pub bytes: u64,
 }
 

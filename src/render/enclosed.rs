@@ -1,4 +1,4 @@
-//! Which city objects some volumes hold or touch (C1; S6, by object).
+//! Which city objects some volumes hold or touch.
 
 use std::borrow::Borrow;
 

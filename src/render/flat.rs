@@ -1,4 +1,4 @@
-//! Flat lenses (L3) in the view that they are looked through in: their figures for the shader, and where they are seen.
+//! Flat lenses in the view that they are looked through in: their figures for the shader, and where they are seen.
 
 use glam::DVec3;
 

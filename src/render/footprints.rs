@@ -1,4 +1,4 @@
-//! What objects cover of the ground, as effects read it that fade at its rim (O5).
+//! What objects cover of the ground, as effects read it that fade at its rim.
 //!
 //! Of each footprint a grid of square cells; each lists the edges of the outline that may be near a place in it. Near means at most
 //! the *core*: the area of the connected part that the edge goes around, divided by the length of its outline. No part is so narrow that

@@ -141,7 +141,7 @@ pub enum ShaderPart {
     Composite,
 }
 
-/// How shaders are made of what a scene asks for (H3). The picture is the same.
+/// How shaders are made of what a scene asks for. The picture is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// For this very scene: the fastest frames; a change of effects, lenses or their order is compiled, and waited for.

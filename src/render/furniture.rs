@@ -85,7 +85,7 @@ pub struct ImagePiece {
     pub magnification: f32,
 }
 
-/// A way of so many widths through the picture (B7).
+/// A way of so many widths through the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strip {
     /// The way, pixels from the picture's top left; no point twice in a row.

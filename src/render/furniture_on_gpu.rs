@@ -1,4 +1,4 @@
-//! Furniture on the graphics card, set once, and the pipelines that draw it.
+//! Furniture on the GPU, set once, and the pipelines that draw it.
 
 use crate::{
     gpu::{Gpu, GpuError},
@@ -126,7 +126,7 @@ impl PipelineKey for FurnitureOverKey {
     }
 }
 
-/// Furniture on the card.
+/// Furniture on the GPU.
 #[derive(Debug)]
 pub struct FurnitureOnGpu {
     setter: Typesetter,

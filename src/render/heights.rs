@@ -1,4 +1,4 @@
-//! City objects of other heights (D4): what deformation lenses multiply them with, before anything else moves them.
+//! City objects of other heights: what deformation lenses multiply them with, before anything else moves them.
 
 use glam::DVec3;
 

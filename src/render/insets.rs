@@ -1,6 +1,6 @@
-//! Insets: pictures of the same city from other eyes, kept as images and drawn again only when they are another (B8).
+//! Insets: pictures of the same city from other eyes, kept as images and drawn again only when they are another.
 //!
-//! A view has its own state on the card - targets, buffers, bind groups, shadow map, lists - so that views that take turns neither make nor
+//! A view has its own state on the GPU - targets, buffers, bind groups, shadow map, lists - so that views that take turns neither make nor
 //! upload anything as long as nothing changes (architecture, decision 5); pipelines, city and images are those of all.
 
 use crate::{

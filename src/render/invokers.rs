@@ -1,4 +1,4 @@
-//! The invoker table of the uber back end (H2), and which of its invokers may run in which tile of the picture (L8).
+//! The invoker table of the uber back end, and which of its invokers may run in which tile of the picture.
 
 use glam::DVec3;
 

@@ -1,13 +1,13 @@
-//! What frames had of translucent layers (O1, O7), and how much memory they may take.
+//! What frames had of translucent layers, and how much memory they may take.
 
-/// What notes take at most, bytes: what exceeds it is drawn in bands.
+/// The most that fragment nodes take, bytes: what exceeds it is drawn in bands.
 pub const LAYER_BYTES: u64 = 96 << 20;
 
 /// What a frame had of translucent layers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LayerFigures {
     /// Fragments that are seen through and not behind what is opaque.
-    pub notes: u64,
+    pub nodes: u64,
     /// Bands that the picture was drawn in.
     pub bands: u32,
     /// Fragments that found no room and are missing in the picture.
@@ -17,7 +17,7 @@ pub struct LayerFigures {
 /// What the method of a frame took and left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MethodFigures {
-    /// What it holds on the card, bytes, beside the targets that the exact method has too.
+    /// What it holds on the GPU, bytes, beside the targets that the exact method has too.
     pub bytes: u64,
     /// Rounds of peeling, all bands together.
     pub rounds: u32,

@@ -29,7 +29,7 @@ pub struct View {
     pub pad_1: u32,
 }
 
-/// A vertex of the city as the card reads it; `relative_to_eye` in `lib/view.wgsl` takes it from here.
+/// A vertex of the city as the GPU reads it; `relative_to_eye` in `lib/view.wgsl` takes it from here.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CityVertex {
@@ -292,7 +292,7 @@ pub struct FilterStage {
     pub pad_0: u32,
 }
 
-/// `shader::uber`: one entry of the invoker table, as the card keeps it.
+/// `shader::uber`: one entry of the invoker table, as the GPU keeps it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct PackedInvoker {

@@ -96,7 +96,7 @@ pub(super) fn volumes_of<'a>(
                 .map_err(|message| format!("[lens.{}] space: {message}", drawn.owner(i as u32)))?;
         }
         of_lens.retain(|body| !body.is_empty());
-        // One sprite for all of a lens (S3).
+        // One sprite for all of a lens.
         let has_own = of_lens.iter().flat_map(Body::leaves).any(|leaf| matches!(leaf.leaf, Leaf::Own(_)));
         if lens.sprite.is_some() && has_own {
             let message = "a region of your own is tested by its function, not by a depth sprite";
@@ -237,7 +237,7 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> 
                     )),
                     _ => tree_of(part, city, place, tools),
                 };
-                tree.map_err(|error| within(i, error))
+                tree.map_err(|(key, message)| within(i, &key, message))
             };
             let trees: Result<Vec<_>, _> = parts.iter().enumerate().map(tree).collect();
             Ok(Tree::joined(*how, trees?))
@@ -303,14 +303,14 @@ fn objects_in(
 ) -> Result<Vec<bool>, FocusError> {
     let mut bodies = Vec::new();
     for (i, part) in parts.iter().enumerate() {
-        bodies.extend(bodies_of(part, city, place, tools).map_err(|error| within(i, error))?);
+        bodies.extend(bodies_of(part, city, place, tools).map_err(|(key, message)| within(i, &key, message))?);
     }
     let areas: Vec<_> = bodies.iter().filter(|body| !body.is_empty()).map(|body| (body, body.bounds())).collect();
     Ok(enclosed(city, &areas, held.whole, held.types))
 }
 
-/// What is wrong with part i of a focus area.
-fn within(i: usize, (key, message): FocusError) -> FocusError {
+/// What is wrong with part i of a focus area: a key of the part, and words.
+fn within(i: usize, key: &str, message: String) -> FocusError {
     let dot = if key.is_empty() { "" } else { "." };
     (format!("shapes.{i}{dot}{key}"), message)
 }

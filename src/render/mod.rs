@@ -1,7 +1,7 @@
 //! A scene becomes a frame.
 //!
 //! [`picture::Studio::render`] makes a picture, its AOVs and its statistics of a scene and a city;
-//! [`pass`] lists the passes of one sample; [`renderer`] holds what stays on the graphics card.
+//! [`pass`] lists the passes of one sample; [`renderer`] holds what stays on the GPU.
 //! This room knows no files and no commands.
 
 mod bake;

@@ -1,4 +1,4 @@
-//! The text of the modules that a frame runs, for people to read (H4).
+//! The text of the modules that a frame runs, for people to read.
 
 use crate::{
     geom::Aabb,
@@ -8,6 +8,7 @@ use crate::{
         plans::Plans,
         renderer::Renderer,
         seen::seen_volumes,
+        stored::SpriteRoom,
     },
     shader::{Module, Plan, Program, Uber, handlers},
 };
@@ -18,7 +19,7 @@ impl Renderer {
     /// The text of a module as it runs where the lenses are in the picture; without lenses in view everywhere.
     pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
         let bounds = self.cities().map_or(Aabb::EMPTY, |cities| cities.bounds());
-        let seen = seen_volumes(input, &bounds, (0, 0)).volumes;
+        let seen = seen_volumes(input, &bounds, SpriteRoom::default()).volumes;
         let plans = Plans::new(input, &seen);
         let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
         let is_written_out = input.backend == Backend::Specialised && !plans.is_long();

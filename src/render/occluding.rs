@@ -1,4 +1,4 @@
-//! Occluders that the occlusion lenses of a scene find (O2), and how these come and go over time (O6).
+//! Occluders that the occlusion lenses of a scene find, and how these come and go over time.
 
 use crate::{
     lens::{Lens, rendering::When},
@@ -21,7 +21,7 @@ fn cases_of(lens: &Lens) -> Vec<When> {
 }
 
 impl Studio {
-    /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually (O6). The first time everything
+    /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually. The first time everything
     /// begins settled. A picture of that scene then has its history; one of another moment has none.
     pub fn pass(&mut self, scene: &Scene, size: [u32; 2], dt: f64) -> Result<(), RenderError> {
         let mut lenses = Vec::new();

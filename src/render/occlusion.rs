@@ -1,4 +1,4 @@
-//! Occluders and what they hide, for the eye of a picture (O2): worked out again only where the eye, a point of interest or the test is another (O6).
+//! Occluders and what they hide, for the eye of a picture: worked out again only where the eye, a point of interest or the test is another.
 //!
 //! A picture knows nothing of what was before it, unless time was made to pass: [`Occlusion::pass`].
 
@@ -195,7 +195,7 @@ impl Occlusion {
     }
 
     /// Time goes on by `dt` seconds, ≥ 0, to a moment when lenses look for these occluders and draw them in these cases; those that were
-    /// not there before begin settled (O6).
+    /// not there before begin settled.
     pub fn pass(&mut self, lenses: &[Passing], pois: &[Poi], city: ShownCity, viewer: Viewer, dt: f64) {
         self.remembered.retain(|name, _| lenses.iter().any(|lens| lens.name == name));
         for Passing { name, of, when } in lenses {

@@ -1,4 +1,4 @@
-//! What the context and the lenses do, as one list: bottom lens first (L6).
+//! What the context and the lenses do, as one list: bottom lens first.
 
 use crate::{
     city::CityModel,
@@ -283,7 +283,7 @@ impl Operations {
 
     /// The neighbourhood filters of the context and of the lenses `seen`, which ascend, in the order of their images: each with the
     /// plan of the image it filters. That is its lens' own, unmasked: what the context does, then what the lens does to
-    /// the same class before it (K3).
+    /// the same class before it.
     pub fn filters(&self, seen: &[u32], haze: bool) -> Vec<Filter> {
         if !self.list.iter().any(Operation::is_filter) {
             return Vec::new();

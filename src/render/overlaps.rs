@@ -1,5 +1,5 @@
 //! Which combinations of lenses a place can be inside of: what Best and Borst's region analyzer finds with solid geometry (Tiesel
-//! 2009, §1.4), here by distances. A cell of space is inside of a lens, outside, or undecided; one with two undecided lenses is cut
+//! §1.4), here by distances. A cell of space is inside of a lens, outside, or undecided; one with two undecided lenses is cut
 //! into eight, down to a 64th of the space. So none is missed, and few are too many.
 
 use rustc_hash::FxHashSet;
@@ -68,7 +68,7 @@ impl Lens<'_> {
                 return Side::Outside;
             }
             let Some(own) = volume.body.volume() else { return Side::Undecided };
-            // And what rounds on the card.
+            // And what rounds on the GPU.
             let radius = 0.5 * cell.size().length() * (1.0 + 1e-6) + 1e-3;
             match own.signed_distance(cell.center()) {
                 d if d > radius => Side::Outside,

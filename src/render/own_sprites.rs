@@ -1,4 +1,4 @@
-//! Sprites that have an eye of their own (S2), made from shapes or read from files (S8). They do not depend on the picture's eye:
+//! Sprites that have an eye of their own, made from shapes or read from files. They do not depend on the picture's eye:
 //! they are kept between frames, and made again only when what they are made of changes.
 
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::{
         frame::FrameInput,
         layout,
         solids::SolidTable,
-        stored::{KeptSprite, Stored, code_of},
+        stored::{KeptSprite, SpriteRoom, Stored, code_of},
         volume::LensVolume,
     },
     shader::LensTest,
@@ -58,7 +58,7 @@ enum Source {
     File(Arc<SpriteVolume>),
 }
 
-/// The shapes of a lens as the card reads them, seen by an eye.
+/// The shapes of a lens as the GPU reads them, seen by an eye.
 #[derive(Debug)]
 struct Shapes {
     view: View,
@@ -247,9 +247,9 @@ impl OwnSprites {
     }
 
     /// Words that they take among those of all sprites, and how many there are.
-    pub fn room(&self) -> (u64, u32) {
+    pub fn room(&self) -> SpriteRoom {
         let words = self.list.iter().map(|one| one.stored.words(one.bounds.size)).sum();
-        (words, self.list.len() as u32)
+        SpriteRoom { words, counts: self.list.len() as u32 }
     }
 
     /// Whether some of them count rays with more intervals than layers.

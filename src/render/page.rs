@@ -20,7 +20,7 @@ impl Renderer {
     /// A page of `size` pixels, sRGB and opaque, row 0 at the top.
     ///
     /// # Errors
-    /// Those of the graphics card.
+    /// Those of the GPU.
     pub fn page(&mut self, size: [u32; 2], ground: Srgb, furniture: &Furniture) -> Result<Vec<[u8; 4]>, GpuError> {
         diagnostics::boxes(&diagnostics::without_glyph(furniture))
             .iter()
@@ -42,7 +42,7 @@ impl Renderer {
     /// something else than before.
     ///
     /// # Errors
-    /// Those of the graphics card.
+    /// Those of the GPU.
     pub fn board(
         &mut self,
         number: u64,

@@ -57,7 +57,7 @@ impl Patch {
         i64::from(self.high[0] - self.low[0]) * i64::from(self.high[1] - self.low[1])
     }
 
-    /// Its corners, as the card takes them.
+    /// Its corners, as the GPU takes them.
     pub fn corners(self) -> [f32; 4] {
         [self.low[0], self.low[1], self.high[0], self.high[1]].map(|v| v as f32)
     }

@@ -56,7 +56,7 @@ const HAZE: f64 = 0.035;
 /// What can go wrong while drawing.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// The graphics card.
+    /// The GPU.
     #[error(transparent)]
     Gpu(#[from] GpuError),
     /// The camera.
@@ -151,7 +151,7 @@ pub struct Picture {
     pub normal: Option<Vec<[f32; 3]>>,
     /// One bit per lens, 32 lenses per plane.
     pub lens_mask: Option<Vec<Vec<u32>>>,
-    /// Class bits as the card holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
+    /// Class bits as the GPU holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
     pub(super) classes: Vec<Vec<u32>>,
     /// Rays that have more intervals than the sprite of their lens has layers, by lens.
     pub(super) excess: BTreeMap<u32, u32>,
@@ -177,7 +177,7 @@ pub struct Picture {
     pub statistics: Statistics,
 }
 
-/// A city on the graphics card, ready for any number of pictures.
+/// A city on the GPU, ready for any number of pictures.
 #[derive(Debug)]
 pub struct Studio {
     /// The renderer.
@@ -211,7 +211,7 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// Chooses what is shown and puts it on the card.
+    /// Chooses what is shown and puts it on the GPU.
     pub fn new(gpu: Gpu, model: Arc<CityModel>, spec: &CitySpec) -> Result<Self, RenderError> {
         let cap = match &spec.lod {
             None => None,
@@ -385,7 +385,7 @@ impl Studio {
         Ok(self.renderer.read_sprites(drawn.whole(lens as u32))?)
     }
 
-    /// Puts contents of lenses on the card, and edges the first time that something draws lines.
+    /// Puts contents of lenses on the GPU, and edges the first time that something draws lines.
     fn find_cities(&mut self, resolved: &Resolved) -> Result<(), RenderError> {
         let edges = resolved.operations.draws_lines();
         self.renderer.set_contents(&resolved.contents.wanted, self.ground.as_ref(), edges)?;
@@ -397,7 +397,7 @@ impl Studio {
     }
 
     /// Makes block models of all objects, once, for views that may show no more triangles than `most`, where
-    /// the city has more (B8). All insets are drawn again.
+    /// the city has more. All insets are drawn again.
     pub(super) fn find_blocks(&mut self, most: u64) -> Result<(), RenderError> {
         if self.renderer.city().is_none_or(|city| city.has_blocks || city.triangles <= most) {
             return Ok(());
@@ -418,7 +418,7 @@ impl Studio {
         Ok(())
     }
 
-    /// The WGSL of a module that runs where the scene's lenses are in the picture, or everywhere where none is (H4).
+    /// The WGSL of a module that runs where the scene's lenses are in the picture, or everywhere where none is.
     pub fn shader(
         &self,
         scene: &Scene,
@@ -525,7 +525,7 @@ impl Studio {
                 records = self.renderer.draw(&input, timer.as_mut())?;
             }
             let layers = self.renderer.layer_figures();
-            picture.layers.notes += layers.notes;
+            picture.layers.nodes += layers.nodes;
             picture.layers.bands += layers.bands;
             picture.layers.excess += layers.excess;
             picture.method.add(&self.renderer.method_figures());
@@ -607,7 +607,7 @@ impl Studio {
     fn read_masks(&self, scene_lens_count: usize, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
         let Some(targets) = self.renderer.targets() else { return Ok(()) };
         let size = picture.size;
-        // The card holds all three classes, whether or not they were asked for.
+        // The GPU holds all three classes, whether or not they were asked for.
         let per_word = picture.classes.len() / scene_lens_count.max(1).div_ceil(32);
         for (i, plane) in picture.classes.iter_mut().enumerate() {
             let layer = (i / per_word * 3 + i % per_word) as u32;
@@ -657,7 +657,7 @@ impl Studio {
                 samples: request.samples,
                 peak_gpu_bytes: gpu.allocated_bytes(),
                 layers: (picture.layers.bands > 0).then_some(stats::Layers {
-                    fragments: picture.layers.notes,
+                    fragments: picture.layers.nodes,
                     bands: picture.layers.bands,
                     missing: picture.layers.excess,
                     method: scene.style.transparency.word(),

@@ -1,4 +1,4 @@
-//! Where the shapes of lenses stand in a frame (L2): in the world, at what they are attached to, or before the camera.
+//! Where the shapes of lenses stand in a frame: in the world, at what they are attached to, or before the camera.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 

@@ -102,7 +102,7 @@ impl<'a> FramePlan<'a> {
         let is_seen = |lens| seen.volumes.iter().any(|v| v.lens == lens);
         let cuts = Cuts::new(input, is_seen, sun.as_ref(), plans.hiding.clone());
         let sprite_bytes = 4 * seen.words;
-        let counts = 1 + u64::from(own_sprites.room().1) + seen.volumes.len() as u64;
+        let counts = 1 + u64::from(own_sprites.room().counts) + seen.volumes.len() as u64;
         let count_bytes = if seen.lists > 0 || own_sprites.counts() { 4 * counts } else { 0 };
         if sprite_bytes > stayed.sprite_bytes || count_bytes > stayed.count_bytes {
             // There is other room then, with nothing in it.

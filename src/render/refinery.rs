@@ -1,4 +1,4 @@
-//! Refines what deformations meet, on the card (D2): `pass/refine.wgsl` in rounds, and [`crate::geom::deform::refine`] is its reference.
+//! Refines what deformations meet, on the GPU: `pass/refine.wgsl` in rounds, and [`crate::geom::deform::refine`] is its reference.
 //!
 //! ```text
 //!   host: triangles that a support reaches ── gather ──▶ corners (cells of a lattice), triangles
@@ -50,7 +50,7 @@ const MOST_PLANS: usize = 8;
 /// By how much the tolerance is raised where there are too many triangles, and how often; then nothing is halved at all.
 const COARSER: f32 = 4.0;
 const COARSENINGS: u32 = 8;
-/// What to do where what is refined is too large for the card.
+/// What to do where what is refined is too large for the GPU.
 const SMALLER: &str = "a smaller lens, or one over fewer triangles, would be right (shape of the deformation)";
 
 /// Kernels, and what each binds.

@@ -1,4 +1,4 @@
-//! The regions of a frame: what techniques go by that draw the city once for each region (C2), kept for comparison with accumulation: one
+//! The regions of a frame: what techniques go by that draw the city once for each region, kept for comparison with accumulation: one
 //! pass per combination of lenses, or Ropinski and Hinrichs' three ([`crate::render::pass::reference`]).
 //!
 //! What the geometry passes leave is what accumulation's one pass leaves.
@@ -90,12 +90,12 @@ impl RegionPasses {
             _ => Regions::combinations(plan),
         };
         let (plan, whole_plan) = {
-            let mut told = plan.clone();
-            told.steps.clear();
-            (told.haze, told.masks) = (false, false);
-            told.lenses.iter_mut().zip(0..).for_each(|(lens, number)| lens.number = number);
-            told.regions = Some(regions.clone());
-            (told, Plan { regions: Some(regions.clone()), ..plan.clone() })
+            let mut distinct = plan.clone();
+            distinct.steps.clear();
+            (distinct.haze, distinct.masks) = (false, false);
+            distinct.lenses.iter_mut().zip(0..).for_each(|(lens, number)| lens.number = number);
+            distinct.regions = Some(regions.clone());
+            (distinct, Plan { regions: Some(regions.clone()), ..plan.clone() })
         };
         let whole = PictureTile::whole(input.tile.size);
         let pass = |number: u32| {
@@ -125,12 +125,12 @@ impl RegionPasses {
             }
             pass
         };
-        let occurring = match &regions {
-            Regions::Combinations(classes) => occurring(input, classes, lenses),
+        let possible = match &regions {
+            Regions::Combinations(classes) => overlap_combinations(input, classes, lenses),
             Regions::Passes(_) => (0..regions.count().unwrap_or(0)).collect(),
         };
         let passes: Vec<RegionPass> =
-            occurring.into_iter().map(pass).filter(|p| p.number == 0 || !p.part.is_empty()).collect();
+            possible.into_iter().map(pass).filter(|p| p.number == 0 || !p.part.is_empty()).collect();
         let others = passes.iter().filter(|p| p.number > 0);
         // What every other region asks for first is enough to know that it may be there.
         let mut reaches: Vec<Reach> = Vec::new();
@@ -149,7 +149,7 @@ impl RegionPasses {
 }
 
 /// The numbers of the combinations that may occur, ascending: of lenses that a place is inside of, the volumes have to meet.
-fn occurring(input: &FrameInput, classes: &[Vec<ClassTest>], lenses: &[u32]) -> Vec<u32> {
+fn overlap_combinations(input: &FrameInput, classes: &[Vec<ClassTest>], lenses: &[u32]) -> Vec<u32> {
     let acting: Vec<usize> = (0..lenses.len()).filter(|&i| classes[i].contains(&ClassTest::Inside)).collect();
     let numbers: Vec<u32> = acting.iter().map(|&i| lenses[i]).collect();
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! The renderer: what lives on the graphics card between frames, and how it is kept up to date.
+//! The renderer: what lives on the GPU between frames, and how it is kept up to date.
 //!
 //! It refuses to know files, commands and windows. Between two equal frames it allocates and uploads
 //! nothing; [`Gpu::allocations`] and [`Gpu::uploads`] prove it.
@@ -70,7 +70,7 @@ impl Renderer {
         })
     }
 
-    /// Puts a city on the card in place of the last one.
+    /// Puts a city on the GPU in place of the last one.
     pub fn set_city(&mut self, shown: &Shown, blocks: Option<&CityModel>) -> Result<(), GpuError> {
         self.city = None;
         self.deforming.begin_city();
@@ -84,7 +84,7 @@ impl Renderer {
         self.city.as_ref().map(|c| &c.buffers)
     }
 
-    /// Makes the card hold these contents beside the scene's city, whose plain ground is `ground`, and no others; with their
+    /// Makes the GPU hold these contents beside the scene's city, whose plain ground is `ground`, and no others; with their
     /// edges where something draws lines. Between frames with the same contents nothing is made.
     pub fn set_contents(
         &mut self,
@@ -99,12 +99,12 @@ impl Renderer {
         Ok(())
     }
 
-    /// Whether the city's edges are on the card.
+    /// Whether the city's edges are on the GPU.
     pub fn has_edges(&self) -> bool {
         self.city.as_ref().is_some_and(|city| city.edges.is_some())
     }
 
-    /// Puts the edges of the city that [`Renderer::set_city`] was given on the card; once per city.
+    /// Puts the edges of the city that [`Renderer::set_city`] was given on the GPU; once per city.
     pub fn set_edges(&mut self, shown: &Shown) -> Result<(), GpuError> {
         match &mut self.city {
             Some(city) => city.find_edges(&self.gpu, shown),
@@ -276,7 +276,7 @@ impl Renderer {
     /// off at all, and the farthest. `None`: nothing is refined.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn chords(&self) -> Result<Option<[f64; 2]>, GpuError> {
         match &self.view.deformed {
             Some(deformed) => self.deforming.chords(&self.gpu, deformed),

@@ -46,7 +46,7 @@ impl From<CameraError> for ResolveError {
 /// What stays from scene to scene.
 #[derive(Debug, Default)]
 pub(super) struct Known {
-    /// Solids of lenses made so far, and as the card reads them.
+    /// Solids of lenses made so far, and as the GPU reads them.
     pub solids: Solids,
     pub solid_table: Arc<SolidTable>,
     /// What occlusion lenses found last.

@@ -1,4 +1,4 @@
-//! The sprite that a lens is tested by, as it is saved (S8).
+//! The sprite that a lens is tested by, as it is saved.
 
 use std::collections::BTreeMap;
 

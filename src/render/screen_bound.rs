@@ -81,7 +81,7 @@ impl ScreenBound {
     }
 
     /// Its slanted sides, as `around` says: half a pixel farther out, so that none goes through the centre of a pixel, where a
-    /// card that rounds would draw it twice or not at all.
+    /// GPU that rounds would draw it twice or not at all.
     fn slants(&self) -> [[f64; 2]; 2] {
         [2, 3].map(|i| [f64::from(self.low[i]) - 0.5, f64::from(self.high[i]) + 0.5])
     }

@@ -1,4 +1,4 @@
-//! Where lenses lay closed shells open (L5): the ends of volumes that have sections, as plain data.
+//! Where lenses lay closed shells open: the ends of volumes that have sections, as plain data.
 
 use crate::{
     lens::Class,

@@ -8,7 +8,7 @@ use crate::{
         frame::FrameInput,
         screen_bound::ScreenBound,
         sprites::{self, Pages, Place},
-        stored::{self, Stored},
+        stored::{self, SpriteRoom, Stored},
     },
     shader::{Form, LensTest},
 };
@@ -65,11 +65,11 @@ fn sprite_size(input: &FrameInput, sprite: LensSprite) -> [u32; 2] {
     size.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, 16_384))
 }
 
-/// The volumes of a frame that its picture may show; `city`: the box around what is drawn; `own`: words and counts of the sprites
-/// that come first, those with eyes of their own.
-pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: (u64, u32)) -> Seen {
+/// The volumes of a frame that its picture may show; `city`: the box around what is drawn; `own`: what the sprites take that come
+/// first, those with eyes of their own.
+pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom) -> Seen {
     let mut seen: Vec<SeenVolume> = Vec::new();
-    let (mut words, mut lists, mut counts) = (own.0, 0, own.1);
+    let (mut words, mut lists, mut counts) = (own.words, 0, own.counts);
     let masks = input.masks && input.sample == 0;
     for (index, volume) in input.volumes.iter().enumerate() {
         // Other classes may be anywhere in the own space of a sprite.
@@ -93,7 +93,7 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: (u64, u32)) -> 
         let mut kept = Kept::Page(Place::default());
         if test.is_sprite() {
             let code = stored::code_of(&wanted, volume, &input.view, city);
-            // Beyond what any card holds; such a buffer is refused.
+            // Beyond what any GPU holds; such a buffer is refused.
             let number = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
             let layers = wanted.layers_of(&volume.body);
             let mut stored = Stored { code, layers, first: number(words), first_list: number(lists), excess: 0 };

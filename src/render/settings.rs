@@ -7,7 +7,7 @@ pub struct Settings {
     pub culls_hidden: bool,
     /// Whether lists of many lenses are narrowed to what each tile shows.
     pub narrows_lists: bool,
-    /// How many notes of translucent layers have room at a time; `None`: as many as [`crate::render::layers::LAYER_BYTES`]
+    /// The number of fragment nodes of translucent layers that have room at a time; `None`: as many as [`crate::render::layers::LAYER_BYTES`]
     /// hold. What does not fit is drawn in bands.
     pub most_layers: Option<u64>,
     /// The number of the only layer that the exact method tells ([`crate::render::composited`]), nearest first; `None`: all are laid.

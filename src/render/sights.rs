@@ -1,4 +1,4 @@
-//! Where in the picture points of interest are, for effects that cut what stands before them (O3).
+//! Where in the picture points of interest are, for effects that cut what stands before them.
 
 use crate::{
     lens::{Lens, solids::ShownCity},

@@ -1,4 +1,4 @@
-//! The solids of a scene as the card reads them.
+//! The solids of a scene as the GPU reads them.
 
 use std::{ops::Range, sync::Arc};
 
@@ -25,7 +25,7 @@ pub struct SolidPlace {
     pub corners: Range<u32>,
 }
 
-/// Entries of the words, at most: their numbers reach the card as f32, and a binding has its limit.
+/// Entries of the words, at most: their numbers reach the GPU as f32, and a binding has its limit.
 pub const MOST_ENTRIES: usize = 1 << 23;
 
 impl SolidTable {

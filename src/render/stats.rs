@@ -9,7 +9,7 @@ pub struct Statistics {
     pub adapter: Adapter,
     /// How the city was read.
     pub load: Load,
-    /// What the city holds on the graphics card.
+    /// What the city holds on the GPU.
     pub city: City,
     /// The frame as a whole.
     pub frame: Frame,
@@ -49,7 +49,7 @@ pub struct Load {
     pub peak_bytes: Option<u64>,
 }
 
-/// What the city holds on the graphics card.
+/// What the city holds on the GPU.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct City {
     /// City objects with something to show.
@@ -73,7 +73,7 @@ pub struct Content {
     pub first_object: Option<u32>,
     /// Triangles that can be drawn, a plain ground included.
     pub triangles: u64,
-    /// Bytes on the card; 0 where it is the city as it is shown, or counted above.
+    /// Bytes on the GPU; 0 where it is the city as it is shown, or counted above.
     pub gpu_bytes: u64,
 }
 
@@ -86,7 +86,7 @@ pub struct Frame {
     pub gpu_ms: Option<f64>,
     /// Samples per pixel.
     pub samples: u32,
-    /// Bytes ever allocated on the card: an upper bound of what was held at once.
+    /// Bytes ever allocated on the GPU: an upper bound of what was held at once.
     pub peak_gpu_bytes: u64,
     /// GPU allocations while drawing.
     pub allocations: u64,
@@ -123,7 +123,7 @@ pub struct Layers {
     pub missing: u64,
     /// The method, as scene files call it.
     pub method: &'static str,
-    /// What it holds on the card, bytes, beside the targets that every method has.
+    /// What it holds on the GPU, bytes, beside the targets that every method has.
     pub gpu_bytes: u64,
     /// Rounds of peeling.
     pub rounds: u32,
@@ -149,7 +149,7 @@ pub struct Pass {
     pub triangles: u64,
     /// Fragment shader invocations; `null` where the adapter does not count them.
     pub pixels: Option<u64>,
-    /// Milliseconds on the card; `null` without timestamps.
+    /// Milliseconds on the GPU; `null` without timestamps.
     pub gpu_ms: Option<f64>,
 }
 
@@ -181,15 +181,15 @@ pub struct LensFigures {
     pub covered: u64,
     /// Those of them on which an effect ran.
     pub pixels: u64,
-    /// Pixels by class (L4).
+    /// Pixels by class.
     pub classified: Classified,
-    /// Occluders that an occlusion lens found (O2).
+    /// Occluders that an occlusion lens found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub occluders: Option<Vec<Occluder>>,
-    /// Of a lens that makes occluders lower, how much of its points of interest is seen (D4); those that are points have no share.
+    /// Of a lens that makes occluders lower, how much of its points of interest is seen; those that are points have no share.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seen: Option<Vec<Visible>>,
-    /// Of an occlusion lens in a frame of an animation, how many come and go (O6).
+    /// Of an occlusion lens in a frame of an animation, how many come and go.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over_time: Option<OverTime>,
 }
@@ -232,7 +232,7 @@ pub struct Occluder {
     /// Of a lens that draws occluders by cases, the one that it is drawn in, from 1 on in the order of `render`; `null`: in none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub case: Option<Option<usize>>,
-    /// In a frame of an animation, how far it has come or gone, 0 to 1 (O6); one that no test holds for is `kept` by its margin, or
+    /// In a frame of an animation, how far it has come or gone, 0 to 1; one that no test holds for is `kept` by its margin, or
     /// fades.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weight: Option<f64>,

@@ -1,4 +1,4 @@
-//! How the depth sprites of lenses are stored (S1, S4).
+//! How the depth sprites of lenses are stored.
 
 use glam::DVec3;
 
@@ -39,11 +39,20 @@ impl Stored {
         depths * u64::from(self.code.format.bits()) / 32
     }
 
-    /// As the card knows its depth code: number, near and far plane.
+    /// As the GPU knows its depth code: number, near and far plane.
     pub(super) fn numbers(&self) -> (u32, f32, f32) {
         let DepthCode { mapping, near_m, far_m, format } = self.code;
         (format as u32 | (mapping as u32) << 4, near_m as f32, far_m.min(1e30) as f32)
     }
+}
+
+/// Room that sprites take in the buffers of all.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SpriteRoom {
+    /// Words of what is stored.
+    pub words: u64,
+    /// Counts of rays with more intervals than layers.
+    pub counts: u32,
 }
 
 /// Two planes at least this part of the distance apart.
@@ -94,7 +103,7 @@ pub struct SpriteTexels {
     pub layers: u32,
     /// Codes of entry and exit: layer by layer, texel by texel, row by row from the top.
     pub codes: Vec<[u32; 2]>,
-    /// Bytes that it takes on the card.
+    /// Bytes that it takes on the GPU.
     pub bytes: u64,
 }
 

@@ -51,7 +51,7 @@ impl<'a> SurfaceTable<'a> {
     }
 }
 
-/// Puts a table on the card.
+/// Puts a table on the GPU.
 pub fn upload(gpu: &Gpu, entries: &[layout::Surface]) -> Result<wgpu::TextureView, GpuError> {
     let rows = (entries.len() as u32).div_ceil(ROW).max(1);
     gpu.check_rows("the table of surfaces", rows, u64::from(ROW) * size_of::<layout::Surface>() as u64)?;

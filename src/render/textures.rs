@@ -1,4 +1,4 @@
-//! Textures on the graphics card: only those that shown surfaces use, each once, with all mip levels.
+//! Textures on the GPU: only those that shown surfaces use, each once, with all mip levels.
 
 use rayon::prelude::*;
 
@@ -8,7 +8,7 @@ use crate::{
     render::city::Shown,
 };
 
-/// Bytes of textures a city may put on the card before the rest is drawn in plain colours.
+/// Bytes of textures a city may put on the GPU before the rest is drawn in plain colours.
 const BUDGET: u64 = 2 << 30;
 
 /// Textures by their number in the model.
@@ -76,7 +76,7 @@ impl Textures {
         self.entries.get(number as usize)?.as_ref()
     }
 
-    /// Bytes on the card.
+    /// Bytes on the GPU.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }

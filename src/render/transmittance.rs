@@ -1,4 +1,4 @@
-//! What is opaque in a picture, and how much of its light comes through what stands before it (O1, O7).
+//! What is opaque in a picture, and how much of its light comes through what stands before it.
 
 use crate::{
     render::picture::{RenderError, Studio},
@@ -25,7 +25,7 @@ impl Studio {
         let mut exact = scene.clone();
         exact.style.transparency = Transparency::Exact;
         let scene = &exact;
-        let veil = self.veil(scene, size)?;
+        let over = self.transparency(scene, size)?;
         let pixels = size[0] as usize * size[1] as usize;
         let Some(targets) = self.renderer.targets() else {
             return Ok(Transmittance { object_id: vec![0; pixels], through: vec![1.0; pixels] });
@@ -34,7 +34,7 @@ impl Studio {
         let codes = gpu.read_texture(&targets.codes.texture, 0, wgpu::TextureAspect::All)?;
         let words = if targets.needs.smooth { 2 } else { 1 };
         let codes = bytemuck::cast_slice::<u8, u32>(&codes).iter().step_by(words);
-        let through = veil.iter().map(|veil| veil[3]).collect();
+        let through = over.iter().map(|over| over[3]).collect();
         Ok(Transmittance { object_id: codes.map(|&code| self.renderer.object_id(code)).collect(), through })
     }
 }

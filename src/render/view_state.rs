@@ -1,4 +1,4 @@
-//! What a renderer keeps on the card for one view.
+//! What a renderer keeps on the GPU for one view.
 
 use crate::{
     gpu::{Gpu, GpuError},

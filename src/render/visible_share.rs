@@ -77,7 +77,7 @@ pub fn share_in(studio: &mut Studio, scene: &Scene, size: [u32; 2], id: &str) ->
     Ok(visible_share(&whole, |i| if is_of(seen.object_id[i]) { f64::from(seen.through[i]) } else { 0.0 }))
 }
 
-/// Of each lens that makes occluders lower how much of its points of interest is seen, as they are shown and without deformations (D4);
+/// Of each lens that makes occluders lower how much of its points of interest is seen, as they are shown and without deformations;
 /// `None` for other lenses. Points that are no objects have no share.
 ///
 /// # Errors

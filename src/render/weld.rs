@@ -1,6 +1,6 @@
 //! Vertices that faces share.
 //!
-//! The model keeps a vertex per corner and face, because faces differ in surface and normal. On the card
+//! The model keeps a vertex per corner and face, because faces differ in surface and normal. On the GPU
 //! whatever is flat over a face comes from the triangle's *provoking* vertex alone, so faces may share
 //! every other corner: a box needs eight or nine vertices, not twenty-four. On an adapter that is
 //! bound by vertices, that is most of the frame.
@@ -31,6 +31,14 @@ impl Corner {
     }
 }
 
+/// What vertices must agree in to be shared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct VertexKey {
+    place: [u32; 3],
+    /// 0 where normals are not compared.
+    normal: u32,
+}
+
 /// Collects the triangles of one tile after the other.
 #[derive(Debug)]
 pub struct Weld {
@@ -39,7 +47,7 @@ pub struct Weld {
     /// Which corner of a triangle flat values come from: 0 everywhere but in OpenGL, where it is 2.
     provoking: usize,
     /// Newest vertex at a place; the others follow by `next`.
-    places: FxHashMap<([u32; 3], u32), u32>,
+    places: FxHashMap<VertexKey, u32>,
     next: Vec<u32>,
     first_of_tile: u32,
     origin: IVec3,
@@ -100,7 +108,7 @@ impl Weld {
     }
 
     fn take_up(&mut self, surface: u32, corners: [Corner; 3]) {
-        let keys = corners.map(|c| (c.place(), if self.smooth { c.normal } else { 0 }));
+        let keys = corners.map(|c| VertexKey { place: c.place(), normal: if self.smooth { c.normal } else { 0 } });
         let heads = keys.map(|key| self.places.get(&key).copied());
         // The corner that speaks for the face: its own, else one that speaks for none, else a new place, else a copy.
         let owned = |wanted: u32| {
@@ -142,7 +150,7 @@ impl Weld {
         }
     }
 
-    fn add(&mut self, key: ([u32; 3], u32), corner: Corner) -> u32 {
+    fn add(&mut self, key: VertexKey, corner: Corner) -> u32 {
         let number = self.vertices.len() as u32;
         let before = self.places.insert(key, number);
         self.next.push(before.unwrap_or(NONE));

@@ -1,4 +1,4 @@
-//! Where what the lenses are attached to is (L2).
+//! Where what the lenses are attached to is.
 
 use glam::DVec3;
 

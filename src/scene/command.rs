@@ -64,7 +64,7 @@ impl Command {
         }))
     }
 
-    /// Moves a lens to another place in the order (L6); `None` where either place is not.
+    /// Moves a lens to another place in the order; `None` where either place is not.
     pub fn reorder_lens(scene: &Scene, from: usize, to: usize) -> Option<Self> {
         let lens = scene.lenses.get(from).filter(|_| to < scene.lenses.len())?;
         Some(Self::of(format!("reorder lens {}", lens.name), scene, |s| {
@@ -73,7 +73,7 @@ impl Command {
         }))
     }
 
-    /// Steps through a portal (B5): its eye becomes the main one, and the main one, `from`, its own, so that it leads back. `None`: there is no portal
+    /// Steps through a portal: its eye becomes the main one, and the main one, `from`, its own, so that it leads back. `None`: there is no portal
     /// at `index`.
     pub fn step_through(scene: &Scene, index: usize, from: Camera) -> Option<Self> {
         let lens = scene.lenses.get(index).filter(|lens| lens.kind == LensKind::Portal)?;

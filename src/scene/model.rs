@@ -38,7 +38,7 @@ pub struct Scene {
     pub pois: Vec<Poi>,
     /// Lenses, bottom to top.
     pub lenses: Vec<Lens>,
-    /// How the pictures of best-view lenses stand over the main one (B6); those without have one with every value at its default.
+    /// How the pictures of best-view lenses stand over the main one; those without have one with every value at its default.
     pub overlays: Vec<Overlay>,
     /// Where overlays stand.
     pub layout: Layout,
@@ -95,7 +95,7 @@ pub struct Style {
     pub technique: Technique,
     /// How translucent layers are laid one over the other.
     pub transparency: Transparency,
-    /// How far edges that a deformation bends may be from where they should be, pixels, > 0 (D2).
+    /// How far edges that a deformation bends may be from where they should be, pixels, > 0.
     pub chord_px: f64,
 }
 

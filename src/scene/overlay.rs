@@ -1,4 +1,4 @@
-//! Overlays: where the pictures of best-view lenses stand over the main one, and the lines that tie them to their places (B6, B7).
+//! Overlays: where the pictures of best-view lenses stand over the main one, and the lines that tie them to their places.
 
 use std::path::PathBuf;
 
@@ -34,7 +34,7 @@ pub struct Overlay {
     pub line: Option<ContextLine>,
 }
 
-/// Where an overlay stands (B6).
+/// Where an overlay stands.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Stand {
     /// Where the layout puts it.
@@ -47,7 +47,7 @@ pub enum Stand {
     Scene(CallOut),
 }
 
-/// A tilted board in the scene that shows an overlay (B6). Turned to the viewer about the vertical axis.
+/// A tilted board in the scene that shows an overlay. Turned to the viewer about the vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CallOut {
     /// From the top of the object to the lower edge, metres; `None`: by the sizes of both.
@@ -114,7 +114,7 @@ impl BuiltInFrame {
     ];
 }
 
-/// Lines from an overlay to its points of interest (B7). Lengths are pixels.
+/// Lines from an overlay to its points of interest. Lengths are pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContextLine {
     /// How it runs.
@@ -198,7 +198,7 @@ impl Default for ContextLine {
     }
 }
 
-/// How deep views may nest: overlays in overlays of the main picture's overlays (L2).
+/// How deep views may nest: overlays in overlays of the main picture's overlays.
 pub const DEEPEST: usize = 3;
 
 /// What is wrong with the overlays of a scene: names that nothing has, and views that show themselves.
@@ -322,7 +322,7 @@ impl Overlay {
     }
 }
 
-/// How overlays are laid out (B6).
+/// How overlays are laid out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
     /// Where they stand.

@@ -1,4 +1,4 @@
-//! How lenses that meet are evaluated (C2): by sequential accumulation, which is ours, or as the literature has it, for
+//! How lenses that meet are evaluated: by sequential accumulation, which is ours, or as the literature has it, for
 //! comparison. The picture is the same; what a technique cannot do is refused.
 
 use crate::{
@@ -10,12 +10,12 @@ use crate::{
 /// A technique.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Technique {
-    /// Every effect in turn, where its lens test holds (Tiesel 2009, §3.4.5, the alternative).
+    /// Every effect in turn, where its lens test holds (Tiesel §3.4.5, the alternative).
     #[default]
     Accumulate,
-    /// One branch of the shader for each combination of lenses (Tiesel 2009, §3.4.5).
+    /// One branch of the shader for each combination of lenses (Tiesel §3.4.5).
     Branches,
-    /// One pass over the city for each combination of lenses (Best and Borst 2008, as Tiesel 2009, §3.4.2 tells of it).
+    /// One pass over the city for each combination of lenses (Best and Borst 2008, as Tiesel §3.4.2 tells of it).
     Regions,
     /// What is behind a lens, inside and in front of it in three passes over the city, told apart by two depth maps (Ropinski and
     /// Hinrichs 2004, §3 and §4).
@@ -27,7 +27,7 @@ const MOST_OF_BRANCHES: usize = 6;
 /// Lenses that [`Technique::Regions`] takes: 2¹⁰ regions.
 const MOST_OF_REGIONS: usize = 10;
 /// Lens volumes of a picture that are written out in its shaders. What is written out runs at every pixel that any lens may
-/// touch, and takes the longer to compile; the uber back end goes through more of them, tile by tile (L8).
+/// touch, and takes the longer to compile; the uber back end goes through more of them, tile by tile.
 pub const MOST_WRITTEN_OUT: usize = 24;
 
 impl Technique {

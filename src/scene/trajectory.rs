@@ -1,4 +1,4 @@
-//! Things that move (L2, B5): where on its way one is at a moment, and where it is headed.
+//! Things that move: where on its way one is at a moment, and where it is headed.
 
 use glam::DVec3;
 
@@ -139,7 +139,7 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
         PoiPlace::On(name) if !scene.trajectories.iter().any(|way| way.name == *name) => Some((i, name)),
         _ => None,
     });
-    let told = absent.map(|(i, name)| {
+    let problems = absent.map(|(i, name)| {
         let hint = did_you_mean(name, scene.trajectories.iter().map(|way| way.name.as_str()));
         SceneProblem {
             table: format!("poi.{i}"),
@@ -147,7 +147,7 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
             message: format!("there is no trajectory \"{name}\"{hint}"),
         }
     });
-    told.collect()
+    problems.collect()
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! How translucent layers are laid one over the other (O7): exactly, which is the default, or by a method of the literature that
+//! How translucent layers are laid one over the other: exactly, which is the default, or by a method of the literature that
 //! takes less memory or time and leaves something out.
 
 use std::borrow::Cow;

@@ -1,4 +1,4 @@
-//! Bodies of lenses (L5) and what else is laid over the shaded picture, on the specialised back end: `outlines` and what it calls.
+//! Bodies of lenses and what else is laid over the shaded picture, on the specialised back end: `outlines` and what it calls.
 
 use std::fmt::Write as _;
 
@@ -14,7 +14,7 @@ use crate::shader::{
 
 /// Layers over the shaded picture and below the bodies of lenses: lines of the city, and translucent layers over these.
 const WITH_LINES: &str = "    paint = with_lines(paint, pixel);\n";
-const WITH_VEIL: &str = "    paint = with_veil(paint, pixel);\n";
+const WITH_TRANSPARENCY: &str = "    paint = with_transparency(paint, pixel);\n";
 
 /// The lenses' bodies.
 pub(super) fn outlines(plan: &Plan) -> String {
@@ -22,12 +22,12 @@ pub(super) fn outlines(plan: &Plan) -> String {
         plan.lenses.iter().enumerate().filter_map(|(i, l)| l.body.map(|body| (i, body))).collect();
     let mut text: String = bodies.iter().map(|(i, body)| body_functions(plan, *i, body.kind)).collect();
     text.push_str("fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n");
-    if bodies.is_empty() && !plan.lines && !plan.veils {
+    if bodies.is_empty() && !plan.lines && !plan.transparency {
         text.push_str("    return start;\n}\n\n");
         return text;
     }
     text.push_str("    var paint = start;\n");
-    let over = [(plan.lines, WITH_LINES), (plan.veils, WITH_VEIL)];
+    let over = [(plan.lines, WITH_LINES), (plan.transparency, WITH_TRANSPARENCY)];
     over.iter().filter(|(is_drawn, _)| *is_drawn).for_each(|(_, laid)| text.push_str(laid));
     for (i, PlanBody { kind, parameters }) in bodies {
         let (color, width) = (format!("parameters[{parameters}]"), format!("parameters[{}].x", parameters + 1));

@@ -1,5 +1,5 @@
-//! Which of the cities of a picture show at a place: `shown_cities` and what it calls (C3, C6), for the passes that draw
-//! them, on both back ends. Every fragment is asked by its own depth, before visibility (K4).
+//! Which of the cities of a picture show at a place: `shown_cities` and what it calls, for the passes that draw
+//! them, on both back ends. Every fragment is asked by its own depth, before visibility.
 //!
 //! Bottom lens first, each that holds the place changes what shows there, as its clip says. A city is a bit; bit 0 is the
 //! scene's own.

@@ -7,7 +7,7 @@ use crate::shader::{
         DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FORM, FRAGMENT, File, GLASS, LENS,
         LENS_SPRITE, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE,
         PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT, SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE,
-        SURFACE, VEIL, VIEW, VIEW_UNIFORM,
+        SURFACE, TRANSPARENCY, VIEW, VIEW_UNIFORM,
     },
     plan::program::Program,
 };
@@ -54,7 +54,7 @@ pub(super) fn of_shading(program: &Program, handlers: &[EffectDefinition]) -> Ve
         (parts.shells, GLASS),
         (filters, FILTERED),
         (parts.lines, LINE),
-        (parts.veils, VEIL),
+        (parts.transparency, TRANSPARENCY),
     ]));
     files
 }

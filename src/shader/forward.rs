@@ -1,4 +1,4 @@
-//! Translucent fragments shaded where they are drawn: the modules of methods that know no order of layers (O7), put together from
+//! Translucent fragments shaded where they are drawn: the modules of methods that know no order of layers, put together from
 //! what shades a pixel, what tells which fragments are translucent, and what draws the city.
 
 use crate::shader::{
@@ -7,7 +7,7 @@ use crate::shader::{
     files,
     geometry::{self, Drawn, NOTHING_CUT},
     hiding::{self, Eye},
-    library::{CHANCE, DITHER, FORWARD, FRAGMENT, GEOMETRY, NOTES, SHADE, TAIL, TRANSLUCENT},
+    library::{CHANCE, DITHER, FORWARD, FRAGMENT, FRAGMENT_NODES, GEOMETRY, SHADE, TAIL, TRANSLUCENT},
     names,
     plan::program::Program,
     rays,
@@ -68,7 +68,7 @@ impl Forward {
             .fill("handlers", own.functions + &opacity)
             .then(Template::of_files(&[FORWARD]));
         match self.kind {
-            ForwardKind::Tail => text.then(Template::of_files(&[NOTES, TAIL])),
+            ForwardKind::Tail => text.then(Template::of_files(&[FRAGMENT_NODES, TAIL])),
             ForwardKind::Chance(is_of_plane) => {
                 let (member, set) = match is_of_plane {
                     true => ("    @builtin(frag_depth) depth: f32,\n", "    laid.depth = depth;\n"),

@@ -1,5 +1,5 @@
 //! Visibility of fragments: `visible` and what it calls (architecture, decision 4), for the geometry pass and the shadow map, on both
-//! back ends. A hiding effect says for each fragment, by its own depth, whether it is taken away (K4), an opacity rule whether it
+//! back ends. A hiding effect says for each fragment, by its own depth, whether it is taken away, an opacity rule whether it
 //! is translucent: then it is in the list of its pixel instead, by `is_layer`, and casts no shadow.
 
 use std::fmt::Write as _;

@@ -1,4 +1,4 @@
-//! Lens tests in a module's text: which uniforms they read, and the calls, from the regions' numbers or by depth sprites (S7).
+//! Lens tests in a module's text: which uniforms they read, and the calls, from the regions' numbers or by depth sprites.
 
 use std::fmt::Write as _;
 

@@ -95,7 +95,7 @@ files! {
     OBJECTS = "lib/objects.wgsl";
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
-    VEIL = "lib/veil.wgsl";
+    TRANSPARENCY = "lib/transparency.wgsl";
     EDGE = "lib/edge.wgsl";
     ONE_CITY = "lib/one-city.wgsl";
     CITIES = "lib/cities.wgsl";
@@ -115,7 +115,7 @@ files! {
     SPRITE = "pass/sprite.wgsl";
     SHADE = "pass/shade.wgsl";
     LINES = "pass/lines.wgsl";
-    NOTES = "lib/notes.wgsl";
+    FRAGMENT_NODES = "lib/fragment-nodes.wgsl";
     LAYERS = "pass/layers.wgsl";
     COMPOSITE = "pass/composite.wgsl";
     COUNT_LAYERS = "pass/count-layers.wgsl";

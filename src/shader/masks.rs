@@ -25,7 +25,7 @@ pub(super) fn write_classes(plan: &Plan, is_of_surfaces: bool) -> String {
         if is_of_surfaces {
             text.push_str(ONLY_SHOWN);
         }
-        if plan.veils {
+        if plan.transparency {
             text.push_str(&not_through_layers(""));
         }
         let mut words: Vec<u32> = plan.lenses.iter().map(|l| l.number / 32).collect();

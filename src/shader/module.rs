@@ -13,9 +13,10 @@ use crate::{
         hiding::{self, Eye},
         library::{
             BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM, DEPTH_CODE, FILTER,
-            FORM, FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, NOTES, OBJECTS, ONE_CITY,
-            PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS,
-            SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW, VIEW_UNIFORM,
+            FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, OBJECTS,
+            ONE_CITY, PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS,
+            SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW,
+            VIEW_UNIFORM,
         },
         lining,
         plan::{Plan, form::Form, lens_test::LensTest, program::Program},
@@ -95,7 +96,7 @@ impl Module {
         self.source_for_people(handlers, &[], carried::LEAST_CARRIED)
     }
 
-    /// The whole WGSL text with the names of a plan's lenses in comments (H4), for an adapter that carries so many vectors
+    /// The whole WGSL text with the names of a plan's lenses in comments, for an adapter that carries so many vectors
     /// from vertices to fragments: [`carried::LEAST_CARRIED`] or more.
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], room: u32) -> String {
         let files = files::with_threshold(self.files(handlers));
@@ -120,12 +121,12 @@ impl Module {
             }
             Self::Layers(program, is_early) => {
                 let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
-                translucent::filled(text, DepthTest::of_notes(*is_early), "return;")
+                translucent::filled(text, DepthTest::of_nodes(*is_early), "return;")
             }
             Self::Slots(program, is_early) => {
                 let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
                 // They are of a pass that has something to return.
-                translucent::filled(text, DepthTest::of_notes(*is_early), "discard;")
+                translucent::filled(text, DepthTest::of_nodes(*is_early), "discard;")
                     .fill("opaque-depth", OPAQUE_DEPTH)
                     .fill("behind-plane", behind_plane("opaque_depth"))
             }
@@ -181,7 +182,7 @@ impl Module {
             }
             Self::Shade(program) => return [files::of_shading(program, handlers), vec![SHADE]].concat(),
             Self::Composite(program) => {
-                return [files::of_shading(program, handlers), vec![SHADE, NOTES, COMPOSITE]].concat();
+                return [files::of_shading(program, handlers), vec![SHADE, FRAGMENT_NODES, COMPOSITE]].concat();
             }
             Self::Lines(program) => return files::of_lines(program),
             Self::Regions(plan) => {
@@ -189,14 +190,16 @@ impl Module {
                 return [&[VIEW, VIEW_UNIFORM, SIGHT], &lenses[..], &[SURFACE, OBJECTS, REGIONS]].concat();
             }
             Self::Sections(program) => return files::of_sections(program),
-            Self::Layers(program, _) => return files::of_translucent_city(program, &[GEOMETRY, NOTES, LAYERS]),
-            Self::Slots(program, _) => {
-                return files::of_translucent_city(program, &[GEOMETRY, NOTES, SLOTS, TRANSLUCENT]);
+            Self::Layers(program, _) => {
+                return files::of_translucent_city(program, &[GEOMETRY, FRAGMENT_NODES, LAYERS]);
             }
-            Self::CountLayers => &[NOTES, COUNT_LAYERS],
-            Self::SortLayers => &[NOTES, SORT_LAYERS],
+            Self::Slots(program, _) => {
+                return files::of_translucent_city(program, &[GEOMETRY, FRAGMENT_NODES, SLOTS, TRANSLUCENT]);
+            }
+            Self::CountLayers => &[FRAGMENT_NODES, COUNT_LAYERS],
+            Self::SortLayers => &[FRAGMENT_NODES, SORT_LAYERS],
             Self::ShownLayers => &[SHOWN],
-            Self::LinkSlots => &[NOTES, LINK_SLOTS],
+            Self::LinkSlots => &[FRAGMENT_NODES, LINK_SLOTS],
             // Two texts, merged.
             Self::Forward(_) => &[],
             Self::Filter(_) => &[PACKED, FILTER],

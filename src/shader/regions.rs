@@ -1,4 +1,4 @@
-//! Regions told apart by a module's text, for the techniques that are kept for reference (C2): a branch for each, or the number of the
+//! Regions told apart by a module's text, for the techniques that are kept for reference: a branch for each, or the number of the
 //! region of a place.
 
 use std::fmt::Write as _;
@@ -24,7 +24,7 @@ impl Regions {
         Self::Combinations((0..plan.lenses.len() as u32).map(of).collect())
     }
 
-    /// Ropinski and Hinrichs' passes (R §3): what is inside of a lens, what is in front of it, and all else, which is behind it or
+    /// The passes of Ropinski & Hinrichs §3: what is inside of a lens, what is in front of it, and all else, which is behind it or
     /// beside it; that in two passes where the lens treats these differently. Of several lenses, two further passes each.
     pub fn passes(plan: &Plan) -> Self {
         let lenses = 0..plan.lenses.len() as u32;
@@ -71,7 +71,7 @@ fn body(regions: &Regions, classes: impl Fn(u32) -> String) -> String {
     text
 }
 
-/// `shade` and `styled`, for `pass/shade.wgsl`: a branch for each region, in which its effects are written out (Tiesel 2009,
+/// `shade` and `styled`, for `pass/shade.wgsl`: a branch for each region, in which its effects are written out (Tiesel
 /// §3.4.5).
 pub(super) fn branches(plan: &Plan, regions: &Regions, handlers: &[EffectDefinition]) -> String {
     let body = body(regions, |lens| format!("classes.lens_{lens}"));

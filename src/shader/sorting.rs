@@ -1,4 +1,4 @@
-//! The walk of `pass/composite.wgsl` through the list of a pixel (O7), written out: a few notes at a time are put in order by a sorting
+//! The walk of `pass/composite.wgsl` through the list of a pixel, written out: a few nodes at a time are put in order by a sorting
 //! network and merged into the nearest so far by a bitonic one (Batcher 1968). A loop over them would keep all of them in memory
 //! that is indexed by each pixel on its own.
 
@@ -6,9 +6,9 @@ use std::fmt::Write;
 
 use crate::shader::template::Template;
 
-/// How many notes are nearest at a time; a power of two.
+/// How many nodes are nearest at a time; a power of two.
 const KEPT: usize = 16;
-/// How many notes of the list are taken at a time; at most [`KEPT`].
+/// How many nodes of the list are taken at a time; at most [`KEPT`].
 const TAKEN: usize = 4;
 /// Comparators that put so many in order, first those that may happen at once (Knuth, The Art of Computer Programming 3, 5.3.4).
 const NETWORK: [[usize; 2]; 5] = [[0, 1], [2, 3], [0, 2], [1, 3], [1, 2]];
@@ -19,16 +19,16 @@ fn bitonic() -> impl Iterator<Item = [usize; 2]> {
     strides.flat_map(|stride| (0..KEPT).filter(move |i| i & stride == 0).map(move |i| [i, i + stride]))
 }
 
-/// Pairs of a kept note, from the farthest on, and a taken one that takes its place where it is nearer.
+/// Pairs of a kept node, from the farthest on, and a taken one that takes its place where it is nearer.
 fn exchanged() -> impl Iterator<Item = [usize; 2]> {
     (0..TAKEN).map(|i| [KEPT - 1 - i, i])
 }
 
-/// Takes notes of the list, in order.
+/// Takes nodes of the list, in order.
 fn taken(indent: &str) -> String {
     let mut text = String::new();
     for i in 0..TAKEN {
-        let _ = writeln!(text, "{indent}var taken_{i} = take_note(&walk, last, twins);");
+        let _ = writeln!(text, "{indent}var taken_{i} = take_node(&walk, last, twins);");
     }
     for [a, b] in NETWORK {
         let _ = writeln!(text, "{indent}order(&taken_{a}, &taken_{b});");
@@ -36,17 +36,17 @@ fn taken(indent: &str) -> String {
     text
 }
 
-/// The first notes of a walk: the nearest so far.
+/// The first nodes of a walk: the nearest so far.
 fn first(indent: &str) -> String {
     let mut text = taken(indent);
     for i in 0..KEPT {
-        let note = if i < TAKEN { format!("taken_{i}") } else { "NO_NOTE".to_owned() };
-        let _ = writeln!(text, "{indent}var kept_{i} = {note};");
+        let node = if i < TAKEN { format!("taken_{i}") } else { "NO_NODE".to_owned() };
+        let _ = writeln!(text, "{indent}var kept_{i} = {node};");
     }
     text
 }
 
-/// More notes, merged into the nearest so far.
+/// More nodes, merged into the nearest so far.
 fn more(indent: &str) -> String {
     let mut text = taken(indent);
     for [kept, new] in exchanged() {
@@ -56,12 +56,12 @@ fn more(indent: &str) -> String {
         let _ = writeln!(text, "{indent}order(&kept_{a}, &kept_{b});");
     }
     for i in 0..KEPT {
-        let _ = writeln!(text, "{indent}kept_{i} = note_of(kept_{i}.xy, kept_{i}.z, kept_{i}.w);");
+        let _ = writeln!(text, "{indent}kept_{i} = node_of(kept_{i}.xy, kept_{i}.z, kept_{i}.w);");
     }
     text
 }
 
-/// `note`, the one of those kept that `place` says.
+/// `node`, the one of those kept that `place` says.
 fn pick(indent: &str) -> String {
     let mut text = String::new();
     let mut names: Vec<String> = (0..KEPT).map(|i| format!("kept_{i}")).collect();
@@ -74,11 +74,11 @@ fn pick(indent: &str) -> String {
         }
         names.truncate(names.len() / 2);
     }
-    let _ = writeln!(text, "{indent}let note = {};", names[0]);
+    let _ = writeln!(text, "{indent}let node = {};", names[0]);
     text
 }
 
-/// Fills the hooks of `pass/composite.wgsl` with all that is said of each kept note.
+/// Fills the hooks of `pass/composite.wgsl` with all that is said of each kept node.
 pub(super) fn filled(text: Template) -> Template {
     text.fill("kept", format!("const KEPT: u32 = {KEPT}u;\n"))
         .fill("first", first("        "))
@@ -90,7 +90,7 @@ pub(super) fn filled(text: Template) -> Template {
 mod tests {
     use super::*;
 
-    /// A comparator puts the larger number first, as the nearer note.
+    /// A comparator puts the larger number first, as the nearer node.
     fn order(numbers: &mut [u32], [a, b]: [usize; 2]) {
         if numbers[b] > numbers[a] {
             numbers.swap(a, b);
@@ -132,7 +132,7 @@ mod tests {
                 let is_odd = i >> bit.trim_start_matches("is_odd_").parse::<u32>().expect("a bit") & 1 == 1;
                 values.insert(name.to_owned(), values[if is_odd { odd } else { even }]);
             }
-            let picked = text.lines().last().and_then(|line| line.strip_prefix("let note = ")).expect("a note");
+            let picked = text.lines().last().and_then(|line| line.strip_prefix("let node = ")).expect("a node");
             assert_eq!(values[picked.trim_end_matches(';')], i);
         }
     }

@@ -1,4 +1,4 @@
-//! The specialised back end (H3): a plan written out, with nothing in it that the scene does not ask for.
+//! The specialised back end: a plan written out, with nothing in it that the scene does not ask for.
 
 use std::fmt::Write as _;
 

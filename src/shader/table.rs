@@ -1,4 +1,4 @@
-//! The invoker table of the uber back end (H2), and how large it may be.
+//! The invoker table of the uber back end, and how large it may be.
 
 use crate::shader::library::INVOKERS;
 

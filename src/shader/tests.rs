@@ -120,7 +120,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         haze: plan.haze,
         masks: plan.masks,
         lines: plan.lines,
-        veils: false,
+        transparency: false,
         contents: !plan.contents.is_empty(),
     };
     let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();

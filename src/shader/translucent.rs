@@ -15,7 +15,7 @@ pub(super) enum DepthTest {
 
 impl DepthTest {
     /// The test of a pass that notes fragments; `is_early`: whether the adapter can test depth before the shader.
-    pub(super) fn of_notes(is_early: bool) -> Self {
+    pub(super) fn of_nodes(is_early: bool) -> Self {
         if is_early { Self::Early } else { Self::InShader }
     }
 }

@@ -1,5 +1,5 @@
-//! The uber back end (H3): every handler the scene may ask for in one module; which of them run, where, and with which
-//! parameters stands in the invoker table (H2), a uniform. Whatever lenses do, nothing is compiled.
+//! The uber back end (Trapp §3.7): every handler the scene may ask for in one module; which of them run, where, and with which
+//! parameters stands in the invoker table, a uniform. Whatever lenses do, nothing is compiled.
 
 use std::fmt::Write as _;
 
@@ -60,7 +60,7 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition], shading: &Shadi
         if shading.is_of_surfaces {
             text.push_str(masks::ONLY_SHOWN);
         }
-        if uber.veils {
+        if uber.transparency {
             text.push_str(&masks::not_through_layers("table.tiles.w != 0u && "));
         }
         text.push_str(WRITE_CLASSES);
@@ -95,11 +95,12 @@ pub(super) fn classes(uber: &Uber) -> String {
 
 /// Where nothing is drawn in lines or seen through in a frame, lines and layers are those of another.
 const WITH_LINES: &str = "    if table.ranges.z < table.ranges.w {\n        paint = with_lines(paint, pixel);\n    }\n";
-const WITH_VEIL: &str = "    if table.tiles.w != 0u {\n        paint = with_veil(paint, pixel);\n    }\n";
+const WITH_TRANSPARENCY: &str =
+    "    if table.tiles.w != 0u {\n        paint = with_transparency(paint, pixel);\n    }\n";
 
 /// `outlines`: lines, layers and the bodies of lenses over the shaded picture; `by.handler` is the kind of a body.
 fn outlines(uber: &Uber) -> String {
-    let over = [(uber.lines, WITH_LINES), (uber.veils, WITH_VEIL)];
+    let over = [(uber.lines, WITH_LINES), (uber.transparency, WITH_TRANSPARENCY)];
     let over: String = over.iter().filter(|(is_drawn, _)| *is_drawn).map(|(_, laid)| *laid).collect();
     let head = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n    var paint = start;\n";
     if uber.bodies.is_empty() {

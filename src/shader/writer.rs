@@ -225,7 +225,7 @@ impl Writer<'_> {
         text
     }
 
-    /// Scene styles and post styles, in lens order: what replaces the colour leaves nothing of the styles below (C5).
+    /// Scene styles and post styles, in lens order: what replaces the colour leaves nothing of the styles below.
     pub(super) fn styled(&self, suffix: &str) -> String {
         let is_style = |(_, h): &(&Step, &EffectDefinition)| h.kind.is_style();
         let all = self.plan.steps.iter().map(|s| (s, &self.handlers[s.effect as usize])).filter(is_style);

@@ -24,7 +24,7 @@ pub struct Camera {
     pub near_m: f64,
 }
 
-/// How a camera projects.
+/// The projection of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Lines of sight meet in the eye.

@@ -1,4 +1,4 @@
-//! Where to look from when nobody said: an oblique view that fills the picture with the city.
+//! The first view, where none is given: an oblique one that fills the picture with the city.
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +12,7 @@ use crate::{
 
 /// Vertical field of view, radians: wide enough for depth, narrow enough for upright walls.
 const FOV_Y: f64 = 40.0 * std::f64::consts::PI / 180.0;
-/// How far the view looks down, radians.
+/// The angle by which the view looks down, radians.
 const DOWN: f64 = 33.0 * std::f64::consts::PI / 180.0;
 /// Where the eye stands, radians clockwise from north: south-east and south-west, where northern suns light facades.
 const AZIMUTHS: [f64; 2] = [150.0 * std::f64::consts::PI / 180.0, 210.0 * std::f64::consts::PI / 180.0];

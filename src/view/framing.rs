@@ -1,4 +1,4 @@
-//! A camera that a ball just fits into: that of a best-view lens (B2; V eq. 3.23 and below it).
+//! A camera that a ball just fits into: that of a best-view lens (Trapp, eq. 3.23 and below it).
 //!
 //! ```text
 //!          near         far
@@ -14,7 +14,7 @@ use crate::{
     view::camera::{Camera, CameraError, MAX_FOV, MIN_FOV, Projection},
 };
 
-/// How much a camera sees.
+/// The field of view of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
     /// Vertical field of view, radians, [`MIN_FOV`]..=[`MAX_FOV`].
@@ -36,7 +36,7 @@ impl Field {
         self.fov_y.min(2.0 * ((0.5 * self.fov_y).tan() * self.aspect).atan())
     }
 
-    /// How far the eye is from the middle of a ball that just fits, metres: D = r / sin(α/2).
+    /// The distance of the eye from the middle of a ball that just fits, metres: D = r / sin(α/2).
     pub fn distance_to(&self, radius: f64) -> f64 {
         radius / (0.5 * self.narrower()).sin()
     }
@@ -45,7 +45,7 @@ impl Field {
 /// Why a ball cannot be looked at so.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FramingError {
-    /// What no camera sees.
+    /// A camera error.
     #[error(transparent)]
     Camera(#[from] CameraError),
     /// No width.
@@ -112,8 +112,8 @@ impl Framing {
     }
 }
 
-/// What is up in a picture looked at from the direction `normal` (unit): the world's up. Along the vertical, of a viewer with direction
-/// of view f and up u, B3's normalise((I − n·nᵀ)(f − (f·n)u)): where f leads is the top of the picture, and where f is the vertical
+/// The upward direction in a picture looked at from the direction `normal` (unit): the world's up. Along the vertical, of a viewer with direction
+/// of view f and up u, normalise((I − n·nᵀ)(f − (f·n)u)): where f leads is the top of the picture, and where f is the vertical
 /// too, u is. Without a viewer, or where that is nothing, north.
 pub fn up_along(normal: DVec3, viewer: Option<[DVec3; 2]>) -> DVec3 {
     /// Below this sine they count as parallel, as for [`crate::view::basis::Basis`].
@@ -186,7 +186,7 @@ mod tests {
         assert_eq!(up_along(DVec3::X, Some([DVec3::Y, DVec3::Z])), DVec3::Z);
         assert_eq!(up_along(DVec3::Z, None), DVec3::Y, "north");
         assert_eq!(up_along(-DVec3::Z, None), DVec3::Y, "from below too");
-        // A viewer that looks straight down has its own up; one for whom nothing is left, north.
+        // A viewer that looks straight down has its own up; one for which nothing is left, north.
         assert_eq!(up_along(DVec3::Z, Some([-DVec3::Z, DVec3::X])), DVec3::X);
         let (n_u, m_u) = (0.5 * (1.0 - 5_f64.sqrt()), (0.5 * (5_f64.sqrt() - 1.0)).sqrt());
         let (forward, up) = (DVec3::new(-n_u, 0.0, m_u), DVec3::new(m_u, 0.0, n_u));

@@ -1,4 +1,4 @@
-//! What an eye can see, as half spaces.
+//! The space that an eye can see, as half spaces.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Cameras of best-view lenses that go by the main eye (B3, B4; V §3.4.1); those that go by an object are [`crate::view::framing::Framing`]s.
+//! Cameras of best-view lenses that go by the main eye (Trapp §3.4.1); those that go by an object are [`crate::view::framing::Framing`]s.
 //!
 //! All of them look along a line that the caller gives, at a field of view that the caller gives; what is decided here is where they
 //! stand and what is up in them.
@@ -7,12 +7,12 @@ use glam::{DVec2, DVec3};
 
 use crate::view::camera::{Camera, Projection, default_near_m};
 
-/// How far sights of a camera may lie from the eye plane to count as level, sine.
+/// The largest sine of the angle between sights of a camera and the eye plane that counts as level.
 const LEVEL: f64 = 1e-9;
-/// How far from the eye the target of a level camera is, metres.
+/// The distance of the target of a level camera from the eye, metres.
 const LEVEL_REACH_M: f64 = 50.0;
 
-/// A camera `distance_m` from the viewer along `normal` that looks at the viewer (B3, MCOP).
+/// A camera `distance_m` from the viewer along `normal` that looks at the viewer (multiple centres of projection).
 pub fn towards_viewer(viewer: &Camera, normal: DVec3, distance_m: f64, fov_y: f64) -> Camera {
     let normal = normal.normalize_or(DVec3::Z);
     let eye = viewer.eye + distance_m * normal;
@@ -25,7 +25,7 @@ pub fn towards_viewer(viewer: &Camera, normal: DVec3, distance_m: f64, fov_y: f6
     }
 }
 
-/// A camera in the viewer's eye that looks along `direction` (B3, SCOP); the viewer's up.
+/// A camera in the viewer's eye that looks along `direction` (single centre of projection); the viewer's up.
 pub fn from_viewer(viewer: &Camera, direction: DVec3, fov_y: f64) -> Camera {
     let reach = viewer.eye.distance(viewer.target).max(1.0);
     Camera {
@@ -35,7 +35,7 @@ pub fn from_viewer(viewer: &Camera, direction: DVec3, fov_y: f64) -> Camera {
     }
 }
 
-/// A direction given on the viewer's axes - x to the right of its picture, y to its top, z out of it to whoever looks - on the model's.
+/// A direction given on the viewer's axes - x to the right of its picture, y to its top, z out of it towards the eye - on the model's.
 pub fn of_viewer(viewer: &Camera, direction: DVec3) -> DVec3 {
     viewer
         .basis()
@@ -54,7 +54,7 @@ pub fn map(centre: DVec3, heading: DVec2, height_m: f64, above_m: f64) -> Camera
     }
 }
 
-/// The middle of a map that follows an eye lazily (B4): that of before, moved no further than it takes for the eye to be within `reach` of it.
+/// The middle of a map that follows an eye lazily: that of before, moved no further than it takes for the eye to be within `reach` of it.
 pub fn followed(before: DVec2, eye: DVec2, reach: f64) -> DVec2 {
     let away = eye - before;
     let distance = away.length();
@@ -104,8 +104,8 @@ pub fn heading(viewer: &Camera) -> DVec2 {
     level.normalize_or(DVec2::Y)
 }
 
-/// What is up in a camera that looks against `normal`, a unit vector, for a viewer who looks along f with u up: (I − n nᵀ)(f − (f·n) u), normalised
-/// (B3). It turns evenly while the normal goes from behind the viewer over its head, and is the viewer's own up where the camera looks the same
+/// The upward direction in a camera that looks against `normal`, a unit vector, for a viewer that looks along f with u up: (I − n nᵀ)(f − (f·n) u), normalised.
+/// It turns evenly while the normal goes from behind the viewer over its head, and is the viewer's own up where the camera looks the same
 /// way. From two directions below the viewer this is 0: there the viewer's right is taken for up.
 pub fn upright(normal: DVec3, viewer: &Camera) -> DVec3 {
     let Ok(basis) = viewer.basis() else { return DVec3::Z };

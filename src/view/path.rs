@@ -20,7 +20,7 @@ const GAUSS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ];
 
-/// How time becomes a way along the path.
+/// The relation of time to the way along the path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Speed {
     /// Each key at its time, with continuous speed between them.
@@ -164,7 +164,7 @@ impl Piece {
     }
 }
 
-/// What a line through points is like.
+/// The form of a line through points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Form {
     /// Whether it goes on from the last point to the first.
@@ -333,7 +333,7 @@ pub struct CameraKey {
     pub target: DVec3,
     /// Reference up.
     pub up: DVec3,
-    /// How it projects.
+    /// Its projection.
     pub projection: Projection,
 }
 
@@ -460,7 +460,7 @@ mod tests {
 
     use super::*;
 
-    /// How far constant speed may be from it, as a share; a millimetre in a national frame is known to 1e-7 of it.
+    /// The largest deviation from constant speed, as a share; a millimetre in a national frame is known to 1e-7 of it.
     const SPEED_TOLERANCE: f64 = 1e-3;
 
     /// Keys in a national frame, some of them at one place.

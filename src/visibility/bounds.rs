@@ -1,4 +1,4 @@
-//! Tests of boxes (V §3.3.1).
+//! Tests of boxes (Trapp §3.3.1).
 
 use glam::DVec3;
 

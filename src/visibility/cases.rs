@@ -1,4 +1,4 @@
-//! Cases over time (O6): which of several ways an occluder is drawn in changes by the same margin and fade as whether it is one.
+//! Cases over time: which of several ways an occluder is drawn in changes by the same margin and fade as whether it is one.
 
 use crate::visibility::memory::Pace;
 
@@ -6,7 +6,7 @@ use crate::visibility::memory::Pace;
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseMemory {
     case: usize,
-    /// Of each case, in order, ≥ 0; together 1.
+    /// The share of each case, in order, ≥ 0; together 1.
     shares: Vec<f64>,
 }
 
@@ -64,7 +64,7 @@ mod tests {
     proptest! {
         #![proptest_config(crate::seeds::config())]
 
-        /// Of cases by distance: between two changes the whole margin is crossed, shares follow without a jump, and each threshold
+        /// Cases by distance: between two changes the whole margin is crossed, shares follow without a jump, and each threshold
         /// below the weight is that of one case.
         #[test]
         fn a_case_changes_once_per_crossing_and_shares_make_a_whole(

@@ -1,4 +1,4 @@
-//! How much of a point of interest somebody covers, by rays.
+//! The share of a point of interest that objects cover, by rays.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Of `hits` rays among `rays` ≥ 1.
+    /// The share of `hits` rays among `rays` ≥ 1.
     pub fn of(hits: u32, rays: u32) -> Self {
         // Wilson, Probable inference (1927): right also where all or none hit.
         const Z: f64 = 1.959_963_984_540_054;
@@ -32,7 +32,7 @@ impl Coverage {
     }
 }
 
-/// What a ray's way to a point of interest goes through.
+/// The city that rays to a point of interest go through.
 pub(super) struct Sampler<'a> {
     pub model: &'a CityModel,
     pub index: &'a SpatialIndex,

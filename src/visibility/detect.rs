@@ -30,12 +30,12 @@ pub struct Scope<'a> {
     pub index: &'a SpatialIndex,
 }
 
-/// What is asked.
+/// A question about occluders.
 #[derive(Clone, Copy, Debug)]
 pub struct Query<'a> {
     /// From where.
     pub viewer: Viewer,
-    /// What shall be seen; an occluder of any is one. Those of which nothing is shown are left out.
+    /// Points of interest that shall be seen; an occluder of any is one. Those of which nothing is shown are left out.
     pub pois: &'a [Poi],
     /// When something is an occluder.
     pub test: &'a Test,
@@ -45,11 +45,11 @@ pub struct Query<'a> {
     pub forbidden: &'a Set,
     /// Whether shares are measured also where no test asks for them.
     pub measured: bool,
-    /// How far an occluder may leave its test before it ceases to be one (O6).
+    /// The distance by which an occluder may leave its test before it ceases to be one.
     pub margin: Option<Margin>,
 }
 
-/// How far an occluder may leave its test before it ceases to be one.
+/// The distance by which an occluder may leave its test before it ceases to be one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
     /// Metres, ≥ 0: reaches and boxes are larger by this, under `not` smaller.
@@ -68,7 +68,7 @@ impl Margin {
     const SHARE: f64 = 0.25;
 }
 
-/// Who hides something.
+/// The occluders that were found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Detected {
     /// The occluders, as units.

@@ -1,4 +1,4 @@
-//! Landmarks: the objects of a city that stand out (B9, **beyond** V §5.3.2).
+//! Landmarks: the objects of a city that stand out (beyond Trapp §5.3.2).
 //!
 //! An object is a root city object with its parts; what others stand on (terrain, water, roads, land use) and plants are none. Four
 //! terms, each 0..=1, make its score, after the structural and semantic measures of Raubal and Winter (2002):
@@ -23,13 +23,13 @@ use crate::{
     visibility::units::Units,
 };
 
-/// How far the neighbourhood of an object reaches, metres.
+/// The radius of the neighbourhood of an object, metres.
 const NEIGHBOURHOOD_M: f64 = 200.0;
 /// Metres and square metres of a house.
 const HOUSE: (f64, f64) = (10.0, 200.0);
 /// Metres of a street block.
 const BLOCK_M: f64 = 100.0;
-/// Of the terms, in their order.
+/// The weights of the terms, in their order.
 const WEIGHTS: [f64; 4] = [0.4, 0.15, 0.25, 0.2];
 
 /// Attributes whose text is the name of one object, in lower case.
@@ -104,15 +104,15 @@ pub struct Landmark {
     pub object: u32,
     /// The weighted sum of its terms, 0..=1.
     pub score: f64,
-    /// What it is made of.
+    /// The terms of the score.
     pub terms: Terms,
     /// From its lowest point to its highest, metres.
     pub height_m: f64,
     /// The mean height of its neighbours, by footprint, metres; 0 without any.
     pub neighbours_m: f64,
-    /// What it covers of the ground, square metres.
+    /// The ground that it covers, square metres.
     pub footprint_m2: f64,
-    /// How far the nearest object is that is at least as high, metres in plan; `None`: there is none.
+    /// The distance to the nearest object that is at least as high, metres in plan; `None`: there is none.
     pub isolation_m: Option<f64>,
     /// Its name, if it has one.
     pub name: Option<String>,
@@ -125,9 +125,9 @@ pub struct Terms {
     pub height: f64,
     /// Its footprint over that of its neighbours.
     pub footprint: f64,
-    /// How far it is to the next that is as high.
+    /// The term of the distance to the next that is as high.
     pub isolation: f64,
-    /// What its attributes say.
+    /// The term of its attributes.
     pub attributes: f64,
 }
 
@@ -151,13 +151,13 @@ pub fn landmarks(model: &CityModel, shown: &[u32], n: usize) -> Vec<Landmark> {
         .filter(|&unit| can_be(units.roots[unit as usize]) && !units.boxes[unit as usize].is_empty())
         .collect();
     let town = Town::new(model, &units, &chosen);
-    let told = Told::new(model, &units);
+    let facts = UnitFacts::new(model, &units);
     let landmark = |at: usize| {
         let (height_m, footprint_m2) = (town.heights[at], town.areas[at]);
         let [neighbours_m, usual_m2] = town.neighbourhood(at);
         let isolation_m = town.isolation(at);
         let unit = chosen[at];
-        let (attributes, name) = told.of(unit);
+        let (attributes, name) = facts.of(unit);
         let over = |own: f64, others: f64, house: f64| ((own - others) / (own + others + house)).max(0.0);
         let terms = Terms {
             height: over(height_m, neighbours_m, HOUSE.0),
@@ -174,7 +174,7 @@ pub fn landmarks(model: &CityModel, shown: &[u32], n: usize) -> Vec<Landmark> {
     all
 }
 
-/// What can be a landmark, in plan.
+/// The objects that can be landmarks, in plan.
 struct Town {
     /// Boxes, flat: z = 0.
     boxes: Vec<Aabb>,
@@ -235,7 +235,7 @@ impl Town {
         [mean(volume, area), mean(area, neighbours.len() as f64)]
     }
 
-    /// How far the nearest is that is at least as high; `None` where none is.
+    /// The distance to the nearest that is at least as high; `None` where none is.
     fn isolation(&self, at: usize) -> Option<f64> {
         let mut reach = BLOCK_M;
         loop {
@@ -259,16 +259,16 @@ fn area_of(ring: &[DVec2]) -> f64 {
     ring.windows(2).map(|ends| 0.5 * (ends[0] - base).perp_dot(ends[1] - base)).sum()
 }
 
-/// What attributes say, per unit.
-struct Told<'a> {
+/// Facts that attributes tell, per unit.
+struct UnitFacts<'a> {
     model: &'a CityModel,
     /// The objects of each unit, its root first.
     members: FxHashMap<u32, Vec<u32>>,
-    /// How often each name occurs.
+    /// The number of times that each name occurs.
     names: FxHashMap<StringId, usize>,
 }
 
-impl<'a> Told<'a> {
+impl<'a> UnitFacts<'a> {
     fn new(model: &'a CityModel, units: &Units) -> Self {
         let mut members: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
         units.roots.iter().zip(0..).for_each(|(&root, unit)| members.entry(unit).or_default().push(root));

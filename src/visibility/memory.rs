@@ -1,8 +1,8 @@
-//! Classes over time (O6): what is an occluder stays one until it has left its test by a margin, and comes and goes gradually.
+//! Classes over time: what is an occluder stays one until it has left its test by a margin, and comes and goes gradually.
 
 use crate::visibility::{detect::Detected, set::Set};
 
-/// How fast things come and go.
+/// The pace at which things come and go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pace {
     /// Seconds from not at all to wholly, and back, ≥ 0; 0: at once. 0.3 is quick and does not pop.
@@ -23,7 +23,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// What is known where there is no history: everything is as it is detected, and fades are over.
+    /// The memory without a history: everything is as it is detected, and fades are over.
     pub fn settled(now: &Detected) -> Self {
         let units = now.occluders.universe() as u32;
         let is_occluder: Vec<bool> = (0..units).map(|unit| now.occluders.has(unit)).collect();

@@ -1,10 +1,10 @@
-//! Occluder detection: objects that hide others (spec O2; V §3.3.1), on the CPU, in f64.
+//! Occluder detection: objects that hide others (Trapp §3.3.1), on the CPU, in f64.
 //!
 //! The unit is the root city object with all its parts ([`Units`]). A [`Test`] says when one is an occluder; [`Scope::detect`]
 //! asks it of a whole city and says of each occluder which parts of the test held ([`Detected`]). [`Memory`] keeps classes from
-//! flickering over time (O6), [`CaseMemory`] the ways in which they are drawn.
+//! flickering over time, [`CaseMemory`] the ways in which they are drawn.
 //!
-//! And what is worth seeing: the best views of an object ([`best_views`], B2), and the objects that stand out ([`landmarks()`], B9).
+//! And what is worth seeing: the best views of an object ([`best_views`]), and the objects that stand out ([`landmarks()`]).
 
 mod best_view;
 mod bounds;

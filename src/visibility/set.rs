@@ -20,7 +20,7 @@ impl Set {
         set
     }
 
-    /// How many numbers there are, in it or not.
+    /// The number of numbers that there are, in it or not.
     pub fn universe(&self) -> usize {
         self.len
     }
@@ -35,7 +35,7 @@ impl Set {
         self.words.get(i as usize / 64).is_some_and(|word| word >> (i % 64) & 1 == 1)
     }
 
-    /// How many it has.
+    /// The number of its members.
     pub fn count(&self) -> usize {
         self.words.iter().map(|word| word.count_ones() as usize).sum()
     }

@@ -1,4 +1,4 @@
-//! Detection tests as data (O2).
+//! Detection tests as data.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use glam::DVec3;
 /// Tests of boxes count a unit whose box holds the eye.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Test {
-    /// A reference point of its box is less than `radius` metres from the eye (V eq. 3.16).
+    /// A reference point of its box is less than `radius` metres from the eye (Trapp, eq. 3.16).
     Spherical {
         /// Metres, ≥ 0; 50 to 150 in streets.
         radius: f64,
@@ -20,7 +20,7 @@ pub enum Test {
         /// LU, unit.
         up: DVec3,
     },
-    /// As [`Self::Spherical`], and its box meets the plane through the eye across `up` (V eq. 3.17).
+    /// As [`Self::Spherical`], and its box meets the plane through the eye across `up` (Trapp, eq. 3.17).
     ViewerHeight {
         /// Metres, ≥ 0.
         radius: f64,
@@ -29,7 +29,7 @@ pub enum Test {
         /// LU, unit.
         up: DVec3,
     },
-    /// Its box meets the segment from the eye to the middle of a point of interest (V eq. 3.18); exact.
+    /// Its box meets the segment from the eye to the middle of a point of interest (Trapp, eq. 3.18); exact.
     ViewAxis,
     /// The base of its box meets the disc of `radius` metres around the place under the eye, in plan.
     Ground {

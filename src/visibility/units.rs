@@ -1,4 +1,4 @@
-//! Who can hide something: root city objects with their parts.
+//! Units that can hide something: root city objects with their parts.
 
 use glam::DVec3;
 
@@ -32,7 +32,7 @@ pub struct Units {
 pub struct Viewer {
     /// LF, metres.
     pub eye: DVec3,
-    /// Of an orthographic view the direction of its sight lines, unit; `None`: they begin at the eye.
+    /// The direction of the sight lines of an orthographic view, unit; `None`: they begin at the eye.
     pub along: Option<DVec3>,
 }
 
@@ -117,7 +117,7 @@ impl Units {
         units
     }
 
-    /// How many there are.
+    /// The number of units.
     pub fn len(&self) -> usize {
         self.roots.len()
     }

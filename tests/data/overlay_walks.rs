@@ -1,4 +1,4 @@
-//! Walks of 300 frames past the places of a real city (B6): overlays keep still, none ever overlap, and each leap is told. What must hold is in `layouts`.
+//! Walks of 300 frames past the places of a real city: overlays keep still, none ever overlap, and each leap is told. What must hold is in `layouts`.
 
 #![allow(clippy::print_stdout, reason = "what was counted, for those who ask with --no-capture")]
 

@@ -1,4 +1,4 @@
-//! Walks of 300 frames (O6): an object changes class at most once per crossing of the boundary of its test, its weight by no more than
+//! Walks of 300 frames: an object changes class at most once per crossing of the boundary of its test, its weight by no more than
 //! time allows, and each pixel of the frames is as the weights say. Oracles: distances to boxes, measured here; who hides
 //! something at each moment for itself; object ids of pictures without the lens, and the thresholds of `lens::dither`.
 

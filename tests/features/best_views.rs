@@ -1,4 +1,4 @@
-//! Best-view lenses in pictures (B1 to B8): overlays show what their own eyes see, pixel by pixel, and only when it changed.
+//! Best-view lenses in pictures: overlays show what their own eyes see, pixel by pixel, and only when it changed.
 
 use crate::studio::*;
 use glam::{DVec2, DVec3};

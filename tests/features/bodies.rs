@@ -1,4 +1,4 @@
-//! Bodies of lenses as tinted glass and as a glow (L5).
+//! Bodies of lenses as tinted glass and as a glow.
 
 use crate::studio::*;
 use glam::{DVec2, DVec3};

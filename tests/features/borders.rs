@@ -1,4 +1,4 @@
-//! Soft borders of lenses (L9), pixel by pixel against f64.
+//! Soft borders of lenses, pixel by pixel against f64.
 
 use crate::studio::*;
 use glam::{DQuat, DVec2, DVec3};

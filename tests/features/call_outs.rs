@@ -1,4 +1,4 @@
-//! Overlays with places of their own (B6): on boards in the scene, in perspective, and where their author wants them in
+//! Overlays with places of their own: on boards in the scene, in perspective, and where their author wants them in
 //! the picture.
 
 use crate::studio::*;

@@ -674,7 +674,7 @@ fn the_content_of_a_higher_lens_clips_those_below() {
             let own: Vec<usize> = (0..all.rgba.len()).filter(is_own).collect();
             let overlaps = own.iter().filter(|&&i| masks[..lens].iter().any(|m| m[i])).count();
             assert!(own.len() > 1000 && (lens == 0 || overlaps > 300), "{name}, lens {lens}: {overlaps} overlap");
-            // What lower lenses do to colours they do to what is shown in both (C5).
+            // What lower lenses do to colours they do to what is shown in both.
             let shown = |p: &Picture, i: usize| {
                 (p.object_id.as_ref().expect("ids")[i], p.depth.as_ref().expect("depth")[i].to_bits())
             };

@@ -1,4 +1,4 @@
-//! Contents of lenses (C3, C6): what shows where, against rays in f64 and the rule; shadows, edges, and both back ends.
+//! Contents of lenses: what shows where, against rays in f64 and the rule; shadows, edges, and both back ends.
 
 use crate::studio::*;
 use glam::{DQuat, DVec3};

@@ -1,4 +1,4 @@
-//! Deformation lenses in pictures (D1, D2): what is shown is what the operators say of the city at rest, pixel by pixel, and
+//! Deformation lenses in pictures: what is shown is what the operators say of the city at rest, pixel by pixel, and
 //! nothing else changes.
 
 use crate::studio::*;

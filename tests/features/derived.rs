@@ -1,4 +1,4 @@
-//! Derived contents, drawn (O3, O5): who is seen where, against rays in f64; shadows; both back ends; nothing is made anew.
+//! Derived contents, drawn: who is seen where, against rays in f64; shadows; both back ends; nothing is made anew.
 
 use crate::studio::{self, *};
 use glam::DVec3;

@@ -216,7 +216,7 @@ fn eyes() -> [Eye; 3] {
 }
 
 /// Draws the lenses from every eye and compares their masks; places that move across a border within the rounding of stored depths
-/// (S7: 8·2⁻²³ of the distance, a second half as much for the faces' own band) may be on either side.
+/// (8·2⁻²³ of the distance, a second half as much for the faces' own band) may be on either side.
 fn check(described: &[Described], style: &str) {
     let mut studio = None;
     let mut inside = vec![0; described.len()];

@@ -1,4 +1,4 @@
-//! Ordered dithering on the card against its twin on the CPU, to the bit.
+//! Ordered dithering on the GPU against its twin on the CPU, to the bit.
 
 use veduta::{gpu::Gpu, lens::dither::dither};
 
@@ -19,7 +19,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 ";
 
 /// The thresholds of the pixels of a target whose first pixel is this one of the picture.
-fn on_the_card(gpu: &Gpu, first: [u32; 2]) -> Vec<f32> {
+fn on_the_gpu(gpu: &Gpu, first: [u32; 2]) -> Vec<f32> {
     let source = include_str!("../../shaders/lib/dither.wgsl").to_owned()
         + &KERNEL.replace("FIRST", &format!("{}u", first[0] | first[1] << 16));
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -53,10 +53,10 @@ fn on_the_card(gpu: &Gpu, first: [u32; 2]) -> Vec<f32> {
 }
 
 #[test]
-fn the_card_has_the_thresholds_of_the_twin_whatever_part_of_a_picture_is_drawn() {
+fn the_gpu_has_the_thresholds_of_the_twin_whatever_part_of_a_picture_is_drawn() {
     let gpu = Gpu::open().expect("an adapter");
     for first in [[0, 0], [3976, 0], [12_000, 65_535 - SIDE]] {
-        let found = on_the_card(&gpu, first);
+        let found = on_the_gpu(&gpu, first);
         let pixels = (0..SAMPLES).flat_map(|s| (0..SIDE).flat_map(move |y| (0..SIDE).map(move |x| ([x, y], s))));
         for (([x, y], sample), found) in pixels.zip(found) {
             let wanted = dither([first[0] + x, first[1] + y], sample);

@@ -1,4 +1,4 @@
-//! Overlays that show much of a city in few pixels (B8): they draw block models, no more triangles than four for each of their pixels, and
+//! Overlays that show much of a city in few pixels: they draw block models, no more triangles than four for each of their pixels, and
 //! look as they would with all of it.
 
 use crate::studio::*;

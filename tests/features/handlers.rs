@@ -1,4 +1,4 @@
-//! The two back ends of the shader handlers (H3): the same picture, and what each compiles.
+//! The two back ends of the shader handlers: the same picture, and what each compiles.
 
 use crate::studio::{self, lens, scene, shapes, synthetic, used};
 use glam::DVec3;

@@ -26,7 +26,7 @@ fn layers_of_a_number_along_the_ray_grow_denser() {
         let mut peel = used("peel");
         peel.parameters.insert("count".into(), Parameter::Text(of.into()));
         let scene = of_context(vec![peel]);
-        let found = veil(&mut studio, &scene, Backend::Specialised, SIZE);
+        let found = transparency(&mut studio, &scene, Backend::Specialised, SIZE);
         let expected: Vec<_> = stacks
             .iter()
             .map(|stack| {
@@ -39,10 +39,10 @@ fn layers_of_a_number_along_the_ray_grow_denser() {
             .collect();
         let error = largest_difference(&found, &expected);
         assert!(error <= 1e-5, "{of}: {error:e}");
-        assert_eq!(found, veil(&mut studio, &scene, Backend::Uber, SIZE), "{of}");
+        assert_eq!(found, transparency(&mut studio, &scene, Backend::Uber, SIZE), "{of}");
         // In bands, the picture's number of layers is that of all of them.
         studio.renderer.settings.most_layers = Some(200);
-        assert_eq!(found, veil(&mut studio, &scene, Backend::Specialised, SIZE), "{of}, in bands");
+        assert_eq!(found, transparency(&mut studio, &scene, Backend::Specialised, SIZE), "{of}, in bands");
         assert!(studio.renderer.layer_figures().bands > 2);
         studio.renderer.settings.most_layers = None;
     }
@@ -73,7 +73,7 @@ fn layers_that_are_alike_in_everything_are_all_laid() {
     let scene = of_context(vec![with_numbers("transparent", &[("opacity", a)])]);
     let middle = (SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize;
     for backend in [Backend::Specialised, Backend::Uber] {
-        let found = veil(&mut studio, &scene, backend, SIZE)[middle];
+        let found = transparency(&mut studio, &scene, backend, SIZE)[middle];
         let through = (1.0 - f64::from(a as f32)).powi(count as i32);
         assert!((f64::from(found[3]) - through).abs() <= 60.0 * 2.0_f64.powi(-24), "{backend:?}: {found:?}, {through}");
     }
@@ -211,7 +211,7 @@ fn a_soft_border_leads_from_opaque_to_clear() {
     let lens = Lens { border: Some(border), ..Lens { effects: vec![clear], ..lens("soft", vec![shape], "eraser") } };
     let scene = scene(camera(), vec![lens]);
     for backend in [Backend::Specialised, Backend::Uber] {
-        let found = veil(&mut studio, &scene, backend, SIZE);
+        let found = transparency(&mut studio, &scene, backend, SIZE);
         // Along the middle row: opaque outside, clear inside, and never back.
         let row: Vec<f32> = (0..SIZE[0] / 2).map(|x| found[(SIZE[1] / 2 * SIZE[0] + x) as usize][3]).collect();
         let seen: Vec<f32> = row.iter().copied().filter(|t| *t > 0.0 && *t < 1.0).collect();
@@ -251,7 +251,7 @@ fn x_ray_shows_faces_by_how_they_are_seen() {
             let numbers = [("exponent", exponent), ("least", least), ("most", most)];
             let mut scene = of_context(vec![with_numbers("x-ray", &numbers)]);
             scene.camera = Some(orthographic(eye, at, 11.0));
-            let found = veil(&mut studio, &scene, Backend::Specialised, SIZE);
+            let found = transparency(&mut studio, &scene, Backend::Specialised, SIZE);
             let middle = found[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize];
             let density = if exponent == 0.0 { 0.0 } else { 1.0 - turn.cos().powf(exponent) };
             let opacity = least + (most - least) * density;
@@ -278,7 +278,7 @@ fn x_ray_shows_floors_faintly() {
             let of_face = 0.1 + 0.8 * (1.0 - normal.dot(back));
             let opacity = if is_floor { floors * of_face } else { of_face };
             for backend in [Backend::Specialised, Backend::Uber] {
-                let found = veil(&mut studio, &scene, backend, SIZE);
+                let found = transparency(&mut studio, &scene, backend, SIZE);
                 let middle = found[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize];
                 let error = f64::from(middle[3]) - (1.0 - opacity);
                 assert!(error.abs() < 2e-4, "{rise} {face} {floors} {backend:?}: {middle:?}, {opacity}");
@@ -292,7 +292,7 @@ fn seen_aside(studio: &mut Studio, turn: f64, effects: &[EffectUse], backend: Ba
     let at = DVec3::new(0.0, 5.0, 5.0);
     let mut scene = of_context(effects.to_vec());
     scene.camera = Some(orthographic(at + 20.0 * DVec3::new(-turn.cos(), -turn.sin(), 0.0), at, 11.0));
-    veil(studio, &scene, backend, SIZE)[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize].map(f64::from)
+    transparency(studio, &scene, backend, SIZE)[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize].map(f64::from)
 }
 
 /// How far `at` is on a way of equal steps: the step, and how much of it.

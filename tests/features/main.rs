@@ -13,6 +13,7 @@ mod deformations;
 mod deformed_scenes;
 mod derived;
 mod described;
+mod discard;
 mod dither;
 mod effects;
 mod far_views;
@@ -20,7 +21,6 @@ mod floors;
 mod furniture;
 mod gpu;
 mod handlers;
-mod hiding;
 mod layers;
 #[path = "../layouts/mod.rs"]
 mod layouts;

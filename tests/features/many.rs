@@ -1,4 +1,4 @@
-//! Many lenses in one picture (L8).
+//! Many lenses in one picture.
 
 use crate::studio::*;
 use glam::DVec3;

@@ -239,10 +239,10 @@ fn transparency_is_measured_against_f64() {
     let trial = (topic.make)(&mut Stage { studio: &mut studio, size }).unwrap();
     let mut deepest = 0;
     for variant in trial.variants.iter().filter(|v| v.shot.request.samples == 1) {
-        let right = variant.veil.as_ref().unwrap();
+        let right = variant.composited.as_ref().unwrap();
         deepest = deepest.max(right.most_layers);
-        let found = studio.veil(&variant.shot.scene, size).unwrap();
-        let Against { max, mean } = Against::veil(&found, &right.veil);
+        let found = studio.transparency(&variant.shot.scene, size).unwrap();
+        let Against { max, mean } = Against::transparency(&found, &right.transparency);
         assert!(mean <= max && max <= 2.0, "{}: {mean} {max}", variant.label);
         let method = variant.shot.scene.style.transparency;
         match method {
@@ -288,7 +288,7 @@ fn handlers() {
     for variant in trial.variants.iter().filter(|v| effects(v) == 2) {
         let reference = variant.reference.as_ref().unwrap();
         let [right, found] = [reference, &variant.shot].map(|shot| studio.render(&shot.scene, &shot.request).unwrap());
-        // Both back ends make one picture (H3), and there is something in it.
+        // Both back ends make one picture, and there is something in it.
         assert_eq!(Difference::between(&right, &found).max_steps, 0, "{}", variant.label);
         let share = Difference::between(&plain, &found).wrong_pixels as f64 / (64.0 * 36.0);
         assert!((0.05..0.2).contains(&share), "{}: a lens over a tenth changes {share}", variant.label);

@@ -1,4 +1,4 @@
-//! Occlusion lenses (O2, O3): with `discard` all of a point of interest is seen, and nothing that does not hide it is gone. Oracle: the
+//! Occlusion lenses: with `discard` all of a point of interest is seen, and nothing that does not hide it is gone. Oracle: the
 //! object ids of pictures, of the whole city and of the point of interest alone with the ground.
 
 #![allow(clippy::print_stdout, reason = "what was measured, for those who ask with --no-capture")]

@@ -1,4 +1,4 @@
-//! Occluders over time (O6): a fade is a pattern of two pictures, on every rendering and both back ends; what was before does not
+//! Occluders over time: a fade is a pattern of two pictures, on every rendering and both back ends; what was before does not
 //! matter where nobody let time pass. And shadows of what lenses take away, which go or stay.
 
 use crate::studio::*;

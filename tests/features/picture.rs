@@ -130,7 +130,7 @@ fn classes_of_concave_shapes_and_combinations_are_those_of_their_intervals() {
             let reference = Reference::of(&lens.shapes[0]);
             let mut expected = [0_u64; 4];
             for (i, (x, y)) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).enumerate() {
-                // What a ray grazes for less than a millimetre a card may miss.
+                // What a ray grazes for less than a millimetre a GPU may miss.
                 let mut along = reference.intervals(&view.pixel_ray(x, y));
                 along.retain(|(entry, exit)| exit - entry > 1e-3);
                 let class = classify(&along, depth[i].into());

@@ -1,4 +1,4 @@
-//! Lenses that are fixed to something (L2), and flat lenses (L3), against f64.
+//! Lenses that are fixed to something, and flat lenses, against f64.
 
 use crate::studio::*;
 use glam::{DQuat, DVec2, DVec3};
@@ -56,7 +56,7 @@ fn class_of(volume: &Volume, view: &View, pixel: [u32; 2], d: f64) -> Option<Cla
         Some(_) => Class::Front,
         None => Class::Rest,
     };
-    // A hundredth of a pixel, and the float band of S7 along a ray that may graze the plane.
+    // A hundredth of a pixel, and the float band of an analytic test along a ray that may graze the plane.
     let near = [[0.0, 0.0], [0.01, 0.0], [-0.01, 0.0], [0.0, 0.01], [0.0, -0.01]].map(DVec2::from);
     let band = 1.0 + 1e-5;
     let all: Vec<Class> = near.into_iter().flat_map(|o| [of(o, d / band), of(o, d), of(o, d * band)]).collect();

@@ -1,4 +1,4 @@
-//! How occluders are drawn (O3): whatever the style, the point of interest is seen, and nothing else goes.
+//! How occluders are drawn: whatever the style, the point of interest is seen, and nothing else goes.
 
 #![allow(clippy::print_stdout, reason = "what was measured, for those who ask with --no-capture")]
 

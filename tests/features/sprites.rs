@@ -234,7 +234,7 @@ fn layers_hold_what_the_shapes_hold() {
                 let depth = analytic.depth.as_ref().expect("depth");
                 let view = view(camera, SIZE);
                 let references: Vec<_> = shapes.iter().map(studio::Reference::of).collect();
-                // Every pixel that differs lies within a texel of the border (S7).
+                // Every pixel that differs lies within a texel of the border.
                 let (right, seen) = (bits(&analytic, 0), bits(&found, 0));
                 let mut apart = 0;
                 for i in (0..right.len()).filter(|&i| right[i] != seen[i]) {

@@ -1,4 +1,4 @@
-//! The techniques that are kept for reference (C2): the picture of each is that of accumulation, and what they cannot do they
+//! The techniques that are kept for reference: the picture of each is that of accumulation, and what they cannot do they
 //! refuse.
 
 use crate::studio::*;

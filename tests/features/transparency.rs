@@ -1,4 +1,4 @@
-//! The methods of laying translucent layers one over the other (O7), against the exact one and against their formulas.
+//! The methods of laying translucent layers one over the other, against the exact one and against their formulas.
 
 use crate::panes::*;
 use crate::studio::*;
@@ -53,16 +53,16 @@ fn peeling_until_nothing_is_left_is_exact_to_the_bit() {
         [unlike(23), of_context(vec![used("peel")]), of_context(vec![used("x-ray")]), of_context(vec![used("film")])]
     {
         for backend in BOTH {
-            let exact = veil(&mut studio, &scene, backend, SIZE);
-            let fragments = studio.renderer.layer_figures().notes;
-            let found = veil(&mut studio, &by(PEEL, &scene), backend, SIZE);
+            let exact = transparency(&mut studio, &scene, backend, SIZE);
+            let fragments = studio.renderer.layer_figures().nodes;
+            let found = transparency(&mut studio, &by(PEEL, &scene), backend, SIZE);
             assert_eq!(exact, found, "{backend:?}");
             let (figures, layers) = (studio.renderer.method_figures(), studio.renderer.layer_figures());
-            assert_eq!((layers.notes, layers.excess, figures.dropped, figures.merged), (fragments, 0, 0, None));
+            assert_eq!((layers.nodes, layers.excess, figures.dropped, figures.merged), (fragments, 0, 0, None));
             assert!(figures.rounds >= 3, "{figures:?}");
             // In bands too.
             studio.renderer.settings.most_layers = Some(u64::from(SIZE[0]) * 4 * 7);
-            let found = veil(&mut studio, &by(PEEL, &scene), backend, SIZE);
+            let found = transparency(&mut studio, &by(PEEL, &scene), backend, SIZE);
             assert_eq!(exact, found, "{backend:?} in bands");
             assert_eq!(studio.renderer.layer_figures().bands, 6);
             studio.renderer.settings.most_layers = None;
@@ -83,12 +83,12 @@ fn peeling_until_nothing_is_left_is_exact_in_a_town() {
         for used in [with_numbers("transparent", &[("opacity", 0.05)]), used("film")] {
             let mut scene = scene(camera, vec![]);
             scene.style.effects = vec![used];
-            let exact = veil(&mut studio, &scene, Backend::Specialised, size);
-            let fragments = studio.renderer.layer_figures().notes;
-            let found = veil(&mut studio, &by(PEEL, &scene), Backend::Specialised, size);
+            let exact = transparency(&mut studio, &scene, Backend::Specialised, size);
+            let fragments = studio.renderer.layer_figures().nodes;
+            let found = transparency(&mut studio, &by(PEEL, &scene), Backend::Specialised, size);
             let off = exact.iter().zip(&found).filter(|(a, b)| a != b).count();
             assert_eq!(off, 0, "pixels of view {view}");
-            assert_eq!(studio.renderer.layer_figures().notes, fragments);
+            assert_eq!(studio.renderer.layer_figures().nodes, fragments);
             // What a figure makes of it, too: of four samples, in the order of all passes.
             if view < 2 {
                 let asked = Request { size, samples: 4, aovs: Aovs::default(), ..request(Backend::Specialised) };
@@ -108,7 +108,7 @@ fn peeling_to_a_number_of_layers_shows_the_nearest_and_counts_the_others() {
     let scene = of_context(vec![rule("transparent", &[("opacity", 0.3)], None, false)]);
     let a = f64::from(0.3_f32);
     for layers in [1, 2, 3, 4, 5, 8, 9] {
-        let found = veil(&mut studio, &by(peel(layers), &scene), Backend::Specialised, SIZE);
+        let found = transparency(&mut studio, &by(peel(layers), &scene), Backend::Specialised, SIZE);
         let nearest = |stack: &Vec<(usize, [f32; 3])>| stack[..stack.len().min(layers as usize)].to_vec();
         let expected: Vec<_> = stacks.iter().map(|stack| composited(&nearest(stack), |_, _| a)).collect();
         let error = largest_difference(&found, &expected);
@@ -130,9 +130,9 @@ fn a_k_buffer_is_exact_where_no_pixel_has_more_layers_than_slots() {
     let stacks = stacks(&mut studio, &all);
     for scene in [unlike(9), of_context(vec![used("peel")]), of_context(vec![used("film")])] {
         for backend in BOTH {
-            let exact = veil(&mut studio, &scene, backend, SIZE);
+            let exact = transparency(&mut studio, &scene, backend, SIZE);
             for slots in [4, 8, 16] {
-                let found = veil(&mut studio, &by(k_buffer(slots), &scene), backend, SIZE);
+                let found = transparency(&mut studio, &by(k_buffer(slots), &scene), backend, SIZE);
                 let figures = studio.renderer.method_figures();
                 let merged: usize = stacks.iter().map(|s| s.len().saturating_sub(slots as usize)).sum();
                 assert_eq!((figures.merged, figures.dropped), (Some(merged as u64), 0), "{slots}");
@@ -156,8 +156,8 @@ fn the_order_in_which_the_city_is_drawn_does_not_matter_to_slots() {
     all[6].x = all[5].x;
     let mut studio = studio_of(&all);
     let scenes = [k_buffer(4), k_buffer(16), peel(6)].map(|method| by(method, &unlike(14)));
-    let first = scenes.each_ref().map(|scene| veil(&mut studio, scene, Backend::Specialised, SIZE));
-    // In the file, and on the card.
+    let first = scenes.each_ref().map(|scene| transparency(&mut studio, scene, Backend::Specialised, SIZE));
+    // In the file, and on the GPU.
     for order in 0..20 {
         studio.renderer.settings.shuffled = Some(order);
         for i in (1..all.len()).rev() {
@@ -165,7 +165,7 @@ fn the_order_in_which_the_city_is_drawn_does_not_matter_to_slots() {
         }
         set_city(&mut studio, &all);
         for (scene, first) in scenes.iter().zip(&first) {
-            let found = veil(&mut studio, scene, Backend::Specialised, SIZE);
+            let found = transparency(&mut studio, scene, Backend::Specialised, SIZE);
             // Which layers the last one of a k-buffer merges is the same too, but their sum is rounded after each of ten.
             let merges = scene.style.transparency == k_buffer(4);
             let allowed = if merges { 3.0 * 10.0 * 2_f64.powi(-24) } else { 0.0 };
@@ -259,11 +259,11 @@ fn weighted_layers_are_as_their_formula_says() {
     let expected: Vec<_> = weighed.iter().map(|layers| weighted(layers)).collect();
     let scene = by(Transparency::Weighted, &unlike(12));
     for backend in BOTH {
-        let found = veil(&mut studio, &scene, backend, SIZE);
+        let found = transparency(&mut studio, &scene, backend, SIZE);
         let error = largest_difference(&found, &expected);
         assert!(error < 2e-5, "{backend:?}: {error:e}");
     }
-    let exact = veil(&mut studio, &unlike(12), Backend::Specialised, SIZE);
+    let exact = transparency(&mut studio, &unlike(12), Backend::Specialised, SIZE);
     assert!(largest_difference(&exact, &expected) > 0.02, "it is another picture than the exact one");
 }
 
@@ -288,14 +288,14 @@ fn what_finds_no_slot_is_one_layer_behind_the_others() {
         let expected: Vec<_> = stacks.iter().map(laid).collect();
         let scene = by(k_buffer(slots), &unlike(15));
         for backend in BOTH {
-            let found = veil(&mut studio, &scene, backend, SIZE);
+            let found = transparency(&mut studio, &scene, backend, SIZE);
             let error = largest_difference(&found, &expected);
             assert!(error < 1e-5, "{slots} {backend:?}: {error:e}");
         }
         // In bands too.
-        let whole = veil(&mut studio, &scene, Backend::Specialised, SIZE);
+        let whole = transparency(&mut studio, &scene, Backend::Specialised, SIZE);
         studio.renderer.settings.most_layers = Some(u64::from(SIZE[0] * slots) * 9);
-        assert_eq!(whole, veil(&mut studio, &scene, Backend::Specialised, SIZE));
+        assert_eq!(whole, transparency(&mut studio, &scene, Backend::Specialised, SIZE));
         assert_eq!(studio.renderer.layer_figures().bands, 5);
         studio.renderer.settings.most_layers = None;
     }

@@ -1,4 +1,4 @@
-//! Input that is wrong (contract.md): every case must end in one readable message or in listed warnings with the
+//! Input that is wrong: every case must end in one readable message or in listed warnings with the
 //! rest shown; through the library, and through the program with its exit code and a limit on memory.
 
 use std::{

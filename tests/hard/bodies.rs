@@ -13,7 +13,7 @@ use veduta::{
     view::{Camera, View},
 };
 
-use crate::{oracle::P3, panes::veil, studio};
+use crate::{oracle::P3, panes::transparency, studio};
 
 /// Where the bodies' origin is, metres: where cities are.
 pub const ORIGIN: DVec3 = DVec3::new(85_000.0, 447_000.0, 3.0);
@@ -92,13 +92,13 @@ pub fn translucent(camera: Camera, opacity: f64, method: Transparency) -> Scene 
 
 /// How many layers each pixel has, 23 at most: each lets half of the light through, and powers of two are exact.
 pub fn layers(studio: &mut Studio, camera: Camera, size: [u32; 2], method: Transparency) -> Vec<u32> {
-    let veils = veil(studio, &translucent(camera, 0.5, method), Backend::Specialised, size);
+    let layers = transparency(studio, &translucent(camera, 0.5, method), Backend::Specialised, size);
     let of = |v: &[f32; 4]| {
         let count = -v[3].log2();
         assert!(count.fract() == 0.0 && (0.0..=23.0).contains(&count), "{v:?}");
         count as u32
     };
-    veils.iter().map(of).collect()
+    layers.iter().map(of).collect()
 }
 
 /// The layers of each pixel, alike by all [`METHODS`] and both back ends.
@@ -108,7 +108,7 @@ pub fn layers_by_all(studio: &mut Studio, camera: Camera, size: [u32; 2]) -> Vec
         assert_eq!(exact, layers(studio, camera, size, method), "{method:?}");
     }
     let scene = translucent(camera, 0.5, Transparency::Exact);
-    let [one, other] = [Backend::Specialised, Backend::Uber].map(|backend| veil(studio, &scene, backend, size));
+    let [one, other] = [Backend::Specialised, Backend::Uber].map(|backend| transparency(studio, &scene, backend, size));
     assert_eq!(one, other, "both back ends");
     studio.backend = Backend::Specialised;
     exact

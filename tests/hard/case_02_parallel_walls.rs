@@ -72,9 +72,9 @@ fn the_nearer_layer_is_laid_over_the_other() {
                 let alone = [0, 1].map(|pane: usize| {
                     let mut effects = vec![crate::panes::rule("eraser", &[], Some(&[pane]), true)];
                     effects.extend(rule(1.0));
-                    veil(&mut studio, &seen(effects), Backend::Specialised, PIXELS)
+                    transparency(&mut studio, &seen(effects), Backend::Specialised, PIXELS)
                 });
-                let found = veil(&mut studio, &seen(rule(0.6)), Backend::Specialised, PIXELS);
+                let found = transparency(&mut studio, &seen(rule(0.6)), Backend::Specialised, PIXELS);
                 let [near, far] = if side < 0.0 { [&alone[0], &alone[1]] } else { [&alone[1], &alone[0]] };
                 let color = |of: &[f32; 4]| [of[0], of[1], of[2]];
                 let expected: Vec<[f64; 4]> = (0..found.len())

@@ -1,5 +1,5 @@
 //! Case 6: 1 to 64 lenses that overlap, of all shapes: each bit of the mask is what f64 says of the shown place, outside the
-//! band of S7; in which order lenses came to be changes nothing. Oracle: the definitions of the shapes, at the f32 depth.
+//! band of an analytic test; in which order lenses came to be changes nothing. Oracle: the definitions of the shapes, at the f32 depth.
 
 use veduta::{
     figure::scene_file,

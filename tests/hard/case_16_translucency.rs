@@ -39,12 +39,12 @@ fn layers_are_laid_over_each_other_as_in_f64() {
             .map(|stack| composited(&stack, |_, pane| opacities[pane]))
             .collect();
         let scene = of_context(effects);
-        let found = veil(&mut studio, &scene, Backend::Specialised, SIZE);
+        let found = transparency(&mut studio, &scene, Backend::Specialised, SIZE);
         let error = largest_difference(&found, &expected);
         // Issue: 2⁻¹⁶ for colours of 16 bits, which these are not; f32 alone takes 3 roundings a layer.
         let allowed = 3.0 * count as f64 * 2_f64.powi(-24) + 2_f64.powi(-24);
         assert!(error <= allowed, "{count}: {error:e} > {allowed:e}");
-        assert_eq!(found, veil(&mut studio, &scene, Backend::Uber, SIZE), "{count}: both back ends");
+        assert_eq!(found, transparency(&mut studio, &scene, Backend::Uber, SIZE), "{count}: both back ends");
     }
 }
 
@@ -57,16 +57,20 @@ fn the_order_in_which_the_city_is_drawn_does_not_matter() {
     let mut studio = studio_of(&all);
     let opacity = |i: usize| rule("transparent", &[("opacity", 0.1 + 0.05 * i as f64)], Some(&[i]), false);
     let scene = of_context((0..all.len()).map(opacity).collect());
-    let first = veil(&mut studio, &scene, Backend::Specialised, SIZE);
-    // In the file, and on the card.
+    let first = transparency(&mut studio, &scene, Backend::Specialised, SIZE);
+    // In the file, and on the GPU.
     for order in 0..100 {
         studio.renderer.settings.shuffled = Some(order);
-        assert_eq!(first, veil(&mut studio, &scene, Backend::Specialised, SIZE), "the card's order {order}: {all:?}");
+        assert_eq!(
+            first,
+            transparency(&mut studio, &scene, Backend::Specialised, SIZE),
+            "the GPU's order {order}: {all:?}"
+        );
         for i in (1..all.len()).rev() {
             all.swap(i, random.below(i as u64 + 1) as usize);
         }
         set_city(&mut studio, &all);
-        assert_eq!(first, veil(&mut studio, &scene, Backend::Specialised, SIZE), "{all:?}");
+        assert_eq!(first, transparency(&mut studio, &scene, Backend::Specialised, SIZE), "{all:?}");
     }
 }
 
@@ -80,17 +84,17 @@ fn ten_thousand_layers_are_laid_over_each_other() {
     let a = f64::from(0.0003_f32);
     let scene = of_context(vec![rule("transparent", &[("opacity", a)], None, false)]);
     // Frame by frame, the third knows how long the lists of the first were.
-    let frames = [(); 3].map(|()| veil(&mut studio, &scene, Backend::Specialised, size));
+    let frames = [(); 3].map(|()| transparency(&mut studio, &scene, Backend::Specialised, size));
     // A picture is drawn anew where lists turn out to be long; the next frame knows.
     let base = Request { size, aovs: Aovs::default(), ..request(Backend::Specialised) };
     studio.render(&scene, &base).expect("a picture");
-    let found = veil(&mut studio, &scene, Backend::Specialised, size);
+    let found = transparency(&mut studio, &scene, Backend::Specialised, size);
     assert_eq!(frames[2], found);
     // One of each material is enough to know the colours.
     let own: Vec<[f32; 3]> = (0..MATERIALS.len())
         .map(|i| {
             let alone = [rule("eraser", &[], Some(&[i]), true), rule("transparent", &[("opacity", 1.0)], None, false)];
-            let v = veil(&mut studio, &of_context(alone.to_vec()), Backend::Specialised, size)[5];
+            let v = transparency(&mut studio, &of_context(alone.to_vec()), Backend::Specialised, size)[5];
             assert_eq!(v[3], 0.0);
             [v[0], v[1], v[2]]
         })

@@ -1,4 +1,4 @@
-//! Deformation lenses, and where they show a place by the formulas of D1 alone, in f64; which pixels surfaces cover, in f64; and closed
+//! Deformation lenses, and where they show a place by the operators' formulas alone, in f64; which pixels surfaces cover, in f64; and closed
 //! bodies that are cut unevenly.
 
 use std::f64::consts::TAU;

@@ -108,7 +108,7 @@ pub fn holds(shape: &Shape, p: DVec3) -> bool {
     }
 }
 
-/// The stated band of an analytic test around a volume, metres (S7), for a place at D.
+/// The stated band of an analytic test around a volume, metres, for a place at D.
 pub fn band(volume: &veduta::geom::Volume, eye: DVec3, d: f64) -> f64 {
     8.0 * 2_f64.powi(-23) * d.max(volume.bounds().center().distance(eye))
 }

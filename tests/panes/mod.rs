@@ -139,7 +139,7 @@ pub fn of_context(effects: Vec<EffectUse>) -> Scene {
 }
 
 /// What the last frame laid over its picture.
-pub fn veil(studio: &mut Studio, scene: &Scene, backend: Backend, size: [u32; 2]) -> Vec<[f32; 4]> {
+pub fn transparency(studio: &mut Studio, scene: &Scene, backend: Backend, size: [u32; 2]) -> Vec<[f32; 4]> {
     studio.backend = backend;
     studio.redraw(scene, size).expect("a frame");
     let targets = studio.renderer.targets().expect("targets");
@@ -151,7 +151,7 @@ pub fn veil(studio: &mut Studio, scene: &Scene, backend: Backend, size: [u32; 2]
 /// Colours of a pane where it is, as shaded.
 pub fn colors(studio: &mut Studio, pane: usize) -> Vec<Option<[f32; 3]>> {
     let alone = [rule("eraser", &[], Some(&[pane]), true), rule("transparent", &[("opacity", 1.0)], None, false)];
-    let seen = veil(studio, &of_context(alone.to_vec()), Backend::Specialised, SIZE);
+    let seen = transparency(studio, &of_context(alone.to_vec()), Backend::Specialised, SIZE);
     seen.iter().map(|v| (v[3] == 0.0).then(|| [v[0], v[1], v[2]])).collect()
 }
 

@@ -267,7 +267,7 @@ pub fn bits(picture: &Picture, lens: usize) -> Vec<bool> {
 }
 
 /// Pixels of the lens' mask that are wrong against f64, by how far the shown point is from the border. A test from shapes
-/// may err within 8 · 2⁻²³ · max(D, |centre − eye|) of it, a sprite within a pixel besides (S7).
+/// may err within 8 · 2⁻²³ · max(D, |centre − eye|) of it, a sprite within a pixel besides.
 pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, bit: usize) -> usize {
     let parts: Vec<Reference> = lens.shapes.iter().map(Reference::of).collect();
     let depth = picture.depth.as_ref().expect("depth was asked for");

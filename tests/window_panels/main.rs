@@ -399,7 +399,7 @@ fn a_scene_is_kept_away_from_its_city() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Whatever lens a pixel is seen through, a click there means what the shown surface is (contract), and where it is.
+/// Whatever lens a pixel is seen through, a click there means what the shown surface is, and where it is.
 #[test]
 fn a_pick_is_the_shown_surface_under_every_kind_of_lens() {
     let shape = "shape = { kind = \"sphere\", center = [0, 0, 5], radius = 70 }";

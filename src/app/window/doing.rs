@@ -1,4 +1,4 @@
-//! What actions do.
+//! Effects of actions.
 
 use std::{
     path::{Path, PathBuf},
@@ -11,10 +11,10 @@ use glam::DVec3;
 use crate::{
     app::{
         actions::Action,
-        artist::Export,
         file_dialog::{Asking, FileDialog, Purpose},
         new_lens::{self, Spot},
         objects,
+        render_thread::Export,
         state::{Chosen, Window},
         user_effects::is_effect,
         window::{BUILTIN, shown_path},
@@ -218,7 +218,7 @@ impl Window {
             Err(error) => return self.fail(error),
         };
         let notes = picture::notes_of(&scene, &self.document.options());
-        self.artist.export(Export { scene: Arc::new(scene), file: file.to_owned(), notes });
+        self.render_thread.export(Export { scene: Arc::new(scene), file: file.to_owned(), notes });
         self.say(format!("Writing {}…", file.display()));
     }
 

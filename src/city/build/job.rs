@@ -6,7 +6,7 @@ use super::{
     metric::{Grid, is_trusted},
     planes::PlaneKey,
     repeats,
-    shelf::{Part, Shape, Shelf, Slices, corners_and_triangles},
+    staging::{PackedStaging, Part, Shape, Slices, corners_and_triangles},
     tiles,
 };
 use glam::DVec3;
@@ -28,11 +28,11 @@ use crate::{
 /// Faces bent by less than this are not reported as non-planar: float formats are all bent by a little.
 const FLAT_M: f64 = 1e-3;
 
-/// What all jobs read.
+/// The data that all jobs read.
 pub(super) struct Context<'a> {
     pub(super) objects: &'a [CityObject],
     pub(super) surfaces: &'a [Surface],
-    shelf: &'a Shelf,
+    staging: &'a PackedStaging,
     /// One per pool.
     grids: Vec<Grid>,
     /// Lattices by grid class.
@@ -40,10 +40,10 @@ pub(super) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    pub(super) fn new(objects: &'a [CityObject], surfaces: &'a [Surface], shelf: &'a Shelf) -> Self {
+    pub(super) fn new(objects: &'a [CityObject], surfaces: &'a [Surface], staging: &'a PackedStaging) -> Self {
         let mut classes = Vec::new();
-        let grids = shelf.pools.iter().map(|pool| Grid::new(pool.lattice, &mut classes)).collect();
-        Self { objects, surfaces, shelf, grids, classes }
+        let grids = staging.pools.iter().map(|pool| Grid::new(pool.lattice, &mut classes)).collect();
+        Self { objects, surfaces, staging, grids, classes }
     }
 
     pub(super) fn grid(&self, raw: &Shape<'_>) -> &Grid {
@@ -51,7 +51,7 @@ impl<'a> Context<'a> {
     }
 }
 
-/// What a job makes; ranges and geometry numbers start at 0.
+/// The result of a job; ranges and geometry numbers start at 0.
 #[derive(Debug, Default)]
 pub(super) struct Chunk {
     pub(super) geometries: Vec<Geometry>,
@@ -157,7 +157,7 @@ pub(super) fn run(job: &[Part], context: &Context<'_>, scratch: &mut Scratch, ch
     let mut same_shape: Vec<Shape<'_>> = Vec::new();
     for parts in job.chunk_by(|a, b| (a.object, a.lod) == (b.object, b.lod)) {
         same_shape.clear();
-        same_shape.extend(parts.iter().map(|part| context.shelf.shape(part)));
+        same_shape.extend(parts.iter().map(|part| context.staging.shape(part)));
         let mut repeated = std::mem::take(&mut scratch.repeated);
         repeats::mark(&same_shape, context, &mut scratch.repeats, &mut repeated);
         for (raw, repeated) in same_shape.iter().zip(&repeated) {
@@ -205,7 +205,7 @@ fn add_geometry(raw: &Shape<'_>, repeated: &[bool], context: &Context<'_>, scrat
     });
 }
 
-/// What a face is called in warnings.
+/// The name of a face in warnings.
 struct Called<'a> {
     /// The id of its object.
     id: &'a str,

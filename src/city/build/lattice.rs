@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// How a pool's integers become metres, per axis: `origin + step × integer`.
+/// The relation of a pool's integers to metres, per axis: `origin + step × integer`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// Metres per unit, > 0.

@@ -13,7 +13,7 @@ use std::{
 use super::{
     job::{self, Chunk},
     planes::PlaneTable,
-    shelf::{Part, Shelf, corners_and_triangles},
+    staging::{PackedStaging, Part, corners_and_triangles},
 };
 
 use crate::city::{
@@ -30,19 +30,19 @@ const JOB_POLYGONS: (usize, usize) = (96, 1024);
 const WAITING_PART: usize = 32;
 
 /// Triangulates geometries (sorted by object and LoD) and appends them to the model, in order.
-pub(super) fn finish_geometries(model: &mut CityModel, shelf: Shelf) {
-    let context = job::Context::new(&model.objects, &model.surfaces, &shelf);
-    let polygons: usize = shelf.parts.iter().map(Part::polygon_count).sum();
+pub(super) fn finish_geometries(model: &mut CityModel, staging: PackedStaging) {
+    let context = job::Context::new(&model.objects, &model.surfaces, &staging);
+    let polygons: usize = staging.parts.iter().map(Part::polygon_count).sum();
     let job_polygons = (polygons / JOBS).clamp(JOB_POLYGONS.0, JOB_POLYGONS.1);
     let line = Line {
         most_waiting: (polygons / WAITING_PART).max(rayon::current_num_threads() * job_polygons),
         state: Mutex::new(State {
-            jobs: Jobs { parts: &shelf.parts, polygons: job_polygons },
+            jobs: Jobs { parts: &staging.parts, polygons: job_polygons },
             taken: 0,
             waiting: BTreeMap::new(),
             waiting_polygons: 0,
             due: 0,
-            built: Some(Built::new(&shelf)),
+            built: Some(Built::new(&staging)),
             spare: Vec::new(),
             has_failed: false,
         }),
@@ -56,7 +56,7 @@ pub(super) fn finish_geometries(model: &mut CityModel, shelf: Shelf) {
     let State { built, spare, .. } = line.state.into_inner().unwrap_or_else(PoisonError::into_inner);
     spare.into_iter().for_each(Chunk::give_back);
     drop(context);
-    shelf.give_back();
+    staging.give_back();
     if let Some(built) = built {
         built.finish(model);
     }
@@ -110,12 +110,12 @@ struct State<'a> {
     waiting_polygons: usize,
     /// The number of the chunk to be appended next.
     due: usize,
-    /// What is appended to; `None` while a worker does it.
+    /// The parts so far, which are appended to; `None` while a worker does it.
     built: Option<Built>,
     /// Appended chunks, to be used again: allocators keep what each thread frees apart, so asking anew for each job
     /// would hold several times as much.
     spare: Vec<Chunk>,
-    /// A worker panicked: nobody waits for it.
+    /// A worker panicked: none waits for it.
     has_failed: bool,
 }
 
@@ -198,15 +198,15 @@ struct Built {
 
 impl Built {
     /// Nothing yet. Nearly the whole is known before: growing by doubling would cost half as much memory again.
-    fn new(shelf: &Shelf) -> Self {
-        let (corners, triangles) = corners_and_triangles(&shelf.parts);
+    fn new(staging: &PackedStaging) -> Self {
+        let (corners, triangles) = corners_and_triangles(&staging.parts);
         let mut chunk = Chunk::default();
         chunk.vertices.reserve_exact(corners);
         chunk.indices.reserve_exact(3 * triangles);
         chunk.planes.reserve_exact(triangles);
-        chunk.texcoords.reserve_exact(shelf.texcoord_count());
-        chunk.geometries.reserve_exact(shelf.parts.len());
-        chunk.tiles.reserve_exact(shelf.parts.len());
+        chunk.texcoords.reserve_exact(staging.texcoord_count());
+        chunk.geometries.reserve_exact(staging.parts.len());
+        chunk.tiles.reserve_exact(staging.parts.len());
         Self { chunk, planes: PlaneTable::default(), polygons: 0 }
     }
 

@@ -1,4 +1,4 @@
-//! How lattice integers become metres and comparable integers, alike for all files.
+//! Lattice integers as metres and as comparable integers, alike for all files.
 
 use glam::DVec3;
 

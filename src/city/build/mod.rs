@@ -18,13 +18,13 @@ mod planes;
 pub mod points;
 pub mod raw;
 mod repeats;
-mod shelf;
+mod staging;
 mod tiles;
 
 pub use self::lattice::Lattice;
 pub use self::points::{BAD_POINT, Points, Pool};
 pub use self::raw::{Polygons, RawGeometry, RawObject};
-use self::shelf::Shelf;
+use self::staging::PackedStaging;
 use crate::city::{
     build::raw::KeptObject,
     memory::give_back,
@@ -46,7 +46,7 @@ pub struct ModelBuilder {
     attributes: Vec<Attribute>,
     /// First object of each file.
     file_starts: Vec<u32>,
-    shelf: Shelf,
+    staging: PackedStaging,
 }
 
 impl ModelBuilder {
@@ -100,7 +100,7 @@ impl ModelBuilder {
     /// Adds a geometry of an object.
     pub fn add_geometry(&mut self, geometry: RawGeometry) {
         self.model.extent_as_read = self.model.extent_as_read.union(geometry.extent());
-        if !self.shelf.add(geometry) {
+        if !self.staging.add(geometry) {
             self.model.warnings.add(WarningCode::Unsupported, "", || {
                 "a city has 2^32 corners at most; the geometries beyond are skipped".to_owned()
             });
@@ -115,25 +115,25 @@ impl ModelBuilder {
     /// Makes the model: ids and links, then all geometry.
     pub fn finish(mut self) -> CityModel {
         self.finish_objects();
-        let mut shelf = std::mem::take(&mut self.shelf);
+        let mut staging = std::mem::take(&mut self.staging);
         let mut model = self.model;
-        shelf.parts.retain(|part| {
+        staging.parts.retain(|part| {
             let known = (part.object as usize) < model.objects.len();
             if !known {
                 model.warnings.add(WarningCode::BadGeometry, "", || "a geometry belongs to no object".to_owned());
             }
             known
         });
-        shelf.parts.sort_by_key(|part| (part.object, part.lod));
+        staging.parts.sort_by_key(|part| (part.object, part.lod));
         let mut at = 0;
         for (index, object) in model.objects.iter_mut().enumerate() {
             let start = at;
-            while shelf.parts.get(at).is_some_and(|part| part.object as usize == index) {
+            while staging.parts.get(at).is_some_and(|part| part.object as usize == index) {
                 at += 1;
             }
             object.geometries = start as u32..at as u32;
         }
-        line::finish_geometries(&mut model, shelf);
+        line::finish_geometries(&mut model, staging);
         model
     }
 
@@ -168,14 +168,14 @@ impl ModelBuilder {
 /// A model with these geometries in place of its own, triangulated and tiled as those of files are. Ranges of objects are left to the
 /// caller: geometries stand by object, then by level of detail.
 pub fn with_geometries(mut model: CityModel, geometries: impl IntoIterator<Item = RawGeometry>) -> CityModel {
-    let mut shelf = Shelf::default();
+    let mut staging = PackedStaging::default();
     for geometry in geometries {
-        if !shelf.add(geometry) {
+        if !staging.add(geometry) {
             break;
         }
     }
-    shelf.parts.sort_by_key(|part| (part.object, part.lod));
-    line::finish_geometries(&mut model, shelf);
+    staging.parts.sort_by_key(|part| (part.object, part.lod));
+    line::finish_geometries(&mut model, staging);
     model
 }
 

@@ -2,13 +2,13 @@
 
 use crate::city::{build::lattice::Lattice, memory::give_back};
 
-/// What loaders put into a pool for a point that is no number: its faces are dropped as `bad-coordinate`.
+/// The value that loaders put into a pool for a point that is no number: its faces are dropped as `bad-coordinate`.
 pub const BAD_POINT: [i64; 3] = [i64::MAX; 3];
 
 /// Vertices that polygons index into.
 #[derive(Clone, Debug)]
 pub struct Pool {
-    /// What the integers mean.
+    /// The meaning of the integers.
     pub lattice: Lattice,
     /// The vertices.
     pub points: Points,
@@ -77,7 +77,7 @@ impl Points {
         (0..self.len() as u32).map_while(|index| self.get(index))
     }
 
-    /// How many there are.
+    /// The number of points.
     pub fn len(&self) -> usize {
         match self {
             Self::Narrow(list) => list.len(),

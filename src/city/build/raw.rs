@@ -1,4 +1,4 @@
-//! What loaders read: polygons, geometries and objects.
+//! Raw data of loaders: polygons, geometries and objects.
 
 use std::{ops::Range, sync::Arc};
 
@@ -86,7 +86,7 @@ pub struct RawObject {
     pub id: String,
     /// Type as the file names it.
     pub kind: String,
-    /// What kind of thing it is.
+    /// Its class.
     pub class: ObjectClass,
     /// Ids of its parents.
     pub parents: Vec<String>,

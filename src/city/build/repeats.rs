@@ -2,7 +2,7 @@
 
 use super::{
     job::{Context, corner_ranges},
-    shelf::Shape,
+    staging::Shape,
 };
 use crate::city::model::{NONE, Surface};
 
@@ -46,7 +46,7 @@ pub(super) fn mark(raws: &[Shape<'_>], context: &Context<'_>, scratch: &mut Scra
     }
 }
 
-/// How much a polygon's surface says: semantics above material.
+/// A rank of what a polygon's surface says: semantics above material.
 fn knowledge(raw: &Shape<'_>, polygon: usize, surfaces: &[Surface]) -> u8 {
     let surface = raw.polygons.surfaces.get(polygon).and_then(|&s| surfaces.get(s as usize));
     surface.map_or(0, |s| 2 * u8::from(s.kind.0 != NONE) + u8::from(s.material != NONE))

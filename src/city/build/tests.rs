@@ -178,7 +178,7 @@ fn thread_counts_do_not_change_the_result() {
                     b.add_object(RawObject { id: format!("house {}", i % 2500), ..RawObject::default() });
                 }
                 add(&mut b, MM, &points, ring_polygons(&CUBE_FACES));
-                b.shelf.parts.last_mut().unwrap().object = i as u32;
+                b.staging.parts.last_mut().unwrap().object = i as u32;
             }
             b.finish()
         })
@@ -199,7 +199,7 @@ fn geometries_are_sorted_by_object_and_level() {
     let second = b.add_object(RawObject { id: "b".to_owned(), ..RawObject::default() });
     for (object, tenths) in [(second, 22), (0, 22), (second, 12), (0, 13)] {
         add(&mut b, MM, &CUBE, ring_polygons(&CUBE_FACES));
-        let raw = b.shelf.parts.last_mut().unwrap();
+        let raw = b.staging.parts.last_mut().unwrap();
         (raw.object, raw.lod) = (object, Lod { tenths });
     }
     let model = b.finish();

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{
     job::{Chunk, Triangle},
     metric::Grid,
-    shelf::Shape,
+    staging::Shape,
 };
 use glam::{DVec3, IVec3, Vec3};
 

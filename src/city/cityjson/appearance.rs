@@ -1,4 +1,4 @@
-//! Materials and textures: from the file's lists to the model's, and which polygon wears what.
+//! Materials and textures: from the lists of the file to those of the model, and which polygon has which.
 
 use std::path::Path;
 
@@ -75,7 +75,7 @@ fn roughness(shininess: f32) -> f32 {
 
 /// The model's materials and textures of one file, across the documents of a sequence.
 #[derive(Debug, Default)]
-pub struct Wardrobe {
+pub struct SharedAppearance {
     /// Whether more documents follow.
     is_shared: bool,
     /// Materials and textures of earlier documents, so that features that repeat them share them.
@@ -97,7 +97,7 @@ fn key_of(material: &Material) -> MaterialKey {
 
 /// The appearance of one document, in the model's indices.
 #[derive(Clone, Debug, Default)]
-pub struct Dressed {
+pub struct AppearanceTable {
     materials: Vec<u32>,
     textures: Vec<u32>,
     texcoords: Vec<[f32; 2]>,
@@ -105,15 +105,15 @@ pub struct Dressed {
     texture_theme: Option<String>,
 }
 
-impl Dressed {
+impl AppearanceTable {
     /// Frees it.
     pub fn give_back(self) {
         give_back(self.texcoords);
     }
 }
 
-impl Wardrobe {
-    /// An empty one; `is_shared`: more than one document wears what is in it.
+impl SharedAppearance {
+    /// An empty one; `is_shared`: more than one document uses it.
     pub fn new(is_shared: bool) -> Self {
         Self { is_shared, ..Self::default() }
     }
@@ -125,12 +125,12 @@ impl Wardrobe {
         builder: &mut ModelBuilder,
         file: &Path,
         options: &LoadOptions,
-    ) -> Dressed {
-        let mut dressed = Dressed {
+    ) -> AppearanceTable {
+        let mut appearance_table = AppearanceTable {
             texcoords: appearance.texcoords,
             material_theme: appearance.material_theme,
             texture_theme: appearance.texture_theme,
-            ..Dressed::default()
+            ..AppearanceTable::default()
         };
         // What one document repeats stays repeated: only what earlier ones declared is looked up.
         let (mut new_materials, mut new_textures) = (Vec::new(), Vec::new());
@@ -142,7 +142,7 @@ impl Wardrobe {
                 (builder.model.materials.len() - 1) as u32
             });
             new_materials.extend(key.map(|key| (key, index)));
-            dressed.materials.push(index);
+            appearance_table.materials.push(index);
         }
         give_back(appearance.materials);
         for (image, wrap) in appearance.textures {
@@ -155,11 +155,11 @@ impl Wardrobe {
             if self.is_shared {
                 new_textures.push((key, index));
             }
-            dressed.textures.push(index);
+            appearance_table.textures.push(index);
         }
         self.known_materials.extend(new_materials);
         self.known_textures.extend(new_textures);
-        dressed
+        appearance_table
     }
 
     /// The material with this texture on it.
@@ -174,25 +174,25 @@ impl Wardrobe {
     }
 
     /// The material of each polygon of a geometry, and the texture coordinate of each index (or none at all).
-    pub fn dress(
+    pub fn materials_of(
         &mut self,
         geometry: &GeometryRead,
         depth: usize,
-        dressed: &Dressed,
+        appearance_table: &AppearanceTable,
         builder: &mut ModelBuilder,
         object: &str,
     ) -> (Vec<u32>, Vec<[f32; 2]>) {
         let polygon_count = geometry.boundaries.ends[depth - 1].len();
         let mut materials = vec![NONE; polygon_count];
         let mut bad = 0;
-        if let Some(used) = themed(&geometry.materials, dressed.material_theme.as_deref()) {
-            bad += dress_materials(used, geometry, depth, dressed, &mut materials);
+        if let Some(used) = themed(&geometry.materials, appearance_table.material_theme.as_deref()) {
+            bad += set_materials(used, geometry, depth, appearance_table, &mut materials);
         }
         let mut texcoords = Vec::new();
-        if let Some(values) = themed(&geometry.textures, dressed.texture_theme.as_deref()) {
-            let (rings, wrong) = ring_textures(values, geometry, depth, dressed);
+        if let Some(values) = themed(&geometry.textures, appearance_table.texture_theme.as_deref()) {
+            let (rings, wrong) = ring_textures(values, geometry, depth, appearance_table);
             bad += wrong;
-            texcoords = self.wear(&rings, geometry, depth, builder, &mut materials);
+            texcoords = self.apply_textures(&rings, geometry, depth, builder, &mut materials);
         }
         if bad > 0 {
             builder.model.warnings.add(WarningCode::AppearanceIndex, object, || {
@@ -202,8 +202,8 @@ impl Wardrobe {
         (materials, texcoords)
     }
 
-    /// Gives polygons whose rings all wear one texture that texture; returns the coordinates of all indices.
-    fn wear(
+    /// Gives polygons whose rings all have one texture that texture; returns the coordinates of all indices.
+    fn apply_textures(
         &mut self,
         rings: &[RingTexture],
         geometry: &GeometryRead,
@@ -222,9 +222,9 @@ impl Wardrobe {
             {
                 texcoords.resize(boundaries.indices.len(), [0.0; 2]);
                 materials[polygon] = self.textured(materials[polygon], texture, builder);
-                for (ring, wears) in (start..end).zip(own) {
+                for (ring, own_texture) in (start..end).zip(own) {
                     let from = if ring == 0 { 0 } else { ring_ends[ring - 1] as usize };
-                    texcoords[from..from + wears.texcoords.len()].copy_from_slice(&wears.texcoords);
+                    texcoords[from..from + own_texture.texcoords.len()].copy_from_slice(&own_texture.texcoords);
                 }
             }
             start = end;
@@ -267,16 +267,16 @@ fn themed<'a, T>(list: &'a [(String, T)], theme: Option<&str>) -> Option<&'a T> 
 }
 
 /// Fills in materials; returns how many values were wrong.
-fn dress_materials(
+fn set_materials(
     used: &MaterialUse,
     geometry: &GeometryRead,
     depth: usize,
-    dressed: &Dressed,
+    appearance_table: &AppearanceTable,
     out: &mut [u32],
 ) -> u64 {
     let mut bad = 0;
     let mut find = |index: u32| {
-        let found = dressed.materials.get(index as usize);
+        let found = appearance_table.materials.get(index as usize);
         bad += u64::from(found.is_none());
         found.copied().unwrap_or(NONE)
     };
@@ -299,7 +299,7 @@ fn dress_materials(
     bad
 }
 
-/// What a ring wears.
+/// The texture of a ring.
 #[derive(Clone, Debug, Default)]
 struct RingTexture {
     texture: Option<u32>,
@@ -311,7 +311,7 @@ fn ring_textures(
     values: &crate::city::cityjson::nested::Values,
     geometry: &GeometryRead,
     depth: usize,
-    dressed: &Dressed,
+    appearance_table: &AppearanceTable,
 ) -> (Vec<RingTexture>, u64) {
     let boundaries = &geometry.boundaries;
     let ring_ends = &boundaries.ends[depth];
@@ -323,11 +323,11 @@ fn ring_textures(
         match tokens {
             [Token::Null] | [Token::Open, Token::Null, Token::Close] | [Token::Open, Token::Close] => {}
             [Token::Open, Token::Index(texture), uv @ .., Token::Close] => {
-                let texture = dressed.textures.get(*texture as usize).copied();
+                let texture = appearance_table.textures.get(*texture as usize).copied();
                 let texcoords: Option<Vec<_>> = uv
                     .iter()
                     .map(|token| match token {
-                        Token::Index(i) => dressed.texcoords.get(*i as usize).copied(),
+                        Token::Index(i) => appearance_table.texcoords.get(*i as usize).copied(),
                         _ => None,
                     })
                     .collect();

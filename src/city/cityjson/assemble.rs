@@ -13,11 +13,11 @@ use crate::city::{
         raw::{Polygons, RawGeometry},
     },
     cityjson::{
-        appearance::{Dressed, Wardrobe},
+        appearance::{AppearanceTable, SharedAppearance},
         document::{Document, ObjectRead},
         geometry::{GeometryKind, GeometryRead},
+        packed::PackedGeometries,
         semantics::{self, Meaning},
-        stowage::Stowage,
         vertices::{self, Placing, Vertices},
     },
     memory::give_back,
@@ -33,23 +33,23 @@ const MAX_INSTANCED: usize = 1 << 26;
 pub struct Templates {
     /// The geometries.
     pub geometries: Vec<GeometryRead>,
-    /// What they index into.
+    /// The vertices that they index into.
     pub vertices: Vec<DVec3>,
 }
 
-/// What turns the objects of one document into the builder's.
+/// The assembly of one document's objects into those of the builder.
 pub struct Assembly<'a> {
     /// Where they go.
     pub builder: &'a mut ModelBuilder,
     /// Materials and textures of the file.
-    pub wardrobe: &'a mut Wardrobe,
+    pub shared_appearance: &'a mut SharedAppearance,
     /// Those of the document.
-    pub dressed: &'a Dressed,
+    pub appearance_table: &'a AppearanceTable,
     /// Templates of the file.
     pub templates: &'a Templates,
-    /// What the templates wear: materials and textures of where they are declared.
-    pub templates_dressed: &'a Dressed,
-    /// How numbers become metres.
+    /// Materials and textures of the templates, of where those are declared.
+    pub template_appearance: &'a AppearanceTable,
+    /// The way from numbers to metres.
     pub placing: Placing,
     /// Indices instanced so far.
     pub instanced: &'a mut usize,
@@ -100,7 +100,7 @@ impl Assembly<'_> {
                 self.builder.add_geometry(RawGeometry { object, lod, solid: false, pool: pool.clone(), polygons });
             }
             _ => {
-                let Some(polygons) = self.polygons(geometry, id, self.dressed, surfaces) else { return };
+                let Some(polygons) = self.polygons(geometry, id, self.appearance_table, surfaces) else { return };
                 let (lod, solid) = (self.lod(geometry, id), geometry.kind.is_solid());
                 self.builder.add_geometry(RawGeometry { object, lod, solid, pool: pool.clone(), polygons });
             }
@@ -112,7 +112,7 @@ impl Assembly<'_> {
         &mut self,
         geometry: &GeometryRead,
         id: &str,
-        dressed: &Dressed,
+        appearance_table: &AppearanceTable,
         surfaces: &mut SurfaceTable,
     ) -> Option<Polygons> {
         let depth = geometry.kind.ring_depth()?;
@@ -127,7 +127,8 @@ impl Assembly<'_> {
             return None;
         };
         let meanings = semantics::of_polygons(geometry, depth, self.builder, id);
-        let (materials, texcoords) = self.wardrobe.dress(geometry, depth, dressed, self.builder, id);
+        let (materials, texcoords) =
+            self.shared_appearance.materials_of(geometry, depth, appearance_table, self.builder, id);
         let surfaces = meanings
             .into_iter()
             .zip(materials)
@@ -168,7 +169,7 @@ impl Assembly<'_> {
                 format!("instances of templates have more than {MAX_INSTANCED} corners together; the rest is skipped")
             });
         }
-        let Some(mut polygons) = self.polygons(template, id, self.templates_dressed, surfaces) else {
+        let Some(mut polygons) = self.polygons(template, id, self.template_appearance, surfaces) else {
             if template.kind.ring_depth().is_none() {
                 self.warn(WarningCode::BadGeometry, id, || {
                     format!("a template of type {:?} cannot be placed; it is skipped", template.kind)
@@ -201,7 +202,7 @@ impl Assembly<'_> {
 }
 
 /// World places of the reference vertices of instances.
-fn anchors(geometries: &Stowage, vertices: &Vertices, placing: &Placing) -> FxHashMap<u32, DVec3> {
+fn anchors(geometries: &PackedGeometries, vertices: &Vertices, placing: &Placing) -> FxHashMap<u32, DVec3> {
     geometries
         .instances()
         .flat_map(|g| &g.boundaries.indices)

@@ -1,4 +1,4 @@
-//! Attribute values, and members that nobody here reads.
+//! Attribute values, and members that are not read.
 
 use crate::city::{
     build::ModelBuilder,
@@ -34,7 +34,7 @@ pub fn read(
     Ok(())
 }
 
-/// Of attributes with one name the last stays, as in other readers; those from `start` on are one object's.
+/// Keeps the last of attributes with one name, as other readers do; those from `start` on are one object's.
 fn drop_repeated(attributes: &mut Vec<Attribute>, start: usize, builder: &mut ModelBuilder, object: &str) {
     let own = &attributes[start..];
     let has_few = own.len() <= 12;
@@ -117,7 +117,7 @@ fn nested(kind: Kind, raw: &[u8], builder: &mut ModelBuilder, object: &str) -> V
     }
 }
 
-/// Keeps a member that nobody here reads as JSON text.
+/// Keeps a member that is not read as JSON text.
 pub fn keep_unknown(json: &mut Json<'_>, builder: &mut ModelBuilder, place: String) -> Step<()> {
     let text = json::compact(json.raw()?);
     builder.model.unknown.push((place, text));

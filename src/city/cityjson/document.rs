@@ -11,7 +11,7 @@ use crate::city::{
         attributes,
         geometry::{GeometryRead, each_member, text},
         kinds,
-        stowage::Stowage,
+        packed::PackedGeometries,
         vertices::{Transform, Vertices},
     },
     json::{Json, JsonError, Kind, Step},
@@ -26,7 +26,7 @@ pub struct ObjectRead {
     pub raw: RawObject,
     /// Its attributes, in [`Document::attributes`].
     pub attributes: Range<usize>,
-    /// How many geometries it has, of those stowed.
+    /// The number of its geometries, of those that are packed.
     pub geometries: u32,
 }
 
@@ -48,7 +48,7 @@ pub struct Document {
     /// Attributes of all objects: a list for each would scatter them over the heap.
     pub attributes: Vec<Attribute>,
     /// Geometries of the objects, in order.
-    pub geometries: Stowage,
+    pub geometries: PackedGeometries,
     /// The geometry being read: a buffer.
     geometry: GeometryRead,
     /// `vertices`.

@@ -51,7 +51,7 @@ impl GeometryKind {
         }
     }
 
-    /// How deep the rings of polygons lie in `boundaries`; `None` where there are no polygons.
+    /// The depth of the rings of polygons in `boundaries`; `None` where there are no polygons.
     pub fn ring_depth(self) -> Option<usize> {
         match self {
             Self::MultiSurface | Self::CompositeSurface => Some(2),
@@ -81,7 +81,7 @@ pub enum MaterialUse {
 pub struct Semantic {
     /// Its type.
     pub kind: StringId,
-    /// What it has beyond type and links.
+    /// Its attributes: all beyond type and links.
     pub attributes: Vec<Attribute>,
     /// Its parent, an index into the same list.
     pub parent: Option<u32>,
@@ -131,7 +131,7 @@ impl GeometryRead {
         self.semantics.clear();
     }
 
-    /// Reads one in place of another. The builder gets what nobody here reads.
+    /// Reads one in place of another. The builder gets what is not read.
     pub fn read_again(&mut self, json: &mut Json<'_>, builder: &mut ModelBuilder, object: &str) -> Step<()> {
         self.clear();
         if json.peek()? != Kind::Object {

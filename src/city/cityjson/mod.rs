@@ -10,8 +10,8 @@ mod document;
 mod geometry;
 mod kinds;
 mod nested;
+mod packed;
 mod semantics;
-mod stowage;
 mod vertices;
 
 use std::path::Path;
@@ -21,7 +21,7 @@ use glam::DVec3;
 use crate::city::{
     build::ModelBuilder,
     cityjson::{
-        appearance::{Dressed, Wardrobe},
+        appearance::{AppearanceTable, SharedAppearance},
         assemble::{Assembly, Templates},
         document::Document,
         vertices::{Placing, Transform},
@@ -70,7 +70,7 @@ pub fn read(builder: &mut ModelBuilder, mut input: Input, options: &LoadOptions)
     if is_sequence {
         file.read_features(&bytes, end);
     }
-    file.dressed.give_back();
+    file.appearance_table.give_back();
     give_back(bytes);
     Ok(())
 }
@@ -119,8 +119,8 @@ struct File<'a> {
     options: &'a LoadOptions,
     axes: Axes,
     transform: Transform,
-    wardrobe: Wardrobe,
-    dressed: Dressed,
+    shared_appearance: SharedAppearance,
+    appearance_table: AppearanceTable,
     templates: Templates,
     instanced: usize,
     is_damaged: bool,
@@ -134,8 +134,8 @@ impl<'a> File<'a> {
             options,
             axes: Axes::Metric,
             transform: Transform::IDENTITY,
-            wardrobe: Wardrobe::new(is_sequence),
-            dressed: Dressed::default(),
+            shared_appearance: SharedAppearance::new(is_sequence),
+            appearance_table: AppearanceTable::default(),
             templates: Templates::default(),
             instanced: 0,
             is_damaged: false,
@@ -214,7 +214,8 @@ impl<'a> File<'a> {
 
     /// Adds a document's objects; what it declares itself holds for it, else what the header declared.
     fn add(&mut self, mut document: Document) {
-        let own = document.appearance.take().map(|a| self.wardrobe.adopt(a, self.builder, self.path, self.options));
+        let own =
+            document.appearance.take().map(|a| self.shared_appearance.adopt(a, self.builder, self.path, self.options));
         if !document.templates.is_empty() {
             self.templates = Templates {
                 geometries: std::mem::take(&mut document.templates),
@@ -224,7 +225,7 @@ impl<'a> File<'a> {
         let is_header = document.kind.as_deref() != Some("CityJSONFeature");
         let own = match own {
             Some(own) if is_header => {
-                std::mem::replace(&mut self.dressed, own).give_back();
+                std::mem::replace(&mut self.appearance_table, own).give_back();
                 None
             }
             own => own,
@@ -232,17 +233,17 @@ impl<'a> File<'a> {
         let placing = self.placing(&document);
         Assembly {
             builder: self.builder,
-            wardrobe: &mut self.wardrobe,
-            dressed: own.as_ref().unwrap_or(&self.dressed),
+            shared_appearance: &mut self.shared_appearance,
+            appearance_table: own.as_ref().unwrap_or(&self.appearance_table),
             templates: &self.templates,
-            templates_dressed: &self.dressed,
+            template_appearance: &self.appearance_table,
             placing,
             instanced: &mut self.instanced,
         }
         .add(document);
     }
 
-    /// How this document's numbers become metres; the first vertex in degrees decides the zone of the whole city.
+    /// The way from this document's numbers to metres; the first vertex in degrees decides the zone of the whole city.
     fn placing(&mut self, document: &Document) -> Placing {
         let first = document.vertices.transformed(0, &self.transform);
         let degrees = match self.axes {

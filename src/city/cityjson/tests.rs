@@ -1,4 +1,4 @@
-//! What the hand-made files of `citydata/` must become; numbers known by thought.
+//! The results that the hand-made files of `citydata/` must have; numbers known by thought.
 
 use std::path::{Path, PathBuf};
 
@@ -134,7 +134,7 @@ fn materials_follow_the_default_theme() {
 }
 
 #[test]
-fn templates_wear_what_their_own_document_declares() {
+fn templates_have_what_their_own_document_declares() {
     let model = city("templates-sequence.city.jsonl");
     for (id, wanted) in [("dressed", "brick"), ("fir", "leaves"), ("yew", "leaves")] {
         assert_eq!(material(&model, id, -DVec3::Y).unwrap().name, wanted, "{id}");

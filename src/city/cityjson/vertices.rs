@@ -49,12 +49,12 @@ impl Transform {
     }
 }
 
-/// How numbers of a file become metres of the world.
+/// The way from numbers of a file to metres of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placing {
     /// The file's transform.
     pub transform: Transform,
-    /// What the transformed numbers are.
+    /// The meaning of the transformed numbers.
     pub axes: Axes,
     /// The zone, for degrees.
     pub zone: UtmZone,
@@ -93,7 +93,7 @@ impl Vertices {
         })
     }
 
-    /// How many there are.
+    /// The number of vertices.
     pub fn len(&self) -> usize {
         match self {
             Self::Integers(list) => list.len(),

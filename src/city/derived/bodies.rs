@@ -27,7 +27,7 @@ use crate::{
 /// Lattice units per metre.
 const PER_M: f64 = 1000.0;
 
-/// What a body is made of: the triangles of a unit, on the lattice.
+/// The triangles of a unit, on the lattice, that a body is made of.
 pub(super) type Triangles = [[[i64; 3]; 3]];
 
 /// Makes the body of a unit; `None` where it has none.
@@ -78,7 +78,7 @@ pub(super) fn span(triangles: &Triangles) -> [i64; 2] {
     [heights().min().unwrap_or(0), heights().max().unwrap_or(0)]
 }
 
-/// What is made of one unit: its body, and its materials.
+/// The result for one unit: its body, and its materials.
 struct Made {
     body: Option<Body>,
     looks: Looks,

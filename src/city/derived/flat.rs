@@ -1,10 +1,10 @@
-//! `flat`: an object pressed to the ground (O5, ad hoc). What is seen of it from above lies there as in a map: faces that look up, and
+//! `flat`: an object pressed to the ground (Trapp §3.3, ad hoc). What is seen of it from above lies there as in a map: faces that look up, and
 //! roofs whichever way they were turned; the highest is seen where several lie on each other.
 //!
 //! Where the city has a ground of its own below the object, its faces are cut along the triangles of that and lie on them, so that they
 //! follow slopes; elsewhere they are level, at the object's lowest point.
 //!
-//! `top`: the same as a picture from straight above (O5, advanced): faces keep the normals by which they were lit. The field draws such a
+//! `top`: the same as a picture from straight above (Trapp §3.3, advanced): faces keep the normals by which they were lit. The field draws such a
 //! picture for each object into a texture of its own and lays it on the ground as a quad. Here the faces themselves lie there: no texel is
 //! too large near the eye, slopes are followed, ids and other AOVs stay, and what light the scene has now falls on them.
 

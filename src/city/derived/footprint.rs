@@ -1,4 +1,4 @@
-//! Footprints: what objects cover of the ground, seen from above, by its outline (O5).
+//! Footprints: what objects cover of the ground, seen from above, by its outline.
 //!
 //! A footprint is the union of the faces that lie on the ground where the object is pressed flat (`flat`), on a lattice of millimetres;
 //! [`outline::union`] says how exact that is. What has too many faces over one another for an outline has that of its convex hull.
@@ -22,7 +22,7 @@ use crate::{
 /// Lattice units per metre.
 const PER_M: f64 = 1000.0;
 
-/// What some objects cover of the ground.
+/// The ground that some objects cover.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Footprint {
     /// The objects whose faces it is made of: a root with its parts, or one object.

@@ -2,7 +2,7 @@
 
 use crate::{city::model::CityModel, geom::Aabb};
 
-/// What a city is derived by.
+/// The way in which a city is derived.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Derive {
     /// The form of each object.
@@ -11,7 +11,7 @@ pub struct Derive {
     pub parts: bool,
 }
 
-/// What an object is shown as.
+/// The form that an object is shown as.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     /// Its bounding box: along the axes, or upright on the smallest rectangle around its footprint.
@@ -27,7 +27,7 @@ pub enum Form {
     Lod1,
     /// Its faces that are seen from above, on the ground below it; where that has none, at its lowest point.
     Flat {
-        /// How far above these, metres, ≥ 0.
+        /// The height above these, metres, ≥ 0.
         lift_m: f64,
     },
     /// The same, each face in the light that it had where it stood.
@@ -39,7 +39,7 @@ pub enum Form {
     Height(Height),
 }
 
-/// How high something is to be, counted from its lowest point to its highest.
+/// The height that something is to have, counted from its lowest point to its highest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Height {
     /// Metres, > 0.
@@ -48,13 +48,13 @@ pub enum Height {
     Factor(f64),
 }
 
-/// How far flattened objects lie above the ground, or their lowest points, where nothing else is asked for, metres: depth tells them
+/// The height of flattened objects above the ground, or their lowest points, where nothing else is asked for, metres: depth tells them
 /// from it then.
 pub const LIFT_M: f64 = 0.05;
 
-/// What of it may be asked for, metres.
+/// The range of lifts, metres.
 pub const LIFT_RANGE_M: [f64; 2] = [0.0, 1000.0];
-/// What heights may be asked for, metres.
+/// The range of heights, metres.
 pub const HEIGHT_RANGE_M: [f64; 2] = [0.001, 100_000.0];
 
 impl Form {
@@ -96,7 +96,7 @@ impl Form {
 pub struct Derived {
     /// Its objects are those of the city it was made of, by number, without their attributes; all of its geometries are shown.
     pub model: CityModel,
-    /// Of each corner of each triangle, how high it was, metres: of triangles in one plane the highest is seen. Empty where forms
+    /// For each corner of each triangle, how high it was, metres: of triangles in one plane the highest is seen. Empty where forms
     /// leave nothing to tell apart.
     pub heights: Vec<[f32; 3]>,
     /// Objects without such a form, shown as they are.

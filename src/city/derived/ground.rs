@@ -39,7 +39,7 @@ impl GroundFace {
         (normal.z > STEEPEST).then_some(Self { corners, plane, group })
     }
 
-    /// How high it is, metres.
+    /// Its height, metres.
     pub fn height(&self, p: DVec2) -> f64 {
         let Plane { normal, offset } = self.plane;
         (offset - normal.x * p.x - normal.y * p.y) / normal.z

@@ -1,4 +1,4 @@
-//! `height`: an object at another height (O3). Below its lowest roof all is stretched or shortened; what is above moves as it is.
+//! `height`: an object at another height. Below its lowest roof all is stretched or shortened; what is above moves as it is.
 //!
 //! ```text
 //! new height │        ╱  slope 1: roofs keep their form

@@ -1,4 +1,4 @@
-//! Derived cities: what objects may be shown as instead of themselves (spec O3, O5). Made of a city object by object, so that each
+//! Derived cities: what objects may be shown as instead of themselves. Made of a city object by object, so that each
 //! derived face belongs to the object that it stands for, by the same number: lenses of objects hold it when they hold that.
 //!
 //! ```text

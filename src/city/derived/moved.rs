@@ -21,7 +21,7 @@ use crate::{
 /// Says what becomes of a unit.
 pub(super) type Make = fn(&Source, &Unit, &Form) -> Change;
 
-/// What becomes of the faces of a unit.
+/// The change of the faces of a unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Change {
     /// They stay.
@@ -34,7 +34,7 @@ pub(super) enum Change {
         z: f64,
         /// The lowest point before, metres.
         base: f64,
-        /// How far above the ground, where there is some, metres.
+        /// The height above the ground, where there is some, metres.
         lift: f64,
         /// Whether it has none that look up.
         from_below: bool,

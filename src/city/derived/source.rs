@@ -23,7 +23,7 @@ const GROUP: &str = "CityObjectGroup";
 /// One object that is derived, with all that stands for it.
 #[derive(Clone, Debug)]
 pub(super) struct Unit {
-    /// Whose the derived faces are.
+    /// The object of the derived faces.
     pub object: u32,
     /// Its geometries, in [`Source::geometries`].
     pub geometries: Range<usize>,
@@ -31,7 +31,7 @@ pub(super) struct Unit {
     pub bounds: Aabb,
 }
 
-/// What is derived.
+/// The city from which another is derived.
 #[derive(Debug)]
 pub(super) struct Source<'a> {
     pub model: &'a CityModel,
@@ -39,7 +39,7 @@ pub(super) struct Source<'a> {
     pub geometries: Vec<u32>,
     /// By object.
     pub units: Vec<Unit>,
-    /// What flattened objects lie on; `None` where there is none, or nobody asks.
+    /// The ground that flattened objects lie on; `None` where there is none, or it is not asked for.
     pub ground: Option<GroundFaces>,
     roof: Option<StringId>,
     wall: Option<StringId>,
@@ -54,7 +54,7 @@ pub(super) struct Face {
     pub surface: u32,
 }
 
-/// What a face is of a building.
+/// The part of a building that a face belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Roof,
@@ -125,7 +125,7 @@ impl<'a> Source<'a> {
         Face { corners: corners.map(|v| origin + Vec3::from(v.position).as_dvec3()), surface }
     }
 
-    /// What a face is: by its semantics; where it has none that say so, by which way it looks.
+    /// The part that a face belongs to: by its semantics; where it has none that say so, by which way it looks.
     pub fn part(&self, face: &Face) -> Part {
         let kind = self.model.surfaces.get(face.surface as usize).map(|surface| surface.kind);
         let known = |wanted: Option<StringId>| wanted.is_some() && kind == wanted;

@@ -1,4 +1,4 @@
-//! Closed forms: volumes, areas, heights; and who a face belongs to.
+//! Closed forms: volumes, areas, heights; and the object that a face belongs to.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -46,14 +46,14 @@ fn triangles(model: &CityModel) -> Vec<([DVec3; 3], u32, u32)> {
     model.tiles.iter().flat_map(of).collect()
 }
 
-/// What closed bodies enclose, cubic metres.
+/// The volume that closed bodies enclose, cubic metres.
 fn volume(model: &CityModel) -> f64 {
     let all = triangles(model);
     let base = all.first().map_or(DVec3::ZERO, |(corners, ..)| corners[0]);
     all.iter().map(|(c, ..)| (c[0] - base).dot((c[1] - base).cross(c[2] - base)) / 6.0).sum()
 }
 
-/// What faces that look up cover, one by one, square metres.
+/// The area of faces that look up, one by one, square metres.
 fn seen_from_above(model: &CityModel) -> f64 {
     let side = |c: &[DVec3; 3]| 0.5 * (c[1] - c[0]).truncate().perp_dot((c[2] - c[0]).truncate());
     triangles(model).iter().map(|(c, ..)| side(c).max(0.0)).sum()

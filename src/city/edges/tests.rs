@@ -16,7 +16,7 @@ fn all(model: &CityModel) -> Vec<Edge> {
     edges(model, &shown, &CreaseAngles::default())
 }
 
-/// How many borders, creases and flat edges.
+/// The numbers of borders, creases and flat edges.
 fn counts(edges: &[Edge]) -> [usize; 3] {
     [EdgeClass::Border, EdgeClass::Crease, EdgeClass::Flat].map(|c| edges.iter().filter(|e| e.class == c).count())
 }

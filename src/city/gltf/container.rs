@@ -44,7 +44,7 @@ pub(super) struct Placement {
     pub scale: Option<[f64; 3]>,
 }
 
-/// What must be known before the rest can be believed.
+/// The part of a file that must be known before the rest can be believed.
 #[derive(Deserialize)]
 struct Head {
     asset: Option<Asset>,
@@ -57,7 +57,7 @@ struct Asset {
     version: String,
 }
 
-/// What the `gltf` crate would round to f32.
+/// The part of a file whose numbers the `gltf` crate would round to f32.
 #[derive(Deserialize)]
 struct Exact {
     #[serde(default)]
@@ -109,7 +109,7 @@ pub(super) fn open<'a>(input: &'a Input, warnings: &mut Warnings) -> Result<Cont
     Ok(Container { root, placements: exact.nodes, binary })
 }
 
-/// What somebody can do about an extension that is not read.
+/// Advice about an extension that is not read.
 fn advice(extension: &str) -> &'static str {
     match extension {
         "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {

@@ -16,7 +16,7 @@ use crate::city::{
 
 /// Vertex colours are kept as materials; a file with more different ones than this gets means per primitive.
 pub(super) const MAX_TINTS: usize = 4096;
-/// What a tint counts in: 10 bits per channel.
+/// The steps of a tint: 10 bits per channel.
 const TINT_STEPS: f64 = 1023.0;
 
 /// A vertex colour, linear RGB and opacity in 1/1023.
@@ -41,7 +41,7 @@ pub(super) struct Key {
     pub tint: Tint,
 }
 
-/// How texture coordinates of a material are found.
+/// The way to the texture coordinates of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Mapping {
     /// Which `TEXCOORD_n`.
@@ -61,7 +61,7 @@ pub(super) struct Materials {
     image_budget: u64,
 }
 
-/// What materials are read from.
+/// The source that materials are read from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Palette<'a> {
     pub root: &'a Root,
@@ -152,7 +152,7 @@ impl Materials {
     }
 }
 
-/// How the base colour texture of a material is mapped, if it has one.
+/// The mapping of the base colour texture of a material, if it has one.
 pub(super) fn mapping(root: &Root, material: Option<usize>) -> Option<Mapping> {
     let info = color_texture(root.materials.get(material?)?)?;
     let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());

@@ -81,7 +81,7 @@ impl Primitive<'_> {
         self.triangle_count().saturating_mul(3)
     }
 
-    /// What it takes from the file's budget: its corners in all copies, and the work of opening them.
+    /// The part that it takes of the file's budget: its corners in all copies, and the work of opening them.
     pub fn cost(&self, copies: u64) -> u64 {
         let views = [Some(&self.positions), self.indices.as_ref(), self.normals.as_ref(), self.colors.as_ref()];
         let opening: u64 = views.into_iter().flatten().map(View::opening_cost).sum();
@@ -145,7 +145,7 @@ struct Part {
     polygons: Polygons,
 }
 
-/// What is gathered for one mesh node.
+/// The polygons gathered for one mesh node.
 #[derive(Debug)]
 pub(super) struct Gathered {
     object: u32,

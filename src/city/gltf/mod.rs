@@ -72,7 +72,7 @@ pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) ->
 struct Reader<'a> {
     from: Palette<'a>,
     materials: Materials,
-    /// How often each id was used.
+    /// The number of times that each id was used.
     ids: FxHashMap<String, u32>,
     /// Corners that may still be unfolded.
     corners: u64,

@@ -26,7 +26,7 @@ pub(super) struct Visit {
     pub world_from_node: DAffine3,
 }
 
-/// What is still to be visited.
+/// A node that is still to be visited.
 struct Pending {
     node: usize,
     parent: Option<usize>,
@@ -135,7 +135,7 @@ impl<'a> Instances<'a> {
         [&self.translation, &self.rotation, &self.scale].into_iter().flatten()
     }
 
-    /// How many copies there are.
+    /// The number of copies.
     pub fn count(&self) -> u64 {
         self.views().next().map_or(1, |v| v.count)
     }

@@ -12,7 +12,7 @@ pub struct LoadError {
     pub file: PathBuf,
     /// Line and column, object id or JSON path; may be empty.
     pub place: String,
-    /// What is wrong and what would be right.
+    /// The fault, and what would be right.
     pub message: String,
 }
 

@@ -12,7 +12,7 @@ use crate::city::{load::error::LoadError, memory::give_back};
 const MAX_BYTES: u64 = 4 << 30;
 /// Text of city models compresses 5 to 40 times; deflate can reach 1032 times. Beyond this it is a bomb.
 const MAX_RATIO: u64 = 250;
-/// Below this size nobody asks for the ratio.
+/// Below this size the ratio is not looked at.
 const FREE_BYTES: u64 = 64 << 20;
 
 /// One model file in memory.
@@ -61,7 +61,7 @@ pub fn read(path: &Path) -> Result<Input, LoadError> {
     from_bytes(path, bytes)
 }
 
-/// What [`read`] does with the bytes it read.
+/// Makes an input of bytes that were read, as [`read`] does.
 pub fn from_bytes(path: &Path, mut bytes: Vec<u8>) -> Result<Input, LoadError> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(path));

@@ -22,7 +22,7 @@ pub use progress::{Progress, Quiet, Stage};
 
 use crate::city::{build::ModelBuilder, load::sniff::Format, model::CityModel, warning::WarningCode};
 
-/// How long loading took, by stage, over all files; `load.ms` of `--stats`.
+/// The time that loading took, by stage, over all files; `load.ms` of `--stats`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LoadStats {
     /// Reading and decompressing.

@@ -1,8 +1,8 @@
-//! What a loader may do, and where paths inside of files lead.
+//! Permissions of a loader, and where paths inside of files lead.
 
 use std::path::{Path, PathBuf};
 
-/// What a loader may do.
+/// Permissions of a loader.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
     /// Whether paths inside a model (textures, buffers) may leave [`Self::roots`].

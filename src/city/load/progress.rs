@@ -1,8 +1,8 @@
-//! How far loading is.
+//! The progress of loading.
 
 use std::path::Path;
 
-/// What loading is busy with.
+/// The stage of loading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
     /// Bytes come from the disk, and are decompressed.
@@ -29,7 +29,7 @@ pub trait Progress: Sync {
     /// `file` (0-based) of `files` entered `stage`; for [`Stage::Build`] `file == files`.
     fn enter(&self, stage: Stage, file: usize, files: usize, path: &Path);
 
-    /// Whether nobody wants the city any more: asked before each stage.
+    /// Whether the city is not wanted any more: asked before each stage.
     fn is_cancelled(&self) -> bool {
         false
     }

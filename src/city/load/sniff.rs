@@ -1,10 +1,10 @@
-//! What a file is: by its content first, by its name where the content says little.
+//! The format of a file: by its content first, by its name where the content says little.
 
 use std::path::Path;
 
 use crate::city::load::input::{self, Input};
 
-/// What can be read, for messages.
+/// The formats that can be read, for messages.
 pub(super) const READABLE: &str =
     "Veduta reads CityJSON (.json), CityJSONSeq (.jsonl), glTF (.gltf, .glb) and OBJ (.obj), each also .gz";
 
@@ -52,7 +52,7 @@ const MAGIC: &[(&[u8], Format)] = &[
     (b"\x7fELF", Format::Not("is a program, not a city model")),
 ];
 
-/// What these bytes are.
+/// The format of these bytes.
 pub(super) fn format(input: &Input) -> Format {
     let bytes = &input.bytes[..];
     if bytes.is_empty() {

@@ -35,7 +35,7 @@ struct Corner {
     vn: Option<u32>,
 }
 
-/// What may be wrong with a face.
+/// A fault of a face.
 enum Wrong {
     Word(String),
     Index(String),
@@ -56,7 +56,7 @@ impl Group {
         })
     }
 
-    /// What was gathered, per kind of data.
+    /// The polygons that were gathered, per kind of data.
     pub fn into_parts(self) -> impl Iterator<Item = (u32, Polygons)> {
         let object = self.object;
         self.parts.into_iter().filter(|p| !p.polygon_ends.is_empty()).filter_map(move |p| Some((object?, p)))

@@ -274,7 +274,7 @@ fn is_usable(point: DVec3) -> bool {
     point.abs().cmple(DVec3::splat(MAX_COORDINATE_M)).all()
 }
 
-/// How many decimals a number is written with, trailing zeros not counted; `None` for an exponent.
+/// The number of decimals that a number is written with, trailing zeros not counted; `None` for an exponent.
 fn decimals(word: &[u8]) -> Option<u32> {
     if word.iter().any(|b| matches!(b, b'e' | b'E')) {
         return None;

@@ -3,7 +3,7 @@
 //! A house stands in its own frame: x along the street, y away from it, front left corner at the origin.
 //! Footprints run counter-clockwise from above, so that `[a, b, b', a']` is the wall above the edge from a to b.
 
-/// What a face is.
+/// The part of a house that a face is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Below.
@@ -17,7 +17,7 @@ pub enum Part {
 /// A face: its rings, the outer one first.
 pub type Face = (Part, &'static [&'static [u8]]);
 
-/// What a house looks like.
+/// The shape of a house.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// A box.
@@ -150,7 +150,7 @@ impl Shape {
 /// One building. All lengths in millimetres, multiples of 100.
 #[derive(Clone, Debug, PartialEq)]
 pub struct House {
-    /// What it looks like.
+    /// Its shape.
     pub shape: Shape,
     /// Its front left corner, seen from the street.
     pub corner: [i64; 2],
@@ -162,11 +162,11 @@ pub struct House {
     pub depth: i64,
     /// Height of the eaves (of the podium of a tower), above the ground.
     pub eaves: i64,
-    /// How much higher the ridge or top is; 0 where the shape is flat.
+    /// The height of the ridge or top above the rest; 0 where the shape is flat.
     pub rise: i64,
     /// Width of what lies within or above the outline: wings of a corner, depth of a ring, setback of a hip or tower.
     pub inset: i64,
-    /// What it is used for.
+    /// Its use.
     pub function: &'static str,
     /// When it was built.
     pub year: i64,

@@ -29,11 +29,11 @@ const BLOCK_SALT: u64 = 3;
 pub struct Block {
     /// Its number in the order of making, from 1.
     pub number: u64,
-    /// How many buildings stand in the blocks before it.
+    /// The number of buildings in the blocks before it.
     pub first_building: u64,
     /// The street at its west and south: an L, counter-clockwise, millimetres.
     pub street: [[i64; 2]; 6],
-    /// What its buildings stand on, counter-clockwise, millimetres.
+    /// The ground of its buildings, counter-clockwise, millimetres.
     pub ground: [[i64; 2]; 4],
     /// Its buildings.
     pub houses: Vec<House>,
@@ -202,7 +202,7 @@ struct Plot {
     year: i64,
 }
 
-/// How a block is built over.
+/// The way in which a block is built over.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Terraces,
@@ -455,7 +455,7 @@ impl Row {
         }
     }
 
-    /// A house in the row; sizes are filled in by who asked.
+    /// A house in the row; sizes are filled in by the caller.
     fn house(&self, shape: Shape, at: i64) -> House {
         House {
             shape,

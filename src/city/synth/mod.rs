@@ -15,10 +15,10 @@ use crate::city::synth::{
     layout::{Block, Layout},
 };
 
-/// What to make.
+/// The synthetic city that is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SynthOptions {
-    /// How many buildings; streets come in addition.
+    /// The number of buildings; streets come in addition.
     pub buildings: u64,
     /// Which of all such cities.
     pub seed: u64,

@@ -28,7 +28,7 @@ pub struct ViewFacts {
     pub normal: [f64; 3],
     /// Where the eye is from the object, degrees clockwise from north, 0..360; straight above 0.
     pub azimuth_deg: f64,
-    /// How high the eye stands over the object's middle, degrees above the horizon.
+    /// The elevation of the eye over the object's middle, degrees above the horizon.
     pub elevation_deg: f64,
     /// The eye, metres.
     pub eye: [f64; 3],
@@ -44,14 +44,14 @@ pub struct ViewFacts {
     pub far_m: f64,
     /// Share of the area of its facades that is seen, 0..1.
     pub visible: f64,
-    /// What is seen of what would be were the object alone, 0..1.
+    /// The share that is seen of what would be were the object alone, 0..1.
     pub unoccluded: f64,
-    /// How good the view is, 0..1.
+    /// The score of the view, 0..1.
     pub score: f64,
 }
 
 impl ViewFacts {
-    /// Of a view.
+    /// The facts about a view.
     pub fn new(view: &BestView) -> Self {
         let framing = &view.framing;
         let n = framing.normal;
@@ -98,11 +98,11 @@ pub struct LandmarkFacts {
     pub height_m: f64,
     /// Mean height of what is within 200 m, by footprint, metres.
     pub neighbours_m: f64,
-    /// What it covers of the ground, square metres.
+    /// The ground that it covers, square metres.
     pub footprint_m2: f64,
-    /// How far the nearest object is that is at least as high, metres in plan; `null`: there is none.
+    /// The distance to the nearest object that is at least as high, metres in plan; `null`: there is none.
     pub isolation_m: Option<f64>,
-    /// What the score is made of.
+    /// The terms of the score.
     pub terms: TermFacts,
 }
 
@@ -113,14 +113,14 @@ pub struct TermFacts {
     pub height: f64,
     /// Its footprint over that of its neighbours.
     pub footprint: f64,
-    /// How far it is to the next that is as high.
+    /// The term of the distance to the next that is as high.
     pub isolation: f64,
-    /// What its attributes say.
+    /// The term of its attributes.
     pub attributes: f64,
 }
 
 impl LandmarkFacts {
-    /// Of a landmark of a city.
+    /// The facts about a landmark of a city.
     pub fn new(city: &CityModel, landmark: Landmark) -> Self {
         let object = &city.objects[landmark.object as usize];
         let terms = landmark.terms;
@@ -143,7 +143,7 @@ impl LandmarkFacts {
     }
 }
 
-/// A scene of a city of files in which each landmark has a best-view lens (B9), as the text of `file`: paths are relative to it where they
+/// A scene of a city of files in which each landmark has a best-view lens, as the text of `file`: paths are relative to it where they
 /// can be.
 pub fn scene<'a>(files: &[PathBuf], landmarks: impl Iterator<Item = &'a LandmarkFacts>, file: &Path) -> String {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());

@@ -13,12 +13,12 @@ use crate::{
     measure::topics::gpu::{self, Plan, markdown::markdown, patience::Watch, report::Report},
 };
 
-/// How it is called.
+/// Its name.
 pub const NAME: &str = "gpu";
-/// What it is for, as it is listed.
+/// Its purpose, as it is listed.
 pub const ABOUT: &str = "What the graphics adapter does: hard cases, pictures against references, and frames.";
 
-/// How often frames are timed, unless told otherwise.
+/// The number of times that frames are timed, unless told otherwise.
 const ROUNDS: u32 = 31;
 /// Width and height of frames, unless told otherwise.
 const SIZE: [u32; 2] = [1280, 720];

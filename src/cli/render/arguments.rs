@@ -1,4 +1,4 @@
-//! What `veduta render` can be asked, and how each value is spelt.
+//! Arguments of `veduta render`, and how each value is spelt.
 
 use std::{path::PathBuf, str::FromStr};
 
@@ -70,7 +70,7 @@ pub struct Arguments {
     pub shaders: Shaders,
 }
 
-/// Back ends of the shader handlers (H3).
+/// Back ends of the shader handlers.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shaders {
     /// Made for this scene
@@ -143,7 +143,7 @@ impl FromStr for Size {
     }
 }
 
-/// What an AOV holds.
+/// The content of an AOV.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AovKind {
     /// Metres along the view axis.
@@ -172,7 +172,7 @@ impl AovKind {
     }
 }
 
-/// How an AOV is written.
+/// The format of an AOV.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AovFormat {
     /// Integers.
@@ -184,11 +184,11 @@ pub enum AovFormat {
 /// One `--aov`: `depth=depth.exr`, `object-id:displayed=ids.png`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AovRequest {
-    /// What.
+    /// The content.
     pub kind: AovKind,
     /// Whether image-space lenses are included.
     pub is_displayed: bool,
-    /// How.
+    /// The format.
     pub format: AovFormat,
     /// Where to.
     pub file: PathBuf,

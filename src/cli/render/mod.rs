@@ -115,7 +115,7 @@ pub fn with_warnings(statistics: &mut stats::Statistics, warnings: &[serde_json:
     statistics.warnings = warnings.iter().cloned().chain(of_picture).collect();
 }
 
-/// How paths of a scene file, or of the command line, are read.
+/// The rules by which paths of a scene file, or of the command line, are read.
 pub fn options_of(scene: Option<&PathBuf>, global: &GlobalArguments) -> Options {
     match scene {
         Some(file) => Options { allow_outside: global.allow_outside, must_exist: true, ..Options::for_file(file) },
@@ -159,7 +159,7 @@ fn check_masks(aovs: &[AovRequest], scene: &Scene) -> Outcome {
     }
 }
 
-/// Loads the scene's city and puts it on the graphics card; with what is to be warned of.
+/// Loads the scene's city and puts it on the GPU; with what is to be warned of.
 pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outcome<(Studio, Vec<serde_json::Value>)> {
     if scene.city.files.is_empty() {
         return Err(Failure::failed("the scene names no city; [city] files = [\"FILE\"] would be right"));

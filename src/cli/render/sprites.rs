@@ -1,4 +1,4 @@
-//! `veduta render --sprite`: the depth sprites that lenses are tested by, as files (S8).
+//! `veduta render --sprite`: the depth sprites that lenses are tested by, as files.
 
 use std::{path::PathBuf, str::FromStr};
 

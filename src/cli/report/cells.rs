@@ -59,7 +59,7 @@ impl Table {
     }
 }
 
-/// How many columns of a terminal `text` takes: East Asian wide characters take two, combining marks none.
+/// The number of columns of a terminal that `text` takes: East Asian wide characters take two, combining marks none.
 pub fn columns(text: &str) -> usize {
     text.chars().map(char_columns).sum()
 }

@@ -41,7 +41,7 @@ impl Report {
         let _ = writeln!(self.out, "fov_deg = {}", number(first.fov_deg));
     }
 
-    /// What stands out.
+    /// The landmarks.
     pub(super) fn landmarks(&mut self, landmarks: &[LandmarkFacts]) {
         self.gap();
         if landmarks.is_empty() {

@@ -12,7 +12,7 @@ use crate::{
     scene::Scene,
 };
 
-/// What was found of one cell; `None`: not asked for.
+/// The numbers found of one cell; `None`: not asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Figures {
     /// The share of the point of interest that is seen; `None` within: it is not in the picture.
@@ -26,9 +26,9 @@ pub struct Figures {
 /// City objects that lenses act on.
 #[derive(Clone, Copy, Debug)]
 enum Touched {
-    /// Of a scene with occlusion lenses: roots that these found.
+    /// Roots that the occlusion lenses of a scene found.
     Occluders(u64),
-    /// Of another: such of which a triangle meets a volume, parts by themselves.
+    /// Objects of another scene of which a triangle meets a volume, parts by themselves.
     Objects(u64),
 }
 

@@ -61,13 +61,13 @@ pub struct Arguments {
 
 /// A sheet and all that it takes to draw it.
 pub struct Task {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// The sheet.
     pub sheet: Sheet,
     /// The scene it varies.
     pub scene: Scene,
-    /// How paths in the scene are read.
+    /// The rules by which paths in the scene are read.
     pub options: Options,
 }
 
@@ -172,18 +172,18 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by_key(|&i| (cells.iter().position(|cell| cell.scene.city == cells[i].scene.city), i));
     let mut legends: Vec<Legend> = Vec::new();
-    let mut told: Vec<String> = Vec::new();
+    let mut reported: Vec<String> = Vec::new();
     for &i in &order {
         let cell = &mut cells[i];
         let was_open = kept.as_ref().is_some_and(|(city, _)| *city == cell.scene.city);
         let studio = studio_of(kept, &cell.scene, options, global)?;
         let problems = check_against(&cell.scene, &studio.model).into_iter().map(|problem| problem.to_string());
-        for problem in problems.filter(|problem| !told.contains(problem)).collect::<Vec<_>>() {
+        for problem in problems.filter(|problem| !reported.contains(problem)).collect::<Vec<_>>() {
             // Opening tells those of its scene.
             if was_open {
                 log::warn!("cell {}: scene: {problem}", cell.name);
             }
-            told.push(problem);
+            reported.push(problem);
         }
         if sheet.legend {
             let seen = studio.lenses_in_view(&cell.scene, size);
@@ -235,7 +235,7 @@ fn studio_of<'k>(
     global: &GlobalArguments,
 ) -> Outcome<&'k mut Studio> {
     if kept.as_ref().is_none_or(|(city, _)| *city != scene.city) {
-        // The old one goes first: two cities may be more than the card holds.
+        // The old one goes first: two cities may be more than the GPU holds.
         *kept = None;
         *kept = Some((scene.city.clone(), render::open(scene, options, global)?.0));
     }
@@ -243,7 +243,7 @@ fn studio_of<'k>(
     Ok(studio)
 }
 
-/// What `veduta render` asks for.
+/// The request that `veduta render` makes.
 fn request(scene: &Scene) -> Request {
     Request {
         size: scene.figure.size,

@@ -11,14 +11,28 @@ use crate::{
 };
 
 /// The ground of cards, and how much of the city it hides: print shows through what is thinner.
-const CARD: (Srgb, f32) = ([1.0, 1.0, 1.0], 0.93);
-const SHADOW: (Srgb, f32) = ([0.05, 0.07, 0.1], 0.22);
+const CARD: Fill = Fill { color: [1.0, 1.0, 1.0], opacity: 0.93 };
+const SHADOW: Fill = Fill { color: [0.05, 0.07, 0.1], opacity: 0.22 };
 /// Text that says what something is.
 pub const INK: Srgb = [0.1, 0.115, 0.14];
 /// Text beside it.
 pub const QUIET_INK: Srgb = [0.33, 0.355, 0.39];
 /// A line around swatches, so that a pale one does not fade into the card.
-const RIM: (Srgb, f32) = ([0.0, 0.0, 0.0], 0.22);
+const RIM: Fill = Fill { color: [0.0, 0.0, 0.0], opacity: 0.22 };
+
+/// How a panel is filled.
+#[derive(Clone, Copy)]
+struct Fill {
+    color: Srgb,
+    /// 0..=1.
+    opacity: f32,
+}
+
+impl Fill {
+    fn opaque(color: Srgb) -> Self {
+        Self { color, opacity: 1.0 }
+    }
+}
 
 /// Width and height, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,8 +178,9 @@ impl Painter {
                 if *is_ring {
                     // As its outline stands in the picture.
                     let line = self.px(0.14).max(2.0);
-                    self.panel(low, high, (*color, 1.0), side / 2.0, 1.0);
-                    self.panel(low.map(|v| v + line), high.map(|v| v - line), (CARD.0, 1.0), side / 2.0 - line, 1.0);
+                    self.panel(low, high, Fill::opaque(*color), side / 2.0, 1.0);
+                    let inside = Fill::opaque(CARD.color);
+                    self.panel(low.map(|v| v + line), high.map(|v| v - line), inside, side / 2.0 - line, 1.0);
                 } else {
                     self.rimmed(low, high, self.px(0.18), *color);
                 }
@@ -184,13 +199,19 @@ impl Painter {
         let mut start = 0;
         for run in colors.chunk_by(|a, b| bytes(*a) == bytes(*b)) {
             let end = start + run.len();
-            self.panel([x + start as f32, top], [x + end as f32, bottom], (run[0], 1.0), 0.0, 1.0);
+            self.panel([x + start as f32, top], [x + end as f32, bottom], Fill::opaque(run[0]), 0.0, 1.0);
             start = end;
         }
         for (column, text) in ticks {
             let at = x + column.floor();
             let mark = (at - (rim / 2.0).floor()).clamp(x, x + colors.len() as f32 - rim);
-            self.panel([mark, bottom + rim], [mark + rim, bottom + rim + self.px(0.25)], (QUIET_INK, 1.0), 0.0, 1.0);
+            self.panel(
+                [mark, bottom + rim],
+                [mark + rim, bottom + rim + self.px(0.25)],
+                Fill::opaque(QUIET_INK),
+                0.0,
+                1.0,
+            );
             let width = self.setter.width(text, style);
             let left = (at + rim / 2.0 - width / 2.0).clamp(x, (x + colors.len() as f32 - width).max(x));
             self.text(text, [left, bottom + self.px(1.15)], style, QUIET_INK);
@@ -205,17 +226,11 @@ impl Painter {
     fn rimmed(&mut self, low: [f32; 2], high: [f32; 2], radius: f32, color: Srgb) {
         let rim = self.hairline();
         self.panel(low.map(|v| v - rim), high.map(|v| v + rim), RIM, radius + rim, 1.0);
-        self.panel(low, high, (color, 1.0), radius, 1.0);
+        self.panel(low, high, Fill::opaque(color), radius, 1.0);
     }
 
-    fn panel(
-        &mut self,
-        low: [f32; 2],
-        high: [f32; 2],
-        (color, opacity): (Srgb, f32),
-        radius_px: f32,
-        softness_px: f32,
-    ) {
+    fn panel(&mut self, low: [f32; 2], high: [f32; 2], fill: Fill, radius_px: f32, softness_px: f32) {
+        let Fill { color, opacity } = fill;
         self.pieces.push(Piece::Panel(Panel { low, high, color, opacity, radius_px, softness_px, ellipse: false }));
     }
 

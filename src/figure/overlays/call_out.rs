@@ -1,4 +1,4 @@
-//! Boards in the scene that show overlays (B6): where they stand, and what of the picture they are.
+//! Boards in the scene that show overlays: where they stand, and what of the picture they are.
 //!
 //! ```text
 //!        ╱────────╲          turned about the vertical axis to the eye, tilted back;

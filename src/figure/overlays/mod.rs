@@ -1,4 +1,4 @@
-//! Overlays of a picture (B1 to B7): what best-view lenses show, where it stands, and the lines that tie it to its places, as [`Furniture`];
+//! Overlays of a picture: what best-view lenses show, where it stands, and the lines that tie it to its places, as [`Furniture`];
 //! below them markers and traces of what moves.
 //!
 //! ```text
@@ -78,7 +78,7 @@ impl OverlayFigures {
     }
 }
 
-/// Where the overlays of a picture, and those in them, stood last: from there they go on, so that they keep still while the eye moves (B6). An
+/// Where the overlays of a picture, and those in them, stood last: from there they go on, so that they keep still while the eye moves. An
 /// empty one is that of a picture alone, which goes by its scene only.
 #[derive(Clone, Debug, Default)]
 pub struct Standing {

@@ -402,7 +402,7 @@ impl Painter {
         }));
     }
 
-    /// What is drawn into a view beside the city: on maps a compass, or where the main eye is and looks (B4).
+    /// What is drawn into a view beside the city: on maps a compass, or where the main eye is and looks.
     pub fn signs(&mut self, overlay: &Overlay, view: &LocalView, local: &Local, main: &Camera, room: Room) {
         let LocalView::Map { mode, height_m, magnification, .. } = view else { return };
         let heading = local::heading(main);

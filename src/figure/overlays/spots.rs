@@ -1,5 +1,4 @@
-//! Where the overlays of a picture stand: where the layout puts them, at places of their own, or on boards in the scene
-//! (B6).
+//! Where the overlays of a picture stand: where the layout puts them, at places of their own, or on boards in the scene.
 
 use glam::DVec2;
 

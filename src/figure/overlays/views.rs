@@ -38,7 +38,7 @@ pub struct Local {
     pub magnification: f64,
 }
 
-/// The ball around a point of interest (B2).
+/// The ball around a point of interest.
 fn ball(studio: &Studio, poi: &Poi) -> Result<Sphere, RenderError> {
     match &poi.place {
         PoiPlace::At(at) => Ok(Sphere { center: *at, radius: POINT_RADIUS_M }),
@@ -163,7 +163,7 @@ fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
     for lens in &mut own.lenses {
         let is_in = match &shown.lenses {
             Some(names) => names.contains(&lens.name),
-            // What is fixed to a camera, and what is flat, acts in its own view alone (L2).
+            // What is fixed to a camera, and what is flat, acts in its own view alone.
             None => lens.best_view.is_none() && lens.placement != Placement::Camera && !is_flat(lens),
         };
         lens.enabled &= is_in;

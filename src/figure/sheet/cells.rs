@@ -53,7 +53,7 @@ pub fn cells(sheet: &Sheet, base: &Scene, name: &str, options: &Options) -> Resu
                 Err(error) => {
                     is_right = false;
                     let key = (setting.line, setting.place.clone());
-                    problems.entry(key).or_insert_with(|| told(setting, &error, &cell_name));
+                    problems.entry(key).or_insert_with(|| problem_line(setting, &error, &cell_name));
                     break;
                 }
             }
@@ -95,7 +95,7 @@ pub fn cells(sheet: &Sheet, base: &Scene, name: &str, options: &Options) -> Resu
 }
 
 /// What is wrong with a change, as one line.
-fn told(setting: &Setting, error: &SceneFileError, cell: &str) -> String {
+fn problem_line(setting: &Setting, error: &SceneFileError, cell: &str) -> String {
     let all: Vec<String> = error.problems.iter().map(ToString::to_string).collect();
     format!("{} {:?}: {} (cell {cell})", setting.place, setting.assignment, all.join("; "))
 }

@@ -1,4 +1,4 @@
-//! Where and how much a deformation acts: κ over a lens plane (S6; Trapp, section 3.2.2).
+//! Where and how much a deformation acts: κ over a lens plane (Trapp §3.2.2).
 
 use glam::{DVec2, DVec3};
 
@@ -68,9 +68,9 @@ pub enum Profile {
     Texels(Texels),
 }
 
-/// A grid of κ: f32 in 0..=1, filtered by hand at p = s·size − ½ (S6).
+/// A grid of κ: f32 in 0..=1, filtered by hand at p = s·size − ½.
 ///
-/// Between the outermost texels' middles and the border of the rectangle, half a texel away, κ goes to 0 linearly (S6 leaves open what
+/// Between the outermost texels' middles and the border of the rectangle, half a texel away, κ goes to 0 linearly (Trapp leaves open what
 /// is there): any picture may be a lens, and none of them tears.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texels {
@@ -267,15 +267,16 @@ impl ControlPlane {
         let (value, [by_s, by_t]) = self.profile.at(unit(0, self.size.x), unit(1, self.size.y));
         let slope = [by_s.times(1.0 / self.size.x), by_t.times(1.0 / self.size.y)];
         let Some(band) = &self.band else { return Kappa { value, slope: [slope[0], slope[1], S::from(0.0)] } };
-        let (level, level_slope) = band.at(p[2].plus(-corner[2]));
-        Kappa { value: value * level, slope: [slope[0] * level, slope[1] * level, value * level_slope] }
+        let level = band.at(p[2].plus(-corner[2]));
+        let slope = [slope[0] * level.value, slope[1] * level.value, value * level.slope];
+        Kappa { value: value * level.value, slope }
     }
 }
 
 impl Profile {
     /// κ and its derivatives by s and t, for s, t in 0..=1.
     fn at<S: Sampled>(&self, s: S, t: S) -> (S, [S; 2]) {
-        let product = |a: (S, S), b: (S, S)| (a.0 * b.0, [a.1 * b.0, a.0 * b.1]);
+        let product = |a: Factor<S>, b: Factor<S>| (a.value * b.value, [a.slope * b.value, a.value * b.slope]);
         let one = S::from(1.0);
         let centred = || [s, t].map(|x| x.times(2.0).plus(-1.0));
         match self {
@@ -299,26 +300,31 @@ impl Profile {
 }
 
 impl Band {
-    /// The factor and its derivative.
-    fn at<S: Number>(&self, delta: S) -> (S, S) {
+    fn at<S: Number>(&self, delta: S) -> Factor<S> {
         let ramp = |from: S| {
             let q = from.times(1.0 / self.fade);
-            (q.clamp(0.0, 1.0), q.clamp_slope(0.0, 1.0).times(1.0 / self.fade))
+            Factor { value: q.clamp(0.0, 1.0), slope: q.clamp_slope(0.0, 1.0).times(1.0 / self.fade) }
         };
         let (up, down) = (smoothed(ramp(delta.plus(-self.low))), smoothed(ramp(S::from(self.high) - delta)));
-        (up.0 * down.0, up.1 * down.0 - up.0 * down.1)
+        Factor { value: up.value * down.value, slope: up.slope * down.value - up.value * down.slope }
     }
 }
 
-/// clamp(min(s, 1 − s)/border, 0, 1) and its derivative, for s in 0..=1 and border ≤ ½.
-fn trapezoid<S: Number>(s: S, border: f64) -> (S, S) {
+/// A factor of κ over one number, and its derivative.
+struct Factor<S> {
+    value: S,
+    slope: S,
+}
+
+/// clamp(min(s, 1 − s)/border, 0, 1), for s in 0..=1 and border ≤ ½.
+fn trapezoid<S: Number>(s: S, border: f64) -> Factor<S> {
     let rate = 1.0 / border;
     let (up, down) = (s.times(rate), (S::from(1.0) - s).times(rate));
     let slope = up.clamp_slope(0.0, 1.0).times(rate) - down.clamp_slope(0.0, 1.0).times(rate);
-    (up.smaller(down).clamp(0.0, 1.0), slope)
+    Factor { value: up.smaller(down).clamp(0.0, 1.0), slope }
 }
 
-/// 3q² − 2q³ and its derivative, of q and its derivative.
-fn smoothed<S: Number>((q, slope): (S, S)) -> (S, S) {
-    (q.smooth(), q.smooth_slope() * slope)
+/// 3q² − 2q³.
+fn smoothed<S: Number>(q: Factor<S>) -> Factor<S> {
+    Factor { value: q.value.smooth(), slope: q.value.smooth_slope() * q.slope }
 }

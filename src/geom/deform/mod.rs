@@ -1,4 +1,4 @@
-//! Deformation lenses (D1; Trapp, section 3.6): what moves places, how much, and what the surfaces there become.
+//! Deformation lenses (Trapp §3.6): what moves places, how much, and what the surfaces there become.
 //!
 //! A [`Deformation`] is plain data: a rigid frame T (pivot; axes A, B, N), operators that are applied one after the other (g), and a
 //! control κ that says how much of it each place gets. In the frame of the lens

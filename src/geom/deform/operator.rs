@@ -1,4 +1,4 @@
-//! Operators of deformations (D1; after Barr 1984, *Global and local deformations of solid primitives*), free to chain.
+//! Operators of deformations (after Barr 1984, *Global and local deformations of solid primitives*), free to chain.
 //!
 //! All of them act in the frame of the lens: x along A, y along B, z along N. Each is written as a displacement g(p) − p, so that an
 //! operator that does nothing adds exact zeros.
@@ -72,12 +72,12 @@ impl Operator {
         Self::Scale { factors: DVec3::new(1.0, 1.0, factor), about: DVec3::new(0.0, 0.0, base) }
     }
 
-    /// A 3D call-out (D3): what is around `about` is shown `factor` > 0 times as large, moved by `offset`.
+    /// A 3D call-out: what is around `about` is shown `factor` > 0 times as large, moved by `offset`.
     pub fn call_out(about: DVec3, factor: f64, offset: DVec3) -> Vec<Self> {
         vec![Self::Scale { factors: DVec3::splat(factor), about }, Self::Translate(offset)]
     }
 
-    /// A panoramic bend (D3), for a frame at the eye with y forward and z up ([`super::Frame::upright`]): what is nearer than `near`
+    /// A panoramic bend, for a frame at the eye with y forward and z up ([`super::Frame::upright`]): what is nearer than `near`
     /// metres stays, what is farther than `far` is raised by `angle` radians around a level line, and a round hollow joins them. The
     /// ground, `depth` metres below the eye, keeps its lengths.
     pub fn panorama(near: f64, far: f64, angle: f64, depth: f64) -> Self {

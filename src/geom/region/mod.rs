@@ -1,4 +1,4 @@
-//! Regions (C1): what several lens volumes have in common. A volume that is several bodies in union makes several regions.
+//! Regions: what several lens volumes have in common. A volume that is several bodies in union makes several regions.
 //!
 //! A convex volume is flat faces (half spaces) and at most one round part, which every point outside can be parted from by
 //! a plane. The planes of all volumes together bound the region, so flat volumes need nothing but clipping. Round parts are
@@ -12,7 +12,7 @@ use glam::{DMat3, DVec3};
 
 use crate::geom::{aabb::Aabb, shape::volume::Volume, triangle::clipped};
 
-/// How far from a volume a point is taken to be on its border, metres: a thousandth of the finest lattice of city files;
+/// The distance from a volume within which a point is taken to be on its border, metres: a thousandth of the finest lattice of city files;
 /// more for volumes of 1,000 km and beyond, by what f64 loses in them.
 pub const TOUCH_M: f64 = 1e-9;
 
@@ -39,7 +39,7 @@ pub struct Region {
 }
 
 impl Region {
-    /// What convex `volumes` have in common, solids and flat lenses standing for the boxes around them; `None` if that is nothing (or no volumes are given).
+    /// The part that convex `volumes` have in common, solids and flat lenses standing for the boxes around them; `None` if that is nothing (or no volumes are given).
     pub fn common(volumes: &[Volume]) -> Option<Self> {
         let bounds =
             volumes.iter().map(Volume::bounds).reduce(|a, b| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) })?;
@@ -102,7 +102,7 @@ impl Region {
         true
     }
 
-    /// What is left of `body` when its middle is a common point; `None` where there is none.
+    /// The part of `body` that is left when its middle is a common point; `None` where there is none.
     fn cut_to_a_common_point(&self, mut body: Body) -> Option<Body> {
         for &face in &self.faces {
             body.cut(face.0, face.1);

@@ -10,7 +10,7 @@ fn gcd(a: i128, b: i128) -> i128 {
     if b == 0 { a.abs() } else { gcd(b, a % b) }
 }
 
-/// What is left of a convex polygon where plane · p ≥ 0.
+/// The part of a convex polygon where plane · p ≥ 0.
 fn clip(polygon: &[H], plane: [i128; 4]) -> Vec<H> {
     let at = |p: &H| p.iter().zip(plane).map(|(a, b)| a * b).sum::<i128>();
     let mut out = Vec::new();

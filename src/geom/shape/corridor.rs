@@ -1,4 +1,4 @@
-//! Corridors (L3): what lies along a line, such as a route, as a union of convex bodies.
+//! Corridors: what lies along a line, such as a route, as a union of convex bodies.
 
 use glam::{DQuat, DVec2, DVec3};
 

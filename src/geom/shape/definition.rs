@@ -11,7 +11,7 @@ use crate::geom::shape::{
     volume::Volume,
 };
 
-/// A volume (L3), in model coordinates.
+/// A volume, in model coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A ball.

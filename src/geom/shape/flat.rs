@@ -1,4 +1,4 @@
-//! Flat lenses (L3; Ropinski and Hinrichs 2004, section 6): a figure in a plane, and all that an eye sees through it.
+//! Flat lenses (Ropinski & Hinrichs §6): a figure in a plane, and all that an eye sees through it.
 //!
 //! ```text
 //!                  │ figure

@@ -1,7 +1,7 @@
-//! Lens volumes (L3) as numbers: what is inside, where a ray enters and leaves, how far the border is.
+//! Lens volumes as numbers: what is inside, where a ray enters and leaves, how far the border is.
 //!
 //! One rule for borders, everywhere: a body is closed (its border belongs to it), and along a ray its interval is
-//! `entry ≤ t < exit` (L4). A ray that only touches (a tangent, a corner) has `entry = exit`: it misses. A ray that
+//! `entry ≤ t < exit`. A ray that only touches (a tangent, a corner) has `entry = exit`: it misses. A ray that
 //! runs within a face is inside it. A body without volume (radius 0, an edge 0) holds nothing.
 
 mod border;

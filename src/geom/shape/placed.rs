@@ -1,4 +1,4 @@
-//! Rigid motions of lens volumes (L2): what stands in a frame of its own, put where the frame is.
+//! Rigid motions of lens volumes: what stands in a frame of its own, put where the frame is.
 
 use glam::{DQuat, DVec3};
 

@@ -1,6 +1,6 @@
-//! Solids of any form (L3): concave, in several parts, touching or crossing themselves.
+//! Solids of any form: concave, in several parts, touching or crossing themselves.
 //!
-//! A place is inside where the winding number of the surface about it is not 0 (S3). It is counted along the vertical line
+//! A place is inside where the winding number of the surface about it is not 0. It is counted along the vertical line
 //! upwards from the place: +1 for every face above that looks up there, −1 for every one that looks down. Which faces are
 //! above is decided in plan, edge by edge, each edge alike for both faces that have it: nothing leaks between them. Columns
 //! in plan hold the faces that stand over them.

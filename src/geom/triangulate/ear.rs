@@ -17,7 +17,7 @@ pub(super) struct Scratch {
 impl Scratch {
     /// Appends the triangles of the ring (counter-clockwise, no spikes); `false` if it touches or crosses itself.
     ///
-    /// Of all ears the one with the shortest cut goes first (the first of equals), which keeps slivers rare.
+    /// Cuts ears off, the one with the shortest cut first (the first of equals), which keeps slivers rare.
     pub(super) fn clip(&mut self, ring: &[Corner], triangles: &mut Vec<[u32; 3]>) -> bool {
         if !is_simple(ring) {
             return false;

@@ -44,14 +44,14 @@ pub enum Refusal {
     TooLarge,
 }
 
-/// What was found out about a face on the way.
+/// Facts about a face, found on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     /// Exact Newell normal of the outer ring, as it was given: twice its vector area, in square lattice units.
     pub normal: [i128; 3],
     /// Whether all corners lie on exactly one plane.
     pub planar: bool,
-    /// How far corners lie from the best plane across `normal`, lattice units (half the spread along it).
+    /// The distance of corners from the best plane across `normal`, lattice units (half the spread along it).
     pub deviation: f64,
     /// Holes without area, which were left out.
     pub holes_dropped: u32,
@@ -271,7 +271,7 @@ fn largest_axis(normal: [i128; 3]) -> usize {
     }
 }
 
-/// What is wrong with a ring whose vector area is zero.
+/// The fault of a ring whose vector area is zero.
 fn reason_without_area(ring: &[[i64; 3]]) -> Refusal {
     let base = ring[0];
     let Some(second) = ring.iter().find(|&&p| p != base) else { return Refusal::ShortRing };

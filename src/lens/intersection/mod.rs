@@ -1,4 +1,4 @@
-//! Which triangles and city objects lenses meet (C1): exact in f64, by descent of the city's hierarchies.
+//! Which triangles and city objects lenses meet: exact in f64, by descent of the city's hierarchies.
 
 use crate::{
     city::{CityModel, spatial::SpatialIndex},

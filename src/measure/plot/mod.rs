@@ -60,7 +60,7 @@ struct Point<'a> {
 /// One pair of axes.
 struct Panel {
     figure: Quantity,
-    /// What stands above it.
+    /// The text above it.
     title: String,
     x: Scale,
     y: Scale,
@@ -78,7 +78,7 @@ impl Panel {
     }
 }
 
-/// What each panel shows: its title, its figure up, its rows.
+/// The content of each panel: its title, its figure up, its rows.
 fn panels(measured: &Measurement) -> Vec<(String, Quantity, Vec<&Row>)> {
     let topic = measured.topic;
     let Some(knob) = topic.panels else {

@@ -25,7 +25,7 @@ fn database(files: &[&'static [u8]]) -> Arc<fontdb::Database> {
 /// Size and pixels (sRGB, opaque) of an SVG drawing at `scale` pixels per CSS pixel.
 ///
 /// # Errors
-/// What makes the text no SVG drawing, or too large a one.
+/// The text is no SVG drawing, or too large a one.
 pub fn pixels(svg: &str, scale: f32) -> Result<([u32; 2], Vec<[u8; 4]>), String> {
     let fonts = if svg.chars().all(|c| c.is_control() || fonts::is_in_first(c)) { &FONTS } else { &ALL_FONTS };
     let options = Options { fontdb: Arc::clone(fonts), font_family: "Inter".to_owned(), ..Options::default() };

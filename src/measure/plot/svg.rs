@@ -12,7 +12,7 @@ pub struct Svg {
     body: String,
 }
 
-/// How a text stands at its place.
+/// The alignment of a text at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// It begins there.
@@ -23,7 +23,7 @@ pub enum Anchor {
     End,
 }
 
-/// How a text looks.
+/// The look of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Font {
     /// Height, pixels.
@@ -34,7 +34,7 @@ pub struct Font {
     pub color: &'static str,
 }
 
-/// How a line looks.
+/// The look of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// `#rrggbb`.

@@ -1,4 +1,4 @@
-//! The two back ends of handlers (H3): one module for all that a scene may ask for, or one for just what it does.
+//! The two back ends of handlers: one module for all that a scene may ask for, or one for just what it does.
 
 use crate::{
     geom::Shape,
@@ -14,10 +14,10 @@ use crate::{
 /// Share of the picture that the lens covers.
 const SHARE: f64 = 0.1;
 
-/// How many effects.
+/// The numbers of effects.
 const COUNTS: [usize; 6] = [0, 1, 2, 4, 8, 16];
 
-/// What the effects are, over and over.
+/// The effects, over and over.
 const EFFECTS: [&str; 8] = ["sepia", "saturate", "darken", "posterise", "brighten", "invert", "greyscale", "overlay"];
 
 /// See the module.
@@ -25,7 +25,7 @@ pub const TOPIC: Topic = Topic {
     name: "handlers",
     title: "Uber shader or specialised shaders",
     about: "What effects and overlapping lenses cost in the uber and in the specialised back end, drawn and compiled.",
-    specs: &["U1", "U3", "H3"],
+    sources: &["Trapp §3.7"],
     reference: "the same scene in the specialised back end",
     knobs: &[
         Knob { name: "effects", unit: "" },
@@ -43,7 +43,7 @@ pub const TOPIC: Topic = Topic {
     make,
 };
 
-/// How many effects come together.
+/// The way in which effects come together.
 #[derive(Clone, Copy)]
 enum Arrangement {
     /// One lens with all of them.
@@ -95,7 +95,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                     shot,
                     reference: Some(specialised.clone()),
                     mask: None,
-                    veil: None,
+                    composited: None,
                 });
             }
         }

@@ -1,6 +1,6 @@
-//! Lens tests (S7): from the shape or by a depth sprite, for every kind of shape, and for lenses that are many, overlap or move.
+//! Lens tests: from the shape or by a depth sprite, for every kind of shape, and for lenses that are many, overlap or move.
 //!
-//! A technique is one row of [`TECHNIQUES`]; those that are kept for reference (C2) have theirs.
+//! A technique is one row of [`TECHNIQUES`]; those that are kept for reference have theirs.
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -19,13 +19,13 @@ use crate::{
 /// Share of the picture that a lens alone covers, and one of several.
 const SHARES: [f64; 2] = [0.2, 0.1];
 
-/// How many lenses; `branches` ends at 6.
+/// The numbers of lenses; `branches` ends at 6.
 const COUNTS: [usize; 5] = [1, 2, 4, 6, 10];
-/// What lenses do, in turn.
+/// The effects of lenses, in turn.
 const EFFECTS: [&str; 6] = ["posterise", "sepia", "engraving", "saturate", "invert", "overlay"];
 /// With how many of them still and moving ones are compared.
 const MOVING: [usize; 2] = [1, 10];
-/// How far a lens moves from one frame to the next, as part of its radius.
+/// The way of a lens from one frame to the next, as part of its radius.
 const STEP: f64 = 0.1;
 
 /// See the module.
@@ -33,7 +33,7 @@ pub const TOPIC: Topic = Topic {
     name: "lens-tests",
     title: "How lenses are tested",
     about: "What a lens test from the shape and one by a depth sprite cost, and what the techniques of the literature do, for each kind of shape, and for 1 to 10 lenses.",
-    specs: &["U1", "S7", "C2"],
+    sources: &["Trapp §3.2", "Tiesel §3.4.5"],
     reference: "the same lenses, standing still, tested from their shapes",
     knobs: &[
         Knob { name: "shape", unit: "" },
@@ -82,7 +82,7 @@ const TECHNIQUES: &[Technique] = &[
     },
 ];
 
-/// What the techniques of the literature are compared at: what they cost grows with the lenses, and their start-up takes seconds.
+/// Whether the techniques of the literature are compared there: what they cost grows with the lenses, and their start-up takes seconds.
 fn is_comparable(case: &Case) -> bool {
     case.arrangement != "alone" && case.moved.is_none()
 }
@@ -90,12 +90,12 @@ fn is_comparable(case: &Case) -> bool {
 /// Where several lenses stand: how far one is from the next, as part of the radius.
 const ARRANGEMENTS: [(&str, f64); 2] = [("apart", 2.2), ("overlapping", 0.25)];
 
-/// What is measured: lenses, and what stands in the table beside the technique.
+/// A case that is measured: lenses, and what stands in the table beside the technique.
 struct Case {
     shape: &'static str,
     lenses: Vec<Focus>,
     arrangement: &'static str,
-    /// How far all of it stood from there a frame ago, metres.
+    /// The way of all of it from where it stood a frame ago, metres.
     moved: Option<DVec3>,
 }
 
@@ -147,7 +147,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot,
                 reference: Some(reference.clone()),
                 mask: None,
-                veil: None,
+                composited: None,
             });
         }
     }

@@ -1,4 +1,4 @@
-//! Refinement of what deformations bend (D2): how far edges are off, against triangles and time.
+//! Refinement of what deformations bend: how far edges are off, against triangles and time.
 
 use crate::{
     geom::Shape,
@@ -18,7 +18,7 @@ use crate::{
 /// Share of the city's plan that the lens is over.
 const SHARE: f64 = 0.1;
 
-/// How far edges may be off, pixels; the last one is what all others are compared with.
+/// The distances by which edges may be off, pixels; the last one is what all others are compared with.
 const CHORDS_PX: [f64; 8] = [16.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625];
 
 /// See the module.
@@ -26,7 +26,7 @@ pub const TOPIC: Topic = Topic {
     name: "refinement",
     title: "How fine what is deformed is split",
     about: "How many triangles and how much time it takes that edges are as near to where they should be as is asked for, in a view that is drawn for the first time.",
-    specs: &["U1", "D1", "D2"],
+    sources: &["Trapp §3.6"],
     reference: "the same deformation with edges that are at most 1/32 pixel off",
     knobs: &[Knob { name: "deformation", unit: "" }, Knob { name: "asked for", unit: "px" }],
     x: Quantity::Chord,
@@ -40,7 +40,7 @@ pub const TOPIC: Topic = Topic {
     make,
 };
 
-/// What is done to the middle of the city.
+/// The deformations of the middle of the city.
 fn kinds() -> Vec<(&'static str, Vec<Step>)> {
     let taper = Step::Taper { factor: 0.8 };
     let twist = |degrees: f64| Step::Twist { angle: degrees.to_radians() };
@@ -76,7 +76,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot,
                 reference: Some(stage.shot(of(&steps, 0.03125), 1)),
                 mask: None,
-                veil: None,
+                composited: None,
             });
         }
     }

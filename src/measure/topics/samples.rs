@@ -14,7 +14,7 @@ pub const TOPIC: Topic = Topic {
     name: "samples",
     title: "Samples per pixel",
     about: "How many samples per pixel smooth edges need, and what they cost.",
-    specs: &["U1"],
+    sources: &[],
     reference: "the same picture with 64 samples per pixel",
     knobs: &[Knob { name: "samples", unit: "" }],
     x: Quantity::Flip,
@@ -37,7 +37,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
         shot: shot(samples),
         reference: None,
         mask: None,
-        veil: None,
+        composited: None,
     };
     Ok(Trial { plain: shot(1), reference: shot(64), variants: [1, 2, 4, 8, 16, 32].map(variant).into() })
 }

@@ -1,4 +1,4 @@
-//! Depth sprites (S4): formats, mappings and resolutions against the lens in f64. Ropinski and Hinrichs' Table 1, with accuracy.
+//! Depth sprites: formats, mappings and resolutions against the lens in f64. Ropinski and Hinrichs' Table 1, with accuracy.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub const TOPIC: Topic = Topic {
     name: "sprites",
     title: "Formats, mappings and resolutions of depth sprites",
     about: "What format, mapping and resolution of a lens' depth sprite cost, and how many pixels they put on its wrong side.",
-    specs: &["U1", "S2", "S4"],
+    sources: &["Trapp §3.1", "Ropinski & Hinrichs, table 1"],
     reference: "the lens tested from its shape; for its mask, the shape in f64 at the shown places",
     knobs: &[
         Knob { name: "shape", unit: "" },
@@ -50,7 +50,7 @@ pub const TOPIC: Topic = Topic {
     make,
 };
 
-/// What is compared of a shape: all formats with all mappings (`is_full`) or the default one, and all resolutions.
+/// The sprites that are compared for a shape: all formats with all mappings (`is_full`) or the default one, and all resolutions.
 fn sprites(is_full: bool) -> Vec<LensSprite> {
     let at = |resolution, format, mapping| LensSprite {
         resolution: Some(resolution),
@@ -95,7 +95,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot: stage.shot(scene.clone(), 1),
                 reference: Some(analytic.clone()),
                 mask: Some(mask.clone()),
-                veil: None,
+                composited: None,
             });
         }
     }

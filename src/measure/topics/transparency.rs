@@ -1,4 +1,4 @@
-//! Methods of laying translucent layers one over the other (O7): what each costs and leaves out.
+//! Methods of laying translucent layers one over the other: what each costs and leaves out.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub const TOPIC: Topic = Topic {
     name: "transparency",
     title: "How translucent layers are laid one over the other",
     about: "What the methods for translucent layers cost and leave out, by how many layers or samples they take, in five views.",
-    specs: &["U1", "O1", "O7"],
+    sources: &["Trapp §3.3"],
     reference: "all layers in their order (`exact`), with as many samples",
     knobs: &[
         Knob { name: "scene", unit: "" },
@@ -56,7 +56,7 @@ fn rule(effect: &str, number: Option<(&str, f64)>) -> EffectUse {
     }
 }
 
-/// What is drawn: the whole city from above, translucent and nearly opaque, from a street, along the ground through all of it, and a
+/// The scenes that are drawn: the whole city from above, translucent and nearly opaque, from a street, along the ground through all of it, and a
 /// lens.
 fn scenes(stage: &mut Stage<'_>) -> Result<Vec<(&'static str, Scene)>, RenderError> {
     let plain = stage.plain_scene();
@@ -86,7 +86,7 @@ fn low(extent: &Aabb, away: f64, height_m: f64) -> Camera {
     Camera::looking(eye, middle, 45_f64.to_radians())
 }
 
-/// What is compared: methods, how many layers or samples stand in the table, and samples.
+/// The methods that are compared, how many layers or samples stand in the table, and samples.
 fn methods() -> Vec<(Transparency, Option<u32>, u32)> {
     let peel = |layers: u32| (Transparency::Peel { layers }, Some(layers).filter(|layers| *layers > 0), 1);
     let slots = |layers| (Transparency::KBuffer { layers }, Some(layers), 1);
@@ -100,7 +100,7 @@ fn methods() -> Vec<(Transparency, Option<u32>, u32)> {
 fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
     let mut variants = Vec::new();
     for (name, scene) in scenes(stage)? {
-        let veil = Arc::new(stage.studio.composited_in_f64(&scene, stage.size)?);
+        let composited = Arc::new(stage.studio.composited_in_f64(&scene, stage.size)?);
         for (method, number, samples) in methods() {
             let mut own = scene.clone();
             own.style.transparency = method;
@@ -115,7 +115,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot: stage.shot(own, samples),
                 reference: Some(stage.shot(scene.clone(), samples)),
                 mask: None,
-                veil: Some(Arc::clone(&veil)),
+                composited: Some(Arc::clone(&composited)),
             });
         }
     }

@@ -1,4 +1,4 @@
-//! What waits for a place, or for a better one, with a frame before: who comes, when, and in which order.
+//! Overlays that wait for a place, or for a better one, with a frame before: which come, when, and in which order.
 
 use std::collections::BTreeSet;
 
@@ -29,7 +29,7 @@ fn a_folded_overlay_comes_back_when_there_is_room() {
     let gone = asked.overlays.remove(1);
     let placed = place(&asked, Some(&placed));
     assert_eq!((&placed.folded[..], placed.placements.len()), (&[][..], 3));
-    // It takes the place of the one that has gone; who stood stays where it stood or makes room.
+    // It takes the place of the one that has gone; one that stood stays where it stood or makes room.
     assert_eq!(placed.placements.iter().map(|p| p.id).collect::<Vec<_>>(), [0, 2, 3]);
     // One that is as important and was not there waits.
     asked.overlays.push(gone);
@@ -88,7 +88,7 @@ fn all_that_wait_have_their_turn() {
     let waiting = || placed.folded.iter().all(|id| turns.contains(id));
     assert!(waiting() && !placed.folded.is_empty(), "{} of {} folded", turns.len(), placed.folded.len());
     assert!(calls <= 2 * placed.folded.len() + 10, "{calls} calls");
-    // Half of those that stand go: as many others come, the most important first, and at rest none is left for whom there is room.
+    // Half of those that stand go: as many others come, the most important first, and at rest none is left for which there is room.
     let gone: Vec<u32> = placed.placements.iter().map(|p| p.id).step_by(2).collect();
     asked.overlays.retain(|o| !gone.contains(&o.id));
     let before = placed.folded.len();

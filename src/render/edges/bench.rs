@@ -236,7 +236,7 @@ impl Bench {
         texels.chunks_exact(4).map(|t| f64::from(t[0]) / 255.0).collect()
     }
 
-    /// `edge_part` of segments in view space, by the card.
+    /// `edge_part` of segments in view space, by the GPU.
     pub fn parts(&self, view: &View, segments: &[[DVec3; 2]], guard: DVec2) -> Vec<[f64; 2]> {
         use wgpu::BufferUsages as U;
         let gpu = &self.gpu;

@@ -40,7 +40,7 @@ pub const POOLS: u64 = 16;
 /// Words of the lists before those of the pixels: how many nodes spilled, how many layers at most, the longest list that was not
 /// done; and, in lines of their own, how many nodes each pool was to take.
 pub const HEADER: u64 = 16 * (1 + POOLS);
-/// What to do where the card has no such buffer.
+/// What to do where the GPU has no such buffer.
 const SMALLER: &str = "a smaller picture would be right";
 
 /// Translucent layers, one over the other.
@@ -121,13 +121,13 @@ impl PipelineKey for CompositeKey {
             stage: Stage::Draw(Draw {
                 buffers: vec![vertices::picture_corners()],
                 targets: targets[..if self.shown { 3 } else { 1 }].to_vec(),
-                ..Draw::new("vertex", Some(if self.shown { "veil_and_shown" } else { "veil" }))
+                ..Draw::new("vertex", Some(if self.shown { "transparency_and_shown" } else { "transparency" }))
             }),
         }
     }
 }
 
-/// Lists of layers on the card: an A-buffer.
+/// Lists of layers on the GPU: an A-buffer.
 #[derive(Debug)]
 pub struct LayerLists {
     /// The header, and the head of the list of each pixel.
@@ -142,7 +142,7 @@ impl LayerLists {
     /// Without room for anything.
     ///
     /// # Errors
-    /// Those of the graphics card.
+    /// Those of the GPU.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
         let read = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
@@ -153,7 +153,7 @@ impl LayerLists {
         })
     }
 
-    /// What they take on the card.
+    /// What they take on the GPU.
     pub fn bytes(&self) -> u64 {
         self.heads.buffer().size() + self.nodes.buffer().size()
     }
@@ -168,7 +168,7 @@ impl LayerLists {
     /// Reads the header, as it is after what was recorded; that is submitted.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn read_header<T>(
         &self,
         gpu: &Gpu,

@@ -27,7 +27,7 @@ use crate::{
 /// One line of the list of passes: names under which statistics know it, and what it is for.
 pub type Line = (&'static str, &'static str);
 
-/// One pass of a frame: what it keeps on the card for a view.
+/// One pass of a frame: what it keeps on the GPU for a view.
 pub(in crate::render) trait Pass: Debug + Sized {
     /// What it does in one frame, from the plan.
     type Input<'a>;
@@ -38,7 +38,7 @@ pub(in crate::render) trait Pass: Debug + Sized {
     /// Nothing yet.
     ///
     /// # Errors
-    /// Those of the graphics card.
+    /// Those of the GPU.
     fn new(gpu: &Gpu) -> Result<Self, GpuError>;
 
     /// What a plan asks of it; `None`: nothing.
@@ -53,10 +53,10 @@ pub(in crate::render) trait Pass: Debug + Sized {
     /// Adds the pipelines that it may run, in this frame or when a lens has moved.
     fn add_keys(&self, _input: Option<&Self::Input<'_>>, _plan: &FramePlan, _programs: &Programs, _keys: &mut Keys) {}
 
-    /// Brings what it keeps on the card up to date.
+    /// Brings what it keeps on the GPU up to date.
     ///
     /// # Errors
-    /// Those of the graphics card.
+    /// Those of the GPU.
     fn prepare(&mut self, _input: &Self::Input<'_>, _stage: &mut Preparing) -> Result<(), GpuError> {
         Ok(())
     }
@@ -64,7 +64,7 @@ pub(in crate::render) trait Pass: Debug + Sized {
     /// Records its commands.
     ///
     /// # Errors
-    /// Those of the graphics card, where something is read back on the way.
+    /// Those of the GPU, where something is read back on the way.
     fn record(
         &mut self,
         input: &Self::Input<'_>,

@@ -1,4 +1,4 @@
-//! Neighbourhood filters (K3): a lens' own image, unmasked, shaded over the lens' bounds and what the filter reaches beyond
+//! Neighbourhood filters: a lens' own image, unmasked, shaded over the lens' bounds and what the filter reaches beyond
 //! them; then the filter down and across.
 //!
 //! Filters that read the same image have it shaded once, and uses that would make the same image share it. A filter reads

@@ -1,4 +1,4 @@
-//! What all methods of laying translucent layers one over the other share in a frame (O1, O7).
+//! What all methods of laying translucent layers one over the other share in a frame.
 
 use crate::{
     gpu::{Gpu, GpuError},
@@ -55,7 +55,7 @@ impl<'a> Layering<'a> {
     pub fn of(plan: &'a FramePlan<'a>) -> Option<Self> {
         let (_, cut) = plan.plans.layering.as_ref().zip(plan.cuts.picture.as_ref())?;
         let (parts, size) = (&plan.parts, plan.input.tile.size);
-        let is_everywhere = plan.plans.context.veils;
+        let is_everywhere = plan.plans.context.transparency;
         let pieces = if is_everywhere || parts.inside.is_empty() { parts.all() } else { parts.inside.clone() };
         let region = pieces.iter().map(|(_, tile)| *tile).filter(|tile| !tile.is_empty()).reduce(around);
         let region = region.map(|region| common(region, PictureTile::whole(size))).filter(|r| !r.is_empty());
@@ -94,7 +94,7 @@ pub fn shows_layers(plan: &FramePlan) -> bool {
     plan.input.wants_shown_layers() && plan.input.transparency != Transparency::Stochastic
 }
 
-/// Words of a note of a layer.
+/// Words of a fragment node.
 pub fn words(plan: &FramePlan) -> u32 {
     3 + u32::from(plan.smooth) + u32::from(plan.is_textured())
 }

@@ -1,4 +1,4 @@
-//! Translucent layers (O1, O7): fragment nodes in a list per pixel, sorted, shaded and laid one over the other, exactly.
+//! Translucent layers: fragment nodes in a list per pixel, sorted, shaded and laid one over the other, exactly.
 //!
 //! How much memory the lists take is bounded: what does not fit is drawn in bands, halved until each fits. How many nodes there
 //! are is read back before they are sorted, so nothing is ever left out in silence: what a single pixel has too much is counted.
@@ -212,7 +212,7 @@ impl ExactLayers {
         (self.lists, self.longest) = (None, 0);
     }
 
-    /// Gives back what it takes on the card.
+    /// Gives back what it takes on the GPU.
     pub fn drop_lists(&mut self) {
         self.lists = None;
     }
@@ -220,9 +220,9 @@ impl ExactLayers {
     /// Whether lists of the last frame are longer than it was made for, and the next one has to sort them; that it then does.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn sorts_longer(&mut self, gpu: &Gpu) -> Result<bool, GpuError> {
-        let Some(own) = self.lists.as_ref().filter(|_| self.figures.notes > 0) else { return Ok(false) };
+        let Some(own) = self.lists.as_ref().filter(|_| self.figures.nodes > 0) else { return Ok(false) };
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("longest list") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         encoder.copy_buffer_to_buffer(own.heads.buffer(), 0, &own.counted, 0, 4 * HEADER);
@@ -392,7 +392,7 @@ impl ExactLayers {
             if fitting.is_empty() {
                 recording.encoder.clear_buffer(lists.heads.buffer(), 4, Some(8));
             }
-            figures.notes += found.nodes;
+            figures.nodes += found.nodes;
             figures.bands += 1;
             figures.excess += excess;
             let band = limits.band(tile, room);

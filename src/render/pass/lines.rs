@@ -1,4 +1,4 @@
-//! Edges as lines, where effects draw them (K2): into a layer of their own, which shading lays over its picture.
+//! Edges as lines, where effects draw them: into a layer of their own, which shading lays over its picture.
 
 use crate::{
     geom::Aabb,

@@ -39,7 +39,7 @@
 //! furniture over          its layer, where the picture is transparent
 //! ```
 //!
-//! A pass that the scene does not call for is not recorded (U3): [`Inputs::of`] asks each what the plan of a frame wants of it. Another pass
+//! A pass that the scene does not call for is not recorded: [`Inputs::of`] asks each what the plan of a frame wants of it. Another pass
 //! is a file here and a row in the table.
 
 use crate::{
@@ -79,7 +79,7 @@ pub mod transparency;
 
 macro_rules! table {
     ($($field:ident: $pass:ty,)*) => {
-        /// What the passes keep on the card for a view.
+        /// What the passes keep on the GPU for a view.
         #[derive(Debug)]
         pub(in crate::render) struct Passes {
             $(pub $field: $pass,)*
@@ -116,7 +116,7 @@ macro_rules! table {
             /// Nothing yet.
             ///
             /// # Errors
-            /// Those of the graphics card.
+            /// Those of the GPU.
             pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
                 Ok(Self { $($field: <$pass as Pass>::new(gpu)?,)* })
             }
@@ -136,7 +136,7 @@ macro_rules! table {
             /// Brings what they keep up to date.
             ///
             /// # Errors
-            /// Those of the graphics card.
+            /// Those of the GPU.
             pub fn prepare(&mut self, inputs: &Inputs, stage: &mut Preparing) -> Result<(), GpuError> {
                 $(if let Some(input) = &inputs.$field {
                     self.$field.prepare(input, stage)?;
@@ -147,7 +147,7 @@ macro_rules! table {
             /// Records those that are asked for, in the order of the table.
             ///
             /// # Errors
-            /// Those of the graphics card.
+            /// Those of the GPU.
             pub fn record(
                 &mut self,
                 inputs: &Inputs,

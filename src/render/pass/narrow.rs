@@ -1,4 +1,4 @@
-//! Narrows the lists of invokers to what each tile shows, on the card, once its depth is known (L8).
+//! Narrows the lists of invokers to what each tile shows, on the GPU, once its depth is known.
 
 use crate::{
     gpu::{Gpu, GpuError},

@@ -1,4 +1,4 @@
-//! Sections (L5): where lenses lay closed shells open, their volumes' surfaces close them again (`pass/sections.wgsl`).
+//! Sections: where lenses lay closed shells open, their volumes' surfaces close them again (`pass/sections.wgsl`).
 
 use wgpu::ShaderStages as S;
 
@@ -33,7 +33,7 @@ use crate::{
 static SECTIONS: GroupLayout =
     GroupLayout { label: "sections", entries: &[(0, S::FRAGMENT, STORED_STAGE), (1, S::FRAGMENT, WRITTEN)] };
 
-/// What of a pixel the card keeps, bytes: `SectionPixel` of `pass/sections.wgsl`.
+/// What of a pixel the GPU keeps, bytes: `SectionPixel` of `pass/sections.wgsl`.
 const PIXEL_BYTES: u64 = 8;
 
 /// The draws of `pass/sections.wgsl`.
@@ -100,7 +100,7 @@ fn keys_of(program: &Program, measured: bool) -> [SectionKey; 3] {
         .map(|draw| SectionKey { program: program.clone(), draw })
 }
 
-/// What the card has of sections between frames.
+/// What the GPU has of sections between frames.
 #[derive(Debug)]
 struct Kept {
     stages: Synced,

@@ -147,7 +147,7 @@ impl PipelineKey for ShadeKey {
         };
         Parts {
             module: Module::Shade(self.program.clone()),
-            groups: vec![Some(&VIEW), Some(&SHADE), Some(&LENSES), (has.lines || has.veils).then_some(&LINES)],
+            groups: vec![Some(&VIEW), Some(&SHADE), Some(&LENSES), (has.lines || has.transparency).then_some(&LINES)],
             constants: vec![
                 ("TEXTURED", flag(self.textured)),
                 ("CLAY", flag(self.clay)),

@@ -1,4 +1,4 @@
-//! The sprites that tell the sides of solids and combinations: where rays enter first and leave last (S1).
+//! The sprites that tell the sides of solids and combinations: where rays enter first and leave last.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! The depth sprites that lenses are tested by (S1, S4): crossings of rays with solids, listed, and sprites made of these and of closed
+//! The depth sprites that lenses are tested by: crossings of rays with solids, listed, and sprites made of these and of closed
 //! forms.
 
 use glam::DVec2;
@@ -146,7 +146,7 @@ impl StoredSprites {
     /// The stored sprites of a lens as the last frame made them.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn read(&self, gpu: &Gpu, shared: &Shared, lens: u32) -> Result<Vec<SpriteTexels>, GpuError> {
         let own: Vec<&KeptSprite> = self.kept.iter().filter(|s| s.lens == lens).collect();
         if own.is_empty() {
@@ -160,7 +160,7 @@ impl StoredSprites {
     /// Whether the last frame met more crossings than there was room for, and the next has room for them.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn makes_room(&mut self, gpu: &Gpu, own_sprites: &mut OwnSprites) -> Result<bool, GpuError> {
         if !self.lists_crossings {
             return Ok(false);
@@ -180,7 +180,7 @@ impl StoredSprites {
     /// of those that have eyes of their own.
     ///
     /// # Errors
-    /// What the card cannot read back.
+    /// What the GPU cannot read back.
     pub fn read_excess(&self, gpu: &Gpu, own: bool) -> Result<Vec<(u32, u32)>, GpuError> {
         if self.kept.iter().all(|s| s.stored.excess == 0) {
             return Ok(Vec::new());
@@ -263,7 +263,7 @@ impl StoredSprites {
         let mut clear = |first: u32, count| recording.encoder.clear_buffer(counts, 4 * u64::from(first), count);
         clear(0, Some(4));
         OwnSprites::counts_of(requests).for_each(|own| clear(own, Some(4)));
-        clear(1 + frame.plan.own_sprites.room().1, None);
+        clear(1 + frame.plan.own_sprites.room().counts, None);
         let solids: Vec<(u32, &PlacedLeaf)> =
             requests.iter().flat_map(|m| solids_of(m.body).map(move |(_, leaf)| (m.lens, leaf))).collect();
         let (Some(target), false) = (&self.list_target, solids.is_empty()) else { return };

@@ -1,4 +1,4 @@
-//! What the card makes of deformations against the same formulas in f64 (`geom::deform`), finite differences, and brute force.
+//! What the GPU makes of deformations against the same formulas in f64 (`geom::deform`), finite differences, and brute force.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// Of places: the lattice rounds to half a cell at rest and half a cell shown, and the card counts in f32: some 16 roundings of ways from
+/// Of places: the lattice rounds to half a cell at rest and half a cell shown, and the GPU counts in f32: some 16 roundings of ways from
 /// the pivot, which steps stretch threefold at most here.
 fn place_error(rest: &Rest, span: f64) -> f64 {
     4.0 * rest.lattice.cell_m() + 64.0 * f64::from(f32::EPSILON) * span
@@ -25,17 +25,17 @@ fn place_error(rest: &Rest, span: f64) -> f64 {
 /// Of normals, radians: 16 bits of each axis at rest and shown, and the numbers of a Jacobian in f32.
 const NORMAL_ERROR: f64 = 1.5e-3;
 
-/// A mesh on the card.
+/// A mesh on the GPU.
 struct Body {
     rest: Rest,
     places: Vec<[DVec3; 3]>,
 }
 
-/// Puts triangles on the card, corners in order of their places.
+/// Puts triangles on the GPU, corners in order of their places.
 fn body(gpu: &Gpu, triangles: &[[DVec3; 3]], deformers: &Deformers) -> Body {
     let (mut corners, mut bits, mut places) = (Vec::new(), Vec::new(), Vec::new());
     for (i, triangle) in triangles.iter().enumerate() {
-        // As the card has them: whole metres and the rest in f32.
+        // As the GPU has them: whole metres and the rest in f32.
         let split = |p: &DVec3| (p.floor().as_ivec3(), (*p - p.floor()).as_vec3());
         let own = triangle.each_ref().map(|p| split(p).0.as_dvec3() + split(p).1.as_dvec3());
         let normal = (own[1] - own[0]).cross(own[2] - own[0]).normalize_or(DVec3::Z);

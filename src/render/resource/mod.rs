@@ -1,4 +1,4 @@
-//! What passes are made of on the graphics card: formats, bind groups, pipelines, targets, buffers that follow a scene, and the
+//! What passes are made of on the GPU: formats, bind groups, pipelines, targets, buffers that follow a scene, and the
 //! recording of passes. Nothing here knows a scene, a lens or a city.
 
 pub mod bindings;

@@ -154,13 +154,13 @@ impl<'t> Recording<'t> {
         self.count(counted);
     }
 
-    /// Has the card do what was recorded, and goes on.
+    /// Has the GPU do what was recorded, and goes on.
     pub fn submit(&mut self, gpu: &Gpu) {
         let done = std::mem::replace(&mut self.encoder, encoder(gpu));
         gpu.queue.submit([done.finish()]);
     }
 
-    /// Has the card do the rest; what was noted of the passes.
+    /// Has the GPU do the rest; what was noted of the passes.
     pub fn finish(mut self, gpu: &Gpu) -> Vec<PassRecord> {
         if let Some(timer) = &self.timer {
             timer.resolve(&mut self.encoder);

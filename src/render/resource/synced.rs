@@ -1,4 +1,4 @@
-//! Buffers that follow a scene: written only when their content changes, or by the card alone.
+//! Buffers that follow a scene: written only when their content changes, or by the GPU alone.
 
 use crate::gpu::{Gpu, GpuError};
 
@@ -45,13 +45,13 @@ impl Synced {
     }
 }
 
-/// A buffer that the card fills.
+/// A buffer that the GPU fills.
 #[derive(Debug)]
 pub struct Room {
     label: &'static str,
     usage: wgpu::BufferUsages,
     buffer: wgpu::Buffer,
-    /// What to do where the card has no such buffer.
+    /// What to do where the GPU has no such buffer.
     advice: &'static str,
 }
 

@@ -15,7 +15,7 @@ use crate::shader::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PerObject {
-    /// A colour, by an attribute (K2); all its parameters are for the host.
+    /// A colour, by an attribute; all its parameters are for the host.
     Colors,
     /// Whether an attribute chooses it ([`crate::lens::chosen`]).
     Chosen,
@@ -44,7 +44,7 @@ pub struct EffectDefinition {
     pub kind: EffectKind,
     /// When it runs.
     pub mode: Mode,
-    /// The requirement it fulfils.
+    /// Where it comes from: author and section, or what its author says.
     pub spec: String,
     /// Its purpose, one sentence.
     pub doc: String,

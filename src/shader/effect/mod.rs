@@ -1,4 +1,4 @@
-//! The effects: what lenses and the context can do to what they show (C4).
+//! The effects: what lenses and the context can do to what they show.
 //!
 //! An effect is one file in `shaders/effect` and one row in [`registry`]; [`super::effect_file`] says what stands in it.
 

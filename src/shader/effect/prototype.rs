@@ -1,4 +1,4 @@
-//! The table of prototypes (H1): what handlers do, when they run and what their functions look like. Parsing of effect files, messages
+//! The table of prototypes (Trapp §3.7): what handlers do, when they run and what their functions look like. Parsing of effect files, messages
 //! and the table in `docs/effects.md` come from it.
 
 use serde::{Deserialize, Deserializer, de::Error as _};
@@ -35,7 +35,7 @@ pub enum EffectKind {
     Filter,
 }
 
-/// When a handler runs (H1).
+/// When a handler runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
@@ -61,7 +61,7 @@ pub enum Stage {
     Pixel,
     /// Places, to tell which lenses they are in.
     Place,
-    /// Fragments of the city, before visibility: by each fragment's own depth (K4).
+    /// Fragments of the city, before visibility: by each fragment's own depth.
     Visibility,
     /// The shown surface, before it has a colour.
     Surface,
@@ -398,7 +398,7 @@ impl EffectKind {
         self.prototype().touches_lines
     }
 
-    /// Whether its handlers decide what the geometry pass shows, by each fragment's own depth (K4).
+    /// Whether its handlers decide what the geometry pass shows, by each fragment's own depth.
     pub fn decides_visibility(self) -> bool {
         self.prototype().stage == Stage::Visibility
     }

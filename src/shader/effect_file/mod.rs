@@ -1,9 +1,9 @@
-//! Effect files (C4): WGSL with a header of TOML in `//!` lines.
+//! Effect files (after Tiesel §3): WGSL with a header of TOML in `//!` lines.
 //!
 //! ```wgsl
 //! //! name = "posterise"
 //! //! kind = "post"
-//! //! spec = "K3"
+//! //! spec = "Trapp §3.5"
 //! //! doc = "Few steps of lightness instead of many."
 //! //!
 //! //! [[parameter]]
@@ -20,7 +20,7 @@
 //!
 //! `effect` gets the colour so far (linear light), the shown surface and its parameters, and returns the new colour.
 //! Without parameters for WGSL it takes no `p`. The file may declare functions, constants, structs and aliases of its own:
-//! every name it declares is qualified by the effect's, so that files never clash (H2).
+//! every name it declares is qualified by the effect's, so that files never clash.
 
 pub(super) mod check;
 pub(super) mod cost;

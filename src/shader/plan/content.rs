@@ -1,4 +1,4 @@
-//! Contents of lenses: what a lens shows in place of what is below it (C6).
+//! Contents of lenses: what a lens shows in place of what is below it.
 
 use crate::shader::plan::step::ClassTest;
 
@@ -20,7 +20,7 @@ pub struct PlanContent {
 /// Cities of a picture, the scene's own included: bits of a word.
 pub const MOST_CITIES: u32 = 32;
 
-/// How the content of a lens is combined with what is shown below (C6), the context included.
+/// How the content of a lens is combined with what is shown below, the context included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Clip {
     /// It is clipped: the topmost content shows.

@@ -20,7 +20,7 @@ pub struct PlanLens {
     pub border: Option<PlanBorder>,
 }
 
-/// How the body of a lens is drawn (L5).
+/// How the body of a lens is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PlanBody {
     /// As what.
@@ -52,7 +52,7 @@ impl BodyKind {
     }
 }
 
-/// A soft border (L9).
+/// A soft border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PlanBorder {
     /// Place of its parameters.

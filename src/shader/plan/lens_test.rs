@@ -2,7 +2,7 @@
 
 use crate::{geom::shape::VolumeForm, shader::plan::form::Form};
 
-/// How it is decided where a place is with regard to a region of a lens (S7): a method, and the form where that matters.
+/// How it is decided where a place is with regard to a region of a lens: a method, and the form where that matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LensTest {
     /// From the region's own numbers. Of what has no closed form, cheap for *inside* alone.

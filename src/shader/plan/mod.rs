@@ -1,4 +1,4 @@
-//! Plans: what a scene asks of shading, the invoker table (H2), from which both back ends are made.
+//! Plans: what a scene asks of shading, the invoker table, from which both back ends are made.
 //!
 //! A [`Plan`] names handlers, lenses and classes, never positions or parameters: those stand in uniforms, so a lens that
 //! moves or a slider that is dragged compiles nothing. Equal plans share a pipeline.
@@ -23,7 +23,7 @@ use crate::shader::{
     },
 };
 
-/// Lenses and effects of one part of the picture, bottom lens first (L6).
+/// Lenses and effects of one part of the picture, bottom lens first.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Plan {
     /// Lenses that may be seen there.
@@ -37,10 +37,10 @@ pub struct Plan {
     /// Whether some effect draws lines.
     pub lines: bool,
     /// Whether something is seen through: what shading lays over its picture.
-    pub veils: bool,
-    /// The contents of its lenses, bottom lens first (C6).
+    pub transparency: bool,
+    /// The contents of its lenses, bottom lens first.
     pub contents: Vec<PlanContent>,
-    /// How places are told apart, for the techniques that are kept for reference (C2); `None`: by accumulation.
+    /// How places are told apart, for the techniques that are kept for reference; `None`: by accumulation.
     pub regions: Option<Regions>,
 }
 
@@ -165,7 +165,7 @@ impl Plan {
 
     /// The part that decides how surfaces look.
     pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
-        self.veils = self.is_seen_through(handlers);
+        self.transparency = self.is_seen_through(handlers);
         self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
         self.contents.clear();
         self

@@ -5,7 +5,7 @@ use crate::shader::{
     plan::{Plan, form::Form, lens::BodyKind, lens_test::LensTest, regions::Regions, uber::Uber},
 };
 
-/// A plan on one of the back ends (H3). Both make the same picture.
+/// A plan on one of the back ends. Both make the same picture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Program {
     /// The plan, written out.
@@ -33,9 +33,9 @@ impl Program {
             Self::Specialised(plan) => (plan.bodies(), plan.has_blends(), plan.lines, plan.has_borders()),
             Self::Uber(uber) => (uber.bodies.clone(), uber.blends, uber.lines, uber.borders && has_lenses),
         };
-        let veils = match self {
-            Self::Specialised(plan) => plan.veils,
-            Self::Uber(uber) => uber.veils,
+        let transparency = match self {
+            Self::Specialised(plan) => plan.transparency,
+            Self::Uber(uber) => uber.transparency,
         };
         let by_ray = match self {
             Self::Specialised(plan) => plan.borders().any(|border| border.by_ray),
@@ -68,7 +68,7 @@ impl Program {
             distances: borders || has_body(BodyKind::Shell) || has_body(BodyKind::Halo),
             blends: blends || borders,
             lines,
-            veils,
+            transparency,
             contents,
             borders,
             by_ray,
@@ -150,7 +150,7 @@ pub struct Parts {
     /// Lines over what was shaded.
     pub lines: bool,
     /// Translucent layers over what was shaded.
-    pub veils: bool,
+    pub transparency: bool,
     /// Contents of lenses.
     pub contents: bool,
     /// Soft borders of lenses.

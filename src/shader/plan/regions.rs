@@ -1,4 +1,4 @@
-//! Regions (C2): the classes of several lenses that a place is in at once, as one number. Sequential accumulation needs none; the
+//! Regions: the classes of several lenses that a place is in at once, as one number. Sequential accumulation needs none; the
 //! techniques that are kept for reference do.
 
 use crate::shader::plan::step::ClassTest;

@@ -20,11 +20,11 @@ pub struct Step {
 pub enum Scope {
     /// All of the picture.
     Everywhere,
-    /// One class of a lens (L4): index into [`crate::shader::Plan::lenses`].
+    /// One class of a lens: index into [`crate::shader::Plan::lenses`].
     Lens(u32, ClassTest),
 }
 
-/// A class of L4, as `lib/lens.wgsl` tests it.
+/// A class, as `lib/lens.wgsl` tests it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClassTest {
     /// D_F ≤ D < D_B.
@@ -62,7 +62,7 @@ impl ClassTest {
     }
 }
 
-/// How a channel is laid over what is below (C5).
+/// How a channel is laid over what is below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Blend {
     /// In its place; with a weight below 1: as paint.

@@ -33,7 +33,7 @@ pub struct Uber {
     /// Whether some effects draw lines.
     pub lines: bool,
     /// Whether something may be seen through.
-    pub veils: bool,
+    pub transparency: bool,
     /// Whether some lenses have own content.
     pub contents: bool,
 }
@@ -70,14 +70,15 @@ impl Uber {
 
     /// The part that decides how surfaces look.
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
-        let veils = self.is_seen_through(handlers);
-        Self { effects: self.of(handlers, |kind| !kind.decides_visibility()), veils, contents: false, ..self }
+        let transparency = self.is_seen_through(handlers);
+        Self { effects: self.of(handlers, |kind| !kind.decides_visibility()), transparency, contents: false, ..self }
     }
 
     /// The part that decides how much of each translucent layer is seen, and how that looks; `None` without opacity rules.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
-        let all = Self { effects, bodies: Vec::new(), lines: false, veils: false, contents: false, ..self.clone() };
+        let all =
+            Self { effects, bodies: Vec::new(), lines: false, transparency: false, contents: false, ..self.clone() };
         self.is_seen_through(handlers).then_some(all)
     }
 

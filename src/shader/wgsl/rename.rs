@@ -1,4 +1,4 @@
-//! Other names for what a WGSL text declares, so that two files never clash (H2).
+//! Other names for what a WGSL text declares, so that two files never clash.
 
 use crate::shader::wgsl::token::{Token, TokenKind};
 

@@ -1,4 +1,4 @@
-//! Best views of city objects (B2, **beyond** V §3.4, which takes the best-view normal as given).
+//! Best views of city objects (beyond Trapp §3.4, which takes the best-view normal as given).
 //!
 //! ```text
 //! object ─> subject: its faces, the ball around them, samples of its facades
@@ -45,7 +45,7 @@ const LEAST: f64 = 1.0 / 3.0;
 /// Directions of two listed views differ by at least this, radians.
 pub const APART: f64 = 30.0 * std::f64::consts::PI / 180.0;
 
-/// What lies this near to a face does not hide it, metres: faces of two objects in one plane are both seen.
+/// The distance from a face within which nothing hides it, metres: faces of two objects in one plane are both seen.
 const SKIN_M: f64 = 1e-3;
 
 /// Why an object has no views.
@@ -59,14 +59,14 @@ pub enum NoView {
     Framing(#[from] FramingError),
 }
 
-/// What is seen of an object from somewhere.
+/// The parts of an object that are seen from somewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seen {
     /// Area of its facades that is seen, of all of it, 0..=1; of a convex body about a half at most.
     pub visible: f64,
-    /// What is seen, as large as it appears, of what would be were the object alone, 0..=1; 0 where nothing would be.
+    /// The share that is seen, as large as it appears, of what would be were the object alone, 0..=1; 0 where nothing would be.
     pub unoccluded: f64,
-    /// What is seen of its facades as large as it appears, see the top of this file, 0..=1.
+    /// The share of its facades that is seen, as large as it appears, see the top of this file, 0..=1.
     pub facade: f64,
     /// The same, were the object alone.
     pub facade_alone: f64,
@@ -77,9 +77,9 @@ pub struct Seen {
 pub struct BestView {
     /// The camera, and the best-view normal.
     pub framing: Framing,
-    /// What is seen from there.
+    /// The parts that are seen from there.
     pub seen: Seen,
-    /// How good it is, 0..=1, by which views are ordered; scores of one object compare, those of two say little.
+    /// The score, 0..=1, by which views are ordered; scores of one object compare, those of two say little.
     pub score: f64,
 }
 
@@ -128,7 +128,7 @@ impl<'a> Subject<'a> {
         Ok(BestView { framing, seen, score })
     }
 
-    /// What is seen of it from an eye.
+    /// The parts that are seen from an eye.
     fn seen(&self, eye: DVec3) -> Seen {
         let (mut count, mut seen, mut alone) = (0_u32, 0.0, 0.0);
         for sample in &self.facades.samples {
@@ -181,7 +181,7 @@ pub fn best_views(
     Subject::new(model, shown, index, object)?.best_views(field, MOST_VIEWS)
 }
 
-/// How much a view from this elevation is liked, ½..=1, radians above the horizon: 1 up to 30°, where people and low drones look from,
+/// The weight of a view from this elevation, ½..=1, radians above the horizon: 1 up to 30°, where people and low drones look from,
 /// then less, to ½ straight down (3t² − 2t³ between). The same below the horizon.
 pub fn upright(elevation: f64) -> f64 {
     const FIRST: f64 = std::f64::consts::FRAC_PI_6;
@@ -194,7 +194,7 @@ fn family(model: &CityModel, object: u32) -> Vec<bool> {
     let mut is_own = vec![false; model.objects.len()];
     let mut open = vec![object];
     while let Some(member) = open.pop() {
-        // Each once, whatever files say of who belongs to whom.
+        // Each once, whatever files say of which belongs to which.
         if !std::mem::replace(&mut is_own[member as usize], true) {
             open.extend(&model.objects[member as usize].children);
         }

@@ -7,7 +7,7 @@ use crate::city::{CityModel, NONE, StringId, Tile};
 /// Samples of an object.
 pub(super) const SAMPLES: usize = 512;
 
-/// Semantic surfaces that nobody outside sees: below the object, or in it.
+/// Semantic surfaces that are not seen from outside: below the object, or in it.
 const UNSEEN: [&str; 4] = ["GroundSurface", "InteriorWallSurface", "FloorSurface", "CeilingSurface"];
 /// Those that are seen whichever way they look.
 const OUTER: [&str; 2] = ["RoofSurface", "WallSurface"];
@@ -19,15 +19,15 @@ const DOWN: f64 = -0.966;
 pub(super) struct Sample {
     /// Metres.
     pub at: DVec3,
-    /// Of its face, unit.
+    /// The normal of its face, unit.
     pub normal: DVec3,
     /// Its triangle, by index into [`CityModel::planes`].
     pub triangle: u32,
-    /// How much it counts: 1 − ½·n_z².
+    /// Its weight: 1 − ½·n_z².
     pub weight: f64,
 }
 
-/// What is seen of an object, if it is seen.
+/// Samples of the facades of an object.
 #[derive(Debug)]
 pub(super) struct Facades {
     /// [`SAMPLES`] of them, each of the same area.
@@ -45,7 +45,7 @@ struct Face {
 }
 
 impl Facades {
-    /// Of some geometries: all faces but those that nobody outside sees; all where these are all. `None` where nothing has an area.
+    /// The facades of some geometries: all faces but those that are not seen from outside; all where these are all. `None` where nothing has an area.
     pub fn new(model: &CityModel, geometries: &[u32]) -> Option<Self> {
         let [unseen, outer] = [&UNSEEN[..], &OUTER]
             .map(|names| -> Vec<StringId> { names.iter().filter_map(|name| model.strings.find(name)).collect() });

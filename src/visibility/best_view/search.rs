@@ -20,7 +20,7 @@ const ZENITH: i32 = 18;
 const STEP: f64 = std::f64::consts::FRAC_PI_2 / ZENITH as f64;
 /// Steps between neighbours by whose scores a direction is judged, and between those that are rated first.
 const TURN: i32 = 3;
-/// What scores must differ by, as a part of the better, to be told apart: about what samples are off by.
+/// The difference of scores from which they are told apart, as a part of the better: about what samples are off by.
 const TIE: f64 = 0.02;
 /// A step is taken where it gains more than this part.
 const GAIN: f64 = 0.002;
@@ -68,7 +68,7 @@ fn around(at: Place, by: i32) -> Vec<Place> {
     steps.filter_map(|(di, dj)| place(at.0 + di * by, at.1 + dj * by)).collect()
 }
 
-/// How good it is to see this from an elevation.
+/// The score of what is seen from an elevation.
 fn quality(seen: &Seen, elevation: f64, is_alone: bool) -> f64 {
     let facade = if is_alone { seen.facade_alone } else { seen.facade * seen.unoccluded };
     facade * upright(elevation)

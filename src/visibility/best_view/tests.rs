@@ -67,7 +67,7 @@ fn elevation_deg(view: &BestView) -> f64 {
 
 const HOUSE: (&str, [i64; 3], [i64; 3]) = ("house", [0, 0, 0], [10_000, 20_000, 6_000]);
 
-/// Of the house alone, from far: what is seen of its facades as large as it appears, (120, 60, ½·200) across the axes.
+/// The facade of the house alone, seen from far: as large as it appears, (120, 60, ½·200) across the axes.
 fn facade_of_house(n: DVec3) -> f64 {
     (120.0 * n.x.abs() + 60.0 * n.y.abs() + 100.0 * n.z.max(0.0)) / (2.0 * 180.0 + 100.0)
 }

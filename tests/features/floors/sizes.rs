@@ -11,7 +11,7 @@ const LINES: usize = 100;
 const LONG: &[(&str, usize)] = &[];
 
 /// Rooms with functions that take a tuple, and the most of those that they may have.
-const TUPLES: &[(&str, usize)] = &[("app", 4), ("figure", 1), ("geom", 2), ("overlay", 8), ("render", 4)];
+const TUPLES: &[(&str, usize)] = &[];
 
 /// Rooms that replace text in text, and how often they may.
 const REPLACED: &[(&str, usize)] = &[("shader", 1)];

@@ -166,7 +166,7 @@ impl Refiner<'_> {
             return None;
         }
         let ways = corners.map(|p| self.deformers.value(p) - p);
-        let mut worst = (INSIDE * self.tolerance_px, None);
+        let mut worst = Worst { pixels: INSIDE * self.tolerance_px, weights: None };
         for support in self.deformers.supports() {
             // Only what the support has of it can be off, as a fan of triangles.
             let part = support.part_of_triangle(corners);
@@ -174,17 +174,11 @@ impl Refiner<'_> {
                 self.look_inside(corners, &ways, [part[0], pair[0], pair[1]], &mut worst);
             }
         }
-        worst.1
+        worst.weights
     }
 
     /// Looks at a piece of a triangle whose corners go `ways`.
-    fn look_inside(
-        &self,
-        corners: &[DVec3; 3],
-        ways: &[DVec3; 3],
-        piece: [DVec3; 3],
-        worst: &mut (f64, Option<DVec3>),
-    ) {
+    fn look_inside(&self, corners: &[DVec3; 3], ways: &[DVec3; 3], piece: [DVec3; 3], worst: &mut Worst) {
         let mut trace = Trace::default();
         let [a, b, c] = piece;
         let steps = [a, b, c, a].map(|p| trace.place(self.deformers, p).1);
@@ -203,8 +197,8 @@ impl Refiner<'_> {
                 let off = (shown - rest).distance(mixed(ways, weights));
                 // What is too large to see all in it is as bad as can be.
                 let pixels = if is_large { f64::MAX } else { off * (self.pixels_per_m)(shown) };
-                if pixels > worst.0 {
-                    *worst = (pixels, Some(weights));
+                if pixels > worst.pixels {
+                    *worst = Worst { pixels, weights: Some(weights) };
                 }
             }
         }
@@ -214,6 +208,14 @@ impl Refiner<'_> {
     pub(super) fn meets_triangle(&self, corners: &[DVec3; 3]) -> bool {
         self.deformers.supports().any(|support| support.meets_triangle(corners))
     }
+}
+
+/// The place in a triangle that is off by most.
+struct Worst {
+    /// By how much, or what it must be off by to count.
+    pixels: f64,
+    /// Where: weights of the corners; `None` so far.
+    weights: Option<DVec3>,
 }
 
 /// The places of one sample before each operator, to see how far the next one is.

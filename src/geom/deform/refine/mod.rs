@@ -1,4 +1,4 @@
-//! Meshes fine enough for deformations (D2): the reference of what the renderer does.
+//! Meshes fine enough for deformations: the reference of what the renderer does.
 //!
 //! A mesh is refined by halving edges. Whether an edge is halved is asked of its two ends alone, in an order of their own, and its
 //! middle is ½(a + b): both neighbours find the same, to the bit, so no crack can open, whatever the order of triangles and corners

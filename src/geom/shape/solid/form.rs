@@ -1,4 +1,4 @@
-//! Solids made from figures in plan: polygons and bitmaps that are given a height (L3).
+//! Solids made from figures in plan: polygons and bitmaps that are given a height.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Which faces of a solid may be the nearest of a place: a grid whose cells list them (L9).
+//! Which faces of a solid may be the nearest of a place: a grid whose cells list them.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! What a check is: a property, an oracle that shares no code with what is tested, and what was found.
+//! A check: a property, an oracle that shares no code with what is tested, and what was found.
 
 use std::time::Instant;
 
@@ -11,24 +11,24 @@ pub struct Check {
     pub name: &'static str,
     /// Its numbers in the catalogue of hard cases, or what else it is part of.
     pub case: &'static str,
-    /// What holds.
+    /// The property that holds.
     pub property: &'static str,
-    /// What says so.
+    /// The oracle that says so.
     pub oracle: &'static str,
-    /// What is counted: `pixels`, `pictures`.
+    /// The unit that is counted: `pixels`, `pictures`.
     pub unit: &'static str,
-    /// How many of them are looked at at least; fewer say nothing, unless time ran out.
+    /// The number of them that are looked at at least; fewer say nothing, unless time ran out.
     pub least: u64,
     /// Looks.
     pub run: fn(&mut Findings) -> Result<(), RenderError>,
 }
 
-/// What a check has found so far.
+/// The findings of a check so far.
 #[derive(Clone, Debug)]
 pub struct Findings {
-    /// How many answers were compared with the oracle's.
+    /// The number of answers that were compared with the oracle's.
     pub tried: u64,
-    /// How many of them are wrong.
+    /// The number of them that are wrong.
     pub wrong: u64,
     /// The first that is wrong.
     pub first: Option<String>,
@@ -43,12 +43,12 @@ impl Findings {
         Self { tried: 0, wrong: 0, first: None, is_cut: false, until }
     }
 
-    /// Compares one answer; `told` says what is wrong with it.
-    pub fn ask(&mut self, is_right: bool, told: impl FnOnce() -> String) {
+    /// Compares one answer; `message` says what is wrong with it.
+    pub fn ask(&mut self, is_right: bool, message: impl FnOnce() -> String) {
         self.tried += 1;
         if !is_right {
             self.wrong += 1;
-            self.first.get_or_insert_with(told);
+            self.first.get_or_insert_with(message);
         }
     }
 

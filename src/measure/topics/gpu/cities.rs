@@ -99,7 +99,7 @@ fn written(origin: DVec3, solids: &[Solid]) -> String {
 /// A studio on a device of its own over these solids, without the plain ground.
 ///
 /// # Errors
-/// What the adapter refuses.
+/// The adapter refuses it.
 pub fn of_solids(origin: DVec3, solids: &[Solid]) -> Result<Studio, RenderError> {
     studio(model(written(origin, solids).into_bytes())?)
 }
@@ -107,7 +107,7 @@ pub fn of_solids(origin: DVec3, solids: &[Solid]) -> Result<Studio, RenderError>
 /// A studio on a device of its own over the generator's city.
 ///
 /// # Errors
-/// What the adapter refuses.
+/// The adapter refuses it.
 pub fn synthetic(buildings: u64, seed: u64) -> Result<Studio, RenderError> {
     let mut bytes = Vec::new();
     write_cityjson(&SynthOptions { buildings, seed }, &mut bytes, &mut |_| {})

@@ -29,7 +29,7 @@ impl Clock {
         Self { start: Instant::now(), limit }
     }
 
-    /// How long the probe may take.
+    /// The time that the probe may take.
     pub fn limit(&self) -> Duration {
         self.limit
     }

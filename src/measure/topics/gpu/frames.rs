@@ -39,7 +39,7 @@ pub fn names() -> Vec<String> {
 
 const VIEWS: [&str; 2] = ["V1", "V2"];
 
-/// What is drawn in each view; the first is the plain frame.
+/// The frames that are drawn in each view; the first is the plain frame.
 const KINDS: [(&str, &str); 7] = [
     ("plain", "the plain frame"),
     ("lens", "one greyscale lens over a tenth of the picture"),
@@ -50,12 +50,12 @@ const KINDS: [(&str, &str); 7] = [
     ("see-through city", "translucent everywhere"),
 ];
 
-/// What is timed and for how long.
+/// The size of frames, and how often and how long they are timed.
 #[derive(Clone, Copy, Debug)]
 pub struct Timing<'a> {
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// How often all frames are drawn at most.
+    /// The number of times that all frames are drawn at most.
     pub rounds: usize,
     /// The time there is.
     pub clock: &'a Clock,
@@ -65,7 +65,7 @@ pub struct Timing<'a> {
 /// names what is shown.
 ///
 /// # Errors
-/// What drawing cannot do.
+/// Drawing fails.
 pub fn time(
     studio: &mut Studio,
     city: String,
@@ -98,8 +98,8 @@ pub fn time(
         rounds += more;
         longest = longest.max(start.elapsed().as_secs_f64());
     }
-    let by_card = card_times(studio, &shots, timing);
-    let rows = shots.iter().zip(&times).zip(by_card).map(|((shot, own), gpu_ms)| {
+    let by_gpu = gpu_times(studio, &shots, timing);
+    let rows = shots.iter().zip(&times).zip(by_gpu).map(|((shot, own), gpu_ms)| {
         let of = |values: &[f64]| {
             Estimate::of(values)
                 .ok_or_else(|| RenderError::Scene("no frame was timed; one round or more would be right".to_owned()))
@@ -155,8 +155,8 @@ fn drawn(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Result<f64, Rend
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }
 
-/// What each frame takes by the card's clock where its lenses are counted too, as far as there is time and the card has one.
-fn card_times(studio: &mut Studio, shots: &[Shot], timing: &Timing<'_>) -> Vec<Option<f64>> {
+/// The time of each frame by the GPU's clock where its lenses are counted too, as far as there is time and the GPU has one.
+fn gpu_times(studio: &mut Studio, shots: &[Shot], timing: &Timing<'_>) -> Vec<Option<f64>> {
     let mut one = |shot: &Shot| {
         if !timing.clock.has_time(Part::Frames) {
             return None;

@@ -1,4 +1,4 @@
-//! What checks draw: scenes and lenses by one line, and pictures with all that is known of each pixel.
+//! Scenes that checks draw: scenes and lenses by one line, and pictures with all that is known of each pixel.
 
 use std::collections::BTreeMap;
 
@@ -62,7 +62,7 @@ pub fn orthographic(eye: DVec3, target: DVec3, height_m: f64) -> Camera {
     Camera { projection: Projection::Orthographic { height_m }, ..Camera::looking(eye, target, 1.0) }
 }
 
-/// What a camera projects on a picture of `size` pixels, whatever is in it.
+/// The view of a camera on a picture of `size` pixels, whatever is in it.
 ///
 /// # Errors
 /// Cameras without a picture.
@@ -73,7 +73,7 @@ pub fn view(camera: Camera, size: [u32; 2]) -> Result<View, RenderError> {
 /// One unjittered sample with all AOVs.
 ///
 /// # Errors
-/// What drawing cannot do.
+/// Drawing fails.
 pub fn picture(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Result<Picture, RenderError> {
     picture_by(studio, scene, size, Backend::default())
 }
@@ -81,7 +81,7 @@ pub fn picture(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Result<Pic
 /// The same with shaders made by one of the back ends.
 ///
 /// # Errors
-/// What drawing cannot do.
+/// Drawing fails.
 pub fn picture_by(
     studio: &mut Studio,
     scene: &Scene,
@@ -91,18 +91,18 @@ pub fn picture_by(
     studio.render(scene, &Request { aovs: ALL, backend, ..Request::plain(size) })
 }
 
-/// What lies over the opaque picture, of one of the back ends.
+/// The layers over the opaque picture, of one of the back ends.
 ///
 /// # Errors
-/// What drawing cannot do.
-pub fn veil(
+/// Drawing fails.
+pub fn transparency(
     studio: &mut Studio,
     scene: &Scene,
     size: [u32; 2],
     backend: Backend,
 ) -> Result<Vec<[f32; 4]>, RenderError> {
     studio.backend = backend;
-    let found = studio.veil(scene, size);
+    let found = studio.transparency(scene, size);
     studio.backend = Backend::default();
     found
 }

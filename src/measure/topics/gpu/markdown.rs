@@ -89,9 +89,9 @@ fn frames(text: &mut String, frames: &Frames) {
     );
     line(text, &["frame", "what", "ms", "by the card's clock, ms", "time / plain frame"]);
     line(text, &["---", "---", "---:", "---:", "---:"]);
-    let told = |e: Estimate| format!("{} ({}..{})", number(e.median), number(e.low), number(e.high));
+    let range = |e: Estimate| format!("{} ({}..{})", number(e.median), number(e.low), number(e.high));
     for row in &frames.rows {
-        let by_card = row.gpu_ms.map(number).unwrap_or_default();
-        line(text, &[&row.name, &row.about, &told(row.ms), &by_card, &told(row.ratio)]);
+        let by_gpu = row.gpu_ms.map(number).unwrap_or_default();
+        line(text, &[&row.name, &row.about, &range(row.ms), &by_gpu, &range(row.ratio)]);
     }
 }

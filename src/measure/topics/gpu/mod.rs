@@ -1,4 +1,4 @@
-//! What a graphics adapter does: the hard cases whose answers depend on it, pictures against stored references, and frames in turn.
+//! The probe of a graphics adapter: the hard cases whose answers depend on it, pictures against stored references, and frames in turn.
 //!
 //! ```text
 //! check (checks/NAME.rs) ──────────┐
@@ -52,13 +52,13 @@ use crate::{
 /// Buildings of the city that frames are timed on where none is named: 498,000 triangles.
 pub const BENCH_BUILDINGS: u64 = 36_000;
 
-/// How long an item is waited for beyond its turn.
+/// The time that an item is waited for beyond its turn.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// What a probe is to do.
+/// The plan of a probe.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// How long it may take.
+    /// The time that it may take.
     pub limit: Duration,
     /// The names of what is looked at; empty: everything.
     pub only: Vec<String>,
@@ -68,7 +68,7 @@ pub struct Plan {
     pub city: Vec<PathBuf>,
     /// Width and height of the frames, pixels.
     pub size: [u32; 2],
-    /// How often all frames are drawn at most.
+    /// The number of times that all frames are drawn at most.
     pub rounds: usize,
     /// The command line, shell-ready.
     pub command: String,
@@ -215,7 +215,7 @@ fn timed(plan: &Plan, clock: &Clock, watch: Watch<'_>) -> Result<Frames, RenderE
 /// Draws all references anew and stores them over those that are there; gives their files.
 ///
 /// # Errors
-/// What cannot be drawn or written; an adapter that is no software.
+/// It cannot be drawn or written; an adapter that is no software.
 pub fn write_references(scenes: &Path, only: &[String], watch: Watch<'_>) -> Result<Vec<PathBuf>, String> {
     let gpu = Gpu::open().map_err(|error| error.to_string())?;
     if !gpu.is_software() {

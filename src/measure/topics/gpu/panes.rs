@@ -6,7 +6,7 @@ use crate::{
     lens::EffectUse,
     measure::topics::gpu::{
         cities::{Solid, numbered, of_solids, pane},
-        looks::{for_numbers, orthographic, scene, used, veil, with_number},
+        looks::{for_numbers, orthographic, scene, transparency, used, with_number},
         numbers::Numbers,
     },
     render::{
@@ -32,12 +32,12 @@ pub fn panes(count: usize, numbers: &mut Numbers) -> Vec<Solid> {
 /// A studio over them.
 ///
 /// # Errors
-/// What the adapter refuses.
+/// The adapter refuses it.
 pub fn studio_of(panes: &[Solid]) -> Result<Studio, RenderError> {
     of_solids(DVec3::ZERO, panes)
 }
 
-/// What is drawn with these effects, from before the first pane.
+/// A scene that is drawn with these effects, from before the first pane.
 pub fn of_context(effects: Vec<EffectUse>) -> Scene {
     let eye = DVec3::new(-20.0, 5.0, 5.0);
     let mut made = scene(orthographic(eye, eye.with_x(0.0), 11.0), Vec::new());
@@ -48,13 +48,13 @@ pub fn of_context(effects: Vec<EffectUse>) -> Scene {
 /// Layers of each pixel, from near to far.
 ///
 /// # Errors
-/// What drawing cannot do.
+/// Drawing fails.
 pub fn stacks(studio: &mut Studio, panes: &[Solid]) -> Result<Vec<Vec<Layer>>, RenderError> {
     let mut stacks = vec![Vec::new(); (SIZE[0] * SIZE[1]) as usize];
     for pane in panes {
         let only = for_numbers(used("eraser"), &[pane.number], true);
         let scene = of_context(vec![only, with_number("transparent", "opacity", 1.0)]);
-        let seen = veil(studio, &scene, SIZE, Backend::Specialised)?;
+        let seen = transparency(studio, &scene, SIZE, Backend::Specialised)?;
         for (stack, v) in stacks.iter_mut().zip(seen) {
             stack.extend((v[3] == 0.0).then_some((pane.number, [v[0], v[1], v[2]])));
         }

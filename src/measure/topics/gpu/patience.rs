@@ -8,10 +8,10 @@ use std::{
     time::Instant,
 };
 
-/// What hears how far work has come: what it is at, and how many of how many are done.
+/// A listener that hears how far work has come: what it is at, and how many of how many are done.
 pub type Watch<'a> = &'a mut dyn FnMut(&str, usize, usize);
 
-/// What comes from the thread that works.
+/// A message from the thread that works.
 enum Sign<T> {
     At(String, usize, usize),
     Done(Result<T, String>),
@@ -21,7 +21,7 @@ enum Sign<T> {
 /// not answer cannot be stopped.
 ///
 /// # Errors
-/// What the work says, what breaks the program's own rules, and that time was up.
+/// The error of the work, a broken rule of the program itself, and that time was up.
 pub fn wait<T: Send + 'static>(
     until: Instant,
     watch: Watch<'_>,
@@ -41,11 +41,11 @@ pub fn wait<T: Send + 'static>(
 }
 
 fn finish<T>(sender: &Sender<Sign<T>>, result: Result<T, String>) {
-    // Who does not wait any more does not listen.
+    // A receiver that does not wait any more does not listen.
     drop(sender.send(Sign::Done(result)));
 }
 
-/// What the work says at its end; `None` if time is up before.
+/// The result of the work at its end; `None` if time is up before.
 fn heard<T>(signs: &Receiver<Sign<T>>, until: Instant, watch: Watch<'_>) -> Option<Result<T, String>> {
     loop {
         match signs.recv_timeout(until.saturating_duration_since(Instant::now())) {

@@ -137,7 +137,7 @@ fn read(file: &Path) -> Result<Vec<[u8; 3]>, String> {
 /// Draws a scene and stores it as its reference, over the one that was there.
 ///
 /// # Errors
-/// What cannot be drawn or written.
+/// It cannot be drawn or written.
 pub fn write(easel: &mut Easel, folder: &Path, name: &str, adapter: &str) -> Result<PathBuf, String> {
     let (picture, scene, options) = easel.draw(folder, name)?;
     let file = reference(folder, name);

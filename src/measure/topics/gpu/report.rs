@@ -1,4 +1,4 @@
-//! What a probe found, as data and as JSON.
+//! The findings of a probe, as data and as JSON.
 
 use serde::Serialize;
 use serde_json::{Value as Json, json};
@@ -25,9 +25,9 @@ pub struct Report {
     pub adapter: stats::Adapter,
     /// The driver and its version, as far as it tells.
     pub driver: String,
-    /// Whether the adapter is a program, not a card.
+    /// Whether the adapter is a program, not a GPU.
     pub is_software: bool,
-    /// How long the probe was to take at most, and took, seconds.
+    /// The time that the probe was to take at most, and the time it took, seconds.
     pub seconds: [f64; 2],
     /// Hard cases.
     pub checks: Vec<Checked>,
@@ -35,7 +35,7 @@ pub struct Report {
     pub pictures: Vec<Compared>,
     /// Frames in turn.
     pub frames: Option<Frames>,
-    /// What was left out: what, and why.
+    /// The items that were left out: what, and why.
     pub skipped: Vec<[String; 2]>,
 }
 
@@ -44,11 +44,11 @@ pub struct Report {
 pub struct Checked {
     /// Which one.
     pub check: Check,
-    /// What it found.
+    /// Its findings.
     pub found: Findings,
     /// Why it could not go on.
     pub trouble: Option<String>,
-    /// How long it took, seconds.
+    /// The time that it took, seconds.
     pub seconds: f64,
 }
 
@@ -87,7 +87,7 @@ pub struct Compared {
     pub pixels: u64,
     /// Pixels with a channel off by more than one of 255 steps.
     pub wrong: u64,
-    /// How many of them may be.
+    /// The number of them that may be.
     pub allowed: u64,
     /// The largest difference of a channel, steps of 255.
     pub max_steps: u8,
@@ -95,7 +95,7 @@ pub struct Compared {
     pub worst: Option<[u32; 2]>,
     /// Why there is no comparison.
     pub trouble: Option<String>,
-    /// How long it took, seconds.
+    /// The time that it took, seconds.
     pub seconds: f64,
 }
 
@@ -122,7 +122,7 @@ pub struct Frames {
     pub triangles: u64,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// How often all were drawn.
+    /// The number of times that all were drawn.
     pub rounds: usize,
     /// Whether time ran out before all rounds.
     pub is_cut: bool,
@@ -130,18 +130,18 @@ pub struct Frames {
     pub rows: Vec<Timed>,
 }
 
-/// What a frame takes.
+/// The time of a frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Timed {
     /// `V1 lens`.
     pub name: String,
-    /// What is drawn.
+    /// The content of the picture.
     pub about: String,
     /// From the scene to the last pixel, milliseconds.
     pub ms: Estimate,
     /// The same against the plain frame of its view, round by round.
     pub ratio: Estimate,
-    /// The sum of its passes by the card's own clock, once, with its lenses counted, milliseconds; `None` where the card has none.
+    /// The sum of its passes by the GPU's own clock, once, with its lenses counted, milliseconds; `None` where the GPU has none.
     pub gpu_ms: Option<f64>,
 }
 
@@ -152,7 +152,7 @@ impl Report {
         checks.chain(self.pictures.iter().filter_map(Compared::failure)).collect()
     }
 
-    /// How much was looked at.
+    /// The number of things that were looked at.
     pub fn count(&self) -> usize {
         self.checks.len() + self.pictures.len()
     }
@@ -188,7 +188,7 @@ impl Report {
 
 /// The program's version.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// How this program was compiled: times of a debug build say little.
+/// The build profile of this program: times of a debug build say little.
 pub const PROFILE: &str = if cfg!(debug_assertions) { "debug" } else { "release" };
 
 fn one_line(text: &str) -> String {

@@ -142,7 +142,7 @@ pub fn ask_mask(
     Ok(())
 }
 
-/// What [`painted`] paints the classes in.
+/// The colours that [`painted`] paints the classes in.
 const COLORS: [(Class, &str, [u8; 4]); 4] = [
     (Class::Inside, "#ffffff", [255, 255, 255, 255]),
     (Class::Front, "#ff0000", [255, 0, 0, 255]),

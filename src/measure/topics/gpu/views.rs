@@ -1,4 +1,4 @@
-//! What benchmarks of frames draw: two views of a city, and lenses in them.
+//! Scenes that benchmarks of frames draw: two views of a city, and lenses in them.
 
 use glam::DVec3;
 
@@ -67,7 +67,7 @@ pub fn spread(scene: &Scene, extent: &Aabb, count: u32) -> Scene {
 /// A greyscale lens whose mask covers a tenth of a picture of `size` pixels.
 ///
 /// # Errors
-/// What drawing cannot do; a view of nothing.
+/// Drawing fails; a view of nothing.
 pub fn with_lens(scene: &Scene, studio: &mut Studio, size: [u32; 2]) -> Result<Scene, RenderError> {
     let shape = sphere_covering(studio, scene, size, 0.1)?;
     Ok(Scene { lenses: vec![lens("lens", shape, &["greyscale"])], ..scene.clone() })
@@ -80,7 +80,7 @@ const TEN: [&str; 10] =
 /// Ten lenses around the one of `lensed`, a fifth of its radius away, each over a tenth of the picture. All overlap.
 ///
 /// # Errors
-/// What drawing cannot do; a scene whose first lens is no sphere.
+/// Drawing fails; a scene whose first lens is no sphere.
 pub fn with_ten(lensed: &Scene, studio: &mut Studio, size: [u32; 2]) -> Result<Scene, RenderError> {
     let (center, radius) = sphere(lensed)
         .ok_or_else(|| RenderError::Scene("ten lenses stand around a sphere, and there is none".to_owned()))?;

@@ -29,7 +29,7 @@ use crate::{
 #[derive(Debug)]
 pub struct RegionMap(pub wgpu::TextureView);
 
-/// What the card has of regions between frames.
+/// What the GPU has of regions between frames.
 #[derive(Debug)]
 struct Kept {
     numbers: Synced,

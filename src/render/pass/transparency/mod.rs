@@ -1,5 +1,5 @@
-//! Methods of laying translucent layers one over the other that are not exact or not fast, for comparison and for small cards
-//! (O7, [`crate::scene::Transparency`]): the same fragments, classes, opacities and shading as the exact one ([`super::layers`]).
+//! Methods of laying translucent layers one over the other that are not exact or not fast, for comparison and for small GPUs
+//! ([`crate::scene::Transparency`]): the same fragments, classes, opacities and shading as the exact one ([`super::layers`]).
 //!
 //! ```text
 //! k-buffer    slots: depths, codes, rest    the nearest layers of each pixel, whatever the draw order; then as lists

@@ -57,7 +57,7 @@ impl PipelineKey for LinkKey {
     }
 }
 
-/// What the card has of slots between frames.
+/// What the GPU has of slots between frames.
 #[derive(Debug)]
 struct SlotLists {
     /// Heads and records of pixels, slots, and what is read of them.
@@ -130,7 +130,7 @@ pub struct SlotLayers {
 }
 
 impl SlotLayers {
-    /// Gives back what it takes on the card.
+    /// Gives back what it takes on the GPU.
     pub fn drop_lists(&mut self) {
         self.own = None;
     }
@@ -188,7 +188,7 @@ struct Run<'a> {
 /// What was found over all bands.
 #[derive(Default)]
 struct Found {
-    notes: u64,
+    nodes: u64,
     left: u64,
     rounds: u32,
 }
@@ -330,7 +330,7 @@ impl Run<'_> {
                 break;
             }
             let [all, rest] = self.count(recording)?;
-            found.notes = all;
+            found.nodes = all;
             recording.encoder.clear_buffer(self.own.lists.heads.buffer(), 8, Some(4));
             let is_over = slots.limit > 0 && round * slots.slots >= slots.limit;
             if is_over || rest == 0 || !slots.is_peeling() {
@@ -421,7 +421,7 @@ impl Pass for SlotLayers {
             dropped: if slots.is_peeling() { found.left } else { 0 },
             merged: (!slots.is_peeling() && slots.slots > 0).then_some(found.left),
         };
-        self.figures = LayerFigures { notes: found.notes, bands: bands.len() as u32, excess: 0 };
+        self.figures = LayerFigures { nodes: found.nodes, bands: bands.len() as u32, excess: 0 };
         self.own = Some(own);
         Ok(())
     }

@@ -4,7 +4,7 @@ use crate::{
     measure::topics::gpu::{
         check::{Check, Findings},
         cities::{COLORS, Solid, pane},
-        looks::{for_numbers, used, veil, with_number},
+        looks::{for_numbers, transparency, used, with_number},
         numbers::Numbers,
         panes::{SIZE, composited, difference, of_context, panes, stacks, studio_of},
     },
@@ -59,8 +59,8 @@ fn ask_counts(
         let opacity = |(i, a): (usize, &f64)| for_numbers(with_number("transparent", "opacity", *a), &[i], false);
         effects.extend(opacities.iter().enumerate().map(opacity));
         let scene = of_context(effects);
-        let laid = veil(studio, &scene, SIZE, Backend::Specialised)?;
-        let other = veil(studio, &scene, SIZE, Backend::Uber)?;
+        let laid = transparency(studio, &scene, SIZE, Backend::Specialised)?;
+        let other = transparency(studio, &scene, SIZE, Backend::Uber)?;
         let allowed = (3.0 * count as f64 + 1.0) * 2_f64.powi(-24);
         for (i, stack) in stacks.iter().enumerate() {
             let stack: Vec<_> = stack.iter().filter(|(pane, _)| *pane < count).copied().collect();
@@ -77,10 +77,10 @@ fn ask_counts(
 fn ask_orders(found: &mut Findings, studio: &mut Studio, count: usize) -> Result<(), RenderError> {
     let opacity = |i: usize| for_numbers(with_number("transparent", "opacity", 0.1 + 0.02 * i as f64), &[i], false);
     let scene = of_context((0..count).map(opacity).collect());
-    let first = veil(studio, &scene, SIZE, Backend::Specialised)?;
+    let first = transparency(studio, &scene, SIZE, Backend::Specialised)?;
     for order in 0..20 {
         studio.renderer.settings.shuffled = Some(order);
-        let again = veil(studio, &scene, SIZE, Backend::Specialised)?;
+        let again = transparency(studio, &scene, SIZE, Backend::Specialised)?;
         for (i, (a, b)) in first.iter().zip(&again).enumerate() {
             found.ask(a == b, || format!("order {order}, pixel {i}: {b:?}, not {a:?}"));
         }
@@ -101,13 +101,13 @@ fn ask_ten_thousand(found: &mut Findings) -> Result<(), RenderError> {
     let scene = of_context(vec![with_number("transparent", "opacity", a)]);
     // A picture is drawn anew where lists turn out to be long; the next frame knows.
     studio.render(&scene, &Request::plain(size))?;
-    let laid = veil(&mut studio, &scene, size, Backend::Specialised)?;
+    let laid = transparency(&mut studio, &scene, size, Backend::Specialised)?;
     // One of each material is enough to know the colours.
     let mut own = [[0.0; 3]; COLORS.len()];
     for (i, color) in own.iter_mut().enumerate() {
         let only = for_numbers(used("eraser"), &[i], true);
         let alone = of_context(vec![only, with_number("transparent", "opacity", 1.0)]);
-        let v = veil(&mut studio, &alone, size, Backend::Specialised)?[5];
+        let v = transparency(&mut studio, &alone, size, Backend::Specialised)?[5];
         *color = [v[0], v[1], v[2]];
     }
     let stack: Vec<_> = all.iter().map(|pane| (pane.number, own[pane.material])).collect();

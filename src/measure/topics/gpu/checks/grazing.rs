@@ -38,7 +38,7 @@ fn dot(a: Whole, b: Whole) -> i128 {
     (0..3).map(|i| i128::from(a[i]) * i128::from(b[i])).sum()
 }
 
-/// Of the line o + t·d and a ball of radius r around 0, times a positive number: positive where the line passes through it.
+/// The discriminant of the line o + t·d and a ball of radius r around 0, times a positive number: positive where the line passes through it.
 fn discriminant(o: Whole, d: Whole, r: i64) -> i128 {
     let along = dot(o, d);
     along * along - dot(d, d) * (dot(o, o) - i128::from(r) * i128::from(r))

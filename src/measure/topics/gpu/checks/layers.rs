@@ -1,4 +1,4 @@
-//! How many translucent layers a pixel has: rays through shared edges and corners of closed bodies.
+//! The numbers of translucent layers of pixels: rays through shared edges and corners of closed bodies.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use crate::{
     measure::topics::gpu::{
         check::{Check, Findings},
         cities::{Corner, DUTCH, numbered, of_solids},
-        looks::{orthographic, translucent, veil},
+        looks::{orthographic, translucent, transparency},
     },
     render::{
         frame::Backend,
@@ -66,7 +66,7 @@ fn octahedron(center: Corner) -> Vec<Vec<Corner>> {
     faces
 }
 
-/// How many layers each pixel has, 23 at most: each lets half of the light through, and powers of two are exact. `None` where what is
+/// The number of layers of each pixel, 23 at most: each lets half of the light through, and powers of two are exact. `None` where what is
 /// let through is no such power.
 fn layers(
     studio: &mut Studio,
@@ -74,7 +74,7 @@ fn layers(
     method: Transparency,
     backend: Backend,
 ) -> Result<Vec<Option<u32>>, RenderError> {
-    let found = veil(studio, &translucent(camera, 0.5, method), SIZE, backend)?;
+    let found = transparency(studio, &translucent(camera, 0.5, method), SIZE, backend)?;
     let of = |v: &[f32; 4]| {
         let count = -v[3].log2();
         (count.fract() == 0.0 && (0.0..=23.0).contains(&count)).then_some(count as u32)

@@ -27,7 +27,7 @@ pub const CHECK: Check = Check {
 };
 
 const SIZE: [u32; 2] = [160, 120];
-/// How far rasterisers may move a corner, and more: pixels.
+/// The distance by which rasterisers may move a corner, and more: pixels.
 const ASIDE: f64 = 1.0 / 64.0;
 
 /// Where a ray enters a box first: its parameter and which face that is on.
@@ -45,7 +45,7 @@ fn entry(ray: &Ray, [low, high]: [DVec3; 2]) -> Option<(f64, usize)> {
     (enter <= leave && enter > 0.0).then_some((enter, face))
 }
 
-/// What a ray meets first: how far away, and which face of which box.
+/// The first thing that a ray meets: how far away, and which face of which box.
 fn first(ray: &Ray, boxes: &[[DVec3; 2]]) -> Option<(f64, [usize; 2])> {
     let met = boxes.iter().enumerate().filter_map(|(i, ends)| entry(ray, *ends).map(|(t, face)| (t, [i, face])));
     met.min_by(|a, b| a.0.total_cmp(&b.0))

@@ -18,7 +18,7 @@ use crate::{
 /// See the module.
 pub const CHECK: Check = Check {
     name: "repeats",
-    case: "21, H3",
+    case: "21",
     property: "a picture has the same bytes again, on another device and by the other back end; straight up and down and with the \
                smallest and largest fields of view, distances and normals are numbers",
     oracle: "byte equality; what a number is",

@@ -21,7 +21,7 @@ use crate::{
 /// See the module.
 pub const CHECK: Check = Check {
     name: "masks of sprites",
-    case: "S7",
+    case: "lens tests",
     property: "masks by depth sprites err by at most two steps of the format along the ray and one and a half texels across it",
     oracle: "the shapes' definitions in f64",
     unit: "pixels",

@@ -6,7 +6,7 @@ use crate::{
     measure::topics::gpu::{
         check::{Check, Findings},
         cities::{numbered, of_solids, pane},
-        looks::{for_numbers, ids, picture, scene, translucent, used, veil, with_number},
+        looks::{for_numbers, ids, picture, scene, translucent, transparency, used, with_number},
         numbers::Numbers,
     },
     render::{
@@ -85,9 +85,9 @@ fn ask_layers(
         let mut only = translucent(camera, 1.0, Transparency::Exact);
         only.style.effects =
             vec![for_numbers(used("eraser"), &[wall], true), with_number("transparent", "opacity", 1.0)];
-        *own = veil(studio, &only, PIXELS, Backend::Specialised)?;
+        *own = transparency(studio, &only, PIXELS, Backend::Specialised)?;
     }
-    let both = veil(studio, &translucent(camera, 0.6, Transparency::Exact), PIXELS, Backend::Specialised)?;
+    let both = transparency(studio, &translucent(camera, 0.6, Transparency::Exact), PIXELS, Backend::Specialised)?;
     let [near, far] = if first_is_near { [&alone[0], &alone[1]] } else { [&alone[1], &alone[0]] };
     let a = f64::from(0.6_f32);
     for (i, laid) in both.iter().enumerate() {

@@ -1,13 +1,13 @@
-//! Overlays keep still while the camera moves: what of the frame before stays (B6).
+//! Temporal coherence of overlays: what of the frame before stays while the camera moves.
 //!
-//! Overlays stay on their lanes, in their order, and at their size; where they would best stand is worked out anew with that. As long as none of
-//! these places along
-//! a side is further away than the dead band, nothing moves there; otherwise all of that side glide together, each by the same share of its way, so that none
-//! meet on it. An overlay stays between the points between which it stands, and a point that walks into it pushes it along.
-//! The order changes only where a line has crossed another by more than the dead band, and another order has less crossings; what was shrunk,
-//! folded or put inward comes back when there would be room even if all points came nearer by the dead band. Such a change is made at once, in one
-//! step, by those
-//! of the sides that it changes; [`crate::overlay::placed::Jump`] tells of it.
+//! Overlays stay on their lanes, in their order, and at their size; where they would best stand is worked out anew with that. As long as
+//! none of these places along a side is further away than the dead band, nothing moves there; otherwise all of that side glide together,
+//! each by the same share of its way, so that none meet on it. An overlay stays between the points between which it stands, and a point
+//! that walks into it pushes it along.
+//!
+//! The order changes only where a line has crossed another by more than the dead band, and another order has less crossings; what was
+//! shrunk, folded or put inward comes back when there would be room even if all points came nearer by the dead band. Such a change is
+//! made at once, in one step, by those of the sides that it changes; [`crate::overlay::placed::Jump`] tells of it.
 
 use crate::overlay::{
     crossings::Way,
@@ -24,25 +24,26 @@ use crate::overlay::{
     size::{SHRINK_STEPS, Sizes},
 };
 
-/// How many overlays per call look for a better place, times overlays: the others have their turn in the next calls. At most [`MOST_RETURNS`].
+/// The number of overlays that look for a better place in a call, times the number of all: the others have their turn in the next calls.
+/// At most [`MOST_RETURNS`].
 const RETURNS: usize = 200;
 
 /// See [`RETURNS`].
 const MOST_RETURNS: usize = 4;
 
-/// Of two neighbours in the order of distance, the second comes first only when it is nearer by this factor.
+/// The factor by which the second of two neighbours in the order of distance must be nearer to come first.
 const NEARER: f64 = 0.95;
 
-/// What a frame is, given the one before.
+/// A frame, made from the one before.
 #[derive(Clone, Debug)]
 pub struct Kept {
-    /// Who stands where.
+    /// The place of each overlay.
     pub filled: Filled,
     /// The rectangle of each overlay.
     pub rects: Vec<Option<Rect>>,
     /// The ways of the lines of each.
     pub ways: Vec<Vec<Way>>,
-    /// What their lines cross.
+    /// The crossings of their lines.
     pub crossings: Crossings,
     /// The sides along which they are still on their way.
     pub gliding: Vec<Side>,
@@ -52,7 +53,7 @@ pub struct Kept {
     pub jump: Option<Jump>,
     /// Crossings beyond the dead band for which no better order was found.
     pub hopeless: u32,
-    /// Who has had a turn.
+    /// The overlays that have had a turn.
     pub turns: Turns,
     /// Whether the number of crossings is the least; `None` if it was not asked.
     pub is_least: Option<bool>,
@@ -63,7 +64,7 @@ pub struct Kept {
 pub struct Turns {
     /// The id of the last that had its turn.
     pub last: Option<u32>,
-    /// How many had theirs since the request, or a place, has changed.
+    /// The number that had a turn since the request, or a place, has changed.
     pub tried: usize,
 }
 
@@ -284,11 +285,11 @@ fn grown(
     Some((larger, rects))
 }
 
-/// What [`come`] did.
+/// The result of [`come`].
 struct Come {
     /// Whether an overlay has found a place, or a better one.
     any: bool,
-    /// How many wait for one, of those that are not too large for the picture.
+    /// The number that wait for one, of those that are not too large for the picture.
     waiting: usize,
 }
 
@@ -397,7 +398,7 @@ fn lane_for(problem: &Problem, filled: &Filled, item: usize, clearance: f64) -> 
         let inner = board.inner.size();
         let length: i32 = row.iter().map(|i| filled.sizes[*i][a] + board.gap).sum();
         // Before any windows: a full row has no room, whatever the points are.
-        if filled.sizes[item][d] > inner[d] || length - board.gap > lane.span.1 - lane.span.0 {
+        if filled.sizes[item][d] > inner[d] || length - board.gap > lane.span.length() {
             return None;
         }
         let mut of_size: Vec<([i32; 2], Windows)> = Vec::new();
@@ -456,7 +457,7 @@ fn leaps(problem: &Problem, held: &[Option<Rect>], rects: &[Option<Rect>]) -> bo
     held.iter().zip(rects).any(|(h, r)| h.zip(*r).is_some_and(|(h, r)| f64::from(h.distance(&r)) > glide))
 }
 
-/// How far overlays glide per call, pixels, 1 and up.
+/// The distance that overlays glide per call, pixels, 1 and up.
 fn glide(problem: &Problem) -> f64 {
     let glide = problem.request.layout.glide;
     if glide.is_nan() { 1.0 } else { glide.max(1.0) }

@@ -32,8 +32,8 @@ fn level(_: DVec2) -> Option<f64> {
     Some(2.5)
 }
 
-fn place_of(focus: &Focus, knob: Knob) -> DVec3 {
-    knobs(focus, &level).into_iter().find(|(own, _)| *own == knob).unwrap().1
+fn place_of(focus: &Focus, kind: GizmoKind) -> DVec3 {
+    gizmos(focus, &level).into_iter().find(|(own, _)| *own == kind).unwrap().1
 }
 
 #[test]
@@ -44,10 +44,10 @@ fn every_shape_moves_with_all_that_is_held_of_it() {
         let mut after = before.clone();
         move_by(&mut after, by);
         // Without a ground below: what is of no height of its own is held where that is.
-        let [was, is] = [&before, &after].map(|focus| knobs(focus, &|_| None));
+        let [was, is] = [&before, &after].map(|focus| gizmos(focus, &|_| None));
         assert!(was.len() == is.len() && !was.is_empty(), "{text}");
-        for ((knob, from), (same, to)) in was.iter().zip(&is) {
-            assert!(knob == same && to.distance(from + by) < 1e-9, "{text}: {knob:?} {from} {to}");
+        for ((kind, from), (same, to)) in was.iter().zip(&is) {
+            assert!(kind == same && to.distance(from + by) < 1e-9, "{text}: {kind:?} {from} {to}");
         }
         let [was, is] = [&before, &after].map(extent);
         assert!(is.min.distance(was.min + by) < 1e-9 && is.max.distance(was.max + by) < 1e-9, "{text}");
@@ -66,10 +66,10 @@ fn a_side_goes_where_it_is_dragged_and_the_opposite_one_stays_or_mirrors_it() {
                 let mut after = before.clone();
                 set_side(&mut after, axis, is_up, out, false);
                 let way = if is_up { block.axis(axis) } else { -block.axis(axis) };
-                let [side, opposite] = [is_up, !is_up].map(|is_up| place_of(&after, Knob::Side { axis, is_up }));
+                let [side, opposite] = [is_up, !is_up].map(|is_up| place_of(&after, GizmoKind::Side { axis, is_up }));
                 let wanted = block.center + out * way;
                 assert!(side.distance(wanted) < 2e-3, "{text}: {axis} {is_up}: {side}, not {wanted}");
-                let other = place_of(&before, Knob::Side { axis, is_up: !is_up });
+                let other = place_of(&before, GizmoKind::Side { axis, is_up: !is_up });
                 let wanted = if block.is_centered { other - 3.0 * way } else { other };
                 assert!(opposite.distance(wanted) < 2e-3, "{text}: {axis} {is_up}: {opposite}, not {wanted}");
                 count += 1;
@@ -142,13 +142,13 @@ fn whatever_is_held_has_numbers_that_a_file_takes_and_gives_back() {
     for text in ALL {
         let mut focus = shape(text);
         move_by(&mut focus, DVec3::new(458_123.456_78, 78_600.012_3, -3.3));
-        for (knob, _) in knobs(&focus.clone(), &level) {
-            match knob {
+        for (kind, _) in gizmos(&focus.clone(), &level) {
+            match kind {
                 // Dragged through the middle to the other side: small, not inside out.
-                Knob::Side { axis, is_up } => set_side(&mut focus, axis, is_up, -1e6, false),
-                Knob::Ring => set_radius(&mut focus, 0.0),
-                Knob::Turn => turn_by(&mut focus, PI / 7.0),
-                Knob::Corner(0) => set_corner(&mut focus, 0, DVec3::new(458_010.1, 78_590.2, 30.3)),
+                GizmoKind::Side { axis, is_up } => set_side(&mut focus, axis, is_up, -1e6, false),
+                GizmoKind::Ring => set_radius(&mut focus, 0.0),
+                GizmoKind::Turn => turn_by(&mut focus, PI / 7.0),
+                GizmoKind::Corner(0) => set_corner(&mut focus, 0, DVec3::new(458_010.1, 78_590.2, 30.3)),
                 _ => {}
             }
         }
@@ -158,10 +158,10 @@ fn whatever_is_held_has_numbers_that_a_file_takes_and_gives_back() {
         scene.lenses[0].shapes = vec![focus];
         let read = parse(&to_toml(&scene), "scene", &options).unwrap_or_else(|error| panic!("{text}: {error}"));
         // Rotations are written by angles: the same to what those are rounded to.
-        let [own, again] = [&scene, &read].map(|scene| knobs(&scene.lenses[0].shapes[0], &level));
+        let [own, again] = [&scene, &read].map(|scene| gizmos(&scene.lenses[0].shapes[0], &level));
         assert_eq!(own.len(), again.len());
-        for ((knob, at), (same, place)) in own.iter().zip(&again) {
-            assert!(knob == same && at.distance(*place) < 1e-6, "{text}: {knob:?} {at} {place}");
+        for ((kind, at), (same, place)) in own.iter().zip(&again) {
+            assert!(kind == same && at.distance(*place) < 1e-6, "{text}: {kind:?} {at} {place}");
         }
         assert_eq!(to_toml(&read), to_toml(&scene), "{text}");
     }
@@ -188,14 +188,14 @@ fn wires_join_what_is_held() {
 #[test]
 fn what_has_no_place_of_its_own_has_no_handles_and_a_combination_its_middle() {
     let thematic = shape("kind = \"thematic\", types = [\"Building\"]");
-    assert!(knobs(&thematic, &level).is_empty() && extent(&thematic).is_empty());
+    assert!(gizmos(&thematic, &level).is_empty() && extent(&thematic).is_empty());
     let union = shape(ALL[12]);
-    assert_eq!(knobs(&union, &level), [(Knob::Middle, DVec3::new(3.0, 0.0, 0.0))]);
+    assert_eq!(gizmos(&union, &level), [(GizmoKind::Middle, DVec3::new(3.0, 0.0, 0.0))]);
     assert_eq!(extent(&union), Aabb { min: DVec3::new(-9.0, -9.0, -9.0), max: DVec3::splat(9.0) });
     let nothing = Focus::Combined { how: Operation::Union, parts: Vec::new() };
-    assert!(knobs(&nothing, &level).is_empty());
+    assert!(gizmos(&nothing, &level).is_empty());
     // On the ground as far as that is within it.
     let mask = shape(ALL[11]);
-    assert_eq!(place_of(&mask, Knob::Corner(1)), DVec3::new(90.0, 0.0, 2.5));
+    assert_eq!(place_of(&mask, GizmoKind::Corner(1)), DVec3::new(90.0, 0.0, 2.5));
     assert_eq!(middle(&mask, &|_| Some(1e3)).unwrap().z, 55.0);
 }

@@ -1,6 +1,6 @@
-//! Geometries of a document between reading and assembly, as one list of numbers.
+//! Packed staging of a document's geometries between reading and assembly: one list of numbers.
 //!
-//! What a geometry means is known only when the document is complete: vertices and appearance mostly come last. Until
+//! The meaning of a geometry is known only when the document is complete: vertices and appearance mostly come last. Until
 //! then a dozen lists for each of a hundred thousand geometries would cost several times what is in them.
 
 use crate::city::{
@@ -14,7 +14,7 @@ use crate::city::{
 
 /// Geometries, taken out in the order in which they were put in.
 #[derive(Clone, Debug, Default)]
-pub struct Stowage {
+pub struct PackedGeometries {
     words: Vec<u32>,
     attributes: Vec<Attribute>,
     themes: Vec<String>,
@@ -22,7 +22,7 @@ pub struct Stowage {
     odd: Vec<GeometryRead>,
 }
 
-/// First word of a geometry that stands in [`Stowage::odd`].
+/// First word of a geometry that stands in [`PackedGeometries::odd`].
 const ODD: u32 = u32::MAX;
 /// Tokens that are no index. No list of a 4 GiB file is that long, so indices from [`FIRST_TOKEN`] on are all alike.
 const NULL: u32 = u32::MAX - 1;
@@ -40,7 +40,7 @@ const KINDS: [GeometryKind; 5] = [
     GeometryKind::CompositeSolid,
 ];
 
-impl Stowage {
+impl PackedGeometries {
     /// Appends a geometry.
     pub fn put(&mut self, geometry: &GeometryRead) {
         let Some((kind, depth)) = plain(geometry) else {
@@ -126,7 +126,7 @@ fn plain(geometry: &GeometryRead) -> Option<(u32, usize)> {
     (is_bare && is_shallow && geometry.boundaries.rings(depth).is_some()).then_some((kind as u32, depth))
 }
 
-/// Takes geometries out of a [`Stowage`].
+/// Takes geometries out of a [`PackedGeometries`].
 #[derive(Debug)]
 pub struct Reader {
     words: Vec<u32>,
@@ -241,13 +241,13 @@ mod tests {
         let mut builder = ModelBuilder::default();
         let mut read = |text: &str| GeometryRead::read(&mut Json::new(text.as_bytes()), &mut builder, "a").unwrap();
         let geometries: Vec<_> = GEOMETRIES.iter().map(|text| read(text)).collect();
-        let mut stowage = Stowage::default();
+        let mut packed = PackedGeometries::default();
         // Twice, so that each follows another one in the same buffer.
         let order = || geometries.iter().chain(geometries.iter().rev());
-        order().for_each(|geometry| stowage.put(geometry));
-        assert_eq!(stowage.instances().count(), 2);
-        assert_eq!(stowage.odd.len(), 2 * 4, "only odd ones are kept whole");
-        let mut reader = stowage.into_reader();
+        order().for_each(|geometry| packed.put(geometry));
+        assert_eq!(packed.instances().count(), 2);
+        assert_eq!(packed.odd.len(), 2 * 4, "only odd ones are kept whole");
+        let mut reader = packed.into_reader();
         let mut out = GeometryRead::default();
         for geometry in order() {
             reader.next_into(&mut out).unwrap();

@@ -1,4 +1,4 @@
-//! What of a lens' shape can be held, and what the shape becomes when that is put elsewhere.
+//! Gizmos of a lens' shape: their places, and the shape that results when one is put elsewhere.
 //!
 //! All places and lengths are metres, in the coordinates of the shape.
 
@@ -12,14 +12,14 @@ use crate::{
     lens::Focus,
 };
 
-/// Shapes with more corners than this are held by their middle only: knobs would cover them.
+/// Shapes with more corners than this are held by their middle only: gizmos would cover them.
 pub const MOST_CORNERS: usize = 64;
-/// What is held gets no smaller than this.
+/// The least size that dragging leaves.
 pub const LEAST_M: f64 = 0.1;
 
-/// A part of a shape that is held.
+/// The part of a shape that a gizmo holds, and so what dragging it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Knob {
+pub enum GizmoKind {
     /// Its middle: moves it.
     Middle,
     /// A place as far from its middle as its radius.
@@ -83,20 +83,20 @@ impl Block {
 
 /// All that can be held of a shape, with where it is; `ground`: the height of what is seen there in plan, for shapes that
 /// have no height of their own there. A ring is where its middle is: which way it is seen from decides on which side of that.
-pub fn knobs(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<(Knob, DVec3)> {
+pub fn gizmos(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<(GizmoKind, DVec3)> {
     let Some(middle) = middle(focus, ground) else { return Vec::new() };
-    let mut all = vec![(Knob::Middle, middle)];
-    all.extend(radius(focus).map(|_| (Knob::Ring, middle)));
+    let mut all = vec![(GizmoKind::Middle, middle)];
+    all.extend(radius(focus).map(|_| (GizmoKind::Ring, middle)));
     if let Some(block) = block(focus) {
         for axis in (0..3).filter(|axis| block.has[*axis]) {
-            all.extend([true, false].map(|is_up| (Knob::Side { axis, is_up }, block.side(axis, is_up))));
+            all.extend([true, false].map(|is_up| (GizmoKind::Side { axis, is_up }, block.side(axis, is_up))));
         }
     }
     let corners = corners(focus, ground);
     if corners.len() <= MOST_CORNERS {
-        all.extend(corners.into_iter().enumerate().map(|(i, at)| (Knob::Corner(i), at)));
+        all.extend(corners.into_iter().enumerate().map(|(i, at)| (GizmoKind::Corner(i), at)));
     }
-    all.extend(heading(focus).map(|ahead| (Knob::Turn, middle + ahead)));
+    all.extend(heading(focus).map(|ahead| (GizmoKind::Turn, middle + ahead)));
     all
 }
 
@@ -133,7 +133,7 @@ fn within(plan: DVec2, [low, high]: [f64; 2], ground: &dyn Fn(DVec2) -> Option<f
     plan.extend(ground(plan).map_or(0.5 * (low + high), |z| z.clamp(low, high.max(low))))
 }
 
-/// How far the ring is from the middle.
+/// The distance of the ring from the middle.
 pub fn radius(focus: &Focus) -> Option<f64> {
     match focus {
         Focus::Shape(
@@ -146,7 +146,7 @@ pub fn radius(focus: &Focus) -> Option<f64> {
     }
 }
 
-/// What its sides bound.
+/// The block that its sides bound.
 pub fn block(focus: &Focus) -> Option<Block> {
     let upright = |axis: DVec3| DQuat::from_rotation_arc(DVec3::Z, axis.normalize_or(DVec3::Z));
     let block = |center, half, turn, has| Block { center, half, turn, has, is_centered: false };
@@ -196,7 +196,7 @@ fn corners(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<DVec3> {
     }
 }
 
-/// Lines that show what its knobs are of: the edges of a block, the line or ring through its points.
+/// Lines that show what its gizmos are of: the edges of a block, the line or ring through its points.
 pub fn wires(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<Vec<DVec3>> {
     let closed = |mut ring: Vec<DVec3>| {
         ring.extend(ring.first().copied());
@@ -373,7 +373,7 @@ pub fn extent(focus: &Focus) -> Aabb {
     bounds
 }
 
-/// What is held by hand is no finer than millimetres, so that files stay readable.
+/// A place rounded to millimetres, so that files stay readable.
 fn to_mm(at: DVec3) -> DVec3 {
     DVec3::from(at.to_array().map(round_mm))
 }

@@ -1,12 +1,14 @@
-//! The handles of lenses in the picture: discs, rings and knobs of constant size in points, and what dragging them does.
+//! Gizmos of lenses in the picture: discs, rings and squares of constant size in points, and what dragging them does.
+
+pub mod places;
 
 use eframe::egui::{Align2, Color32, CursorIcon, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, vec2};
 use glam::{DVec2, DVec3};
 
 use crate::{
     app::{
-        canvas_state::{Grip, Handle},
-        knobs::{self, Knob},
+        canvas_state::{Gizmo, Grip},
+        gizmo::places::GizmoKind,
         lens_list::State,
         spots::{in_rect, spot_of},
         state::Window,
@@ -20,13 +22,13 @@ use crate::{
 
 /// Half the size of the disc, points.
 const DISC: f32 = 7.0;
-/// Half the size of a knob at a side or a corner, points.
+/// Half the size of a gizmo at a side or a corner, points.
 const SQUARE: f32 = 4.5;
-/// Within so many points of a handle it is meant.
+/// Within so many points of a gizmo it is meant.
 const REACH: f32 = 11.0;
-/// Handles that are nearer to each other than this are not all shown: the first of them is.
+/// Gizmos that are nearer to each other than this are not all shown: the first of them is.
 const APART: f32 = 16.0;
-/// How far beyond what it turns about its end the turning knob stands, points.
+/// The distance of the turning gizmo beyond the end of the shape, points.
 const BEYOND: f32 = 26.0;
 /// Where that is outside the picture: how far from the middle, points.
 const NEAR: f32 = 60.0;
@@ -48,98 +50,100 @@ impl Window {
     }
 
     /// The middles of a lens' shapes and, of the chosen one, all that can be held, the first before what it would cover.
-    fn handles_of(&self, index: usize, view: &View, rect: Rect) -> Vec<Handle> {
+    fn gizmos_of(&self, index: usize, view: &View, rect: Rect) -> Vec<Gizmo> {
         let Some(lens) = self.document.scene().lenses.get(index) else { return Vec::new() };
         let Some(origin) = self.origin_of(lens) else { return Vec::new() };
         let ground = self.ground_from(origin, view);
         let is_held = self.chosen.lens == Some(index) && !self.is_locked(lens);
-        let mut shown: Vec<Handle> = Vec::new();
+        let mut shown: Vec<Gizmo> = Vec::new();
         for (shape, focus) in lens.shapes.iter().enumerate().filter_map(|(i, own)| Some((i, own.own_shape()?))) {
-            let handle = |knob, place, at| Handle { lens: index, shape, knob, place, at };
-            let Some(middle) = knobs::middle(focus, &ground).map(|middle| middle + origin) else { continue };
+            let gizmo = |kind, place, at| Gizmo { lens: index, shape, kind, place, at };
+            let Some(middle) = places::middle(focus, &ground).map(|middle| middle + origin) else { continue };
             let Some(middle_at) = spot_of(view, rect, middle) else { continue };
-            let disc = handle(Knob::Middle, middle, middle_at);
+            let disc = gizmo(GizmoKind::Middle, middle, middle_at);
             if !is_held {
                 shown.push(disc);
                 continue;
             }
-            for (knob, place) in knobs::knobs(focus, &ground) {
+            for (kind, place) in places::gizmos(focus, &ground) {
                 let place = place + origin;
-                let at = match knob {
-                    Knob::Ring => ring_at(view, rect, middle, middle_at, knobs::radius(focus).unwrap_or_default()),
-                    Knob::Turn => spot_of(view, rect, place).map(|end| turn_at(rect, middle_at, end)),
+                let at = match kind {
+                    GizmoKind::Ring => {
+                        ring_at(view, rect, middle, middle_at, places::radius(focus).unwrap_or_default())
+                    }
+                    GizmoKind::Turn => spot_of(view, rect, place).map(|end| turn_at(rect, middle_at, end)),
                     _ => spot_of(view, rect, place),
                 };
                 let Some(at) = at.filter(|at| rect.contains(*at)) else { continue };
-                if shown.iter().all(|other| other.at.distance(at) >= APART) || knob == Knob::Middle {
-                    shown.push(handle(knob, place, at));
+                if shown.iter().all(|other| other.at.distance(at) >= APART) || kind == GizmoKind::Middle {
+                    shown.push(gizmo(kind, place, at));
                 }
             }
         }
         shown
     }
 
-    /// What of the chosen lens is at a place of the window.
-    pub(super) fn handle_at(&self, view: &View, rect: Rect, at: Pos2) -> Option<Handle> {
+    /// The gizmo of the chosen lens at a place of the window.
+    pub(super) fn gizmo_at(&self, view: &View, rect: Rect, at: Pos2) -> Option<Gizmo> {
         let index = self
             .chosen
             .lens
             .filter(|index| self.document.scene().lenses.get(*index).is_some_and(|lens| !self.is_locked(lens)))?;
-        nearest(&self.handles_of(index, view, rect), at)
+        nearest(&self.gizmos_of(index, view, rect), at)
     }
 
     /// The lens whose disc is at a place: those in front first; of lenses that are off only the chosen one's is shown.
     pub(super) fn lens_at(&self, view: &View, rect: Rect, at: Pos2) -> Option<usize> {
         let is_shown = |index: &usize| self.chosen.lens == Some(*index) || self.state_of(*index) != State::Disabled;
         let is_there = |index: &usize| {
-            let all = self.handles_of(*index, view, rect);
-            all.iter().any(|handle| handle.knob == Knob::Middle && handle.at.distance(at) <= REACH)
+            let all = self.gizmos_of(*index, view, rect);
+            all.iter().any(|gizmo| gizmo.kind == GizmoKind::Middle && gizmo.at.distance(at) <= REACH)
         };
         (0..self.document.scene().lenses.len()).rev().filter(is_shown).find(is_there)
     }
 
-    /// Begins to drag a handle that was pressed there.
-    pub(super) fn grip(&self, handle: Handle, pressed: Pos2) -> Option<Grip> {
-        let lens = self.document.scene().lenses.get(handle.lens)?;
-        let before = lens.shapes.get(handle.shape)?.own_shape()?.clone();
-        let middle = knobs::middle(&before, &|_| None)? + self.origin_of(lens)?;
+    /// Begins to drag a gizmo that was pressed there.
+    pub(super) fn grip(&self, gizmo: Gizmo, pressed: Pos2) -> Option<Grip> {
+        let lens = self.document.scene().lenses.get(gizmo.lens)?;
+        let before = lens.shapes.get(gizmo.shape)?.own_shape()?.clone();
+        let middle = places::middle(&before, &|_| None)? + self.origin_of(lens)?;
         // What is turned is so about where its middle is on the ground.
-        let middle = middle.with_z(handle.place.z);
-        Some(Grip { handle, off: pressed - handle.at, before, middle })
+        let middle = middle.with_z(gizmo.place.z);
+        Some(Grip { gizmo, off: pressed - gizmo.at, before, middle })
     }
 
     /// Shows what the lens becomes when the pointer is there; with Shift: up and down instead of along the ground, or as a whole.
     pub(super) fn drag_grip(&mut self, grip: &Grip, view: &View, rect: Rect, now: Pos2, shift: bool) {
-        let Handle { lens: index, shape, knob, place, at: pressed } = grip.handle;
+        let Gizmo { lens: index, shape, kind, place, at: pressed } = grip.gizmo;
         let Some(lens) = self.document.scene().lenses.get(index) else { return };
         let Some(origin) = self.origin_of(lens) else { return };
         let (now, mut after) = (now - grip.off, grip.before.clone());
-        let verb = match knob {
-            Knob::Middle => {
+        let verb = match kind {
+            GizmoKind::Middle => {
                 let Some(to) = dragged_to(view, rect, now, place, shift) else { return };
-                knobs::move_by(&mut after, to - place);
+                places::move_by(&mut after, to - place);
                 "move"
             }
-            Knob::Ring => {
+            GizmoKind::Ring => {
                 let Some(middle) = spot_of(view, rect, place) else { return };
                 let metres = view.pixel_m(view.depth(place)) * f64::from(middle.distance(now));
-                knobs::set_radius(&mut after, metres);
+                places::set_radius(&mut after, metres);
                 "resize"
             }
-            Knob::Side { axis, is_up } => {
-                let Some(block) = knobs::block(&grip.before) else { return };
+            GizmoKind::Side { axis, is_up } => {
+                let Some(block) = places::block(&grip.before) else { return };
                 let axis_up = block.axis(axis);
                 let out = if is_up { axis_up } else { -axis_up };
                 let Some(along) = along_line(view, rect, now, block.center + origin, out) else { return };
-                knobs::set_side(&mut after, axis, is_up, along, shift);
+                places::set_side(&mut after, axis, is_up, along, shift);
                 "resize"
             }
-            Knob::Corner(corner) => {
+            GizmoKind::Corner(corner) => {
                 let Some(to) = dragged_to(view, rect, now, place, shift) else { return };
-                knobs::set_corner(&mut after, corner, to - origin);
+                places::set_corner(&mut after, corner, to - origin);
                 "reshape"
             }
-            Knob::Turn => {
+            GizmoKind::Turn => {
                 let seen = |at| dragged_to(view, rect, at, grip.middle, false).map(|to| (to - grip.middle).truncate());
                 let (Some(from), Some(to)) = (seen(pressed), seen(now)) else { return };
                 let angle = from.angle_to(to);
@@ -148,7 +152,7 @@ impl Window {
                 }
                 // With Shift by steps, as one turns a thing on a drawing.
                 let step = if shift { 15_f64 } else { 0.1 }.to_radians();
-                knobs::turn_by(&mut after, (angle / step).round() * step);
+                places::turn_by(&mut after, (angle / step).round() * step);
                 "turn"
             }
         };
@@ -167,7 +171,7 @@ impl Window {
         let Some((lens, origin)) = lens.and_then(|lens| Some((lens, self.origin_of(lens)?))) else {
             return Aabb::EMPTY;
         };
-        let all = lens.shapes.iter().filter_map(Focus::own_shape).map(knobs::extent);
+        let all = lens.shapes.iter().filter_map(Focus::own_shape).map(places::extent);
         let all = all.fold(Aabb::EMPTY, Aabb::union);
         if all.is_empty() { all } else { Aabb { min: all.min + origin, max: all.max + origin } }
     }
@@ -175,7 +179,7 @@ impl Window {
     fn draw_wires(&self, painter: &Painter, lens: &Lens, view: &View, rect: Rect, color: Color32) {
         let Some(origin) = self.origin_of(lens) else { return };
         let ground = self.ground_from(origin, view);
-        for wire in lens.shapes.iter().filter_map(Focus::own_shape).flat_map(|focus| knobs::wires(focus, &ground)) {
+        for wire in lens.shapes.iter().filter_map(Focus::own_shape).flat_map(|focus| places::wires(focus, &ground)) {
             for ends in wire.windows(2) {
                 if let (Some(a), Some(b)) =
                     (spot_of(view, rect, ends[0] + origin), spot_of(view, rect, ends[1] + origin))
@@ -186,26 +190,26 @@ impl Window {
         }
     }
 
-    pub(super) fn draw_handles(&self, ui: &Ui, rect: Rect) {
+    pub(super) fn draw_gizmos(&self, ui: &Ui, rect: Rect) {
         let Some(view) = self.view_in(rect) else { return };
         let painter = ui.painter_at(rect);
         for (index, lens) in self.document.scene().lenses.iter().enumerate() {
             let state = self.state_of(index);
-            // One that is off shows where it is only to who chose it.
+            // One that is off shows where it is only while it is chosen.
             if state == State::Disabled && self.chosen.lens != Some(index) {
                 continue;
             }
             let color = if state == State::Disabled { Color32::from_gray(128) } else { color_of(lens.color) };
-            let all = self.handles_of(index, &view, rect);
+            let all = self.gizmos_of(index, &view, rect);
             let disc = if state == State::Normal { 0.6 * DISC } else { DISC };
             if self.chosen.lens == Some(index) && !self.is_locked(lens) {
                 self.draw_wires(&painter, lens, &view, rect, color);
             }
             let mut middle = None;
-            for handle in all.iter().rev() {
-                draw_handle(&painter, handle, disc, color, &all);
-                if handle.knob == Knob::Middle {
-                    middle = Some(handle.at);
+            for gizmo in all.iter().rev() {
+                draw_gizmo(&painter, gizmo, disc, color, &all);
+                if gizmo.kind == GizmoKind::Middle {
+                    middle = Some(gizmo.at);
                 }
             }
             if let Some(middle) = middle.filter(|_| state != State::Normal) {
@@ -215,47 +219,47 @@ impl Window {
     }
 }
 
-/// The pointer over a handle.
-pub(super) fn cursor(handle: &Handle) -> CursorIcon {
-    match handle.knob {
-        Knob::Middle | Knob::Corner(_) => CursorIcon::Grab,
-        Knob::Turn => CursorIcon::Alias,
-        Knob::Ring => CursorIcon::ResizeHorizontal,
-        Knob::Side { axis: 2, .. } => CursorIcon::ResizeVertical,
-        Knob::Side { .. } => CursorIcon::Move,
+/// The pointer over a gizmo.
+pub(super) fn cursor(gizmo: &Gizmo) -> CursorIcon {
+    match gizmo.kind {
+        GizmoKind::Middle | GizmoKind::Corner(_) => CursorIcon::Grab,
+        GizmoKind::Turn => CursorIcon::Alias,
+        GizmoKind::Ring => CursorIcon::ResizeHorizontal,
+        GizmoKind::Side { axis: 2, .. } => CursorIcon::ResizeVertical,
+        GizmoKind::Side { .. } => CursorIcon::Move,
     }
 }
 
-/// Of handles that are near enough the nearest, the disc before what is as near.
-fn nearest(all: &[Handle], at: Pos2) -> Option<Handle> {
-    let near = all.iter().filter(|handle| handle.at.distance(at) <= REACH);
+/// The nearest of the gizmos that are near enough, the disc before what is as near.
+fn nearest(all: &[Gizmo], at: Pos2) -> Option<Gizmo> {
+    let near = all.iter().filter(|gizmo| gizmo.at.distance(at) <= REACH);
     near.min_by(|a, b| a.at.distance(at).total_cmp(&b.at.distance(at))).copied()
 }
 
-fn draw_handle(painter: &Painter, handle: &Handle, disc: f32, color: Color32, all: &[Handle]) {
-    let middle = all.iter().find(|other| other.knob == Knob::Middle && other.shape == handle.shape);
+fn draw_gizmo(painter: &Painter, gizmo: &Gizmo, disc: f32, color: Color32, all: &[Gizmo]) {
+    let middle = all.iter().find(|other| other.kind == GizmoKind::Middle && other.shape == gizmo.shape);
     let spoke = || {
         if let Some(middle) = middle {
-            painter.line_segment([middle.at, handle.at], Stroke::new(1.5, Color32::from_white_alpha(200)));
+            painter.line_segment([middle.at, gizmo.at], Stroke::new(1.5, Color32::from_white_alpha(200)));
         }
     };
-    match handle.knob {
-        Knob::Middle => _ = painter.circle(handle.at, disc, color, Stroke::new(2.0, Color32::WHITE)),
-        Knob::Ring => {
+    match gizmo.kind {
+        GizmoKind::Middle => _ = painter.circle(gizmo.at, disc, color, Stroke::new(2.0, Color32::WHITE)),
+        GizmoKind::Ring => {
             spoke();
-            painter.circle(handle.at, 0.8 * DISC, Color32::WHITE, Stroke::new(2.5, color));
+            painter.circle(gizmo.at, 0.8 * DISC, Color32::WHITE, Stroke::new(2.5, color));
         }
-        Knob::Side { .. } | Knob::Corner(_) => {
-            let square = Rect::from_center_size(handle.at, Vec2::splat(2.0 * SQUARE));
-            let round = if matches!(handle.knob, Knob::Corner(_)) { SQUARE } else { 1.5 };
+        GizmoKind::Side { .. } | GizmoKind::Corner(_) => {
+            let square = Rect::from_center_size(gizmo.at, Vec2::splat(2.0 * SQUARE));
+            let round = if matches!(gizmo.kind, GizmoKind::Corner(_)) { SQUARE } else { 1.5 };
             painter.rect_filled(square.expand(1.5), round + 1.5, color);
             painter.rect_filled(square.shrink(0.5), round, Color32::WHITE);
         }
-        Knob::Turn => {
+        GizmoKind::Turn => {
             spoke();
-            painter.circle(handle.at, DISC + 1.0, Color32::WHITE, Stroke::new(1.5, color));
+            painter.circle(gizmo.at, DISC + 1.0, Color32::WHITE, Stroke::new(1.5, color));
             // Three quarters of a circle, and its arrow.
-            let on = |angle: f32, radius: f32| handle.at + radius * vec2(angle.cos(), angle.sin());
+            let on = |angle: f32, radius: f32| gizmo.at + radius * vec2(angle.cos(), angle.sin());
             let arc = (0..=12).map(|i| on(0.5 + 0.4 * i as f32, 4.2)).collect();
             painter.add(Shape::line(arc, Stroke::new(1.6, color)));
             let end = 0.5 + 0.4 * 12.0;
@@ -273,7 +277,7 @@ fn ring_at(view: &View, rect: Rect, middle: DVec3, at: Pos2, radius: f64) -> Opt
     sides.into_iter().map(|side| at + reach * side).find(|spot| inner.contains(*spot))
 }
 
-/// Where the knob that turns a shape is: beyond its end, as seen from its middle.
+/// Where the gizmo that turns a shape is: beyond its end, as seen from its middle.
 fn turn_at(rect: Rect, middle: Pos2, end: Pos2) -> Pos2 {
     let way = end - middle;
     let out = if way.length() > 1.0 { way.normalized() } else { vec2(0.0, 1.0) };
@@ -297,7 +301,7 @@ fn dragged_to(view: &View, rect: Rect, at: Pos2, from: DVec3, is_vertical: bool)
     (t > 0.0 && to.distance(from) < 20.0 * view.camera.eye.distance(from).max(1.0)).then_some(to)
 }
 
-/// How far along a line, from a place on it in a unit direction, the pointer is: where the line is nearest to what the pointer is on.
+/// The distance along a line, from a place on it in a unit direction, at which the line is nearest to what the pointer is on.
 fn along_line(view: &View, rect: Rect, at: Pos2, from: DVec3, way: DVec3) -> Option<f64> {
     let ray = view.ray(in_rect(rect, at));
     let sight = ray.direction.try_normalize()?;

@@ -1,9 +1,9 @@
-//! Who loads and draws, on threads of their own: whatever that takes, the window goes on.
+//! Threads that load and draw: whatever that takes, the window goes on.
 //!
 //! ```text
 //!   window ── open ──▶ loader ── city ──┐
 //!      │                                ▼
-//!      ├── draw (the latest one counts) ─▶ artist ── frames, pictures written, failures ──▶ window
+//!      ├── draw (the latest one counts) ─▶ render thread ── frames, pictures written, failures ──▶ window
 //!      └── export ──────────────────────▶
 //! ```
 
@@ -59,7 +59,7 @@ const QUICK: f64 = 0.4;
 /// A picture to draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
-    /// Of what.
+    /// The scene.
     pub scene: Arc<Scene>,
     /// Width and height, pixels, each at least 1.
     pub size: [u32; 2],
@@ -67,29 +67,29 @@ pub struct Draw {
     pub meant_for: [u32; 2],
     /// Whether the next one follows soon: it shall be quick rather than good.
     pub is_moving: bool,
-    /// Whether it is told what it cost.
+    /// Whether it says what it cost.
     pub is_measured: bool,
 }
 
 /// A picture to write.
 #[derive(Clone, Debug)]
 pub struct Export {
-    /// Of what, with size and samples.
+    /// The scene, with size and samples.
     pub scene: Arc<Scene>,
     /// Where to.
     pub file: PathBuf,
-    /// What the file says of itself.
+    /// The metadata of the file.
     pub notes: Notes,
 }
 
-/// What comes back.
+/// A reply of the threads.
 #[derive(Debug)]
 pub enum Reply {
-    /// What the loader is at.
+    /// The stage of loading, in words.
     Loading(String),
     /// A city is there.
     Opened(Box<Opened>),
-    /// It could not be loaded, or not be put on the card; what was there before still is.
+    /// It could not be loaded, or not be put on the GPU; what was there before still is.
     NotOpened(String),
     /// A picture.
     Frame(Box<Frame>),
@@ -110,7 +110,7 @@ pub enum Reply {
 pub struct Opened {
     /// The city.
     pub model: Arc<CityModel>,
-    /// Of each object the one that it is part of, or itself.
+    /// For each object the one that it is part of, or itself.
     pub roots: Vec<u32>,
     /// Names of attributes that objects have, sorted.
     pub attributes: Vec<String>,
@@ -124,7 +124,7 @@ pub struct Opened {
     pub extent: Aabb,
     /// Kinds of warnings about its files.
     pub warnings: Vec<String>,
-    /// Who draws.
+    /// The adapter that draws.
     pub adapter: String,
     /// Whether that is the processor.
     pub is_software: bool,
@@ -133,13 +133,13 @@ pub struct Opened {
 /// A picture, and what it shows.
 #[derive(Debug)]
 pub struct Frame {
-    /// Of what.
+    /// The scene that it shows.
     pub scene: Arc<Scene>,
     /// The eye.
     pub view: View,
     /// Rows of sRGB texels, the upper left first; as many as `view.size` says.
     pub rgba: Vec<[u8; 4]>,
-    /// Of each pixel the object's index + 1 and metres along the view axis (+∞: nothing); only of pictures that stand still.
+    /// For each pixel the object's index + 1 and metres along the view axis (+∞: nothing); only of pictures that stand still.
     pub shown: Option<(Vec<u32>, Vec<f32>)>,
     /// Where overlays stand in it; only of pictures that stand still.
     pub overlays: Vec<ShownOverlay>,
@@ -147,13 +147,13 @@ pub struct Frame {
     pub samples: u32,
     /// Whether the next one of the same scene is better.
     pub is_final: bool,
-    /// What it cost, where that was asked for.
+    /// Its cost, where that was asked for.
     pub statistics: Option<Box<Statistics>>,
-    /// How long it took.
+    /// The time that it took, milliseconds.
     pub ms: f64,
 }
 
-/// What is wanted of the artist.
+/// The work that is wanted of the render thread.
 #[derive(Default)]
 struct Wanted {
     city: Option<Loaded>,
@@ -171,7 +171,7 @@ struct Loaded {
     stats: LoadStats,
 }
 
-/// What both sides hold.
+/// The state that both sides share.
 #[derive(Default)]
 struct Shared {
     wanted: Mutex<Wanted>,
@@ -199,7 +199,7 @@ impl Shared {
 pub type Notify = Arc<dyn Fn() + Send + Sync>;
 
 /// The window's side.
-pub struct Artist {
+pub struct RenderThread {
     shared: Arc<Shared>,
     sender: Sender<Reply>,
     replies: Receiver<Reply>,
@@ -207,13 +207,13 @@ pub struct Artist {
     thread: Option<JoinHandle<()>>,
 }
 
-impl std::fmt::Debug for Artist {
+impl std::fmt::Debug for RenderThread {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Artist").finish_non_exhaustive()
+        f.debug_struct("RenderThread").finish_non_exhaustive()
     }
 }
 
-impl Artist {
+impl RenderThread {
     /// Begins to wait for work.
     ///
     /// # Errors
@@ -221,8 +221,8 @@ impl Artist {
     pub fn new(notify: Notify) -> std::io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let (sender, replies) = channel();
-        let mut own = Painter::new(shared.clone(), sender.clone(), notify.clone());
-        let thread = std::thread::Builder::new().name("artist".into()).spawn(move || own.work())?;
+        let mut own = Worker::new(shared.clone(), sender.clone(), notify.clone());
+        let thread = std::thread::Builder::new().name("render".into()).spawn(move || own.work())?;
         Ok(Self { shared, sender, replies, notify, thread: Some(thread) })
     }
 
@@ -236,9 +236,9 @@ impl Artist {
         };
         let failed = tell.clone();
         let load = move || {
-            let told = Told { shared: &shared, number, tell: &tell };
+            let replies = LoadingReplies { shared: &shared, number, tell: &tell };
             let loaded = catch_unwind(AssertUnwindSafe(|| {
-                beside_the_window(|| load::load_with_stats(&spec.files, &reading, &told))
+                beside_the_window(|| load::load_with_stats(&spec.files, &reading, &replies))
             }));
             if shared.opening.load(Ordering::SeqCst) != number {
                 return;
@@ -301,13 +301,13 @@ impl Artist {
         }
     }
 
-    /// What came back meanwhile.
+    /// The replies since the last call.
     pub fn replies(&self) -> Vec<Reply> {
         self.replies.try_iter().collect()
     }
 }
 
-impl Drop for Artist {
+impl Drop for RenderThread {
     fn drop(&mut self) {
         self.shared.opening.fetch_add(1, Ordering::SeqCst);
         self.shared.want(|wanted| wanted.quits = true);
@@ -318,13 +318,13 @@ impl Drop for Artist {
 }
 
 /// Says what loading is at.
-struct Told<'a, F: Fn(Reply)> {
+struct LoadingReplies<'a, F: Fn(Reply)> {
     shared: &'a Shared,
     number: u64,
     tell: &'a F,
 }
 
-impl<F: Fn(Reply) + Sync> load::Progress for Told<'_, F> {
+impl<F: Fn(Reply) + Sync> load::Progress for LoadingReplies<'_, F> {
     fn is_cancelled(&self) -> bool {
         self.shared.opening.load(Ordering::SeqCst) != self.number
     }
@@ -381,7 +381,7 @@ fn renewed(studio: &Studio, spec: &CitySpec) -> Result<Studio, RenderError> {
     Ok(again)
 }
 
-/// Of a panic, what people can do with it.
+/// The message about a panic, with what people can do.
 fn our_mistake(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
     format!("this is a mistake of Veduta itself, please report it: {}", text.unwrap_or("it does not say which"))
@@ -396,7 +396,7 @@ fn beside_the_window<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// What to do next.
+/// The next thing to do.
 enum Task {
     City(Box<Loaded>),
     Effects(Vec<PathBuf>),
@@ -407,8 +407,8 @@ enum Task {
     Quit,
 }
 
-/// The artist's side.
-struct Painter {
+/// The side of the thread.
+struct Worker {
     shared: Arc<Shared>,
     sender: Sender<Reply>,
     notify: Notify,
@@ -416,13 +416,13 @@ struct Painter {
     spec: CitySpec,
     /// Where overlays stand, and in pictures of which size.
     standing: (Standing, [u32; 2]),
-    /// What could be drawn better once nothing else is wanted.
+    /// A picture that could be drawn better once nothing else is wanted.
     refine: Option<Draw>,
     /// Which of [`SCALES`].
     scale: usize,
 }
 
-impl Painter {
+impl Worker {
     fn new(shared: Arc<Shared>, sender: Sender<Reply>, notify: Notify) -> Self {
         Self {
             shared,
@@ -482,7 +482,7 @@ impl Painter {
         }
     }
 
-    /// A mistake of ours is told, and the next picture is drawn with all things new.
+    /// A mistake of ours is reported, and the next picture is drawn with all things new.
     fn guarded(&mut self, work: impl FnOnce(&mut Self)) {
         let Err(panic) = catch_unwind(AssertUnwindSafe(|| work(self))) else { return };
         (self.refine, self.standing) = (None, Default::default());
@@ -541,7 +541,7 @@ impl Painter {
         }
     }
 
-    /// A graphics card that went away is asked for once more, before anybody hears of it.
+    /// A GPU that went away is asked for once more, before that is reported.
     fn with_studio<T>(
         &mut self,
         work: impl Fn(&mut Studio, &mut Standing) -> Result<T, RenderError>,
@@ -593,7 +593,7 @@ impl Painter {
             }
         }
         if is_refined && let Some(studio) = &self.studio {
-            // For who walks.
+            // For a person that walks.
             studio.find_triangles();
         }
         self.refine = still.then(|| draw.clone());
@@ -634,15 +634,15 @@ impl Painter {
 mod tests {
     use super::*;
 
-    /// Who draws the built-in city.
-    fn painter() -> (Painter, Receiver<Reply>) {
+    /// A worker that draws the built-in city.
+    fn worker() -> (Worker, Receiver<Reply>) {
         let (sender, replies) = channel();
-        let mut painter = Painter::new(Arc::default(), sender, Arc::new(|| {}));
+        let mut worker = Worker::new(Arc::default(), sender, Arc::new(|| {}));
         let spec = CitySpec { files: vec!["builtin:square".into()], ..CitySpec::default() };
         let (model, stats) = load::load_with_stats(&spec.files, &LoadOptions::default(), &load::Quiet).unwrap();
-        painter.set_up(Loaded { model, spec, reading: LoadOptions::default(), stats });
+        worker.set_up(Loaded { model, spec, reading: LoadOptions::default(), stats });
         assert!(replies.try_iter().any(|reply| matches!(reply, Reply::Opened(_))));
-        (painter, replies)
+        (worker, replies)
     }
 
     fn draw() -> Draw {
@@ -650,8 +650,8 @@ mod tests {
         Draw { scene: Arc::default(), size, meant_for: size, is_moving: false, is_measured: false }
     }
 
-    fn picture(painter: &mut Painter, replies: &Receiver<Reply>) -> Vec<[u8; 4]> {
-        painter.frame(draw(), false);
+    fn picture(worker: &mut Worker, replies: &Receiver<Reply>) -> Vec<[u8; 4]> {
+        worker.frame(draw(), false);
         match replies.try_iter().next() {
             Some(Reply::Frame(frame)) => frame.rgba,
             other => panic!("{other:?}"),
@@ -660,30 +660,30 @@ mod tests {
 
     #[test]
     fn a_device_that_goes_away_is_replaced() {
-        let (mut painter, replies) = painter();
-        let before = picture(&mut painter, &replies);
-        painter.studio.as_ref().expect("a city").renderer.gpu.device.destroy();
-        assert_eq!(picture(&mut painter, &replies), before);
+        let (mut worker, replies) = worker();
+        let before = picture(&mut worker, &replies);
+        worker.studio.as_ref().expect("a city").renderer.gpu.device.destroy();
+        assert_eq!(picture(&mut worker, &replies), before);
     }
 
     #[test]
     fn a_mistake_of_ours_is_told_and_the_next_picture_drawn() {
-        let (mut painter, replies) = painter();
-        let before = picture(&mut painter, &replies);
-        painter.guarded(|own| {
+        let (mut worker, replies) = worker();
+        let before = picture(&mut worker, &replies);
+        worker.guarded(|own| {
             own.standing.1 = [1, 1];
             panic!("two and two");
         });
-        let told: Vec<Reply> = replies.try_iter().collect();
-        assert!(matches!(&told[..], [Reply::NotDrawn(text)] if text.contains("two and two")), "{told:?}");
-        assert_eq!(picture(&mut painter, &replies), before);
+        let answers: Vec<Reply> = replies.try_iter().collect();
+        assert!(matches!(&answers[..], [Reply::NotDrawn(text)] if text.contains("two and two")), "{answers:?}");
+        assert_eq!(picture(&mut worker, &replies), before);
     }
 
     #[test]
     fn what_is_not_wanted_any_more_is_not_loaded() {
         let shared = Shared::default();
-        let told = Told { shared: &shared, number: 1, tell: &drop::<Reply> };
-        let error = load::load(&["builtin:square".into()], &LoadOptions::default(), &told).unwrap_err();
+        let replies = LoadingReplies { shared: &shared, number: 1, tell: &drop::<Reply> };
+        let error = load::load(&["builtin:square".into()], &LoadOptions::default(), &replies).unwrap_err();
         assert!(error.to_string().contains("cancelled"), "{error}");
     }
 }

@@ -1,4 +1,4 @@
-//! Geometries between reading and triangulation: flat, one list per kind of number for the whole city.
+//! Packed staging of geometries between reading and triangulation: flat, one list per kind of number for the whole city.
 //!
 //! A city has tens of thousands of geometries of a dozen polygons; lists of their own would cost more than what is in
 //! them.
@@ -14,9 +14,9 @@ use crate::city::{
     model::Lod,
 };
 
-/// Everything that was read and waits.
+/// The geometries that were read and are not triangulated yet.
 #[derive(Debug, Default)]
-pub(super) struct Shelf {
+pub(super) struct PackedStaging {
     pub(super) parts: Vec<Part>,
     pub(super) pools: Vec<Arc<Pool>>,
     all: Polygons,
@@ -26,7 +26,7 @@ pub(super) struct Shelf {
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     pub(super) object: u32,
-    /// Index into [`Shelf::pools`].
+    /// Index into [`PackedStaging::pools`].
     pub(super) pool: u32,
     pub(super) lod: Lod,
     pub(super) solid: bool,
@@ -39,7 +39,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// How many polygons it has.
+    /// The number of its polygons.
     pub(super) fn polygon_count(&self) -> usize {
         self.polygon_ends.len()
     }
@@ -68,7 +68,7 @@ pub(super) struct Slices<'a> {
     pub(super) normals: &'a [[f32; 3]],
 }
 
-impl Shelf {
+impl PackedStaging {
     /// Appends a geometry; `false` when it is one too many for 32-bit ranges.
     pub(super) fn add(&mut self, raw: RawGeometry) -> bool {
         let RawGeometry { object, lod, solid, pool, polygons } = raw;

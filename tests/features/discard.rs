@@ -1,4 +1,4 @@
-//! Hiding effects: what is there afterwards, against rays in f64; shadows, and both back ends.
+//! Effects that discard parts of the city: what is there afterwards, against rays in f64; shadows, and both back ends.
 
 use std::collections::BTreeMap;
 

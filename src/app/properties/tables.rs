@@ -1,0 +1,308 @@
+//! Tables of scene-file keys: a widget for each key, and a menu of those that are not given.
+
+use eframe::egui::{self, Ui};
+use toml::{Table as TomlTable, Value};
+
+use crate::{
+    app::properties::{
+        edits::{Change, Drafts, Edits, To},
+        kinds::{of_kind, of_other_kind},
+        values::value_of,
+        widget::{Setting, Takes, widget},
+    },
+    figure::scene_file::{
+        best_view::VIEWS,
+        deformation::STEPS,
+        keys::{Key, Kind, Table},
+        overlay::OVERLAY,
+        shape_keys::SHAPES,
+        test_keys::TESTS,
+    },
+    shader::effect::{self, Fallback},
+};
+
+/// Words that only a person has: what is written on figures.
+const WORDS: &[&str] = &["title", "caption"];
+
+/// Which keys of a table have a widget.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// Those that are given.
+    Given,
+    /// Those too whose default is a value.
+    All,
+}
+
+/// Tables of one kind, each under its name, with a button that takes it away, and one for another.
+pub fn tables(ui: &mut Ui, edits: &mut Edits, key: &Key, keys: &'static Table, value: &Value, path: &str) {
+    let list = value.as_array().map_or(&[][..], Vec::as_slice);
+    for (i, own) in list.iter().enumerate() {
+        let Some(inner) = own.as_table() else { continue };
+        let at = format!("{path}.{i}");
+        let name = ["name", "path", "effect"].iter().find_map(|key| inner.get(*key).and_then(Value::as_str));
+        let name = name.map_or_else(|| format!("{} {}", title_of(keys.name), i + 1), str::to_owned);
+        egui::CollapsingHeader::new(name).id_salt(&at).show(ui, |ui| {
+            table(ui, edits, keys, Shown::Given, inner, &at);
+            if ui.small_button("Take it away").clicked() {
+                edits.push(at.clone(), To::Nothing);
+            }
+        });
+        wrong(ui, edits.drafts, &at);
+    }
+    // For a point of interest there is a better way: the one in the example is in no city.
+    let example = value_of(key.example).and_then(|all| all.as_array().and_then(|all| all.first().cloned()));
+    if let Some(example) = example.filter(|_| key.name != "poi")
+        && ui.small_button(format!("Add {}", keys.name)).on_hover_text(keys.doc).clicked()
+    {
+        edits.push(format!("{path}.{}", list.len()), To::Value(example));
+    }
+    wrong(ui, edits.drafts, &format!("{path}.{}", list.len()));
+}
+
+/// A table that is one of several kinds, with a list to choose another from.
+fn kind_of_several(ui: &mut Ui, edits: &mut Edits, family: &'static [Table], given: &TomlTable, path: &str) {
+    let kind = given.get("kind").and_then(Value::as_str).unwrap_or("");
+    let Some(keys) = of_kind(family, kind) else { return };
+    ui.horizontal(|ui| {
+        let label = ui.label("Kind").on_hover_text(keys.doc).id;
+        let shown = egui::ComboBox::from_id_salt((path, "kind")).selected_text(kind).show_ui(ui, |ui| {
+            for table in family {
+                if ui.selectable_label(table.name == keys.name, table.name).on_hover_text(table.doc).clicked() {
+                    let to = To::Value(of_other_kind(table, given));
+                    edits.push(path.to_owned(), to);
+                }
+            }
+        });
+        shown.response.labelled_by(label);
+    });
+    table(ui, edits, keys, Shown::Given, given, path);
+}
+
+/// The keys of a table that are shown, and a menu of the others.
+pub fn table(ui: &mut Ui, edits: &mut Edits, keys: &Table, shown: Shown, given: &TomlTable, path: &str) {
+    let shows_all = shown == Shown::All;
+    let mut absent = Vec::new();
+    // What kind of thing a lens is, is chosen when it is made; of the others it is chosen in the list above.
+    // And an overlay stays with its lens.
+    let is_chosen = |key: &&Key| key.name != "kind" && !(keys.name == OVERLAY.name && key.name == "lens");
+    for key in keys.keys.iter().filter(is_chosen) {
+        match given.get(key.name) {
+            Some(value) => field(ui, edits, key, value, true, &format!("{path}.{}", key.name)),
+            // Words that only a person has: empty until they are written.
+            None if shows_all && WORDS.contains(&key.name) => {
+                let empty = Value::String(String::new());
+                field(ui, edits, key, &empty, false, &format!("{path}.{}", key.name));
+            }
+            None => match value_of(key.default).filter(|_| shows_all && !matches!(key.kind, Kind::Background)) {
+                Some(value) => field(ui, edits, key, &value, false, &format!("{path}.{}", key.name)),
+                None => absent.push(key),
+            },
+        }
+    }
+    if absent.is_empty() {
+        return;
+    }
+    ui.menu_button("More…", |ui| {
+        egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+            for key in absent {
+                let hint = format!(
+                    "{}\nWithout it: {}",
+                    key.doc,
+                    if key.default.is_empty() { "must be given" } else { key.default }
+                );
+                if ui.button(key.name).on_hover_text(hint).clicked() {
+                    ui.close();
+                    edits.push(format!("{path}.{}", key.name), To::Typed(key.example.to_owned()));
+                }
+            }
+        });
+    })
+    .response
+    .on_hover_text("What else can be said");
+}
+
+/// Name, widget, and a button that takes it away.
+fn field(ui: &mut Ui, edits: &mut Edits, key: &Key, value: &Value, is_given: bool, path: &str) {
+    let hint = if key.unit.is_empty() { key.doc.to_owned() } else { format!("{} ({})", key.doc, key.unit) };
+    let own_table = match key.kind {
+        Kind::Table(table) => Some(table),
+        Kind::WordOrTable(_, table) if value.is_table() => Some(table),
+        _ => None,
+    };
+    let family = match key.kind {
+        Kind::Shape => Some(SHAPES),
+        Kind::Test => Some(TESTS),
+        Kind::View => Some(VIEWS),
+        _ => None,
+    };
+    let removable = is_given && !key.default.is_empty() && key.name != "name";
+    if let (Some(keys), Some(inner)) = (own_table, value.as_table()) {
+        egui::CollapsingHeader::new(title_of(key.name)).id_salt(path).default_open(true).show(ui, |ui| {
+            table(ui, edits, keys, Shown::Given, inner, path);
+        });
+        return;
+    }
+    if let (Some(family), Some(inner)) = (family, value.as_table()) {
+        egui::CollapsingHeader::new(title_of(key.name)).id_salt(path).default_open(true).show(ui, |ui| {
+            kind_of_several(ui, edits, family, inner, path);
+        });
+        return;
+    }
+    match (key.kind, value) {
+        (Kind::Effects, _) => return effects(ui, edits, key, value, path),
+        (Kind::Tables(keys), Value::Array(_)) => {
+            ui.label(title_of(key.name)).on_hover_text(hint);
+            ui.indent(path, |ui| tables(ui, edits, key, keys, value, path));
+            return;
+        }
+        (Kind::Steps, Value::Array(steps)) => {
+            ui.label(title_of(key.name)).on_hover_text(hint);
+            for (i, step) in steps.iter().enumerate() {
+                if let Some(inner) = step.as_table() {
+                    ui.indent((path, i), |ui| {
+                        kind_of_several(ui, edits, STEPS, inner, &format!("{path}.{i}"));
+                    });
+                }
+            }
+            ui.menu_button("Add step", |ui| {
+                for table in STEPS {
+                    if ui.button(table.name).on_hover_text(table.doc).clicked() {
+                        ui.close();
+                        let to = To::Value(of_other_kind(table, &TomlTable::new()));
+                        edits.push(format!("{path}.{}", steps.len()), to);
+                    }
+                }
+            });
+            return;
+        }
+        _ => {}
+    }
+    ui.horizontal(|ui| {
+        let label = ui.label(title_of(key.name)).on_hover_text(&hint);
+        let setting = Setting { path, unit: key.unit, hint: "", label: label.id };
+        widget(ui, edits, Takes::of(&key.kind), value, &setting);
+        if removable && ui.small_button("×").on_hover_text(format!("Take it away: {}", key.default)).clicked() {
+            edits.push(path.to_owned(), To::Nothing);
+        }
+    });
+    wrong(ui, edits.drafts, path);
+}
+
+/// Effects in order, with their parameters, and a menu of all that there are.
+fn effects(ui: &mut Ui, edits: &mut Edits, key: &Key, value: &Value, path: &str) {
+    let list = value.as_array().cloned().unwrap_or_default();
+    let title = ui.label(title_of(key.name)).on_hover_text(key.doc).id;
+    let named = |used: &Value| -> (String, TomlTable) {
+        match used {
+            Value::String(name) => (name.clone(), TomlTable::new()),
+            used => {
+                let table = used.as_table().cloned().unwrap_or_default();
+                (table.get("effect").and_then(Value::as_str).unwrap_or("").to_owned(), table)
+            }
+        }
+    };
+    for (i, used) in list.iter().enumerate() {
+        let (name, table) = named(used);
+        ui.indent((path, i), |ui| {
+            ui.horizontal(|ui| {
+                let shown = egui::ComboBox::from_id_salt((path, i, "effect")).selected_text(&name).height(360.0);
+                let shown = shown.show_ui(ui, |ui| {
+                    for definition in effect::effects() {
+                        let label = ui
+                            .selectable_label(definition.name == name, &definition.name)
+                            .on_hover_text(&definition.doc);
+                        if label.clicked() && definition.name != name {
+                            edits.push(format!("{path}.{i}"), To::Value(new_effect(definition)));
+                        }
+                    }
+                });
+                shown.response.labelled_by(title);
+                if ui.small_button("×").on_hover_text("Take this effect away").clicked() {
+                    let kept = list.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, own)| own.clone());
+                    let to = To::Value(Value::Array(kept.collect()));
+                    edits.push(path.to_owned(), to);
+                }
+            });
+            let Some(definition) = effect::find(&name) else { return };
+            for parameter in &definition.parameters {
+                let given = table.get(&parameter.name).cloned();
+                let value = given.or_else(|| match &parameter.fallback {
+                    Fallback::Value(_) => value_of(&parameter.default_text()),
+                    _ => None,
+                });
+                let place = format!("{path}.{i}.{}", parameter.name);
+                ui.horizontal(|ui| {
+                    let label = ui.label(title_of(&parameter.name)).on_hover_text(&parameter.doc);
+                    let value = value.unwrap_or_else(|| Value::String(String::new()));
+                    let without = parameter.default_text();
+                    let setting = Setting { path: &place, unit: &parameter.unit, hint: &without, label: label.id };
+                    let before = edits.changes.len();
+                    widget(ui, edits, Takes::of_parameter(&parameter.kind), &value, &setting);
+                    // An effect that was only a name becomes a table.
+                    for change in edits.changes.split_off(before) {
+                        let mut table = table.clone();
+                        table.insert("effect".to_owned(), Value::String(name.clone()));
+                        let value = match change.to {
+                            To::Value(value) => Some(value),
+                            To::Typed(text) => {
+                                let Some(value) = value_of(&text) else {
+                                    edits.drafts.wrong.insert(place.clone(), format!("{text} is not a value"));
+                                    continue;
+                                };
+                                Some(value)
+                            }
+                            To::Nothing => None,
+                        };
+                        match value {
+                            Some(value) => table.insert(parameter.name.clone(), value),
+                            None => table.remove(&parameter.name),
+                        };
+                        let to = To::Value(Value::Table(table));
+                        edits.changes.push(Change { path: format!("{path}.{i}"), to, is_held: change.is_held });
+                    }
+                });
+                wrong(ui, edits.drafts, &place);
+            }
+            wrong(ui, edits.drafts, &format!("{path}.{i}"));
+        });
+    }
+    ui.horizontal(|ui| {
+        ui.menu_button("Add effect", |ui| {
+            egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+                for definition in effect::effects() {
+                    if ui.button(&definition.name).on_hover_text(&definition.doc).clicked() {
+                        ui.close();
+                        edits.push(format!("{path}.{}", list.len()), To::Value(new_effect(definition)));
+                    }
+                }
+            });
+        });
+    });
+    wrong(ui, edits.drafts, path);
+}
+
+fn new_effect(definition: &effect::EffectDefinition) -> Value {
+    Value::String(definition.name.clone())
+}
+
+/// Shows what was wrong with the text for a key, if anything was.
+fn wrong(ui: &mut Ui, drafts: &Drafts, path: &str) {
+    if let Some(problem) = drafts.wrong.get(path) {
+        ui.colored_label(ui.visuals().error_fg_color, problem);
+    }
+}
+
+/// The name of a key as people read it.
+pub fn title_of(name: &str) -> String {
+    match name {
+        "poi" => return "Point of interest".to_owned(),
+        "fov_deg" => return "Field of view".to_owned(),
+        _ => {}
+    }
+    // The widget shows degrees.
+    let mut text = name.trim_end_matches("_deg").replace('_', " ");
+    if let Some(first) = text.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    text
+}
