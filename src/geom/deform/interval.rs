@@ -2,10 +2,9 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use crate::geom::deform::{
-    Mapped,
-    number::{Matrix, Number, Vector},
-};
+use glam::{DMat3, DVec3};
+
+use crate::geom::deform::number::{Matrix, Number, Vector};
 
 /// How far sums of a few numbers about 1, and the platform's sine and cosine, may be off: a few ulps.
 const UNIT_ERROR: f64 = 1e-15;
@@ -213,8 +212,13 @@ impl Number for Interval {
         }
     }
 
-    fn of_map(mapped: &Mapped, _place: &Vector<Self>) -> (Vector<Self>, Matrix<Self>) {
-        mapped.bounds()
+    fn of_map(
+        _jet: impl Fn(DVec3) -> (DVec3, DMat3),
+        most: f64,
+        _place: &Vector<Self>,
+    ) -> (Vector<Self>, Matrix<Self>) {
+        // Nothing is known of how it changes.
+        ([Self::new(-most, most); 3], [[Self::EVERYTHING; 3]; 3])
     }
 
     fn smooth(self) -> Self {

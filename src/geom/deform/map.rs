@@ -4,11 +4,6 @@ use std::{fmt::Debug, sync::Arc};
 
 use glam::{DMat3, DVec3};
 
-use crate::geom::deform::{
-    Interval,
-    number::{Matrix, Vector},
-};
-
 /// A map of the lens frame.
 pub trait Map: Debug + Send + Sync {
     /// The name of its handler.
@@ -72,10 +67,9 @@ impl Mapped {
         (out * self.strength, rows * self.strength)
     }
 
-    /// What is sure of it everywhere.
-    pub(super) fn bounds(&self) -> (Vector<Interval>, Matrix<Interval>) {
-        let reach = self.reach * self.strength;
-        ([Interval::new(-reach, reach); 3], [[Interval::EVERYTHING; 3]; 3])
+    /// How far a place is moved along each axis at most, metres.
+    pub(super) fn most(&self) -> f64 {
+        self.reach * self.strength
     }
 
     /// Half of how far apart places are of which the GPU makes the derivative, metres.

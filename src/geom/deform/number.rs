@@ -2,9 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use glam::DVec3;
-
-use crate::geom::deform::Mapped;
+use glam::{DMat3, DVec3};
 
 /// What a formula needs of a number. The f64 gives one value; an [`Interval`](super::Interval) holds the values for all numbers in its arguments.
 /// At kinks an f64 takes the derivative of the inner side.
@@ -37,8 +35,8 @@ pub(super) trait Number:
     /// `then` where this is at most `bound`, else `otherwise`; an interval across the bound holds both.
     fn up_to(self, bound: f64, then: impl FnOnce(Self) -> Self, otherwise: impl FnOnce(Self) -> Self) -> Self;
 
-    /// A user's map at a place, and its derivative.
-    fn of_map(mapped: &Mapped, place: &Vector<Self>) -> (Vector<Self>, Matrix<Self>);
+    /// A map that is known at places alone, and its derivative (columns: by x, y, z); `most`: how far anything goes along an axis.
+    fn of_map(jet: impl Fn(DVec3) -> (DVec3, DMat3), most: f64, place: &Vector<Self>) -> (Vector<Self>, Matrix<Self>);
 
     /// 3q² − 2q³ of a number in 0..=1: from 0 to 1, level at both ends.
     fn smooth(self) -> Self {
@@ -111,8 +109,8 @@ impl Number for f64 {
         if self <= bound { then(self) } else { otherwise(self) }
     }
 
-    fn of_map(mapped: &Mapped, place: &Vector<Self>) -> (Vector<Self>, Matrix<Self>) {
-        let (way, slope) = mapped.jet(DVec3::from(*place));
+    fn of_map(jet: impl Fn(DVec3) -> (DVec3, DMat3), _most: f64, place: &Vector<Self>) -> (Vector<Self>, Matrix<Self>) {
+        let (way, slope) = jet(DVec3::from(*place));
         (way.to_array(), slope.transpose().to_cols_array_2d())
     }
 }

@@ -189,7 +189,7 @@ impl Operator {
                 ([zero, dy, dz], rows)
             }
             Self::Open(opening) => opening.jet(p),
-            Self::Map(mapped) => S::of_map(mapped, p),
+            Self::Map(mapped) => S::of_map(|place| mapped.jet(place), mapped.most(), p),
         }
     }
 

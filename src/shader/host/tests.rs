@@ -95,6 +95,8 @@ fn a_region_gives_a_number_and_its_gradient() {
 }
 
 proptest! {
+    #![proptest_config(crate::seeds::config())]
+
     /// The steps of the program as the GPU has them are those of the host, which are written twice.
     #[test]
     fn steps_of_the_program_are_what_their_twins_are(
