@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use crate::{
     geom::{
         Aabb, Volume,
         combination::{self, Operation},
-        shape::flat::ENDLESS_M,
+        shape::{OrientedBox, Rows, RowsEye, flat::ENDLESS_M},
     },
     lens::PlacedSprite,
-    render::{flat, layout, solids::SolidPlace},
+    render::{layout, solids::SolidPlace},
     shader::{Form, LensTest},
     view::View,
 };
@@ -316,7 +316,8 @@ impl Body {
             // The box around them stands for them where it matters what a ray goes through.
             Leaf::Members(members) => {
                 let half = 0.5 * members.bounds.size();
-                let around = Volume::Box { center: members.bounds.center(), half, rotation: glam::DQuat::IDENTITY };
+                let around =
+                    Volume::Box(OrientedBox { center: members.bounds.center(), half, rotation: glam::DQuat::IDENTITY });
                 let figures = PlacedLeaf::from(Leaf::Volume(around)).figures(view, &mut Vec::new());
                 let test = leaf.test_number();
                 (layout::Region { test, ..figures }, leaf.place.first as f32, then.clone())
@@ -387,78 +388,22 @@ impl PlacedLeaf {
 
     /// Its figures for an eye; its planes are appended to `planes`.
     pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
-        let view_from_world = view.basis.view_from_world();
-        let eye = view.camera.eye;
-        let place = |p: DVec3| (view_from_world * (p - eye)).as_vec3().to_array();
-        let turn = |v: DVec3| (view_from_world * v).as_vec3();
-        let row = |v: DVec3, w: f64| turn(v).extend(w as f32).to_array();
-        let first = self.place.first;
-        let mut out = layout::Region { test: self.test_number(), ..Default::default() };
-        let volume = match &self.leaf {
-            Leaf::Members(_) => {
-                out.b[0] = first as f32;
-                return out;
-            }
+        let test = self.test_number();
+        let rows = match &self.leaf {
+            Leaf::Members(_) => Rows { b: [self.place.first as f32, 0.0, 0.0, 0.0], ..Rows::default() },
             // Its rows stand elsewhere (`render::own_sprites`).
-            Leaf::Sprite(_) => return out,
-            Leaf::Volume(volume) => volume,
+            Leaf::Sprite(_) => Rows::default(),
+            Leaf::Volume(volume) => {
+                let eye = RowsEye {
+                    eye: view.camera.eye,
+                    view_from_world: view.basis.view_from_world(),
+                    is_orthographic: view.is_orthographic(),
+                    near_m: view.camera.near_m,
+                    stored: [self.place.first, self.place.near],
+                };
+                volume.rows(&eye, planes)
+            }
         };
-        match volume {
-            Volume::Sphere { center, radius } => {
-                out.a = place(*center);
-                out.b[0] = *radius as f32;
-            }
-            Volume::Box { center, half, rotation } => {
-                let axes = DMat3::from_quat(*rotation);
-                out.a = place(*center);
-                out.b = row(axes.x_axis, half.x);
-                out.c = row(axes.y_axis, half.y);
-                out.d = row(axes.z_axis, half.z);
-            }
-            Volume::Cylinder { center, radius, half, axis } => {
-                out.a = place(*center);
-                out.b[0] = *radius as f32;
-                out.d = row(*axis, *half);
-            }
-            Volume::Ellipsoid { center, radii, rotation } => {
-                let axes = DMat3::from_quat(*rotation);
-                out.a = place(*center);
-                // In its own measure it is a ball of radius 1.
-                out.b = row(axes.x_axis / radii.x, 0.0);
-                out.c = row(axes.y_axis / radii.y, 0.0);
-                out.d = row(axes.z_axis / radii.z, 0.0);
-            }
-            Volume::Frustum { center, radii: [bottom, top], half, axis } => {
-                out.a = place(*center);
-                out.b[0] = (0.5 * (bottom + top)) as f32;
-                out.c[3] = ((top - bottom) / (2.0 * half)) as f32;
-                out.d = row(*axis, *half);
-            }
-            Volume::Solid(placed) => {
-                let axes = DMat3::from_quat(placed.rotation);
-                out.a = place(placed.at);
-                out.b = row(axes.x_axis, f64::from(first));
-                out.c = row(axes.y_axis, f64::from(self.place.near));
-                out.d = row(axes.z_axis, 0.0);
-                if !view.is_orthographic() {
-                    let own = placed.local(eye);
-                    let near = DVec3::splat(view.camera.near_m);
-                    let around = placed.solid.bounds();
-                    let may_touch = own.cmpge(around.min - near).all() && own.cmple(around.max + near).all();
-                    let is_in_doubt = may_touch && placed.solid.distance(own) < view.camera.near_m;
-                    // A quarter more says that the eye is all but on a face.
-                    out.d[3] = placed.solid.winding(own) as f32 + if is_in_doubt { 0.25 } else { 0.0 };
-                }
-            }
-            Volume::Flat(flat) => flat::figures(flat, view, &mut out, planes),
-            Volume::Convex(hull) => {
-                let (center, faces) = hull.planes();
-                out.b = [planes.len() as f32, faces.len() as f32, 0.0, 0.0];
-                planes.extend(faces.iter().map(|&(normal, offset)| {
-                    turn(normal).extend((offset + normal.dot(center - eye)) as f32).to_array()
-                }));
-            }
-        }
-        out
+        layout::Region { a: rows.a, test, b: rows.b, c: rows.c, d: rows.d }
     }
 }

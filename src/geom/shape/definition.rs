@@ -6,9 +6,11 @@ use crate::geom::shape::{
     corridor,
     error::ShapeError,
     flat::{Flat, FlatFigure, Sightlines},
+    form::{
+        Volume, cylinder::Cylinder, ellipsoid::Ellipsoid, frustum::Frustum, oriented_box::OrientedBox, sphere::Sphere,
+    },
     hull::Hull,
     polytope,
-    volume::Volume,
 };
 
 /// A volume (L3), in model coordinates.
@@ -135,24 +137,24 @@ impl Shape {
             Self::Sphere { center, radius } => {
                 finite(center.is_finite() && radius.is_finite())?;
                 length("radius", *radius)?;
-                Ok(Volume::Sphere { center: *center, radius: *radius })
+                Ok(Volume::Sphere(Sphere { center: *center, radius: *radius }))
             }
             Self::Box { center, size, rotation } => {
                 finite(center.is_finite() && size.is_finite() && rotation.is_finite() && rotation.length() > 0.0)?;
                 length("size", size.min_element())?;
-                Ok(Volume::Box { center: *center, half: 0.5 * *size, rotation: rotation.normalize() })
+                Ok(Volume::Box(OrientedBox { center: *center, half: 0.5 * *size, rotation: rotation.normalize() }))
             }
             Self::Cylinder { center, radius, height, axis } => {
                 finite(center.is_finite() && radius.is_finite() && height.is_finite() && axis.is_finite())?;
                 length("radius", *radius)?;
                 length("height", *height)?;
                 let axis = axis.try_normalize().ok_or(ShapeError::NoAxis)?;
-                Ok(Volume::Cylinder { center: *center, radius: *radius, half: 0.5 * height, axis })
+                Ok(Volume::Cylinder(Cylinder { center: *center, radius: *radius, half: 0.5 * height, axis }))
             }
             Self::Ellipsoid { center, radii, rotation } => {
                 finite(center.is_finite() && radii.is_finite() && rotation.is_finite() && rotation.length() > 0.0)?;
                 length("radii", radii.min_element())?;
-                Ok(Volume::Ellipsoid { center: *center, radii: *radii, rotation: rotation.normalize() })
+                Ok(Volume::Ellipsoid(Ellipsoid { center: *center, radii: *radii, rotation: rotation.normalize() }))
             }
             Self::Frustum { center, radius, top_radius, height, axis } => {
                 let is_finite = [*radius, *top_radius, *height].iter().all(|n| n.is_finite());
@@ -161,7 +163,12 @@ impl Shape {
                 length("top_radius", *top_radius)?;
                 length("height", *height)?;
                 let axis = axis.try_normalize().ok_or(ShapeError::NoAxis)?;
-                Ok(Volume::Frustum { center: *center, radii: [*radius, *top_radius], half: 0.5 * height, axis })
+                Ok(Volume::Frustum(Frustum {
+                    center: *center,
+                    radii: [*radius, *top_radius],
+                    half: 0.5 * height,
+                    axis,
+                }))
             }
             Self::Convex { points } => Hull::new(points).map(Volume::Convex),
             Self::Polytope { planes } => polytope::between(planes).map(Volume::Convex),

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use crate::geom::{
     aabb::Aabb,
     ray::Ray,
-    shape::{definition::Shape, error::ShapeError, mesh::Mesh, span::EVERYWHERE, volume::Volume},
+    shape::{Volume, definition::Shape, error::ShapeError, mesh::Mesh, span::EVERYWHERE},
 };
 
 fn point(reach: f64) -> impl Strategy<Value = DVec3> {
