@@ -315,9 +315,9 @@ impl Body {
         let leaf = |(leaf, then): &(PlacedLeaf, Vec<Operation>)| match &leaf.leaf {
             // The box around them stands for them where it matters what a ray goes through.
             Leaf::Members(members) => {
-                let half = 0.5 * members.bounds.size();
+                let size = members.bounds.size();
                 let around =
-                    Volume::Box(OrientedBox { center: members.bounds.center(), half, rotation: glam::DQuat::IDENTITY });
+                    Volume::Box(OrientedBox { center: members.bounds.center(), size, rotation: glam::DQuat::IDENTITY });
                 let figures = PlacedLeaf::from(Leaf::Volume(around)).figures(view, &mut Vec::new());
                 let test = leaf.test_number();
                 (layout::Region { test, ..figures }, leaf.place.first as f32, then.clone())

@@ -248,7 +248,7 @@ fn boxes_and_polytopes_are_decided_as_integers_decide() {
 fn touching_volumes_have_a_point_in_common_and_no_volumes_have_none() {
     let ball = |x: f64| Volume::Sphere(Sphere { center: DVec3::new(x, 0.0, 0.0), radius: 1.0 });
     let cube = |x: f64| {
-        Volume::Box(OrientedBox { center: DVec3::new(x, 0.0, 0.0), half: DVec3::ONE, rotation: DQuat::IDENTITY })
+        Volume::Box(OrientedBox { center: DVec3::new(x, 0.0, 0.0), size: 2.0 * DVec3::ONE, rotation: DQuat::IDENTITY })
     };
     let upright = [DVec3::new(1.0, -3.0, -3.0), DVec3::new(1.0, 3.0, -3.0), DVec3::new(1.0, 0.0, 5.0)];
     for (a, b) in [(ball(0.0), ball(2.0)), (cube(0.0), cube(2.0)), (ball(0.0), cube(2.0))] {

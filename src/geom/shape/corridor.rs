@@ -29,22 +29,22 @@ pub(super) fn bodies(points: &[DVec3], width: f64, height: f64) -> Result<Vec<Vo
     }
     let radius = 0.5 * width;
     let up = 0.5 * height * DVec3::Z;
-    let cylinder = |center, half| Volume::Cylinder(Cylinder { center, radius, half, axis: DVec3::Z });
-    let mut bodies: Vec<Volume> = points.iter().map(|p| cylinder(*p, 0.5 * height)).collect();
+    let cylinder = |center, height| Volume::Cylinder(Cylinder { center, radius, height, axis: DVec3::Z });
+    let mut bodies: Vec<Volume> = points.iter().map(|p| cylinder(*p, height)).collect();
     for part in points.windows(2) {
         let (middle, way) = (part[0].midpoint(part[1]), part[1] - part[0]);
         let ground: DVec2 = way.truncate();
         let length = ground.length();
         if length < SHORTEST_M {
             if way.z != 0.0 {
-                bodies.push(cylinder(middle, 0.5 * (way.z.abs() + height)));
+                bodies.push(cylinder(middle, way.z.abs() + height));
             }
             continue;
         }
         if way.z == 0.0 {
             let rotation = DQuat::from_rotation_z(ground.y.atan2(ground.x));
-            let half = 0.5 * DVec3::new(length, width, height);
-            bodies.push(Volume::Box(OrientedBox { center: middle, half, rotation }));
+            let size = DVec3::new(length, width, height);
+            bodies.push(Volume::Box(OrientedBox { center: middle, size, rotation }));
             continue;
         }
         let aside = (radius / length * ground.perp()).extend(0.0);

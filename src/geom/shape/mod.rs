@@ -24,7 +24,7 @@ pub use definition::Shape;
 pub use error::ShapeError;
 pub use flat::{Flat, FlatFigure, Sightlines};
 pub use form::{
-    Extent, Volume, VolumeForm,
+    Extent, OfVolume, Volume, VolumeForm,
     body::{Rows, RowsEye},
     cylinder::Cylinder,
     ellipsoid::Ellipsoid,

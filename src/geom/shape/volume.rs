@@ -6,6 +6,7 @@ use crate::geom::{
     aabb::Aabb,
     ray::Ray,
     shape::{
+        error::ShapeError,
         form::{
             Extent, Volume,
             body::{Rows, RowsEye},
@@ -16,6 +17,11 @@ use crate::geom::{
 };
 
 impl Volume {
+    /// Checks what it was given by, and makes directions and turns unit.
+    pub(super) fn check(&mut self) -> Result<(), ShapeError> {
+        self.body_mut().check()
+    }
+
     /// Whether it has no volume: it holds no point and no ray meets it (hard case 21).
     pub fn is_empty(&self) -> bool {
         self.body().is_empty()

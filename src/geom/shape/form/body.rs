@@ -5,12 +5,17 @@ use glam::{DMat3, DVec3, Vec3};
 use crate::geom::{
     aabb::Aabb,
     ray::Ray,
-    shape::{mesh::Mesh, motion::Motion},
+    shape::{error::ShapeError, mesh::Mesh, motion::Motion},
 };
 
 /// A form of volumes, in model coordinates. [`crate::geom::Volume`] asks it, and says of each function what it answers; only functions that say
 /// so are asked of what is empty.
 pub trait Body {
+    /// Checks what it was given by, and makes directions and turns unit; asked of anything.
+    fn check(&mut self) -> Result<(), ShapeError> {
+        Ok(())
+    }
+
     /// Whether it has no volume; asked of anything.
     fn is_empty(&self) -> bool;
 

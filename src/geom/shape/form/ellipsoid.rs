@@ -7,8 +7,10 @@ use crate::geom::{
     ray::Ray,
     shape::{
         build,
+        error::ShapeError,
         form::{
             body::{Body, Rows, RowsEye},
+            given::{self, Field, Given, Quantity, Value, named},
             sphere::Sphere,
         },
         mesh::Mesh,
@@ -31,7 +33,28 @@ pub struct Ellipsoid {
 
 const UNIT_BALL: Sphere = Sphere { center: DVec3::ZERO, radius: 1.0 };
 
+impl Given for Ellipsoid {
+    named!("ellipsoid", "A ball stretched along its own axes.");
+    const DEFAULT: Self = Self { center: DVec3::ZERO, radii: DVec3::ZERO, rotation: DQuat::IDENTITY };
+    const FIELDS: &'static [Field<Self>] = &[
+        Field::center(|own| Value::Vector(&mut own.center)),
+        Field {
+            name: "radii",
+            quantity: Quantity::Lengths,
+            default: "",
+            doc: "Half its extent along its own x, y, z.",
+            example: "[80.0, 40.0, 20.0]",
+            at: |own| Value::Vector(&mut own.radii),
+        },
+        Field::rotation(|own| Value::Turn(&mut own.rotation)),
+    ];
+}
+
 impl Body for Ellipsoid {
+    fn check(&mut self) -> Result<(), ShapeError> {
+        given::check(self)
+    }
+
     fn is_empty(&self) -> bool {
         self.radii.min_element() <= 0.0
     }

@@ -6,6 +6,7 @@ pub mod cylinder;
 pub mod ellipsoid;
 mod flat;
 pub mod frustum;
+pub mod given;
 pub mod oriented_box;
 mod solid;
 pub mod sphere;
@@ -29,6 +30,25 @@ macro_rules! volume_forms {
     };
 }
 pub(crate) use volume_forms;
+
+/// Forms that scene files give by their fields ([`given::Given`]), in the order of the docs. Handed to a macro, as [`volume_forms`].
+macro_rules! given_forms {
+    ($take:ident) => {
+        $take! {
+            $crate::geom::shape::form::sphere::Sphere;
+            $crate::geom::shape::form::ellipsoid::Ellipsoid;
+            $crate::geom::shape::form::oriented_box::OrientedBox;
+            $crate::geom::shape::form::cylinder::Cylinder;
+        }
+    };
+}
+pub(crate) use given_forms;
+
+/// A type that is the body of a form.
+pub trait OfVolume: Sized {
+    /// A volume's body, if it is of this form.
+    fn of_volume(volume: &Volume) -> Option<&Self>;
+}
 
 /// What a form extends to, and so how it is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,6 +91,23 @@ macro_rules! declare {
                 }
             }
         }
+
+        $(
+            impl From<$body> for Volume {
+                fn from(body: $body) -> Self {
+                    Self::$form(body)
+                }
+            }
+
+            impl OfVolume for $body {
+                fn of_volume(volume: &Volume) -> Option<&Self> {
+                    match volume {
+                        Volume::$form(body) => Some(body),
+                        _ => None,
+                    }
+                }
+            }
+        )*
 
         /// Forms of volumes.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

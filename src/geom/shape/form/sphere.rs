@@ -7,7 +7,11 @@ use crate::geom::{
     ray::Ray,
     shape::{
         build::{self, BOUNDING_LEVEL},
-        form::body::{Body, Rows, RowsEye},
+        error::ShapeError,
+        form::{
+            body::{Body, Rows, RowsEye},
+            given::{self, Field, Given, Value, named},
+        },
         mesh::Mesh,
         motion::Motion,
         span::round,
@@ -24,7 +28,18 @@ pub struct Sphere {
     pub radius: f64,
 }
 
+impl Given for Sphere {
+    named!("sphere", "A ball.");
+    const DEFAULT: Self = Self { center: DVec3::ZERO, radius: 0.0 };
+    const FIELDS: &'static [Field<Self>] =
+        &[Field::center(|own| Value::Vector(&mut own.center)), Field::radius(|own| Value::Number(&mut own.radius))];
+}
+
 impl Body for Sphere {
+    fn check(&mut self) -> Result<(), ShapeError> {
+        given::check(self)
+    }
+
     fn is_empty(&self) -> bool {
         self.radius <= 0.0
     }
