@@ -164,7 +164,7 @@ fn edges(points: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> {
     (0..points.len()).map(|i| [points[i], points[(i + 1) % points.len()]])
 }
 
-/// How often a polygon goes around a point that is not on its border. Twin: `is_in_polygon` in `lib/shape.wgsl`.
+/// How often a polygon goes around a point that is not on its border. Twin: `is_in_polygon` in `shape/flat.wgsl`.
 fn winding(points: &[DVec2], p: DVec2) -> i32 {
     let crossing = |[a, b]: [DVec2; 2]| {
         let side = (b - a).perp_dot(p - a);
