@@ -27,6 +27,11 @@ impl Aabb {
         points.into_iter().fold(Self::EMPTY, Self::grown)
     }
 
+    /// The box that reaches so far to each side of its middle.
+    pub fn around(center: DVec3, half: DVec3) -> Self {
+        Self { min: center - half, max: center + half }
+    }
+
     /// The distance of its nearest point from a point; 0 inside.
     pub fn distance_to(&self, point: DVec3) -> f64 {
         point.distance(point.max(self.min).min(self.max))

@@ -5,7 +5,6 @@ pub mod bvh;
 pub mod combination;
 pub mod deform;
 pub mod exact;
-mod meets;
 pub mod outline;
 pub mod plane;
 pub mod ray;

@@ -5,7 +5,10 @@ use std::sync::Arc;
 use glam::{DQuat, DVec3};
 
 use crate::{
-    geom::{Aabb, Ray, Volume, shape::Motion},
+    geom::{
+        Aabb, Ray, Volume,
+        shape::{Motion, OrientedBox},
+    },
     lens::handled::Handled,
     shader::{
         effect::{AskedBy, number_of},
@@ -60,7 +63,7 @@ impl OwnRegion {
 
     /// Its box.
     fn around(&self) -> Volume {
-        Volume::Box { center: self.center, half: self.half, rotation: self.rotation }
+        Volume::Box(OrientedBox { center: self.center, size: 2.0 * self.half, rotation: self.rotation })
     }
 
     /// The box along the world's axes around its own, metres.

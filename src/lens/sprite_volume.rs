@@ -221,7 +221,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        geom::Volume,
+        geom::{Volume, shape::Sphere},
         lens::sprite::{Format, Mapping},
         view::Camera,
     };
@@ -239,7 +239,7 @@ mod tests {
     fn balls(view: &View) -> SpriteVolume {
         let ball = |along: f64| {
             let center = view.ray(DVec2::new(19.0, 16.0)).at(along);
-            Volume::Sphere { center, radius: 5.0 }
+            Volume::Sphere(Sphere { center, radius: 5.0 })
         };
         let both = [ball(25.0), ball(40.0)];
         let texels = (0..30).flat_map(|y| (0..40).map(move |x| (x, y)));

@@ -8,10 +8,10 @@ use crate::{
     geom::{
         Aabb, Volume,
         combination::{self, Operation},
-        shape::flat::ENDLESS_M,
+        shape::{OrientedBox, Rows, RowsEye, flat::ENDLESS_M},
     },
     lens::{OwnRegion, PlacedSprite},
-    render::{flat, layout, solids::SolidPlace},
+    render::{layout, solids::SolidPlace},
     shader::{Form, LensTest},
     view::View,
 };
@@ -320,8 +320,9 @@ impl Body {
         let leaf = |(leaf, then): &(PlacedLeaf, Vec<Operation>)| match &leaf.leaf {
             // The box around them stands for them where it matters what a ray goes through.
             Leaf::Members(members) => {
-                let half = 0.5 * members.bounds.size();
-                let around = Volume::Box { center: members.bounds.center(), half, rotation: glam::DQuat::IDENTITY };
+                let size = members.bounds.size();
+                let around =
+                    Volume::Box(OrientedBox { center: members.bounds.center(), size, rotation: glam::DQuat::IDENTITY });
                 let figures = PlacedLeaf::from(Leaf::Volume(around)).figures(view, &mut Vec::new());
                 let test = leaf.test_number();
                 (layout::Region { test, ..figures }, leaf.place.first as f32, then.clone())
@@ -395,90 +396,41 @@ impl PlacedLeaf {
 
     /// Its figures for an eye; its planes are appended to `planes`.
     pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
-        let view_from_world = view.basis.view_from_world();
-        let eye = view.camera.eye;
-        let place = |p: DVec3| (view_from_world * (p - eye)).as_vec3().to_array();
-        let turn = |v: DVec3| (view_from_world * v).as_vec3();
-        let row = |v: DVec3, w: f64| turn(v).extend(w as f32).to_array();
-        let first = self.place.first;
-        let mut out = layout::Region { test: self.test_number(), ..Default::default() };
-        let volume = match &self.leaf {
-            Leaf::Members(_) => {
-                out.b[0] = first as f32;
-                return out;
-            }
+        let test = self.test_number();
+        let rows = match &self.leaf {
+            Leaf::Members(_) => Rows { b: [self.place.first as f32, 0.0, 0.0, 0.0], ..Rows::default() },
             // Its rows stand elsewhere (`render::own_sprites`).
-            Leaf::Sprite(_) => return out,
-            Leaf::Own(own) => {
-                let axes = DMat3::from_quat(own.rotation);
-                out.a = place(own.center);
-                out.b = row(axes.x_axis, planes.len() as f64);
-                out.c = row(axes.y_axis, 0.0);
-                out.d = row(axes.z_axis, 0.0);
-                let [x, y, z] = own.half.as_vec3().to_array();
-                planes.push([x, y, z, 0.0]);
-                let four = |four: &[f32]| std::array::from_fn(|i| four.get(i).copied().unwrap_or(0.0));
-                planes.extend(own.parameters.chunks(4).map(four));
-                return out;
+            Leaf::Sprite(_) => Rows::default(),
+            Leaf::Own(own) => return own_rows(own, view, planes, self.test_number()),
+            Leaf::Volume(volume) => {
+                let eye = RowsEye {
+                    eye: view.camera.eye,
+                    view_from_world: view.basis.view_from_world(),
+                    is_orthographic: view.is_orthographic(),
+                    near_m: view.camera.near_m,
+                    stored: [self.place.first, self.place.near],
+                };
+                volume.rows(&eye, planes)
             }
-            Leaf::Volume(volume) => volume,
         };
-        match volume {
-            Volume::Sphere { center, radius } => {
-                out.a = place(*center);
-                out.b[0] = *radius as f32;
-            }
-            Volume::Box { center, half, rotation } => {
-                let axes = DMat3::from_quat(*rotation);
-                out.a = place(*center);
-                out.b = row(axes.x_axis, half.x);
-                out.c = row(axes.y_axis, half.y);
-                out.d = row(axes.z_axis, half.z);
-            }
-            Volume::Cylinder { center, radius, half, axis } => {
-                out.a = place(*center);
-                out.b[0] = *radius as f32;
-                out.d = row(*axis, *half);
-            }
-            Volume::Ellipsoid { center, radii, rotation } => {
-                let axes = DMat3::from_quat(*rotation);
-                out.a = place(*center);
-                // In its own measure it is a ball of radius 1.
-                out.b = row(axes.x_axis / radii.x, 0.0);
-                out.c = row(axes.y_axis / radii.y, 0.0);
-                out.d = row(axes.z_axis / radii.z, 0.0);
-            }
-            Volume::Frustum { center, radii: [bottom, top], half, axis } => {
-                out.a = place(*center);
-                out.b[0] = (0.5 * (bottom + top)) as f32;
-                out.c[3] = ((top - bottom) / (2.0 * half)) as f32;
-                out.d = row(*axis, *half);
-            }
-            Volume::Solid(placed) => {
-                let axes = DMat3::from_quat(placed.rotation);
-                out.a = place(placed.at);
-                out.b = row(axes.x_axis, f64::from(first));
-                out.c = row(axes.y_axis, f64::from(self.place.near));
-                out.d = row(axes.z_axis, 0.0);
-                if !view.is_orthographic() {
-                    let own = placed.local(eye);
-                    let near = DVec3::splat(view.camera.near_m);
-                    let around = placed.solid.bounds();
-                    let may_touch = own.cmpge(around.min - near).all() && own.cmple(around.max + near).all();
-                    let is_in_doubt = may_touch && placed.solid.distance(own) < view.camera.near_m;
-                    // A quarter more says that the eye is all but on a face.
-                    out.d[3] = placed.solid.winding(own) as f32 + if is_in_doubt { 0.25 } else { 0.0 };
-                }
-            }
-            Volume::Flat(flat) => flat::figures(flat, view, &mut out, planes),
-            Volume::Convex(hull) => {
-                let (center, faces) = hull.planes();
-                out.b = [planes.len() as f32, faces.len() as f32, 0.0, 0.0];
-                planes.extend(faces.iter().map(|&(normal, offset)| {
-                    turn(normal).extend((offset + normal.dot(center - eye)) as f32).to_array()
-                }));
-            }
-        }
-        out
+        layout::Region { a: rows.a, test, b: rows.b, c: rows.c, d: rows.d }
+    }
+}
+
+/// The numbers of a user's region for an eye; its half edges and its parameters are appended to `planes`.
+fn own_rows(own: &OwnRegion, view: &View, planes: &mut Vec<[f32; 4]>, test: u32) -> layout::Region {
+    let view_from_world = view.basis.view_from_world();
+    let axes = view_from_world * DMat3::from_quat(own.rotation);
+    let row = |axis: DVec3, w: f64| axis.as_vec3().extend(w as f32).to_array();
+    let first = planes.len() as f64;
+    planes.push(own.half.as_vec3().extend(0.0).to_array());
+    let four = |four: &[f32]| std::array::from_fn(|i| four.get(i).copied().unwrap_or(0.0));
+    planes.extend(own.parameters.chunks(4).map(four));
+    layout::Region {
+        a: (view_from_world * (own.center - view.camera.eye)).as_vec3().to_array(),
+        test,
+        b: row(axes.x_axis, first),
+        c: row(axes.y_axis, 0.0),
+        d: row(axes.z_axis, 0.0),
     }
 }

@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use crate::{
-    geom::{Aabb, Volume},
+    geom::{Aabb, Volume, shape::Sphere},
     lens::Class,
     render::{
         city::Chunk,
@@ -56,7 +56,9 @@ impl Reach {
         let may_be_near = |volume: &Volume, reach: f64| {
             let radius = 0.5 * bounds.size().length();
             let apart = match volume {
-                Volume::Sphere { center, radius } => center.distance(center.clamp(bounds.min, bounds.max)) - radius,
+                Volume::Sphere(Sphere { center, radius }) => {
+                    center.distance(center.clamp(bounds.min, bounds.max)) - radius
+                }
                 // Distances change by no more than one goes.
                 _ => volume.signed_distance(bounds.center()) - radius,
             };

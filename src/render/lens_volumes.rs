@@ -7,7 +7,7 @@ use crate::{
     geom::{
         Aabb, Solid, Volume,
         combination::{Operation, Tree},
-        shape::{Motion, solid},
+        shape::{Motion, Sphere, solid},
     },
     lens::{
         Border, BorderUnit, Class, Focus, Lens, LensBody, LensSprite, OwnRegion,
@@ -139,7 +139,7 @@ fn move_leaf(leaf: &mut Leaf, lens: &Lens, tools: &mut Tools) -> Result<(), Stri
         Leaf::Volume(volume) if lens.at_rest && lens.deform.is_none() => {
             match tools.solids.moved(volume, &tools.moved.deformers)? {
                 Some(placed) => *volume = Volume::Solid(placed),
-                None => *volume = Volume::Sphere { center: volume.bounds().center(), radius: 0.0 },
+                None => *volume = Volume::Sphere(Sphere { center: volume.bounds().center(), radius: 0.0 }),
             }
         }
         Leaf::Sprite(_) if lens.at_rest => {

@@ -5,7 +5,7 @@
 use rustc_hash::FxHashSet;
 
 use crate::{
-    geom::{Aabb, Volume},
+    geom::{Aabb, Volume, shape::Sphere},
     render::volume::LensVolume,
 };
 
@@ -39,7 +39,7 @@ pub(super) fn combinations(volumes: &[LensVolume], lenses: &[u32]) -> Vec<u32> {
 /// Whether two volumes may have a place in common; `false` only where they have none.
 pub(super) fn may_meet(a: &LensVolume, b: &LensVolume) -> bool {
     let sphere = |v: &LensVolume| match v.body.volume() {
-        Some(Volume::Sphere { center, radius }) => Some((*center, *radius)),
+        Some(Volume::Sphere(Sphere { center, radius })) => Some((*center, *radius)),
         _ => None,
     };
     match sphere(a).zip(sphere(b)) {

@@ -8,7 +8,7 @@ use crate::geom::{Solid, shape::solid::Near};
 #[derive(Debug, Default)]
 pub struct SolidTable {
     solids: Vec<(Arc<Solid>, f64, SolidPlace)>,
-    /// Columns and faces as `lib/solid.wgsl` reads them, and which are near as `lib/solid-distance.wgsl` does.
+    /// Columns and faces as `shape/solid.wgsl` reads them, and which are near as `lib/solid-distance.wgsl` does.
     pub words: Vec<[u32; 4]>,
     /// Corners of all faces, own coordinates, to draw.
     pub corners: Vec<[f32; 3]>,

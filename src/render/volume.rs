@@ -1,9 +1,9 @@
 //! Lens volumes as the shader reads them: relative to the eye, in view space, rounded once from f64.
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
 use crate::{
-    geom::{Aabb, Volume},
+    geom::{Aabb, Volume, shape::Sphere},
     lens::{Border, LensBody, LensSprite},
     render::{
         body::{Body, Leaf, PlacedLeaf},
@@ -129,7 +129,7 @@ impl LensVolume {
             DVec3::new(relative.dot(view.basis.right), relative.dot(view.basis.up), view.depth(point))
         };
         let reach = self.reach_m(view);
-        if let (Some(Volume::Sphere { center, radius }), false) = (self.body.volume(), self.has_own_eye()) {
+        if let (Some(Volume::Sphere(Sphere { center, radius })), false) = (self.body.volume(), self.has_own_eye()) {
             let middle = placed(*center);
             return [middle - radius - reach, middle + radius + reach];
         }
@@ -181,29 +181,13 @@ impl LensVolume {
         let Some(volume) = self.body.volume().filter(|_| !self.has_own_eye()) else {
             return projected_corners(view, around());
         };
-        let grown = |center: DVec3, axes: DMat3, half: DVec3| corners_of_box(center, axes, half + reach);
-        let corners = match volume {
-            Volume::Sphere { center, radius } if !view.is_orthographic() => {
-                return projected_sphere(view, *center, *radius + reach);
+        match volume {
+            Volume::Sphere(Sphere { center, radius }) if !view.is_orthographic() => {
+                projected_sphere(view, *center, *radius + reach)
             }
-            Volume::Sphere { .. } => around().to_vec(),
-            Volume::Box { center, half, rotation } => grown(*center, DMat3::from_quat(*rotation), *half),
-            Volume::Cylinder { center, radius, half, axis } => {
-                let (x, y) = axis.any_orthonormal_pair();
-                grown(*center, DMat3::from_cols(x, y, *axis), DVec3::new(*radius, *radius, *half))
-            }
-            Volume::Ellipsoid { center, radii, rotation } => grown(*center, DMat3::from_quat(*rotation), *radii),
-            Volume::Frustum { center, radii: [bottom, top], half, axis } => {
-                let (x, y) = axis.any_orthonormal_pair();
-                let radius = bottom.max(*top);
-                grown(*center, DMat3::from_cols(x, y, *axis), DVec3::new(radius, radius, *half))
-            }
-            Volume::Convex(_) | Volume::Solid(_) if reach > 0.0 => around().to_vec(),
-            Volume::Convex(hull) => hull.faces().0,
-            Volume::Solid(placed) => placed.solid.bounds().corners().map(|c| placed.world(c)).to_vec(),
-            Volume::Flat(flat) => return flat::projected(flat, view).ok(),
-        };
-        projected_corners(view, corners)
+            Volume::Flat(flat) => flat::projected(flat, view).ok(),
+            _ => projected_corners(view, volume.corners_around(reach).unwrap_or_else(|| around().to_vec())),
+        }
     }
 }
 
@@ -227,11 +211,6 @@ fn projected_corners(view: &View, corners: impl IntoIterator<Item = DVec3>) -> O
         }
     }
     Some((low, high))
-}
-
-fn corners_of_box(center: DVec3, axes: DMat3, half: DVec3) -> Vec<DVec3> {
-    let sign = |i: u32, bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
-    (0..8).map(|i| center + axes * (half * DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)))).collect()
 }
 
 /// What bounds a sphere's ellipse in a perspective picture, as [`LensVolume::projected`]: in the plane of an image direction

@@ -41,7 +41,7 @@ macro_rules! files {
 }
 
 macro_rules! form_files {
-    ($($form:ident = $name:literal, $extent:ident;)*) => {
+    ($($form:ident($body:ty) = $name:literal, $extent:ident;)*) => {
         /// The file of a form.
         pub(super) fn file_of(form: VolumeForm) -> File {
             match form {

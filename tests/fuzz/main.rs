@@ -28,7 +28,10 @@ use veduta::{
         load::{LoadOptions, input, read_input},
         shown, spatial, texture,
     },
-    geom::{Aabb, Volume, shape::Motion},
+    geom::{
+        Aabb, Volume,
+        shape::{Motion, Sphere},
+    },
     lens::{
         PlacedSprite, SpriteSpace, SpriteVolume,
         sprite::{DepthCode, Format, Mapping},
@@ -79,7 +82,7 @@ fn seeds() -> Vec<Seed> {
 fn sprite() -> Vec<u8> {
     let camera = Camera::looking(DVec3::new(3.0, -9.0, 4.0), DVec3::ZERO, 0.7);
     let view = View::new(camera, [24, 16], &Aabb::EMPTY).expect("a view");
-    let ball = Volume::Sphere { center: DVec3::ZERO, radius: 2.0 };
+    let ball = Volume::Sphere(Sphere { center: DVec3::ZERO, radius: 2.0 });
     let texels = (0..16).flat_map(|y| (0..24).map(move |x| (x, y)));
     let ends = texels.flat_map(|(x, y)| {
         let both = ball.entry_exit(&view.pixel_ray(x, y)).map_or([0.0; 2], |(enter, exit)| [enter as f32, exit as f32]);

@@ -92,6 +92,7 @@ pub fn holds(shape: &Shape, p: DVec3) -> bool {
             let at = DMat3::from_cols(a, b, c).inverse() * (p - points[0]);
             at.cmpge(DVec3::ZERO).all() && at.cmple(DVec3::ONE).all()
         }
+        Shape::Form(volume) => volume.contains(p),
         Shape::Flat { .. } => {
             unreachable!("a flat lens holds what an eye sees through it; case 4 has tests of its own")
         }

@@ -19,6 +19,7 @@ mod effects;
 mod figure;
 mod focus;
 mod forms;
+mod given_keys;
 mod handled;
 pub mod keys;
 pub mod lens;

@@ -153,6 +153,14 @@ pub struct Variant<T: 'static> {
     pub is: fn(&T) -> bool,
 }
 
+impl<T> Clone for Variant<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Variant<T> {}
+
 impl<T> Variant<T> {
     /// The variant that a value is.
     pub fn of<'v>(variants: &'v [Self], value: &T) -> Option<&'v Self> {

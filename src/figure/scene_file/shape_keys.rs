@@ -8,6 +8,7 @@ use crate::{
     figure::scene_file::{
         choice::{self, CHOICE},
         forms::{Axis, Form as _, Same, Turn},
+        given_keys::{self, GIVEN},
         handled,
         keys::{FAR_M, Key, Kind, Table, key},
         node::{Data, Node},
@@ -47,59 +48,10 @@ const PARTS: Key = key(
 /// Shapes of lenses.
 pub const SHAPES: &[Table] = &tables::<_, { SHAPE_KINDS.len() }>(SHAPE_KINDS);
 
-const SHAPE_KINDS: &[Variant<Focus>] = &[
-    variant!(
-        Focus,
-        "sphere",
-        "A ball.",
-        Focus::Shape(Shape::Sphere { center: DVec3::ZERO, radius: 0.0 }),
-        Focus::Shape(Shape::Sphere { .. }),
-        &[
-            kind!("sphere", "Which shape."),
-            part!(Focus, CENTER, Same, Focus::Shape(Shape::Sphere { center, .. }) => center),
-            part!(Focus, RADIUS, Same, Focus::Shape(Shape::Sphere { radius, .. }) => radius),
-        ]
-    ),
-    variant!(
-        Focus,
-        "ellipsoid",
-        "A ball stretched along its own axes.",
-        Focus::Shape(Shape::Ellipsoid { center: DVec3::ZERO, radii: DVec3::ZERO, rotation: DQuat::IDENTITY }),
-        Focus::Shape(Shape::Ellipsoid { .. }),
-        &[
-            kind!("ellipsoid", "Which shape."),
-            part!(Focus, CENTER, Same, Focus::Shape(Shape::Ellipsoid { center, .. }) => center),
-            part!(Focus, key("radii", Kind::Lengths, "", "m", "Half its extent along its own x, y, z.", "[80.0, 40.0, 20.0]"), Same, Focus::Shape(Shape::Ellipsoid { radii, .. }) => radii),
-            part!(Focus, ROTATION, Turn, Focus::Shape(Shape::Ellipsoid { rotation, .. }) => rotation),
-        ]
-    ),
-    variant!(
-        Focus,
-        "box",
-        "A box.",
-        Focus::Shape(Shape::Box { center: DVec3::ZERO, size: DVec3::ZERO, rotation: DQuat::IDENTITY }),
-        Focus::Shape(Shape::Box { .. }),
-        &[
-            kind!("box", "Which shape."),
-            part!(Focus, CENTER, Same, Focus::Shape(Shape::Box { center, .. }) => center),
-            part!(Focus, key("size", Kind::Lengths, "", "m", "Full edges along its own x, y, z.", "[40.0, 20.0, 30.0]"), Same, Focus::Shape(Shape::Box { size, .. }) => size),
-            part!(Focus, ROTATION, Turn, Focus::Shape(Shape::Box { rotation, .. }) => rotation),
-        ]
-    ),
-    variant!(
-        Focus,
-        "cylinder",
-        "A cylinder.",
-        Focus::Shape(Shape::Cylinder { center: DVec3::ZERO, radius: 0.0, height: 0.0, axis: DVec3::Z }),
-        Focus::Shape(Shape::Cylinder { .. }),
-        &[
-            kind!("cylinder", "Which shape."),
-            part!(Focus, CENTER, Same, Focus::Shape(Shape::Cylinder { center, .. }) => center),
-            part!(Focus, RADIUS, Same, Focus::Shape(Shape::Cylinder { radius, .. }) => radius),
-            part!(Focus, HEIGHT, Same, Focus::Shape(Shape::Cylinder { height, .. }) => height),
-            part!(Focus, AXIS, Axis, Focus::Shape(Shape::Cylinder { axis, .. }) => axis),
-        ]
-    ),
+const SHAPE_KINDS: &[Variant<Focus>] = &given_keys::with::<{ GIVEN.len() + OTHERS.len() }>(OTHERS);
+
+/// Shapes with rows of their own.
+const OTHERS: &[Variant<Focus>] = &[
     variant!(
         Focus,
         "cone",

@@ -8,9 +8,9 @@
 //! for convex bodies), so either a common point is found or nothing is left. A point within [`TOUCH_M`] of a volume counts
 //! as in it: borders belong to volumes.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
-use crate::geom::{aabb::Aabb, shape::volume::Volume, triangle::clipped};
+use crate::geom::{aabb::Aabb, shape::Volume, triangle::clipped};
 
 /// The distance from a volume within which a point is taken to be on its border, metres: a thousandth of the finest lattice of city files;
 /// more for volumes of 1,000 km and beyond, by what f64 loses in them.
@@ -152,78 +152,6 @@ impl Region {
         let corners = || wide(self.slack).corners().map(|p| p - self.origin);
         let holds_all = |v: &Volume| corners().iter().all(|p| v.parting_plane(*p, self.origin).is_none());
         Some(is_inside && self.volumes.iter().all(holds_all))
-    }
-}
-
-impl Volume {
-    /// Its flat faces: it lies where n · (p − origin) ≤ d for each, n unit outwards.
-    fn flat_faces(&self, origin: DVec3) -> Vec<(DVec3, f64)> {
-        let both_ways = |center: DVec3, axis: DVec3, half: f64| {
-            [axis, -axis].map(|normal| (normal, half + normal.dot(center - origin)))
-        };
-        match self {
-            Self::Sphere { .. } | Self::Ellipsoid { .. } | Self::Flat(_) => Vec::new(),
-            Self::Box { center, half, rotation } => {
-                let axes = DMat3::from_quat(*rotation);
-                (0..3).flat_map(|i| both_ways(*center, axes.col(i), half[i])).collect()
-            }
-            Self::Cylinder { center, half, axis, .. } | Self::Frustum { center, half, axis, .. } => {
-                both_ways(*center, *axis, *half).to_vec()
-            }
-            Self::Convex(hull) => {
-                let (center, planes) = hull.planes();
-                planes.iter().map(|(normal, offset)| (*normal, offset + normal.dot(center - origin))).collect()
-            }
-            Self::Solid(placed) => {
-                let (bounds, axes) = (placed.solid.bounds(), DMat3::from_quat(placed.rotation));
-                let (center, half) = (placed.world(bounds.center()), 0.5 * bounds.size());
-                (0..3).flat_map(|i| both_ways(center, axes.col(i), half[i])).collect()
-            }
-        }
-    }
-
-    /// Where its round part does not hold `p` (relative to `origin`): a plane, as for [`Volume::flat_faces`], that all of the
-    /// part lies behind, and `p` before.
-    fn parting_plane(&self, p: DVec3, origin: DVec3) -> Option<(DVec3, f64)> {
-        match self {
-            Self::Box { .. } | Self::Convex(_) | Self::Solid(_) | Self::Flat(_) => None,
-            Self::Sphere { center, radius } => {
-                let c = *center - origin;
-                let normal = (p - c).try_normalize()?;
-                ((p - c).length_squared() > radius * radius).then(|| (normal, radius + normal.dot(c)))
-            }
-            Self::Ellipsoid { center, radii, rotation } => {
-                // Where the line to its middle leaves it, the plane that touches it.
-                let c = *center - origin;
-                let unit = rotation.conjugate() * (p - c) / *radii;
-                if unit.length_squared() <= 1.0 {
-                    return None;
-                }
-                let slope = *rotation * (unit / unit.length() / *radii);
-                let normal = slope.try_normalize()?;
-                Some((normal, 1.0 / slope.length() + normal.dot(c)))
-            }
-            Self::Cylinder { center, radius, axis, .. } => {
-                let c = *center - origin;
-                let across = (p - c).reject_from_normalized(*axis);
-                let normal = across.try_normalize()?;
-                (across.length_squared() > radius * radius).then(|| (normal, radius + normal.dot(c)))
-            }
-            Self::Frustum { center, radii, half, axis } => {
-                // |across| ≤ middle + slope · along is one nappe of the cone, and convex; its gradient is the plane's.
-                let c = *center - origin;
-                let slope = (radii[1] - radii[0]) / (2.0 * half);
-                let middle = 0.5 * (radii[0] + radii[1]);
-                let along = (p - c).dot(*axis);
-                let across = p - c - along * *axis;
-                if across.length() <= middle + slope * along {
-                    return None;
-                }
-                let gradient = across.normalize_or(axis.any_orthonormal_vector()) - slope * *axis;
-                let normal = gradient.try_normalize()?;
-                Some((normal, middle / gradient.length() + normal.dot(c)))
-            }
-        }
     }
 }
 

@@ -2,7 +2,7 @@ use glam::DQuat;
 use proptest::prelude::*;
 
 use super::*;
-use crate::geom::shape::definition::Shape;
+use crate::geom::shape::{OrientedBox, Sphere, definition::Shape};
 
 /// A volume of each kind, about `size` metres large, placed and turned by eight numbers.
 fn volume(kind: usize, n: &[f64], size: f64) -> Volume {
@@ -246,8 +246,10 @@ fn boxes_and_polytopes_are_decided_as_integers_decide() {
 
 #[test]
 fn touching_volumes_have_a_point_in_common_and_no_volumes_have_none() {
-    let ball = |x: f64| Volume::Sphere { center: DVec3::new(x, 0.0, 0.0), radius: 1.0 };
-    let cube = |x: f64| Volume::Box { center: DVec3::new(x, 0.0, 0.0), half: DVec3::ONE, rotation: DQuat::IDENTITY };
+    let ball = |x: f64| Volume::Sphere(Sphere { center: DVec3::new(x, 0.0, 0.0), radius: 1.0 });
+    let cube = |x: f64| {
+        Volume::Box(OrientedBox { center: DVec3::new(x, 0.0, 0.0), size: 2.0 * DVec3::ONE, rotation: DQuat::IDENTITY })
+    };
     let upright = [DVec3::new(1.0, -3.0, -3.0), DVec3::new(1.0, 3.0, -3.0), DVec3::new(1.0, 0.0, 5.0)];
     for (a, b) in [(ball(0.0), ball(2.0)), (cube(0.0), cube(2.0)), (ball(0.0), cube(2.0))] {
         let region = Region::common(&[a.clone(), b.clone()]).expect("one point at least");
@@ -258,7 +260,7 @@ fn touching_volumes_have_a_point_in_common_and_no_volumes_have_none() {
     assert!(Region::common(&[cube(0.0), cube(2.000_001)]).is_none());
     assert!(Region::common(&[ball(0.0), cube(2.000_001)]).is_none());
     assert!(Region::common(&[]).is_none());
-    let nothing = Volume::Sphere { center: DVec3::ZERO, radius: 0.0 };
+    let nothing = Volume::Sphere(Sphere { center: DVec3::ZERO, radius: 0.0 });
     assert!(
         Region::common(std::slice::from_ref(&nothing)).is_none() && Region::common(&[ball(0.0), nothing]).is_none()
     );

@@ -2,7 +2,12 @@
 
 use glam::{DQuat, DVec2, DVec3};
 
-use crate::geom::shape::{error::ShapeError, hull::Hull, limits::MAX_POINTS, volume::Volume};
+use crate::geom::shape::{
+    error::ShapeError,
+    form::{Volume, cylinder::Cylinder, oriented_box::OrientedBox},
+    hull::Hull,
+    limits::MAX_POINTS,
+};
 
 /// Seen from above, shorter ways are none: there the bodies at both ends are one to 2.5e-13 m²/width.
 const SHORTEST_M: f64 = 1e-6;
@@ -24,21 +29,22 @@ pub(super) fn bodies(points: &[DVec3], width: f64, height: f64) -> Result<Vec<Vo
     }
     let radius = 0.5 * width;
     let up = 0.5 * height * DVec3::Z;
-    let cylinder = |center, half| Volume::Cylinder { center, radius, half, axis: DVec3::Z };
-    let mut bodies: Vec<Volume> = points.iter().map(|p| cylinder(*p, 0.5 * height)).collect();
+    let cylinder = |center, height| Volume::Cylinder(Cylinder { center, radius, height, axis: DVec3::Z });
+    let mut bodies: Vec<Volume> = points.iter().map(|p| cylinder(*p, height)).collect();
     for part in points.windows(2) {
         let (middle, way) = (part[0].midpoint(part[1]), part[1] - part[0]);
         let ground: DVec2 = way.truncate();
         let length = ground.length();
         if length < SHORTEST_M {
             if way.z != 0.0 {
-                bodies.push(cylinder(middle, 0.5 * (way.z.abs() + height)));
+                bodies.push(cylinder(middle, way.z.abs() + height));
             }
             continue;
         }
         if way.z == 0.0 {
             let rotation = DQuat::from_rotation_z(ground.y.atan2(ground.x));
-            bodies.push(Volume::Box { center: middle, half: 0.5 * DVec3::new(length, width, height), rotation });
+            let size = DVec3::new(length, width, height);
+            bodies.push(Volume::Box(OrientedBox { center: middle, size, rotation }));
             continue;
         }
         let aside = (radius / length * ground.perp()).extend(0.0);

@@ -6,9 +6,11 @@ use crate::geom::shape::{
     corridor,
     error::ShapeError,
     flat::{Flat, FlatFigure, Sightlines},
+    form::{
+        Volume, cylinder::Cylinder, ellipsoid::Ellipsoid, frustum::Frustum, oriented_box::OrientedBox, sphere::Sphere,
+    },
     hull::Hull,
     polytope,
-    volume::Volume,
 };
 
 /// A volume, in model coordinates.
@@ -82,6 +84,8 @@ pub enum Shape {
         /// Full height, metres, ≥ 0.
         height: f64,
     },
+    /// A volume of a form that is given by fields ([`crate::geom::shape::form::given`]) and is no variant of its own; not checked.
+    Form(Volume),
     /// What is seen through a figure in a plane, from there to infinity; only in the view that it is defined in.
     Flat {
         /// The figure's origin, metres.
@@ -129,31 +133,12 @@ impl Shape {
 
     /// Checks the shape and prepares it, if it is one volume.
     pub fn volume(&self) -> Result<Volume, ShapeError> {
+        if let Some(mut given) = self.given() {
+            return given.check().map(|()| given);
+        }
         let finite = |ok: bool| if ok { Ok(()) } else { Err(ShapeError::NotFinite) };
         let length = |name, value: f64| if value >= 0.0 { Ok(()) } else { Err(ShapeError::Negative(name, value)) };
         match self {
-            Self::Sphere { center, radius } => {
-                finite(center.is_finite() && radius.is_finite())?;
-                length("radius", *radius)?;
-                Ok(Volume::Sphere { center: *center, radius: *radius })
-            }
-            Self::Box { center, size, rotation } => {
-                finite(center.is_finite() && size.is_finite() && rotation.is_finite() && rotation.length() > 0.0)?;
-                length("size", size.min_element())?;
-                Ok(Volume::Box { center: *center, half: 0.5 * *size, rotation: rotation.normalize() })
-            }
-            Self::Cylinder { center, radius, height, axis } => {
-                finite(center.is_finite() && radius.is_finite() && height.is_finite() && axis.is_finite())?;
-                length("radius", *radius)?;
-                length("height", *height)?;
-                let axis = axis.try_normalize().ok_or(ShapeError::NoAxis)?;
-                Ok(Volume::Cylinder { center: *center, radius: *radius, half: 0.5 * height, axis })
-            }
-            Self::Ellipsoid { center, radii, rotation } => {
-                finite(center.is_finite() && radii.is_finite() && rotation.is_finite() && rotation.length() > 0.0)?;
-                length("radii", radii.min_element())?;
-                Ok(Volume::Ellipsoid { center: *center, radii: *radii, rotation: rotation.normalize() })
-            }
             Self::Frustum { center, radius, top_radius, height, axis } => {
                 let is_finite = [*radius, *top_radius, *height].iter().all(|n| n.is_finite());
                 finite(center.is_finite() && is_finite && axis.is_finite())?;
@@ -161,12 +146,45 @@ impl Shape {
                 length("top_radius", *top_radius)?;
                 length("height", *height)?;
                 let axis = axis.try_normalize().ok_or(ShapeError::NoAxis)?;
-                Ok(Volume::Frustum { center: *center, radii: [*radius, *top_radius], half: 0.5 * height, axis })
+                Ok(Volume::Frustum(Frustum {
+                    center: *center,
+                    radii: [*radius, *top_radius],
+                    half: 0.5 * height,
+                    axis,
+                }))
             }
             Self::Convex { points } => Hull::new(points).map(Volume::Convex),
             Self::Polytope { planes } => polytope::between(planes).map(Volume::Convex),
-            Self::Corridor { .. } => Err(ShapeError::Several),
             Self::Flat { .. } => Err(ShapeError::NeedsEye),
+            // All else is given by fields.
+            _ => Err(ShapeError::Several),
+        }
+    }
+
+    /// The volume of a form that is given by fields, not checked.
+    pub fn given(&self) -> Option<Volume> {
+        Some(match *self {
+            Self::Sphere { center, radius } => Volume::Sphere(Sphere { center, radius }),
+            Self::Box { center, size, rotation } => Volume::Box(OrientedBox { center, size, rotation }),
+            Self::Cylinder { center, radius, height, axis } => {
+                Volume::Cylinder(Cylinder { center, radius, height, axis })
+            }
+            Self::Ellipsoid { center, radii, rotation } => Volume::Ellipsoid(Ellipsoid { center, radii, rotation }),
+            Self::Form(ref volume) => volume.clone(),
+            _ => return None,
+        })
+    }
+
+    /// The shape that is given by the fields of a volume.
+    pub fn of_given(volume: Volume) -> Self {
+        match volume {
+            Volume::Sphere(Sphere { center, radius }) => Self::Sphere { center, radius },
+            Volume::Box(OrientedBox { center, size, rotation }) => Self::Box { center, size, rotation },
+            Volume::Cylinder(Cylinder { center, radius, height, axis }) => {
+                Self::Cylinder { center, radius, height, axis }
+            }
+            Volume::Ellipsoid(Ellipsoid { center, radii, rotation }) => Self::Ellipsoid { center, radii, rotation },
+            other => Self::Form(other),
         }
     }
 }

@@ -164,7 +164,7 @@ fn edges(points: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> {
     (0..points.len()).map(|i| [points[i], points[(i + 1) % points.len()]])
 }
 
-/// How often a polygon goes around a point that is not on its border. Twin: `is_in_polygon` in `lib/shape.wgsl`.
+/// How often a polygon goes around a point that is not on its border. Twin: `is_in_polygon` in `shape/flat.wgsl`.
 fn winding(points: &[DVec2], p: DVec2) -> i32 {
     let crossing = |[a, b]: [DVec2; 2]| {
         let side = (b - a).perp_dot(p - a);
@@ -232,7 +232,7 @@ impl Flat {
     }
 
     /// Whether it holds nothing: its figure has no area, or is seen edge on.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(super) fn holds_nothing(&self) -> bool {
         self.figure.is_empty() || self.side() == 0.0
     }
 
@@ -261,13 +261,14 @@ impl Flat {
         Some(crossed.truncate())
     }
 
-    pub(super) fn contains(&self, p: DVec3) -> bool {
+    /// Whether it holds `p`.
+    pub(super) fn holds(&self, p: DVec3) -> bool {
         !self.figure.is_empty() && self.crossing(p).is_some_and(|q| self.figure.holds(q))
     }
 
-    /// Of one of the eye's sight lines, and of no other ray.
-    pub(super) fn entry_exit(&self, ray: &Ray) -> Option<(f64, f64)> {
-        if self.is_empty() {
+    /// Where one of the eye's sight lines is in it, and no other ray.
+    pub(super) fn span(&self, ray: &Ray) -> Option<(f64, f64)> {
+        if self.holds_nothing() {
             return None;
         }
         let back = self.rotation.conjugate();
@@ -279,7 +280,7 @@ impl Flat {
     }
 
     /// Whether a triangle shares a point with it: what is beyond the plane, seen in the plane, against the figure.
-    pub(in crate::geom) fn meets_triangle(&self, corners: &[DVec3; 3]) -> bool {
+    pub(super) fn meets(&self, corners: &[DVec3; 3]) -> bool {
         let normal = self.side() * self.axes().z_axis;
         let height = |p: DVec3| normal.dot(p - self.center);
         let mut seen = Vec::with_capacity(4);
@@ -298,7 +299,7 @@ impl Flat {
 
     /// Distance to the figure and to the sides that its border throws away from the eye, negative inside; to 1e-9 of the
     /// figure's size for a disc, exact else.
-    pub(super) fn signed_distance(&self, p: DVec3) -> f64 {
+    pub(super) fn distance(&self, p: DVec3) -> f64 {
         let own = self.rotation.conjugate() * (p - self.center);
         let to_figure = own.z.hypot(self.figure.signed_distance(own.truncate()).max(0.0));
         let to_sides = match &self.figure {
@@ -309,7 +310,7 @@ impl Flat {
             }
         };
         let distance = to_figure.min(to_sides);
-        if self.contains(p) { -distance } else { distance.max(f64::MIN_POSITIVE) }
+        if self.holds(p) { -distance } else { distance.max(f64::MIN_POSITIVE) }
     }
 
     /// Away from the eye, from a point of the figure; of any length but 0.

@@ -94,11 +94,8 @@ impl Hull {
         self.triangles.iter().map(|t| t.map(|i| self.corners[i as usize])).collect()
     }
 
-    pub(super) fn bounds(&self) -> Aabb {
-        Aabb::from_points(self.corners.iter().map(|p| *p + self.center))
-    }
-
-    pub(super) fn entry_exit(&self, ray: &Ray) -> Option<(f64, f64)> {
+    /// Where a ray is in it; entry > exit where it misses.
+    pub(super) fn span(&self, ray: &Ray) -> Option<(f64, f64)> {
         let origin = ray.origin - self.center;
         let (mut entry, mut exit) = crate::geom::shape::span::EVERYWHERE;
         for (normal, offset) in &self.planes {
@@ -116,8 +113,8 @@ impl Hull {
         Some((entry, exit))
     }
 
-    /// Inside, the nearest border point is the foot on the nearest plane; outside, it lies on some triangle.
-    pub(super) fn signed_distance(&self, p: DVec3) -> f64 {
+    /// Distance to the border, negative inside. Inside, the nearest border point is the foot on the nearest plane; outside, it lies on some triangle.
+    pub(super) fn distance(&self, p: DVec3) -> f64 {
         let q = p - self.center;
         let depth = self.planes.iter().map(|(n, k)| n.dot(q) - k).fold(f64::NEG_INFINITY, f64::max);
         if depth <= 0.0 {

@@ -4,8 +4,7 @@
 //! `entry ≤ t < exit`. A ray that only touches (a tangent, a corner) has `entry = exit`: it misses. A ray that
 //! runs within a face is inside it. A body without volume (radius 0, an edge 0) holds nothing.
 
-mod border;
-mod bounding;
+mod build;
 mod corridor;
 pub mod definition;
 pub mod error;
@@ -14,21 +13,29 @@ pub(crate) mod form;
 mod hull;
 pub mod limits;
 mod mesh;
+mod motion;
 mod placed;
 mod polytope;
 pub mod solid;
 mod span;
-pub mod volume;
+mod volume;
 
 pub use definition::Shape;
 pub use error::ShapeError;
 pub use flat::{Flat, FlatFigure, Sightlines};
-pub use form::{Extent, VolumeForm};
+pub use form::{
+    Extent, OfVolume, Volume, VolumeForm,
+    body::{Rows, RowsEye},
+    cylinder::Cylinder,
+    ellipsoid::Ellipsoid,
+    frustum::Frustum,
+    oriented_box::OrientedBox,
+    sphere::Sphere,
+};
 pub use hull::Hull;
 pub use mesh::Mesh;
-pub use placed::Motion;
+pub use motion::Motion;
 pub use solid::{PlacedSolid, Solid};
-pub use volume::Volume;
 
 #[cfg(test)]
 mod tests;

@@ -1,38 +1,6 @@
 //! Rigid motions of lens volumes: what stands in a frame of its own, put where the frame is.
 
-use glam::{DQuat, DVec3};
-
-use crate::geom::shape::{
-    definition::Shape,
-    error::ShapeError,
-    flat::{Flat, Sightlines},
-    hull::Hull,
-    volume::Volume,
-};
-
-/// A turn, and then a move.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
-    /// Unit.
-    pub rotation: DQuat,
-    /// Metres.
-    pub translation: DVec3,
-}
-
-impl Motion {
-    /// The one that leaves everything where it is.
-    pub const NONE: Self = Self { rotation: DQuat::IDENTITY, translation: DVec3::ZERO };
-
-    /// Where a point gets.
-    pub fn point(&self, p: DVec3) -> DVec3 {
-        self.rotation * p + self.translation
-    }
-
-    /// Where a point came from.
-    pub fn point_before(&self, p: DVec3) -> DVec3 {
-        self.rotation.conjugate() * (p - self.translation)
-    }
-}
+use crate::geom::shape::{definition::Shape, error::ShapeError, flat::Sightlines, form::Volume, motion::Motion};
 
 impl Sightlines {
     /// As a frame sees them that a motion has put where it is.
@@ -53,64 +21,9 @@ impl Shape {
     }
 }
 
-impl Volume {
-    /// The volume, turned and moved; of a flat lens with the eye that sees through it.
-    #[must_use]
-    pub fn placed(mut self, motion: &Motion) -> Self {
-        if *motion == Motion::NONE {
-            return self;
-        }
-        match &mut self {
-            Self::Sphere { center, .. } => *center = motion.point(*center),
-            Self::Box { center, rotation, .. } | Self::Ellipsoid { center, rotation, .. } => {
-                *center = motion.point(*center);
-                *rotation = (motion.rotation * *rotation).normalize();
-            }
-            Self::Cylinder { center, axis, .. } | Self::Frustum { center, axis, .. } => {
-                *center = motion.point(*center);
-                *axis = (motion.rotation * *axis).normalize_or(*axis);
-            }
-            Self::Convex(hull) => hull.move_by(motion),
-            Self::Solid(placed) => {
-                placed.at = motion.point(placed.at);
-                placed.rotation = (motion.rotation * placed.rotation).normalize();
-            }
-            Self::Flat(flat) => flat.move_by(motion),
-        }
-        self
-    }
-}
-
-impl Hull {
-    fn move_by(&mut self, motion: &Motion) {
-        let center = motion.point(self.center);
-        self.center = center.round();
-        // Near the corners, as it was: it keeps their digits.
-        let rest = center - self.center;
-        for corner in &mut self.corners {
-            *corner = motion.rotation * *corner + rest;
-        }
-        for (normal, offset) in &mut self.planes {
-            *normal = (motion.rotation * *normal).normalize_or(*normal);
-            *offset += normal.dot(rest);
-        }
-    }
-}
-
-impl Flat {
-    fn move_by(&mut self, motion: &Motion) {
-        self.center = motion.point(self.center);
-        self.rotation = (motion.rotation * self.rotation).normalize();
-        self.sight = match self.sight {
-            Sightlines::From(eye) => Sightlines::From(motion.point(eye)),
-            Sightlines::Along(direction) => Sightlines::Along(motion.rotation * direction),
-        };
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
+    use glam::{DQuat, DVec2, DVec3};
     use proptest::prelude::*;
 
     use super::*;

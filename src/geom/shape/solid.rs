@@ -106,14 +106,14 @@ impl Solid {
         self.bounds
     }
 
-    /// Columns and faces as `lib/solid.wgsl` reads them, in fours of words.
+    /// Columns and faces as `shape/solid.wgsl` reads them, in fours of words.
     pub fn words(&self) -> Vec<[u32; 4]> {
         self.columns.words(&self.faces)
     }
 
     /// The winding number of the surface about a place, own coordinates. A place on a face that looks up or down is inside of
     /// it; on a face that stands upright it is as the place next to it is, towards +x or, where the face runs along x, −y. What
-    /// is drawn asks for the places beside it as well (`lib/solid.wgsl`): there upright faces hold what is on them, too.
+    /// is drawn asks for the places beside it as well (`shape/solid.wgsl`): there upright faces hold what is on them, too.
     pub fn winding(&self, p: DVec3) -> i32 {
         let above = |face: &u32| {
             let corners = &self.faces[*face as usize];

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use crate::geom::{
     aabb::Aabb,
     ray::Ray,
-    shape::{definition::Shape, error::ShapeError, mesh::Mesh, span::EVERYWHERE, volume::Volume},
+    shape::{Volume, definition::Shape, error::ShapeError, mesh::Mesh, span::EVERYWHERE},
 };
 
 fn point(reach: f64) -> impl Strategy<Value = DVec3> {
@@ -81,7 +81,7 @@ fn holds(shape: &Shape, p: DVec3) -> bool {
             (0.0..=1.0).contains(&up) && v.cross(*axis).length() <= radius + up * (top_radius - radius)
         }
         Shape::Polytope { planes } => planes.iter().all(|[x, y, z, d]| DVec3::new(*x, *y, *z).dot(p) <= *d),
-        Shape::Corridor { .. } | Shape::Flat { .. } => unreachable!("they have their own tests"),
+        Shape::Form(_) | Shape::Corridor { .. } | Shape::Flat { .. } => unreachable!("they have their own tests"),
         // Inside a hull iff no plane through three of its points has all points on one side and p on the other.
         Shape::Convex { points } => {
             let n = points.len();
@@ -174,7 +174,7 @@ proptest! {
             Shape::Polytope { planes } => Shape::Polytope {
                 planes: planes.iter().map(|[x, y, z, d]| [*x, *y, *z, d + DVec3::new(*x, *y, *z).dot(shift)]).collect(),
             },
-            Shape::Corridor { .. } | Shape::Flat { .. } => unreachable!("they have their own tests"),
+            Shape::Form(_) | Shape::Corridor { .. } | Shape::Flat { .. } => unreachable!("they have their own tests"),
         };
         let (Ok(here), Ok(there)) = (shape.volume(), moved.volume()) else { return Ok(()) };
         prop_assert!((here.signed_distance(origin) - there.signed_distance(origin + shift)).abs() < 1e-6);

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::{
     city::test_city::{grid_of_cubes, terrain},
-    geom::{Aabb, Shape},
+    geom::{Aabb, Shape, shape::Sphere},
 };
 
 /// Numbers for a lens: which kind, where (shares of the city's box), how large, how turned.
@@ -126,7 +126,7 @@ fn a_lens_within_a_roof_meets_the_triangles_that_span_it() {
     let bounds = model.geometries[4].bounds;
     // In the middle of a half of the roof, a metre off all edges.
     let center = bounds.max - DVec3::new(3.0, 6.0, 0.0);
-    let ball = |center, radius| [Volume::Sphere { center, radius }];
+    let ball = |center, radius| [Volume::Sphere(Sphere { center, radius })];
     let lens = ball(center, 0.5);
     assert_eq!(triangles_meeting(&model, &index, &regions(&[&lens])).len(), 1);
     assert_eq!(objects_meeting(&model, &index, &regions(&[&lens])), [4]);

@@ -48,7 +48,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
     let has_mode = effect.mode == Mode::Local || (row.stage == Stage::Vertex && effect.mode != Mode::Global);
     if !has_mode || effect.has_derivative || !row.is_for_users() {
         let message = format!(
-            "mode but for deformations, derivative, and {}, are for handlers of the program; expected kind = {}",
+            "mode (but of deformations), derivative, and {}, are for handlers of the program; expected kind = {}",
             Prototype::words_not_for_users(),
             Prototype::words_for_users()
         );

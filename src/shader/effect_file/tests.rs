@@ -41,7 +41,7 @@ fn what_is_wrong_is_named_with_its_place() {
         ),
         (
             format!("{}{good}", HEADER.replace("post", "air")),
-            "my.wgsl:1:1: mode, and kind = \"air\", are for handlers of the program; expected kind = hide, opacity, material, light, \
+            "my.wgsl:1:1: mode (but of deformations), derivative, and kind = \"epoch\", kind = \"ray\", kind = \"air\", are for handlers of the program; expected kind = transform, deform, region, hide, opacity, material, light, \
              scene, post or filter",
         ),
         (HEADER.replace("spec", "spek"), "my.wgsl:3:5: unknown field `spek`"),

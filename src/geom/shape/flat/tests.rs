@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::geom::shape::{definition::Shape, volume::Volume};
+use crate::geom::shape::{Volume, definition::Shape};
 
 fn point(reach: f64) -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-reach..reach).prop_map(DVec3::from)

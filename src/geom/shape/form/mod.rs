@@ -1,22 +1,54 @@
-//! Forms of volumes: a row of the table each.
+//! Forms of volumes: a file and a row of the table each.
 
-/// The table of forms: `FORM = "name", EXTENT;`. The name is that of the WGSL file in `shaders/shape`, in which the struct has the form's
-/// name; what they extend to is an [`Extent`]. Handed to a macro, which makes of it what it needs.
+pub mod body;
+mod convex;
+pub mod cylinder;
+pub mod ellipsoid;
+mod flat;
+pub mod frustum;
+pub mod given;
+pub mod oriented_box;
+mod solid;
+pub mod sphere;
+
+use crate::geom::shape::{flat::Flat, form::body::Body, hull::Hull, solid::PlacedSolid};
+
+/// The table of forms: `FORM(TYPE) = "name", EXTENT;`. The type is its [`Body`]; the name is that of the WGSL file in `shaders/shape`, in which
+/// the struct has the form's name; what it extends to is an [`Extent`]. Handed to a macro, which makes of it what it needs.
 macro_rules! volume_forms {
     ($take:ident) => {
         $take! {
-            Sphere = "sphere", Convex;
-            Box = "box", Convex;
-            Cylinder = "cylinder", Convex;
-            Convex = "convex", Convex;
-            Ellipsoid = "ellipsoid", Convex;
-            Frustum = "frustum", Convex;
-            Solid = "solid", Faces;
-            Flat = "flat", Endless;
+            Sphere(sphere::Sphere) = "sphere", Convex;
+            Box(oriented_box::OrientedBox) = "box", Convex;
+            Cylinder(cylinder::Cylinder) = "cylinder", Convex;
+            Convex(Hull) = "convex", Convex;
+            Ellipsoid(ellipsoid::Ellipsoid) = "ellipsoid", Convex;
+            Frustum(frustum::Frustum) = "frustum", Convex;
+            Solid(PlacedSolid) = "solid", Faces;
+            Flat(Flat) = "flat", Endless;
         }
     };
 }
 pub(crate) use volume_forms;
+
+/// Forms that scene files give by their fields ([`given::Given`]), in the order of the docs. Handed to a macro, as [`volume_forms`].
+macro_rules! given_forms {
+    ($take:ident) => {
+        $take! {
+            $crate::geom::shape::form::sphere::Sphere;
+            $crate::geom::shape::form::ellipsoid::Ellipsoid;
+            $crate::geom::shape::form::oriented_box::OrientedBox;
+            $crate::geom::shape::form::cylinder::Cylinder;
+        }
+    };
+}
+pub(crate) use given_forms;
+
+/// A type that is the body of a form.
+pub trait OfVolume: Sized {
+    /// A volume's body, if it is of this form.
+    fn of_volume(volume: &Volume) -> Option<&Self>;
+}
 
 /// What a form extends to, and so how it is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +62,53 @@ pub enum Extent {
 }
 
 macro_rules! declare {
-    ($($form:ident = $name:literal, $extent:ident;)*) => {
+    ($($form:ident($body:ty) = $name:literal, $extent:ident;)*) => {
+        /// A checked shape with what its tests need worked out once.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Volume {
+            $(#[doc = concat!("A ", $name, ".")] $form($body),)*
+        }
+
+        impl Volume {
+            /// Its form.
+            pub fn form(&self) -> VolumeForm {
+                match self {
+                    $(Self::$form(_) => VolumeForm::$form,)*
+                }
+            }
+
+            /// What answers for it.
+            pub(super) fn body(&self) -> &dyn Body {
+                match self {
+                    $(Self::$form(body) => body,)*
+                }
+            }
+
+            /// [`Self::body`], to change it.
+            pub(super) fn body_mut(&mut self) -> &mut dyn Body {
+                match self {
+                    $(Self::$form(body) => body,)*
+                }
+            }
+        }
+
+        $(
+            impl From<$body> for Volume {
+                fn from(body: $body) -> Self {
+                    Self::$form(body)
+                }
+            }
+
+            impl OfVolume for $body {
+                fn of_volume(volume: &Volume) -> Option<&Self> {
+                    match volume {
+                        Volume::$form(body) => Some(body),
+                        _ => None,
+                    }
+                }
+            }
+        )*
+
         /// Forms of volumes.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum VolumeForm {
@@ -65,3 +143,6 @@ macro_rules! declare {
     };
 }
 volume_forms!(declare);
+
+#[cfg(test)]
+mod tests;

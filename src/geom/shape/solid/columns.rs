@@ -7,7 +7,7 @@ use crate::geom::aabb::Aabb;
 /// Columns per side, at most.
 const MOST: f64 = 512.0;
 /// Faces reach this part of the extent further than they are: the column of a place is computed in f32, and who asks for a
-/// place asks for those beside it too, half as far away (`BESIDE` of `lib/solid.wgsl`).
+/// place asks for those beside it too, half as far away (`BESIDE` of `shape/solid.wgsl`).
 const MARGIN: f64 = 1.0 / 16_384.0;
 
 /// A grid in plan; each of its columns lists the faces that stand over or under it.
@@ -85,7 +85,7 @@ impl Columns {
         &self.faces[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// As `lib/solid.wgsl` reads it: the grid, where each column's faces begin, the faces of all columns.
+    /// As `shape/solid.wgsl` reads it: the grid, where each column's faces begin, the faces of all columns.
     pub fn words(&self, faces: &[[DVec3; 3]]) -> Vec<[u32; 4]> {
         let bits = |v: f64| (v as f32).to_bits();
         let mut words = vec![

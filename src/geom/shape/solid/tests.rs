@@ -378,7 +378,7 @@ proptest! {
         let at = DVec3::new(4e5, -3e5, 120.0);
         let placed = PlacedSolid { solid: solid.clone(), rotation, at };
         let p = DVec3::from(p);
-        let volume = crate::geom::shape::volume::Volume::Solid(placed.clone());
+        let volume = crate::geom::shape::Volume::Solid(placed.clone());
         prop_assume!(solid.distance(p) > 1e-3);
         prop_assert_eq!(volume.contains(placed.world(p)), solid.winding(p) != 0);
         prop_assert!((volume.signed_distance(placed.world(p)).abs() - solid.distance(p)).abs() < 1e-6);

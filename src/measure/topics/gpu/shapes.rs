@@ -74,6 +74,7 @@ pub fn holds(shape: &Shape, p: DVec3) -> bool {
             along.abs() <= 0.5 * height && (p - *center - along * *axis).length() <= *radius
         }
         Shape::Ellipsoid { center, radii, rotation } => (rotation.inverse() * (p - *center) / *radii).length() <= 1.0,
+        Shape::Form(volume) => volume.contains(p),
         Shape::Frustum { center, radius, top_radius, height, axis } => {
             let along = (p - *center).dot(*axis);
             let share = 0.5 + along / height;
