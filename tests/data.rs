@@ -19,6 +19,8 @@ mod meshes;
 mod occluders;
 #[path = "data/overlay_walks.rs"]
 mod overlay_walks;
+#[path = "data/own_handlers.rs"]
+mod own_handlers;
 #[path = "data/pictures.rs"]
 mod pictures;
 #[path = "data/scenes.rs"]
@@ -65,6 +67,7 @@ fn main() {
         meshes::trials(),
         occluders::trials(),
         overlay_walks::trials(),
+        own_handlers::trials(),
         pictures::trials(),
         scenes::trials(),
         walks::trials(),
