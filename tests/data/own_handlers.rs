@@ -58,7 +58,7 @@ fn drawn_alike(studio: &mut Studio, scene: &Scene) -> Result<(), Failed> {
     let changed = one.rgba.iter().zip(&without.rgba).filter(|(a, b)| a != b).count();
     let warnings = &one.statistics.warnings;
     let is_weakened = warnings.iter().any(|warning| warning["code"] == "deformation-weakened");
-    if changed < 5000 || is_weakened {
+    if changed < 1500 || is_weakened {
         return Err(format!("{changed} pixels are changed; {warnings:?}").into());
     }
     Ok(())
