@@ -141,12 +141,12 @@ impl Body {
         self.form().map_or(LensTest::OwnSprite, LensTest::Numbers)
     }
 
-    /// What its leaves are, if it is a combination; ascending, each once.
+    /// Forms of its leaves, if it is a combination; ascending, each once.
     pub fn forms_in_combination(&self) -> Vec<Form> {
         if matches!(self, Self::One(_)) { Vec::new() } else { self.leaf_forms() }
     }
 
-    /// What its leaves are, ascending, each once.
+    /// Forms of its leaves, ascending, each once.
     pub fn leaf_forms(&self) -> Vec<Form> {
         let mut forms: Vec<Form> = self.leaves().filter_map(|leaf| leaf.leaf.form()).collect();
         forms.sort_unstable();
