@@ -1,4 +1,4 @@
-// What several forms of regions call.
+// Functions that several forms of regions call.
 
 fn meet(a: Span, b: Span) -> Span {
     return Span(max(a.enter, b.enter), min(a.exit, b.exit));

@@ -18,7 +18,7 @@ struct OwnSprite {
     place: SpritePlace,
 }
 
-// What a region that is tested so has of it.
+// The numbers of a region that is tested so.
 struct OwnRows {
     first: u32,                 // b.x: number of the first of its rows among the planes
 }

@@ -1,6 +1,6 @@
-// Regions of lenses as buffers hold them: four rows of numbers in view space. The host computes every number relative to the eye in f64
-// before it rounds to f32. What the numbers are, the struct of the region's form says (`shape/`, and those of members and combinations): its
-// members name their places in the rows, by which they are loaded (`shader::rows`).
+// Regions of lenses as buffers hold them: four rows of numbers in view space. The host computes every number relative to the eye
+// in f64 before it rounds to f32. The struct of the region's form says what they are (`shape/`, and `lib/` for members, combinations and
+// sprites): its members name their places in the rows, by which they are loaded (`shader::rows`).
 
 struct Region {
     a: vec3f,

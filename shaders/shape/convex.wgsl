@@ -1,4 +1,4 @@
-// What lies between planes.
+// The body between planes.
 
 struct Convex {
     first: u32,                 // b.x: number of its first plane

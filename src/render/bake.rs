@@ -91,7 +91,7 @@ impl BakeRequest<'_> {
         let side = |i: usize| clip_scale[i] - 2.0 * self.bounds.origin[i] as f32 / target[i] as f32 - 1.0;
         let list = |(leaf, of): (u32, &PlacedLeaf)| layout::ListStage {
             view: stage.view,
-            region: of.figures(own_view, &mut Vec::new()),
+            region: of.region(own_view, &mut Vec::new()),
             clip_scale,
             clip_shift: [side(0), -side(1)],
             width: stage.width,

@@ -143,12 +143,12 @@ impl Body {
         self.form().map_or(LensTest::OwnSprite, LensTest::Numbers)
     }
 
-    /// What its leaves are, if it is a combination; ascending, each once.
+    /// Forms of its leaves, if it is a combination; ascending, each once.
     pub fn forms_in_combination(&self) -> Vec<Form> {
         if matches!(self, Self::One(_)) { Vec::new() } else { self.leaf_forms() }
     }
 
-    /// What its leaves are, ascending, each once.
+    /// Forms of its leaves, ascending, each once.
     pub fn leaf_forms(&self) -> Vec<Form> {
         let mut forms: Vec<Form> = self.leaves().filter_map(|leaf| leaf.leaf.form()).collect();
         forms.sort_unstable();
@@ -299,16 +299,16 @@ impl Body {
         false
     }
 
-    /// Its figures for an eye; planes and leaves are appended to `planes`.
-    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+    /// The region that it is for an eye; planes and leaves are appended to `planes`.
+    pub fn region(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         match self {
-            Self::One(leaf) => leaf.figures(view, planes),
-            Self::Combined(_) => self.program_figures(view, planes),
+            Self::One(leaf) => leaf.region(view, planes),
+            Self::Combined(_) => self.combined_region(view, planes),
         }
     }
 
-    /// Its figures as a combination, if only of one leaf; leaves are appended to `planes`.
-    pub fn program_figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+    /// The same as a combination, if only of one leaf; leaves are appended to `planes`.
+    pub fn combined_region(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         let alone;
         let program = match self {
             Self::One(leaf) => {
@@ -323,11 +323,11 @@ impl Body {
                 let size = members.bounds.size();
                 let around =
                     Volume::Box(OrientedBox { center: members.bounds.center(), size, rotation: glam::DQuat::IDENTITY });
-                let figures = PlacedLeaf::from(Leaf::Volume(around)).figures(view, &mut Vec::new());
+                let region = PlacedLeaf::from(Leaf::Volume(around)).region(view, &mut Vec::new());
                 let test = leaf.test_number();
-                (layout::Region { test, ..figures }, leaf.place.first as f32, then.clone())
+                (layout::Region { test, ..region }, leaf.place.first as f32, then.clone())
             }
-            Leaf::Volume(_) | Leaf::Sprite(_) | Leaf::Own(_) => (leaf.figures(view, planes), 0.0, then.clone()),
+            Leaf::Volume(_) | Leaf::Sprite(_) | Leaf::Own(_) => (leaf.region(view, planes), 0.0, then.clone()),
         };
         let leaves: Vec<_> = program.iter().map(leaf).collect();
         let out = layout::Region {
@@ -394,8 +394,8 @@ impl PlacedLeaf {
         self.leaf.form().map_or(LensTest::OwnSprite, LensTest::Numbers).number()
     }
 
-    /// Its figures for an eye; its planes are appended to `planes`.
-    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+    /// The region that it is for an eye; its planes are appended to `planes`.
+    pub fn region(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         let test = self.test_number();
         let rows = match &self.leaf {
             Leaf::Members(_) => Rows { b: [self.place.first as f32, 0.0, 0.0, 0.0], ..Rows::default() },

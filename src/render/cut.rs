@@ -66,8 +66,8 @@ impl Cut {
         let (mut shapes, mut planes) = (Vec::new(), Vec::new());
         for (i, volume) in input.volumes.iter().enumerate().filter(|(_, v)| self.hiding.lenses.contains(&v.lens)) {
             shapes.push(match volume.has_own_eye() {
-                true => own_sprites.figures(i, &input.view, &mut planes),
-                false => volume.figures(&input.view, &mut planes),
+                true => own_sprites.region(i, &input.view, &mut planes),
+                false => volume.region(&input.view, &mut planes),
             });
         }
         let whole = PictureTile::whole(input.view.size);

@@ -1,4 +1,4 @@
-//! The numbers of a frame's lens volumes as shaders read them: shapes, planes, and where depth sprites stand.
+//! The numbers of a frame's lens volumes as shaders read them: regions, planes, and where depth sprites stand.
 
 use crate::{
     render::{
@@ -16,14 +16,14 @@ use crate::{
 #[derive(Clone, Debug, Default)]
 pub(super) struct LensNumbers {
     /// Of each volume that is seen.
-    pub shapes: Vec<layout::Region>,
+    pub regions: Vec<layout::Region>,
     /// Where the sprite of each stands; zeros where it has none.
     pub places: Vec<layout::SpritePlace>,
     /// Of each whose sides a sprite on a page tells.
     pub sides: Vec<layout::Region>,
     /// Of each sprite that is to be made.
     pub baked: Vec<layout::Region>,
-    /// Planes of convex volumes, and other rows that shapes name.
+    /// Planes of convex volumes, and other rows that regions name.
     pub planes: Vec<[f32; 4]>,
 }
 
@@ -39,8 +39,8 @@ impl LensNumbers {
         for request in of_seen {
             let own_view = request.own.as_ref().unwrap_or(&input.view);
             numbers.baked.push(match request.body.is_form() {
-                true => request.body.figures(own_view, &mut numbers.planes),
-                false => request.body.program_figures(own_view, &mut numbers.planes),
+                true => request.body.region(own_view, &mut numbers.planes),
+                false => request.body.combined_region(own_view, &mut numbers.planes),
             });
         }
         numbers
@@ -56,25 +56,25 @@ impl LensNumbers {
         let body = &input.volumes[volume.index].body;
         let nowhere = bytemuck::Zeroable::zeroed();
         if volume.test == LensTest::OwnSprite {
-            self.shapes.push(own.figures(volume.index, &input.view, &mut self.planes));
+            self.regions.push(own.region(volume.index, &input.view, &mut self.planes));
             self.places.push(nowhere);
             return;
         }
         let is_listed = volume.test.is_sprite() && !body.is_form();
-        let shape = match is_listed {
-            true => body.program_figures(&input.view, &mut self.planes),
-            false => body.figures(&input.view, &mut self.planes),
+        let region = match is_listed {
+            true => body.combined_region(&input.view, &mut self.planes),
+            false => body.region(&input.view, &mut self.planes),
         };
-        self.shapes.push(layout::Region { test: volume.test.number(), ..shape });
+        self.regions.push(layout::Region { test: volume.test.number(), ..region });
         match volume.sprite.as_ref().map(|sprite| (sprite, &sprite.kept)) {
             None => self.places.push(nowhere),
             Some((sprite, Kept::Page(on))) => {
-                self.sides.push(shape);
+                self.sides.push(region);
                 self.places.push(place_on_page(input, volume, sprite, *on));
             }
             Some((_, Kept::Stored(_))) => {
                 let Some(request) = requests.next() else { return };
-                self.baked.push(shape);
+                self.baked.push(region);
                 self.places.push(request.place(volume, input.tile));
             }
         }

@@ -62,7 +62,7 @@ enum Source {
 #[derive(Debug)]
 struct Shapes {
     view: View,
-    figures: layout::Region,
+    region: layout::Region,
     planes: Vec<[f32; 4]>,
     solids: Option<Arc<SolidTable>>,
 }
@@ -78,7 +78,7 @@ impl Source {
                 };
                 // Bytes: NaN is equal to itself there.
                 a.view == b.view
-                    && bytemuck::bytes_of(&a.figures) == bytemuck::bytes_of(&b.figures)
+                    && bytemuck::bytes_of(&a.region) == bytemuck::bytes_of(&b.region)
                     && bytemuck::cast_slice::<_, u8>(&a.planes) == bytemuck::cast_slice::<_, u8>(&b.planes)
                     && are_solids_same
             }
@@ -203,13 +203,13 @@ impl OwnSprite {
         let view = own_view(volume, sprite, city).ok()??;
         let code = code_of(sprite, volume, &view, city);
         let mut planes = Vec::new();
-        let figures = match volume.body.is_form() {
-            true => volume.body.figures(&view, &mut planes),
-            false => volume.body.program_figures(&view, &mut planes),
+        let region = match volume.body.is_form() {
+            true => volume.body.region(&view, &mut planes),
+            false => volume.body.combined_region(&view, &mut planes),
         };
         let has_solids = volume.body.has_solids();
         let solids = has_solids.then(|| input.solids.clone());
-        let from = Source::Shapes(Box::new(Shapes { view, figures, planes, solids }));
+        let from = Source::Shapes(Box::new(Shapes { view, region, planes, solids }));
         let reach = reach_of(volume, &view, &code);
         let layers = sprite.layers_of(&volume.body);
         Some(of(from, SpriteSpace::of(&view), part_of(volume, &view), stored(code, layers), reach))
@@ -297,9 +297,9 @@ impl OwnSprites {
         words
     }
 
-    /// Of a volume that is tested by one, what a shader reads that draws for this eye: rows among the planes, named by the shape.
-    pub fn figures(&self, volume: usize, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
-        let shape = layout::Region {
+    /// The region of a volume that is tested by one, as a shader reads it that draws for this eye: its rows stand among the planes.
+    pub fn region(&self, volume: usize, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+        let region = layout::Region {
             test: LensTest::OwnSprite.number(),
             b: [planes.len() as f32, 0.0, 0.0, 0.0],
             ..layout::Region::default()
@@ -307,7 +307,7 @@ impl OwnSprites {
         let Some(one) = self.list.iter().find(|one| one.volume == volume) else {
             // It holds nothing: no texel is kept.
             planes.extend([[0.0; 4]; 8]);
-            return shape;
+            return region;
         };
         let own_from_world = one.space.basis.view_from_world();
         let turn = (own_from_world * view.basis.view_from_world().transpose()).as_mat3();
@@ -330,7 +330,7 @@ impl OwnSprites {
             // What was made anew is another sprite, in the same place.
             [reach[0], reach[1], (one.change & 0xff_ffff) as f32, 0.0],
         ]);
-        shape
+        region
     }
 
     /// Those that are there, for reading back.

@@ -36,7 +36,7 @@ pub(super) struct Shared {
     /// The sprites of lenses.
     pub sprites: Room,
     pub sprite_places: Synced,
-    pub lens_shapes: Synced,
+    pub lens_regions: Synced,
     pub parameters: Synced,
     pub invoker_table: Synced,
     pub invokers: Synced,
@@ -91,7 +91,7 @@ impl Shared {
             solid_corners: Synced::new(gpu, "corners of solids", U::VERTEX)?,
             sprites: Room::new(gpu, "depth sprites of lenses", U::STORAGE | U::COPY_SRC | U::COPY_DST, COARSER)?,
             sprite_places: uniform("places of depth sprites")?,
-            lens_shapes: uniform("lens shapes")?,
+            lens_regions: uniform("lens shapes")?,
             parameters: uniform("parameters")?,
             invoker_table: uniform("invoker table")?,
             invokers: storage("invokers")?,
@@ -122,9 +122,9 @@ impl Shared {
     pub fn upload(&mut self, gpu: &Gpu, plan: &FramePlan, cities: &Cities, is_uber: bool) -> Result<(), GpuError> {
         let (input, plans, numbers) = (plan.input, &plan.plans, &plan.numbers);
         let mut stale = false;
-        let (mut shapes, mut places) = (numbers.shapes.clone(), numbers.places.clone());
+        let (mut regions, mut places) = (numbers.regions.clone(), numbers.places.clone());
         if is_uber {
-            shapes.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
+            regions.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             places.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             let invokers: &Invokers = plans.invokers();
             stale |= self.invoker_table.sync(gpu, &invokers.table(input.tile.size))?;
@@ -145,7 +145,7 @@ impl Shared {
         stale |= self.cities.sync(gpu, &cities.contents.uniforms(eye))?;
         stale |= self.planes.sync(gpu, &numbers.planes)?;
         stale |= self.sprite_places.sync(gpu, &places)?;
-        stale |= self.lens_shapes.sync(gpu, &shapes)?;
+        stale |= self.lens_regions.sync(gpu, &regions)?;
         stale |= self.parameters.sync(gpu, &parameters(plan, is_uber))?;
         stale |= self.object_values.sync(gpu, &input.operations.object_values)?;
         stale |= self.samples.sync(gpu, &[input.samples as f32])?;
@@ -199,7 +199,7 @@ impl Shared {
                     (4, all_of(&targets.masks)),
                     (5, whole(self.invoker_table.buffer())),
                     (6, all_of(&targets.filtered)),
-                    (7, whole(self.lens_shapes.buffer())),
+                    (7, whole(self.lens_regions.buffer())),
                     (8, whole(self.narrowed.as_ref().unwrap_or(self.tile_lists.buffer()))),
                     (9, whole(self.invokers.buffer())),
                     (10, whole(self.sprites.buffer())),

@@ -47,7 +47,7 @@ pub struct LensVolume {
 }
 
 impl LensVolume {
-    /// A body by itself, tested from its figures: its lens acts on what is inside, up to its end.
+    /// A body by itself, tested from its numbers: its lens acts on what is inside, up to its end.
     pub fn plain(lens: u32, body: Body) -> Self {
         Self {
             lens,
@@ -101,9 +101,9 @@ impl LensVolume {
         [picture, vec![own]]
     }
 
-    /// The body's figures for an eye; planes and leaves are appended to `planes`.
-    pub fn figures(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
-        self.body.figures(view, planes)
+    /// The body's region for an eye; planes and leaves are appended to `planes`.
+    pub fn region(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+        self.body.region(view, planes)
     }
 
     /// How far around it its lens acts, metres; 0 where that ends at once.

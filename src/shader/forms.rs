@@ -1,4 +1,4 @@
-//! The forms that a module calls for: their files, what loads their numbers, and what chooses between them.
+//! The forms that a module calls for: their files, loaders of their numbers, and the choice between them.
 
 use std::fmt::Write as _;
 
@@ -12,12 +12,12 @@ use crate::{
     },
 };
 
-/// What a module asks of regions.
+/// Lens tests and leaves that a module calls for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Forms {
     /// How they are tested, each once.
     pub(super) tests: Vec<LensTest>,
-    /// What the leaves of combinations are, each once.
+    /// Forms of the leaves of combinations, each once.
     pub(super) leaves: Vec<Form>,
     /// Whether it asks how far places are from them.
     pub(super) distances: bool,

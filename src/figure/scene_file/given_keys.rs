@@ -39,7 +39,7 @@ pub const fn with<const N: usize>(others: &[Variant<Focus>]) -> [Variant<Focus>;
     all
 }
 
-/// What a form's body is among shapes.
+/// A form's body among shapes.
 trait Shaped: Given + OfVolume + Into<Volume> {}
 
 impl<T: Given + OfVolume + Into<Volume>> Shaped for T {}

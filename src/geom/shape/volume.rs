@@ -1,4 +1,4 @@
-//! What volumes answer: each function asks the form ([`crate::geom::shape::form`]).
+//! Volumes asked: each function is answered by the form ([`crate::geom::shape::form`]).
 
 use glam::DVec3;
 
@@ -17,7 +17,7 @@ use crate::geom::{
 };
 
 impl Volume {
-    /// Checks what it was given by, and makes directions and turns unit.
+    /// Checks the numbers that it was given by, and makes directions and turns unit.
     pub(super) fn check(&mut self) -> Result<(), ShapeError> {
         self.body_mut().check()
     }

@@ -171,8 +171,7 @@ fn stages_of(on: &OnPage, input: &FrameInput, page: [u32; 2]) -> Vec<layout::Spr
     };
     let [first, last] = [on.region.b[0] as u32, on.region.b[1] as u32];
     // A solid has no planes.
-    let of_leaf =
-        |(i, leaf): (u32, &PlacedLeaf)| stage(leaf.figures(&input.view, &mut Vec::new()), [first, last, i, 0]);
+    let of_leaf = |(i, leaf): (u32, &PlacedLeaf)| stage(leaf.region(&input.view, &mut Vec::new()), [first, last, i, 0]);
     std::iter::once(stage(on.region, [first, last, 0, 0])).chain(own_draws(on.body).map(of_leaf)).collect()
 }
 

@@ -1,4 +1,4 @@
-//! Forms of regions: what decides by itself what is inside.
+//! Forms of regions: each decides by itself what is inside.
 
 use crate::geom::shape::{Extent, VolumeForm};
 

@@ -75,7 +75,7 @@ impl Program {
         }
     }
 
-    /// What it asks of regions.
+    /// The lens tests and leaves that it calls for.
     pub(in crate::shader) fn forms(&self) -> Forms {
         let mut tests: Vec<LensTest> = match self {
             Self::Specialised(plan) => plan.tests().collect(),

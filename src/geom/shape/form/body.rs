@@ -1,4 +1,4 @@
-//! What every form of a volume answers.
+//! The questions that every form of a volume answers.
 
 use glam::{DMat3, DVec3, Vec3};
 
@@ -8,10 +8,9 @@ use crate::geom::{
     shape::{error::ShapeError, mesh::Mesh, motion::Motion},
 };
 
-/// A form of volumes, in model coordinates. [`crate::geom::Volume`] asks it, and says of each function what it answers; only functions that say
-/// so are asked of what is empty.
+/// A form of volumes, in model coordinates, asked by [`crate::geom::Volume`]. Only functions that say so are asked of an empty one.
 pub trait Body {
-    /// Checks what it was given by, and makes directions and turns unit; asked of anything.
+    /// Checks the numbers that it was given by, and makes directions and turns unit; asked of anything.
     fn check(&mut self) -> Result<(), ShapeError> {
         Ok(())
     }
@@ -81,17 +80,17 @@ pub const BOUNDING_SIDES: u32 = 48;
 /// Rows of a region without its test: `Region` in `shaders/lib/region.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rows {
-    /// Three numbers.
+    /// First row: three numbers.
     pub a: [f32; 3],
-    /// Four.
+    /// Second row.
     pub b: [f32; 4],
-    /// Four.
+    /// Third row.
     pub c: [f32; 4],
-    /// Four.
+    /// Last row.
     pub d: [f32; 4],
 }
 
-/// The eye that rows are made for, and where else something of the volume stands.
+/// The eye that rows are made for, and places of other numbers of the volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowsEye {
     /// Where it is, metres.
@@ -102,7 +101,7 @@ pub struct RowsEye {
     pub is_orthographic: bool,
     /// Its near plane, metres.
     pub near_m: f64,
-    /// Of a solid: its first entry, and the first of the table of its distances.
+    /// First entry of a solid, and the first of the table of its distances.
     pub stored: [u32; 2],
 }
 

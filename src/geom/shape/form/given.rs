@@ -1,10 +1,10 @@
-//! Forms that are given by a few fields: what scene files call these, what each takes and means.
+//! Forms that are given by a few fields, with the names, units and texts of these in scene files.
 
 use glam::{DQuat, DVec3};
 
 use crate::geom::shape::error::ShapeError;
 
-/// What a field is.
+/// Quantities that fields may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// A place, metres.
@@ -22,11 +22,11 @@ pub enum Quantity {
 /// The value of a field, where it stands.
 #[derive(Debug)]
 pub enum Value<'a> {
-    /// Of a [`Quantity::Length`].
+    /// A [`Quantity::Length`].
     Number(&'a mut f64),
-    /// Of a [`Quantity::Place`], [`Quantity::Lengths`] or [`Quantity::Direction`].
+    /// A [`Quantity::Place`], [`Quantity::Lengths`] or [`Quantity::Direction`].
     Vector(&'a mut DVec3),
-    /// Of a [`Quantity::Turn`].
+    /// A [`Quantity::Turn`].
     Turn(&'a mut DQuat),
 }
 
@@ -35,11 +35,11 @@ pub enum Value<'a> {
 pub struct Field<T: 'static> {
     /// Its key in scene files.
     pub name: &'static str,
-    /// What it is.
+    /// Its quantity.
     pub quantity: Quantity,
-    /// What holds without it, as TOML; empty: it must be given.
+    /// Its default as TOML; empty: it must be given.
     pub default: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub doc: &'static str,
     /// A good value, as TOML.
     pub example: &'static str,
@@ -53,9 +53,9 @@ pub trait Given: Clone + 'static {
     const NAME: &'static str;
     /// The same in quotation marks.
     const QUOTED: &'static str;
-    /// What it is.
+    /// One sentence about it.
     const DOC: &'static str;
-    /// What its fields are where they are not given.
+    /// Its value where no field is given.
     const DEFAULT: Self;
     /// Its fields, at most [`MOST_FIELDS`].
     const FIELDS: &'static [Field<Self>];

@@ -14,7 +14,7 @@ pub mod sphere;
 use crate::geom::shape::{flat::Flat, form::body::Body, hull::Hull, solid::PlacedSolid};
 
 /// The table of forms: `FORM(TYPE) = "name", EXTENT;`. The type is its [`Body`]; the name is that of the WGSL file in `shaders/shape`, in which
-/// the struct has the form's name; what it extends to is an [`Extent`]. Handed to a macro, which makes of it what it needs.
+/// the struct has the form's name; how far it extends is an [`Extent`]. Handed to a macro, which makes its own of it.
 macro_rules! volume_forms {
     ($take:ident) => {
         $take! {
@@ -50,7 +50,7 @@ pub trait OfVolume: Sized {
     fn of_volume(volume: &Volume) -> Option<&Self>;
 }
 
-/// What a form extends to, and so how it is asked.
+/// How far a form extends, and so how it is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// A ray is in it once, from an end to an end, both of which have closed forms.
@@ -77,7 +77,7 @@ macro_rules! declare {
                 }
             }
 
-            /// What answers for it.
+            /// The body that answers for it.
             pub(super) fn body(&self) -> &dyn Body {
                 match self {
                     $(Self::$form(body) => body,)*
@@ -133,7 +133,7 @@ macro_rules! declare {
                 }
             }
 
-            /// What it extends to.
+            /// How far it extends.
             pub fn extent(self) -> Extent {
                 match self {
                     $(Self::$form => Extent::$extent,)*
