@@ -72,7 +72,7 @@ impl Volume {
         self
     }
 
-    /// Whether the closed triangle and the closed volume share a point (C1), in f64: also where the triangle spans the volume with no corner
+    /// Whether the closed triangle and the closed volume share a point, in f64: also where the triangle spans the volume with no corner
     /// and no edge inside.
     pub fn meets_triangle(&self, corners: &[DVec3; 3]) -> bool {
         !self.is_empty() && self.body().meets_triangle(corners)
