@@ -139,7 +139,7 @@ fn overlay(
     changes: &mut Vec<Change>,
 ) {
     let scene = window.document.scene();
-    let Some(lens) = scene.lenses.get(lens).filter(|lens| lens.best_view.is_some()) else { return };
+    let Some(lens) = scene.lenses.get(lens).filter(|lens| lens.kind.has_overlay()) else { return };
     let given = root.get("overlay").and_then(Value::as_array).cloned().unwrap_or_default();
     let is_own = |own: &Value| own.get("lens").and_then(Value::as_str) == Some(&*lens.name);
     let at = given.iter().position(is_own);

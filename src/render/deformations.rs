@@ -116,7 +116,7 @@ impl KnownDeformations {
         let mut deformers = Deformers::default();
         let mut rules = Vec::new();
         for (i, lens) in stage.scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
-            let Some(deform) = &lens.deform else { continue };
+            let Some(deform) = lens.deform() else { continue };
             let wrong = |message: String| format!("[lens.{i}] {message}");
             if deform.is_of_objects() {
                 let mut asked = Asked {

@@ -17,8 +17,9 @@ use veduta::{
     figure::animation::Film,
     gpu::Gpu,
     lens::{
-        Focus, Lens, LensKind, Occluders, Rendering,
+        Focus, Lens, Occluders,
         dither::dither,
+        kind::Occlusion,
         rendering::{Case, Given, ROWS, When},
     },
     render::picture::{Aovs, Picture, Request, Studio},
@@ -56,7 +57,7 @@ fn lens(name: &str, test: Test) -> Lens {
         ..Occluders::default()
     };
     let plain = crate::studio::lens(name, [Focus::Occluders(of)], "sepia");
-    Lens { kind: LensKind::Occlusion, render: Some(Rendering::default()), effects: vec![], ..plain }
+    Lens { kind: Occlusion::default().into(), effects: vec![], ..plain }
 }
 
 /// What is told of one object, or of all.
