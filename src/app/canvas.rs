@@ -486,7 +486,7 @@ impl Window {
     /// Around the first point of interest of a lens, metres; empty: it has none, or none that stands in the city.
     fn about(&self, lens: usize) -> Aabb {
         let scene = self.document.scene();
-        let shown = scene.lenses.get(lens).and_then(|lens| lens.best_view.as_ref());
+        let shown = scene.lenses.get(lens).and_then(|lens| lens.best_view());
         let name = shown.and_then(|shown| shown.pois.first());
         let poi = name.and_then(|name| scene.pois.iter().find(|poi| poi.name == *name));
         match poi.map(|poi| scene.place(poi)) {

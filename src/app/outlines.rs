@@ -7,7 +7,6 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     app::{canvas_state::Outlines, state::Window},
-    lens::LensKind,
     view::View,
 };
 
@@ -65,8 +64,7 @@ impl Window {
     /// The triangles of an object with its parts that would be shown without lenses, metres; none where lenses move them.
     fn triangles_shown(&self, root: u32) -> Vec<[DVec3; 3]> {
         let mut all = Vec::new();
-        let is_deformed =
-            self.document.scene().lenses.iter().any(|lens| lens.enabled && lens.kind == LensKind::Deformation);
+        let is_deformed = self.document.scene().lenses.iter().any(|lens| lens.enabled && lens.deform().is_some());
         let Some((city, index)) = self.city.as_ref().and_then(|city| Some((city, city.index.get()?))) else {
             return all;
         };

@@ -86,7 +86,7 @@ pub fn show(window: &mut Window, drafts: &mut Drafts, ui: &mut Ui) {
 /// The properties of the chosen lens' overlay, if it has one.
 fn overlay(ui: &mut Ui, edits: &mut Edits, window: &Window, root: &TomlTable, lens: usize) {
     let scene = window.document.scene();
-    let Some(lens) = scene.lenses.get(lens).filter(|lens| lens.best_view.is_some()) else { return };
+    let Some(lens) = scene.lenses.get(lens).filter(|lens| lens.kind.has_overlay()) else { return };
     let given = root.get("overlay").and_then(Value::as_array).cloned().unwrap_or_default();
     let is_own = |own: &Value| own.get("lens").and_then(Value::as_str) == Some(&*lens.name);
     let at = given.iter().position(is_own);

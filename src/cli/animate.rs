@@ -135,7 +135,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let first_scene = film.scene(first).map_err(failed)?;
     // Occluders and overlays have a history, which begins with frame 0 whichever frames are drawn.
     let has_history =
-        first_scene.lenses.iter().any(|lens| lens.enabled && (lens.occluders().is_some() || lens.best_view.is_some()));
+        first_scene.lenses.iter().any(|lens| lens.enabled && (lens.occluders().is_some() || lens.kind.has_overlay()));
     let begin = if has_history { 0 } else { first };
     (begin..=last).try_for_each(|frame| film.scene(frame).map(|_| ())).map_err(failed)?;
     let folder = Folder::new(&arguments.output, film.frames())?;

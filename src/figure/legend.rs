@@ -131,16 +131,12 @@ mod tests {
     fn lens(name: &str, effects: Vec<EffectUse>) -> Lens {
         Lens {
             name: name.into(),
-            kind: LensKind::Color,
+            kind: LensKind::default(),
             enabled: true,
             color: [1.0, 0.0, 0.0],
             placement: Default::default(),
             shapes: vec![],
             effects,
-            render: None,
-            best_view: None,
-            deform: None,
-            content: None,
             body: Default::default(),
             sprite: None,
             border: None,

@@ -1,7 +1,5 @@
 //! How lens bodies are drawn.
 
-use crate::lens::kind::LensKind;
-
 /// How a lens body is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LensBody {
@@ -17,12 +15,6 @@ pub enum LensBody {
 }
 
 impl LensBody {
-    /// How lenses of a kind are drawn that say nothing of it. What is done to occluders is what tells of them; a line around what is opaque of
-    /// it, and none around the rest, tells less.
-    pub fn of_kind(kind: LensKind) -> Self {
-        if kind == LensKind::Occlusion { Self::None } else { Self::Outline }
-    }
-
     /// All, with their words in scene files.
     pub const WORDS: [(&str, Self); 4] =
         [("outline", Self::Outline), ("shell", Self::Shell), ("halo", Self::Halo), ("none", Self::None)];

@@ -14,7 +14,7 @@ use crate::{
 pub struct Lens {
     /// Its name, unique.
     pub name: String,
-    /// What kind of lens it is.
+    /// What kind of lens it is, with what is its kind's own.
     pub kind: LensKind,
     /// `false`: keeps its place and its mask bit, acts on nothing.
     pub enabled: bool,
@@ -24,16 +24,8 @@ pub struct Lens {
     pub placement: Placement,
     /// Its focus areas: inside where any of them is.
     pub shapes: Vec<Focus>,
-    /// How the occluders of an occlusion lens are drawn.
-    pub render: Option<Rendering>,
     /// What it does, in order (at most one scene style), after what it is drawn by.
     pub effects: Vec<EffectUse>,
-    /// What its overlay shows, if it has one.
-    pub best_view: Option<BestView>,
-    /// What it does with space, if it is a deformation lens.
-    pub deform: Option<Deform>,
-    /// What it shows in place of what is below it; `None`: it acts on that.
-    pub content: Option<Content>,
     /// How the lens body itself is drawn.
     pub body: LensBody,
     /// The volumetric depth sprite that it is tested by; `None`: from its shapes.
@@ -50,7 +42,9 @@ pub struct Lens {
 
 impl Lens {
     /// A lens without shapes and without effects, its body as lenses of its kind have it.
-    pub fn plain(name: impl Into<String>, kind: LensKind, color: [f32; 3]) -> Self {
+    pub fn plain(name: impl Into<String>, kind: impl Into<LensKind>, color: [f32; 3]) -> Self {
+        let kind = kind.into();
+        let body = kind.row().body;
         Self {
             name: name.into(),
             kind,
@@ -58,12 +52,8 @@ impl Lens {
             color,
             placement: Placement::World,
             shapes: Vec::new(),
-            render: None,
             effects: Vec::new(),
-            best_view: None,
-            deform: None,
-            content: None,
-            body: LensBody::of_kind(kind),
+            body,
             sprite: None,
             border: None,
             keeps_shadows: false,
@@ -99,6 +89,33 @@ impl Lens {
 }
 
 impl Lens {
+    /// See [`LensKind::content`].
+    pub fn content(&self) -> Option<&Content> {
+        self.kind.content()
+    }
+
+    /// See [`LensKind::rendering`].
+    pub fn rendering(&self) -> Option<&Rendering> {
+        self.kind.rendering()
+    }
+
+    /// See [`LensKind::deform`].
+    pub fn deform(&self) -> Option<&Deform> {
+        self.kind.deform()
+    }
+
+    /// See [`LensKind::best_view`].
+    pub fn best_view(&self) -> Option<&BestView> {
+        self.kind.best_view()
+    }
+
+    /// Has it draw nothing of its own where occluders are.
+    pub fn clear_rendering(&mut self) {
+        if let Some(rendering) = self.kind.rendering_mut() {
+            *rendering = Rendering::of_cases(Vec::new());
+        }
+    }
+
     /// The classes it acts on, of what it does and shows.
     pub fn classes(&self) -> impl Iterator<Item = Class> {
         self.uses().map(|e| e.class).chain(self.shown().map(|c| c.class))
@@ -106,19 +123,19 @@ impl Lens {
 
     /// What it shows in itself: its own content, or what it shows occluders as; of several cases the first that shows something.
     pub fn shown(&self) -> Option<&Content> {
-        let cases = || self.render.iter().flat_map(|render| &render.cases);
-        self.content.as_ref().or_else(|| cases().find_map(|case| case.content.as_ref()))
+        let cases = || self.rendering().into_iter().flat_map(|render| &render.cases);
+        self.content().or_else(|| cases().find_map(|case| case.content.as_ref()))
     }
 
     /// What it does, in order: how it draws occluders, then its effects.
     pub fn uses(&self) -> impl Iterator<Item = &EffectUse> {
-        let cases = self.render.iter().flat_map(|render| &render.cases);
+        let cases = self.rendering().into_iter().flat_map(|render| &render.cases);
         cases.flat_map(|case| &case.effects).chain(&self.effects)
     }
 
     /// The query for occluders, if it is an occlusion lens.
     pub fn occluders(&self) -> Option<&Occluders> {
-        let of_deform = || self.deform.as_ref().and_then(Deform::occluders);
+        let of_deform = || self.deform().and_then(Deform::occluders);
         self.shapes.first().and_then(Focus::occluders).or_else(of_deform)
     }
 }

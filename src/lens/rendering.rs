@@ -394,7 +394,9 @@ impl Rendering {
 
     /// Whether all occluders are drawn in one way, and points of interest as they are.
     pub fn is_plain(&self) -> bool {
-        matches!(&self.cases[..], [one] if one.when.is_always()) && self.poi_effects.is_empty()
+        matches!(&self.cases[..], [] | [_])
+            && self.cases.iter().all(|one| one.when.is_always())
+            && self.poi_effects.is_empty()
     }
 }
 

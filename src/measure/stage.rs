@@ -118,16 +118,12 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
     };
     Lens {
         name: name.to_owned(),
-        kind: LensKind::Color,
+        kind: LensKind::default(),
         enabled: true,
         color: [0.8, 0.2, 0.1],
         placement: Default::default(),
         shapes: vec![shape.into()],
         effects: effects.iter().map(use_of).collect(),
-        render: None,
-        best_view: None,
-        deform: None,
-        content: None,
         body: LensBody::None,
         sprite: None,
         border: None,

@@ -116,9 +116,9 @@ impl KnownDeformations {
         let mut deformers = Deformers::default();
         let mut rules = Vec::new();
         let enabled = || stage.scene.lenses.iter().filter(|lens| lens.enabled);
-        let others = enabled().filter_map(|lens| lens.deform.as_ref()).any(Deform::always_moves);
+        let others = enabled().filter_map(Lens::deform).any(Deform::always_moves);
         for (i, lens) in stage.scene.lenses.iter().enumerate().filter(|(_, lens)| lens.enabled) {
-            let Some(deform) = &lens.deform else { continue };
+            let Some(deform) = lens.deform() else { continue };
             let wrong = |message: String| format!("[lens.{i}] {message}");
             if deform.is_of_objects() {
                 let mut asked = Asked {

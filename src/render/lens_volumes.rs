@@ -136,7 +136,7 @@ fn move_leaf(leaf: &mut Leaf, lens: &Lens, tools: &mut Tools) -> Result<(), Stri
     }
     match leaf {
         Leaf::Members(members) => members.bounds = tools.moved.bounds(&members.bounds),
-        Leaf::Volume(volume) if lens.at_rest && lens.deform.is_none() => {
+        Leaf::Volume(volume) if lens.at_rest && lens.deform().is_none() => {
             match tools.solids.moved(volume, &tools.moved.deformers)? {
                 Some(placed) => *volume = Volume::Solid(placed),
                 None => *volume = Volume::Sphere(Sphere { center: volume.bounds().center(), radius: 0.0 }),

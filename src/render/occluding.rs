@@ -14,7 +14,7 @@ use crate::{
 
 /// The cases that a lens draws occluders in; none: all in one way.
 fn cases_of(lens: &Lens) -> Vec<When> {
-    match lens.render.as_ref().map_or(&[][..], |render| &render.cases[..]) {
+    match lens.rendering().map_or(&[][..], |render| &render.cases[..]) {
         [one] if one.when.is_always() => Vec::new(),
         several => several.iter().map(|case| case.when.clone()).collect(),
     }

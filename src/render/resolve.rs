@@ -140,7 +140,7 @@ impl Surroundings<'_> {
         camera: &Camera,
         known: &mut Known,
     ) -> Result<SceneDeformations, ResolveError> {
-        if scene.lenses.iter().all(|lens| lens.deform.is_none()) {
+        if scene.lenses.iter().all(|lens| lens.deform().is_none()) {
             return Ok(SceneDeformations::default());
         }
         let mut stage = deformations::Stage {

@@ -41,8 +41,8 @@ impl Studio {
             let effect = "greyscale".to_owned();
             let (blend, weight, parameters) = (None, None, BTreeMap::new());
             scene.lenses[lens].effects = vec![EffectUse { effect, class: Class::Rest, blend, weight, parameters }];
-            scene.lenses[lens].content = None;
-            scene.lenses[lens].render = None;
+            scene.lenses[lens].kind.set_content(None);
+            scene.lenses[lens].clear_rendering();
         }
         let found = self.sprites(&scene, size, lens)?;
         match &found[..] {

@@ -37,7 +37,7 @@ pub fn alone(scene: &Scene, model: &CityModel, id: &str) -> Scene {
     let mut alone = scene.clone();
     alone.style.effects.clear();
     alone.style.technique = Default::default();
-    alone.lenses.retain(|lens| lens.deform.is_some());
+    alone.lenses.retain(|lens| lens.deform().is_some());
     alone.lenses.iter_mut().for_each(|lens| {
         lens.effects.clear();
         lens.body = LensBody::None;
@@ -56,7 +56,7 @@ fn all_else(kept: Choice) -> Lens {
         weight: None,
         parameters: Default::default(),
     };
-    let plain = Lens::plain("all else", LensKind::Color, [0.0; 3]);
+    let plain = Lens::plain("all else", LensKind::default(), [0.0; 3]);
     Lens { shapes: vec![Focus::Thematic(kept)], effects: vec![eraser], body: LensBody::None, ..plain }
 }
 
@@ -89,10 +89,10 @@ pub(super) fn of_lenses(
 ) -> Result<Vec<Option<Vec<stats::Visible>>>, RenderError> {
     let size = within(size, TILE);
     let mut at_rest = scene.clone();
-    at_rest.lenses.iter_mut().for_each(|lens| lens.enabled &= lens.deform.is_none());
+    at_rest.lenses.iter_mut().for_each(|lens| lens.enabled &= lens.deform().is_none());
     let pois = scene.standing_pois();
     let mut of_lens = |lens: &Lens| {
-        let Some(of) = lens.deform.as_ref().and_then(|deform| deform.occluders()).filter(|_| lens.enabled) else {
+        let Some(of) = lens.deform().and_then(|deform| deform.occluders()).filter(|_| lens.enabled) else {
             return Ok(None);
         };
         let named = pois.iter().filter(|poi| of.pois.contains(&poi.name));

@@ -35,7 +35,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
     let numbered = || scene.lenses.iter().enumerate().map(|(i, lens)| (format!("lens.{i}"), lens));
     let places = places.map(|(table, list, effects)| (table, list.to_owned(), effects));
     let drawn = numbered().flat_map(|(table, lens)| {
-        lens.render.iter().flat_map(effects_of).map(move |(key, effects)| (table.clone(), key, effects))
+        lens.rendering().into_iter().flat_map(effects_of).map(move |(key, effects)| (table.clone(), key, effects))
     });
     let lenses = numbered().map(|(table, lens)| (table, "effects".to_owned(), &lens.effects));
     for (table, list, effects) in places.chain(drawn).chain(lenses) {
@@ -76,7 +76,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
         if let Some(occluders) = lens.occluders() {
             check_occluders(occluders, &format!("lens.{i}"), scene, model, &mut problems);
         }
-        for (key, case) in lens.render.iter().flat_map(cases_of) {
+        for (key, case) in lens.rendering().into_iter().flat_map(cases_of) {
             let chosen = case.when.of.iter().flat_map(|choice| absent(model, choice));
             let named = chosen.map(|(at, message)| (format!("where.{at}"), format!("chooses nothing: {message}")));
             let types = absent_types(model, &case.when.types);
@@ -213,10 +213,6 @@ mod tests {
             placement,
             shapes: vec![],
             effects: vec![],
-            render: None,
-            best_view: None,
-            deform: None,
-            content: None,
             body: Default::default(),
             sprite: None,
             border: None,

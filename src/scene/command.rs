@@ -2,7 +2,7 @@
 
 use crate::{
     lens::{
-        BestView, Lens, LensKind,
+        BestView, Lens,
         best_view::{Depiction, LocalView},
     },
     scene::model::Scene,
@@ -76,11 +76,11 @@ impl Command {
     /// Steps through a portal: its eye becomes the main one, and the main one, `from`, its own, so that it leads back. `None`: there is no portal
     /// at `index`.
     pub fn step_through(scene: &Scene, index: usize, from: Camera) -> Option<Self> {
-        let lens = scene.lenses.get(index).filter(|lens| lens.kind == LensKind::Portal)?;
-        let Some(&LocalView::Camera(to)) = lens.best_view.as_ref().and_then(BestView::view) else { return None };
+        let lens = scene.lenses.get(index).filter(|lens| lens.kind.row().is_door)?;
+        let Some(&LocalView::Camera(to)) = lens.best_view().and_then(BestView::view) else { return None };
         Some(Self::of(format!("step through {}", lens.name), scene, |s| {
             s.camera = Some(to);
-            if let Some(shown) = &mut s.lenses[index].best_view {
+            if let Some(shown) = s.lenses[index].kind.best_view_mut() {
                 shown.depiction = Depiction::View(LocalView::Camera(from));
             }
         }))
@@ -180,6 +180,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::lens::kind::{Portal, SeeThrough};
 
     fn resized(scene: &Scene, width: u32) -> Command {
         Command::of(format!("width {width}"), scene, |s| s.figure.size[0] = width)
@@ -211,14 +212,14 @@ mod tests {
             lenses: None,
             look: None,
         };
-        let portal = Lens { best_view: Some(shown), ..Lens::plain("gate", LensKind::Portal, [0.0; 3]) };
+        let portal = Lens::plain("gate", Portal { shown: shown.clone() }, [0.0; 3]);
         let mut scene = Scene { camera: Some(here), lenses: vec![portal], ..Scene::default() };
         let before = scene.clone();
         Command::step_through(&scene, 0, here).unwrap().redo(&mut scene);
         assert_eq!(scene.camera, Some(there));
         Command::step_through(&scene, 0, there).unwrap().redo(&mut scene);
         assert_eq!(scene, before);
-        scene.lenses[0].kind = LensKind::SeeThrough;
+        scene.lenses[0].kind = SeeThrough { shown }.into();
         assert_eq!(Command::step_through(&scene, 0, here), None, "a window is no door");
         assert_eq!(Command::step_through(&scene, 1, here), None);
     }
@@ -251,10 +252,6 @@ mod tests {
             placement: Default::default(),
             shapes: vec![],
             effects: vec![],
-            render: None,
-            best_view: None,
-            deform: None,
-            content: None,
             body: Default::default(),
             sprite: None,
             border: None,

@@ -4,7 +4,11 @@
 use std::borrow::Cow;
 
 use crate::{
-    lens::{Class, Focus, Lens, LensBody, Rendering, chosen::Choice, rendering::When},
+    lens::{
+        Class, Focus, Lens, LensBody, Rendering,
+        chosen::Choice,
+        rendering::{Case, When},
+    },
     scene::model::{PoiPlace, Scene},
 };
 
@@ -34,7 +38,7 @@ impl Scene {
     /// The scene as it is drawn. Of an occlusion lens with several cases there is a lens for each of them, of the occluders that it
     /// holds of, then one of all occluders, with what acts beside them, then one of the points of interest.
     pub fn drawn(&self) -> Drawn<'_> {
-        let is_plain = |lens: &Lens| lens.render.as_ref().is_none_or(Rendering::is_plain);
+        let is_plain = |lens: &Lens| lens.rendering().is_none_or(Rendering::is_plain);
         if self.lenses.iter().all(is_plain) {
             let scene = match self.moves() {
                 true => Cow::Owned(Self { pois: self.standing_pois(), ..self.clone() }),
@@ -44,7 +48,7 @@ impl Scene {
         }
         let (mut lenses, mut owners, mut wholes) = (Vec::new(), Vec::new(), Vec::new());
         for (lens, owner) in self.lenses.iter().zip(0..) {
-            match &lens.render {
+            match lens.rendering() {
                 Some(render) if !render.is_plain() => {
                     let parts = self.parts(lens, render);
                     let whole = parts.iter().position(|part| part.shapes == lens.shapes).unwrap_or(0);
@@ -68,19 +72,20 @@ impl Scene {
     fn parts(&self, lens: &Lens, render: &Rendering) -> Vec<Lens> {
         let mut parts = Vec::new();
         let mut rest = lens.clone();
-        rest.render = None;
+        rest.clear_rendering();
         match &render.cases[..] {
-            [one] if one.when.is_always() => rest.render = Some(Rendering::of_cases(vec![one.clone()])),
+            [one] if one.when.is_always() => draw(&mut rest, one),
             cases => {
                 let (inside, beside) = lens.effects.iter().cloned().partition(|used| used.class == Class::Inside);
                 rest.effects = beside;
                 let when: Vec<When> = cases.iter().map(|case| case.when.clone()).collect();
                 for (i, case) in cases.iter().enumerate() {
                     let mut part = lens.clone();
-                    part.render = Some(Rendering::of_cases(vec![case.clone()]));
+                    draw(&mut part, case);
                     part.shapes.iter_mut().for_each(|shape| narrow(shape, &when[..=i]));
                     part.effects = Vec::clone(&inside);
-                    (part.content, part.body, part.section) = (None, LensBody::None, None);
+                    part.kind.set_content(None);
+                    (part.body, part.section) = (LensBody::None, None);
                     parts.push(part);
                 }
             }
@@ -96,19 +101,27 @@ impl Scene {
             .collect();
         if !render.poi_effects.is_empty() && !ids.is_empty() {
             let choice = Choice { ids, ..Choice::default() };
+            let mut own = lens.clone();
+            own.clear_rendering();
+            own.kind.set_content(None);
             parts.push(Lens {
                 shapes: vec![Focus::Thematic(choice)],
-                render: None,
                 effects: render.poi_effects.clone(),
-                content: None,
                 body: LensBody::None,
                 sprite: None,
                 border: None,
                 section: None,
-                ..lens.clone()
+                ..own
             });
         }
         parts
+    }
+}
+
+/// Has a lens draw its occluders in the way of one case.
+fn draw(lens: &mut Lens, case: &Case) {
+    if let Some(rendering) = lens.kind.rendering_mut() {
+        *rendering = Rendering::of_cases(vec![case.clone()]);
     }
 }
 

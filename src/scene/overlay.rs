@@ -207,7 +207,7 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
     let mut note = |table: String, key: &str, message: String| {
         problems.push(SceneProblem { table, key: key.to_owned(), message });
     };
-    let has_overlay = |lens: &&Lens| lens.best_view.is_some();
+    let has_overlay = |lens: &&Lens| lens.kind.has_overlay();
     for (i, overlay) in scene.overlays.iter().enumerate() {
         let table = format!("overlay.{i}");
         match scene.lenses.iter().find(|lens| lens.name == overlay.lens) {
@@ -217,7 +217,7 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
                     did_you_mean(&overlay.lens, scene.lenses.iter().filter(has_overlay).map(|l| l.name.as_str()));
                 note(table.clone(), "lens", format!("there is no lens \"{}\"{hint}", overlay.lens));
             }
-            Some(lens) if lens.best_view.is_none() => {
+            Some(lens) if !lens.kind.has_overlay() => {
                 let message =
                     format!("\"{}\" is a lens of kind \"{}\", which has no overlay", lens.name, lens.kind.word());
                 note(table.clone(), "lens", message);
@@ -227,7 +227,7 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
             }
             Some(lens)
                 if matches!(overlay.stand, Stand::Scene(_))
-                    && lens.best_view.as_ref().is_some_and(|shown| shown.pois.is_empty()) =>
+                    && lens.best_view().is_some_and(|shown| shown.pois.is_empty()) =>
             {
                 let message = format!("stands above a point of interest, and lens \"{}\" has no poi", lens.name);
                 note(table.clone(), "call_out", message);
@@ -248,7 +248,7 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
         }
     }
     for (i, lens) in scene.lenses.iter().enumerate() {
-        let Some(shown) = &lens.best_view else { continue };
+        let Some(shown) = lens.best_view() else { continue };
         let table = format!("lens.{i}");
         for name in &shown.pois {
             if !scene.pois.iter().any(|poi| poi.name == *name) {
@@ -279,8 +279,8 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
 /// A way from the last lens of `chain` over the lenses of overlays that leads back to the first of it or is too long.
 fn too_deep(scene: &Scene, chain: &mut Vec<usize>) -> Option<Vec<usize>> {
     let last = scene.lenses.get(*chain.last()?)?;
-    for name in last.best_view.iter().flat_map(|shown| shown.lenses.iter().flatten()) {
-        let Some(next) = scene.lenses.iter().position(|lens| lens.name == *name && lens.best_view.is_some()) else {
+    for name in last.best_view().into_iter().flat_map(|shown| shown.lenses.iter().flatten()) {
+        let Some(next) = scene.lenses.iter().position(|lens| lens.name == *name && lens.kind.has_overlay()) else {
             continue;
         };
         let is_cycle = chain.first() == Some(&next);

@@ -18,7 +18,7 @@ impl Scene {
     #[must_use]
     pub fn sized(&self, factor: f64, em_px: f64) -> Self {
         let mut scene = self.clone();
-        for lens in self.lenses.iter().filter(|lens| lens.best_view.is_some()) {
+        for lens in self.lenses.iter().filter(|lens| lens.kind.has_overlay()) {
             if !scene.overlays.iter().any(|overlay| overlay.lens == lens.name) {
                 scene.overlays.push(Overlay::of(&lens.name));
             }
@@ -49,10 +49,10 @@ fn size_lens(lens: &mut Lens, factor: f64) {
     if let Some(border) = lens.border.as_mut().filter(|border| border.unit == BorderUnit::Pixels) {
         border.width *= factor;
     }
-    let look = lens.best_view.as_mut().and_then(|shown| shown.look.as_mut());
+    let look = lens.kind.best_view_mut().and_then(|shown| shown.look.as_mut());
     let of_view = look.into_iter().flat_map(|look| &mut look.effects);
     lens.effects.iter_mut().chain(of_view).for_each(|used| size_effect(used, factor));
-    if let Some(render) = &mut lens.render {
+    if let Some(render) = lens.kind.rendering_mut() {
         let of_cases = render.cases.iter_mut().flat_map(|case| &mut case.effects);
         of_cases.chain(&mut render.poi_effects).for_each(|used| size_effect(used, factor));
     }
@@ -76,7 +76,7 @@ fn size_effect(used: &mut EffectUse, factor: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lens::{Class, LensKind};
+    use crate::lens::{Class, LensKind, kind::BestViewLens};
 
     fn used(effect: &str, parameters: &[(&str, f64)]) -> EffectUse {
         let parameters = parameters.iter().map(|(name, number)| ((*name).to_owned(), Parameter::Number(*number)));
@@ -92,14 +92,14 @@ mod tests {
     #[test]
     fn what_is_given_in_pixels_keeps_its_share_of_the_picture() {
         let mut scene = Scene::default();
-        let mut view = Lens::plain("view", LensKind::BestView, [0.0; 3]);
-        view.best_view = Some(crate::lens::BestView {
+        let shown = crate::lens::BestView {
             pois: Vec::new(),
             depiction: crate::lens::best_view::Depiction::Text("a".to_owned()),
             lenses: None,
             look: None,
-        });
-        let mut lines = Lens::plain("lines", LensKind::Color, [0.0; 3]);
+        };
+        let view = Lens::plain("view", BestViewLens { shown }, [0.0; 3]);
+        let mut lines = Lens::plain("lines", LensKind::default(), [0.0; 3]);
         let width = find("wireframe").unwrap().parameters.iter().find(|own| own.unit == PIXELS).unwrap().name.clone();
         lines.effects = vec![used("wireframe", &[]), used("wireframe", &[(&width, 2.0)]), used("sepia", &[])];
         scene.lenses = vec![view, lines];

@@ -44,7 +44,7 @@ fn check(path: &Path) -> Result<(), Failed> {
     let mut studio = Studio::new(Gpu::open()?, model.clone(), &scene.city)?;
     let volumes = studio.lens_volumes(&scene, scene.figure.size)?;
     // Those with an overlay have no focus area, nor those about the eye or about objects.
-    let has_area = |lens: &Lens| lens.best_view.is_none() && lens.deform.as_ref().is_none_or(|d| !d.needs_no_area());
+    let has_area = |lens: &Lens| !lens.kind.has_overlay() && lens.deform().is_none_or(|d| !d.needs_no_area());
     for (i, lens) in scene.lenses.iter().enumerate().filter(|(_, lens)| has_area(lens)) {
         let own = volumes.iter().filter(|v| v.lens as usize == i);
         let bounds: Vec<_> = own.map(|v| v.bounds).collect();

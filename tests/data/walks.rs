@@ -17,8 +17,9 @@ use veduta::{
     figure::animation::Film,
     gpu::Gpu,
     lens::{
-        Focus, Lens, LensKind, Occluders, Rendering,
+        Focus, Lens, Occluders, Rendering,
         dither::dither,
+        kind::Occlusion,
         rendering::{Case, Given, ROWS, When},
     },
     render::picture::{Aovs, Picture, Request, Studio},
@@ -56,7 +57,7 @@ fn lens(name: &str, test: Test) -> Lens {
         ..Occluders::default()
     };
     let plain = crate::studio::lens(name, [Focus::Occluders(of)], "sepia");
-    Lens { kind: LensKind::Occlusion, render: Some(Rendering::default()), effects: vec![], ..plain }
+    Lens { kind: Occlusion::default().into(), effects: vec![], ..plain }
 }
 
 /// What is told of one object, or of all.
@@ -162,7 +163,7 @@ fn check(file: &Path) -> Result<(), Failed> {
     let all = Test::Spherical { radius: 1e5, reference: Reference::Nearest };
     let case = |nearer_m| Case { when: When { nearer_m, ..When::default() }, ..Case::of_row(&ROWS[0], Given::new()) };
     let cases = Rendering::of_cases(vec![Case { effects: vec![], ..case(Some(CASE_M)) }, case(None)]);
-    let by_case = Lens { render: Some(cases), ..lens("by case", all) };
+    let by_case = Lens { kind: Occlusion { rendering: cases, content: None }.into(), ..lens("by case", all) };
     let film = Film::new(&walk(vec![lens("hides", Test::default()), lens("near", near), by_case.clone()]))?;
     let mut studio = Studio::new(Gpu::open()?, model.clone(), &CitySpec { ground: false, ..CitySpec::default() })?;
     let none = Set::new(units.len());

@@ -67,11 +67,11 @@ fn part(picture: &Picture, at: [usize; 2], size: [usize; 2]) -> Vec<[u8; 4]> {
 fn alone(studio: &mut Studio, scene: &Scene, lens: usize, size: [u32; 2]) -> Picture {
     let camera = studio.camera(scene, SIZE);
     let own = &scene.lenses[lens];
-    let shown = own.best_view.as_ref().unwrap();
+    let shown = own.best_view().unwrap();
     let from = views::From { main: camera, size, tracked: None };
     let made = views::local(studio, scene, &own.name, shown, shown.view().unwrap(), &from).unwrap();
     let mut own = made.scene.clone();
-    own.lenses.retain(|lens| lens.best_view.is_none());
+    own.lenses.retain(|lens| !lens.kind.has_overlay());
     studio.render(&own, &request(size)).unwrap()
 }
 
@@ -159,7 +159,7 @@ fn views_in_views_are_drawn_again_from_the_inside_outwards() {
     assert_eq!(rendered(&drawn(&mut studio, &scene)), [false, false]);
     // The view in the view: what the outer overlay shows holds the frame and the picture of the inner one.
     let mut without = scene.clone();
-    without.lenses[0].best_view.as_mut().unwrap().lenses = Some(Vec::new());
+    without.lenses[0].kind.best_view_mut().unwrap().lenses = Some(Vec::new());
     let plain = drawn(&mut studio, &without);
     let (_, at, size, _) = told_first[0];
     let differing = part(&first, at, size).iter().zip(part(&plain, at, size)).filter(|(a, b)| **a != *b).count();
@@ -167,7 +167,7 @@ fn views_in_views_are_drawn_again_from_the_inside_outwards() {
     // What the inner one shows changes: both are drawn again.
     drawn(&mut studio, &scene);
     let mut moved = scene.clone();
-    moved.lenses[1].best_view.as_mut().unwrap().depiction = veduta::lens::best_view::Depiction::View(
+    moved.lenses[1].kind.best_view_mut().unwrap().depiction = veduta::lens::best_view::Depiction::View(
         LocalView::Camera(Camera::looking(DVec3::new(60.0, 50.0, 30.0), DVec3::ZERO, 0.8)),
     );
     assert_eq!(rendered(&drawn(&mut studio, &moved)), [true, true]);
@@ -372,7 +372,7 @@ fn shipped(name: &str, changes: &[&str]) -> Shipped {
 fn share_of(shipped: &mut Shipped, lens: usize, object: &str) -> f64 {
     let Shipped { scene, studio, .. } = shipped;
     let own = &scene.lenses[lens];
-    let shown = own.best_view.as_ref().unwrap();
+    let shown = own.best_view().unwrap();
     let from = views::From { main: studio.camera(scene, scene.figure.size), size: [240, 160], tracked: None };
     let mut local = views::local(studio, scene, &own.name, shown, shown.view().unwrap(), &from).unwrap().scene;
     local.lenses.clear();
@@ -401,7 +401,7 @@ fn trapp_3_4_3_ties_one_depiction_to_several_places_and_shows_the_surroundings()
     assert_eq!((made.placed.placements.len(), made.placed.lines.len()), (1, 3));
     let made = shipped("trapp-3-4-3-b", &[]);
     let camera = made.studio.camera(&made.scene, made.scene.figure.size);
-    let own = made.scene.lenses[0].best_view.as_ref().unwrap();
+    let own = made.scene.lenses[0].best_view().unwrap();
     let from = views::From { main: camera, size: [200, 200], tracked: None };
     let map = views::local(&made.studio, &made.scene, "map", own, own.view().unwrap(), &from).unwrap();
     let seen = map.scene.camera.unwrap();
@@ -468,7 +468,7 @@ fn trapp_5_3_2_goes_by_what_one_looks_at() {
 #[test]
 fn trapp_5_3_1_magnifies_the_middle() {
     let made = shipped("trapp-5-3-1", &[]);
-    let view = made.scene.lenses[0].best_view.as_ref().unwrap().view().unwrap();
+    let view = made.scene.lenses[0].best_view().unwrap().view().unwrap();
     assert!(matches!(view, LocalView::Map { magnification, .. } if *magnification == 3.0));
     // It is another picture than without: by how much, the closed form says (above).
     let plain = shipped("trapp-5-3-1", &["lens.map.view.magnification=1"]);
@@ -598,7 +598,7 @@ fn what_goes_by_a_moving_point_moves_with_it() {
         for (lens, eye, target) in
             [(1, DVec3::new(-30.0, 0.0, 20.0), DVec3::ZERO), (2, DVec3::new(0.0, 0.0, 1.5), DVec3::new(0.0, -1.0, 1.5))]
         {
-            let own = scene.lenses[lens].best_view.as_ref().unwrap();
+            let own = scene.lenses[lens].best_view().unwrap();
             let from = views::From { main: scene.camera.unwrap(), size: [240, 160], tracked: None };
             let local = views::local(&studio, &scene, "x", own, own.view().unwrap(), &from).unwrap();
             let camera = local.scene.camera.unwrap();

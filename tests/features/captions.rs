@@ -681,7 +681,7 @@ fn the_content_of_a_higher_lens_clips_those_below() {
             let other = own.iter().filter(|&&i| shown(&all, i) != shown(&alone, i)).count();
             // A fragment is clipped before its depth is stored, the mask is asked after: they may round the border differently.
             assert!(other < 4, "{name}, lens {lens}: {other} pixels of what is below show in it");
-            let hidden = stage.draw_with(|s| s.lenses[lens].content = None);
+            let hidden = stage.draw_with(|s| s.lenses[lens].kind.set_content(None));
             let changed = own.iter().filter(|&&i| all.rgba[i] != hidden.rgba[i]).count();
             assert!(changed > own.len() / 20, "{name}, lens {lens} has content of its own: {changed} of {}", own.len());
         }

@@ -10,7 +10,8 @@ use veduta::{
     },
     geom::{Aabb, Ray, Shape, ray::TriangleTest},
     lens::{
-        Border, BorderUnit, Class, Content, Copied, Discrete, Focus, Lens, LensKind, Parameter, classify::classify,
+        Border, BorderUnit, Class, Content, Copied, Discrete, Focus, Lens, Parameter, classify::classify,
+        kind::ContentLens,
     },
     render::{
         frame::Backend,
@@ -130,8 +131,8 @@ fn compare(drawn: &Picture, view: &View, cities: &[City], lenses: &[Shows]) -> V
 }
 
 fn showing(name: &str, shape: impl Into<Focus>, content: Content) -> Lens {
-    let kind = LensKind::Content;
-    Lens { kind, effects: vec![], content: Some(content), ..lens(name, [shape.into()], "sepia") }
+    let kind = ContentLens { content }.into();
+    Lens { kind, effects: vec![], ..lens(name, [shape.into()], "sepia") }
 }
 
 fn lod(text: &str) -> Content {
@@ -212,7 +213,7 @@ fn level(studio: &Studio, text: &str) -> City {
 }
 
 fn shows(lens: &Lens, city: usize) -> Shows {
-    let content = lens.content.as_ref().expect("a content");
+    let content = lens.content().expect("a content");
     Shows { reference: Reference::of(&lens.shapes[0]), class: content.class, clip: content.clip, city }
 }
 

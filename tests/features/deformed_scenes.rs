@@ -39,7 +39,7 @@ fn drawn(studio: &mut Studio, scene: &Scene) -> Picture {
 /// The same without what moves.
 fn still(scene: &Scene) -> Scene {
     let mut still = scene.clone();
-    still.lenses.retain(|lens| lens.deform.is_none());
+    still.lenses.retain(|lens| lens.deform().is_none());
     still
 }
 

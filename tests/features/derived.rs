@@ -9,8 +9,9 @@ use veduta::{
     },
     geom::{Shape, ray::TriangleTest},
     lens::{
-        Content, Focus, Lens, LensKind,
+        Content, Focus, Lens,
         chosen::{Choice, members},
+        kind::ContentLens,
     },
     render::{
         frame::Backend,
@@ -33,12 +34,7 @@ const FORMS: [Form; 6] = [
 
 fn showing(form: Form, focus: impl Into<Focus>) -> Lens {
     let content = Content { derive: Some(Derive { form, parts: false }), ..Content::default() };
-    Lens {
-        kind: LensKind::Content,
-        effects: vec![],
-        content: Some(content),
-        ..lens("derived", [focus.into()], "sepia")
-    }
+    Lens { kind: ContentLens { content }.into(), effects: vec![], ..lens("derived", [focus.into()], "sepia") }
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {

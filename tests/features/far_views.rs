@@ -77,7 +77,7 @@ fn a_far_overlay_looks_as_with_all_triangles() {
     let shown: Vec<[u8; 4]> = (0..27).flat_map(|row| &picture.rgba[(y + row) * 640 + x..][..36]).copied().collect();
     // From the same eye, as pictures of their own: all of the city, and nothing but its ground.
     let mut alone = scene.clone();
-    let best_view = alone.lenses.remove(0).best_view.expect("a view");
+    let best_view = alone.lenses.remove(0).best_view().expect("a view").clone();
     let Some(LocalView::Camera(camera)) = best_view.view() else { panic!("a camera") };
     alone.camera = Some(*camera);
     let full = studio.render(&alone, &request([36, 27])).unwrap().rgba;

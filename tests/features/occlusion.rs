@@ -10,7 +10,7 @@ use glam::DVec3;
 use veduta::{
     figure::scene_file::{self, Options},
     geom::{Aabb, Shape, combination::Operation},
-    lens::{Focus, Lens, LensKind, Occluders, Rendering, chosen::Choice},
+    lens::{Focus, Lens, Occluders, Rendering, chosen::Choice, kind::Occlusion},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -24,7 +24,7 @@ const SIZE: [u32; 2] = [320, 200];
 
 fn occlusion(of: Occluders) -> Lens {
     let lens = lens("occluders", [Focus::Occluders(of)], "sepia");
-    Lens { kind: LensKind::Occlusion, render: Some(Rendering::default()), effects: vec![], ..lens }
+    Lens { kind: Occlusion::default().into(), effects: vec![], ..lens }
 }
 
 /// Each object's root, walked up.
@@ -145,7 +145,7 @@ fn with_a_shape_what_of_occluders_is_in_it_goes() {
         };
         let mark = |focus: Focus| Lens {
             shapes: vec![focus],
-            render: Some(Rendering::of_effects(vec![used("sepia")])),
+            kind: Occlusion { rendering: Rendering::of_effects(vec![used("sepia")]), content: None }.into(),
             ..occlusion(of.clone())
         };
         let lenses = vec![mark(Focus::Occluders(of.clone())), lens("ball", [ball], "sepia"), mark(both)];

@@ -4,7 +4,7 @@
 use crate::studio::*;
 use glam::DVec3;
 use veduta::{
-    lens::{Focus, Lens, LensKind, Occluders, Rendering, chosen::Choice, dither::dither},
+    lens::{Focus, Lens, Occluders, Rendering, chosen::Choice, dither::dither, kind::Occlusion},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -25,8 +25,7 @@ fn square(render: &str, forced: &[String], is_lit: bool) -> Scene {
         ..Occluders::default()
     };
     let lens = Lens {
-        kind: LensKind::Occlusion,
-        render: Rendering::of_word(render),
+        kind: Occlusion { rendering: Rendering::of_word(render).unwrap(), content: None }.into(),
         effects: vec![],
         ..lens("occluders", [Focus::Occluders(of)], "sepia")
     };
@@ -107,7 +106,7 @@ fn a_change_of_case_is_at_each_pixel_one_of_two_renderings() {
         let mut near = case("flatten");
         near.when.nearer_m = Some(nearer_m);
         let mut scene = with_fade(square("discard", &ids, false), 0.5);
-        scene.lenses[0].render = Some(Rendering::of_cases(vec![near, case("x-ray-color")]));
+        *scene.lenses[0].kind.rendering_mut().unwrap() = Rendering::of_cases(vec![near, case("x-ray-color")]);
         scene
     };
     let (far, near) = (cases(0.0), cases(1e4));
@@ -146,7 +145,7 @@ fn a_case_is_left_beyond_the_margin_only() {
         let mut cases = vec![Rendering::of_word("flatten").expect("a word").cases.remove(0)];
         cases[0].when.nearer_m = Some(studio.model.family_bounds(object).distance_to(eye) + beyond);
         cases.extend(Rendering::of_word("box").expect("a word").cases);
-        scene.lenses[0].render = Some(Rendering::of_cases(cases));
+        *scene.lenses[0].kind.rendering_mut().unwrap() = Rendering::of_cases(cases);
         scene
     };
     // One that is seen.

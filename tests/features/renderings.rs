@@ -90,7 +90,7 @@ fn check_shares(scene: &Scene, poi: &str, least_occluders: usize) {
     assert!(others.len() > 10, "{}", others.len());
     for row in ROWS {
         let mut drawn = scene.clone();
-        drawn.lenses[0].render = Rendering::of_word(row.word);
+        *drawn.lenses[0].kind.rendering_mut().unwrap() = Rendering::of_word(row.word).unwrap();
         let share =
             share_in(&mut studio, &drawn, drawn.figure.size, poi).expect("a picture").expect("it is in the picture");
         println!("{}: {:.1} %", row.word, 100.0 * share);
@@ -134,7 +134,7 @@ fn cases_share_the_occluders_out() {
     let all = "{ as = 'x-ray' }";
     let [near, far] = ["flatten", "x-ray"].map(|word| {
         let mut drawn = scene.clone();
-        drawn.lenses[0].render = Rendering::of_word(word);
+        *drawn.lenses[0].kind.rendering_mut().unwrap() = Rendering::of_word(word).unwrap();
         draw(&drawn)
     });
     // All of them, none of them: as if there were one case.
@@ -172,7 +172,7 @@ fn cases_share_the_occluders_out() {
     let mut draw = |scene: &Scene| studio.render(scene, &request(Backend::Specialised, true)).expect("a picture").rgba;
     assert!(draw(&with_cases(&scene, &format!("[{{ as = 'flatten', types = ['Tower'] }}, {all}]"))) == far.rgba);
     let mut plain = scene.clone();
-    plain.lenses[0].render = Some(Rendering::of_effects(vec![]));
+    *plain.lenses[0].kind.rendering_mut().unwrap() = Rendering::of_effects(vec![]);
     assert!(draw(&with_cases(&scene, "[{ as = 'flatten', nearer = 0 }]")) == draw(&plain), "none holds");
 }
 
@@ -317,7 +317,7 @@ fn both_back_ends_draw_every_rendering_alike() {
     let mut studio = of_scene(&scene);
     for row in ROWS {
         let mut drawn = scene.clone();
-        drawn.lenses[0].render = Rendering::of_word(row.word);
+        *drawn.lenses[0].kind.rendering_mut().unwrap() = Rendering::of_word(row.word).unwrap();
         let [a, b] = [Backend::Specialised, Backend::Uber]
             .map(|backend| studio.render(&drawn, &request(backend, true)).expect("a picture"));
         assert!(a.rgba == b.rgba && a.object_id == b.object_id, "{}", row.word);

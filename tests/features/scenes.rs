@@ -81,7 +81,7 @@ fn those_of_the_built_in_town_name_what_it_has() {
             });
             let volumes = areas.flat_map(|s| s.volumes_seen(&sight).unwrap());
             let meets = volumes.into_iter().any(|v| v.bounds().meets(&model.extent()));
-            let is_everywhere = lens.shapes.is_empty() && lens.deform.is_some();
+            let is_everywhere = lens.shapes.is_empty() && lens.deform().is_some();
             assert!(meets || is_everywhere, "{}: {} acts on nothing", path.display(), lens.name);
         }
     }

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec2, DVec3};
 use veduta::{
     geom::Shape,
     lens::{
-        Deform, Lens,
+        Lens,
         deform::{ControlProfile, Step},
     },
     render::{
@@ -95,8 +95,9 @@ fn identities(middle: DVec3) -> Vec<(&'static str, Lens)> {
     let every = nothing.iter().map(|(_, step)| step.clone()).collect();
     all.push(("does nothing in six steps", bent(every, 0).lens("six")));
     let strong = bent(vec![turn.clone()], 1).lens("a");
-    let deform = strong.deform.clone().map(|deform| Deform { strength: 0.0, ..deform });
-    all.push(("has no strength", Lens { deform, ..strong.clone() }));
+    let mut weak = strong.clone();
+    weak.kind.deform_mut().expect("a deformation").strength = 0.0;
+    all.push(("has no strength", weak));
     all.push(("is off", Lens { enabled: false, ..strong }));
     let away = Bent { center: middle + DVec3::new(5e3, 0.0, 0.0), ..bent(vec![turn.clone()], 1) };
     all.push(("is elsewhere", away.lens("away")));
@@ -122,7 +123,7 @@ fn deformations_that_move_nothing_change_no_byte_and_no_count() {
             draw(&mut studio, &without, SIZE, samples, backend);
             let plain = draw(&mut studio, &without, SIZE, samples, backend);
             // Whoever counts what lenses hold works out their masks, whatever they do.
-            let idle = Lens { deform: None, ..studio::lens("idle", [focus(middle)], "sepia") };
+            let idle = studio::lens("idle", [focus(middle)], "sepia");
             let idle = vec![Lens { effects: vec![], ..idle }];
             let masked = draw(&mut studio, &Scene { lenses: idle, ..without.clone() }, SIZE, samples, backend);
             let mut all: Vec<_> = identities(middle).into_iter().map(|(what, lens)| (what, vec![lens])).collect();

@@ -5,7 +5,7 @@
 use glam::DVec3;
 use veduta::{
     figure::scene_file::{self, Options},
-    lens::{Focus, Lens, LensKind, Occluders, Rendering},
+    lens::{Focus, Lens, Occluders, kind::Occlusion},
     render::picture::Studio,
     scene::{Poi, PoiPlace, Scene},
     view::Camera,
@@ -33,7 +33,7 @@ fn tests() -> Vec<Test> {
 fn found(studio: &mut Studio, at: DVec3, test: &Test, target: DVec3) -> Vec<(String, Vec<String>, Option<[f64; 3]>)> {
     let of = Occluders { pois: vec!["it".into()], test: test.clone(), ..Occluders::default() };
     let plain = studio::lens("hides", [Focus::Occluders(of)], "sepia");
-    let lens = Lens { kind: LensKind::Occlusion, render: Some(Rendering::default()), effects: vec![], ..plain };
+    let lens = Lens { kind: Occlusion::default().into(), effects: vec![], ..plain };
     let pois = vec![Poi { name: "it".into(), place: PoiPlace::At(at) }];
     let scene = Scene { pois, ..studio::scene(Camera::looking(EYE, target, 0.8), vec![lens]) };
     let drawn = studio::picture(studio, &scene, [32, 24]);

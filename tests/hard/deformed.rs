@@ -10,8 +10,9 @@ use veduta::{
         deform::{Deformer, Deformers},
     },
     lens::{
-        Deform, Lens, LensBody, LensKind,
+        Deform, Lens, LensBody,
         deform::{ControlProfile, Step, Viewer},
+        kind::Deformation,
     },
     render::picture::{Picture, Request, Studio},
     scene::Scene,
@@ -44,11 +45,11 @@ impl Bent {
     /// As a scene has it.
     pub fn lens(&self, name: &str) -> Lens {
         let Self { center, size, rotation, .. } = *self;
+        let deform = Deform { steps: self.steps.clone(), control: Some(self.control.clone()), strength: 1.0 };
         Lens {
             shapes: vec![Shape::Box { center, size, rotation }.into()],
-            deform: Some(Deform { steps: self.steps.clone(), control: Some(self.control.clone()), strength: 1.0 }),
             body: LensBody::None,
-            ..Lens::plain(name, LensKind::Deformation, [0.5; 3])
+            ..Lens::plain(name, Deformation::from(deform), [0.5; 3])
         }
     }
 
@@ -120,7 +121,7 @@ pub fn deformers(lenses: &[Bent]) -> Deformers {
     let ready = |lens: &Bent| {
         let Bent { center, size, rotation, .. } = *lens;
         let area = Shape::Box { center, size, rotation };
-        let deform = lens.lens("").deform.expect("a deformation");
+        let deform = lens.lens("").deform().expect("a deformation").clone();
         let made = deform.deformation(Some(&area), &viewer, |_| Err("no images".into())).expect("steps over a box");
         Deformer::new(made).expect("numbers that can be used")
     };

@@ -99,16 +99,12 @@ pub fn scene(camera: Camera, lenses: Vec<Lens>) -> Scene {
 pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effect: &str) -> Lens {
     Lens {
         name: name.into(),
-        kind: LensKind::Color,
+        kind: LensKind::default(),
         enabled: true,
         color: [0.8, 0.1, 0.1],
         placement: Default::default(),
         shapes: shapes.into_iter().map(Into::into).collect(),
         effects: vec![used(effect)],
-        render: None,
-        best_view: None,
-        deform: None,
-        content: None,
         body: LensBody::None,
         sprite: None,
         border: None,

@@ -9,9 +9,10 @@ use crate::{
     city::{CityModel, builtin},
     figure::scene_file::{self, Options},
     lens::{
-        self, Lens, LensKind,
+        self, Lens,
         best_view::{DEFAULT_FOV, Depiction, LocalView},
         color::parse_hex,
+        kind::BestViewLens,
     },
     scene::{Overlay, Poi, PoiPlace, Scene, overlay::BuiltInFrame, overlay::Frame},
     visibility::{BestView, Landmark},
@@ -159,7 +160,7 @@ pub fn scene<'a>(files: &[PathBuf], landmarks: impl Iterator<Item = &'a Landmark
         let view = LocalView::Best { normal: None, fov_y: DEFAULT_FOV };
         let shown =
             lens::BestView { pois: vec![name.clone()], depiction: Depiction::View(view), lenses: None, look: None };
-        made.lenses.push(Lens { best_view: Some(shown), ..Lens::plain(name.clone(), LensKind::BestView, color) });
+        made.lenses.push(Lens::plain(name.clone(), BestViewLens { shown }, color));
         // Those that stand out most are placed first.
         let priority = (1e3 * landmark.score).round() / 1e3;
         let frame = Frame::BuiltIn(BuiltInFrame::Print);

@@ -23,7 +23,7 @@ use crate::{
         scene_file::{self, Options},
     },
     gpu::Gpu,
-    lens::{LensKind, nearest::did_you_mean},
+    lens::nearest::did_you_mean,
     render::{
         diagnostics,
         picture::{Aovs, Picture, RenderError, Request, Studio},
@@ -101,7 +101,7 @@ fn portal(scene: &Scene, name: &str, from: Camera) -> Outcome<Command> {
     let found = scene.lenses.iter().position(|lens| lens.name == name);
     let step = found.and_then(|index| Command::step_through(scene, index, from));
     step.ok_or_else(|| {
-        let portals = scene.lenses.iter().filter(|lens| lens.kind == LensKind::Portal);
+        let portals = scene.lenses.iter().filter(|lens| lens.kind.row().is_door);
         let hint = did_you_mean(name, portals.map(|lens| lens.name.as_str()));
         Failure::usage(format!("--through: the scene has no portal \"{name}\"{hint}"))
     })

@@ -185,7 +185,7 @@ fn plan(
     before: &Standing,
     now: &mut Standing,
 ) -> Result<Option<Plan>, RenderError> {
-    if !scene.moves() && !scene.lenses.iter().any(|lens| lens.enabled && lens.best_view.is_some()) {
+    if !scene.moves() && !scene.lenses.iter().any(|lens| lens.enabled && lens.kind.has_overlay()) {
         return Ok(None);
     }
     let camera = studio.camera(scene, size);

@@ -65,7 +65,7 @@ fn is_of_nothing(studio: &Studio, scene: &Scene, best_view: &BestView) -> bool {
 
 /// What of a lens's overlay depends on the eye; `None`: it has no overlay, or that would show nothing.
 pub(super) fn seen(studio: &Studio, scene: &Scene, view: &View, index: usize, lens: &Lens) -> Option<Shown> {
-    let best_view = lens.best_view.clone().filter(|own| lens.enabled && !is_of_nothing(studio, scene, own))?;
+    let best_view = lens.best_view().cloned().filter(|own| lens.enabled && !is_of_nothing(studio, scene, own))?;
     let overlay =
         scene.overlays.iter().find(|o| o.lens == lens.name).cloned().unwrap_or_else(|| Overlay::of(&lens.name));
     let to_area = overlay.line.as_ref().is_some_and(|line| line.to == LineEnd::Area);

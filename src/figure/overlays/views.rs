@@ -164,7 +164,7 @@ fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
         let is_in = match &shown.lenses {
             Some(names) => names.contains(&lens.name),
             // What is fixed to a camera, and what is flat, acts in its own view alone.
-            None => lens.best_view.is_none() && lens.placement != Placement::Camera && !is_flat(lens),
+            None => !lens.kind.has_overlay() && lens.placement != Placement::Camera && !is_flat(lens),
         };
         lens.enabled &= is_in;
     }
@@ -214,6 +214,6 @@ fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
         shapes: vec![Focus::Thematic(Choice { ids, ..Choice::default() })],
         effects: vec![erased],
         body: LensBody::None,
-        ..Lens::plain("", LensKind::Color, [0.0; 3])
+        ..Lens::plain("", LensKind::default(), [0.0; 3])
     }
 }

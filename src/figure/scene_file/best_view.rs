@@ -311,17 +311,6 @@ pub const NOT_OWN: [&str; 13] = [
     "section",
 ];
 
-/// The words of the views that a kind of lens may have, the default first; empty: it has none.
-pub fn views_of(kind: LensKind) -> &'static [&'static str] {
-    match kind {
-        LensKind::BestView => &["best", "mcop", "scop", "follow", "onboard", "camera"],
-        LensKind::MapView => &["map"],
-        LensKind::Worldlet => &["worldlet"],
-        LensKind::SeeThrough | LensKind::Portal => &["camera"],
-        _ => &[],
-    }
-}
-
 /// An eye that is nowhere yet.
 const NOWHERE: Camera = Camera {
     eye: DVec3::ZERO,
@@ -343,8 +332,8 @@ fn camera_key(view: &LocalView, key: &str, options: &Options) -> Option<Data> {
 }
 
 /// The view of a lens of this kind; noted and `None` where something is wrong.
-fn read_view(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<LocalView> {
-    let words = views_of(kind);
+fn read_view(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<LocalView> {
+    let words = kind.row().views;
     let empty = Node::empty_table(fields.place.line);
     let node = fields.node("view").unwrap_or(&empty);
     let line = if fields.given("view") { node.line } else { fields.place.line };
@@ -372,7 +361,7 @@ fn read_view(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<Loc
 }
 
 /// What the overlay of a lens shows, if its kind has one.
-pub fn read(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<BestView> {
+pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<BestView> {
     let given = |key: &&str| fields.given(key);
     if !kind.has_overlay() {
         for key in OWN.into_iter().filter(given) {
@@ -392,8 +381,8 @@ pub fn read(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<Best
         reader.checker.note(&fields.place, key, fields.line(key), message);
     }
     let depiction = depiction(reader, fields, kind);
-    let of_view = ["view", "lenses", "look"].into_iter().map(|key| (key, kind == LensKind::Annotation));
-    let of_annotation = ["image", "text"].into_iter().map(|key| (key, kind != LensKind::Annotation));
+    let of_view = ["view", "lenses", "look"].into_iter().map(|key| (key, kind.row().is_note));
+    let of_annotation = ["image", "text"].into_iter().map(|key| (key, !kind.row().is_note));
     for (key, is_wrong) in of_view.chain(of_annotation) {
         if is_wrong && fields.given(key) {
             let message = format!("has no meaning for a lens of kind \"{}\"", kind.word());
@@ -415,16 +404,16 @@ pub fn read(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<Best
 }
 
 /// What an overlay shows; noted and `None` where something is wrong.
-fn depiction(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<Depiction> {
-    match (kind, fields.node("image").and_then(Node::text), fields.text("text")) {
-        (LensKind::Annotation, Some(_), Some(_)) => {
+fn depiction(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<Depiction> {
+    match (kind.row().is_note, fields.node("image").and_then(Node::text), fields.text("text")) {
+        (true, Some(_), Some(_)) => {
             let message = "is given together with image: an annotation is one of them; a caption stands in [[overlay]]";
             reader.checker.note(&fields.place, "text", fields.line("text"), message);
             None
         }
-        (LensKind::Annotation, Some(_), None) => reader.file(fields, "image").map(Depiction::Image),
-        (LensKind::Annotation, None, Some(text)) => Some(Depiction::Text(text.to_owned())),
-        (LensKind::Annotation, None, None) => {
+        (true, Some(_), None) => reader.file(fields, "image").map(Depiction::Image),
+        (true, None, Some(text)) => Some(Depiction::Text(text.to_owned())),
+        (true, None, None) => {
             if !fields.given("image") && !fields.given("text") {
                 let message = "is missing: an annotation shows image = \"FILE\" or text = \"...\"";
                 reader.checker.note(&fields.place, "image", fields.place.line, message);
@@ -449,11 +438,11 @@ pub fn look(shown: &BestView, options: &Options) -> Option<Data> {
 }
 
 /// `view`, of a lens of this kind.
-pub fn view(kind: LensKind, shown: &BestView, options: &Options) -> Option<Data> {
+pub fn view(kind: &LensKind, shown: &BestView, options: &Options) -> Option<Data> {
     let view = shown.view()?;
     let own = Variant::of(VIEW_KINDS, view)?;
     let Data::Table(mut entries) = own.written(view, options) else { return None };
-    let is_default = views_of(kind).first() == Some(&own.table.name);
+    let is_default = kind.row().views.first() == Some(&own.table.name);
     if is_default && entries.len() > 1 {
         entries.retain(|(key, ..)| key != "kind");
     }

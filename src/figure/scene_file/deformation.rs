@@ -278,8 +278,8 @@ pub const CONTROL: Table = Table {
 pub const OWN: [&str; 3] = ["deform", "control", "strength"];
 
 /// What a deformation lens does, if it is one.
-pub fn read(reader: &mut Reader, fields: &Fields, kind: LensKind) -> Option<Deform> {
-    if kind != LensKind::Deformation {
+pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<Deform> {
+    if kind.deform().is_none() {
         for key in OWN.into_iter().filter(|key| fields.given(key)) {
             let message = "has a meaning only for a lens of kind = \"deformation\"";
             reader.checker.note(&fields.place, key, fields.line(key), message);

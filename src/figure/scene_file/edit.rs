@@ -161,7 +161,7 @@ pub fn rename_lens(scene: &Scene, index: usize, name: &str, options: &Options) -
             }
         };
         after.overlays.iter_mut().for_each(|overlay| renamed(&mut overlay.lens));
-        let shown = after.lenses.iter_mut().filter_map(|lens| lens.best_view.as_mut()?.lenses.as_mut());
+        let shown = after.lenses.iter_mut().filter_map(|lens| lens.kind.best_view_mut()?.lenses.as_mut());
         shown.flatten().for_each(renamed);
         for change in after.animation.iter_mut().flat_map(|animation| &mut animation.changes) {
             let Ok(mut way) = segments_of(&change.path) else { continue };
@@ -409,7 +409,7 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
         }
         assert_eq!(scene.lenses.iter().map(|lens| lens.name.as_str()).collect::<Vec<_>>(), ["a.b", "b", "view"]);
         assert_eq!(scene.overlays[0].lens, "view");
-        let shown = scene.lenses[2].best_view.as_ref().and_then(|shown| shown.lenses.clone());
+        let shown = scene.lenses[2].best_view().and_then(|shown| shown.lenses.clone());
         assert_eq!(shown, Some(vec!["b".to_owned(), "a.b".to_owned()]));
         assert_eq!(scene.animation.as_ref().unwrap().changes[0].path, "lens.\"a.b\".shape.radius");
         // It is the same scene, written and read.

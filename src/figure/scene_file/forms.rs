@@ -5,7 +5,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 use crate::{
     figure::scene_file::node::{Data, Node},
     lens::{
-        BorderUnit, Class, Discrete, LensBody, LensKind, Parameter,
+        BorderUnit, Class, Discrete, LensBody, Parameter,
         best_view::MapMode,
         color::{parse_hex, to_hex},
         ramp::{MAX_CATEGORIES, category},
@@ -233,7 +233,6 @@ macro_rules! words {
 
 words! {
     BaseStyle: [("natural", Self::Natural), ("clay", Self::Clay)];
-    LensKind: Self::WORDS;
     LensBody: Self::WORDS;
     Class: [("inside", Self::Inside), ("front", Self::Front), ("behind", Self::Behind), ("rest", Self::Rest)];
     BorderUnit: [("m", Self::Metres), ("px", Self::Pixels), ("ray", Self::Ray)];

@@ -38,22 +38,11 @@ const LENS_ROWS: &[Row<Lens>] = &[
         |lens: Lens| lens.name
     )
     .always(),
-    field!(
+    Row::<Lens>::joint(
         key(
             "kind",
             Kind::Word {
-                now: &[
-                    "color",
-                    "content",
-                    "occlusion",
-                    "deformation",
-                    "annotation",
-                    "best-view",
-                    "map-view",
-                    "worldlet",
-                    "see-through",
-                    "portal",
-                ],
+                now: LensKind::WORDS,
                 later: &["time", "magnifier", "feature", "sampling", "fisheye"],
             },
             "\"color\"",
@@ -61,8 +50,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses, `deformation` moves what is in it, see Deformation lenses. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
             "\"color\"",
         ),
-        Word,
-        |lens: Lens| lens.kind
+        |lens, _| Some(lens.kind.word().into()),
     )
     .always(),
     field!(
@@ -144,7 +132,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
     .after("poi_effects"),
     Row::<Lens>::joint(
         key("poi", Kind::Names, "none", "", "The name of a `[[poi]]`, or several. Of an occlusion lens: what shall be seen; it never hides itself. Of a lens with an overlay: what the overlay is tied to by context lines; a view is of the first of them.", "\"hall\""),
-        |lens, options| lens.best_view.as_ref().and_then(best_view::pois).or_else(|| occluders(lens, "poi", options)),
+        |lens, options| lens.best_view().and_then(best_view::pois).or_else(|| occluders(lens, "poi", options)),
     ),
     Row::<Lens>::joint(
         key(
@@ -155,18 +143,18 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "The eye that the overlay of a best-view lens, a map or another view is seen from; see Views.",
             "{ kind = \"best\", normal = [0, -1, 0.5] }",
         ),
-        |lens, options| lens.best_view.as_ref().and_then(|shown| best_view::view(lens.kind, shown, options)),
+        |lens, options| lens.best_view().and_then(|shown| best_view::view(&lens.kind, shown, options)),
     ),
     Row::<Lens>::joint(
         key("image", Kind::Text, "none", "", "Of an annotation: the image that it shows, PNG or JPEG.", "\"photo.png\""),
-        |lens, options| match &lens.best_view.as_ref()?.depiction {
+        |lens, options| match &lens.best_view()?.depiction {
             Depiction::Image(file) => Some(Data::Text(options.written(file))),
             _ => None,
         },
     ),
     Row::<Lens>::joint(
         key("text", Kind::Text, "none", "", "Of an annotation: the text that it shows; `\\n` begins a line.", "\"Town hall\\n1893\""),
-        |lens, _| match &lens.best_view.as_ref()?.depiction {
+        |lens, _| match &lens.best_view()?.depiction {
             Depiction::Text(text) => Some(text.into()),
             _ => None,
         },
@@ -180,7 +168,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "The lenses that act in its view, by name; those that have overlays stand in its overlay as overlays. An empty list: none.",
             "[\"old town\"]",
         ),
-        |lens, _| Some(Data::list(lens.best_view.as_ref()?.lenses.as_ref()?)),
+        |lens, _| Some(Data::list(lens.best_view()?.lenses.as_ref()?)),
     ),
     Row::<Lens>::joint(
         key(
@@ -191,7 +179,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "How its view looks, in place of the `[style]` of the scene.",
             "{ base = \"clay\" }",
         ),
-        |lens, options| lens.best_view.as_ref().and_then(|shown| best_view::look(shown, options)),
+        |lens, options| lens.best_view().and_then(|shown| best_view::look(shown, options)),
     ),
     Row::<Lens>::joint(
         key(
@@ -257,7 +245,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "Of an occlusion lens: how occluders are drawn, by a word, a word with parameters, or by cases; see Renderings. Or a list of effects, as `effects` takes them. `effects` come after.",
             "{ as = \"x-ray\", exponent = 0.8 }",
         ),
-        |lens, options| lens.render.as_ref().map(|render| rendering::written(render, options)),
+        |lens, options| lens.rendering().map(|render| rendering::written(render, options)),
     ),
     Row::<Lens>::joint(
         key(
@@ -268,7 +256,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "Of an occlusion lens: effects on the points of interest that are city objects, parts included, after all else.",
             "[{ effect = \"overlay\", color = \"#e08a3c\", opacity = 0.4 }]",
         ),
-        |lens, _| effects::listed(&lens.render.as_ref()?.poi_effects),
+        |lens, _| effects::listed(&lens.rendering()?.poi_effects),
     ),
     Row::<Lens>::joint(
         key(
@@ -279,7 +267,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "Of a deformation lens: what it does with space, one step after the other; see Deformation lenses.",
             "[{ kind = \"twist\", angle_deg = 90.0 }, { kind = \"taper\", factor = 0.5 }]",
         ),
-        |lens, options| lens.deform.as_ref().map(|deform| deformation::steps_data(deform, options)),
+        |lens, options| lens.deform().map(|deform| deformation::steps_data(deform, options)),
     )
     .after("look"),
     Row::<Lens>::joint(
@@ -291,13 +279,13 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "Of a deformation lens: how strong it is over the base of its focus area; along the border it is 0.",
             "{ profile = \"smooth\", border = 0.1 }",
         ),
-        |lens, options| deformation::control_data(lens.deform.as_ref()?, options),
+        |lens, options| deformation::control_data(lens.deform()?, options),
     )
     .after("deform"),
     Row::<Lens>::joint(
         key("strength", Kind::Number { min: 0.0, max: 1.0 }, "1.0", "", "Of a deformation lens: how much of it; ways, angles and factors are that much of what is given.", "0.5"),
         |lens, _| {
-            lens.deform.as_ref().map(|deform| deform.strength).filter(|strength| *strength != 1.0).map(Data::from)
+            lens.deform().map(|deform| deform.strength).filter(|strength| *strength != 1.0).map(Data::from)
         },
     )
     .after("control"),
@@ -310,7 +298,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "What it shows in itself in place of what is below it; a lens of any kind may have some, a `content` lens must.",
             "{ lod = \"1.2\" }",
         ),
-        |lens, options| lens.content.as_ref().map(|content| content::written(content, options)),
+        |lens, options| lens.content().map(|content| content::written(content, options)),
     ),
     Row::<Lens>::joint(
         key(
@@ -322,8 +310,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "\"merge\"",
         ),
         |lens, _| {
-            lens.content
-                .as_ref()
+            lens.content()
                 .map(|content| content.clip)
                 .filter(|clip| *clip != Clip::default())
                 .map(|clip| clip.word().into())
@@ -489,7 +476,7 @@ fn shapes_of(lens: &Lens) -> Vec<&Focus> {
 /// `shapes`, where one is not all; a lens that needs one and has none says so.
 fn several(lens: &Lens, options: &Options) -> Option<Data> {
     let shapes = shapes_of(lens);
-    let needs_none = lens.occluders().is_some() || lens.best_view.is_some() || lens.deform.is_some();
+    let needs_none = lens.occluders().is_some() || lens.kind.has_overlay() || lens.deform().is_some();
     if shapes.len() == 1 || (shapes.is_empty() && needs_none) {
         return None;
     }
@@ -503,7 +490,7 @@ fn occluders(lens: &Lens, key: &str, options: &Options) -> Option<Data> {
 
 /// The table of a lens at this place in the order.
 pub fn written(index: usize, lens: &Lens, options: &Options) -> Data {
-    row::written(LENS_ROWS, lens, &Lens::plain("", lens.kind, lens_color(index)), options)
+    row::written(LENS_ROWS, lens, &Lens::plain("", lens.kind.clone(), lens_color(index)), options)
 }
 
 /// A lens; what is wrong is noted.
@@ -512,25 +499,30 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Lens {
     let mut lens = Lens::plain(format!("lens-{index}"), kind, lens_color(index));
     row::read(LENS_ROWS, fields, reader, &mut lens);
     lens.placement = placement(reader, fields);
-    lens.best_view = best_view::read(reader, fields, kind);
-    lens.deform = deformation::read(reader, fields, kind);
-    let is_occlusion = kind == LensKind::Occlusion;
-    let needs_shape = lens.deform.as_ref().is_none_or(|deform| !deform.needs_no_area());
-    lens.shapes = shapes(reader, fields, needs_shape && !is_occlusion && !kind.has_overlay());
+    if let (Some(read), Some(own)) = (best_view::read(reader, fields, &lens.kind.clone()), lens.kind.best_view_mut()) {
+        *own = read;
+    }
+    if let (Some(read), Some(own)) = (deformation::read(reader, fields, &lens.kind.clone()), lens.kind.deform_mut()) {
+        *own = read;
+    }
+    let has_overlay = lens.kind.has_overlay();
+    let is_occlusion = lens.rendering().is_some();
+    let needs_shape = lens.deform().is_none_or(|deform| !deform.needs_no_area());
+    lens.shapes = shapes(reader, fields, needs_shape && !is_occlusion && !has_overlay);
     let (effects, of_effects) = effects::effects(reader, fields, "effects", true);
     lens.effects = effects;
-    if is_occlusion {
-        lens.render = Some(rendering::read(reader, fields, &lens.effects));
+    if let Some(rendering) = lens.kind.rendering_mut() {
+        *rendering = rendering::read(reader, fields, &lens.effects);
         lens.shapes = occluded(reader, fields, lens.shapes);
     } else {
         without_sights(reader, fields, "effects", &lens.effects);
-        let own = occlusion::OWN.into_iter().filter(|key| !kind.has_overlay() || *key != "poi");
+        let own = occlusion::OWN.into_iter().filter(|key| !has_overlay || *key != "poi");
         for key in own.filter(|key| fields.given(key)) {
             let message = "has a meaning only for a lens of kind = \"occlusion\"";
             reader.checker.note(&fields.place, key, fields.line(key), message);
         }
     }
-    lens.content = content::read(reader, fields, of_effects);
+    lens.kind.set_content(content::read(reader, fields, of_effects));
     let is_saved = |shape: &Focus| matches!(shape, Focus::Sprite { .. });
     let has_saved = lens.shapes.iter().any(|s| s.any(&is_saved));
     lens.sprite = sprite::read(reader, fields, has_saved && lens.shapes.iter().all(is_saved));

@@ -79,7 +79,7 @@ mod tests {
     use super::*;
     use crate::{
         figure::scene_file::parse,
-        lens::{Lens, LensKind, Rendering},
+        lens::{Lens, Rendering},
     };
 
     fn lens(lines: &str) -> Result<Lens, String> {
@@ -92,8 +92,8 @@ mod tests {
     fn little_is_needed() {
         let plain = lens("poi = \"hall\"").unwrap();
         let of = Occluders { pois: vec!["hall".into()], ..Occluders::default() };
-        assert_eq!((plain.kind, &plain.shapes[..]), (LensKind::Occlusion, &[Focus::Occluders(of.clone())][..]));
-        assert_eq!(plain.render, Some(Rendering::default()));
+        assert_eq!((plain.kind.word(), &plain.shapes[..]), ("occlusion", &[Focus::Occluders(of.clone())][..]));
+        assert_eq!(plain.rendering(), Some(&Rendering::default()));
         assert_eq!(plain.uses().map(|used| used.effect.as_str()).collect::<Vec<_>>(), ["eraser"]);
         let several = lens(
             "poi = [\"a\", \"b\"]\ntest = { not = { any = [{ kind = \"view-axis\" }, { kind = \"ground\", radius = 3 }] } }\nrender = [\"sepia\"]\neffects = [\"invert\"]",

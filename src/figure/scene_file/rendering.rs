@@ -302,7 +302,7 @@ mod tests {
 
     #[test]
     fn words_take_parameters() {
-        let of = |lines: &str| scene(lines).unwrap().lenses.remove(0).render.unwrap();
+        let of = |lines: &str| scene(lines).unwrap().lenses[0].rendering().unwrap().clone();
         let render = of("render = { as = \"transparent-box\", opacity = 0.3, oriented = true }");
         let [case] = &render.cases[..] else { panic!("{render:?}") };
         assert_eq!((case.word, case.effects[0].number("opacity")), (Some("transparent-box"), Some(0.3)));
@@ -324,7 +324,7 @@ mod tests {
     fn cases_are_read_and_written() {
         let lines = "render = [{ as = \"flatten\", nearer = 150, lift = 0.1 }, { effects = [\"sepia\"], types = [\"Bridge\"], where = { attribute = \"h\", min = 3 } }, { as = \"x-ray\" }]\npoi_effects = [\"gooch\"]";
         let read = scene(lines).unwrap();
-        let render = read.lenses[0].render.as_ref().unwrap();
+        let render = read.lenses[0].rendering().unwrap();
         let [near, chosen, rest] = &render.cases[..] else { panic!("three cases") };
         assert_eq!(
             (near.when.nearer_m, rest.when.is_always(), near.given.get("lift")),

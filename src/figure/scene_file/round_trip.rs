@@ -13,6 +13,7 @@ use crate::{
         best_view::{Depiction, LocalView, Look, MapMode},
         chosen::Choice,
         deform::{BORDER, ControlProfile, Step},
+        kind::{Deformation, Occlusion},
         rendering::{Case, ROWS, When},
         sprite::{Format, Mapping},
     },
@@ -362,19 +363,19 @@ prop_compose! {
         let is_saved = |s: &Focus| matches!(s, Focus::Sprite { .. });
         let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
         let body = LensBody::WORDS[body].1;
-        let mut kind = if content.is_some() && is_content { LensKind::Content } else { LensKind::Color };
-        let (mut shapes, mut render) = (shapes, None);
+        let mut kind = LensKind::of_word(if content.is_some() && is_content { "content" } else { "color" }).unwrap();
+        let mut shapes = shapes;
         // Depth sprites are not combined.
         if let Some((of, drawn, has_shape)) = occluded && !shapes.iter().any(|s| s.any(&is_saved)) {
-            (kind, render) = (LensKind::Occlusion, Some(drawn));
+            kind = Occlusion { rendering: drawn, content: None }.into();
             shapes = occlusion::areas(of, if has_shape { shapes } else { vec![] });
         }
-        let deform = deform.filter(|_| kind == LensKind::Color);
-        if let Some(deform) = &deform {
-            kind = LensKind::Deformation;
+        if let Some(deform) = deform.filter(|_| matches!(kind, LensKind::Color(_))) {
             shapes = if deform.is_of_objects() { vec![] } else { shapes };
+            kind = Deformation::from(deform).into();
         }
-        Lens { name: String::new(), kind, enabled, color, placement, shapes, render, effects: used, best_view: None, deform, content, body, sprite, border, keeps_shadows, at_rest, section }
+        kind.set_content(content);
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, body, sprite, border, keeps_shadows, at_rest, section }
     }
 }
 
@@ -382,37 +383,37 @@ fn names(prefix: &'static str) -> impl Strategy<Value = Vec<String>> {
     prop::collection::vec(0..2usize, 0..2).prop_map(move |all| all.iter().map(|i| format!("{prefix}{i}")).collect())
 }
 
-fn local_views() -> impl Strategy<Value = (LensKind, Depiction)> {
+fn local_views() -> impl Strategy<Value = (&'static str, Depiction)> {
     let unit = || point().prop_filter("a direction", |v| v.try_normalize().is_some());
     let fov = || (1..1790u32).prop_map(|tenths| (f64::from(tenths) / 10.0).to_radians());
     let angle = |tenths: i32| (f64::from(tenths) / 10.0).to_radians();
     let mode = prop::sample::select(MapMode::WORDS.map(|(_, mode)| mode).to_vec());
     let camera = (unit(), fov()).prop_map(|(eye, fov_y)| Camera::looking(eye, DVec3::ZERO, fov_y)).boxed();
-    let of = |kind: LensKind| move |view: LocalView| (kind, Depiction::View(view));
+    let of = |kind: &'static str| move |view: LocalView| (kind, Depiction::View(view));
     prop_oneof![
-        ".{1,6}".prop_map(|text| (LensKind::Annotation, Depiction::Text(text))),
-        "[a-zß]{1,6}[.]png".prop_map(|file| (LensKind::Annotation, Depiction::Image(file.into()))),
+        ".{1,6}".prop_map(|text| ("annotation", Depiction::Text(text))),
+        "[a-zß]{1,6}[.]png".prop_map(|file| ("annotation", Depiction::Image(file.into()))),
         (prop::option::of(unit()), fov())
             .prop_map(|(normal, fov_y)| LocalView::Best { normal, fov_y })
-            .prop_map(of(LensKind::BestView)),
+            .prop_map(of("best-view")),
         (unit(), 1e-3..1e6f64, fov())
             .prop_map(|(normal, distance_m, fov_y)| LocalView::Mcop { normal, distance_m, fov_y })
-            .prop_map(of(LensKind::BestView)),
+            .prop_map(of("best-view")),
         (unit(), any::<bool>(), any::<bool>(), fov())
             .prop_map(|(direction, of_camera, mirror, fov_y)| LocalView::Scop { direction, of_camera, mirror, fov_y })
-            .prop_map(of(LensKind::BestView)),
-        camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::BestView)),
-        camera.clone().prop_map(LocalView::Camera).prop_map(of(LensKind::SeeThrough)),
-        camera.prop_map(LocalView::Camera).prop_map(of(LensKind::Portal)),
+            .prop_map(of("best-view")),
+        camera.clone().prop_map(LocalView::Camera).prop_map(of("best-view")),
+        camera.clone().prop_map(LocalView::Camera).prop_map(of("see-through")),
+        camera.prop_map(LocalView::Camera).prop_map(of("portal")),
         (1e-3..1e3f64, 1e-3..1e3f64, fov())
             .prop_map(|(distance_m, height_m, fov_y)| LocalView::Follow { distance_m, height_m, fov_y })
-            .prop_map(of(LensKind::BestView)),
+            .prop_map(of("best-view")),
         (-9000..9000i32, 1e-3..1e3f64, fov())
             .prop_map(move |(a, height_m, fov_y)| LocalView::Onboard { azimuth: angle(a), height_m, fov_y })
-            .prop_map(of(LensKind::BestView)),
+            .prop_map(of("best-view")),
         (mode, 1e-3..1e7f64, 1.0..4.0f64, 0.0..1.0f64)
             .prop_map(|(mode, height_m, magnification, lazy)| LocalView::Map { mode, height_m, magnification, lazy })
-            .prop_map(of(LensKind::MapView)),
+            .prop_map(of("map-view")),
         (-9000..9000i32, -900..900i32, 0.0..1e3f64, fov())
             .prop_map(move |(a, e, margin_m, fov_y)| LocalView::Worldlet {
                 azimuth: angle(a),
@@ -420,25 +421,27 @@ fn local_views() -> impl Strategy<Value = (LensKind, Depiction)> {
                 margin_m,
                 fov_y
             })
-            .prop_map(of(LensKind::Worldlet)),
+            .prop_map(of("worldlet")),
     ]
 }
 
 prop_compose! {
     /// Lenses with overlays: named n2 and n3, tied to points of interest p0 and p1, with lenses n0 and n1 in their views.
     fn shown()((kind, depiction) in local_views(), mut pois in names("p"), lenses in prop::option::of(names("n\"")), used in effects(), base in any::<bool>(),
-        background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), has_look in any::<bool>()) -> (LensKind, BestView) {
+        background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), has_look in any::<bool>()) -> LensKind {
         let background = background.map_or(Background::Sky, Background::Color);
         let effects = if used.effect == "sepia" { vec![EffectUse { class: Class::Inside, ..used }] } else { vec![] };
         let base = if base { BaseStyle::Clay } else { BaseStyle::Natural };
         let (mut look, mut lenses) = (has_look.then_some(Look { base, effects, background }), lenses.map(|all| all.iter().map(|n| format!("{n}\\ü")).collect()));
-        if kind == LensKind::Annotation {
+        if kind == "annotation" {
             (look, lenses) = (None, None);
         }
         if matches!(depiction, Depiction::View(LocalView::Best { .. } | LocalView::Worldlet { .. } | LocalView::Follow { .. } | LocalView::Onboard { .. })) && pois.is_empty() {
             pois.push("p0".into());
         }
-        (kind, BestView { pois, depiction, lenses, look })
+        let mut kind = LensKind::of_word(kind).unwrap();
+        *kind.best_view_mut().unwrap() = BestView { pois, depiction, lenses, look };
+        kind
     }
 }
 
@@ -577,17 +580,17 @@ prop_compose! {
         let mut overlays = Vec::new();
         if !shown.is_empty() {
             pois.resize(2, ("o".into(), DVec3::ONE, true));
-            let plain = Lens { name: String::new(), kind: LensKind::Color, enabled: true, color: [0.5; 3], placement: Placement::World, shapes: vec![Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }.into()], render: None, effects: vec![], best_view: None, deform: None, content: None, body: LensBody::Outline, sprite: None, border: None, keeps_shadows: false, at_rest: false, section: None };
+            let plain = Lens { name: String::new(), kind: LensKind::default(), enabled: true, color: [0.5; 3], placement: Placement::World, shapes: vec![Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }.into()], effects: vec![], body: LensBody::Outline, sprite: None, border: None, keeps_shadows: false, at_rest: false, section: None };
             while lenses.len() < 2 {
                 lenses.push(Lens { name: format!("n\"{}\\ü", lenses.len()), ..plain.clone() });
             }
-            for ((kind, best_view), overlay) in shown {
+            for (kind, overlay) in shown {
                 let name = format!("n\"{}\\ü", lenses.len());
                 // A call-out stands above a place.
-                let has_ground = |stand: &Stand| !(best_view.pois.is_empty() && matches!(stand, Stand::Scene(_)));
+                let has_ground = |stand: &Stand| !(kind.best_view().unwrap().pois.is_empty() && matches!(stand, Stand::Scene(_)));
                 let stand = overlay.as_ref().map(|own| own.stand).filter(has_ground).unwrap_or_default();
                 overlays.extend(overlay.map(|overlay| Overlay { lens: name.clone(), stand, ..overlay }));
-                lenses.push(Lens { name, kind, shapes: vec![], best_view: Some(best_view), ..plain.clone() });
+                lenses.push(Lens { name, kind, shapes: vec![], ..plain.clone() });
             }
         }
         let moving = ways.first().map(|_| Poi { name: "m".into(), place: PoiPlace::On("w0".into()) });
@@ -618,8 +621,8 @@ fn same(a: &Scene, b: &Scene) -> bool {
     let mut b = b.clone();
     for (la, lb) in a.lenses.iter().zip(&mut b.lenses) {
         la.shapes.iter().zip(&mut lb.shapes).for_each(|(sa, sb)| turn_alike(sa, sb));
-        let copied = |lens: &Lens| lens.content.as_ref().and_then(|c| c.copied);
-        if let (Some(a), Some(b)) = (copied(la), lb.content.as_mut().and_then(|c| c.copied.as_mut()))
+        let copied = |lens: &Lens| lens.content().and_then(|c| c.copied);
+        if let (Some(a), Some(b)) = (copied(la), lb.kind.content_mut().and_then(|c| c.copied.as_mut()))
             && a.rotation.dot(b.rotation).abs() > 1.0 - 1e-12
         {
             b.rotation = a.rotation;

@@ -3,8 +3,9 @@
 use crate::{
     geom::Shape,
     lens::{
-        Lens, LensKind,
+        Lens,
         deform::{Deform, Step},
+        kind::Deformation,
     },
     measure::{
         quantity::Quantity,
@@ -59,7 +60,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
     };
     let of = |steps: &[Step], chord_px: f64| -> Scene {
         let deform = Deform { steps: steps.to_vec(), control: None, strength: 1.0 };
-        let moved = Lens { kind: LensKind::Deformation, deform: Some(deform), ..lens("moved", shape.clone(), &[]) };
+        let moved = Lens { kind: Deformation::from(deform).into(), ..lens("moved", shape.clone(), &[]) };
         let mut scene = Scene { lenses: vec![moved], ..plain.clone() };
         scene.style.chord_px = chord_px;
         scene

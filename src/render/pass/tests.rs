@@ -81,7 +81,7 @@ impl Asked {
     }
 
     fn operations(&self) -> Operations {
-        let mut lens = Lens::plain("lens", LensKind::Color, [1.0; 3]);
+        let mut lens = Lens::plain("lens", LensKind::default(), [1.0; 3]);
         lens.body = crate::lens::LensBody::None;
         lens.effects.extend(self.effect.map(|effect| EffectUse {
             effect: effect.to_owned(),

@@ -5,8 +5,9 @@ use glam::{DQuat, DVec3};
 use crate::{
     geom::Shape,
     lens::{
-        Deform, Lens, LensBody, LensKind,
+        Deform, Lens, LensBody,
         deform::{ControlProfile, Step},
+        kind::Deformation,
     },
     measure::topics::gpu::{
         check::{Check, Findings},
@@ -65,11 +66,11 @@ fn deformation(twist: f64, taper: f64) -> Lens {
     let size = DVec3::new(40.0, 44.0, 36.0);
     let shape = Shape::Box { center: place(DUTCH, [0; 3]), size, rotation: DQuat::IDENTITY };
     let steps = vec![Step::Twist { angle: twist }, Step::Taper { factor: taper }];
+    let deform = Deform { steps, control: Some(ControlProfile::Everywhere), strength: 1.0 };
     Lens {
         shapes: vec![shape.into()],
-        deform: Some(Deform { steps, control: Some(ControlProfile::Everywhere), strength: 1.0 }),
         body: LensBody::None,
-        ..Lens::plain("seams", LensKind::Deformation, [0.5; 3])
+        ..Lens::plain("seams", Deformation::from(deform), [0.5; 3])
     }
 }
 
