@@ -1,7 +1,7 @@
 //! Scenes as `docs/scene.md` describes them, written as text: the mask of each lens is what the words there mean, worked out here in
 //! f64 without any of the program's geometry.
 
-use crate::studio::{bits, of_scene, picture};
+use crate::studio::{bits, is_thorough, of_scene, picture};
 use glam::{DMat3, DVec2, DVec3};
 use veduta::figure::scene_file::{self, Options};
 
@@ -215,12 +215,12 @@ fn eyes() -> [Eye; 3] {
     ]
 }
 
-/// Draws the lenses from every eye and compares their masks; places that move across a border within the rounding of stored depths
+/// Draws the lenses from each eye and compares their masks; places that move across a border within the rounding of stored depths
 /// (8·2⁻²³ of the distance, a second half as much for the faces' own band) may be on either side.
-fn check(described: &[Described], style: &str) {
+fn check(described: &[Described], style: &str, eyes: &[Eye]) {
     let mut studio = None;
     let mut inside = vec![0; described.len()];
-    for eye in eyes() {
+    for eye in eyes {
         let mut text = format!("veduta = 1\n[city]\nfiles = [\"builtin:town\"]\n[camera]\n{}\n{style}", eye.keys);
         for (i, one) in described.iter().enumerate() {
             text.push_str(&format!("\n[[lens]]\nname = \"{i}\"\neffects = [\"sepia\"]\n{}\n", one.keys));
@@ -257,21 +257,24 @@ fn check(described: &[Described], style: &str) {
             assert!(on_border < 20, "lens {i}: {on_border} pixels on its border");
         }
     }
-    assert!(inside.iter().all(|&count| count > 1000), "pixels inside of the lenses: {inside:?}");
+    let least = if eyes.len() > 1 { 1000 } else { 300 };
+    assert!(inside.iter().all(|&count| count > least), "pixels inside of the lenses: {inside:?}");
 }
 
 #[test]
 fn analytic_shapes_hold_what_their_words_say() {
-    check(&forms(), "");
+    check(&forms(), "", &eyes());
 }
 
 #[test]
 fn solids_and_combinations_hold_what_their_words_say() {
-    check(&bodies(), "");
+    check(&bodies(), "", &eyes());
 }
 
 #[test]
 fn many_of_them_hold_the_same() {
     let all = || forms().into_iter().chain(bodies());
-    check(&all().chain(all()).chain(forms()).collect::<Vec<_>>(), "[sun]\nshadows = false");
+    // A module for so many takes a minute to compile.
+    let (eyes, seen_by) = (eyes(), if is_thorough() { 3 } else { 1 });
+    check(&all().chain(all()).chain(forms()).collect::<Vec<_>>(), "[sun]\nshadows = false", &eyes[..seen_by]);
 }
