@@ -86,7 +86,7 @@ fn slivers_that_are_bent_are_shown_where_they_are() {
             most = most.max(deformed.triangles);
         }
     }
-    let [least, least_behind] = if studio::is_thorough() { [800, 6] } else { [300, 3] };
+    let (least, least_behind) = if studio::is_thorough() { (800, 6) } else { (300, 3) };
     assert!(shown > least && behind > least_behind, "{shown} pixels, {behind} looks with something behind the eye");
     // A nearer look, a finer mesh.
     assert!(most < 600_000, "{most} triangles");
