@@ -361,6 +361,9 @@ fn both_back_ends_close_the_same_and_a_moving_lens_compiles_nothing() {
             assert!(one.rgba == other.rgba, "{shape:?} {sprite:?}");
             assert!(one.depth == other.depth && one.object_id == other.object_id, "{shape:?} {sprite:?}");
             assert!(one.normal == other.normal, "{shape:?} {sprite:?}");
+            if !is_tried(i, 3) {
+                continue;
+            }
             let mut hollow = scene.clone();
             hollow.lenses[0].section = None;
             let hollow = studio.render(&hollow, &request(Backend::Specialised)).expect("a picture");
