@@ -165,7 +165,7 @@ fn an_eye_inside_a_hiding_lens_sees_what_is_beyond() {
     let (mut studio, _, at) = town();
     let camera = Camera::looking(at + DVec3::new(0.0, 0.0, 25.0), at + DVec3::new(90.0, 20.0, 0.0), 1.2);
     let shapes = shapes(at + DVec3::new(0.0, 0.0, 25.0), 70.0).into_iter().enumerate();
-    for (_, shape) in shapes.filter(|(i, _)| is_tried(*i, 2)) {
+    for (_, shape) in shapes.filter(|(i, _)| is_tried(*i, 3)) {
         let scene = scene(camera, vec![with(eraser(&[], Class::Inside), &shape)]);
         compare(&mut studio, &scene, &shape, Class::Inside, &|model, t| !is_terrain(model, t));
     }
