@@ -93,7 +93,8 @@ fn a_glow_fades_away_from_the_silhouette() {
     let mut plain = scene(camera, vec![]);
     plain.style.effects = vec![used("clay")];
     let without = draw(&mut studio, &plain, Backend::Specialised);
-    for (i, focus) in shapes(middle + DVec3::new(0.0, 0.0, 2.0), 30.0).into_iter().enumerate() {
+    let shapes = shapes(middle + DVec3::new(0.0, 0.0, 2.0), 30.0).into_iter().enumerate();
+    for (i, focus) in shapes.filter(|(i, _)| is_tried(*i, 2)) {
         let reference = Reference::of(&focus);
         let met: Vec<bool> = pixels().map(|(_, x, y)| !reference.intervals(&view.pixel_ray(x, y)).is_empty()).collect();
         let scene = Scene { lenses: vec![body_of(LensBody::Halo, focus)], ..plain.clone() };
@@ -101,9 +102,12 @@ fn a_glow_fades_away_from_the_silhouette() {
         let mut by_distance = vec![Vec::new(); 40];
         for (k, x, y) in pixels().step_by(if is_thorough() { 43 } else { 131 }) {
             let at = DVec2::new(f64::from(x), f64::from(y));
-            let nearest = pixels()
-                .filter(|(j, ..)| met[*j] != met[k])
-                .map(|(_, a, b)| at.distance(DVec2::new(f64::from(a), f64::from(b))));
+            // What is farther than 40 pixels away is as good as nowhere.
+            let around = |c: u32, end: u32| c.saturating_sub(40)..(c + 41).min(end);
+            let near = around(y, SIZE[1]).flat_map(|b| around(x, SIZE[0]).map(move |a| (a, b)));
+            let nearest = near
+                .filter(|(a, b)| met[(b * SIZE[0] + a) as usize] != met[k])
+                .map(|(a, b)| at.distance(DVec2::new(f64::from(a), f64::from(b))));
             let nearest = nearest.fold(f64::INFINITY, f64::min);
             let change = difference(glowing.rgba[k], without.rgba[k]);
             if met[k] {

@@ -72,7 +72,7 @@ fn chosen_objects_are_seen_in_their_form_and_under_their_own_number() {
     let (model, geometries) = (studio.model.clone(), studio.geometries.clone());
     let choice = Choice { attribute: Some("yearOfConstruction".into()), min: Some(1950.0), ..Choice::default() };
     let chosen = members(&model, &choice);
-    for form in FORMS {
+    for (number, form) in FORMS.into_iter().enumerate() {
         let made = derive(&model, &geometries, &Derive { form, parts: false });
         // The context without the members but with all ground, and the members' forms.
         let is_ground = |object: u32| model.objects[object as usize].class.is_ground();
@@ -81,7 +81,9 @@ fn chosen_objects_are_seen_in_their_form_and_under_their_own_number() {
         let own = faces(&made.model, &made.geometries());
         wanted.extend(own.into_iter().filter(|(_, object)| chosen[*object as usize]));
         let mut seen = 0;
-        for camera in cameras(&studio) {
+        // The cameras take turns; in a thorough run each form is seen by both.
+        let cameras = cameras(&studio).into_iter().enumerate();
+        for (_, camera) in cameras.filter(|(i, _)| is_tried(number + i, 2)) {
             let scene = scene(camera, vec![showing(form, Focus::Thematic(choice.clone()))]);
             let one = drawn(&mut studio, &scene, Backend::Specialised);
             let other = drawn(&mut studio, &scene, Backend::Uber);
@@ -89,7 +91,8 @@ fn chosen_objects_are_seen_in_their_form_and_under_their_own_number() {
             let view = View::new(camera, SIZE, &studio.extent()).expect("a view");
             seen += compare(&one, &view, &wanted, &chosen, form);
         }
-        assert!(seen > 400, "{form:?}: {seen}");
+        let least = if is_thorough() { 400 } else { 150 };
+        assert!(seen > least, "{form:?}: {seen}");
     }
 }
 
@@ -100,10 +103,11 @@ fn compare(drawn: &Picture, view: &View, faces: &[([DVec3; 3], u32)], chosen: &[
     let first = |x: u32, y: u32| {
         let ray = view.pixel_ray(x, y);
         let test = TriangleTest::new(&ray).expect("a direction");
-        let hits = || faces.iter().filter_map(|(corners, object)| Some((test.hit(*corners)?, object + 1)));
-        let nearest = hits().map(|(d, _)| d).fold(f64::INFINITY, f64::min);
+        let hits = faces.iter().filter_map(|(corners, object)| Some((test.hit(*corners)?, object + 1)));
+        let hits: Vec<(f64, u32)> = hits.collect();
+        let nearest = hits.iter().map(|(d, _)| *d).fold(f64::INFINITY, f64::min);
         let mut all: Vec<u32> =
-            hits().filter(|(d, _)| *d <= nearest * (1.0 + 1e-6)).map(|(_, object)| object).collect();
+            hits.into_iter().filter(|(d, _)| *d <= nearest * (1.0 + 1e-6)).map(|(_, object)| object).collect();
         all.push(if nearest.is_finite() { all[0] } else { 0 });
         all
     };
@@ -190,7 +194,7 @@ fn what_is_flat_wins_over_its_ground_in_every_frame() {
     let (mut studio, still) = tower(Some(Form::Flat { lift_m: 0.05 }));
     let target = DVec3::new(3.0, 3.0, 0.0);
     let mut seen = std::collections::BTreeSet::new();
-    for i in 0..100 {
+    for i in 0..if is_thorough() { 100 } else { 30 } {
         let t = f64::from(i);
         let jitter = 1e-3 * DVec3::new((t * 0.618_034).fract(), (t * 0.754_878).fract(), (t * 0.569_840).fract());
         let camera = Camera::looking(target + DVec3::new(130.0, -290.0, 41.0) + jitter, target + jitter, 0.012);

@@ -124,8 +124,14 @@ fn kind<'a>(model: &'a CityModel, triangle: &Triangle) -> &'a str {
 fn what_is_shown_is_what_rays_meet_first_of_what_is_left() {
     let (mut studio, camera, at) = town();
     let word = |w: &str| [("part", Parameter::Text(w.into()))];
-    for shape in shapes(at, 45.0) {
+    for (i, shape) in shapes(at, 45.0).into_iter().enumerate() {
+        // Two of the six for each shape, and in a thorough run all; each with three or four shapes.
+        let mut number = i;
         let mut check = |effect: EffectUse, hidden: &dyn Fn(&CityModel, &Triangle) -> bool| {
+            number += 1;
+            if !is_tried(number, 3) {
+                return;
+            }
             let class = effect.class;
             let scene = scene(camera, vec![with(effect, &shape)]);
             let changed = compare(&mut studio, &scene, &shape, class, hidden);
@@ -158,7 +164,8 @@ fn what_stands_before_a_lens_goes() {
 fn an_eye_inside_a_hiding_lens_sees_what_is_beyond() {
     let (mut studio, _, at) = town();
     let camera = Camera::looking(at + DVec3::new(0.0, 0.0, 25.0), at + DVec3::new(90.0, 20.0, 0.0), 1.2);
-    for shape in shapes(at + DVec3::new(0.0, 0.0, 25.0), 70.0) {
+    let shapes = shapes(at + DVec3::new(0.0, 0.0, 25.0), 70.0).into_iter().enumerate();
+    for (_, shape) in shapes.filter(|(i, _)| is_tried(*i, 3)) {
         let scene = scene(camera, vec![with(eraser(&[], Class::Inside), &shape)]);
         compare(&mut studio, &scene, &shape, Class::Inside, &|model, t| !is_terrain(model, t));
     }

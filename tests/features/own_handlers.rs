@@ -139,7 +139,7 @@ fn a_deformation_of_the_docs_moves_what_it_says_on_both_back_ends() {
         moved += usize::from((place - rest).length() > 1.0);
         let cofactor = veduta::geom::deform::cofactor(&deformers.jacobian(rest));
         let normal = DVec3::from(after.normal.as_ref().unwrap()[i].map(f64::from));
-        let expected = on.iter().map(|t| (cofactor * normal_of(&t.corners)).normalize());
+        let expected = on.iter().map(|t| (cofactor * normal_of(&t.corners)).normalize_or_zero());
         // As the mesh and the target have it: of two sides the one towards the eye.
         let apart = expected.map(|n| n.dot(normal).abs().min(1.0).acos()).fold(f64::INFINITY, f64::min);
         turned += usize::from(object != 0 && apart < 0.03);

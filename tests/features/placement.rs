@@ -118,12 +118,13 @@ fn masks_of_flat_lenses_are_right_to_the_pixel() {
     let (at, _) = house(&studio, 0.5);
     let eye = at + DVec3::new(90.0, -120.0, 70.0);
     let street = at + DVec3::new(6.0, 3.0, -6.0);
-    for camera in [
+    let cameras = [
         Camera::looking(eye, at, 0.9),
         orthographic(eye, at, 160.0),
         // To the horizon: a third of the picture is sky.
         Camera::looking(street, street + DVec3::new(60.0, 30.0, 6.0), 1.1),
-    ] {
+    ];
+    for (look, camera) in cameras.into_iter().enumerate() {
         let view = view(camera);
         let forward = view.basis.forward;
         let turn = DQuat::from_rotation_arc(DVec3::Z, -forward);
@@ -140,7 +141,8 @@ fn masks_of_flat_lenses_are_right_to_the_pixel() {
             (camera.eye + view.basis.right * 3.0, DQuat::from_rotation_arc(DVec3::Z, view.basis.right), 9.0),
         ];
         let (mut inside, mut sky) = (0, 0);
-        for place in places {
+        // Places take turns; in a thorough run every camera sees all.
+        for (_, place) in places.into_iter().enumerate().filter(|(i, _)| is_tried(i + look, 2)) {
             let scene = scene(camera, flats(place));
             let drawn = picture(&mut studio, &scene, SIZE);
             let volumes = studio.lens_volumes(&scene, SIZE).expect("volumes");
@@ -150,7 +152,8 @@ fn masks_of_flat_lenses_are_right_to_the_pixel() {
                 (inside, sky) = (inside + found.0, sky + found.1);
             }
         }
-        assert!(inside > 20_000 && sky > 1000, "{inside} pixels inside, {sky} of them sky");
+        let [least, least_sky] = if is_thorough() { [20_000, 1000] } else { [8_000, 300] };
+        assert!(inside > least && sky > least_sky, "{inside} pixels inside, {sky} of them sky");
     }
 }
 

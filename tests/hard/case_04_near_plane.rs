@@ -143,10 +143,12 @@ fn nor_does_it_for_solids_and_combinations() {
         ("behind the eye", eye - forward * 30.0, 20.0),
     ];
     let mut held = 0;
-    for (what, at, r) in places {
+    for (i, (what, at, r)) in places.into_iter().enumerate() {
         // What has no closed form: the last four.
         let shapes = studio::shapes(at, r).split_off(7);
-        for class in [Class::Inside, Class::Front, Class::Behind] {
+        // Classes and places take turns; in a thorough run all of them at all of these.
+        let classes = [Class::Inside, Class::Front, Class::Behind].into_iter().enumerate();
+        for (_, class) in classes.filter(|(j, _)| studio::is_tried(i + j, 2)) {
             let lens = |(i, shape): (usize, &Focus)| {
                 let effect = EffectUse { class, ..studio::used("sepia") };
                 Lens { effects: vec![effect], ..studio::lens(&i.to_string(), vec![shape.clone()], "sepia") }
@@ -167,5 +169,6 @@ fn nor_does_it_for_solids_and_combinations() {
             assert!(beyond.iter().all(|&i| close.rgba[i] == far.rgba[i]), "{what}, {class:?}");
         }
     }
-    assert!(held > 10_000, "{held} pixels are in some lens");
+    let least = if studio::is_thorough() { 10_000 } else { 4_000 };
+    assert!(held > least, "{held} pixels are in some lens");
 }

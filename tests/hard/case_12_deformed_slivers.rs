@@ -62,8 +62,9 @@ fn slivers_that_are_bent_are_shown_where_they_are() {
     }
     let mut numbers = Numbers(612);
     let (mut shown, mut most, mut behind) = (0, 0, 0);
-    for lens in &lenses {
-        for i in 0..8 {
+    for (number, lens) in lenses.iter().enumerate() {
+        // Every other look, and in a thorough run each.
+        for i in (0..8).filter(|i| studio::is_tried(number + i, 2)) {
             // A look along what is bent, from beside it.
             let on = |part: f64| lens.value(middle + DVec3::Y * 480.0 * (2.0 * part - 1.0));
             let part = share(&mut numbers);
@@ -85,7 +86,8 @@ fn slivers_that_are_bent_are_shown_where_they_are() {
             most = most.max(deformed.triangles);
         }
     }
-    assert!(shown > 800 && behind > 6, "{shown} pixels, {behind} looks with something behind the eye");
+    let (least, least_behind) = if studio::is_thorough() { (800, 6) } else { (300, 3) };
+    assert!(shown > least && behind > least_behind, "{shown} pixels, {behind} looks with something behind the eye");
     // A nearer look, a finer mesh.
     assert!(most < 600_000, "{most} triangles");
 }

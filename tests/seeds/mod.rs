@@ -17,6 +17,18 @@ pub fn cases(cases: u32) -> Config {
     Config { cases, ..config() }
 }
 
+/// [`config`] with `all` cases in a thorough run, else with a `sample` of so many.
+#[allow(dead_code, reason = "not all binaries have property tests that take so long")]
+pub fn sample(sample: u32, all: u32) -> Config {
+    cases(if is_thorough() { all } else { sample })
+}
+
+/// Whether a property is to be tried with all that there is (`./dev hard`), not with the sample that every run takes.
+#[allow(dead_code, reason = "not all binaries take samples")]
+pub fn is_thorough() -> bool {
+    std::env::var_os("VEDUTA_HARD").is_some()
+}
+
 fn seeded(config: Config, is_random: bool) -> Config {
     let is_given = config.rng_seed != RngSeed::Random;
     if is_given || is_random { config } else { Config { rng_seed: RngSeed::Fixed(SEED), ..config } }

@@ -32,6 +32,11 @@ pub fn is_thorough() -> bool {
     std::env::var_os("VEDUTA_HARD").is_some()
 }
 
+/// Whether the `i`-th of what a property is tried with is tried in this run: each one in a thorough run, else one in `every`.
+pub fn is_tried(i: usize, every: usize) -> bool {
+    is_thorough() || i.is_multiple_of(every)
+}
+
 /// A file of `citydata/`.
 pub fn citydata(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("citydata").join(name)

@@ -258,6 +258,10 @@ proptest! {
         prop_assert_eq!(set(all(&again, &other)), set(all(&whole, &triangles)));
         prop_assert_eq!(again.report, whole.report);
     }
+}
+
+proptest! {
+    #![proptest_config(crate::seeds::sample(8, 24))]
 
     #[test]
     fn edges_are_as_near_as_predicted(
