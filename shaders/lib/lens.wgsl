@@ -3,7 +3,8 @@
 // Inside is asked of the place and needs no ray. Only what is not inside asks on which side of the volume it lies, and
 // whether its ray meets the volume at all. The volumes are convex: what is outside and nearer than the middle of the ray's
 // way through is in front. `form` is the region's own, or a constant where all regions of a call are of one: a software adapter runs all
-// cases of a switch that it cannot decide before. `form_holds` and `span_of_form` know the forms that a module needs. Of a flat lens rays never leave; it is asked by the ray alone, and holds also where nothing is.
+// cases of a switch that it cannot decide before. `form_holds` and `span_of_form` know the forms that a module needs. Of a flat lens rays
+// never leave; it is asked by the ray alone, and holds also where nothing is.
 
 fn class_in_form(s: Region, form: u32, sight: Sight) -> u32 {
     let span = span_of_form(sight.ray, s, form);
