@@ -2,7 +2,8 @@
 // `veduta::geom::shape::solid::Near`, which says how.
 //
 // From `near` on: low x, y, z of the grid, cells per metre (f32); cells in x, y and z, fours of words that the next list
-// takes; fours that the numbers of faces take, how far the table goes (f32, metres); where the faces of each cell begin; their numbers; the corners of all faces.
+// takes; fours that the numbers of faces take, how far the table goes (f32, metres); where the faces of each cell begin; their numbers;
+// the corners of all faces.
 
 fn distance_to_face(p: vec3f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
     let ab = b - a;
