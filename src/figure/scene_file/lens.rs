@@ -490,7 +490,9 @@ fn occluders(lens: &Lens, key: &str, options: &Options) -> Option<Data> {
 
 /// The table of a lens at this place in the order.
 pub fn written(index: usize, lens: &Lens, options: &Options) -> Data {
-    row::written(LENS_ROWS, lens, &Lens::plain("", lens.kind.clone(), lens_color(index)), options)
+    // Bodies are those of its kind; of what is its kind's own nothing is left away.
+    let plain = Lens { kind: LensKind::default(), ..Lens::plain("", lens.kind.clone(), lens_color(index)) };
+    row::written(LENS_ROWS, lens, &plain, options)
 }
 
 /// A lens; what is wrong is noted.
