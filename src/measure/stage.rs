@@ -117,19 +117,10 @@ pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
         parameters: BTreeMap::new(),
     };
     Lens {
-        name: name.to_owned(),
-        kind: LensKind::default(),
-        enabled: true,
-        color: [0.8, 0.2, 0.1],
-        placement: Default::default(),
         shapes: vec![shape.into()],
         effects: effects.iter().map(use_of).collect(),
         body: LensBody::None,
-        sprite: None,
-        border: None,
-        keeps_shadows: false,
-        at_rest: false,
-        section: None,
+        ..Lens::plain(name, LensKind::default(), [0.8, 0.2, 0.1])
     }
 }
 
