@@ -91,12 +91,12 @@ pub fn run(arguments: &Arguments, _: &GlobalArguments) -> Outcome {
     if !arguments.check.is_empty() {
         return check(&arguments.check);
     }
-    if let Some(unknown) = arguments.names.iter().find(|name| effect::find(name).is_none()) {
+    if let Some(unknown) = arguments.names.iter().find(|name| !effect::named().any(|handler| handler.name == **name)) {
         let message = crate::lens::effect::unknown_effect(unknown);
         return Err(crate::cli::failure::Failure::usage(format!("effects: {message}")));
     }
     let is_asked = |effect: &&EffectDefinition| arguments.names.is_empty() || arguments.names.contains(&effect.name);
-    let effects = effect::effects().filter(is_asked);
+    let effects = effect::named().filter(is_asked);
     if arguments.json {
         let list: Vec<Value> = effects.map(json_of).collect();
         return output::write(Path::new("-"), |out| {

@@ -14,7 +14,7 @@ use crate::{
     shader::{
         effect::{
             DefaultValue, EffectDefinition, EffectKind, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition,
-            ParameterKind, effects, find,
+            ParameterKind, effects, find, named,
         },
         effect_file::RESERVED,
     },
@@ -90,6 +90,10 @@ pub fn problems_of_parameters(
 
 /// The message for a name that is no effect of this version.
 pub fn unknown_effect(name: &str) -> String {
+    if let Some(handler) = named().find(|handler| handler.name == name) {
+        let row = handler.kind.prototype();
+        return format!("\"{name}\" is a {}; it would be right as the kind of {}", row.name, row.asked_by.place());
+    }
     match did_you_mean(name, effects().map(|e| e.name.as_str())) {
         hint if hint.is_empty() => {
             format!("there is no effect \"{name}\"; effects of your own come from a folder: --effects DIR")

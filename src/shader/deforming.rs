@@ -71,6 +71,8 @@ functions! {
 pub struct PlanStep {
     /// Its number among the handlers.
     pub handler: u32,
+    /// Which version of it: where its definition stands, which is freed never. Kernels of one that was replaced serve no other.
+    version: usize,
     /// Fours of numbers of its parameters.
     slots: u32,
     /// Whether its derivative is made of differences.
@@ -85,7 +87,8 @@ impl PlanStep {
         let definition = &handlers[handler as usize];
         let tokens = token::tokens(&definition.source);
         let reads_tables = tokens.iter().any(|token| &definition.source[token.span.clone()] == "tables");
-        Self { handler, slots: definition.slots(), is_map: !definition.has_derivative, reads_tables }
+        let version = std::ptr::from_ref(definition) as usize;
+        Self { handler, version, slots: definition.slots(), is_map: !definition.has_derivative, reads_tables }
     }
 
     /// Fours of its numbers.

@@ -174,6 +174,35 @@ fn what_is_wrong_with_a_deformation_is_told() {
 }
 
 #[test]
+fn a_handler_in_another_place_is_told_where_it_belongs() {
+    let town = Town::new();
+    let ball = format!("shape = {{ kind = \"sphere\", center = {}, radius = 9.0 }}", town.point(town.at));
+    for (name, place) in
+        [("ripple", "a deformation"), ("torus", "a region test"), ("tabletop", "a transform"), ("tours", "no effect")]
+    {
+        let error = town.scene(&format!("[[lens]]\n{ball}\neffects = [\"{name}\"]\n")).expect_err("it is no effect");
+        assert!(error.contains(place), "{error}");
+    }
+    assert!(effect::named().any(|handler| handler.name == "torus"), "people are told of it");
+}
+
+#[test]
+fn a_deformation_that_is_written_anew_is_drawn_anew() {
+    let mut town = Town::new();
+    let text = documented("ripple").replace("\"ripple\"", "\"swell\"");
+    effect::add("swell.wgsl", &text).unwrap();
+    let scene = town.scene(&town.pond("deform = [{ kind = \"swell\", height = 4.0, spacing = 10.0 }]")).unwrap();
+    let first = town.picture(&scene);
+    // Its numbers and their places are the same; its text alone is another.
+    effect::replace("swell.wgsl", &text.replace("p.height * wave", "-p.height * wave")).unwrap();
+    town.studio.renderer.forget_shaders();
+    let second = town.picture(&scene);
+    assert!(first.rgba != second.rgba, "the old text is drawn");
+    let mut fresh = Town::new();
+    assert!(fresh.picture(&scene).rgba == second.rgba, "it is drawn as if it had always been so");
+}
+
+#[test]
 fn a_deformation_that_folds_is_weakened_and_says_so() {
     let mut town = Town::new();
     let text = documented("ripple")

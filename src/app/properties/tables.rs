@@ -62,7 +62,7 @@ pub fn tables(ui: &mut Ui, edits: &mut Edits, key: &Key, keys: &'static Table, v
 /// A table that is one of several kinds, with a list to choose another from.
 fn kind_of_several(ui: &mut Ui, edits: &mut Edits, family: &'static [Table], given: &TomlTable, path: &str) {
     let kind = given.get("kind").and_then(Value::as_str).unwrap_or("");
-    let Some(keys) = of_kind(family, kind) else { return };
+    let Some(keys) = of_kind(family, kind) else { return own_handler(ui, edits, kind, given, path) };
     ui.horizontal(|ui| {
         let label = ui.label("Kind").on_hover_text(keys.doc).id;
         let shown = egui::ComboBox::from_id_salt((path, "kind")).selected_text(kind).show_ui(ui, |ui| {
@@ -76,6 +76,31 @@ fn kind_of_several(ui: &mut Ui, edits: &mut Edits, family: &'static [Table], giv
         shown.response.labelled_by(label);
     });
     table(ui, edits, keys, Shown::Given, given, path);
+}
+
+/// A shape or a step of a user's: the keys of its table, and the parameters that its header has.
+fn own_handler(ui: &mut Ui, edits: &mut Edits, kind: &str, given: &TomlTable, path: &str) {
+    ui.label(kind).on_hover_text("A handler of your own");
+    let definition = effect::named().find(|handler| handler.name == kind);
+    let parameters = || definition.into_iter().flat_map(|handler| &handler.parameters);
+    let is_parameter = |key: &str| parameters().any(|parameter| parameter.name == key);
+    let mut row = |name: &str, doc: &str, takes: Takes, unit: &str, value: &Value| {
+        let place = format!("{path}.{name}");
+        ui.horizontal(|ui| {
+            let label = ui.label(title_of(name)).on_hover_text(doc).id;
+            widget(ui, edits, takes, value, &Setting { path: &place, unit, hint: "", label });
+        });
+        wrong(ui, edits.drafts, &place);
+    };
+    // Those of its box.
+    for (name, value) in given.iter().filter(|(name, _)| *name != "kind" && !is_parameter(name)) {
+        row(name, "", Takes::Numbers, "", value);
+    }
+    for parameter in parameters() {
+        let value = given.get(&parameter.name).cloned().or_else(|| value_of(&parameter.default_text()));
+        let value = value.unwrap_or_else(|| Value::String(String::new()));
+        row(&parameter.name, &parameter.doc, Takes::of_parameter(&parameter.kind), &parameter.unit, &value);
+    }
 }
 
 /// The keys of a table that are shown, and a menu of the others.

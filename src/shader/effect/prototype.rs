@@ -117,6 +117,19 @@ pub enum AskedBy {
     Program,
 }
 
+impl AskedBy {
+    /// Where in a scene file that is.
+    pub fn place(self) -> &'static str {
+        match self {
+            Self::Effects => "effects",
+            Self::Steps => "a step of deform",
+            Self::Shapes => "shape",
+            Self::Contents => "transform of a content",
+            Self::Program => "nothing",
+        }
+    }
+}
+
 /// The shown surface.
 const POINT: Option<(&str, &str)> = Some(("point", "Point"));
 /// The extent of the lens along its axes, metres.

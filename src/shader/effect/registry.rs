@@ -92,6 +92,12 @@ pub fn find(name: &str) -> Option<&'static EffectDefinition> {
     effects().find(|e| e.name == name)
 }
 
+/// The handlers that people ask for by name: effects, and what users have of other prototypes.
+pub fn named() -> impl Iterator<Item = &'static EffectDefinition> {
+    let is_effect = |h: &EffectDefinition| h.mode == Mode::Local && h.kind.prototype().asked_by == AskedBy::Effects;
+    handlers().iter().filter(move |h| h.is_users || is_effect(h))
+}
+
 /// A user's handler called `name` that is asked for in another place than a list of effects.
 pub fn find_asked_by(asked_by: AskedBy, name: &str) -> Option<&'static EffectDefinition> {
     asked_for(asked_by).find(|h| h.name == name)

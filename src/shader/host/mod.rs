@@ -63,7 +63,7 @@ impl HostProgram {
         let main = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(&name)).map(|(handle, _)| handle);
         let main = main.ok_or_else(|| unknown(None, "there is no function `effect`".to_owned()))?;
         for (_, function) in module.functions.iter().filter(|(_, f)| f.name != Some(effect.own("parameters"))) {
-            run::check(function).map_err(|(at, message)| unknown(at.to_range(), message))?;
+            run::check(&module, function).map_err(|(at, message)| unknown(at.to_range(), message))?;
         }
         Ok(Self { module, main, parameters: effect.shader_parameters().map(|(_, type_name, _)| type_name).collect() })
     }

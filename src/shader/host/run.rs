@@ -15,7 +15,8 @@ use crate::shader::host::{
 };
 
 /// What a function uses that the host does not run: its place, and what would be right.
-pub fn check(function: &Function) -> Result<(), (Span, String)> {
+pub fn check(module: &Module, function: &Function) -> Result<(), (Span, String)> {
+    check_block(&function.body)?;
     for (handle, expression) in function.expressions.iter() {
         let what = match expression {
             Expression::Math { fun, .. } if !math::is_known(*fun) => {
@@ -24,6 +25,9 @@ pub fn check(function: &Function) -> Result<(), (Span, String)> {
             Expression::Derivative { .. } => "there are no neighbouring pixels here".to_owned(),
             Expression::As { convert: None, .. } => "bitcast is not run on the host".to_owned(),
             Expression::GlobalVariable(_) => "it knows its arguments alone".to_owned(),
+            Expression::FunctionArgument(index) if takes_pointer(module, function, *index) => {
+                "pointers are not run on the host".to_owned()
+            }
             Expression::FunctionArgument(_) | Expression::Literal(_) | Expression::Constant(_) => continue,
             Expression::Relational { fun: RelationalFunction::IsInf | RelationalFunction::IsNan, .. } => {
                 "it is not asked of numbers what they are".to_owned()
@@ -47,6 +51,42 @@ pub fn check(function: &Function) -> Result<(), (Span, String)> {
         };
         let span = function.expressions.get_span(handle);
         return Err((span, format!("{what}; expected arithmetic of numbers and vectors")));
+    }
+    Ok(())
+}
+
+fn takes_pointer(module: &Module, function: &Function, argument: u32) -> bool {
+    let ty = function.arguments.get(argument as usize).map(|argument| &module.types[argument.ty].inner);
+    matches!(ty, Some(TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. }))
+}
+
+/// The first statement that the host does not run.
+fn check_block(block: &Block) -> Result<(), (Span, String)> {
+    for (statement, span) in block.span_iter() {
+        match statement {
+            Statement::Block(inner) => check_block(inner)?,
+            Statement::If { accept, reject, .. } => {
+                check_block(accept)?;
+                check_block(reject)?;
+            }
+            Statement::Switch { cases, .. } => cases.iter().try_for_each(|case| check_block(&case.body))?,
+            Statement::Loop { body, continuing, .. } => {
+                check_block(body)?;
+                check_block(continuing)?;
+            }
+            Statement::Emit(_)
+            | Statement::Break
+            | Statement::Continue
+            | Statement::Return { .. }
+            | Statement::Store { .. }
+            | Statement::Call { .. } => {}
+            _ => {
+                return Err((
+                    *span,
+                    "this is not run on the host; expected arithmetic of numbers and vectors".to_owned(),
+                ));
+            }
+        }
     }
     Ok(())
 }

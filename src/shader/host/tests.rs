@@ -63,6 +63,13 @@ fn what_the_host_does_not_run_is_told_with_its_place() {
     let text = "fn effect(place: vec3f, size: vec3f) -> vec3f {\n    return vec3f(unpack2x16float(7u), 0.0);\n}";
     let error = deformation(text).expect_err("it is not run");
     assert!(error.starts_with("mine.wgsl:7:18: unpack2x16float is not run on the host"), "{error}");
+    let text = "fn f(p: ptr<function, f32>) -> f32 { return *p; }\n\
+                fn effect(place: vec3f, size: vec3f) -> vec3f { var a = 1.0; return vec3f(f(&a)); }";
+    let error = deformation(text).expect_err("a pointer");
+    assert!(error.contains("pointers are not run on the host; expected arithmetic"), "{error}");
+    let text = "fn effect(place: vec3f, size: vec3f) -> vec3f {\n    workgroupBarrier();\n    return place;\n}";
+    let error = deformation(text).expect_err("there are no others to wait for");
+    assert!(error.starts_with("mine.wgsl:7:5: this is not run on the host"), "{error}");
     let text = "fn effect(place: vec3f, size: vec3f) -> f32 {\n    return 1.0;\n}";
     let error = deformation(text).expect_err("it gives another type");
     assert_eq!(error, "mine.wgsl:6:4: expected `fn effect(place: vec3f, size: vec3f) -> vec3f`");
