@@ -9,9 +9,11 @@ struct OwnRegion {
     z: vec3f,                   // d.xyz
 }
 
-// Steps to where a ray enters or leaves, at most; and how near that is found, in longest half edges.
+// Steps to where a ray enters or leaves, at most; how near that is found, in longest half edges; and how many times that counts as there for
+// rays that graze the region.
 const OWN_STEPS: i32 = 128;
 const OWN_EXACT: f32 = 1e-5;
+const OWN_NEAR: f32 = 100.0;
 
 fn in_own(s: OwnRegion, v: vec3f) -> vec3f {
     return vec3f(dot(v, s.x), dot(v, s.y), dot(v, s.z));

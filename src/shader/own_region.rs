@@ -55,12 +55,15 @@ fn span_of_{name}(ray: Ray, s: OwnRegion) -> Span {{
         let way = select(1.0, -1.0, end == 1) / speed;
         var at = ends[end];
         var free = {away}(s, ray.origin + at * ray.direction);
-        for (var i = 0; i < OWN_STEPS && free > exact; i++) {{
+        var is_in_box = true;
+        for (var i = 0; i < OWN_STEPS && free > exact && is_in_box; i++) {{
             at += way * free;
+            is_in_box = at >= whole.enter && at <= whole.exit;
             free = {away}(s, ray.origin + at * ray.direction);
         }}
         ends[end] = at;
-        if free > exact {{
+        // A ray that grazes it runs out of steps before it is there.
+        if free > OWN_NEAR * exact || !is_in_box {{
             return EMPTY_SPAN;
         }}
     }}
