@@ -17,7 +17,7 @@ use veduta::{
     city::load::{LoadOptions, Quiet, load},
     geom::{Aabb, Shape},
     gpu::Gpu,
-    lens::{Focus, Lens},
+    lens::{Lens, Region},
     measure::{
         ratio::{Estimate, in_turn, ratios},
         stage::plain_scene,
@@ -155,7 +155,7 @@ fn view(scene: &Scene) -> View {
 fn moved(scene: &Scene, metres: f64) -> Scene {
     let mut scene = scene.clone();
     let middle = scene.lenses.len() / 2;
-    if let Some(Focus::Shape(Shape::Sphere { center, .. })) = scene.lenses[middle].shapes.first_mut() {
+    if let Some(Region::Shape(Shape::Sphere { center, .. })) = scene.lenses[middle].shapes.first_mut() {
         center.x += metres;
     }
     scene
@@ -164,7 +164,7 @@ fn moved(scene: &Scene, metres: f64) -> Scene {
 /// The radii of a scene's lenses, metres.
 fn radii(scene: &Scene) -> String {
     let radius = |lens: &Lens| match lens.shapes.first() {
-        Some(Focus::Shape(Shape::Sphere { radius, .. })) => format!("{radius:.1}"),
+        Some(Region::Shape(Shape::Sphere { radius, .. })) => format!("{radius:.1}"),
         _ => "?".to_owned(),
     };
     scene.lenses.iter().map(radius).collect::<Vec<_>>().join(", ")

@@ -24,7 +24,7 @@ use veduta::{
         shown::shown_geometries,
         spatial::SpatialIndex,
     },
-    geom::{Aabb, Region, Shape, Volume},
+    geom::{Aabb, CommonPart, Shape, Volume},
     lens::intersection::{objects_meeting, regions},
     measure::ratio::{Estimate, in_turn, ratios},
 };
@@ -73,7 +73,7 @@ fn measure(file: &Path, pairs: usize) {
                 if way == 0 {
                     std::hint::black_box(every_triangle(&model, &shown, volume));
                 } else {
-                    let regions: Vec<Region> = regions(&[std::slice::from_ref(volume)]);
+                    let regions: Vec<CommonPart> = regions(&[std::slice::from_ref(volume)]);
                     std::hint::black_box(objects_meeting(&model, &index, &regions));
                 }
             }

@@ -5,7 +5,7 @@ use std::{sync::Arc, time::Instant};
 use eframe::egui::{Mesh, Pos2, Rect, TextureHandle, Vec2};
 use glam::DVec3;
 
-use crate::{app::gizmo::places::GizmoKind, lens::Focus, view::navigate::Flight};
+use crate::{app::gizmo::places::GizmoKind, lens::Region, view::navigate::Flight};
 
 /// The effect of a drag.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +80,7 @@ pub(super) struct Grip {
     pub(super) gizmo: Gizmo,
     /// From the gizmo to what was pressed.
     pub(super) off: Vec2,
-    pub(super) before: Focus,
+    pub(super) before: Region,
     /// Where the middle was, model coordinates.
     pub(super) middle: DVec3,
 }

@@ -15,7 +15,7 @@ use crate::{
         theme::{caption, color_of},
     },
     geom::Aabb,
-    lens::{Focus, Lens, Placement},
+    lens::{Lens, Placement, Region},
     scene::anchor::anchor,
     view::View,
 };
@@ -56,20 +56,20 @@ impl Window {
         let ground = self.ground_from(origin, view);
         let is_held = self.chosen.lens == Some(index) && !self.is_locked(lens);
         let mut shown: Vec<Gizmo> = Vec::new();
-        for (shape, focus) in lens.shapes.iter().enumerate().filter_map(|(i, own)| Some((i, own.own_shape()?))) {
+        for (shape, region) in lens.shapes.iter().enumerate().filter_map(|(i, own)| Some((i, own.own_shape()?))) {
             let gizmo = |kind, place, at| Gizmo { lens: index, shape, kind, place, at };
-            let Some(middle) = places::middle(focus, &ground).map(|middle| middle + origin) else { continue };
+            let Some(middle) = places::middle(region, &ground).map(|middle| middle + origin) else { continue };
             let Some(middle_at) = spot_of(view, rect, middle) else { continue };
             let disc = gizmo(GizmoKind::Middle, middle, middle_at);
             if !is_held {
                 shown.push(disc);
                 continue;
             }
-            for (kind, place) in places::gizmos(focus, &ground) {
+            for (kind, place) in places::gizmos(region, &ground) {
                 let place = place + origin;
                 let at = match kind {
                     GizmoKind::Ring => {
-                        ring_at(view, rect, middle, middle_at, places::radius(focus).unwrap_or_default())
+                        ring_at(view, rect, middle, middle_at, places::radius(region).unwrap_or_default())
                     }
                     GizmoKind::Turn => spot_of(view, rect, place).map(|end| turn_at(rect, middle_at, end)),
                     _ => spot_of(view, rect, place),
@@ -159,7 +159,7 @@ impl Window {
         let name = format!("{verb} {}", lens.name);
         let mut scene = self.document.scene().clone();
         let own = scene.lenses.get_mut(index).and_then(|lens| lens.shapes.get_mut(shape));
-        if let Some(own) = own.and_then(Focus::own_shape_mut) {
+        if let Some(own) = own.and_then(Region::own_shape_mut) {
             *own = after;
             self.document.preview(name, scene);
         }
@@ -171,7 +171,7 @@ impl Window {
         let Some((lens, origin)) = lens.and_then(|lens| Some((lens, self.origin_of(lens)?))) else {
             return Aabb::EMPTY;
         };
-        let all = lens.shapes.iter().filter_map(Focus::own_shape).map(places::extent);
+        let all = lens.shapes.iter().filter_map(Region::own_shape).map(places::extent);
         let all = all.fold(Aabb::EMPTY, Aabb::union);
         if all.is_empty() { all } else { Aabb { min: all.min + origin, max: all.max + origin } }
     }
@@ -179,7 +179,7 @@ impl Window {
     fn draw_wires(&self, painter: &Painter, lens: &Lens, view: &View, rect: Rect, color: Color32) {
         let Some(origin) = self.origin_of(lens) else { return };
         let ground = self.ground_from(origin, view);
-        for wire in lens.shapes.iter().filter_map(Focus::own_shape).flat_map(|focus| places::wires(focus, &ground)) {
+        for wire in lens.shapes.iter().filter_map(Region::own_shape).flat_map(|region| places::wires(region, &ground)) {
             for ends in wire.windows(2) {
                 if let (Some(a), Some(b)) =
                     (spot_of(view, rect, ends[0] + origin), spot_of(view, rect, ends[1] + origin))

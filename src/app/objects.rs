@@ -5,7 +5,7 @@ use eframe::egui::{self, Key, RichText, Ui};
 use crate::{
     app::{document::Document, finder::text_of, new_lens::quoted, state::Window},
     city::{Attribute, CityModel},
-    lens::{Focus, Lens, chosen::Choice},
+    lens::{Lens, Region, chosen::Choice},
     scene::LegendPlace,
 };
 
@@ -322,7 +322,7 @@ pub fn show_all(window: &mut Window) {
 
 fn choice_of(lens: &Lens) -> Choice {
     match &lens.shapes[..] {
-        [Focus::Thematic(choice)] => choice.clone(),
+        [Region::Thematic(choice)] => choice.clone(),
         _ => Choice::default(),
     }
 }

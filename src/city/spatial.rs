@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::{
     city::model::CityModel,
     geom::{
-        Aabb, Region,
+        Aabb, CommonPart,
         bvh::{Bvh, HalfSpace},
         ray::{Ray, TriangleTest},
     },
@@ -73,7 +73,7 @@ impl SpatialIndex {
     pub fn triangles_meeting(
         &self,
         model: &CityModel,
-        region: &Region,
+        region: &CommonPart,
         wanted: impl FnMut(u32) -> bool,
         mut visit: impl FnMut(u32, u32) -> bool,
     ) {

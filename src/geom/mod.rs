@@ -3,12 +3,12 @@
 pub mod aabb;
 pub mod bvh;
 pub mod combination;
+pub mod common_part;
 pub mod deform;
 pub mod exact;
 pub mod outline;
 pub mod plane;
 pub mod ray;
-pub mod region;
 pub mod shaft;
 pub mod shape;
 pub mod sphere;
@@ -16,8 +16,8 @@ pub(crate) mod triangle;
 pub mod triangulate;
 
 pub use aabb::Aabb;
+pub use common_part::CommonPart;
 pub use ray::Ray;
-pub use region::Region;
 pub use shape::{Shape, Solid, Volume};
 pub use sphere::Sphere;
 pub(crate) use triangle::clipped;

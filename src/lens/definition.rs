@@ -4,7 +4,7 @@ use crate::{
     geom::Shape,
     lens::{
         best_view::BestView, body::LensBody, border::Border, class::Class, content::Content, deform::Deform,
-        effect_use::EffectUse, focus::Focus, kind::LensKind, occluders::Occluders, placement::Placement,
+        effect_use::EffectUse, kind::LensKind, occluders::Occluders, placement::Placement, region::Region,
         rendering::Rendering, sprite::LensSprite,
     },
 };
@@ -23,7 +23,7 @@ pub struct Lens {
     /// What its shapes are fixed to.
     pub placement: Placement,
     /// Its focus areas: inside where any of them is.
-    pub shapes: Vec<Focus>,
+    pub shapes: Vec<Region>,
     /// What it does, in order (at most one scene style), after what it is drawn by.
     pub effects: Vec<EffectUse>,
     /// How the lens body itself is drawn.
@@ -69,15 +69,15 @@ impl Lens {
 
     /// Whether some of its shapes are depth sprites of files.
     pub fn has_sprite_file(&self) -> bool {
-        self.shapes.iter().any(|s| s.any(&|f| matches!(f, Focus::Sprite { .. })))
+        self.shapes.iter().any(|s| s.any(&|f| matches!(f, Region::Sprite { .. })))
     }
 
     /// How its body is drawn: lenses by object have no surface, and a flat one has no silhouette that a ray comes close to; they
     /// show a line instead.
     pub fn drawn_body(&self) -> LensBody {
-        let is_in = |is_one: &dyn Fn(&Focus) -> bool| self.shapes.iter().any(|s| s.any(is_one));
-        let is_by_object = || is_in(&Focus::is_by_object);
-        let is_flat = || is_in(&|f| matches!(f, Focus::Shape(Shape::Flat { .. })));
+        let is_in = |is_one: &dyn Fn(&Region) -> bool| self.shapes.iter().any(|s| s.any(is_one));
+        let is_by_object = || is_in(&Region::is_by_object);
+        let is_flat = || is_in(&|f| matches!(f, Region::Shape(Shape::Flat { .. })));
         match self.body {
             LensBody::Shell if is_by_object() => LensBody::Outline,
             LensBody::Halo if self.sprite.is_some() || is_by_object() || is_flat() || self.has_sprite_file() => {
@@ -136,6 +136,6 @@ impl Lens {
     /// The query for occluders, if it is an occlusion lens.
     pub fn occluders(&self) -> Option<&Occluders> {
         let of_deform = || self.deform().and_then(Deform::occluders);
-        self.shapes.first().and_then(Focus::occluders).or_else(of_deform)
+        self.shapes.first().and_then(Region::occluders).or_else(of_deform)
     }
 }

@@ -1,4 +1,4 @@
-//! Focus areas that are made from polygons, images, files and the city itself: worked out once and kept.
+//! Region areas that are made from polygons, images, files and the city itself: worked out once and kept.
 
 use std::{
     path::{Path, PathBuf},
@@ -31,7 +31,7 @@ use crate::{
     },
     lens::{
         chosen::members,
-        focus::Focus,
+        region::Region,
         sprite_file,
         sprite_volume::{PlacedSprite, SpriteVolume},
     },
@@ -87,7 +87,7 @@ const MOVED_FACES: usize = 1 << 17;
 #[derive(Debug)]
 struct Made {
     /// Of a file at its own place: a lens that moves makes nothing anew.
-    from: Focus,
+    from: Region,
     /// `None`: no object has a body.
     solid: Option<Arc<Solid>>,
     /// Where the solid's origin is in the coordinates of what it was made from.
@@ -124,34 +124,34 @@ pub struct Place {
 }
 
 /// The way to the key of a focus area that is wrong (empty: the whole), and what would be right.
-pub type FocusError = (String, String);
+pub type RegionError = (String, String);
 
 impl Solids {
     /// The volumes whose union a focus area is, none where it holds nothing; one by object, a depth sprite and a
     /// combination have none.
-    pub fn volumes(&mut self, focus: &Focus, city: ShownCity, place: &Place) -> Result<Vec<Volume>, FocusError> {
-        if let Some(wrong) = focus.check() {
+    pub fn volumes(&mut self, region: &Region, city: ShownCity, place: &Place) -> Result<Vec<Volume>, RegionError> {
+        if let Some(wrong) = region.check() {
             return Err((wrong.0.to_owned(), wrong.1));
         }
-        let (at, rotation) = match focus {
-            Focus::Shape(shape) => {
+        let (at, rotation) = match region {
+            Region::Shape(shape) => {
                 return shape.placed(&place.motion, &place.sight).map_err(|error| (String::new(), error.to_string()));
             }
-            Focus::Thematic(_)
-            | Focus::Enclosed { .. }
-            | Focus::Occluders(_)
-            | Focus::Case { .. }
-            | Focus::Sprite { .. }
-            | Focus::Own { .. }
-            | Focus::Combined { .. } => {
+            Region::Thematic(_)
+            | Region::Enclosed { .. }
+            | Region::Occluders(_)
+            | Region::Case { .. }
+            | Region::Sprite { .. }
+            | Region::Own { .. }
+            | Region::Combined { .. } => {
                 return Ok(Vec::new());
             }
-            _ if focus.is_empty() => return Ok(Vec::new()),
-            Focus::Mesh { at, rotation, .. } => (*at, *rotation),
+            _ if region.is_empty() => return Ok(Vec::new()),
+            Region::Mesh { at, rotation, .. } => (*at, *rotation),
             _ => (DVec3::ZERO, DQuat::IDENTITY),
         };
-        let mut from = focus.clone();
-        if let Focus::Mesh { at, rotation, .. } = &mut from {
+        let mut from = region.clone();
+        if let Region::Mesh { at, rotation, .. } = &mut from {
             (*at, *rotation) = (DVec3::ZERO, DQuat::IDENTITY);
         }
         let index = match self.made.iter().position(|m| m.from == from) {
@@ -170,7 +170,7 @@ impl Solids {
     }
 
     /// The depth sprite of a file where a lens has it, read when it is first asked for.
-    pub fn sprite(&mut self, file: &Path, city: ShownCity, motion: &Motion) -> Result<PlacedSprite, FocusError> {
+    pub fn sprite(&mut self, file: &Path, city: ShownCity, motion: &Motion) -> Result<PlacedSprite, RegionError> {
         let index = match self.sprites.iter().position(|s| s.file == file) {
             Some(index) => index,
             None => {
@@ -258,9 +258,9 @@ fn moved_solid(volume: &Volume, deformers: &Deformers) -> Option<PlacedSolid> {
 }
 
 /// The solid of a focus area, and where its origin is; `None` where it has no body.
-fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusError> {
+fn made(from: &Region, city: ShownCity) -> Result<(Option<Solid>, DVec3), RegionError> {
     match from {
-        Focus::Prism { points, holes, base, height } => {
+        Region::Prism { points, holes, base, height } => {
             let rings: Vec<_> = std::iter::once(points).chain(holes).cloned().collect();
             let (low, high) = points
                 .iter()
@@ -269,14 +269,14 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
             let solid = solid::prism(&rings, *base, *height, origin).map_err(|e| ("points".into(), e.to_string()))?;
             Ok((Some(solid), origin))
         }
-        Focus::Mask { image, corner, size, base, height } => {
+        Region::Mask { image, corner, size, base, height } => {
             let mask = bitmap(image).map_err(|e| ("image".into(), e))?;
             let origin = (*corner + 0.5 * *size).extend(*base);
             let corner = [corner.extend(*base), size.extend(*height)];
             let solid = solid::stacked(&[mask], corner, origin).map_err(|e| wrong_mask("image", image, &e))?;
             Ok((Some(solid), origin))
         }
-        Focus::Mask3d { images, corner, size } => {
+        Region::Mask3d { images, corner, size } => {
             let mut layers: Vec<Bitmap> = Vec::new();
             for (i, image) in images.iter().enumerate() {
                 let wrong = |message| (format!("images.{i}"), message);
@@ -296,7 +296,7 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
                 solid::stacked(&layers, [*corner, *size], origin).map_err(|e| wrong_mask("images", first, &e))?;
             Ok((Some(solid), origin))
         }
-        Focus::Mesh { file, scale, .. } => {
+        Region::Mesh { file, scale, .. } => {
             let wrong = |message: String| ("file".to_owned(), message);
             if file.is_dir() {
                 return Err(wrong(format!("{} is a folder; a file would be right", file.display())));
@@ -322,7 +322,7 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
             }
             Ok((Some(solid), origin))
         }
-        Focus::Objects(choice) => {
+        Region::Objects(choice) => {
             let chosen = members(city.model, choice);
             let bodies = bodies(city, |object| chosen[object as usize], 1.0);
             if bodies.is_empty() {
@@ -336,19 +336,19 @@ fn made(from: &Focus, city: ShownCity) -> Result<(Option<Solid>, DVec3), FocusEr
             };
             Ok((solid, origin))
         }
-        Focus::Shape(_)
-        | Focus::Thematic(_)
-        | Focus::Occluders(_)
-        | Focus::Case { .. }
-        | Focus::Enclosed { .. }
-        | Focus::Sprite { .. }
-        | Focus::Own { .. }
-        | Focus::Combined { .. } => Ok((None, DVec3::ZERO)),
+        Region::Shape(_)
+        | Region::Thematic(_)
+        | Region::Occluders(_)
+        | Region::Case { .. }
+        | Region::Enclosed { .. }
+        | Region::Sprite { .. }
+        | Region::Own { .. }
+        | Region::Combined { .. } => Ok((None, DVec3::ZERO)),
     }
 }
 
 /// What is wrong with a mask of images.
-fn wrong_mask(key: &str, image: &Path, error: &ShapeError) -> FocusError {
+fn wrong_mask(key: &str, image: &Path, error: &ShapeError) -> RegionError {
     match error {
         ShapeError::NoBody => ("size".into(), "is too small: nothing of the mask is left".into()),
         ShapeError::ManyFaces(_) => (key.into(), format!("{}: {error}; fewer pixels would be right", image.display())),

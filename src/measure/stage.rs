@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::{
     geom::{Aabb, Shape, Volume, combination::Operation},
-    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind},
+    lens::{Class, EffectUse, Lens, LensBody, LensKind, Region},
     measure::topic::Shot,
     render::{
         frame::Backend,
@@ -50,7 +50,7 @@ impl Stage<'_> {
 
     /// Whether the shown place of each pixel of a picture of `scene`, which has no lenses, is in a focus area: by its definition,
     /// in f64, from the depth that the picture has. Nothing of the lens tests on the GPU has a part in it.
-    pub fn mask_in_f64(&mut self, scene: &Scene, focus: &Focus) -> Result<Vec<bool>, RenderError> {
+    pub fn mask_in_f64(&mut self, scene: &Scene, focus: &Region) -> Result<Vec<bool>, RenderError> {
         let mut request = Request::plain(self.size);
         request.aovs.depth = true;
         let depth = self.studio.render(scene, &request)?.depth.unwrap_or_default();
@@ -80,9 +80,9 @@ enum Exact {
 }
 
 impl Exact {
-    fn of(focus: &Focus) -> Result<Self, String> {
+    fn of(focus: &Region) -> Result<Self, String> {
         Ok(match focus {
-            Focus::Combined { how, parts } => {
+            Region::Combined { how, parts } => {
                 Self::Combined(*how, parts.iter().map(Self::of).collect::<Result<_, _>>()?)
             }
             other => Self::Volumes(other.volumes()?),
@@ -108,7 +108,7 @@ pub fn plain_scene(camera: Camera) -> Scene {
 }
 
 /// A lens without outline that applies these effects to what is inside.
-pub fn lens(name: &str, shape: impl Into<Focus>, effects: &[&str]) -> Lens {
+pub fn lens(name: &str, shape: impl Into<Region>, effects: &[&str]) -> Lens {
     let use_of = |effect: &&str| EffectUse {
         effect: (*effect).to_owned(),
         class: Class::Inside,

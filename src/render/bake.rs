@@ -3,19 +3,19 @@
 use crate::{
     lens::SpriteSpace,
     render::{
-        body::{Body, PlacedLeaf},
         eye::PictureTile,
         frame::FrameInput,
         layout,
+        placed_region::{PlacedLeaf, PlacedRegion},
         seen::{Kept, SeenSprite, SeenVolume},
         stored::{KeptSprite, Stored},
     },
     view::View,
 };
 
-/// The solids of a body whose crossings are listed, each with its number among the leaves.
-pub(super) fn solids_of(body: &Body) -> impl Iterator<Item = (u32, &PlacedLeaf)> {
-    (0..).zip(body.leaves()).filter(|(_, leaf)| leaf.is_solid())
+/// The solids of a region whose crossings are listed, each with its number among the leaves.
+pub(super) fn solids_of(region: &PlacedRegion) -> impl Iterator<Item = (u32, &PlacedLeaf)> {
+    (0..).zip(region.leaves()).filter(|(_, leaf)| leaf.is_solid())
 }
 
 /// A sprite that is to be made.
@@ -24,7 +24,7 @@ pub(super) struct BakeRequest<'a> {
     /// Whose it is.
     pub lens: u32,
     /// What it is made of.
-    pub body: &'a Body,
+    pub region: &'a PlacedRegion,
     /// Width and height of the whole sprite, texels, and the part of it that is kept.
     pub size: [u32; 2],
     pub bounds: PictureTile,
@@ -38,7 +38,7 @@ pub(super) struct BakeRequest<'a> {
 pub(super) fn of_picture<'a>(seen: &[SeenVolume], input: &FrameInput<'a>) -> Vec<BakeRequest<'a>> {
     let request = |v: &SeenVolume| match v.sprite.as_ref()? {
         &SeenSprite { size, bounds, kept: Kept::Stored(stored) } => {
-            Some(BakeRequest { lens: v.lens, body: &input.volumes[v.index].body, size, bounds, stored, own: None })
+            Some(BakeRequest { lens: v.lens, region: &input.volumes[v.index].region, size, bounds, stored, own: None })
         }
         _ => None,
     };
@@ -48,14 +48,14 @@ pub(super) fn of_picture<'a>(seen: &[SeenVolume], input: &FrameInput<'a>) -> Vec
 impl BakeRequest<'_> {
     /// Lists of crossings that it takes, those before it included; 0 where it is made without.
     pub fn lists_end(&self) -> u64 {
-        if self.body.is_form() {
+        if self.region.is_form() {
             return 0;
         }
         let texels = u64::from(self.stored.width(self.bounds.size[0])) * u64::from(self.bounds.size[1]);
         u64::from(self.stored.first_list) + texels
     }
 
-    /// What makes it, of a body whose numbers are `region`; its eye sees it on a target of `target` pixels.
+    /// What makes it, of a region whose rows are `region`; its eye sees it on a target of `target` pixels.
     pub fn stage(&self, region: layout::Region, view: layout::View, target: [u32; 2]) -> layout::StoredStage {
         let &Self { size, bounds, stored, .. } = self;
         let (kind, near, far) = stored.numbers();
@@ -77,7 +77,7 @@ impl BakeRequest<'_> {
         }
     }
 
-    /// What lists the crossings of the solids of its body, whose sprite is `stage`, on a target of `target` texels; `room`: how many
+    /// What lists the crossings of the solids of its region, whose sprite is `stage`, on a target of `target` texels; `room`: how many
     /// crossings there is room for.
     pub fn list_stages(
         &self,
@@ -91,7 +91,7 @@ impl BakeRequest<'_> {
         let side = |i: usize| clip_scale[i] - 2.0 * self.bounds.origin[i] as f32 / target[i] as f32 - 1.0;
         let list = |(leaf, of): (u32, &PlacedLeaf)| layout::ListStage {
             view: stage.view,
-            region: of.region(own_view, &mut Vec::new()),
+            region: of.rows(own_view, &mut Vec::new()),
             clip_scale,
             clip_shift: [side(0), -side(1)],
             width: stage.width,
@@ -101,7 +101,7 @@ impl BakeRequest<'_> {
             room: room as u32,
             pad_0: [0; 3],
         };
-        solids_of(self.body).map(list).collect()
+        solids_of(self.region).map(list).collect()
     }
 
     /// Where a sprite of the picture's eye stands.
@@ -127,7 +127,7 @@ impl BakeRequest<'_> {
 
 /// The target on which crossings are listed: as large as the largest sprite that is made from lists.
 pub(super) fn list_target(requests: &[BakeRequest]) -> [u32; 2] {
-    let with_lists = requests.iter().filter_map(|m| solids_of(m.body).next().map(|_| m.bounds.size));
+    let with_lists = requests.iter().filter_map(|m| solids_of(m.region).next().map(|_| m.bounds.size));
     with_lists.fold([0; 2], |all, size| std::array::from_fn(|i| all[i].max(size[i])))
 }
 

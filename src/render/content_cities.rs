@@ -203,7 +203,7 @@ impl SceneContents {
     pub fn bounds(&self, own: &Aabb, volumes: &[LensVolume]) -> Aabb {
         let of = |shown: &ContentUse| {
             // A border may be as wide as it likes.
-            let ends = |v: &&LensVolume| v.lens == shown.lens && v.body.is_bounded() && v.border.is_none();
+            let ends = |v: &&LensVolume| v.lens == shown.lens && v.region.is_bounded() && v.border.is_none();
             let reaches = volumes.iter().filter(ends);
             let room = reaches.fold(Aabb::EMPTY, |all, v| all.union(v.bounds));
             let is_inside = shown.class == Class::Inside && !room.is_empty();
@@ -290,7 +290,7 @@ fn placement(
     let around = || volumes.iter().fold(Aabb::EMPTY, |all, v| all.union(v.bounds));
     let to = match copied.to {
         Some(to) => (stage.motion)(lens).unwrap_or(Motion::NONE).point(to),
-        None if volumes.iter().all(|v| v.body.is_bounded()) => around().center(),
+        None if volumes.iter().all(|v| v.region.is_bounded()) => around().center(),
         None => return Err(("to", "is missing: a lens without end has no middle to put it to".to_owned())),
     };
     let from = copied.from.unwrap_or(to);
@@ -337,7 +337,7 @@ fn met(model: &CityModel, geometries: &[u32], placement: &Placement, volumes: &[
             (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
                 let corner = |k: usize| model.position(tile, tile.vertices.start + model.indices[i + k]);
                 let corners = [0, 1, 2].map(|k| placement.point(corner(k)));
-                near.iter().any(|v| v.body.meets(&corners, geometry.object))
+                near.iter().any(|v| v.region.meets(&corners, geometry.object))
             })
         };
         if model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {

@@ -66,8 +66,8 @@ impl Cut {
         let (mut shapes, mut planes) = (Vec::new(), Vec::new());
         for (i, volume) in input.volumes.iter().enumerate().filter(|(_, v)| self.hiding.lenses.contains(&v.lens)) {
             shapes.push(match volume.has_own_eye() {
-                true => own_sprites.region(i, &input.view, &mut planes),
-                false => volume.region(&input.view, &mut planes),
+                true => own_sprites.rows(i, &input.view, &mut planes),
+                false => volume.rows(&input.view, &mut planes),
             });
         }
         let whole = PictureTile::whole(input.view.size);
@@ -101,7 +101,7 @@ impl Cuts {
             });
             let own = input.volumes.iter().filter(|v| hiding.lenses.contains(&v.lens));
             // What the picture's sprites hold says nothing of what only the sun sees.
-            let own = own.map(|v| (v.lens, v.test_from_sun(), v.body.forms_in_combination()));
+            let own = own.map(|v| (v.lens, v.test_from_sun(), v.region.forms_in_combination()));
             let plan = input.operations.lens_plan(&own.collect::<Vec<_>>(), false, false).hiding(handlers());
             // Nor of how wide a border is that is measured in pixels: shadows end at the volume.
             let plan = plan.map(Plan::without_borders);

@@ -15,7 +15,7 @@ use crate::{
         Aabb, Shape,
         deform::{CLEAR, Deformation, Deformer, Deformers, Fault, Frame, Proof, Texels},
     },
-    lens::{Deform, Focus, Lens, Placement, deform::Viewer, solids::ShownCity},
+    lens::{Deform, Lens, Placement, Region, deform::Viewer, solids::ShownCity},
     render::{
         heights::{Asked, Heights, Rule},
         occlusion::Occlusion,
@@ -159,7 +159,7 @@ impl KnownDeformations {
         };
         let area: Option<&Shape> = match &lens.shapes[..] {
             [] => None,
-            [Focus::Shape(shape)] => Some(shape),
+            [Region::Shape(shape)] => Some(shape),
             _ => return Err("shape: a deformation has one: a box, a cylinder, a sphere or a corridor".into()),
         };
         let mut made =

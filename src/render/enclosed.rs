@@ -9,15 +9,15 @@ use crate::{
     city::Geometry,
     geom::{Aabb, Volume},
     lens::{intersection, solids::ShownCity},
-    render::{body::Body, volume::LensVolume},
+    render::{placed_region::PlacedRegion, volume::LensVolume},
 };
 
-/// A body, and the box beyond which nothing of it counts, metres.
-pub type Area<'a> = (&'a Body, Aabb);
+/// A region, and the box beyond which nothing of it counts, metres.
+pub type Area<'a> = (&'a PlacedRegion, Aabb);
 
 /// The bodies of some volumes.
 pub fn areas<V: Borrow<LensVolume>>(volumes: &[V]) -> Vec<Area<'_>> {
-    volumes.iter().map(|v| v.borrow()).map(|v| (&v.body, v.bounds)).collect()
+    volumes.iter().map(|v| v.borrow()).map(|v| (&v.region, v.bounds)).collect()
 }
 
 /// City objects of which a shown triangle meets one of the bodies; exact in f64.
@@ -30,7 +30,7 @@ pub fn objects_meeting(city: ShownCity, areas: &[Area]) -> FxHashSet<u32> {
             intersection::objects_meeting(model, city.index(), &intersection::regions(&[&convex])).into_iter().collect()
         }
     };
-    let others: Vec<&Area> = areas.iter().filter(|(body, _)| !body.is_convex()).collect();
+    let others: Vec<&Area> = areas.iter().filter(|(region, _)| !region.is_convex()).collect();
     let geometries = if others.is_empty() { &[][..] } else { city.geometries };
     for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
         if met.contains(&geometry.object) {
@@ -40,7 +40,7 @@ pub fn objects_meeting(city: ShownCity, areas: &[Area]) -> FxHashSet<u32> {
         let hit = |tile: &crate::city::Tile| {
             (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
                 let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + model.indices[i + k]));
-                near.iter().any(|(body, _)| body.meets(&corners, geometry.object))
+                near.iter().any(|(region, _)| region.meets(&corners, geometry.object))
             })
         };
         if !near.is_empty() && model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {
@@ -52,7 +52,7 @@ pub fn objects_meeting(city: ShownCity, areas: &[Area]) -> FxHashSet<u32> {
 
 /// Those of some objects of which a shown corner is in none of the bodies.
 pub fn with_corners_outside(city: ShownCity, objects: &FxHashSet<u32>, areas: &[Area]) -> FxHashSet<u32> {
-    let is_in = |corner: DVec3, object| areas.iter().any(|(body, _)| body.meets(&[corner; 3], object));
+    let is_in = |corner: DVec3, object| areas.iter().any(|(region, _)| region.meets(&[corner; 3], object));
     let is_cut = |geometry: &&Geometry| {
         let tiles = &city.model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize];
         let mut corners = tiles.iter().flat_map(|t| t.vertices.clone().map(move |v| city.model.position(t, v)));

@@ -22,9 +22,9 @@ use crate::{
     geom::Aabb,
     lens::{Lens, solids::ShownCity},
     render::{
-        body::Leaf,
         content_cities::SceneContents,
         contents::{ContentCity, Placement},
+        placed_region::Leaf,
         volume::LensVolume,
     },
     scene::Scene,
@@ -181,7 +181,7 @@ pub(super) fn tables(
         // Of members these alone; what only some place decides may be any.
         let is_member = |object: u32| {
             volumes.iter().any(|volume| {
-                volume.body.leaves().any(|leaf| match &leaf.leaf {
+                volume.region.leaves().any(|leaf| match &leaf.leaf {
                     Leaf::Members(members) => members.has(object),
                     Leaf::Volume(_) | Leaf::Sprite(_) | Leaf::Own(_) => true,
                 })

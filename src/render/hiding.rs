@@ -75,7 +75,7 @@ fn rounded(distance: f64) -> f64 {
 
 /// The volume by whose shape alone pixels tell what is inside, if it is convex.
 fn convex(volume: &LensVolume) -> Option<&Volume> {
-    volume.body.volume().filter(|shape| shape.is_convex() && volume.sprite.is_none())
+    volume.region.volume().filter(|shape| shape.is_convex() && volume.sprite.is_none())
 }
 
 /// Where one class of a lens is, or of the context (`None`), seen from the main view.
@@ -85,8 +85,8 @@ pub fn reaches_of(lens: Option<u32>, class: Class, volumes: &[LensVolume], view:
         Class::Rest => Reach::Everywhere,
         // In front of what its own eye sees, or behind it, places may be anywhere.
         Class::Front | Class::Behind if volume.has_own_eye() => Reach::Everywhere,
-        _ if !volume.body.is_bounded() && volume.has_own_eye() => Reach::Everywhere,
-        _ if !volume.body.is_bounded() => {
+        _ if !volume.region.is_bounded() && volume.has_own_eye() => Reach::Everywhere,
+        _ if !volume.region.is_bounded() => {
             volume.box_seen(view).map_or(Reach::Everywhere, |(low, high)| Reach::Along(low, high))
         }
         Class::Inside => match convex(volume) {
@@ -221,9 +221,9 @@ mod tests {
     use crate::{
         geom::Shape,
         render::{
-            body::{Body, Leaf},
             cells::NO_CELL,
             operations::Operation,
+            placed_region::{Leaf, PlacedRegion},
         },
         view::Camera,
     };
@@ -235,7 +235,7 @@ mod tests {
 
     /// A lens in which all but terrain is translucent, or terrain too.
     fn hiding(shape: &Shape, terrain: bool, view: &View) -> Hiding {
-        let body = Body::One(Leaf::Volume(shape.volume().expect("a volume")).into());
+        let body = PlacedRegion::One(Leaf::Volume(shape.volume().expect("a volume")).into());
         let mut operations = Operations::default();
         operations.list.push(Operation {
             effect: crate::shader::effect::number_of("transparent").expect("an effect"),

@@ -57,7 +57,7 @@ pub(super) fn lens_figures(studio: &Studio, of: FiguresOf, picture: &Picture, in
             stats::Classified::default()
         } else {
             // By object nothing is in front or behind.
-            let has_sides = volumes.iter().any(|v| v.body.has_sides());
+            let has_sides = volumes.iter().any(|v| v.region.has_sides());
             let side = |count| has_sides.then_some(count);
             stats::Classified { front: side(front), inside: Some(inside), behind: side(behind), rest: Some(rest) }
         },

@@ -38,9 +38,9 @@ impl LensNumbers {
         // Those that have eyes of their own follow.
         for request in of_seen {
             let own_view = request.own.as_ref().unwrap_or(&input.view);
-            numbers.baked.push(match request.body.is_form() {
-                true => request.body.region(own_view, &mut numbers.planes),
-                false => request.body.combined_region(own_view, &mut numbers.planes),
+            numbers.baked.push(match request.region.is_form() {
+                true => request.region.rows(own_view, &mut numbers.planes),
+                false => request.region.combined_rows(own_view, &mut numbers.planes),
             });
         }
         numbers
@@ -53,17 +53,17 @@ impl LensNumbers {
         own: &OwnSprites,
         requests: &mut impl Iterator<Item = &'r BakeRequest<'r>>,
     ) {
-        let body = &input.volumes[volume.index].body;
+        let region = &input.volumes[volume.index].region;
         let nowhere = bytemuck::Zeroable::zeroed();
         if volume.test == LensTest::OwnSprite {
-            self.regions.push(own.region(volume.index, &input.view, &mut self.planes));
+            self.regions.push(own.rows(volume.index, &input.view, &mut self.planes));
             self.places.push(nowhere);
             return;
         }
-        let is_listed = volume.test.is_sprite() && !body.is_form();
+        let is_listed = volume.test.is_sprite() && !region.is_form();
         let region = match is_listed {
-            true => body.combined_region(&input.view, &mut self.planes),
-            false => body.region(&input.view, &mut self.planes),
+            true => region.combined_rows(&input.view, &mut self.planes),
+            false => region.rows(&input.view, &mut self.planes),
         };
         self.regions.push(layout::Region { test: volume.test.number(), ..region });
         match volume.sprite.as_ref().map(|sprite| (sprite, &sprite.kept)) {

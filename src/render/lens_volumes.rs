@@ -10,17 +10,17 @@ use crate::{
         shape::{Motion, Sphere, solid},
     },
     lens::{
-        Border, BorderUnit, Class, Focus, Lens, LensBody, LensSprite, OwnRegion,
+        Border, BorderUnit, Class, Lens, LensBody, LensSprite, OwnRegion, Region,
         chosen::members,
-        solids::{FocusError, Place, ShownCity, Solids},
+        solids::{Place, RegionError, ShownCity, Solids},
     },
     render::{
-        body::{Body, Leaf, Members, PlacedLeaf, too_large},
         deformations::Moved,
         enclosed::enclosed,
         occlusion::{Occlusion, Search},
         operations::AllTests,
         own_sprites,
+        placed_region::{Leaf, Members, PlacedLeaf, PlacedRegion, too_large},
         placement::Eye,
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
@@ -70,56 +70,57 @@ pub(super) fn volumes_of<'a>(
         // Attached to what is not there, it acts nowhere.
         let motion = eye.motion(lens, scene, city.model);
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
-        let mut of_lens: Vec<Body> = Vec::new();
-        for (j, focus) in lens.shapes.iter().enumerate() {
-            match bodies_of(focus, city, &place, tools) {
-                Ok(mut bodies) => {
+        let mut of_lens: Vec<PlacedRegion> = Vec::new();
+        for (j, region) in lens.shapes.iter().enumerate() {
+            match regions_of(region, city, &place, tools) {
+                Ok(mut placed) => {
                     let fades = lens.soft_border().is_some() && !ends_along_rays(lens);
                     if fades || has_surface(lens.drawn_body()) {
-                        let leaves = bodies.iter_mut().flat_map(Body::leaves_mut);
+                        let leaves = placed.iter_mut().flat_map(PlacedRegion::leaves_mut);
                         leaves.for_each(|leaf| tell_distance(&mut leaf.leaf, tools.solids));
                     }
-                    of_lens.extend(bodies);
+                    of_lens.extend(placed);
                 }
                 Err(_) if !lens.enabled => {}
                 Err((key, message)) => {
                     // The shape of an occlusion lens is intersected with its occluders, which have no key.
-                    let key = if focus.occluders().is_some() { key.trim_start_matches("shapes.1.") } else { &key };
+                    let key = if region.occluders().is_some() { key.trim_start_matches("shapes.1.") } else { &key };
                     let place = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
                     let dot = if key.is_empty() { "" } else { "." };
                     return Err(format!("[lens.{}] {place}{dot}{key}: {message}", drawn.owner(i as u32)));
                 }
             }
         }
-        for leaf in of_lens.iter_mut().flat_map(Body::leaves_mut) {
+        for leaf in of_lens.iter_mut().flat_map(PlacedRegion::leaves_mut) {
             move_leaf(&mut leaf.leaf, lens, tools)
                 .map_err(|message| format!("[lens.{}] space: {message}", drawn.owner(i as u32)))?;
         }
-        of_lens.retain(|body| !body.is_empty());
+        of_lens.retain(|region| !region.is_empty());
         // One sprite for all of a lens.
-        let has_own = of_lens.iter().flat_map(Body::leaves).any(|leaf| matches!(leaf.leaf, Leaf::Own(_)));
+        let has_own = of_lens.iter().flat_map(PlacedRegion::leaves).any(|leaf| matches!(leaf.leaf, Leaf::Own(_)));
         if lens.sprite.is_some() && has_own {
             let message = "a region of your own is tested by its function, not by a depth sprite";
             return Err(format!("[lens.{}] sprite: {message}", drawn.owner(i as u32)));
         }
         if lens.sprite.is_some() {
             // Those of files stay as they are.
-            let (mut saved, others): (Vec<Body>, _) = of_lens.into_iter().partition(|body| body.saved().is_some());
-            saved.extend(Body::union(&others).map_or(others, |union| vec![union]));
+            let (mut saved, others): (Vec<PlacedRegion>, _) =
+                of_lens.into_iter().partition(|region| region.saved().is_some());
+            saved.extend(PlacedRegion::union(&others).map_or(others, |union| vec![union]));
             of_lens = saved;
         }
-        for mut body in of_lens {
+        for mut region in of_lens {
             if let Some(content) = lens.shown() {
-                body.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city, content.derive.as_ref()));
+                region.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city, content.derive.as_ref()));
             }
-            let volume = volume_of(i as u32, lens, body, &place.motion)
+            let volume = volume_of(i as u32, lens, region, &place.motion)
                 .map_err(|message| format!("[lens.{}] sprite.camera: {message}", drawn.owner(i as u32)))?;
             let [picture, sun] = volume.tests();
             all.tests.picture.extend(picture);
             all.tests.sun.extend(sun);
-            all.tests.leaves.extend(volume.body.forms_in_combination());
+            all.tests.leaves.extend(volume.region.forms_in_combination());
             // A lens without volume shows nothing and costs nothing.
-            if lens.enabled && motion.is_some() && !volume.body.is_empty() {
+            if lens.enabled && motion.is_some() && !volume.region.is_empty() {
                 all.volumes.push(volume);
             }
         }
@@ -163,12 +164,12 @@ fn tell_distance(leaf: &mut Leaf, solids: &mut Solids) {
     }
 }
 
-fn volume_of(number: u32, lens: &Lens, body: Body, motion: &Motion) -> Result<LensVolume, CameraError> {
+fn volume_of(number: u32, lens: &Lens, region: PlacedRegion, motion: &Motion) -> Result<LensVolume, CameraError> {
     let sprite = lens.sprite.map(|sprite| LensSprite { own: sprite.own.map(|own| own.moved(motion)), ..sprite });
     let mut volume = LensVolume {
         lens: number,
-        bounds: body.bounds(),
-        body,
+        bounds: region.bounds(),
+        region,
         everywhere: lens.classes().any(|class| class == Class::Rest),
         drawn: lens.drawn_body(),
         sprite,
@@ -210,28 +211,41 @@ fn family_bounds(model: &CityModel, object: u32) -> Aabb {
     geometries.fold(Aabb::EMPTY, |all, geometry| all.union(model.geometries[geometry as usize].bounds))
 }
 
-/// The bodies whose union a focus area is.
-fn bodies_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Body>, FocusError> {
-    if !matches!(focus, Focus::Combined { .. }) {
-        return Ok(leaves_of(focus, city, place, tools)?.into_iter().map(|leaf| Body::One(leaf.into())).collect());
+/// The placed regions whose union a focus area is.
+fn regions_of(
+    region: &Region,
+    city: ShownCity,
+    place: &Place,
+    tools: &mut Tools,
+) -> Result<Vec<PlacedRegion>, RegionError> {
+    if !matches!(region, Region::Combined { .. }) {
+        return Ok(leaves_of(region, city, place, tools)?
+            .into_iter()
+            .map(|leaf| PlacedRegion::One(leaf.into()))
+            .collect());
     }
-    let program = tree_of(focus, city, place, tools)?.program();
+    let program = tree_of(region, city, place, tools)?.program();
     if let Some((what, count, most)) = too_large(&program) {
         return Err(("shapes".into(), format!("a combination may have at most {most} {what}, has {count}")));
     }
     Ok(match program.len() {
         0 => Vec::new(),
-        1 => program.into_iter().map(|(leaf, _)| Body::One(leaf)).collect(),
-        _ => vec![Body::Combined(program)],
+        1 => program.into_iter().map(|(leaf, _)| PlacedRegion::One(leaf)).collect(),
+        _ => vec![PlacedRegion::Combined(program)],
     })
 }
 
-fn tree_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Tree<PlacedLeaf>, FocusError> {
-    match focus {
-        Focus::Combined { how, parts } => {
-            let tree = |(i, part): (usize, &Focus)| {
+fn tree_of(
+    region: &Region,
+    city: ShownCity,
+    place: &Place,
+    tools: &mut Tools,
+) -> Result<Tree<PlacedLeaf>, RegionError> {
+    match region {
+        Region::Combined { how, parts } => {
+            let tree = |(i, part): (usize, &Region)| {
                 let tree = match part {
-                    Focus::Sprite { .. } => Err((
+                    Region::Sprite { .. } => Err((
                         "kind".into(),
                         "a depth sprite is no part of a combination; a shape of its own would be right".into(),
                     )),
@@ -243,7 +257,7 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> 
             Ok(Tree::joined(*how, trees?))
         }
         _ => {
-            let leaves = leaves_of(focus, city, place, tools)?;
+            let leaves = leaves_of(region, city, place, tools)?;
             let trees = leaves.into_iter().map(|leaf| match leaf.is_empty() {
                 true => Tree::Nothing,
                 false => Tree::Leaf(leaf.into()),
@@ -254,30 +268,30 @@ fn tree_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> 
 }
 
 /// The leaves whose union a focus area is that is no combination.
-fn leaves_of(focus: &Focus, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, FocusError> {
+fn leaves_of(region: &Region, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, RegionError> {
     let mut thresholds = None;
-    let objects: Arc<[bool]> = match focus {
-        Focus::Thematic(choice) => members(city.model, choice).into(),
-        Focus::Occluders(_) | Focus::Case { .. } if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
-        Focus::Occluders(of) => {
+    let objects: Arc<[bool]> = match region {
+        Region::Thematic(choice) => members(city.model, choice).into(),
+        Region::Occluders(_) | Region::Case { .. } if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
+        Region::Occluders(of) => {
             let shown = tools.occlusion.objects(tools.lens, Search { of, when: &[] }, tools.pois, city, tools.viewer);
             thresholds = shown.thresholds;
             shown.objects
         }
-        Focus::Case { of, when } => {
+        Region::Case { of, when } => {
             let shown = tools.occlusion.objects(tools.lens, Search { of, when }, tools.pois, city, tools.viewer);
             thresholds = shown.thresholds;
             shown.objects
         }
-        Focus::Enclosed { parts, whole, types } => {
+        Region::Enclosed { parts, whole, types } => {
             objects_in(parts, Held { whole: *whole, types }, city, place, tools)?.into()
         }
-        Focus::Own { used, center, size, rotation } => {
+        Region::Own { used, center, size, rotation } => {
             let own = OwnRegion::new(used, *center, *size, *rotation, &place.motion);
             return own.map(|own| vec![Leaf::Own(own)]).map_err(|message| ("kind".to_owned(), message));
         }
-        Focus::Sprite { file } => return Ok(vec![Leaf::Sprite(tools.solids.sprite(file, city, &place.motion)?)]),
-        _ => return Ok(tools.solids.volumes(focus, city, place)?.into_iter().map(Leaf::Volume).collect()),
+        Region::Sprite { file } => return Ok(vec![Leaf::Sprite(tools.solids.sprite(file, city, &place.motion)?)]),
+        _ => return Ok(tools.solids.volumes(region, city, place)?.into_iter().map(Leaf::Volume).collect()),
     };
     let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);
     let bounds = shown.filter(|g| objects[g.object as usize]).fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
@@ -295,22 +309,23 @@ struct Held<'a> {
 
 /// The objects that some shapes hold, one per object of the city.
 fn objects_in(
-    parts: &[Focus],
+    parts: &[Region],
     held: Held,
     city: ShownCity,
     place: &Place,
     tools: &mut Tools,
-) -> Result<Vec<bool>, FocusError> {
-    let mut bodies = Vec::new();
+) -> Result<Vec<bool>, RegionError> {
+    let mut placed = Vec::new();
     for (i, part) in parts.iter().enumerate() {
-        bodies.extend(bodies_of(part, city, place, tools).map_err(|(key, message)| within(i, &key, message))?);
+        placed.extend(regions_of(part, city, place, tools).map_err(|(key, message)| within(i, &key, message))?);
     }
-    let areas: Vec<_> = bodies.iter().filter(|body| !body.is_empty()).map(|body| (body, body.bounds())).collect();
+    let areas: Vec<_> =
+        placed.iter().filter(|region| !region.is_empty()).map(|region| (region, region.bounds())).collect();
     Ok(enclosed(city, &areas, held.whole, held.types))
 }
 
 /// What is wrong with part i of a focus area: a key of the part, and words.
-fn within(i: usize, key: &str, message: String) -> FocusError {
+fn within(i: usize, key: &str, message: String) -> RegionError {
     let dot = if key.is_empty() { "" } else { "." };
     (format!("shapes.{i}{dot}{key}"), message)
 }
@@ -319,7 +334,7 @@ impl LensVolumes {
     /// Gives every solid its place in the table of all of them, which is made anew where `before` does not hold just these.
     pub fn place_solids(&mut self, before: &Arc<SolidTable>) -> Result<Arc<SolidTable>, String> {
         let solids = || {
-            let leaves = self.volumes.iter().flat_map(|v| v.body.leaves().map(move |leaf| (v, &leaf.leaf)));
+            let leaves = self.volumes.iter().flat_map(|v| v.region.leaves().map(move |leaf| (v, &leaf.leaf)));
             leaves.filter_map(|(volume, leaf)| solid_of(leaf).map(|solid| (solid, asked_for(volume, solid))))
         };
         let table = match before.holds(solids()) {
@@ -328,7 +343,7 @@ impl LensVolumes {
                 format!("the solids of the lenses take {entries} entries together; one picture takes {MOST_ENTRIES}")
             })?),
         };
-        for leaf in self.volumes.iter_mut().flat_map(|v| v.body.leaves_mut()) {
+        for leaf in self.volumes.iter_mut().flat_map(|v| v.region.leaves_mut()) {
             if let Some(place) = solid_of(&leaf.leaf).and_then(|solid| table.place(solid)) {
                 leaf.place = place.clone();
             }

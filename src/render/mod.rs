@@ -7,7 +7,6 @@
 mod bake;
 mod bare;
 mod best_views;
-pub mod body;
 mod cells;
 mod cities;
 pub mod city;
@@ -56,6 +55,7 @@ mod pass;
 mod patch;
 pub mod picture;
 mod picture_parts;
+pub mod placed_region;
 mod placement;
 mod plan;
 mod plans;

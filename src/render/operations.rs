@@ -8,7 +8,7 @@ use crate::{
         effect::{default_of, in_floats, ramp},
         thematic::ThematicScale,
     },
-    render::{body::Members, palette},
+    render::{palette, placed_region::Members},
     shader::{
         self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
         PlanBody, PlanBorder, PlanContent, PlanLens, Scope, Step, Uber,

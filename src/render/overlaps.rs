@@ -15,7 +15,7 @@ const MOST_CUTS: u32 = 6;
 /// The combinations, each a bitmask of `lenses` by their places in that list; ascending, and none of them first.
 pub(super) fn combinations(volumes: &[LensVolume], lenses: &[u32]) -> Vec<u32> {
     let of = |lens: u32| volumes.iter().filter(move |v| v.lens == lens);
-    let is_bounded = |lens: u32| of(lens).all(|v| v.body.is_bounded());
+    let is_bounded = |lens: u32| of(lens).all(|v| v.region.is_bounded());
     let all: Vec<Lens> = (0..)
         .zip(lenses)
         .filter(|(_, lens)| is_bounded(**lens))
@@ -38,7 +38,7 @@ pub(super) fn combinations(volumes: &[LensVolume], lenses: &[u32]) -> Vec<u32> {
 
 /// Whether two volumes may have a place in common; `false` only where they have none.
 pub(super) fn may_meet(a: &LensVolume, b: &LensVolume) -> bool {
-    let sphere = |v: &LensVolume| match v.body.volume() {
+    let sphere = |v: &LensVolume| match v.region.volume() {
         Some(Volume::Sphere(Sphere { center, radius })) => Some((*center, *radius)),
         _ => None,
     };
@@ -67,7 +67,7 @@ impl Lens<'_> {
             if !volume.bounds.meets(cell) {
                 return Side::Outside;
             }
-            let Some(own) = volume.body.volume() else { return Side::Undecided };
+            let Some(own) = volume.region.volume() else { return Side::Undecided };
             // And what rounds on the GPU.
             let radius = 0.5 * cell.size().length() * (1.0 + 1e-6) + 1e-3;
             match own.signed_distance(cell.center()) {
@@ -119,13 +119,13 @@ mod tests {
     use super::*;
     use crate::{
         geom::Shape,
-        render::body::{Body, Leaf},
+        render::placed_region::{Leaf, PlacedRegion},
     };
 
     fn volumes(shapes: &[Shape]) -> Vec<LensVolume> {
         let volume = |(lens, shape): (usize, &Shape)| {
             let volume = shape.volume().expect("a volume");
-            LensVolume::plain(lens as u32, Body::One(Leaf::Volume(volume).into()))
+            LensVolume::plain(lens as u32, PlacedRegion::One(Leaf::Volume(volume).into()))
         };
         shapes.iter().enumerate().map(volume).collect()
     }

@@ -90,15 +90,15 @@ impl Source {
 /// The view from the own eye of a sprite; `city`: box around what is drawn.
 fn own_view(volume: &LensVolume, sprite: &LensSprite, city: &Aabb) -> Result<Option<View>, CameraError> {
     let (Some(own), Some(size)) = (sprite.own, sprite.own_size()) else { return Ok(None) };
-    let shapes = volume.body.bounds();
-    let all = if volume.body.is_bounded() { city.union(shapes) } else { *city };
+    let shapes = volume.region.bounds();
+    let all = if volume.region.is_bounded() { city.union(shapes) } else { *city };
     View::new(own.camera, size, &all).map(Some)
 }
 
 /// The part of the frame that the shapes of a lens may be seen in, texels.
 fn part_of(volume: &LensVolume, view: &View) -> PictureTile {
     let whole = PictureTile::whole(view.size);
-    let alone = LensVolume::plain(volume.lens, volume.body.clone());
+    let alone = LensVolume::plain(volume.lens, volume.region.clone());
     let part = alone.seen_part(view, whole).map(|part| part.rectangle());
     part.unwrap_or(PictureTile { origin: [0; 2], size: [0; 2] })
 }
@@ -106,10 +106,10 @@ fn part_of(volume: &LensVolume, view: &View) -> PictureTile {
 /// Between which distances from its own eye the sprite of a bounded volume may hold something, metres: a code stands for any
 /// distance as near as its step.
 fn reach_of(volume: &LensVolume, view: &View, code: &DepthCode) -> [f64; 2] {
-    if !volume.body.is_bounded() {
+    if !volume.region.is_bounded() {
         return [1e-3 * view.camera.near_m, 1e30];
     }
-    let depths = volume.body.bounds().corners().map(|corner: DVec3| view.depth(corner));
+    let depths = volume.region.bounds().corners().map(|corner: DVec3| view.depth(corner));
     let low = depths.into_iter().fold(f64::INFINITY, f64::min);
     let high = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).max(code.near_m);
     let step = |d: f64| code.quantum_m(d.clamp(code.near_m, code.far_m.min(high.max(low))));
@@ -120,9 +120,9 @@ fn reach_of(volume: &LensVolume, view: &View, code: &DepthCode) -> [f64; 2] {
 
 /// Box around all that a volume's test may find in it, metres: what its own eye sees of it, to a texel and a step.
 pub(super) fn bounds(volume: &LensVolume) -> Result<Aabb, CameraError> {
-    let bounds = volume.body.bounds();
-    let asked = volume.sprite.as_ref().filter(|_| volume.has_own_eye() && volume.body.is_bounded());
-    let Some(sprite) = asked.filter(|_| !volume.body.is_empty()) else { return Ok(bounds) };
+    let bounds = volume.region.bounds();
+    let asked = volume.sprite.as_ref().filter(|_| volume.has_own_eye() && volume.region.is_bounded());
+    let Some(sprite) = asked.filter(|_| !volume.region.is_empty()) else { return Ok(bounds) };
     let Some(view) = own_view(volume, sprite, &Aabb::EMPTY)? else { return Ok(bounds) };
     let part = part_of(volume, &view);
     if part.is_empty() {
@@ -189,7 +189,7 @@ impl OwnSprite {
             change: 0,
             is_made: false,
         };
-        if let Some(saved) = volume.body.saved() {
+        if let Some(saved) = volume.region.saved() {
             let sprite = &saved.sprite;
             let code = code_of_file(sprite, volume.sprite.as_ref());
             let is_aggregate = volume.sprite.is_some_and(|asked| asked.aggregate);
@@ -203,15 +203,15 @@ impl OwnSprite {
         let view = own_view(volume, sprite, city).ok()??;
         let code = code_of(sprite, volume, &view, city);
         let mut planes = Vec::new();
-        let region = match volume.body.is_form() {
-            true => volume.body.region(&view, &mut planes),
-            false => volume.body.combined_region(&view, &mut planes),
+        let region = match volume.region.is_form() {
+            true => volume.region.rows(&view, &mut planes),
+            false => volume.region.combined_rows(&view, &mut planes),
         };
-        let has_solids = volume.body.has_solids();
+        let has_solids = volume.region.has_solids();
         let solids = has_solids.then(|| input.solids.clone());
         let from = Source::Shapes(Box::new(Shapes { view, region, planes, solids }));
         let reach = reach_of(volume, &view, &code);
-        let layers = sprite.layers_of(&volume.body);
+        let layers = sprite.layers_of(&volume.region);
         Some(of(from, SpriteSpace::of(&view), part_of(volume, &view), stored(code, layers), reach))
     }
 
@@ -219,7 +219,7 @@ impl OwnSprite {
     fn counts(&self, input: &FrameInput) -> bool {
         let volume = &input.volumes[self.volume];
         let is_aggregate = volume.sprite.is_some_and(|asked| asked.aggregate);
-        matches!(self.from, Source::Shapes(_)) && !volume.body.is_form() && !is_aggregate
+        matches!(self.from, Source::Shapes(_)) && !volume.region.is_form() && !is_aggregate
     }
 }
 
@@ -273,13 +273,13 @@ impl OwnSprites {
         for one in self.list.iter().filter(|one| !one.is_made && !one.bounds.is_empty() && is_needed(one.volume)) {
             let Source::Shapes(shapes) = &one.from else { continue };
             let mut stored = one.stored;
-            let body = &input.volumes[one.volume].body;
-            if !body.is_form() {
+            let region = &input.volumes[one.volume].region;
+            if !region.is_form() {
                 stored.first_list = u32::try_from(lists).unwrap_or(u32::MAX);
                 lists += u64::from(stored.width(one.bounds.size[0])) * u64::from(one.bounds.size[1]);
             }
             let (size, bounds) = (one.space.size, one.bounds);
-            all.push(BakeRequest { lens: one.lens, body, size, bounds, stored, own: Some(shapes.view) });
+            all.push(BakeRequest { lens: one.lens, region, size, bounds, stored, own: Some(shapes.view) });
         }
         all
     }
@@ -298,7 +298,7 @@ impl OwnSprites {
     }
 
     /// The region of a volume that is tested by one, as a shader reads it that draws for this eye: its rows stand among the planes.
-    pub fn region(&self, volume: usize, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+    pub fn rows(&self, volume: usize, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         let region = layout::Region {
             test: LensTest::OwnSprite.number(),
             b: [planes.len() as f32, 0.0, 0.0, 0.0],

@@ -61,7 +61,7 @@ pub(super) fn refused(scene: &Scene, volumes: &[LensVolume]) -> Option<SceneProb
         if technique != Technique::ThreePass {
             return None;
         }
-        if let Some(volume) = volumes.iter().find(|v| !v.body.is_form()) {
+        if let Some(volume) = volumes.iter().find(|v| !v.region.is_form()) {
             let name = name(volume);
             return Some(format!(
                 "needs volumes with one front and one back, and that of lens \"{name}\" has no such form"
@@ -116,7 +116,7 @@ impl RegionPasses {
                     let around = own().map(|v| v.bounds).reduce(around);
                     pass.part = common(pass.part, around.unwrap_or(PictureTile { origin: [0; 2], size: [0; 2] }));
                 }
-                let is_endless = || own().any(|v| !input.volumes[v.index].body.is_bounded());
+                let is_endless = || own().any(|v| !input.volumes[v.index].region.is_bounded());
                 pass.has_background &= match class {
                     ClassTest::Inside => is_endless(),
                     ClassTest::Front => false,

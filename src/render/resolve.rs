@@ -8,7 +8,6 @@ use crate::{
     geom::Aabb,
     lens::solids::{ShownCity, Solids},
     render::{
-        body::Leaf,
         city_facts::CityFacts,
         content_cities::{self, ContentCities, SceneContents},
         deformations::{self, KnownDeformations, Moved, SceneDeformations},
@@ -17,6 +16,7 @@ use crate::{
         occlusion::Occlusion,
         operations::{AllTests, LensTables, MOST_FILTERS, Operations},
         parts::whole,
+        placed_region::Leaf,
         placement::Eye,
         regions,
         sights::sights,
@@ -221,7 +221,7 @@ impl Surroundings<'_> {
 fn add_members(operations: &mut Operations, volumes: &mut [LensVolume], models: &[&CityModel]) {
     let objects = models.iter().map(|model| model.objects.len()).sum();
     for volume in volumes {
-        for leaf in volume.body.leaves_mut() {
+        for leaf in volume.region.leaves_mut() {
             if let Leaf::Members(members) = &leaf.leaf {
                 leaf.place.first = operations.add_members(members, objects);
             }

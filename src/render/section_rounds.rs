@@ -47,7 +47,7 @@ pub(super) fn rounds(input: &FrameInput, seen: &[SeenVolume], cut: Option<&Cut>)
     for (number, of_seen) in seen.iter().enumerate() {
         let volume = &input.volumes[of_seen.index];
         let Some(color) = volume.section else { continue };
-        if !cut.hiding.lenses.contains(&volume.lens) || !volume.body.is_bounded() {
+        if !cut.hiding.lenses.contains(&volume.lens) || !volume.region.is_bounded() {
             continue;
         }
         let (view, bounds) = (&input.view, volume.bounds);
@@ -56,7 +56,7 @@ pub(super) fn rounds(input: &FrameInput, seen: &[SeenVolume], cut: Option<&Cut>)
         let center = [middle.dot(view.basis.right), middle.dot(view.basis.up), -view.depth(bounds.center())];
         let radius = 1.01 * bounds.center().distance(bounds.max);
         // What a file's sprite holds need not be convex.
-        let intervals = volume.body.most_intervals().filter(|_| volume.body.saved().is_none());
+        let intervals = volume.region.most_intervals().filter(|_| volume.region.saved().is_none());
         let turns = intervals.map_or(TURNS, |most| TURNS.min(most as u32));
         for leaves in ends_of(input.operations, volume.lens) {
             rounds.extend((0..turns).map(|turn| SectionRound {

@@ -78,7 +78,7 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom) -> 
         let Some(part) = any_part.or_else(|| volume.seen_part(&input.view, input.tile)) else { continue };
         let bounds = part.rectangle();
         let (lens, test) = (volume.lens, volume.test(masks));
-        let leaves = volume.body.forms_in_combination();
+        let leaves = volume.region.forms_in_combination();
         if !test.is_sprite() && !test.has_sides() {
             seen.push(SeenVolume { index, lens, test, leaves, part, bounds, sprite: None });
             continue;
@@ -95,9 +95,9 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom) -> 
             let code = stored::code_of(&wanted, volume, &input.view, city);
             // Beyond what any GPU holds; such a buffer is refused.
             let number = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
-            let layers = wanted.layers_of(&volume.body);
+            let layers = wanted.layers_of(&volume.region);
             let mut stored = Stored { code, layers, first: number(words), first_list: number(lists), excess: 0 };
-            if !volume.body.is_form() {
+            if !volume.region.is_form() {
                 lists += u64::from(stored.width(sprite_bounds.size[0])) * u64::from(sprite_bounds.size[1]);
                 counts += 1;
                 stored.excess = if wanted.aggregate { 0 } else { counts };

@@ -8,7 +8,7 @@ use crate::{
         LensSprite, SpriteSpace,
         sprite::{DepthCode, Format, Mapping},
     },
-    render::{body::Body, eye::PictureTile, volume::LensVolume},
+    render::{eye::PictureTile, placed_region::PlacedRegion, volume::LensVolume},
     view::View,
 };
 
@@ -68,7 +68,7 @@ pub fn code_of(sprite: &LensSprite, volume: &LensVolume, view: &View, city: &Aab
         return DepthCode { mapping, near_m: seen_m, far_m: view.far_m, format };
     }
     let depths = |bounds: &Aabb| bounds.corners().map(|corner: DVec3| view.depth(corner));
-    let (low, high) = match volume.body.is_bounded() {
+    let (low, high) = match volume.region.is_bounded() {
         true => {
             let all = depths(&volume.bounds);
             (all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max))
@@ -81,12 +81,12 @@ pub fn code_of(sprite: &LensSprite, volume: &LensVolume, view: &View, city: &Aab
 }
 
 impl LensSprite {
-    /// Layers that the sprite of a body takes.
-    pub(super) fn layers_of(&self, body: &Body) -> u32 {
-        if body.is_form() || self.aggregate {
+    /// Layers that the sprite of a region takes.
+    pub(super) fn layers_of(&self, region: &PlacedRegion) -> u32 {
+        if region.is_form() || self.aggregate {
             return 1;
         }
-        body.most_intervals().map_or(self.layers, |most| self.layers.min(most as u32))
+        region.most_intervals().map_or(self.layers, |most| self.layers.min(most as u32))
     }
 }
 

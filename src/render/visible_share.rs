@@ -3,7 +3,7 @@
 use crate::{
     city::CityModel,
     lens::{
-        Class, EffectUse, Focus, Lens, LensBody, LensKind,
+        Class, EffectUse, Lens, LensBody, LensKind, Region,
         chosen::{Choice, members},
     },
     render::{
@@ -57,7 +57,7 @@ fn all_else(kept: Choice) -> Lens {
         parameters: Default::default(),
     };
     let plain = Lens::plain("all else", LensKind::default(), [0.0; 3]);
-    Lens { shapes: vec![Focus::Thematic(kept)], effects: vec![eraser], body: LensBody::None, ..plain }
+    Lens { shapes: vec![Region::Thematic(kept)], effects: vec![eraser], body: LensBody::None, ..plain }
 }
 
 /// The share of an object that a scene's picture of this size shows, where deformations show it; `None` where it is out of the picture, or

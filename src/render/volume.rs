@@ -6,10 +6,10 @@ use crate::{
     geom::{Aabb, Volume, shape::Sphere},
     lens::{Border, LensBody, LensSprite},
     render::{
-        body::{Body, Leaf, PlacedLeaf},
         eye::PictureTile,
         flat, layout,
         operations::HALO_PX,
+        placed_region::{Leaf, PlacedLeaf, PlacedRegion},
         screen_bound::ScreenBound,
     },
     shader::{Form, LensTest},
@@ -27,7 +27,7 @@ pub struct LensVolume {
     /// Which lens, from 0.
     pub lens: u32,
     /// What it is; not empty.
-    pub body: Body,
+    pub region: PlacedRegion,
     /// Box around it, metres.
     pub bounds: Aabb,
     /// Whether its lens acts where rays miss it (class *rest*): then all of the picture is its business.
@@ -47,12 +47,12 @@ pub struct LensVolume {
 }
 
 impl LensVolume {
-    /// A body by itself, tested from its numbers: its lens acts on what is inside, up to its end.
-    pub fn plain(lens: u32, body: Body) -> Self {
+    /// A region by itself, tested from its numbers: its lens acts on what is inside, up to its end.
+    pub fn plain(lens: u32, region: PlacedRegion) -> Self {
         Self {
             lens,
-            bounds: body.bounds(),
-            body,
+            bounds: region.bounds(),
+            region,
             everywhere: false,
             drawn: LensBody::None,
             sprite: None,
@@ -65,13 +65,13 @@ impl LensVolume {
 
     /// Whether it is tested by a sprite that has its own eye.
     pub fn has_own_eye(&self) -> bool {
-        let is_asked = self.sprite.is_some_and(|sprite| sprite.own.is_some()) && !self.body.has_members();
-        is_asked || self.body.saved().is_some()
+        let is_asked = self.sprite.is_some_and(|sprite| sprite.own.is_some()) && !self.region.has_members();
+        is_asked || self.region.saved().is_some()
     }
 
     /// How it is tested from the sun: the picture's sprites say nothing of what only the sun sees.
     pub fn test_from_sun(&self) -> LensTest {
-        if self.has_own_eye() { LensTest::OwnSprite } else { self.body.test() }
+        if self.has_own_eye() { LensTest::OwnSprite } else { self.region.test() }
     }
 
     /// How it is tested in the picture; `masks`: all classes are asked for.
@@ -80,8 +80,8 @@ impl LensVolume {
             return LensTest::OwnSprite;
         }
         let with_sides = masks || self.asks_sides || self.drawn != LensBody::None || self.section.is_some();
-        match (self.body.test(), self.sprite.filter(|_| !self.body.has_members())) {
-            (_, Some(sprite)) if self.body.is_form() && sprite.is_as_the_target() => LensTest::Sprite,
+        match (self.region.test(), self.sprite.filter(|_| !self.region.has_members())) {
+            (_, Some(sprite)) if self.region.is_form() && sprite.is_as_the_target() => LensTest::Sprite,
             (_, Some(_)) => LensTest::LayeredSprite,
             (LensTest::Numbers(form), None) if with_sides && (form.is_solid() || form == Form::Combined) => {
                 LensTest::Sides(form)
@@ -101,9 +101,9 @@ impl LensVolume {
         [picture, vec![own]]
     }
 
-    /// The body's region for an eye; planes and leaves are appended to `planes`.
-    pub fn region(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
-        self.body.region(view, planes)
+    /// The region's rows for an eye; planes and leaves are appended to `planes`.
+    pub fn rows(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+        self.region.rows(view, planes)
     }
 
     /// How far around it its lens acts, metres; 0 where that ends at once.
@@ -121,7 +121,7 @@ impl LensVolume {
 
     /// The box in which its lens may act as *inside*: x to the right, y up, and the distance D along the view axis, metres from the eye.
     pub fn room(&self, view: &View) -> [DVec3; 2] {
-        if !self.body.is_bounded() {
+        if !self.region.is_bounded() {
             return [DVec3::NEG_INFINITY, DVec3::INFINITY];
         }
         let placed = |point: DVec3| {
@@ -129,7 +129,7 @@ impl LensVolume {
             DVec3::new(relative.dot(view.basis.right), relative.dot(view.basis.up), view.depth(point))
         };
         let reach = self.reach_m(view);
-        if let (Some(Volume::Sphere(Sphere { center, radius })), false) = (self.body.volume(), self.has_own_eye()) {
+        if let (Some(Volume::Sphere(Sphere { center, radius })), false) = (self.region.volume(), self.has_own_eye()) {
             let middle = placed(*center);
             return [middle - radius - reach, middle + radius + reach];
         }
@@ -143,7 +143,7 @@ impl LensVolume {
     pub fn seen_part(&self, view: &View, tile: PictureTile) -> Option<ScreenBound> {
         let whole = ScreenBound::whole(tile.size);
         // In front of what its own eye sees, or behind it, places may be anywhere.
-        if self.everywhere || (self.has_own_eye() && (self.asks_sides || !self.body.is_bounded())) {
+        if self.everywhere || (self.has_own_eye() && (self.asks_sides || !self.region.is_bounded())) {
             return Some(whole);
         }
         let margin = match self.drawn {
@@ -151,7 +151,7 @@ impl LensVolume {
             LensBody::None if self.sprite.is_none() => MARGIN_PX,
             _ => WIDE_MARGIN_PX,
         };
-        if let Body::One(PlacedLeaf { leaf: Leaf::Volume(Volume::Flat(flat)), .. }) = &self.body {
+        if let PlacedRegion::One(PlacedLeaf { leaf: Leaf::Volume(Volume::Flat(flat)), .. }) = &self.region {
             if self.border.is_some() {
                 // It fades in its plane, however that is seen.
                 return Some(whole);
@@ -178,7 +178,7 @@ impl LensVolume {
     fn projected(&self, view: &View) -> Option<([f64; 4], [f64; 4])> {
         let reach = self.reach_m(view);
         let around = || self.bounds_of_border(view).corners();
-        let Some(volume) = self.body.volume().filter(|_| !self.has_own_eye()) else {
+        let Some(volume) = self.region.volume().filter(|_| !self.has_own_eye()) else {
             return projected_corners(view, around());
         };
         match volume {
@@ -259,7 +259,7 @@ mod tests {
         ];
         for shape in shapes {
             let volume = shape.volume().expect("a volume");
-            let lens = LensVolume::plain(0, Body::One(Leaf::Volume(volume.clone()).into()));
+            let lens = LensVolume::plain(0, PlacedRegion::One(Leaf::Volume(volume.clone()).into()));
             let (low, high) = lens.projected(&view).expect("it is in front of the eye");
             let (mut least, mut most) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
             for (x, y) in (0..480).flat_map(|y| (0..640).map(move |x| (x, y))) {

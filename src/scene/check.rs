@@ -3,7 +3,7 @@
 use crate::{
     city::CityModel,
     lens::{
-        EffectUse, Focus, Occluders, Placement, Rendering,
+        EffectUse, Occluders, Placement, Region, Rendering,
         chosen::{absent, absent_types},
         nearest::did_you_mean,
         rendering::Case,
@@ -145,17 +145,17 @@ fn check_occluders(of: &Occluders, table: &str, scene: &Scene, model: &CityModel
 }
 
 /// The choices of objects of a focus area and its parts.
-fn check_focus(focus: &Focus, table: &str, at: &str, model: &CityModel, problems: &mut Vec<SceneProblem>) {
+fn check_focus(focus: &Region, table: &str, at: &str, model: &CityModel, problems: &mut Vec<SceneProblem>) {
     match focus {
-        Focus::Objects(choice) | Focus::Thematic(choice) => {
+        Region::Objects(choice) | Region::Thematic(choice) => {
             problems.extend(absent(model, choice).into_iter().map(|(key, message)| SceneProblem {
                 table: table.to_owned(),
                 key: format!("{at}.{key}"),
                 message: format!("chooses nothing: {message}"),
             }));
         }
-        Focus::Combined { parts, .. } | Focus::Enclosed { parts, .. } => {
-            if let Focus::Enclosed { types, .. } = focus {
+        Region::Combined { parts, .. } | Region::Enclosed { parts, .. } => {
+            if let Region::Enclosed { types, .. } = focus {
                 problems.extend(absent_types(model, types).into_iter().map(|(i, message)| SceneProblem {
                     table: table.to_owned(),
                     key: format!("{at}.types.{i}"),
@@ -231,16 +231,16 @@ mod tests {
         let by_id = |id: &str| Choice { ids: vec!["town-hall".into(), id.into()], ..Choice::default() };
         let by_year =
             |name: &str, min: f64| Choice { attribute: Some(name.into()), min: Some(min), ..Choice::default() };
-        let union = |parts| Focus::Combined { how: Operation::Union, parts };
-        scene.lenses[0].shapes = vec![Focus::Objects(by_id("town-hall")), Focus::Thematic(by_id("town-hal"))];
+        let union = |parts| Region::Combined { how: Operation::Union, parts };
+        scene.lenses[0].shapes = vec![Region::Objects(by_id("town-hall")), Region::Thematic(by_id("town-hal"))];
         let types = vec!["Building".into(), "building".into()];
         scene.lenses[4].shapes =
-            vec![Focus::Enclosed { parts: vec![Focus::Thematic(by_id("town"))], whole: false, types }];
+            vec![Region::Enclosed { parts: vec![Region::Thematic(by_id("town"))], whole: false, types }];
         scene.lenses[3].shapes = vec![union(vec![
-            Focus::Objects(by_year("yearOfConstruction", 1931.0)),
+            Region::Objects(by_year("yearOfConstruction", 1931.0)),
             union(vec![
-                Focus::Thematic(by_year("yearofConstruction", 0.0)),
-                Focus::Objects(by_year("yearOfConstruction", 1932.0)),
+                Region::Thematic(by_year("yearofConstruction", 0.0)),
+                Region::Objects(by_year("yearOfConstruction", 1932.0)),
             ]),
         ])];
         scene.style.effects.push(used("yearOfconstrution"));

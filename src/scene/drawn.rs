@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use crate::{
     lens::{
-        Class, Focus, Lens, LensBody, Rendering,
+        Class, Lens, LensBody, Region, Rendering,
         chosen::Choice,
         rendering::{Case, When},
     },
@@ -105,7 +105,7 @@ impl Scene {
             own.clear_rendering();
             own.kind.set_content(None);
             parts.push(Lens {
-                shapes: vec![Focus::Thematic(choice)],
+                shapes: vec![Region::Thematic(choice)],
                 effects: render.poi_effects.clone(),
                 body: LensBody::None,
                 sprite: None,
@@ -126,10 +126,10 @@ fn draw(lens: &mut Lens, case: &Case) {
 }
 
 /// Leaves of the occluders of a focus area those that the last case holds of, and none before.
-fn narrow(shape: &mut Focus, when: &[When]) {
+fn narrow(shape: &mut Region, when: &[When]) {
     match shape {
-        Focus::Occluders(of) => *shape = Focus::Case { of: of.clone(), when: when.to_vec() },
-        Focus::Combined { parts, .. } => parts.first_mut().into_iter().for_each(|part| narrow(part, when)),
+        Region::Occluders(of) => *shape = Region::Case { of: of.clone(), when: when.to_vec() },
+        Region::Combined { parts, .. } => parts.first_mut().into_iter().for_each(|part| narrow(part, when)),
         _ => {}
     }
 }

@@ -17,7 +17,7 @@ use veduta::{
     figure::animation::Film,
     gpu::Gpu,
     lens::{
-        Focus, Lens, Occluders, Rendering,
+        Lens, Occluders, Region, Rendering,
         dither::dither,
         kind::Occlusion,
         rendering::{Case, Given, ROWS, When},
@@ -56,7 +56,7 @@ fn lens(name: &str, test: Test) -> Lens {
         pace: Pace { fade_s: FADE_S },
         ..Occluders::default()
     };
-    let plain = crate::studio::lens(name, [Focus::Occluders(of)], "sepia");
+    let plain = crate::studio::lens(name, [Region::Occluders(of)], "sepia");
     Lens { kind: Occlusion::default().into(), effects: vec![], ..plain }
 }
 

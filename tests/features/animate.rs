@@ -14,7 +14,7 @@ use veduta::{
         scene_file::{self, Options},
     },
     geom::Shape,
-    lens::Focus,
+    lens::Region,
     render::picture::Request,
     scene::Scene,
     view::Projection,
@@ -84,7 +84,7 @@ fn a_frame_has_the_values_of_its_moment() {
     assert_eq!(film.frames(), 6);
     for (frame, share) in [(0, 0.0), (3, 0.6), (5, 1.0)] {
         let moment = film.scene(frame).unwrap();
-        let Focus::Shape(Shape::Sphere { center, radius }) = moment.lenses[0].shapes[0] else { panic!("a sphere") };
+        let Region::Shape(Shape::Sphere { center, radius }) = moment.lenses[0].shapes[0] else { panic!("a sphere") };
         let expected = DVec3::new(32.0, 22.0, 6.0).lerp(DVec3::new(-20.0, 10.0, 6.0), share);
         assert!(center.distance(expected) < 1e-6 && (radius - (34.0 - 14.0 * share)).abs() < 1e-9, "{frame}: {center}");
         assert_eq!(moment.animation, None);
@@ -125,7 +125,7 @@ fn frames_are_the_pictures_that_render_makes() {
     let moment = Film::new(&scene()).unwrap().scene(2).unwrap();
     let camera = moment.camera.unwrap();
     let Projection::Perspective { fov_y } = camera.projection else { panic!("perspective") };
-    let Focus::Shape(Shape::Sphere { center, radius }) = moment.lenses[0].shapes[0] else { panic!("a sphere") };
+    let Region::Shape(Shape::Sphere { center, radius }) = moment.lenses[0].shapes[0] else { panic!("a sphere") };
     let list = |p: DVec3| format!("[{:?},{:?},{:?}]", p.x, p.y, p.z);
     let picture = folder.join("moment.png");
     let settings = [

@@ -4,7 +4,7 @@ use crate::studio::*;
 use glam::{DVec2, DVec3};
 use veduta::{
     geom::{Aabb, Shape},
-    lens::{Focus, Lens, LensBody, chosen::Choice},
+    lens::{Lens, LensBody, Region, chosen::Choice},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -30,7 +30,7 @@ fn pixels() -> impl Iterator<Item = (usize, u32, u32)> {
 }
 
 /// A lens that is nothing but a body.
-fn body_of(body: LensBody, focus: impl Into<Focus>) -> Lens {
+fn body_of(body: LensBody, focus: impl Into<Region>) -> Lens {
     Lens { body, effects: vec![], ..lens("a", [focus], "sepia") }
 }
 
@@ -151,10 +151,10 @@ fn both_back_ends_draw_the_same_bodies_and_moving_them_compiles_nothing() {
 #[test]
 fn what_has_no_surface_shows_a_line() {
     let chosen = Choice { ids: vec!["a".into()], ..Choice::default() };
-    let thematic = Focus::Thematic(chosen);
-    let ball = || Focus::from(Shape::Sphere { center: DVec3::ZERO, radius: 1.0 });
+    let thematic = Region::Thematic(chosen);
+    let ball = || Region::from(Shape::Sphere { center: DVec3::ZERO, radius: 1.0 });
     let both =
-        Focus::Combined { how: veduta::geom::combination::Operation::Union, parts: vec![ball(), thematic.clone()] };
+        Region::Combined { how: veduta::geom::combination::Operation::Union, parts: vec![ball(), thematic.clone()] };
     for body in [LensBody::Shell, LensBody::Halo] {
         assert_eq!(body_of(body, thematic.clone()).drawn_body(), LensBody::Outline);
         assert_eq!(body_of(body, both.clone()).drawn_body(), LensBody::Outline);

@@ -12,7 +12,7 @@ use glam::DVec3;
 use veduta::{
     figure::scene_file::{self, Options},
     geom::{Aabb, Shape},
-    lens::{EffectUse, Focus, LensBody, Parameter, color},
+    lens::{EffectUse, LensBody, Parameter, Region, color},
     render::picture::{Picture, Studio},
     scene::{Scene, Sun},
     view::View,
@@ -375,9 +375,9 @@ fn trapp_3_5_3_the_three_lenses_have_three_shapes() {
         assert!(scene.lenses.iter().all(|lens| lens.shapes == scene.lenses[0].shapes));
         scene.lenses[0].shapes.clone()
     });
-    assert!(matches!(shapes[0][..], [Focus::Shape(Shape::Box { .. })]));
-    assert!(matches!(shapes[1][..], [Focus::Shape(Shape::Convex { .. })]));
-    assert!(matches!(shapes[2][..], [Focus::Shape(Shape::Sphere { .. })]));
+    assert!(matches!(shapes[0][..], [Region::Shape(Shape::Box { .. })]));
+    assert!(matches!(shapes[1][..], [Region::Shape(Shape::Convex { .. })]));
+    assert!(matches!(shapes[2][..], [Region::Shape(Shape::Sphere { .. })]));
 }
 
 // ---- Tiesel, figure 3.22
@@ -521,7 +521,7 @@ fn a_flat_lens_acts_behind_its_pane_alone() {
     let mut studio = of_scene(&scene);
     let plain = picture(&mut studio, &Scene { lenses: vec![], ..scene.clone() }, SIZE);
     let shown = picture(&mut studio, &scene, SIZE);
-    let Focus::Shape(Shape::Flat { center, rotation, .. }) = scene.lenses[0].shapes[0].clone() else {
+    let Region::Shape(Shape::Flat { center, rotation, .. }) = scene.lenses[0].shapes[0].clone() else {
         panic!("a flat lens")
     };
     let view = view_of(&scene);

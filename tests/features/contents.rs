@@ -10,7 +10,7 @@ use veduta::{
     },
     geom::{Aabb, Ray, Shape, ray::TriangleTest},
     lens::{
-        Border, BorderUnit, Class, Content, Copied, Discrete, Focus, Lens, Parameter, classify::classify,
+        Border, BorderUnit, Class, Content, Copied, Discrete, Lens, Parameter, Region, classify::classify,
         kind::ContentLens,
     },
     render::{
@@ -130,7 +130,7 @@ fn compare(drawn: &Picture, view: &View, cities: &[City], lenses: &[Shows]) -> V
     shows
 }
 
-fn showing(name: &str, shape: impl Into<Focus>, content: Content) -> Lens {
+fn showing(name: &str, shape: impl Into<Region>, content: Content) -> Lens {
     let kind = ContentLens { content }.into();
     Lens { kind, effects: vec![], ..lens(name, [shape.into()], "sepia") }
 }
@@ -443,7 +443,7 @@ fn a_lens_that_holds_everything_shows_what_a_scene_of_its_content_shows() {
             same_as(&plain, &through, 0, &what);
         }
         if is_tried(i + 1, 2) {
-            let all = Focus::Thematic(Default::default());
+            let all = Region::Thematic(Default::default());
             through.lenses = vec![showing("all", all, Content { keep_terrain: true, ..lod("2") })];
             same_as(&plain, &through, 0, &format!("{what} by object"));
         }

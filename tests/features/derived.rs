@@ -9,7 +9,7 @@ use veduta::{
     },
     geom::{Shape, ray::TriangleTest},
     lens::{
-        Content, Focus, Lens,
+        Content, Lens, Region,
         chosen::{Choice, members},
         kind::ContentLens,
     },
@@ -32,7 +32,7 @@ const FORMS: [Form; 6] = [
     Form::Height(Height::Factor(1.7)),
 ];
 
-fn showing(form: Form, focus: impl Into<Focus>) -> Lens {
+fn showing(form: Form, focus: impl Into<Region>) -> Lens {
     let content = Content { derive: Some(Derive { form, parts: false }), ..Content::default() };
     Lens { kind: ContentLens { content }.into(), effects: vec![], ..lens("derived", [focus.into()], "sepia") }
 }
@@ -84,7 +84,7 @@ fn chosen_objects_are_seen_in_their_form_and_under_their_own_number() {
         // The cameras take turns; in a thorough run each form is seen by both.
         let cameras = cameras(&studio).into_iter().enumerate();
         for (_, camera) in cameras.filter(|(i, _)| is_tried(number + i, 2)) {
-            let scene = scene(camera, vec![showing(form, Focus::Thematic(choice.clone()))]);
+            let scene = scene(camera, vec![showing(form, Region::Thematic(choice.clone()))]);
             let one = drawn(&mut studio, &scene, Backend::Specialised);
             let other = drawn(&mut studio, &scene, Backend::Uber);
             assert!(one.rgba == other.rgba && one.object_id == other.object_id, "{form:?}: the back ends differ");
@@ -214,13 +214,13 @@ fn nothing_is_made_anew_where_lenses_move_and_members_change() {
         let form = Form::Box { oriented: false };
         let by_place = |x: f64| Shape::Sphere { center: middle + DVec3::X * x, radius: 40.0 };
         let by_object = |year: f64| {
-            Focus::Thematic(Choice {
+            Region::Thematic(Choice {
                 attribute: Some("yearOfConstruction".into()),
                 min: Some(year),
                 ..Choice::default()
             })
         };
-        let mut compiled = |focus: Focus| {
+        let mut compiled = |focus: Region| {
             let picture = drawn(&mut studio, &scene(camera, vec![showing(form, focus)]), backend);
             let contents = picture.statistics.contents;
             (picture.statistics.pipelines.compiled, contents[0].triangles, studio.renderer.gpu.allocations())

@@ -7,7 +7,7 @@ use glam::DVec3;
 use veduta::{
     city::{CityModel, NONE, ObjectClass, StringId},
     geom::{Ray, Shape, ray::TriangleTest},
-    lens::{Class, EffectUse, Focus, Lens, Parameter, classify::classify},
+    lens::{Class, EffectUse, Lens, Parameter, Region, classify::classify},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -23,7 +23,7 @@ fn eraser(parameters: &[(&str, Parameter)], class: Class) -> EffectUse {
     EffectUse { parameters, class, ..used("eraser") }
 }
 
-fn with(effect: EffectUse, shape: &(impl Clone + Into<Focus>)) -> Lens {
+fn with(effect: EffectUse, shape: &(impl Clone + Into<Region>)) -> Lens {
     Lens { effects: vec![effect], ..lens("gone", vec![shape.clone()], "eraser") }
 }
 
@@ -39,7 +39,7 @@ fn class_of(reference: &Reference, ray: &Ray, d: f64) -> (Class, f64) {
 fn compare(
     studio: &mut Studio,
     scene: &Scene,
-    shape: &Focus,
+    shape: &Region,
     class: Class,
     hidden: &dyn Fn(&CityModel, &Triangle) -> bool,
 ) -> usize {
@@ -154,7 +154,7 @@ fn what_stands_before_a_lens_goes() {
     let (mut studio, _, at) = town();
     // From the street: houses stand before the lens.
     let camera = Camera::looking(at + DVec3::new(110.0, -70.0, 9.0), at, 0.9);
-    let shape = Focus::from(Shape::Sphere { center: at, radius: 25.0 });
+    let shape = Region::from(Shape::Sphere { center: at, radius: 25.0 });
     let scene = scene(camera, vec![with(eraser(&[], Class::Front), &shape)]);
     let changed = compare(&mut studio, &scene, &shape, Class::Front, &|model, t| !is_terrain(model, t));
     assert!(changed > 100, "{changed}");
@@ -182,7 +182,7 @@ fn the_context_hides_without_a_lens() {
         scene.sun.shadows = true;
         scene.style.effects = vec![eraser(&[], Class::Inside)];
         // Every ray is in the context.
-        let far = Focus::from(Shape::Sphere { center: at + DVec3::Z * 9000.0, radius: 1.0 });
+        let far = Region::from(Shape::Sphere { center: at + DVec3::Z * 9000.0, radius: 1.0 });
         let changed = compare(&mut studio, &scene, &far, class, &|model, t| !is_terrain(model, t));
         assert!(changed == 0, "the plain picture has the same context");
         scene.style.effects.clear();
@@ -195,7 +195,7 @@ fn the_context_hides_without_a_lens() {
 #[test]
 fn an_attribute_chooses_who_goes() {
     let (mut studio, camera, at) = town();
-    let shape = Focus::from(Shape::Sphere { center: at, radius: 60.0 });
+    let shape = Region::from(Shape::Sphere { center: at, radius: 60.0 });
     let model = studio.model.clone();
     let id = model.strings.find("height").expect("synthetic buildings have heights");
     let height =
@@ -231,7 +231,7 @@ fn what_is_hidden_casts_no_shadow() {
         Camera::looking(beside + DVec3::new(0.0, 0.0, 9.0), beside + DVec3::new(4.0, 4.0, -5.0), 1.2),
     ];
     for (i, camera) in cameras.into_iter().enumerate() {
-        let mut draw = |lens: Option<&Focus>, shadows: bool| {
+        let mut draw = |lens: Option<&Region>, shadows: bool| {
             let lenses = lens.map(|shape| with(eraser(&[], Class::Inside), shape)).into_iter().collect();
             picture(&mut studio, &cube(camera, lenses, shadows), SIZE).rgba
         };

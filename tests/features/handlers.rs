@@ -5,7 +5,7 @@ use glam::DVec3;
 use veduta::{
     figure::scene_file::{self, Options},
     geom::Shape,
-    lens::{EffectUse, Focus, Lens, LensBody, Parameter},
+    lens::{EffectUse, Lens, LensBody, Parameter, Region},
     render::{
         frame::{Backend, ShaderPart},
         picture::{Aovs, Picture, Request, Studio},
@@ -44,7 +44,7 @@ fn lenses() -> Vec<Lens> {
 }
 
 /// The shapes of one of four lenses that share them.
-fn every_fourth(all: &[Focus], first: usize) -> Vec<Focus> {
+fn every_fourth(all: &[Region], first: usize) -> Vec<Region> {
     all.iter().skip(first).step_by(4).cloned().collect()
 }
 
@@ -133,7 +133,7 @@ fn moving_toggling_and_changing_parameters_compile_nothing() {
     }
     scene.lenses.reverse();
     check(&scene, "order");
-    let moved: Vec<Focus> = shapes(DVec3::new(-10.0, 35.0, 8.0), 25.0).into_iter().rev().collect();
+    let moved: Vec<Region> = shapes(DVec3::new(-10.0, 35.0, 8.0), 25.0).into_iter().rev().collect();
     for (i, lens) in scene.lenses.iter_mut().enumerate() {
         lens.shapes = every_fourth(&moved, i);
     }

@@ -58,7 +58,7 @@ fn a_thousand_lenses_hold_what_f64_says() {
     assert!(seen > 500, "{seen} lenses are seen");
     // One that moves compiles nothing.
     let mut moved = scene.clone();
-    let Some(veduta::lens::Focus::Shape(Shape::Sphere { center, .. })) = moved.lenses[500].shapes.first_mut() else {
+    let Some(veduta::lens::Region::Shape(Shape::Sphere { center, .. })) = moved.lenses[500].shapes.first_mut() else {
         panic!("a ball");
     };
     *center += DVec3::new(30.0, -12.0, 4.0);

@@ -8,7 +8,7 @@ use glam::DVec3;
 use veduta::{
     geom::{Shape, combination::Operation},
     lens::{
-        Focus, Lens, LensBody,
+        Lens, LensBody, Region,
         chosen::{Choice, members},
     },
     render::{
@@ -66,7 +66,7 @@ fn choices(studio: &Studio) -> Vec<Choice> {
 fn thematic_lenses_are_what_belongs_to_their_objects() {
     let mut studio = studio::synthetic(60);
     let choices = choices(&studio);
-    let lens = |choice: &Choice| studio::lens("thematic", [Focus::Thematic(choice.clone())], "sepia");
+    let lens = |choice: &Choice| studio::lens("thematic", [Region::Thematic(choice.clone())], "sepia");
     let lenses: Vec<Lens> = choices.iter().map(lens).collect();
     let mut found = vec![0; lenses.len()];
     for camera in cameras(&studio) {
@@ -88,7 +88,7 @@ fn outlines_of_thematic_lenses_follow_what_is_seen_of_their_objects() {
     let mut studio = studio::synthetic(60);
     let choice = choices(&studio).remove(2);
     let camera = cameras(&studio)[1];
-    let mut lens = studio::lens("thematic", [Focus::Thematic(choice)], "sepia");
+    let mut lens = studio::lens("thematic", [Region::Thematic(choice)], "sepia");
     lens.effects.clear();
     let plain = drawn(&mut studio, &studio::scene(camera, vec![lens.clone()]), Backend::Specialised);
     lens.body = LensBody::Outline;
@@ -126,7 +126,7 @@ fn the_volumes_of_objects_hold_their_own_walls_and_roofs() {
         let ids: Vec<String> = studio.model.objects.iter().step_by(3).map(|o| o.id.to_string()).collect();
         let choice = Choice { ids, ..Choice::default() };
         let chosen = members(&studio.model, &choice);
-        let lens = studio::lens("objects", [Focus::Objects(choice)], "sepia");
+        let lens = studio::lens("objects", [Region::Objects(choice)], "sepia");
         let (mut found, mut past_edges) = (0, 0);
         for camera in cameras(&studio) {
             for backend in [Backend::Specialised, Backend::Uber] {
@@ -134,7 +134,7 @@ fn the_volumes_of_objects_hold_their_own_walls_and_roofs() {
                 let inside = studio::bits(&picture, 0);
                 let volumes = studio.lens_volumes(&studio::scene(camera, vec![lens.clone()]), SIZE).expect("volumes");
                 assert_eq!(volumes.len(), 1);
-                let volume = volumes[0].body.volume().expect("one volume");
+                let volume = volumes[0].region.volume().expect("one volume");
                 let view = View::new(camera, SIZE, &studio.extent()).expect("a view");
                 let own = shows(&picture, &chosen);
                 // Flat objects, as streets are, have no volume.
@@ -226,7 +226,7 @@ fn with_parts(studio: &Studio, roots: &BTreeSet<u32>) -> Vec<bool> {
     all
 }
 
-fn ball(center: DVec3, radius: f64) -> Focus {
+fn ball(center: DVec3, radius: f64) -> Region {
     Shape::Sphere { center, radius }.into()
 }
 
@@ -239,7 +239,7 @@ fn a_lens_of_what_is_enclosed_acts_on_whole_buildings() {
     let mut compiled = Vec::new();
     for step in 0..6 {
         let (center, radius) = (middle + size * DVec3::new(0.1 * f64::from(step) - 0.3, 0.05, 0.0), 0.2 * size.x);
-        let enclosed = |whole| Focus::Enclosed { parts: vec![ball(center, radius)], whole, types: vec![] };
+        let enclosed = |whole| Region::Enclosed { parts: vec![ball(center, radius)], whole, types: vec![] };
         let lenses: Vec<Lens> = [false, true]
             .map(|whole| studio::lens(if whole { "whole" } else { "touched" }, [enclosed(whole)], "sepia"))
             .to_vec();
@@ -264,9 +264,9 @@ fn a_part_stands_for_its_building_and_the_ground_for_nothing() {
     let mut studio = studio::studio(&[studio::citydata("two-wings.city.json")]);
     let camera = cameras(&studio)[1];
     let at = |x: f64, y: f64| DVec3::new(78_000.0 + x, 457_000.0 + y, 2.0);
-    let mut of_types = |parts: Vec<Focus>, whole: bool, types: &[&str]| -> Vec<String> {
+    let mut of_types = |parts: Vec<Region>, whole: bool, types: &[&str]| -> Vec<String> {
         let types = types.iter().map(|t| (*t).to_owned()).collect();
-        let lens = studio::lens("enclosed", [Focus::Enclosed { parts, whole, types }], "sepia");
+        let lens = studio::lens("enclosed", [Region::Enclosed { parts, whole, types }], "sepia");
         let picture = drawn(&mut studio, &studio::scene(camera, vec![lens]), Backend::Specialised);
         let (inside, ids) = (studio::bits(&picture, 0), picture.object_id.as_ref().expect("object ids"));
         let shown: BTreeSet<u32> = (0..ids.len()).filter(|&i| inside[i]).map(|i| ids[i]).collect();
@@ -276,7 +276,7 @@ fn a_part_stands_for_its_building_and_the_ground_for_nothing() {
     let all = || vec![ball(at(25.0, 15.0), 60.0)];
     assert_eq!(of_types(all(), false, &["Building"]), [hall[0], hall[1], "shed"], "parts are of their building's type");
     assert!(of_types(all(), false, &["Bridge", "BuildingPart", "LandUse"]).is_empty());
-    let mut named = |parts: Vec<Focus>, whole: bool| of_types(parts, whole, &[]);
+    let mut named = |parts: Vec<Region>, whole: bool| of_types(parts, whole, &[]);
     assert_eq!(named(vec![ball(at(5.0, 5.0), 6.0)], false), hall, "both wings, though one is touched");
     assert!(named(vec![ball(at(5.0, 5.0), 20.0)], true).is_empty(), "a wing lies outside");
     assert_eq!(named(vec![ball(at(5.0, 5.0), 20.0), ball(at(45.0, 5.0), 20.0)], true), hall, "one wing in each");
@@ -284,9 +284,9 @@ fn a_part_stands_for_its_building_and_the_ground_for_nothing() {
     assert!(named(vec![ball(at(25.0, 5.0), 5.0)], false).is_empty(), "the lawn alone");
     // By object within by object, and in combinations.
     let shed = Choice { ids: vec!["shed".into()], ..Choice::default() };
-    assert_eq!(named(vec![Focus::Thematic(shed.clone())], false), ["shed"]);
-    let parts = all().into_iter().chain([Focus::Thematic(shed)]).collect();
-    let others = Focus::Combined { how: Operation::Difference, parts };
+    assert_eq!(named(vec![Region::Thematic(shed.clone())], false), ["shed"]);
+    let parts = all().into_iter().chain([Region::Thematic(shed)]).collect();
+    let others = Region::Combined { how: Operation::Difference, parts };
     assert_eq!(of_types(vec![others], false, &[]), hall);
 }
 
@@ -296,7 +296,7 @@ fn a_member_of_a_group_stands_for_itself() {
     let camera = cameras(&studio)[1];
     for (at, name) in [(2.0, "one"), (8.0, "two")] {
         let parts = vec![ball(DVec3::new(at, 2.0, 2.0), 3.0)];
-        let enclosed = Focus::Enclosed { parts, whole: false, types: vec!["Building".into()] };
+        let enclosed = Region::Enclosed { parts, whole: false, types: vec!["Building".into()] };
         let scene = studio::scene(camera, vec![studio::lens("enclosed", [enclosed], "sepia")]);
         let picture = drawn(&mut studio, &scene, Backend::Specialised);
         let only: Vec<bool> = studio.model.objects.iter().map(|o| &*o.id == name).collect();

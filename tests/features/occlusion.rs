@@ -10,7 +10,7 @@ use glam::DVec3;
 use veduta::{
     figure::scene_file::{self, Options},
     geom::{Aabb, Shape, combination::Operation},
-    lens::{Focus, Lens, Occluders, Rendering, chosen::Choice, kind::Occlusion},
+    lens::{Lens, Occluders, Region, Rendering, chosen::Choice, kind::Occlusion},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -23,7 +23,7 @@ use veduta::{
 const SIZE: [u32; 2] = [320, 200];
 
 fn occlusion(of: Occluders) -> Lens {
-    let lens = lens("occluders", [Focus::Occluders(of)], "sepia");
+    let lens = lens("occluders", [Region::Occluders(of)], "sepia");
     Lens { kind: Occlusion::default().into(), effects: vec![], ..lens }
 }
 
@@ -64,7 +64,7 @@ fn views(studio: &Studio, count: usize) -> Vec<(Scene, u32)> {
 fn alone(studio: &Studio, object: u32) -> Lens {
     let ground = studio.model.objects.iter().filter(|o| o.class.is_ground());
     let ids = ground.map(|o| o.id.to_string()).chain([studio.model.objects[object as usize].id.to_string()]).collect();
-    lens("alone", [Focus::Thematic(Choice { ids, except: true, ..Choice::default() })], "eraser")
+    lens("alone", [Region::Thematic(Choice { ids, except: true, ..Choice::default() })], "eraser")
 }
 
 fn ids(picture: &Picture) -> &[u32] {
@@ -139,16 +139,16 @@ fn with_a_shape_what_of_occluders_is_in_it_goes() {
         let camera = scene.camera.expect("a camera");
         let ball = Shape::Sphere { center: camera.eye.lerp(camera.target, 0.4), radius: 14.0 };
         let of = Occluders { pois: vec!["it".into()], ..Occluders::default() };
-        let both = Focus::Combined {
+        let both = Region::Combined {
             how: Operation::Intersection,
-            parts: vec![Focus::Occluders(of.clone()), ball.clone().into()],
+            parts: vec![Region::Occluders(of.clone()), ball.clone().into()],
         };
-        let mark = |focus: Focus| Lens {
+        let mark = |focus: Region| Lens {
             shapes: vec![focus],
             kind: Occlusion { rendering: Rendering::of_effects(vec![used("sepia")]), content: None }.into(),
             ..occlusion(of.clone())
         };
-        let lenses = vec![mark(Focus::Occluders(of.clone())), lens("ball", [ball], "sepia"), mark(both)];
+        let lenses = vec![mark(Region::Occluders(of.clone())), lens("ball", [ball], "sepia"), mark(both)];
         let drawn = picture(&mut studio, &Scene { lenses, ..scene }, SIZE);
         let [whole, ball, both] = [0, 1, 2].map(|i| bits(&drawn, i));
         assert!((0..both.len()).all(|i| both[i] == (whole[i] && ball[i])));
@@ -182,7 +182,7 @@ fn the_city_is_asked_again_only_where_the_answer_may_be_another() {
     assert_eq!(asked(&scene), 1, "another eye");
     scene.pois[0].place = PoiPlace::At(camera.target);
     assert_eq!(asked(&scene), 1, "another place");
-    let Focus::Occluders(of) = &mut scene.lenses[0].shapes[0] else { panic!("occluders") };
+    let Region::Occluders(of) = &mut scene.lenses[0].shapes[0] else { panic!("occluders") };
     of.test = Test::ViewAxis;
     assert_eq!(asked(&scene), 1, "another test, of one of both");
     scene.lenses[0].enabled = false;

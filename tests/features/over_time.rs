@@ -4,7 +4,7 @@
 use crate::studio::*;
 use glam::DVec3;
 use veduta::{
-    lens::{Focus, Lens, Occluders, Rendering, chosen::Choice, dither::dither, kind::Occlusion},
+    lens::{Lens, Occluders, Region, Rendering, chosen::Choice, dither::dither, kind::Occlusion},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -27,7 +27,7 @@ fn square(render: &str, forced: &[String], is_lit: bool) -> Scene {
     let lens = Lens {
         kind: Occlusion { rendering: Rendering::of_word(render).unwrap(), content: None }.into(),
         effects: vec![],
-        ..lens("occluders", [Focus::Occluders(of)], "sepia")
+        ..lens("occluders", [Region::Occluders(of)], "sepia")
     };
     let camera = Camera::looking(DVec3::new(-75.0, -110.0, 62.0), DVec3::new(8.0, 12.0, 4.0), 0.8);
     let mut scene = scene(camera, vec![lens]);
@@ -52,7 +52,7 @@ fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend, samples: u32) -> 
 }
 
 fn with_fade(mut scene: Scene, fade_s: f64) -> Scene {
-    let Focus::Occluders(of) = &mut scene.lenses[0].shapes[0] else { panic!("occluders") };
+    let Region::Occluders(of) = &mut scene.lenses[0].shapes[0] else { panic!("occluders") };
     of.pace = Pace { fade_s };
     scene
 }

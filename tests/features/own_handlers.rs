@@ -7,7 +7,7 @@ use glam::DVec3;
 use veduta::{
     figure::scene_file::{Options, read},
     geom::{Aabb, deform::Deformers, shape::Motion},
-    lens::{Focus, LensBody, OwnRegion},
+    lens::{LensBody, OwnRegion, Region},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -259,7 +259,7 @@ fn ring(town: &Town, rest: &str) -> (String, OwnRegion) {
     );
     let text = format!("[[lens]]\nname = \"ring\"\nshape = {shape}\n{rest}\n");
     let scene = town.scene(&text).unwrap();
-    let Focus::Own { used, rotation, .. } = &scene.lenses[0].shapes[0] else { panic!("a region of a user's") };
+    let Region::Own { used, rotation, .. } = &scene.lenses[0].shapes[0] else { panic!("a region of a user's") };
     (text, OwnRegion::new(used, center, size, *rotation, &Motion::NONE).unwrap())
 }
 

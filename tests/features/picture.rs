@@ -4,7 +4,7 @@ use crate::studio::*;
 use glam::DVec3;
 use veduta::{
     geom::{Aabb, Shape},
-    lens::{Class, Focus, Lens, LensBody, LensSprite, classify},
+    lens::{Class, Lens, LensBody, LensSprite, Region, classify},
     render::{
         frame::Backend,
         picture::{Aovs, Request, Studio},
@@ -85,11 +85,11 @@ fn masks_of_all_shapes_are_right_to_the_pixel() {
         // Large, small and large; in a thorough run both from everywhere.
         for (_, r) in [45.0, 12.0].into_iter().enumerate().filter(|(i, _)| is_tried(i + look, 2)) {
             // From its figures, and by its sprite.
-            let one = |(i, (shape, sprite)): (usize, (Focus, Option<LensSprite>))| Lens {
+            let one = |(i, (shape, sprite)): (usize, (Region, Option<LensSprite>))| Lens {
                 sprite,
                 ..lens(&format!("any {i}"), vec![shape], "greyscale")
             };
-            let twice = |shape: Focus| [(shape.clone(), None), (shape, Some(LensSprite::default()))];
+            let twice = |shape: Region| [(shape.clone(), None), (shape, Some(LensSprite::default()))];
             let lenses: Vec<_> = shapes(at, r).into_iter().flat_map(twice).enumerate().map(one).collect();
             let scene = scene(camera, lenses);
             let drawn = picture(&mut studio, &scene, SIZE);
@@ -125,8 +125,8 @@ fn classes_of_concave_shapes_and_combinations_are_those_of_their_intervals() {
         Camera::looking(at + DVec3::new(2.0, 1.0, 10.0), at + DVec3::new(60.0, 30.0, -6.0), 1.1),
         Camera::looking(at + DVec3::new(25.0, 0.0, 9.0), at + DVec3::new(-60.0, 12.0, -4.0), 1.1),
     ] {
-        let concave: Vec<Focus> = shapes(at, 30.0).split_off(7);
-        let one = |(i, shape): (usize, Focus)| lens(&format!("any {i}"), vec![shape], "greyscale");
+        let concave: Vec<Region> = shapes(at, 30.0).split_off(7);
+        let one = |(i, shape): (usize, Region)| lens(&format!("any {i}"), vec![shape], "greyscale");
         let scene = scene(camera, concave.into_iter().enumerate().map(one).collect());
         let drawn = picture(&mut studio, &scene, size);
         let (view, depth) = (view(camera, size), drawn.depth.as_ref().expect("depth"));

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec2, DVec3};
 use veduta::{
     city::load::{LoadOptions, Quiet, load},
     geom::{Aabb, Shape, Volume, shape::FlatFigure},
-    lens::{Class, EffectUse, Focus, Lens, LensBody, LensSprite, Parameter, Placement},
+    lens::{Class, EffectUse, Lens, LensBody, LensSprite, Parameter, Placement, Region},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -109,7 +109,7 @@ fn flats((center, rotation, r): (DVec3, DQuat, f64)) -> Vec<Lens> {
 }
 
 fn only_volume(lens: &LensVolume) -> &Volume {
-    lens.body.volume().expect("a volume")
+    lens.region.volume().expect("a volume")
 }
 
 #[test]
@@ -389,7 +389,7 @@ fn a_lens_that_is_attached_stands_where_its_object_or_place_is() {
     let shapes_at = |at: DVec3| [shapes(at, 20.0), vec![flat(at, upright(15.0), arrow(25.0)).into()]].concat();
     let all = |at: DVec3, placement: Placement| -> Vec<Lens> {
         let one =
-            |(i, s): (usize, Focus)| Lens { placement: placement.clone(), ..lens(&i.to_string(), vec![s], "sepia") };
+            |(i, s): (usize, Region)| Lens { placement: placement.clone(), ..lens(&i.to_string(), vec![s], "sepia") };
         shapes_at(at).into_iter().enumerate().map(one).collect()
     };
     let wanted = picture(&mut studio, &scene(camera, all(at, Placement::World)), SIZE);

@@ -12,7 +12,7 @@ use veduta::{
         derived::{Footprint, footprints},
     },
     figure::scene_file::{self, Options},
-    lens::{Focus, Rendering, chosen::Choice, rendering::ROWS},
+    lens::{Region, Rendering, chosen::Choice, rendering::ROWS},
     render::{
         frame::Backend,
         picture::{Aovs, Picture, Request, Studio},
@@ -27,7 +27,7 @@ fn church() -> Scene {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("scenes/trapp-3-3-2-c.toml");
     let mut scene = scene_file::read(&path, &Options::for_file(&path)).expect("a scene");
     scene.figure.size = [400, 225];
-    let Some(Focus::Occluders(of)) = scene.lenses[0].shapes.first_mut() else { panic!("an occlusion lens") };
+    let Some(Region::Occluders(of)) = scene.lenses[0].shapes.first_mut() else { panic!("an occlusion lens") };
     of.pois = vec!["church".into()];
     of.test = Test::default();
     scene
@@ -272,7 +272,7 @@ fn a_soft_rim_is_as_dense_as_its_place_is_deep() {
     let middle = (ring[0] + ring[1] + ring[2] + ring[3]) / 4.0;
     scene.camera = Some(orthographic(middle.extend(200.0), middle.extend(0.0), HEIGHT_M));
     scene.sun.shadows = false;
-    let Some(Focus::Occluders(of)) = scene.lenses[0].shapes.first_mut() else { panic!("an occlusion lens") };
+    let Some(Region::Occluders(of)) = scene.lenses[0].shapes.first_mut() else { panic!("an occlusion lens") };
     of.test = Test::Spherical { radius: 0.0, reference: Default::default() };
     let root = studio.model.root(house.objects[0]);
     of.force = Some(Choice { ids: vec![studio.model.objects[root as usize].id.to_string()], ..Choice::default() });

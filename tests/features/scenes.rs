@@ -6,7 +6,7 @@ use veduta::{
     city::load::{LoadOptions, Quiet, load},
     figure::scene_file::{self, Options},
     geom::{Volume, shape::Sightlines},
-    lens::{Focus, Placement},
+    lens::{Placement, Region},
     scene::{Scene, check_against},
     view::View,
 };
@@ -76,7 +76,7 @@ fn those_of_the_built_in_town_name_what_it_has() {
             let sight = Sightlines::From(scene.camera.unwrap().eye);
             // Of whole objects: what they stand in.
             let areas = lens.shapes.iter().flat_map(|shape| match shape {
-                Focus::Enclosed { parts, .. } => parts.iter().collect(),
+                Region::Enclosed { parts, .. } => parts.iter().collect(),
                 shape => vec![shape],
             });
             let volumes = areas.flat_map(|s| s.volumes_seen(&sight).unwrap());

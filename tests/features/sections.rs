@@ -7,7 +7,7 @@ use glam::{DQuat, DVec2, DVec3};
 use veduta::{
     city::CityModel,
     geom::{Aabb, Ray, Shape, ray::TriangleTest},
-    lens::{Class, EffectUse, Focus, Lens, LensSprite, Parameter},
+    lens::{Class, EffectUse, Lens, LensSprite, Parameter, Region},
     render::{
         frame::Backend,
         picture::{Aovs, Picture, Request, Studio},
@@ -20,7 +20,7 @@ const SIZE: [u32; 2] = [120, 80];
 const CUT: [f32; 3] = [0.6, 0.3, 0.2];
 
 /// A lens that takes away what is in it, or before it, and closes what it opens.
-fn cut(name: &str, shape: impl Into<Focus>, class: Class) -> Lens {
+fn cut(name: &str, shape: impl Into<Region>, class: Class) -> Lens {
     let effect = EffectUse { class, ..used("eraser") };
     Lens { effects: vec![effect], section: Some(CUT), ..lens(name, vec![shape.into()], "eraser") }
 }
@@ -336,7 +336,7 @@ fn both_back_ends_close_the_same_and_a_moving_lens_compiles_nothing() {
         let some = shapes(at + DVec3::new(2.0, -5.0, 3.0), 9.0).into_iter().enumerate().step_by(3);
         for (i, shape) in some.filter(|(i, _)| is_tried(i / 3 + which, 2)) {
             let at_step = |by: f64| {
-                let moved = Focus::from(Shape::Sphere { center: at + DVec3::new(by, 0.0, 0.0), radius: 8.0 });
+                let moved = Region::from(Shape::Sphere { center: at + DVec3::new(by, 0.0, 0.0), radius: 8.0 });
                 let lenses = vec![cut("still", shape.clone(), Class::Inside), cut("moving", moved, Class::Inside)];
                 Scene { lenses, ..scene(camera, vec![]) }
             };

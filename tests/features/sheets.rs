@@ -11,7 +11,7 @@ use glam::DVec3;
 use serde_json::Value;
 use veduta::{
     geom::{Aabb, Ray},
-    lens::{Focus, Lens, chosen::Choice},
+    lens::{Lens, Region, chosen::Choice},
     render::{
         furniture::{Furniture, Panel, Piece},
         picture::Studio,
@@ -283,7 +283,7 @@ fn the_visible_share_is_that_of_rays_through_all_triangles() {
     assert!((share - expected).abs() <= 2.0 / alone as f64, "{share} is not {expected}");
     // What stands before it taken away, all of it; itself taken away, nothing. A context without it changes nothing of what it is
     // compared with.
-    let eraser = |choice: Choice| studio::lens("e", [Focus::Thematic(choice)], "eraser");
+    let eraser = |choice: Choice| studio::lens("e", [Region::Thematic(choice)], "eraser");
     let hall = || Choice { ids: vec!["town-hall".into()], ..Choice::default() };
     let mut of = |choice| share_in(&mut studio, &looking(vec![eraser(choice)]), [96, 64], "town-hall").unwrap();
     assert_eq!(of(hall()), Some(0.0));

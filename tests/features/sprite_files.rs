@@ -8,7 +8,7 @@ use veduta::{
     city::synth,
     geom::{Aabb, Shape},
     lens::{
-        Class, EffectUse, Focus, Lens, LensBody, LensSprite, OwnEye, Parameter, Placement, SpriteSpace, classify,
+        Class, EffectUse, Lens, LensBody, LensSprite, OwnEye, Parameter, Placement, Region, SpriteSpace, classify,
         sprite::{DepthCode, Format, Mapping},
         sprite_file,
     },
@@ -46,13 +46,13 @@ fn own_eyes(at: DVec3) -> [OwnEye; 3] {
 }
 
 /// Balls, boxes, and what rays enter and leave several times.
-fn shapes(at: DVec3) -> Vec<Vec<Focus>> {
+fn shapes(at: DVec3) -> Vec<Vec<Region>> {
     let turn = DQuat::from_rotation_z(0.6) * DQuat::from_rotation_x(0.35);
-    let ball = |by: DVec3, radius: f64| Focus::from(Shape::Sphere { center: at + by, radius });
+    let ball = |by: DVec3, radius: f64| Region::from(Shape::Sphere { center: at + by, radius });
     vec![
         vec![ball(DVec3::ZERO, 28.0)],
         vec![Shape::Box { center: at, size: DVec3::new(50.0, 40.0, 30.0), rotation: turn }.into()],
-        vec![Focus::Mesh { file: "citydata/ring.obj".into(), at, rotation: turn, scale: 25.0 }],
+        vec![Region::Mesh { file: "citydata/ring.obj".into(), at, rotation: turn, scale: 25.0 }],
         vec![ball(DVec3::new(-16.0, -14.0, 14.0), 12.0), ball(DVec3::new(16.0, 10.0, -4.0), 14.0)],
     ]
 }
@@ -76,7 +76,7 @@ const CLASSES: [(Class, &str, [u8; 3]); 4] = [
 ];
 
 /// A lens that paints each class in a colour of its own.
-fn painting(shapes: &[Focus], sprite: Option<LensSprite>) -> Lens {
+fn painting(shapes: &[Region], sprite: Option<LensSprite>) -> Lens {
     let paint = |(class, color, _): (Class, &str, [u8; 3])| EffectUse {
         class,
         parameters: [
@@ -122,7 +122,7 @@ struct Expected<'a> {
 
 impl<'a> Expected<'a> {
     /// Of a lens of these shapes, whose stored depths are off by `code` at a distance.
-    fn of(own: View, lens: &[Focus], code: &'a dyn Fn(f64) -> f64) -> Self {
+    fn of(own: View, lens: &[Region], code: &'a dyn Fn(f64) -> f64) -> Self {
         let references = lens.iter().map(Reference::of).collect();
         Self { own, space: SpriteSpace::of(&own), references, code, is_aggregate: false }
     }
@@ -249,8 +249,8 @@ fn save(studio: &mut Studio, scene: &Scene, file: &Path) -> DepthCode {
     sprite.code
 }
 
-fn saved(file: &Path) -> [Focus; 1] {
-    [Focus::Sprite { file: file.to_owned() }]
+fn saved(file: &Path) -> [Region; 1] {
+    [Region::Sprite { file: file.to_owned() }]
 }
 
 #[test]
@@ -425,7 +425,7 @@ fn own_sprites_are_made_once() {
     assert!(makes(&first), "its eye moved");
     assert!(!makes(&first));
     // What moves within the same bounds is another shape, too.
-    let ball = |by: f64, radius: f64| Focus::from(Shape::Sphere { center: at + DVec3::X * by, radius });
+    let ball = |by: f64, radius: f64| Region::from(Shape::Sphere { center: at + DVec3::X * by, radius });
     first.lenses[0].shapes = vec![ball(0.0, 20.0), ball(3.0, 5.0)];
     assert!(makes(&first) && !makes(&first));
     first.lenses[0].shapes[1] = ball(4.0, 5.0);
@@ -468,7 +468,7 @@ fn erasers_take_shadows_along_and_both_back_ends_agree() {
     let mut studio = synthetic(60);
     let at = house(&studio);
     let camera = cameras(at)[0];
-    let ball = [Focus::from(Shape::Sphere { center: at, radius: 28.0 })];
+    let ball = [Region::from(Shape::Sphere { center: at, radius: 28.0 })];
     let with = |lenses: Vec<Lens>| Scene { sun: Sun::default(), ..scene(camera, lenses) };
     let own = OwnEye { camera: orthographic(at + DVec3::Z * 90.0, at, 70.0), aspect: 1.0 };
     let fine = LensSprite { own: Some(own), resolution: Some(1024), ..LensSprite::default() };
@@ -500,7 +500,7 @@ fn bodies_of_saved_sprites_are_those_of_what_was_saved() {
     let folder = Folder::new("bodies-of-sprites");
     let mut studio = synthetic(20);
     let at = house(&studio) + DVec3::Z * 25.0;
-    let ball = [Focus::from(Shape::Sphere { center: at, radius: 24.0 })];
+    let ball = [Region::from(Shape::Sphere { center: at, radius: 24.0 })];
     let own = OwnEye { camera: Camera::looking(at + DVec3::new(-70.0, -60.0, 40.0), at, 0.7), aspect: 1.0 };
     let sprite = LensSprite { own: Some(own), resolution: Some(512), ..LensSprite::default() };
     let file = folder.file("s.exr");
@@ -510,7 +510,7 @@ fn bodies_of_saved_sprites_are_those_of_what_was_saved() {
         // The bodies take turns; in a thorough run each is seen by every camera.
         let bodies = [LensBody::Outline, LensBody::Shell].into_iter().enumerate();
         for (_, body) in bodies.filter(|(i, _)| studio::is_tried(i + look, 2)) {
-            let mut of = |shapes: &[Focus], sprite| {
+            let mut of = |shapes: &[Region], sprite| {
                 let lens = Lens { sprite, body, effects: vec![], ..lens("s", shapes.to_vec(), "sepia") };
                 drawn(&mut studio, &scene(camera, vec![lens]))
             };
@@ -542,11 +542,11 @@ fn statistics_count_what_the_texels_meet() {
     let folder = Folder::new("counted-sprites");
     let mut studio = synthetic(120);
     let at = house(&studio);
-    let ball = |radius: f64| [Focus::from(Shape::Sphere { center: at, radius })];
+    let ball = |radius: f64| [Region::from(Shape::Sphere { center: at, radius })];
     let file = folder.file("s.exr");
     let sprite = LensSprite { own: Some(own_eyes(at)[0]), resolution: Some(512), ..LensSprite::default() };
     save(&mut studio, &scene(cameras(at)[0], vec![painting(&ball(45.0), Some(sprite))]), &file);
-    let mut met = |shapes: &[Focus]| {
+    let mut met = |shapes: &[Region]| {
         let scene = scene(cameras(at)[0], vec![lens("s", shapes.to_vec(), "sepia")]);
         studio::picture(&mut studio, &scene, SIZE).statistics.lenses[0].clone()
     };
@@ -588,7 +588,7 @@ fn wrong_files_are_told_in_one_line() {
     put("crossed.exr", &|s| s.ends[inside].swap(0, 1));
     put("elsewhere.exr", &|s| s.crs = Some("EPSG:25832".into()));
     let crs = studio.model.crs.clone();
-    let mut message = |focus: Focus| {
+    let mut message = |focus: Region| {
         let scene = scene(camera, vec![lens("s", [focus], "sepia")]);
         let error = studio.redraw(&scene, SIZE).expect_err("it is wrong").to_string();
         assert!(!error.contains('\n'), "{error}");
@@ -608,13 +608,13 @@ fn wrong_files_are_told_in_one_line() {
     }
     for (name, expected) in cases {
         let file = folder.file(name);
-        let found = message(Focus::Sprite { file: file.clone() });
+        let found = message(Region::Sprite { file: file.clone() });
         assert!(found.starts_with("[lens.0] shape.file: "), "{found}");
         assert!(found.contains(&*file.to_string_lossy()) && found.contains(expected), "{found}: not {expected}");
     }
-    let part = Focus::Combined {
+    let part = Region::Combined {
         how: veduta::geom::combination::Operation::Union,
-        parts: vec![of_lens[0].clone(), Focus::Sprite { file: right.clone() }],
+        parts: vec![of_lens[0].clone(), Region::Sprite { file: right.clone() }],
     };
     let found = message(part);
     assert!(found.starts_with("[lens.0] shape.shapes.1.kind: a depth sprite is no part of a combination"), "{found}");

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use veduta::{
     geom::{Aabb, Shape},
     lens::{
-        Class, Focus, Lens, LensSprite,
+        Class, Lens, LensSprite, Region,
         sprite::{Format, Mapping},
     },
     render::picture::Studio,
@@ -189,7 +189,7 @@ fn clip_planes_that_are_given_clamp() {
     let at = house(&studio);
     let camera = cameras(at)[0];
     let distance = camera.eye.distance(at);
-    let ball: Focus = Shape::Sphere { center: at, radius: 30.0 }.into();
+    let ball: Region = Shape::Sphere { center: at, radius: 30.0 }.into();
     let mut inside = |near_m: f64, far_m: f64| {
         let sprite = LensSprite {
             format: Format::Unorm16,
@@ -207,9 +207,10 @@ fn clip_planes_that_are_given_clamp() {
 }
 
 /// Lenses that rays enter and leave several times: solids, combinations, several shapes of one lens.
-fn concave(at: DVec3) -> Vec<Vec<Focus>> {
-    let mut all: Vec<Vec<Focus>> = studio::shapes(at, 30.0).split_off(7).into_iter().map(|focus| vec![focus]).collect();
-    let ball = |x: f64| Focus::from(Shape::Sphere { center: at + DVec3::new(x, 0.4 * x, 0.0), radius: 14.0 });
+fn concave(at: DVec3) -> Vec<Vec<Region>> {
+    let mut all: Vec<Vec<Region>> =
+        studio::shapes(at, 30.0).split_off(7).into_iter().map(|focus| vec![focus]).collect();
+    let ball = |x: f64| Region::from(Shape::Sphere { center: at + DVec3::new(x, 0.4 * x, 0.0), radius: 14.0 });
     all.push(vec![ball(-30.0), ball(-8.0), ball(8.0), ball(36.0)]);
     all.push(vec![all[1][0].clone(), ball(0.0), all[0][0].clone()]);
     all
@@ -260,10 +261,10 @@ fn layers_hold_what_the_shapes_hold() {
 }
 
 /// A row of walls that a level ray goes through one by one, and the eye before it.
-fn walls(at: DVec3, count: usize) -> (Camera, Vec<Focus>) {
+fn walls(at: DVec3, count: usize) -> (Camera, Vec<Region>) {
     let wall = |i: usize| {
         let center = at + DVec3::new(0.0, 4.0 * i as f64, 0.0);
-        Focus::from(Shape::Box { center, size: DVec3::new(80.0, 1.0, 60.0), rotation: DQuat::IDENTITY })
+        Region::from(Shape::Box { center, size: DVec3::new(80.0, 1.0, 60.0), rotation: DQuat::IDENTITY })
     };
     (Camera::looking(at - DVec3::Y * 40.0, at, 0.6), (0..count).map(wall).collect())
 }
@@ -323,7 +324,7 @@ fn what_finds_no_room_on_the_lists_is_not_lost() {
     }
     let file = std::env::temp_dir().join(format!("veduta-comb-{}.obj", std::process::id()));
     std::fs::write(&file, text).expect("a temporary file");
-    let comb = Focus::Mesh { file: file.clone(), at, rotation: DQuat::IDENTITY, scale: 1.0 };
+    let comb = Region::Mesh { file: file.clone(), at, rotation: DQuat::IDENTITY, scale: 1.0 };
     let camera = Camera::looking(at - DVec3::Y * 20.0, at, 0.6);
     let size = [64, 48];
     let of = |sprite| Lens { sprite, ..lens("comb", [comb.clone()], "sepia") };

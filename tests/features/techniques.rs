@@ -5,7 +5,7 @@ use crate::studio::*;
 use glam::DVec3;
 use veduta::{
     geom::{Shape, shape::FlatFigure},
-    lens::{Border, BorderUnit, Class, Discrete, EffectUse, Focus, Lens, LensBody, classify::classify},
+    lens::{Border, BorderUnit, Class, Discrete, EffectUse, Lens, LensBody, Region, classify::classify},
     render::{
         frame::Backend,
         picture::{Aovs, Picture, Request, Studio},
@@ -46,7 +46,7 @@ fn by(technique: Technique, scene: &Scene) -> Scene {
 }
 
 /// Convex shapes of all kinds, by turns around a point: those of lens i.
-fn shapes_of(i: usize, at: DVec3, r: f64) -> Vec<Focus> {
+fn shapes_of(i: usize, at: DVec3, r: f64) -> Vec<Region> {
     shapes(at, r).into_iter().take(7).skip(i).step_by(4).collect()
 }
 

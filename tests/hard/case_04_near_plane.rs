@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use glam::{DQuat, DVec2, DVec3};
 use veduta::{
     geom::{Aabb, Shape, Volume},
-    lens::{Class, EffectUse, Focus, Lens, classify},
+    lens::{Class, EffectUse, Lens, Region, classify},
     render::picture::Studio,
     view::{Camera, View},
 };
@@ -149,7 +149,7 @@ fn nor_does_it_for_solids_and_combinations() {
         // Classes and places take turns; in a thorough run all of them at all of these.
         let classes = [Class::Inside, Class::Front, Class::Behind].into_iter().enumerate();
         for (_, class) in classes.filter(|(j, _)| studio::is_tried(i + j, 2)) {
-            let lens = |(i, shape): (usize, &Focus)| {
+            let lens = |(i, shape): (usize, &Region)| {
                 let effect = EffectUse { class, ..studio::used("sepia") };
                 Lens { effects: vec![effect], ..studio::lens(&i.to_string(), vec![shape.clone()], "sepia") }
             };

@@ -7,7 +7,7 @@ use std::{f64::consts::TAU, fmt::Write as _, path::PathBuf};
 use glam::{DQuat, DVec2, DVec3};
 use veduta::{
     geom::Ray,
-    lens::Focus,
+    lens::Region,
     render::{frame::Backend, picture::Request},
     view::Camera,
 };
@@ -138,7 +138,7 @@ fn concave_lenses_hold_what_their_surface_goes_around() {
             let tilt = if round == 0 { 0.0 } else { turn(&mut numbers) };
             let rotation = DQuat::from_rotation_z(turn(&mut numbers)) * DQuat::from_rotation_x(tilt);
             let at = if round == 0 { extent.center() } else { house.center() };
-            let lens = studio::lens("solid", [Focus::Mesh { file: file.clone(), at, rotation, scale }], "sepia");
+            let lens = studio::lens("solid", [Region::Mesh { file: file.clone(), at, rotation, scale }], "sepia");
             let volume = &lens.shapes[0].volumes().expect("a solid")[0];
             let own = |p: DVec3| rotation.conjugate() * (p - at) / scale;
             let distance = [0.9, 1.6, 0.6][round] * scale;

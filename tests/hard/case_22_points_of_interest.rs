@@ -5,7 +5,7 @@
 use glam::DVec3;
 use veduta::{
     figure::scene_file::{self, Options},
-    lens::{Focus, Lens, Occluders, kind::Occlusion},
+    lens::{Lens, Occluders, Region, kind::Occlusion},
     render::picture::Studio,
     scene::{Poi, PoiPlace, Scene},
     view::Camera,
@@ -32,7 +32,7 @@ fn tests() -> Vec<Test> {
 /// Whom a lens finds that looks for a place from the eye towards `target`, with the shares they cover.
 fn found(studio: &mut Studio, at: DVec3, test: &Test, target: DVec3) -> Vec<(String, Vec<String>, Option<[f64; 3]>)> {
     let of = Occluders { pois: vec!["it".into()], test: test.clone(), ..Occluders::default() };
-    let plain = studio::lens("hides", [Focus::Occluders(of)], "sepia");
+    let plain = studio::lens("hides", [Region::Occluders(of)], "sepia");
     let lens = Lens { kind: Occlusion::default().into(), effects: vec![], ..plain };
     let pois = vec![Poi { name: "it".into(), place: PoiPlace::At(at) }];
     let scene = Scene { pois, ..studio::scene(Camera::looking(EYE, target, 0.8), vec![lens]) };

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DMat3, DQuat, DVec3};
 use veduta::{
     geom::Shape,
-    lens::{Class, EffectUse, Focus, Lens, Parameter},
+    lens::{Class, EffectUse, Lens, Parameter, Region},
     render::picture::{Picture, Studio},
     view::{Camera, View},
 };
@@ -125,7 +125,7 @@ pub fn check_mask(picture: &Picture, view: &View, lens: &Lens, bit: usize) -> Re
         assert!(d > 0.0, "no distance at {x},{y}: {d}");
         count += u64::from(inside[i]);
         let p = view.pixel_ray(x, y).at(d);
-        if inside[i] == (d.is_finite() && lens.shapes.iter().any(|s| matches!(s, Focus::Shape(s) if holds(s, p)))) {
+        if inside[i] == (d.is_finite() && lens.shapes.iter().any(|s| matches!(s, Region::Shape(s) if holds(s, p)))) {
             continue;
         }
         let volumes = lens.shapes.iter().flat_map(|s| s.volumes().expect("volumes"));

@@ -18,7 +18,7 @@ use veduta::{
     },
     geom::{Ray, Shape, Volume, combination::Operation},
     gpu::Gpu,
-    lens::{Class, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, classify::intervals},
+    lens::{Class, EffectUse, Lens, LensBody, LensKind, Parameter, Region, classify::intervals},
     render::picture::{Aovs, Picture, Request, Studio},
     scene::{CitySpec, Scene, Sun},
     view::{Camera, Projection},
@@ -101,7 +101,7 @@ pub fn scene(camera: Camera, lenses: Vec<Lens>) -> Scene {
 }
 
 /// A colour lens with one effect, without outline.
-pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Focus>>, effect: &str) -> Lens {
+pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Region>>, effect: &str) -> Lens {
     Lens {
         name: name.into(),
         kind: LensKind::default(),
@@ -140,9 +140,9 @@ pub enum Reference {
 
 impl Reference {
     /// Of a focus area that needs no city.
-    pub fn of(focus: &Focus) -> Self {
+    pub fn of(focus: &Region) -> Self {
         match focus {
-            Focus::Combined { how, parts } => Self::Combined(*how, parts.iter().map(Self::of).collect()),
+            Region::Combined { how, parts } => Self::Combined(*how, parts.iter().map(Self::of).collect()),
             other => Self::Volumes(other.volumes().expect("volumes")),
         }
     }
@@ -204,7 +204,7 @@ impl Reference {
 }
 
 /// One of each shape around a point, about `r` metres in size.
-pub fn shapes(at: DVec3, r: f64) -> Vec<Focus> {
+pub fn shapes(at: DVec3, r: f64) -> Vec<Region> {
     let turn = DQuat::from_rotation_z(0.6) * DQuat::from_rotation_x(0.35);
     let points = (0..24)
         .map(|i| {
@@ -224,29 +224,29 @@ pub fn shapes(at: DVec3, r: f64) -> Vec<Focus> {
         Shape::Frustum { center: at, radius: 0.9 * r, top_radius: 0.0, height: 1.4 * r, axis: DVec3::Z },
     ];
     let concave = [
-        Focus::Prism {
+        Region::Prism {
             points: plan(&outline),
             holes: vec![plan(&[[0.3, -0.6], [0.6, -0.6], [0.5, -0.3]])],
             base: at.z - 0.5 * r,
             height: 0.9 * r,
         },
-        Focus::Mesh { file: "citydata/ring.obj".into(), at, rotation: turn, scale: 0.8 * r },
+        Region::Mesh { file: "citydata/ring.obj".into(), at, rotation: turn, scale: 0.8 * r },
     ];
-    let ball = |by: DVec3, radius: f64| Focus::from(Shape::Sphere { center: at + r * by, radius: radius * r });
+    let ball = |by: DVec3, radius: f64| Region::from(Shape::Sphere { center: at + r * by, radius: radius * r });
     let slab = Shape::Box { center: at, size: DVec3::new(3.0, 0.7, 3.0) * r, rotation: turn };
     let bitten = [ball(DVec3::ZERO, 1.0), slab.clone().into(), ball(DVec3::new(0.7, 0.3, 0.4), 0.6)];
-    let ring = Focus::Mesh { file: "citydata/ring.obj".into(), at, rotation: DQuat::IDENTITY, scale: 0.8 * r };
+    let ring = Region::Mesh { file: "citydata/ring.obj".into(), at, rotation: DQuat::IDENTITY, scale: 0.8 * r };
     let combined = [
-        Focus::Combined { how: Operation::Difference, parts: bitten.to_vec() },
-        Focus::Combined {
+        Region::Combined { how: Operation::Difference, parts: bitten.to_vec() },
+        Region::Combined {
             how: Operation::Union,
             parts: vec![
-                Focus::Combined { how: Operation::Intersection, parts: vec![ring, slab.into()] },
+                Region::Combined { how: Operation::Intersection, parts: vec![ring, slab.into()] },
                 ball(DVec3::new(0.0, -0.9, 0.0), 0.4),
             ],
         },
     ];
-    closed.into_iter().map(Focus::from).chain(concave).chain(combined).collect()
+    closed.into_iter().map(Region::from).chain(concave).chain(combined).collect()
 }
 
 /// An orthographic camera.

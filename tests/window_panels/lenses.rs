@@ -1,7 +1,7 @@
 //! Lenses in their list, in the picture and over it.
 
 use glam::{DQuat, DVec3};
-use veduta::{app::lens_list::State, geom::Shape, lens::Focus};
+use veduta::{app::lens_list::State, geom::Shape, lens::Region};
 
 use super::*;
 
@@ -117,7 +117,7 @@ fn spot(harness: &Panels, place: DVec3) -> egui::Pos2 {
 }
 
 /// The first shape of the first lens.
-fn shape(harness: &Panels) -> Focus {
+fn shape(harness: &Panels) -> Region {
     harness.state().document.scene().lenses[0].shapes[0].clone()
 }
 
@@ -126,11 +126,11 @@ fn sides_points_and_turns_are_dragged_in_the_picture() {
     let lens = |shape: &str| format!("[[lens]]\nname = \"held\"\neffects = [\"sepia\"]\nshape = {{ {shape} }}\n");
     let mut harness = with(&lens("kind = \"box\", center = [-10, -20, 6], size = [30, 24, 12]"));
     click(&mut harness, "held");
-    let Focus::Shape(Shape::Box { center, size, .. }) = shape(&harness) else { panic!("a box") };
+    let Region::Shape(Shape::Box { center, size, .. }) = shape(&harness) else { panic!("a box") };
     let east = center + DVec3::new(0.5 * size.x, 0.0, 0.0);
     let (from, to) = (spot(&harness, east), spot(&harness, east - DVec3::new(6.0, 0.0, 0.0)));
     drag(&mut harness, from, to);
-    let Focus::Shape(Shape::Box { center: now, size: wide, .. }) = shape(&harness) else { panic!("a box") };
+    let Region::Shape(Shape::Box { center: now, size: wide, .. }) = shape(&harness) else { panic!("a box") };
     assert!((size - wide - DVec3::new(6.0, 0.0, 0.0)).length() < 0.05, "{wide}");
     assert!((center - now - DVec3::new(3.0, 0.0, 0.0)).length() < 0.05, "its west side stays: {now}");
     // A sixth of a turn, by the arrow beyond its east side.
@@ -141,12 +141,12 @@ fn sides_points_and_turns_are_dragged_in_the_picture() {
     let level = DVec3::new(angle.cos(), angle.sin(), 0.0);
     let to = spot(&harness, now + 20.0 * level);
     drag(&mut harness, arrow, to);
-    let Focus::Shape(Shape::Box { rotation, center: same, .. }) = shape(&harness) else { panic!("a box") };
+    let Region::Shape(Shape::Box { rotation, center: same, .. }) = shape(&harness) else { panic!("a box") };
     let x = rotation * DVec3::X;
     assert!(same == now && (x.y.atan2(x.x) - angle).abs() < 0.05, "{} degrees", x.y.atan2(x.x).to_degrees());
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     press(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(shape(&harness), Focus::Shape(Shape::Box { center, size, rotation: DQuat::IDENTITY }), "two edits");
+    assert_eq!(shape(&harness), Region::Shape(Shape::Box { center, size, rotation: DQuat::IDENTITY }), "two edits");
 
     let mut harness = with(&lens(
         "kind = \"corridor\", points = [[-30, -30, 1], [-5, -25, 1], [10, -45, 1]], width = 8, height = 20",
@@ -155,7 +155,7 @@ fn sides_points_and_turns_are_dragged_in_the_picture() {
     let (from, to) = (DVec3::new(10.0, -45.0, 1.0), DVec3::new(14.0, -38.0, 1.0));
     let ends = [spot(&harness, from), spot(&harness, to)];
     drag(&mut harness, ends[0], ends[1]);
-    let Focus::Shape(Shape::Corridor { points, width, .. }) = shape(&harness) else { panic!("a corridor") };
+    let Region::Shape(Shape::Corridor { points, width, .. }) = shape(&harness) else { panic!("a corridor") };
     assert!(points[2].distance(to) < 0.05 && width == 8.0, "{points:?}");
     assert_eq!(points[..2], [DVec3::new(-30.0, -30.0, 1.0), DVec3::new(-5.0, -25.0, 1.0)], "nothing else moves");
 }
@@ -174,7 +174,7 @@ fn what_is_attached_is_moved_from_where_it_is_attached() {
     let (from, to) = (DVec3::new(-5.0, -20.0, 6.0), DVec3::new(2.0, -26.0, 6.0));
     let ends = [spot(&harness, from), spot(&harness, to)];
     drag(&mut harness, ends[0], ends[1]);
-    let Focus::Shape(Shape::Sphere { center, radius }) = shape(&harness) else { panic!("a sphere") };
+    let Region::Shape(Shape::Sphere { center, radius }) = shape(&harness) else { panic!("a sphere") };
     assert!(center.distance(DVec3::new(12.0, -6.0, 0.0)) < 0.05 && radius == 9.0, "{center}");
     press(&mut harness, Modifiers::NONE, Key::F);
     arrive(&mut harness);
@@ -196,7 +196,7 @@ fn what_is_attached_is_moved_from_where_it_is_attached() {
 }
 
 /// The shapes of the second lens.
-fn parse_lens(text: &str) -> Vec<veduta::lens::Focus> {
+fn parse_lens(text: &str) -> Vec<veduta::lens::Region> {
     let scene = parse(&format!("veduta = 1\n{text}"), "scene", &Options::for_command_line()).unwrap();
     scene.lenses[1].shapes.clone()
 }

@@ -9,7 +9,7 @@ use crate::{
         Aabb,
         shape::{definition::Shape, flat::FlatFigure},
     },
-    lens::Focus,
+    lens::Region,
 };
 
 /// Shapes with more corners than this are held by their middle only: gizmos would cover them.
@@ -83,28 +83,28 @@ impl Block {
 
 /// All that can be held of a shape, with where it is; `ground`: the height of what is seen there in plan, for shapes that
 /// have no height of their own there. A ring is where its middle is: which way it is seen from decides on which side of that.
-pub fn gizmos(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<(GizmoKind, DVec3)> {
-    let Some(middle) = middle(focus, ground) else { return Vec::new() };
+pub fn gizmos(region: &Region, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<(GizmoKind, DVec3)> {
+    let Some(middle) = middle(region, ground) else { return Vec::new() };
     let mut all = vec![(GizmoKind::Middle, middle)];
-    all.extend(radius(focus).map(|_| (GizmoKind::Ring, middle)));
-    if let Some(block) = block(focus) {
+    all.extend(radius(region).map(|_| (GizmoKind::Ring, middle)));
+    if let Some(block) = block(region) {
         for axis in (0..3).filter(|axis| block.has[*axis]) {
             all.extend([true, false].map(|is_up| (GizmoKind::Side { axis, is_up }, block.side(axis, is_up))));
         }
     }
-    let corners = corners(focus, ground);
+    let corners = corners(region, ground);
     if corners.len() <= MOST_CORNERS {
         all.extend(corners.into_iter().enumerate().map(|(i, at)| (GizmoKind::Corner(i), at)));
     }
-    all.extend(heading(focus).map(|ahead| (GizmoKind::Turn, middle + ahead)));
+    all.extend(heading(region).map(|ahead| (GizmoKind::Turn, middle + ahead)));
     all
 }
 
 /// The middle of a shape; `None`: it has none that could be moved.
-pub fn middle(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Option<DVec3> {
+pub fn middle(region: &Region, ground: &dyn Fn(DVec2) -> Option<f64>) -> Option<DVec3> {
     let mean = |points: &[DVec3]| points.iter().sum::<DVec3>() / points.len().max(1) as f64;
-    Some(match focus {
-        Focus::Shape(
+    Some(match region {
+        Region::Shape(
             Shape::Sphere { center, .. }
             | Shape::Box { center, .. }
             | Shape::Cylinder { center, .. }
@@ -112,15 +112,15 @@ pub fn middle(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Option<DV
             | Shape::Frustum { center, .. }
             | Shape::Flat { center, .. },
         ) => *center,
-        Focus::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => mean(points),
-        Focus::Mesh { at, .. } => *at,
-        Focus::Prism { points, base, height, .. } => {
+        Region::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => mean(points),
+        Region::Mesh { at, .. } => *at,
+        Region::Prism { points, base, height, .. } => {
             let plan = points.iter().sum::<DVec2>() / points.len().max(1) as f64;
             within(plan, [*base, base + height], ground)
         }
-        Focus::Mask { corner, size, base, height, .. } => within(corner + 0.5 * size, [*base, base + height], ground),
-        Focus::Mask3d { corner, size, .. } => corner + 0.5 * size,
-        Focus::Combined { parts, .. } | Focus::Enclosed { parts, .. } => {
+        Region::Mask { corner, size, base, height, .. } => within(corner + 0.5 * size, [*base, base + height], ground),
+        Region::Mask3d { corner, size, .. } => corner + 0.5 * size,
+        Region::Combined { parts, .. } | Region::Enclosed { parts, .. } => {
             let all: Option<Vec<DVec3>> = parts.iter().map(|part| self::middle(part, ground)).collect();
             mean(&all.filter(|all| !all.is_empty())?)
         }
@@ -134,9 +134,9 @@ fn within(plan: DVec2, [low, high]: [f64; 2], ground: &dyn Fn(DVec2) -> Option<f
 }
 
 /// The distance of the ring from the middle.
-pub fn radius(focus: &Focus) -> Option<f64> {
-    match focus {
-        Focus::Shape(
+pub fn radius(region: &Region) -> Option<f64> {
+    match region {
+        Region::Shape(
             Shape::Sphere { radius, .. }
             | Shape::Cylinder { radius, .. }
             | Shape::Frustum { radius, .. }
@@ -147,49 +147,49 @@ pub fn radius(focus: &Focus) -> Option<f64> {
 }
 
 /// The block that its sides bound.
-pub fn block(focus: &Focus) -> Option<Block> {
+pub fn block(region: &Region) -> Option<Block> {
     let upright = |axis: DVec3| DQuat::from_rotation_arc(DVec3::Z, axis.normalize_or(DVec3::Z));
     let block = |center, half, turn, has| Block { center, half, turn, has, is_centered: false };
     let along_z = [false, false, true];
-    Some(match focus {
-        Focus::Shape(Shape::Box { center, size, rotation }) => block(*center, 0.5 * *size, *rotation, [true; 3]),
-        Focus::Shape(Shape::Ellipsoid { center, radii, rotation }) => {
+    Some(match region {
+        Region::Shape(Shape::Box { center, size, rotation }) => block(*center, 0.5 * *size, *rotation, [true; 3]),
+        Region::Shape(Shape::Ellipsoid { center, radii, rotation }) => {
             Block { is_centered: true, ..block(*center, *radii, *rotation, [true; 3]) }
         }
-        Focus::Shape(
+        Region::Shape(
             Shape::Cylinder { center, radius, height, axis } | Shape::Frustum { center, radius, height, axis, .. },
         ) => block(*center, DVec3::new(*radius, *radius, 0.5 * height), upright(*axis), along_z),
-        Focus::Shape(Shape::Flat { center, rotation, figure: FlatFigure::Rectangle { size } }) => {
+        Region::Shape(Shape::Flat { center, rotation, figure: FlatFigure::Rectangle { size } }) => {
             Block { is_centered: true, ..block(*center, 0.5 * size.extend(0.0), *rotation, [true, true, false]) }
         }
-        Focus::Shape(Shape::Corridor { points, width, height }) => {
+        Region::Shape(Shape::Corridor { points, width, height }) => {
             let [a, b] = points.first_chunk::<2>()?;
             let along = (b - a).truncate().try_normalize().unwrap_or(DVec2::X);
             let turn = DQuat::from_rotation_z((-along.x).atan2(along.y));
             let half = DVec3::new(0.5 * width, 0.0, 0.5 * height);
             Block { is_centered: true, ..block(0.5 * (a + b), half, turn, [true, false, true]) }
         }
-        Focus::Prism { points, base, height, .. } => {
+        Region::Prism { points, base, height, .. } => {
             let plan = points.iter().sum::<DVec2>() / points.len().max(1) as f64;
             block(plan.extend(base + 0.5 * height), DVec3::new(0.0, 0.0, 0.5 * height), DQuat::IDENTITY, along_z)
         }
-        Focus::Mask { corner, size, base, height, .. } => {
+        Region::Mask { corner, size, base, height, .. } => {
             let size = size.extend(*height);
             block(corner.extend(*base) + 0.5 * size, 0.5 * size, DQuat::IDENTITY, [true; 3])
         }
-        Focus::Mask3d { corner, size, .. } => block(corner + 0.5 * size, 0.5 * *size, DQuat::IDENTITY, [true; 3]),
+        Region::Mask3d { corner, size, .. } => block(corner + 0.5 * size, 0.5 * *size, DQuat::IDENTITY, [true; 3]),
         _ => return None,
     })
 }
 
 /// Its points.
-fn corners(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<DVec3> {
-    match focus {
-        Focus::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => points.clone(),
-        Focus::Shape(Shape::Flat { center, rotation, figure: FlatFigure::Polygon { points } }) => {
+fn corners(region: &Region, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<DVec3> {
+    match region {
+        Region::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => points.clone(),
+        Region::Shape(Shape::Flat { center, rotation, figure: FlatFigure::Polygon { points } }) => {
             points.iter().map(|p| center + *rotation * p.extend(0.0)).collect()
         }
-        Focus::Prism { points, base, height, .. } => {
+        Region::Prism { points, base, height, .. } => {
             points.iter().map(|p| within(*p, [*base, base + height], ground)).collect()
         }
         _ => Vec::new(),
@@ -197,52 +197,52 @@ fn corners(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<DVec3> {
 }
 
 /// Lines that show what its gizmos are of: the edges of a block, the line or ring through its points.
-pub fn wires(focus: &Focus, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<Vec<DVec3>> {
+pub fn wires(region: &Region, ground: &dyn Fn(DVec2) -> Option<f64>) -> Vec<Vec<DVec3>> {
     let closed = |mut ring: Vec<DVec3>| {
         ring.extend(ring.first().copied());
         ring
     };
-    match focus {
-        Focus::Shape(Shape::Box { .. }) | Focus::Mask { .. } | Focus::Mask3d { .. } => {
-            let Some(block) = block(focus) else { return Vec::new() };
+    match region {
+        Region::Shape(Shape::Box { .. }) | Region::Mask { .. } | Region::Mask3d { .. } => {
+            let Some(block) = block(region) else { return Vec::new() };
             let corner = |[x, y, z]: [f64; 3]| block.center + block.turn * (DVec3::new(x, y, z) * block.half);
             let around = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
             let ring = |z: f64| closed(around.map(|[x, y]| corner([x, y, z])).to_vec());
             let posts = around.map(|[x, y]| vec![corner([x, y, -1.0]), corner([x, y, 1.0])]);
             [ring(-1.0), ring(1.0)].into_iter().chain(posts).collect()
         }
-        Focus::Shape(Shape::Corridor { points, .. }) => vec![points.clone()],
-        Focus::Prism { .. } | Focus::Shape(Shape::Flat { figure: FlatFigure::Polygon { .. }, .. }) => {
-            vec![closed(corners(focus, ground))]
+        Region::Shape(Shape::Corridor { points, .. }) => vec![points.clone()],
+        Region::Prism { .. } | Region::Shape(Shape::Flat { figure: FlatFigure::Polygon { .. }, .. }) => {
+            vec![closed(corners(region, ground))]
         }
         _ => Vec::new(),
     }
 }
 
 /// From its middle to what shows how it is turned, level; `None`: nothing of it can be turned, or that could not be seen.
-fn heading(focus: &Focus) -> Option<DVec3> {
+fn heading(region: &Region) -> Option<DVec3> {
     let nowhere = |_| None;
-    let ahead = match focus {
-        Focus::Shape(
+    let ahead = match region {
+        Region::Shape(
             Shape::Box { rotation, .. }
             | Shape::Ellipsoid { rotation, .. }
             | Shape::Flat { rotation, figure: FlatFigure::Rectangle { .. }, .. },
         ) => {
             // Its x, as far as that is level.
             let level = (*rotation * DVec3::X).with_z(0.0);
-            block(focus)?.half.x * level.try_normalize()?
+            block(region)?.half.x * level.try_normalize()?
         }
-        Focus::Mesh { rotation, scale, .. } => scale * (*rotation * DVec3::X).with_z(0.0).try_normalize()?,
-        _ => *corners(focus, &nowhere).first()? - middle(focus, &nowhere)?,
+        Region::Mesh { rotation, scale, .. } => scale * (*rotation * DVec3::X).with_z(0.0).try_normalize()?,
+        _ => *corners(region, &nowhere).first()? - middle(region, &nowhere)?,
     };
     let level = ahead.with_z(0.0);
     (level.length() > 1e-6).then_some(level)
 }
 
 /// Moves it.
-pub fn move_by(focus: &mut Focus, by: DVec3) {
-    match focus {
-        Focus::Shape(
+pub fn move_by(region: &mut Region, by: DVec3) {
+    match region {
+        Region::Shape(
             Shape::Sphere { center, .. }
             | Shape::Box { center, .. }
             | Shape::Cylinder { center, .. }
@@ -250,21 +250,21 @@ pub fn move_by(focus: &mut Focus, by: DVec3) {
             | Shape::Frustum { center, .. }
             | Shape::Flat { center, .. },
         ) => *center = to_mm(*center + by),
-        Focus::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => {
+        Region::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => {
             points.iter_mut().for_each(|p| *p = to_mm(*p + by));
         }
-        Focus::Mesh { at, .. } => *at = to_mm(*at + by),
-        Focus::Prism { points, holes, base, .. } => {
+        Region::Mesh { at, .. } => *at = to_mm(*at + by),
+        Region::Prism { points, holes, base, .. } => {
             let plan = points.iter_mut().chain(holes.iter_mut().flatten());
             plan.for_each(|p| *p = to_mm((*p + by.truncate()).extend(0.0)).truncate());
             *base = round_mm(*base + by.z);
         }
-        Focus::Mask { corner, base, .. } => {
+        Region::Mask { corner, base, .. } => {
             *corner = to_mm((*corner + by.truncate()).extend(0.0)).truncate();
             *base = round_mm(*base + by.z);
         }
-        Focus::Mask3d { corner, .. } => *corner = to_mm(*corner + by),
-        Focus::Combined { parts, .. } | Focus::Enclosed { parts, .. } => {
+        Region::Mask3d { corner, .. } => *corner = to_mm(*corner + by),
+        Region::Combined { parts, .. } | Region::Enclosed { parts, .. } => {
             parts.iter_mut().for_each(|part| move_by(part, by));
         }
         _ => {}
@@ -272,15 +272,15 @@ pub fn move_by(focus: &mut Focus, by: DVec3) {
 }
 
 /// Puts its ring so far from its middle; what else there is of a cone's radii keeps its share.
-pub fn set_radius(focus: &mut Focus, to: f64) {
+pub fn set_radius(region: &mut Region, to: f64) {
     let to = round_mm(to.max(LEAST_M));
-    match focus {
-        Focus::Shape(
+    match region {
+        Region::Shape(
             Shape::Sphere { radius, .. }
             | Shape::Cylinder { radius, .. }
             | Shape::Flat { figure: FlatFigure::Disc { radius }, .. },
         ) => *radius = to,
-        Focus::Shape(Shape::Frustum { radius, top_radius, .. }) => {
+        Region::Shape(Shape::Frustum { radius, top_radius, .. }) => {
             if *radius > 0.0 {
                 *top_radius = round_mm(*top_radius * to / *radius);
             }
@@ -291,44 +291,44 @@ pub fn set_radius(focus: &mut Focus, to: f64) {
 }
 
 /// Puts a side so far from its middle, along its axis; evenly: makes it larger or smaller as a whole.
-pub fn set_side(focus: &mut Focus, axis: usize, is_up: bool, out: f64, is_even: bool) {
-    let Some(before) = block(focus) else { return };
+pub fn set_side(region: &mut Region, axis: usize, is_up: bool, out: f64, is_even: bool) {
+    let Some(before) = block(region) else { return };
     let to = before.with_side(axis, is_up, out, is_even);
     let (at, size) = (to_mm(to.center), to_mm(2.0 * to.half));
-    match focus {
-        Focus::Shape(Shape::Box { center, size: own, .. }) => (*center, *own) = (at, size),
-        Focus::Shape(Shape::Ellipsoid { radii, .. }) => *radii = to_mm(to.half),
-        Focus::Shape(Shape::Cylinder { center, radius, height, .. }) => {
+    match region {
+        Region::Shape(Shape::Box { center, size: own, .. }) => (*center, *own) = (at, size),
+        Region::Shape(Shape::Ellipsoid { radii, .. }) => *radii = to_mm(to.half),
+        Region::Shape(Shape::Cylinder { center, radius, height, .. }) => {
             (*center, *radius, *height) = (at, round_mm(to.half.x), size.z);
         }
-        Focus::Shape(Shape::Frustum { center, height, radius, top_radius, .. }) => {
+        Region::Shape(Shape::Frustum { center, height, radius, top_radius, .. }) => {
             let share = if *radius > 0.0 { to.half.x / *radius } else { 1.0 };
             (*center, *radius, *top_radius) = (at, round_mm(to.half.x), round_mm(share * *top_radius));
             *height = size.z;
         }
-        Focus::Shape(Shape::Flat { figure: FlatFigure::Rectangle { size: own }, .. }) => *own = size.truncate(),
-        Focus::Shape(Shape::Corridor { width, height, .. }) => (*width, *height) = (size.x, size.z),
-        Focus::Prism { base, height, .. } => (*base, *height) = (round_mm(to.center.z - to.half.z), size.z),
-        Focus::Mask { corner, size: own, base, height, .. } => {
+        Region::Shape(Shape::Flat { figure: FlatFigure::Rectangle { size: own }, .. }) => *own = size.truncate(),
+        Region::Shape(Shape::Corridor { width, height, .. }) => (*width, *height) = (size.x, size.z),
+        Region::Prism { base, height, .. } => (*base, *height) = (round_mm(to.center.z - to.half.z), size.z),
+        Region::Mask { corner, size: own, base, height, .. } => {
             let low = to_mm(to.center - to.half);
             (*corner, *own, *base, *height) = (low.truncate(), size.truncate(), low.z, size.z);
         }
-        Focus::Mask3d { corner, size: own, .. } => (*corner, *own) = (to_mm(to.center - to.half), size),
+        Region::Mask3d { corner, size: own, .. } => (*corner, *own) = (to_mm(to.center - to.half), size),
         _ => {}
     }
 }
 
 /// Puts one of its points elsewhere; of one that has points in plan only there.
-pub fn set_corner(focus: &mut Focus, index: usize, to: DVec3) {
-    match focus {
-        Focus::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => {
+pub fn set_corner(region: &mut Region, index: usize, to: DVec3) {
+    match region {
+        Region::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => {
             points.iter_mut().skip(index).take(1).for_each(|p| *p = to_mm(to));
         }
-        Focus::Shape(Shape::Flat { center, rotation, figure: FlatFigure::Polygon { points } }) => {
+        Region::Shape(Shape::Flat { center, rotation, figure: FlatFigure::Polygon { points } }) => {
             let own = rotation.inverse() * (to - *center);
             points.iter_mut().skip(index).take(1).for_each(|p| *p = to_mm(own).truncate());
         }
-        Focus::Prism { points, .. } => {
+        Region::Prism { points, .. } => {
             points.iter_mut().skip(index).take(1).for_each(|p| *p = to_mm(to).truncate());
         }
         _ => {}
@@ -336,18 +336,18 @@ pub fn set_corner(focus: &mut Focus, index: usize, to: DVec3) {
 }
 
 /// Turns it about the vertical through its middle, radians counter-clockwise as seen from above.
-pub fn turn_by(focus: &mut Focus, angle: f64) {
+pub fn turn_by(region: &mut Region, angle: f64) {
     let turn = DQuat::from_rotation_z(angle);
-    let Some(about) = middle(focus, &|_| None) else { return };
-    match focus {
-        Focus::Shape(
+    let Some(about) = middle(region, &|_| None) else { return };
+    match region {
+        Region::Shape(
             Shape::Box { rotation, .. } | Shape::Ellipsoid { rotation, .. } | Shape::Flat { rotation, .. },
         )
-        | Focus::Mesh { rotation, .. } => *rotation = turn * *rotation,
-        Focus::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => {
+        | Region::Mesh { rotation, .. } => *rotation = turn * *rotation,
+        Region::Shape(Shape::Convex { points } | Shape::Corridor { points, .. }) => {
             points.iter_mut().for_each(|p| *p = to_mm(about + turn * (*p - about)));
         }
-        Focus::Prism { points, holes, .. } => {
+        Region::Prism { points, holes, .. } => {
             let turned = |p: DVec2| to_mm(about + turn * (p.extend(about.z) - about)).truncate();
             points.iter_mut().chain(holes.iter_mut().flatten()).for_each(|p| *p = turned(*p));
         }
@@ -356,18 +356,18 @@ pub fn turn_by(focus: &mut Focus, angle: f64) {
 }
 
 /// A box around it, as far as it has places of its own; empty: it has none.
-pub fn extent(focus: &Focus) -> Aabb {
-    let Some(middle) = middle(focus, &|_| None) else { return Aabb::EMPTY };
+pub fn extent(region: &Region) -> Aabb {
+    let Some(middle) = middle(region, &|_| None) else { return Aabb::EMPTY };
     let mut bounds = Aabb { min: middle, max: middle };
     let mut reach = |at: DVec3, by: f64| bounds = bounds.union(Aabb { min: at - by, max: at + by });
-    reach(middle, radius(focus).unwrap_or(0.0));
-    if let Some(block) = block(focus) {
+    reach(middle, radius(region).unwrap_or(0.0));
+    if let Some(block) = block(region) {
         for axis in (0..3).filter(|axis| block.has[*axis]) {
             [true, false].into_iter().for_each(|is_up| reach(block.side(axis, is_up), 0.0));
         }
     }
-    corners(focus, &|_| None).into_iter().for_each(|at| reach(at, 0.0));
-    if let Focus::Combined { parts, .. } | Focus::Enclosed { parts, .. } = focus {
+    corners(region, &|_| None).into_iter().for_each(|at| reach(at, 0.0));
+    if let Region::Combined { parts, .. } | Region::Enclosed { parts, .. } = region {
         bounds = parts.iter().map(extent).fold(bounds, |all, part| all.union(part));
     }
     bounds

@@ -6,7 +6,7 @@ use crate::{
     city::CityModel,
     geom::{Aabb, Shape, Sphere},
     lens::{
-        BestView, Class, EffectUse, Focus, Lens, LensBody, LensKind, Parameter, Placement,
+        BestView, Class, EffectUse, Lens, LensBody, LensKind, Parameter, Placement, Region,
         best_view::{LocalView, MapMode},
         chosen::Choice,
     },
@@ -176,7 +176,7 @@ fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
 }
 
 fn is_flat(lens: &Lens) -> bool {
-    lens.shapes.iter().any(|s| s.any(&|f| matches!(f, Focus::Shape(Shape::Flat { .. }))))
+    lens.shapes.iter().any(|s| s.any(&|f| matches!(f, Region::Shape(Shape::Flat { .. }))))
 }
 
 /// A lens that leaves nothing but a point of interest and the objects that come within `margin_m` of its box in plan.
@@ -211,7 +211,7 @@ fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
         parameters: [("keep_terrain".to_owned(), Parameter::Boolean(false))].into(),
     };
     Lens {
-        shapes: vec![Focus::Thematic(Choice { ids, ..Choice::default() })],
+        shapes: vec![Region::Thematic(Choice { ids, ..Choice::default() })],
         effects: vec![erased],
         body: LensBody::None,
         ..Lens::plain("", LensKind::default(), [0.0; 3])

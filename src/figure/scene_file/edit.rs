@@ -366,7 +366,7 @@ mod tests {
     use crate::{
         figure::scene_file::{parse, to_toml_for},
         geom::Shape,
-        lens::Focus,
+        lens::Region,
         scene::{BaseStyle, TextSize},
         view::Projection,
     };
@@ -422,7 +422,7 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
     #[test]
     fn values_are_set_by_place_and_by_name() {
         let radius = |s: &Scene| match s.lenses[0].shapes[0] {
-            Focus::Shape(Shape::Sphere { radius, .. }) => radius,
+            Region::Shape(Shape::Sphere { radius, .. }) => radius,
             _ => f64::NAN,
         };
         assert_eq!(radius(&after("lens.0.shape.radius=80").unwrap()), 80.0);

@@ -17,19 +17,19 @@ use crate::{
             given_forms,
         },
     },
-    lens::Focus,
+    lens::Region,
 };
 
 macro_rules! variants {
     ($($form:ty;)*) => {
         /// All of them, in the order of the docs.
-        pub const GIVEN: &[Variant<Focus>] = &[$(Rows::<$form>::VARIANT),*];
+        pub const GIVEN: &[Variant<Region>] = &[$(Rows::<$form>::VARIANT),*];
     };
 }
 given_forms!(variants);
 
 /// These and others behind them.
-pub const fn with<const N: usize>(others: &[Variant<Focus>]) -> [Variant<Focus>; N] {
+pub const fn with<const N: usize>(others: &[Variant<Region>]) -> [Variant<Region>; N] {
     let mut all = [GIVEN[0]; N];
     let mut i = 0;
     while i < N {
@@ -52,7 +52,7 @@ const MOST_ROWS: usize = MOST_FIELDS + 1;
 
 impl<T: Shaped> Rows<T> {
     /// The rest repeats the first.
-    const ALL: [Row<Focus>; MOST_ROWS] = [
+    const ALL: [Row<Region>; MOST_ROWS] = [
         kind::<T>(),
         row::<T, 0>(),
         row::<T, 1>(),
@@ -63,23 +63,23 @@ impl<T: Shaped> Rows<T> {
         row::<T, 6>(),
     ];
     const ALL_KEYS: [Key; MOST_ROWS] = keys(&Self::ALL);
-    const ROWS: &'static [Row<Focus>] = Self::ALL.split_at(T::FIELDS.len() + 1).0;
+    const ROWS: &'static [Row<Region>] = Self::ALL.split_at(T::FIELDS.len() + 1).0;
     const KEYS: &'static [Key] = Self::ALL_KEYS.split_at(T::FIELDS.len() + 1).0;
-    const VARIANT: Variant<Focus> = Variant {
+    const VARIANT: Variant<Region> = Variant {
         table: Table { name: T::NAME, doc: T::DOC, keys: Self::KEYS },
         rows: Self::ROWS,
-        default: || Focus::Shape(Shape::of_given(T::DEFAULT.into())),
-        is: |focus| own::<T>(focus).is_some(),
+        default: || Region::Shape(Shape::of_given(T::DEFAULT.into())),
+        is: |region| own::<T>(region).is_some(),
     };
 }
 
-const fn kind<T: Given>() -> Row<Focus> {
+const fn kind<T: Given>() -> Row<Region> {
     Row::joint(key("kind", Kind::Text, "", "", "Which shape.", T::QUOTED), |_, _| Some(Data::Text(T::NAME.to_owned())))
         .always()
 }
 
 /// The row of a field; of one that is not there, as of the shape's kind.
-const fn row<T: Shaped, const I: usize>() -> Row<Focus> {
+const fn row<T: Shaped, const I: usize>() -> Row<Region> {
     if I < T::FIELDS.len() { Row::new(key_of(&T::FIELDS[I]), get::<T, I>, set::<T, I>) } else { kind::<T>() }
 }
 
@@ -95,14 +95,14 @@ const fn key_of<T>(field: &Field<T>) -> Key {
 }
 
 /// The shape's own numbers, if it is of this form.
-fn own<T: Shaped>(focus: &Focus) -> Option<T> {
-    let Focus::Shape(shape) = focus else { return None };
+fn own<T: Shaped>(region: &Region) -> Option<T> {
+    let Region::Shape(shape) = region else { return None };
     T::of_volume(&shape.given()?).cloned()
 }
 
-fn get<T: Shaped, const I: usize>(focus: &Focus, _: &Options) -> Option<Data> {
+fn get<T: Shaped, const I: usize>(region: &Region, _: &Options) -> Option<Data> {
     let field = &T::FIELDS[I];
-    match (field.at)(&mut own::<T>(focus)?) {
+    match (field.at)(&mut own::<T>(region)?) {
         Value::Number(number) => Same::data(number),
         Value::Vector(way) if field.quantity == Quantity::Direction => Axis::data(way),
         Value::Vector(vector) => Same::data(vector),
@@ -110,8 +110,8 @@ fn get<T: Shaped, const I: usize>(focus: &Focus, _: &Options) -> Option<Data> {
     }
 }
 
-fn set<T: Shaped, const I: usize>(focus: &mut Focus, given: &mut Taken) {
-    let Some(mut own) = own::<T>(focus) else { return };
+fn set<T: Shaped, const I: usize>(region: &mut Region, given: &mut Taken) {
+    let Some(mut own) = own::<T>(region) else { return };
     let (field, node): (_, &Node) = (&T::FIELDS[I], given.node);
     match (field.at)(&mut own) {
         Value::Number(number) => Same::take(node, number),
@@ -119,5 +119,5 @@ fn set<T: Shaped, const I: usize>(focus: &mut Focus, given: &mut Taken) {
         Value::Vector(vector) => Same::take(node, vector),
         Value::Turn(turn) => Turn::take(node, turn),
     }
-    *focus = Focus::Shape(Shape::of_given(own.into()));
+    *region = Region::Shape(Shape::of_given(own.into()));
 }

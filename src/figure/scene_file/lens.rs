@@ -8,19 +8,18 @@ use crate::{
         content::{self, CONTENT},
         deformation::{self, CONTROL, CONTROL_WORDS},
         effects::{self, without_sights},
-        focus,
         forms::{Color, Same, Word, lens_color},
         keys::{Kind, Table, key},
         node::{Data, Node},
         occlusion,
         paths::Options,
         reader::Reader,
-        rendering,
+        region, rendering,
         row::{self, Row, field, keys_of},
         shape_keys,
         sprite::{self, SPRITE},
     },
-    lens::{Border, BorderUnit, Discrete, Focus, Lens, LensKind, Placement, best_view::Depiction},
+    lens::{Border, BorderUnit, Discrete, Lens, LensKind, Placement, Region, best_view::Depiction},
     shader::Clip,
 };
 
@@ -469,8 +468,8 @@ const BORDER_ROWS: &[Row<Border>] = &[
 ];
 
 /// The shapes that a lens has keys for.
-fn shapes_of(lens: &Lens) -> Vec<&Focus> {
-    lens.shapes.iter().filter_map(Focus::own_shape).collect()
+fn shapes_of(lens: &Lens) -> Vec<&Region> {
+    lens.shapes.iter().filter_map(Region::own_shape).collect()
 }
 
 /// `shapes`, where one is not all; a lens that needs one and has none says so.
@@ -485,7 +484,7 @@ fn several(lens: &Lens, options: &Options) -> Option<Data> {
 
 /// A key of whom an occlusion lens looks for.
 fn occluders(lens: &Lens, key: &str, options: &Options) -> Option<Data> {
-    occlusion::written(lens.shapes.first().and_then(Focus::occluders)?, key, options)
+    occlusion::written(lens.shapes.first().and_then(Region::occluders)?, key, options)
 }
 
 /// The table of a lens at this place in the order.
@@ -525,7 +524,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Lens {
         }
     }
     lens.kind.set_content(content::read(reader, fields, of_effects));
-    let is_saved = |shape: &Focus| matches!(shape, Focus::Sprite { .. });
+    let is_saved = |shape: &Region| matches!(shape, Region::Sprite { .. });
     let has_saved = lens.shapes.iter().any(|s| s.any(&is_saved));
     lens.sprite = sprite::read(reader, fields, has_saved && lens.shapes.iter().all(is_saved));
     if (lens.sprite.is_some() || has_saved) && lens.border.is_some_and(|border| border.unit != BorderUnit::Ray) {
@@ -541,8 +540,8 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Lens {
 }
 
 /// The focus areas of an occlusion lens with these shapes.
-fn occluded(reader: &mut Reader, fields: &Fields, shapes: Vec<Focus>) -> Vec<Focus> {
-    let saved = shapes.iter().position(|shape| matches!(shape, Focus::Sprite { .. }));
+fn occluded(reader: &mut Reader, fields: &Fields, shapes: Vec<Region>) -> Vec<Region> {
+    let saved = shapes.iter().position(|shape| matches!(shape, Region::Sprite { .. }));
     if saved.is_some() {
         let key = if fields.given("shape") { "shape" } else { "shapes" };
         let message = "a depth sprite cannot be combined with occluders; a shape of another kind would be right";
@@ -577,7 +576,7 @@ fn placement(reader: &mut Reader, fields: &Fields) -> Placement {
     Placement::World
 }
 
-fn shapes(reader: &mut Reader, fields: &Fields, must: bool) -> Vec<Focus> {
+fn shapes(reader: &mut Reader, fields: &Fields, must: bool) -> Vec<Region> {
     match (fields.given("shape"), fields.given("shapes")) {
         (true, true) => {
             let message = "is given together with shape: put all of them into shapes";
@@ -594,6 +593,6 @@ fn shapes(reader: &mut Reader, fields: &Fields, must: bool) -> Vec<Focus> {
     let many = many.iter().enumerate().map(|(i, n)| (format!("shapes.{i}"), n));
     one.into_iter()
         .chain(many)
-        .filter_map(|(key, node)| focus::read(reader, node, &fields.place.within(&key, node.line)))
+        .filter_map(|(key, node)| region::read(reader, node, &fields.place.within(&key, node.line)))
         .collect()
 }

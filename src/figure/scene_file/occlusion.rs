@@ -11,7 +11,7 @@ use crate::{
         test_keys::{self, test_data},
     },
     geom::combination::Operation,
-    lens::{Focus, Occluders, chosen::Choice},
+    lens::{Occluders, Region, chosen::Choice},
     visibility::{Margin, Pace, Test},
 };
 
@@ -49,12 +49,12 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Occluders {
 }
 
 /// The focus areas of an occlusion lens of these shapes: its occluders, or what of them is in the shapes.
-pub fn areas(of: Occluders, shapes: Vec<Focus>) -> Vec<Focus> {
+pub fn areas(of: Occluders, shapes: Vec<Region>) -> Vec<Region> {
     if shapes.is_empty() {
-        return vec![Focus::Occluders(of)];
+        return vec![Region::Occluders(of)];
     }
     let within =
-        |shape| Focus::Combined { how: Operation::Intersection, parts: vec![Focus::Occluders(of.clone()), shape] };
+        |shape| Region::Combined { how: Operation::Intersection, parts: vec![Region::Occluders(of.clone()), shape] };
     shapes.into_iter().map(within).collect()
 }
 
@@ -92,7 +92,7 @@ mod tests {
     fn little_is_needed() {
         let plain = lens("poi = \"hall\"").unwrap();
         let of = Occluders { pois: vec!["hall".into()], ..Occluders::default() };
-        assert_eq!((plain.kind.word(), &plain.shapes[..]), ("occlusion", &[Focus::Occluders(of.clone())][..]));
+        assert_eq!((plain.kind.word(), &plain.shapes[..]), ("occlusion", &[Region::Occluders(of.clone())][..]));
         assert_eq!(plain.rendering(), Some(&Rendering::default()));
         assert_eq!(plain.uses().map(|used| used.effect.as_str()).collect::<Vec<_>>(), ["eraser"]);
         let several = lens(

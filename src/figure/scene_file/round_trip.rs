@@ -8,8 +8,8 @@ use crate::{
     city::derived::{Derive, Form, Height},
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        BestView, Border, BorderUnit, Class, Content, Copied, Deform, Discrete, EffectUse, Focus, Lens, LensBody,
-        LensKind, LensSprite, Occluders, OwnEye, Parameter, Placement, Rendering,
+        BestView, Border, BorderUnit, Class, Content, Copied, Deform, Discrete, EffectUse, Lens, LensBody, LensKind,
+        LensSprite, Occluders, OwnEye, Parameter, Placement, Region, Rendering,
         best_view::{Depiction, LocalView, Look, MapMode},
         chosen::Choice,
         deform::{BORDER, ControlProfile, Step},
@@ -113,19 +113,19 @@ fn choices() -> impl Strategy<Value = Choice> {
     })
 }
 
-fn focuses() -> impl Strategy<Value = Focus> {
-    plain_focuses().prop_recursive(2, 6, 3, |inner| {
+fn regions() -> impl Strategy<Value = Region> {
+    plain_regions().prop_recursive(2, 6, 3, |inner| {
         let how = prop::option::of(prop::sample::select(Operation::ALL.to_vec()));
         let types = prop::collection::vec("[A-Z\"]{1,5}", 0..3);
         (how, any::<bool>(), types, prop::collection::vec(inner, 1..3)).prop_map(|(how, whole, types, parts)| match how
         {
-            Some(how) => Focus::Combined { how, parts },
-            None => Focus::Enclosed { parts, whole, types },
+            Some(how) => Region::Combined { how, parts },
+            None => Region::Enclosed { parts, whole, types },
         })
     })
 }
 
-fn plain_focuses() -> impl Strategy<Value = Focus> {
+fn plain_regions() -> impl Strategy<Value = Region> {
     let angles = prop::array::uniform3(-1800..1800i32).prop_map(|a| a.map(|a| f64::from(a) / 10.0));
     // With area, and a smaller one in it.
     let ring = (plan(), 1.0..1e3f64).prop_map(|(at, size)| {
@@ -135,31 +135,31 @@ fn plain_focuses() -> impl Strategy<Value = Focus> {
     });
     let size = || prop::array::uniform2(0.0..1e3f64).prop_map(DVec2::from);
     prop_oneof![
-        4 => shapes().prop_map(Focus::from),
-        1 => (point(), angles, 0.1..1e3f64).prop_map(|(at, a, scale)| Focus::Mesh {
+        4 => shapes().prop_map(Region::from),
+        1 => (point(), angles, 0.1..1e3f64).prop_map(|(at, a, scale)| Region::Mesh {
             file: "b.obj".into(),
             at,
             rotation: rotation(a),
             scale
         }),
         1 => (ring, any::<bool>(), -1e3..1e3f64, 0.0..1e3f64).prop_map(|((points, hole), holed, base, height)| {
-            Focus::Prism { points, holes: if holed { vec![hole] } else { vec![] }, base, height }
+            Region::Prism { points, holes: if holed { vec![hole] } else { vec![] }, base, height }
         }),
-        1 => (plan(), size(), -1e3..1e3f64, 0.0..1e3f64).prop_map(|(corner, size, base, height)| Focus::Mask {
+        1 => (plan(), size(), -1e3..1e3f64, 0.0..1e3f64).prop_map(|(corner, size, base, height)| Region::Mask {
             image: "m.png".into(),
             corner,
             size,
             base,
             height
         }),
-        1 => (point(), prop::array::uniform3(0.0..1e3f64)).prop_map(|(corner, size)| Focus::Mask3d {
+        1 => (point(), prop::array::uniform3(0.0..1e3f64)).prop_map(|(corner, size)| Region::Mask3d {
             images: vec!["0.png".into(), "1.png".into()],
             corner,
             size: size.into()
         }),
-        1 => Just(Focus::Sprite { file: "s.exr".into() }),
-        1 => choices().prop_map(Focus::Objects),
-        1 => choices().prop_map(Focus::Thematic),
+        1 => Just(Region::Sprite { file: "s.exr".into() }),
+        1 => choices().prop_map(Region::Objects),
+        1 => choices().prop_map(Region::Thematic),
     ]
 }
 
@@ -354,13 +354,13 @@ fn deforms() -> impl Strategy<Value = Deform> {
 
 prop_compose! {
     fn lenses()(occluded in prop::option::weighted(0.3, occluded()),
-        shapes in prop::collection::vec(focuses(), 1..3), used in prop::collection::vec(effects(), 0..2),
+        shapes in prop::collection::vec(regions(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
         section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>(), at_rest in any::<bool>(),
         deform in prop::option::weighted(0.3, deforms())) -> Lens {
         // A soft border needs shapes that have a distance; what shapes of files have, `sprite` does not give.
-        let is_saved = |s: &Focus| matches!(s, Focus::Sprite { .. });
+        let is_saved = |s: &Region| matches!(s, Region::Sprite { .. });
         let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
         let body = LensBody::WORDS[body].1;
         let mut kind = LensKind::of_word(if content.is_some() && is_content { "content" } else { "color" }).unwrap();
@@ -632,17 +632,20 @@ fn same(a: &Scene, b: &Scene) -> bool {
 }
 
 /// Gives `b` the rotations of `a` where they agree within a rounding.
-fn turn_alike(a: &Focus, b: &mut Focus) {
+fn turn_alike(a: &Region, b: &mut Region) {
     let turns = match (a, b) {
-        (Focus::Combined { parts: a, .. }, Focus::Combined { parts: b, .. })
-        | (Focus::Enclosed { parts: a, .. }, Focus::Enclosed { parts: b, .. }) => {
+        (Region::Combined { parts: a, .. }, Region::Combined { parts: b, .. })
+        | (Region::Enclosed { parts: a, .. }, Region::Enclosed { parts: b, .. }) => {
             a.iter().zip(b).for_each(|(a, b)| turn_alike(a, b));
             None
         }
-        (Focus::Shape(Shape::Box { rotation: ra, .. }), Focus::Shape(Shape::Box { rotation: rb, .. }))
-        | (Focus::Shape(Shape::Ellipsoid { rotation: ra, .. }), Focus::Shape(Shape::Ellipsoid { rotation: rb, .. }))
-        | (Focus::Shape(Shape::Flat { rotation: ra, .. }), Focus::Shape(Shape::Flat { rotation: rb, .. }))
-        | (Focus::Mesh { rotation: ra, .. }, Focus::Mesh { rotation: rb, .. }) => Some((ra, rb)),
+        (Region::Shape(Shape::Box { rotation: ra, .. }), Region::Shape(Shape::Box { rotation: rb, .. }))
+        | (
+            Region::Shape(Shape::Ellipsoid { rotation: ra, .. }),
+            Region::Shape(Shape::Ellipsoid { rotation: rb, .. }),
+        )
+        | (Region::Shape(Shape::Flat { rotation: ra, .. }), Region::Shape(Shape::Flat { rotation: rb, .. }))
+        | (Region::Mesh { rotation: ra, .. }, Region::Mesh { rotation: rb, .. }) => Some((ra, rb)),
         _ => None,
     };
     if let Some((ra, rb)) = turns.filter(|(ra, rb)| ra.dot(**rb).abs() > 1.0 - 1e-12) {

@@ -3,7 +3,7 @@ use glam::{DQuat, DVec3};
 use super::*;
 use crate::{
     geom::Shape,
-    lens::Focus,
+    lens::Region,
     scene::{Poi, PoiPlace},
     view::Projection,
 };
@@ -524,7 +524,7 @@ fn deep_nesting_is_an_error_and_not_a_crash() {
 #[test]
 fn a_zero_size_lens_is_a_lens_that_holds_nothing() {
     let scene = read_text(&lens_text("shape = { kind = \"sphere\", center = [0, 0, 0], radius = 0 }")).unwrap();
-    let Focus::Shape(shape) = &scene.lenses[0].shapes[0] else { panic!("a sphere") };
+    let Region::Shape(shape) = &scene.lenses[0].shapes[0] else { panic!("a sphere") };
     assert!(shape.volume().unwrap().is_empty());
 }
 

@@ -130,7 +130,7 @@ mod tests {
     use crate::{
         figure::{scene_file::Options, sheet::file},
         geom::Shape,
-        lens::Focus,
+        lens::Region,
     };
 
     const SCENE: &str = r#"
@@ -157,7 +157,7 @@ shape = { kind = "sphere", center = [0, 0, 0], radius = 60.0 }
 
     fn radius(cell: &Cell) -> f64 {
         match cell.scene.lenses[0].shapes[0] {
-            Focus::Shape(Shape::Sphere { radius, .. }) => radius,
+            Region::Shape(Shape::Sphere { radius, .. }) => radius,
             _ => f64::NAN,
         }
     }

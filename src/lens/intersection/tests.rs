@@ -39,7 +39,7 @@ fn volumes(model: &CityModel, &(kind, at, r, turn): &LensNumbers) -> Vec<Volume>
 }
 
 /// All triangles that meet a point of every lens, one after the other.
-fn by_brute_force(model: &CityModel, regions: &[Region]) -> Vec<u32> {
+fn by_brute_force(model: &CityModel, regions: &[CommonPart]) -> Vec<u32> {
     let mut met = Vec::new();
     for tile in &model.tiles {
         for triangle in tile.indices.start / 3..tile.indices.end / 3 {

@@ -65,28 +65,28 @@ impl City {
         ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index }
     }
 
-    fn ask(&self, solids: &mut Solids, focus: &Focus) -> Result<Vec<Volume>, FocusError> {
+    fn ask(&self, solids: &mut Solids, region: &Region) -> Result<Vec<Volume>, RegionError> {
         let sight = Sightlines::From(DVec3::ZERO);
-        solids.volumes(focus, self.shown(), &Place { motion: Motion::NONE, sight })
+        solids.volumes(region, self.shown(), &Place { motion: Motion::NONE, sight })
     }
 
-    fn one(&self, focus: &Focus) -> Volume {
-        let mut all = self.ask(&mut Solids::default(), focus).unwrap();
-        assert_eq!(all.len(), 1, "{focus:?}");
+    fn one(&self, region: &Region) -> Volume {
+        let mut all = self.ask(&mut Solids::default(), region).unwrap();
+        assert_eq!(all.len(), 1, "{region:?}");
         all.remove(0)
     }
 
-    fn error(&self, focus: &Focus) -> (String, String) {
-        self.ask(&mut Solids::default(), focus).expect_err("something is wrong")
+    fn error(&self, region: &Region) -> (String, String) {
+        self.ask(&mut Solids::default(), region).expect_err("something is wrong")
     }
 }
 
-fn objects(ids: &[&str]) -> Focus {
-    Focus::Objects(Choice { ids: ids.iter().map(|id| (*id).to_owned()).collect(), ..Choice::default() })
+fn objects(ids: &[&str]) -> Region {
+    Region::Objects(Choice { ids: ids.iter().map(|id| (*id).to_owned()).collect(), ..Choice::default() })
 }
 
-fn mesh(file: impl Into<PathBuf>) -> Focus {
-    Focus::Mesh { file: file.into(), at: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: 1.0 }
+fn mesh(file: impl Into<PathBuf>) -> Region {
+    Region::Mesh { file: file.into(), at: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: 1.0 }
 }
 
 fn solid(volume: &Volume) -> &PlacedSolid {
@@ -129,8 +129,8 @@ fn objects_are_the_union_of_their_bodies() {
     assert_holds(&both, &[[3.0, 4.0, 5.0], [9.0, 4.0, 8.0], [6.0, 4.0, 3.0]], &[[3.0, 4.0, 7.0]]);
     let left = row.one(&objects(&["left"]));
     assert_holds(&left, &[[3.0, 4.0, 5.0]], &[[9.0, 4.0, 5.0]]);
-    let Focus::Objects(choice) = objects(&["left"]) else { unreachable!() };
-    let others = row.one(&Focus::Objects(Choice { except: true, ..choice }));
+    let Region::Objects(choice) = objects(&["left"]) else { unreachable!() };
+    let others = row.one(&Region::Objects(Choice { except: true, ..choice }));
     assert_holds(&others, &[[9.0, 4.0, 5.0]], &[[3.0, 4.0, 5.0]]);
 }
 
@@ -160,7 +160,7 @@ fn masks_are_the_light_pixels_of_images() {
     let folder = Folder::new();
     let nowhere = City { model: CityModel::default(), geometries: vec![], index: OnceLock::new() };
     let image = folder.image("mask.png", &["#.+", "-o#"]);
-    let mask = |size: DVec2, height: f64| Focus::Mask {
+    let mask = |size: DVec2, height: f64| Region::Mask {
         image: image.clone(),
         corner: DVec2::new(100.0, 200.0),
         size,
@@ -180,7 +180,7 @@ fn masks_are_the_light_pixels_of_images() {
     assert_eq!(nowhere.error(&mask(DVec2::new(-1.0, 20.0), 7.0)).0, "size");
 
     let layers = ["##", ".#", ".."].map(|row| folder.image(&format!("{}.png", row.replace('.', "_")), &[row]));
-    let pile = |images: &[PathBuf]| Focus::Mask3d {
+    let pile = |images: &[PathBuf]| Region::Mask3d {
         images: images.to_vec(),
         corner: DVec3::new(0.0, 0.0, -10.0),
         size: DVec3::new(2.0, 1.0, 3.0),
@@ -200,7 +200,7 @@ fn meshes_are_what_files_enclose() {
     let ring = nowhere.one(&mesh("citydata/ring.obj"));
     assert_holds(&ring, &[[1.0, 0.0, 0.0], [0.0, -1.2, 0.1]], &[[0.0, 0.0, 0.0], [1.4, 0.0, 0.0], [1.0, 0.0, 0.4]]);
     assert_eq!(solid(&ring).solid.mended, 0);
-    let moved = nowhere.one(&Focus::Mesh {
+    let moved = nowhere.one(&Region::Mesh {
         file: "citydata/ring.obj".into(),
         at: DVec3::new(500.0, 0.0, 20.0),
         rotation: DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2),
@@ -226,7 +226,7 @@ fn what_was_made_is_kept_while_it_is_asked_for() {
     let nowhere = City { model: CityModel::default(), geometries: vec![], index: OnceLock::new() };
     let mut solids = Solids::default();
     let first = nowhere.ask(&mut solids, &mesh("citydata/ring.obj")).unwrap();
-    let moved = Focus::Mesh {
+    let moved = Region::Mesh {
         file: "citydata/ring.obj".into(),
         at: DVec3::new(3.0, 2.0, 1.0),
         rotation: DQuat::from_rotation_z(1.0),
@@ -236,7 +236,7 @@ fn what_was_made_is_kept_while_it_is_asked_for() {
     assert!(Arc::ptr_eq(&solid(&first[0]).solid, &solid(&second[0]).solid), "moving a mesh makes it anew");
     assert_ne!(first[0].bounds(), second[0].bounds());
     let larger =
-        Focus::Mesh { file: "citydata/ring.obj".into(), at: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: 2.0 };
+        Region::Mesh { file: "citydata/ring.obj".into(), at: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: 2.0 };
     assert!(!Arc::ptr_eq(&solid(&first[0]).solid, &solid(&nowhere.ask(&mut solids, &larger).unwrap()[0]).solid));
     solids.forget_others();
     // Asked for since: kept. The larger one was not: made anew, and another.
@@ -262,14 +262,14 @@ fn wrong_files_are_named_with_their_key() {
     let no_face = folder.file("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     let flat = folder.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let missing = folder.0.join("none.png");
-    let mask = |image: &PathBuf| Focus::Mask {
+    let mask = |image: &PathBuf| Region::Mask {
         image: image.clone(),
         corner: DVec2::ZERO,
         size: DVec2::ONE,
         base: 0.0,
         height: 1.0,
     };
-    for (focus, key, name, words) in [
+    for (region, key, name, words) in [
         (mask(&text), "image", "text.png", "neither PNG nor JPEG"),
         (mask(&black), "image", "black.png", "empty"),
         (mask(&missing), "image", "none.png", "cannot be read"),
@@ -279,18 +279,18 @@ fn wrong_files_are_named_with_their_key() {
         (mesh(&text), "file", "text.png", "text"),
         (mesh(&folder.0), "file", "veduta-solids", "is a folder"),
         (
-            Focus::Mesh { file: "citydata/ring.obj".into(), at: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: 0.0 },
+            Region::Mesh { file: "citydata/ring.obj".into(), at: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: 0.0 },
             "scale",
             "",
             "> 0",
         ),
     ] {
-        let (at, message) = nowhere.error(&focus);
+        let (at, message) = nowhere.error(&region);
         assert_eq!(at, key, "{message}");
         assert!(message.contains(name) && message.contains(words), "{message}");
         assert!(!message.contains('\n'), "{message}");
     }
     // Choices and combinations are no volumes: who draws them asks for their parts.
-    let union = Focus::Combined { how: Operation::Union, parts: vec![mesh("citydata/ring.obj")] };
+    let union = Region::Combined { how: Operation::Union, parts: vec![mesh("citydata/ring.obj")] };
     assert!(nowhere.ask(&mut Solids::default(), &union).unwrap().is_empty());
 }

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec2, DVec3};
 
 use crate::{
     geom::{Shape, combination::Operation},
-    lens::{Focus, Lens, LensSprite},
+    lens::{Lens, LensSprite, Region},
     measure::{
         quantity::Quantity,
         stage::{Stage, lens},
@@ -93,7 +93,7 @@ const ARRANGEMENTS: [(&str, f64); 2] = [("apart", 2.2), ("overlapping", 0.25)];
 /// A case that is measured: lenses, and what stands in the table beside the technique.
 struct Case {
     shape: &'static str,
-    lenses: Vec<Focus>,
+    lenses: Vec<Region>,
     arrangement: &'static str,
     /// The way of all of it from where it stood a frame ago, metres.
     moved: Option<DVec3>,
@@ -124,7 +124,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
         let motion = if case.moved.is_some() { "moving" } else { "still" };
         let mut scene = plain.clone();
         let one =
-            |(i, focus): (usize, Focus)| -> Lens { lens(&format!("lens {i}"), focus, &[EFFECTS[i % EFFECTS.len()]]) };
+            |(i, focus): (usize, Region)| -> Lens { lens(&format!("lens {i}"), focus, &[EFFECTS[i % EFFECTS.len()]]) };
         scene.lenses = case.lenses.into_iter().enumerate().map(one).collect();
         let reference = stage.shot(scene.clone(), 1);
         for technique in techniques {
@@ -160,20 +160,20 @@ fn radius(sphere: &Shape) -> f64 {
 }
 
 /// Spheres in a row about one, so many of its radii apart.
-fn row(sphere: &Shape, count: usize, apart: DVec3) -> Vec<Focus> {
+fn row(sphere: &Shape, count: usize, apart: DVec3) -> Vec<Region> {
     let Shape::Sphere { center, radius } = *sphere else { return Vec::new() };
     let at = |i: usize| center + (i as f64 - 0.5 * (count as f64 - 1.0)) * radius * apart;
     (0..count).map(|i| Shape::Sphere { center: at(i), radius }.into()).collect()
 }
 
-fn move_by(focus: &mut Focus, by: DVec3) {
-    if let Focus::Shape(Shape::Sphere { center, .. }) = focus {
+fn move_by(focus: &mut Region, by: DVec3) {
+    if let Region::Shape(Shape::Sphere { center, .. }) = focus {
         *center += by;
     }
 }
 
 /// One of each kind of shape, about a sphere.
-fn shapes(sphere: Shape) -> Vec<(&'static str, Focus)> {
+fn shapes(sphere: Shape) -> Vec<(&'static str, Region)> {
     let Shape::Sphere { center, radius } = sphere else { return Vec::new() };
     let rotation = DQuat::from_rotation_z(0.5) * DQuat::from_rotation_x(0.3);
     let axis = rotation * DVec3::Z;
@@ -193,8 +193,8 @@ fn shapes(sphere: Shape) -> Vec<(&'static str, Focus)> {
         ("convex", Shape::Convex { points: points.collect() }.into()),
         (
             "solid",
-            Focus::Prism { points: star.collect(), holes: Vec::new(), base: center.z - radius, height: 2.0 * radius },
+            Region::Prism { points: star.collect(), holes: Vec::new(), base: center.z - radius, height: 2.0 * radius },
         ),
-        ("combination", Focus::Combined { how: Operation::Difference, parts: vec![sphere.into(), slab.into()] }),
+        ("combination", Region::Combined { how: Operation::Difference, parts: vec![sphere.into(), slab.into()] }),
     ]
 }

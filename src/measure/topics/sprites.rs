@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use crate::{
     geom::{Shape, combination::Operation},
     lens::{
-        Focus, LensSprite,
+        LensSprite, Region,
         sprite::{Format, Mapping},
     },
     measure::{
@@ -104,12 +104,12 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
 }
 
 /// The shapes, about a sphere.
-fn shapes(sphere: Shape) -> Vec<(&'static str, Focus)> {
+fn shapes(sphere: Shape) -> Vec<(&'static str, Region)> {
     let Shape::Sphere { center, radius } = sphere else { return Vec::new() };
     let rotation = DQuat::from_rotation_z(0.5) * DQuat::from_rotation_x(0.3);
     let size = DVec3::new(1.9, 1.5, 1.3) * radius;
     // The sphere with a slab cut out of it: rays enter and leave it twice.
     let slab = Shape::Box { center, size: DVec3::new(3.0, 0.6, 3.0) * radius, rotation };
-    let bitten = Focus::Combined { how: Operation::Difference, parts: vec![sphere.clone().into(), slab.into()] };
+    let bitten = Region::Combined { how: Operation::Difference, parts: vec![sphere.clone().into(), slab.into()] };
     vec![("sphere", sphere.into()), ("box", Shape::Box { center, size, rotation }.into()), ("concave", bitten)]
 }

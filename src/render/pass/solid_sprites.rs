@@ -5,12 +5,12 @@ use std::ops::Range;
 use crate::{
     gpu::{Gpu, GpuError},
     render::{
-        body::{Body, PlacedLeaf},
         eye::PictureTile,
         frame::FrameInput,
         layout,
         lens_numbers::scale_and_shift,
         pass::context::{Board, FrameContext, Keys, Line, Pass, Preparing},
+        placed_region::{PlacedLeaf, PlacedRegion},
         plan::FramePlan,
         programs::Programs,
         resource::{
@@ -124,38 +124,38 @@ impl PipelineKey for SideKey {
     }
 }
 
-/// The pipelines that make the sprite of a body.
-fn keys_of(body: &Body) -> Vec<SideKey> {
-    match body {
-        Body::One(_) => [Side::Missed, Side::Nearest, Side::Farthest].map(SideKey::of_solid).to_vec(),
-        Body::Combined(_) => {
-            let forms_of_leaves = body.forms_in_combination();
+/// The pipelines that make the sprite of a region.
+fn keys_of(region: &PlacedRegion) -> Vec<SideKey> {
+    match region {
+        PlacedRegion::One(_) => [Side::Missed, Side::Nearest, Side::Farthest].map(SideKey::of_solid).to_vec(),
+        PlacedRegion::Combined(_) => {
+            let forms_of_leaves = region.forms_in_combination();
             let forms = [Side::NearestForm, Side::FarthestForm].into_iter();
             let faces = [Side::NearestFace, Side::FarthestFace].into_iter();
-            let wanted = forms.chain(faces.filter(|_| body.has_solids()));
+            let wanted = forms.chain(faces.filter(|_| region.has_solids()));
             let keys = wanted.map(|side| SideKey { side, leaves: Some(forms_of_leaves.clone()) });
             std::iter::once(SideKey::of_solid(Side::Missed)).chain(keys).collect()
         }
     }
 }
 
-/// The leaves of a body that have draws of their own: the solids of a combination, by their places in it.
-fn own_draws(body: &Body) -> impl Iterator<Item = (u32, &PlacedLeaf)> {
-    let is_combined = matches!(body, Body::Combined(_));
-    (0..).zip(body.leaves()).filter(move |(_, leaf)| is_combined && leaf.is_solid())
+/// The leaves of a region that have draws of their own: the solids of a combination, by their places in it.
+fn own_draws(region: &PlacedRegion) -> impl Iterator<Item = (u32, &PlacedLeaf)> {
+    let is_combined = matches!(region, PlacedRegion::Combined(_));
+    (0..).zip(region.leaves()).filter(move |(_, leaf)| is_combined && leaf.is_solid())
 }
 
 /// A volume whose sides a sprite tells, with the sprite and its place.
 #[derive(Clone, Copy)]
 pub struct OnPage<'a> {
     lens: u32,
-    body: &'a Body,
+    region: &'a PlacedRegion,
     sprite: &'a SeenSprite,
     place: Place,
-    region: layout::Region,
+    rows: layout::Region,
 }
 
-/// What makes a sprite on pages of `page` texels: one stage for the body and one for each solid of a combination.
+/// What makes a sprite on pages of `page` texels: one stage for the region and one for each solid of a combination.
 fn stages_of(on: &OnPage, input: &FrameInput, page: [u32; 2]) -> Vec<layout::SpriteStage> {
     let [scale, shift] = scale_and_shift(input, on.sprite, on.place);
     // Texels count down the page, clip space up.
@@ -169,10 +169,10 @@ fn stages_of(on: &OnPage, input: &FrameInput, page: [u32; 2]) -> Vec<layout::Spr
         clip_shift: [side(0), -side(1)],
         leaves,
     };
-    let [first, last] = [on.region.b[0] as u32, on.region.b[1] as u32];
+    let [first, last] = [on.rows.b[0] as u32, on.rows.b[1] as u32];
     // A solid has no planes.
-    let of_leaf = |(i, leaf): (u32, &PlacedLeaf)| stage(leaf.region(&input.view, &mut Vec::new()), [first, last, i, 0]);
-    std::iter::once(stage(on.region, [first, last, 0, 0])).chain(own_draws(on.body).map(of_leaf)).collect()
+    let of_leaf = |(i, leaf): (u32, &PlacedLeaf)| stage(leaf.rows(&input.view, &mut Vec::new()), [first, last, i, 0]);
+    std::iter::once(stage(on.rows, [first, last, 0, 0])).chain(own_draws(on.region).map(of_leaf)).collect()
 }
 
 /// A draw of a sprite pass.
@@ -191,30 +191,30 @@ fn draws_of<'a>(sprites: &[OnPage<'a>], input: &FrameInput) -> Vec<SideDraw<'a>>
     let mut first_stage = 0;
     let mut draws = Vec::new();
     for on in sprites {
-        let &OnPage { lens, body, sprite, place, .. } = on;
+        let &OnPage { lens, region, sprite, place, .. } = on;
         let mut add = |key, stage, corners| draws.push(SideDraw { stage, key, lens, sprite, place, corners });
         // Inside of it, rays enter nowhere first.
-        let enters = |of: &Side| !of.is_nearest() || !body.holds_eye(&input.view);
+        let enters = |of: &Side| !of.is_nearest() || !region.holds_eye(&input.view);
         add(SideKey::of_solid(Side::Missed), first_stage, 0..3);
-        match body {
-            Body::One(leaf) => {
+        match region {
+            PlacedRegion::One(leaf) => {
                 for of in [Side::Nearest, Side::Farthest].into_iter().filter(enters) {
                     add(SideKey::of_solid(of), first_stage, leaf.place.corners.clone());
                 }
             }
-            Body::Combined(_) => {
-                let forms_of_leaves = body.forms_in_combination();
+            PlacedRegion::Combined(_) => {
+                let forms_of_leaves = region.forms_in_combination();
                 let key = |side| SideKey { side, leaves: Some(forms_of_leaves.clone()) };
                 let forms = [Side::NearestForm, Side::FarthestForm];
                 forms.into_iter().filter(enters).for_each(|of| add(key(of), first_stage, 0..3));
-                for (i, (_, leaf)) in own_draws(body).enumerate() {
+                for (i, (_, leaf)) in own_draws(region).enumerate() {
                     for of in [Side::NearestFace, Side::FarthestFace].into_iter().filter(enters) {
                         add(key(of), first_stage + 1 + i, leaf.place.corners.clone());
                     }
                 }
             }
         }
-        first_stage += 1 + own_draws(body).count();
+        first_stage += 1 + own_draws(region).count();
     }
     draws
 }
@@ -291,12 +291,12 @@ impl Pass for SolidSprites {
             _ => None,
         };
         let volumes = plan.seen.volumes.iter().filter_map(on_page).zip(&plan.numbers.sides);
-        let sprites = volumes.map(|((volume, sprite, place), region)| OnPage {
+        let sprites = volumes.map(|((volume, sprite, place), rows)| OnPage {
             lens: volume.lens,
-            body: &plan.input.volumes[volume.index].body,
+            region: &plan.input.volumes[volume.index].region,
             sprite,
             place,
-            region: *region,
+            rows: *rows,
         });
         (plan.seen.pages.count > 0).then(|| sprites.collect())
     }
@@ -308,7 +308,7 @@ impl Pass for SolidSprites {
     }
 
     fn add_keys(&self, input: Option<&Vec<OnPage>>, _: &FramePlan, _: &Programs, keys: &mut Keys) {
-        keys.add(12, input.into_iter().flatten().flat_map(|on| keys_of(on.body)));
+        keys.add(12, input.into_iter().flatten().flat_map(|on| keys_of(on.region)));
     }
 
     fn prepare(&mut self, sprites: &Vec<OnPage>, stage: &mut Preparing) -> Result<(), GpuError> {

@@ -10,11 +10,11 @@ use crate::{
     lens::sprite::Format,
     render::{
         bake::{BakeRequest, kept_sprites, list_target, solids_of},
-        body::{Body, PlacedLeaf},
         eye::{PictureTile, view_uniform},
         layout,
         own_sprites::OwnSprites,
         pass::context::{Board, FrameContext, Keys, Line, Pass, Preparing},
+        placed_region::{PlacedLeaf, PlacedRegion},
         plan::FramePlan,
         programs::Programs,
         resource::{
@@ -65,11 +65,11 @@ enum StoredKey {
 }
 
 impl StoredKey {
-    /// What makes the sprite of a body.
-    fn of(body: &Body) -> Self {
-        match body.form().and_then(Form::closed) {
+    /// What makes the sprite of a region.
+    fn of(region: &PlacedRegion) -> Self {
+        match region.form().and_then(Form::closed) {
             Some(form) => Self::Form(form),
-            None => Self::Layers(body.leaf_forms()),
+            None => Self::Layers(region.leaf_forms()),
         }
     }
 }
@@ -254,7 +254,7 @@ impl StoredSprites {
 
     /// Lists the crossings of rays with the solids of lenses that have sprites.
     fn list(&self, requests: &[BakeRequest], frame: &FrameContext, recording: &mut Recording) {
-        if requests.iter().all(|m| m.body.is_form()) {
+        if requests.iter().all(|m| m.region.is_form()) {
             return;
         }
         recording.encoder.clear_buffer(self.lists.buffer(), 0, None);
@@ -265,7 +265,7 @@ impl StoredSprites {
         OwnSprites::counts_of(requests).for_each(|own| clear(own, Some(4)));
         clear(1 + frame.plan.own_sprites.room().counts, None);
         let solids: Vec<(u32, &PlacedLeaf)> =
-            requests.iter().flat_map(|m| solids_of(m.body).map(move |(_, leaf)| (m.lens, leaf))).collect();
+            requests.iter().flat_map(|m| solids_of(m.region).map(move |(_, leaf)| (m.lens, leaf))).collect();
         let (Some(target), false) = (&self.list_target, solids.is_empty()) else { return };
         let mut lenses: Vec<u32> = solids.iter().map(|(lens, _)| *lens).collect();
         lenses.dedup();
@@ -350,8 +350,8 @@ impl Pass for StoredSprites {
 
     fn add_keys(&self, input: Option<&&[BakeRequest]>, _: &FramePlan, _: &Programs, keys: &mut Keys) {
         let keys_of = |request: &BakeRequest| {
-            let lists = solids_of(request.body).next().map(|_| StoredKey::List);
-            std::iter::once(StoredKey::of(request.body)).chain(lists)
+            let lists = solids_of(request.region).next().map(|_| StoredKey::List);
+            std::iter::once(StoredKey::of(request.region)).chain(lists)
         };
         keys.add(13, input.copied().into_iter().flatten().flat_map(keys_of));
     }
@@ -377,13 +377,13 @@ impl Pass for StoredSprites {
         self.list(requests, frame, recording);
         let mut lenses: Vec<u32> = requests.iter().map(|m| m.lens).collect();
         lenses.dedup();
-        let lists: usize = requests.iter().map(|m| solids_of(m.body).count()).sum();
+        let lists: usize = requests.iter().map(|m| solids_of(m.region).count()).sum();
         recording.compute("stored depth sprites", &lenses, |pass| {
             pass.set_bind_group(1, &frame.groups.planes, &[]);
             for (i, request) in requests.iter().enumerate() {
                 let [width, height] = request.bounds.size;
                 let together = if request.stored.code.format == Format::Unorm8 { 2 } else { 1 };
-                pass.set_pipeline(frame.pipelines.get_compute(&StoredKey::of(request.body)));
+                pass.set_pipeline(frame.pipelines.get_compute(&StoredKey::of(request.region)));
                 // After those of the lists.
                 pass.set_bind_group(2, self.group.get(), &[offset(lists + i)]);
                 pass.dispatch_workgroups(width.div_ceil(GROUP * together), height.div_ceil(GROUP), 1);

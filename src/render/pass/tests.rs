@@ -9,7 +9,6 @@ use crate::{
     geom::{Aabb, Shape},
     lens::{Class, EffectUse, Lens, LensKind, LensSprite},
     render::{
-        body::{Body, Leaf},
         city::{Chunk, SectionKind},
         city_facts::{CityFacts, SectionFacts},
         deformations::Moved,
@@ -19,6 +18,7 @@ use crate::{
         operations::{LensTables, Operations},
         own_sprites::OwnSprites,
         pass::{Inputs, list},
+        placed_region::{Leaf, PlacedRegion},
         plan::{Adapter, FramePlan, Stayed},
         settings::Settings,
         solids::SolidTable,
@@ -98,7 +98,7 @@ impl Asked {
 
     fn volumes(&self) -> Vec<LensVolume> {
         let ball = Shape::Sphere { center: DVec3::ZERO, radius: 20.0 };
-        let body = Body::One(Leaf::Volume(ball.volume().expect("a volume")).into());
+        let body = PlacedRegion::One(Leaf::Volume(ball.volume().expect("a volume")).into());
         let ball = LensVolume { sprite: self.sprite, section: self.section, ..LensVolume::plain(0, body) };
         self.effect.map(|_| ball).into_iter().collect()
     }

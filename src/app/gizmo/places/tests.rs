@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// The shape of a lens, as a scene file gives it.
-fn shape(text: &str) -> Focus {
+fn shape(text: &str) -> Region {
     let lens = format!("veduta = 1\n[[lens]]\nname = \"a\"\neffects = [\"sepia\"]\nshape = {{ {text} }}\n");
     parse(&lens, "scene", &Options::for_command_line()).unwrap().lenses[0].shapes[0].clone()
 }
@@ -32,8 +32,8 @@ fn level(_: DVec2) -> Option<f64> {
     Some(2.5)
 }
 
-fn place_of(focus: &Focus, kind: GizmoKind) -> DVec3 {
-    gizmos(focus, &level).into_iter().find(|(own, _)| *own == kind).unwrap().1
+fn place_of(region: &Region, kind: GizmoKind) -> DVec3 {
+    gizmos(region, &level).into_iter().find(|(own, _)| *own == kind).unwrap().1
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn every_shape_moves_with_all_that_is_held_of_it() {
         let mut after = before.clone();
         move_by(&mut after, by);
         // Without a ground below: what is of no height of its own is held where that is.
-        let [was, is] = [&before, &after].map(|focus| gizmos(focus, &|_| None));
+        let [was, is] = [&before, &after].map(|region| gizmos(region, &|_| None));
         assert!(was.len() == is.len() && !was.is_empty(), "{text}");
         for ((kind, from), (same, to)) in was.iter().zip(&is) {
             assert!(kind == same && to.distance(from + by) < 1e-9, "{text}: {kind:?} {from} {to}");
@@ -90,7 +90,7 @@ fn a_shape_that_is_resized_as_a_whole_keeps_its_middle_and_proportions() {
         let is = block(&after).unwrap();
         assert!(is.center == was.center && is.half.distance(1.5 * was.half) < 2e-3, "{text}: {is:?}");
     }
-    let Focus::Shape(Shape::Frustum { radius, top_radius, .. }) = ({
+    let Region::Shape(Shape::Frustum { radius, top_radius, .. }) = ({
         let mut frustum = shape(ALL[5]);
         set_radius(&mut frustum, 12.0);
         frustum
@@ -128,7 +128,7 @@ fn what_is_turned_is_so_about_its_middle_and_back_again() {
         let now = heading(&after).unwrap();
         // Places are of whole millimetres.
         assert!(now.distance(DVec3::new(-ahead.y, ahead.x, 0.0)) < 3e-3, "{text}: {ahead} to {now}");
-        let [was, is] = [&before, &after].map(|focus| middle(focus, &level).unwrap());
+        let [was, is] = [&before, &after].map(|region| middle(region, &level).unwrap());
         assert!(was.distance(is) < 2e-3, "{text}");
         turn_by(&mut after, -FRAC_PI_2);
         assert!(heading(&after).unwrap().distance(ahead) < 3e-3, "{text}");
@@ -140,22 +140,22 @@ fn what_is_turned_is_so_about_its_middle_and_back_again() {
 #[test]
 fn whatever_is_held_has_numbers_that_a_file_takes_and_gives_back() {
     for text in ALL {
-        let mut focus = shape(text);
-        move_by(&mut focus, DVec3::new(458_123.456_78, 78_600.012_3, -3.3));
-        for (kind, _) in gizmos(&focus.clone(), &level) {
+        let mut region = shape(text);
+        move_by(&mut region, DVec3::new(458_123.456_78, 78_600.012_3, -3.3));
+        for (kind, _) in gizmos(&region.clone(), &level) {
             match kind {
                 // Dragged through the middle to the other side: small, not inside out.
-                GizmoKind::Side { axis, is_up } => set_side(&mut focus, axis, is_up, -1e6, false),
-                GizmoKind::Ring => set_radius(&mut focus, 0.0),
-                GizmoKind::Turn => turn_by(&mut focus, PI / 7.0),
-                GizmoKind::Corner(0) => set_corner(&mut focus, 0, DVec3::new(458_010.1, 78_590.2, 30.3)),
+                GizmoKind::Side { axis, is_up } => set_side(&mut region, axis, is_up, -1e6, false),
+                GizmoKind::Ring => set_radius(&mut region, 0.0),
+                GizmoKind::Turn => turn_by(&mut region, PI / 7.0),
+                GizmoKind::Corner(0) => set_corner(&mut region, 0, DVec3::new(458_010.1, 78_590.2, 30.3)),
                 _ => {}
             }
         }
-        assert_eq!(focus.check(), None, "{text}");
+        assert_eq!(region.check(), None, "{text}");
         let options = Options::for_command_line();
         let mut scene = parse("veduta = 1\n[[lens]]\nname = \"a\"\neffects = [\"sepia\"]\nshape = { kind = \"sphere\", center = [0, 0, 0], radius = 1 }\n", "scene", &options).unwrap();
-        scene.lenses[0].shapes = vec![focus];
+        scene.lenses[0].shapes = vec![region];
         let read = parse(&to_toml(&scene), "scene", &options).unwrap_or_else(|error| panic!("{text}: {error}"));
         // Rotations are written by angles: the same to what those are rounded to.
         let [own, again] = [&scene, &read].map(|scene| gizmos(&scene.lenses[0].shapes[0], &level));
@@ -192,7 +192,7 @@ fn what_has_no_place_of_its_own_has_no_handles_and_a_combination_its_middle() {
     let union = shape(ALL[12]);
     assert_eq!(gizmos(&union, &level), [(GizmoKind::Middle, DVec3::new(3.0, 0.0, 0.0))]);
     assert_eq!(extent(&union), Aabb { min: DVec3::new(-9.0, -9.0, -9.0), max: DVec3::splat(9.0) });
-    let nothing = Focus::Combined { how: Operation::Union, parts: Vec::new() };
+    let nothing = Region::Combined { how: Operation::Union, parts: Vec::new() };
     assert!(gizmos(&nothing, &level).is_empty());
     // On the ground as far as that is within it.
     let mask = shape(ALL[11]);

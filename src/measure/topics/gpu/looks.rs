@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     geom::Aabb,
-    lens::{Class, EffectUse, Focus, Lens, Parameter},
+    lens::{Class, EffectUse, Lens, Parameter, Region},
     measure::stage,
     render::{
         frame::Backend,
@@ -25,7 +25,7 @@ pub fn scene(camera: Camera, lenses: Vec<Lens>) -> Scene {
 }
 
 /// A lens with one effect, without outline.
-pub fn lens(name: &str, shape: impl Into<Focus>, effect: &str) -> Lens {
+pub fn lens(name: &str, shape: impl Into<Region>, effect: &str) -> Lens {
     stage::lens(name, shape, &[effect])
 }
 

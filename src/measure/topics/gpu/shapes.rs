@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use crate::{
     geom::{Shape, Volume},
-    lens::{Class, EffectUse, Focus, Lens, Parameter, classify},
+    lens::{Class, EffectUse, Lens, Parameter, Region, classify},
     measure::topics::gpu::{
         check::Findings,
         looks::{bit, column_row, depths, lens, used},
@@ -111,7 +111,7 @@ pub fn band(volume: &Volume, eye: DVec3, d: f64) -> f64 {
 /// # Errors
 /// Shapes that have none.
 pub fn volumes(lens: &Lens) -> Result<Vec<Volume>, RenderError> {
-    let of = |focus: &Focus| focus.volumes().map_err(RenderError::Scene);
+    let of = |focus: &Region| focus.volumes().map_err(RenderError::Scene);
     Ok(lens.shapes.iter().map(of).collect::<Result<Vec<_>, _>>()?.concat())
 }
 
@@ -132,7 +132,7 @@ pub fn ask_mask(
         let [x, y] = column_row(picture.size, i);
         let is_in = bit(picture, number, i);
         let p = view.pixel_ray(x, y).at(d);
-        let right = d.is_finite() && lens.shapes.iter().any(|s| matches!(s, Focus::Shape(s) if holds(s, p)));
+        let right = d.is_finite() && lens.shapes.iter().any(|s| matches!(s, Region::Shape(s) if holds(s, p)));
         let beyond = |v: &Volume| v.signed_distance(p).abs() - band(v, view.camera.eye, d);
         let least = || volumes.iter().map(beyond).fold(f64::INFINITY, f64::min);
         let is_right = d > 0.0 && (is_in == right || d.is_finite() && least() <= 0.0);

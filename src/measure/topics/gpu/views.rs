@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::{
     geom::{Aabb, Shape},
-    lens::{EffectUse, Focus, Lens},
+    lens::{EffectUse, Lens, Region},
     measure::stage::{lens, sphere_around, sphere_covering},
     render::picture::{RenderError, Studio},
     scene::Scene,
@@ -98,7 +98,7 @@ pub fn with_ten(lensed: &Scene, studio: &mut Studio, size: [u32; 2]) -> Result<S
 /// Centre and radius of the first lens, metres, where it is a sphere.
 fn sphere(scene: &Scene) -> Option<(DVec3, f64)> {
     match scene.lenses.first()?.shapes.first()? {
-        Focus::Shape(Shape::Sphere { center, radius }) => Some((*center, *radius)),
+        Region::Shape(Shape::Sphere { center, radius }) => Some((*center, *radius)),
         _ => None,
     }
 }

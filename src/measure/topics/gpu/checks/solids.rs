@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    lens::Focus,
+    lens::Region,
     measure::topics::gpu::{
         check::{Check, Findings},
         cities::synthetic,
@@ -34,8 +34,8 @@ struct Prism {
 }
 
 impl Prism {
-    fn focus(&self) -> Focus {
-        Focus::Prism {
+    fn focus(&self) -> Region {
+        Region::Prism {
             points: self.rings[0].clone(),
             holes: self.rings[1..].to_vec(),
             base: self.ends[0],

@@ -1,4 +1,4 @@
-//! What decides what is inside of a lens: volumes, membership by object, and combinations of them.
+//! Regions of lenses where they stand in a frame: volumes, membership by object, saved sprites, users' tests, and CSG trees of them.
 
 use std::sync::Arc;
 
@@ -16,12 +16,12 @@ use crate::{
     view::View,
 };
 
-/// A body of a lens.
+/// A region of a lens, placed: in the world, with where the GPU has what belongs to it.
 #[derive(Clone, Debug)]
-pub enum Body {
-    /// A leaf alone.
+pub enum PlacedRegion {
+    /// A leaf of a CSG tree alone.
     One(PlacedLeaf),
-    /// A combination: its leaves, each with the operations after it.
+    /// A CSG tree in postfix order: its leaves, each with the operations after it.
     Combined(Vec<(PlacedLeaf, Vec<Operation>)>),
 }
 
@@ -95,7 +95,7 @@ pub fn too_large(program: &[(PlacedLeaf, Vec<Operation>)]) -> Option<(&'static s
 /// Triangles are told from combinations down to parts of this size, metres.
 const FINEST_M: f64 = 1e-3;
 
-impl Body {
+impl PlacedRegion {
     /// Its leaves.
     pub fn leaves(&self) -> impl Iterator<Item = &PlacedLeaf> {
         let (one, many) = match self {
@@ -207,11 +207,11 @@ impl Body {
     /// The union of bodies as one combination; `None` where that is none or too large for one.
     pub fn union(bodies: &[Self]) -> Option<Self> {
         let mut all: Vec<(PlacedLeaf, Vec<Operation>)> = Vec::new();
-        if bodies.iter().any(|body| body.saved().is_some()) {
+        if bodies.iter().any(|region| region.saved().is_some()) {
             return None;
         }
-        for (i, body) in bodies.iter().filter(|body| !body.is_empty()).enumerate() {
-            match body {
+        for (i, region) in bodies.iter().filter(|region| !region.is_empty()).enumerate() {
+            match region {
                 Self::One(leaf) => all.push((leaf.clone(), Vec::new())),
                 Self::Combined(program) => all.extend(program.iter().cloned()),
             }
@@ -252,7 +252,7 @@ impl Body {
             }
     }
 
-    /// Whether a closed triangle of an object and the body share a point; of combinations to [`FINEST_M`].
+    /// Whether a closed triangle of an object and the region share a point; of combinations to [`FINEST_M`].
     pub fn meets(&self, corners: &[DVec3; 3], object: u32) -> bool {
         match self {
             Self::One(PlacedLeaf { leaf: Leaf::Volume(volume), .. }) => volume.meets_triangle(corners),
@@ -300,15 +300,15 @@ impl Body {
     }
 
     /// The region that it is for an eye; planes and leaves are appended to `planes`.
-    pub fn region(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+    pub fn rows(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         match self {
-            Self::One(leaf) => leaf.region(view, planes),
-            Self::Combined(_) => self.combined_region(view, planes),
+            Self::One(leaf) => leaf.rows(view, planes),
+            Self::Combined(_) => self.combined_rows(view, planes),
         }
     }
 
     /// The same as a combination, if only of one leaf; leaves are appended to `planes`.
-    pub fn combined_region(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+    pub fn combined_rows(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         let alone;
         let program = match self {
             Self::One(leaf) => {
@@ -323,11 +323,11 @@ impl Body {
                 let size = members.bounds.size();
                 let around =
                     Volume::Box(OrientedBox { center: members.bounds.center(), size, rotation: glam::DQuat::IDENTITY });
-                let region = PlacedLeaf::from(Leaf::Volume(around)).region(view, &mut Vec::new());
+                let region = PlacedLeaf::from(Leaf::Volume(around)).rows(view, &mut Vec::new());
                 let test = leaf.test_number();
                 (layout::Region { test, ..region }, leaf.place.first as f32, then.clone())
             }
-            Leaf::Volume(_) | Leaf::Sprite(_) | Leaf::Own(_) => (leaf.region(view, planes), 0.0, then.clone()),
+            Leaf::Volume(_) | Leaf::Sprite(_) | Leaf::Own(_) => (leaf.rows(view, planes), 0.0, then.clone()),
         };
         let leaves: Vec<_> = program.iter().map(leaf).collect();
         let out = layout::Region {
@@ -395,7 +395,7 @@ impl PlacedLeaf {
     }
 
     /// The region that it is for an eye; its planes are appended to `planes`.
-    pub fn region(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
+    pub fn rows(&self, view: &View, planes: &mut Vec<[f32; 4]>) -> layout::Region {
         let test = self.test_number();
         let rows = match &self.leaf {
             Leaf::Members(_) => Rows { b: [self.place.first as f32, 0.0, 0.0, 0.0], ..Rows::default() },

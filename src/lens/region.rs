@@ -1,4 +1,4 @@
-//! Where a lens acts: its focus areas.
+//! Regions: where a lens acts (its focus areas).
 
 use std::{path::PathBuf, sync::OnceLock};
 
@@ -20,9 +20,9 @@ use crate::{
     },
 };
 
-/// A focus area of a lens.
+/// A region: a focus area of a lens, as a scene gives it.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Focus {
+pub enum Region {
     /// A volume given by its figures.
     Shape(Shape),
     /// What the faces of a file enclose, in any format that cities are read from.
@@ -92,7 +92,7 @@ pub enum Focus {
     /// Everything that belongs to the city objects that lie in some shapes, wherever it is.
     Enclosed {
         /// The shapes; at least one.
-        parts: Vec<Focus>,
+        parts: Vec<Region>,
         /// Only objects of which no corner is outside.
         whole: bool,
         /// Only objects of these types, as their files call them; parts are of the type that they are part of. Empty: all.
@@ -112,17 +112,17 @@ pub enum Focus {
         /// How.
         how: Operation,
         /// At least one.
-        parts: Vec<Focus>,
+        parts: Vec<Region>,
     },
 }
 
-impl From<Shape> for Focus {
+impl From<Shape> for Region {
     fn from(shape: Shape) -> Self {
         Self::Shape(shape)
     }
 }
 
-impl Focus {
+impl Region {
     /// What is wrong with its numbers: the key, and what would be right.
     pub fn check(&self) -> Option<(&'static str, String)> {
         let lengths: Vec<(&str, f64)> = match self {

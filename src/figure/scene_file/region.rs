@@ -14,12 +14,12 @@ use crate::{
         shape_keys::{OWN, SHAPES, kind_of},
     },
     geom::{Shape, shape::FlatFigure, shape::solid::prism},
-    lens::{Focus, nearest::did_you_mean},
+    lens::{Region, nearest::did_you_mean},
     shader::effect::{AskedBy, asked_for},
 };
 
 /// A shape of its table; `None` where something is wrong (and noted).
-pub fn read(reader: &mut Reader, node: &Node, place: &Place) -> Option<Focus> {
+pub fn read(reader: &mut Reader, node: &Node, place: &Place) -> Option<Region> {
     let Data::Table(entries) = &node.data else {
         reader.checker.note(
             place,
@@ -34,8 +34,8 @@ pub fn read(reader: &mut Reader, node: &Node, place: &Place) -> Option<Focus> {
     let names = || SHAPES.iter().map(|own| own.name).chain(own());
     let all = names().collect::<Vec<_>>().join(", ");
     let Some(own) = kind.and_then(Node::text).and_then(kind_of) else {
-        if let Some(focus) = own_region(reader, node, entries, place) {
-            return focus;
+        if let Some(region) = own_region(reader, node, entries, place) {
+            return region;
         }
         let (line, message) = match kind {
             None => (node.line, format!("is missing: one of {all}")),
@@ -48,22 +48,22 @@ pub fn read(reader: &mut Reader, node: &Node, place: &Place) -> Option<Focus> {
         return None;
     };
     let fields = reader.checker.fields(node, &own.table, &[], place.clone());
-    let focus = match (own.default)() {
-        blank @ (Focus::Combined { .. } | Focus::Enclosed { .. }) => return parts(reader, &fields, blank),
-        Focus::Prism { .. } => mask(reader, &fields)?,
-        Focus::Objects(_) => Focus::Objects(choice::read(reader, &fields)),
-        Focus::Thematic(_) => Focus::Thematic(choice::read(reader, &fields)),
-        Focus::Shape(Shape::Flat { .. }) => {
+    let region = match (own.default)() {
+        blank @ (Region::Combined { .. } | Region::Enclosed { .. }) => return parts(reader, &fields, blank),
+        Region::Prism { .. } => mask(reader, &fields)?,
+        Region::Objects(_) => Region::Objects(choice::read(reader, &fields)),
+        Region::Thematic(_) => Region::Thematic(choice::read(reader, &fields)),
+        Region::Shape(Shape::Flat { .. }) => {
             one_figure(reader, &fields);
             with_figure(&fields, own.read(&fields, reader)?)?
         }
         _ => {
-            let focus = own.read(&fields, reader)?;
-            with_files(reader, &fields, focus)?
+            let region = own.read(&fields, reader)?;
+            with_files(reader, &fields, region)?
         }
     };
-    check(reader, &fields, &focus);
-    Some(focus)
+    check(reader, &fields, &region);
+    Some(region)
 }
 
 /// The region test of a user's; `None`: there is none of that name.
@@ -72,46 +72,46 @@ fn own_region(
     node: &Node,
     entries: &[(String, u32, Node)],
     place: &Place,
-) -> Option<Option<Focus>> {
+) -> Option<Option<Region>> {
     let others: Vec<&str> = std::iter::once("kind").chain(keys::names(&OWN.table)).collect();
     let used = handled::read_beside(reader, node, place, AskedBy::Shapes, &others)?;
     let of_box = entries.iter().filter(|(key, ..)| key != "kind" && others.contains(&key.as_str())).cloned();
     let of_box = Node { data: Data::Table(of_box.collect()), line: node.line };
     let fields = reader.checker.fields(&of_box, &OWN.table, &[], place.clone());
     let read = OWN.read(&fields, reader);
-    Some(read.map(|focus| match focus {
-        Focus::Own { center, size, rotation, .. } => Focus::Own { used, center, size, rotation },
+    Some(read.map(|region| match region {
+        Region::Own { center, size, rotation, .. } => Region::Own { used, center, size, rotation },
         other => other,
     }))
 }
 
 /// Notes what the shape itself finds wrong with it.
-fn check(reader: &mut Reader, fields: &Fields, focus: &Focus) {
-    if let Focus::Shape(shape) = focus {
+fn check(reader: &mut Reader, fields: &Fields, region: &Region) {
+    if let Region::Shape(shape) = region {
         if let Err(error) = shape.check() {
             let key = ["points", "planes"].into_iter().find(|key| fields.given(key)).unwrap_or("");
             reader.checker.note(&fields.place, key, fields.place.line, error.to_string());
         }
-    } else if let Some((key, message)) = focus.check() {
+    } else if let Some((key, message)) = region.check() {
         reader.checker.note(&fields.place, key, fields.line(key), message);
     }
 }
 
 /// The same with the files that it is made of.
-fn with_files(reader: &mut Reader, fields: &Fields, focus: Focus) -> Option<Focus> {
-    Some(match focus {
-        Focus::Mesh { at, rotation, scale, .. } => {
-            Focus::Mesh { file: reader.file(fields, "file")?, at, rotation, scale }
+fn with_files(reader: &mut Reader, fields: &Fields, region: Region) -> Option<Region> {
+    Some(match region {
+        Region::Mesh { at, rotation, scale, .. } => {
+            Region::Mesh { file: reader.file(fields, "file")?, at, rotation, scale }
         }
-        Focus::Sprite { .. } => Focus::Sprite { file: reader.file(fields, "file")? },
-        Focus::Mask3d { corner, size, .. } => {
+        Region::Sprite { .. } => Region::Sprite { file: reader.file(fields, "file")? },
+        Region::Mask3d { corner, size, .. } => {
             let nodes = fields.node("images").and_then(Node::list)?;
             if nodes.is_empty() {
                 reader.checker.note(&fields.place, "images", fields.line("images"), "must name at least one image");
             }
             let path = |(i, node)| reader.path(fields, &format!("images.{i}"), node);
             let images: Vec<Option<PathBuf>> = nodes.iter().enumerate().map(path).collect();
-            Focus::Mask3d { images: images.into_iter().collect::<Option<_>>()?, corner, size }
+            Region::Mask3d { images: images.into_iter().collect::<Option<_>>()?, corner, size }
         }
         other => other,
     })
@@ -129,8 +129,8 @@ fn one_figure(reader: &mut Reader, fields: &Fields) {
 }
 
 /// A flat lens with its figure.
-fn with_figure(fields: &Fields, flat: Focus) -> Option<Focus> {
-    let Focus::Shape(Shape::Flat { center, rotation, .. }) = flat else { return Some(flat) };
+fn with_figure(fields: &Fields, flat: Region) -> Option<Region> {
+    let Region::Shape(Shape::Flat { center, rotation, .. }) = flat else { return Some(flat) };
     let figure = if let Some(radius) = fields.number("radius") {
         FlatFigure::Disc { radius }
     } else if let Some(size) = fields.node("size").and_then(plan) {
@@ -142,10 +142,10 @@ fn with_figure(fields: &Fields, flat: Focus) -> Option<Focus> {
 }
 
 /// What a combination or an enclosure is made of.
-fn parts(reader: &mut Reader, fields: &Fields, blank: Focus) -> Option<Focus> {
+fn parts(reader: &mut Reader, fields: &Fields, blank: Region) -> Option<Region> {
     let nodes = fields.node("shapes").and_then(Node::list)?;
     let part = |(i, node): (usize, &Node)| read(reader, node, &fields.place.within(&format!("shapes.{i}"), node.line));
-    let parts: Vec<Focus> = nodes.iter().enumerate().filter_map(part).collect();
+    let parts: Vec<Region> = nodes.iter().enumerate().filter_map(part).collect();
     let whole = fields.boolean("whole").unwrap_or(false);
     let types = fields.node("types").and_then(Node::list).unwrap_or_default();
     if fields.given("types") && types.is_empty() {
@@ -153,13 +153,13 @@ fn parts(reader: &mut Reader, fields: &Fields, blank: Focus) -> Option<Focus> {
     }
     let types = types.iter().filter_map(|n| n.text().map(str::to_owned)).collect();
     (parts.len() == nodes.len()).then_some(match blank {
-        Focus::Combined { how, .. } => Focus::Combined { how, parts },
-        _ => Focus::Enclosed { parts, whole, types },
+        Region::Combined { how, .. } => Region::Combined { how, parts },
+        _ => Region::Enclosed { parts, whole, types },
     })
 }
 
 /// What stands over a polygon, or over the light pixels of an image.
-fn mask(reader: &mut Reader, fields: &Fields) -> Option<Focus> {
+fn mask(reader: &mut Reader, fields: &Fields) -> Option<Region> {
     let (base, height) = (fields.number("base"), fields.number("height"));
     match (fields.given("image"), fields.given("points")) {
         (true, false) => {
@@ -169,7 +169,7 @@ fn mask(reader: &mut Reader, fields: &Fields) -> Option<Focus> {
             }
             refuse(reader, fields, &["holes"], "has a meaning only with points");
             let image = reader.file(fields, "image")?;
-            Some(Focus::Mask {
+            Some(Region::Mask {
                 image,
                 corner: plan(fields.node("corner")?)?,
                 size: plan(fields.node("size")?)?,
@@ -189,7 +189,7 @@ fn mask(reader: &mut Reader, fields: &Fields) -> Option<Focus> {
             if let Err(error) = prism(&rings, base, height.max(1.0), origin) {
                 reader.checker.note(&fields.place, "points", fields.line("points"), error.to_string());
             }
-            Some(Focus::Prism { points, holes, base, height })
+            Some(Region::Prism { points, holes, base, height })
         }
         (both, _) => {
             let message = match both {

@@ -1,7 +1,7 @@
-//! Regions: what several lens volumes have in common. A volume that is several bodies in union makes several regions.
+//! Common parts of lens volumes. A volume that is several bodies in union makes several of them.
 //!
 //! A convex volume is flat faces (half spaces) and at most one round part, which every point outside can be parted from by
-//! a plane. The planes of all volumes together bound the region, so flat volumes need nothing but clipping. Round parts are
+//! a plane. The planes of all volumes together bound the part, so flat volumes need nothing but clipping. Round parts are
 //! cut away plane by plane: what is left of the polygon or body is asked for its middle; if the round parts hold that, it is
 //! a common point, and if not, each that does not hold it gives a plane behind which nothing of it lies, and the middle with
 //! it. A plane through or before the centre of gravity takes at least 4/9 of an area and 27/64 of a volume (Grünbaum 1960
@@ -25,7 +25,7 @@ const MOST_ROUNDS: usize = 150;
 
 /// The points that are in each of several convex volumes; there is at least one.
 #[derive(Clone, Debug)]
-pub struct Region {
+pub struct CommonPart {
     volumes: Vec<Volume>,
     /// Near its middle; the planes are relative to it, which keeps the digits.
     origin: DVec3,
@@ -38,7 +38,7 @@ pub struct Region {
     touch: f64,
 }
 
-impl Region {
+impl CommonPart {
     /// The part that convex `volumes` have in common, solids and flat lenses standing for the boxes around them; `None` if that is nothing (or no volumes are given).
     pub fn common(volumes: &[Volume]) -> Option<Self> {
         let bounds =
@@ -84,7 +84,7 @@ impl Region {
         }
     }
 
-    /// [`Region::meets_triangle`] by cutting, for any number of volumes.
+    /// [`CommonPart::meets_triangle`] by cutting, for any number of volumes.
     fn cuts_down(&self, corners: &[DVec3; 3]) -> bool {
         let local = corners.map(|p| p - self.origin);
         let mut left = clipped(&local, self.faces.iter().copied());

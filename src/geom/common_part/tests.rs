@@ -98,7 +98,7 @@ proptest! {
         let n: Vec<f64> = n.iter().enumerate().map(|(i, v)| if i < 3 { v + far } else { *v }).collect();
         let volume = volume(kind, &n, 3.0);
         let triangle = corners(&raw).map(|p| p + far);
-        let region = Region::common(std::slice::from_ref(&volume)).expect("it is not empty");
+        let region = CommonPart::common(std::slice::from_ref(&volume)).expect("it is not empty");
         prop_assert_eq!(region.cuts_down(&triangle), volume.meets_triangle(&triangle), "{:?} {:?}", volume, triangle);
     }
 
@@ -111,7 +111,7 @@ proptest! {
     ) {
         let volumes: Vec<Volume> = kinds.iter().zip(n.chunks(8)).map(|(k, n)| volume(*k, n, 1.5)).collect();
         let triangle = corners(&raw);
-        let region = Region::common(&volumes);
+        let region = CommonPart::common(&volumes);
         let meets = region.as_ref().is_some_and(|r| r.meets_triangle(&triangle));
         if let Some(expected) = searched_in_triangle(triangle, &volumes) {
             prop_assert_eq!(meets, expected, "{:?} {:?}", volumes, triangle);
@@ -128,7 +128,7 @@ proptest! {
         kinds in prop::collection::vec(0..7_usize, 2..5), n in prop::collection::vec(-1.5..1.5f64, 32), size in 0.4..1.6f64
     ) {
         let volumes: Vec<Volume> = kinds.iter().zip(n.chunks(8)).map(|(k, n)| volume(*k, n, size)).collect();
-        let region = Region::common(&volumes);
+        let region = CommonPart::common(&volumes);
         if let Some(expected) = searched_in_box(volumes[0].bounds(), &volumes) {
             prop_assert_eq!(region.is_some(), expected, "{:?}", volumes);
         }
@@ -150,7 +150,7 @@ proptest! {
         middle in prop::array::uniform3(-4.0..4.0f64), half in prop::array::uniform3(0.05..2.0f64)
     ) {
         let volumes: Vec<Volume> = kinds.iter().zip(n.chunks(8)).map(|(k, n)| volume(*k, n, 3.0)).collect();
-        let Some(region) = Region::common(&volumes) else { return Ok(()) };
+        let Some(region) = CommonPart::common(&volumes) else { return Ok(()) };
         let (middle, half) = (DVec3::from(middle), DVec3::from(half));
         let bounds = Aabb { min: middle - half, max: middle + half };
         match region.coverage(&bounds) {
@@ -228,7 +228,7 @@ fn boxes_and_polytopes_are_decided_as_integers_decide() {
         let moved = |by: i64| planes.iter().map(|(n, d)| (*n, d * 1_000_000 + by)).collect::<Vec<_>>();
         let fine = triangle.map(|p| p.map(|c| c * 1_000_000));
         let (surely, perhaps) = (meets_in_integers(fine, &moved(-1)), meets_in_integers(fine, &moved(1)));
-        let region = Region::common(&volumes);
+        let region = CommonPart::common(&volumes);
         empty += usize::from(region.is_none());
         let meets = region.is_some_and(|r| r.meets_triangle(&world));
         assert!(meets || !surely, "{volumes:?} {world:?}");
@@ -252,16 +252,17 @@ fn touching_volumes_have_a_point_in_common_and_no_volumes_have_none() {
     };
     let upright = [DVec3::new(1.0, -3.0, -3.0), DVec3::new(1.0, 3.0, -3.0), DVec3::new(1.0, 0.0, 5.0)];
     for (a, b) in [(ball(0.0), ball(2.0)), (cube(0.0), cube(2.0)), (ball(0.0), cube(2.0))] {
-        let region = Region::common(&[a.clone(), b.clone()]).expect("one point at least");
+        let region = CommonPart::common(&[a.clone(), b.clone()]).expect("one point at least");
         assert!(region.meets_triangle(&upright), "{a:?} {b:?}");
         assert!(!region.meets_triangle(&upright.map(|p| p + DVec3::X * 1e-6)), "{a:?} {b:?}");
     }
-    assert!(Region::common(&[ball(0.0), ball(2.000_001)]).is_none());
-    assert!(Region::common(&[cube(0.0), cube(2.000_001)]).is_none());
-    assert!(Region::common(&[ball(0.0), cube(2.000_001)]).is_none());
-    assert!(Region::common(&[]).is_none());
+    assert!(CommonPart::common(&[ball(0.0), ball(2.000_001)]).is_none());
+    assert!(CommonPart::common(&[cube(0.0), cube(2.000_001)]).is_none());
+    assert!(CommonPart::common(&[ball(0.0), cube(2.000_001)]).is_none());
+    assert!(CommonPart::common(&[]).is_none());
     let nothing = Volume::Sphere(Sphere { center: DVec3::ZERO, radius: 0.0 });
     assert!(
-        Region::common(std::slice::from_ref(&nothing)).is_none() && Region::common(&[ball(0.0), nothing]).is_none()
+        CommonPart::common(std::slice::from_ref(&nothing)).is_none()
+            && CommonPart::common(&[ball(0.0), nothing]).is_none()
     );
 }
