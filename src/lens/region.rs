@@ -179,7 +179,7 @@ impl Region {
     /// The volumes whose union it is, without a city ([`Solids::volumes`]): of city objects, depth sprites and combinations none; a flat one as
     /// seen along these sight lines.
     pub fn volumes_seen(&self, sight: &Sightlines) -> Result<Vec<Volume>, String> {
-        let city = ShownCity { model: &CityModel::default(), geometries: &[], index: &OnceLock::new() };
+        let city = ShownCity { model: &CityModel::default(), geometries: &[], index: &OnceLock::new(), number: 0 };
         let place = Place { motion: Motion::NONE, sight: *sight };
         Solids::default().volumes(self, city, &place).map_err(|(_, message)| message)
     }

@@ -105,6 +105,8 @@ pub struct ShownCity<'a> {
     pub geometries: &'a [u32],
     /// Finds their triangles; made when first asked for.
     pub index: &'a OnceLock<SpatialIndex>,
+    /// Tells cities apart that show the same objects elsewhere: 0 at rest.
+    pub number: u64,
 }
 
 impl ShownCity<'_> {
@@ -306,8 +308,11 @@ fn made(from: &Region, city: ShownCity) -> Result<(Option<Solid>, DVec3), Region
             let loaded = load::load(std::slice::from_ref(file), &options, &load::Quiet);
             let model = loaded.map_err(|e| wrong(e.to_string()))?;
             let geometries = shown_geometries(&model, None);
-            let bodies =
-                bodies(ShownCity { model: &model, geometries: &geometries, index: &OnceLock::new() }, |_| true, *scale);
+            let bodies = bodies(
+                ShownCity { model: &model, geometries: &geometries, index: &OnceLock::new(), number: 0 },
+                |_| true,
+                *scale,
+            );
             if bodies.is_empty() {
                 return Err(wrong(format!(
                     "{} has no faces; a file with a closed body would be right",

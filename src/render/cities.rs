@@ -7,7 +7,7 @@ use crate::{
         city::{Chunk, Section, SectionKind},
         city_facts::{CityFacts, ContentFacts, SectionFacts},
         city_on_gpu::CityOnGpu,
-        contents::{Contents, PlacedCity},
+        contents::{Contents, PlacedCity, World},
         cut::Cut,
         deformed::Deformed,
     },
@@ -19,8 +19,8 @@ use crate::{
 pub(super) struct Cities<'a> {
     /// The scene's own.
     pub own: &'a CityOnGpu,
-    /// What deformations make of it.
-    pub deformed: Option<&'a Deformed>,
+    /// What deformations make of it, and of contents.
+    pub deformed: &'a [Deformed],
     /// Those of lenses.
     pub contents: &'a Contents,
 }
@@ -58,12 +58,18 @@ impl DrawnSection<'_> {
 impl<'a> Cities<'a> {
     /// All that the GPU holds.
     pub fn all(&self) -> impl Iterator<Item = &'a CityOnGpu> + use<'a> {
-        self.own_ones().chain(self.contents.others())
+        let moved = self.deformed.iter().filter(|deformed| *deformed.world() != World::OWN);
+        self.own_ones().chain(self.contents.others()).chain(moved.map(|deformed| &deformed.city))
+    }
+
+    /// What deformations make of a city where it stands; `None`: they leave it alone.
+    pub fn deformed(&self, world: &World) -> Option<&'a Deformed> {
+        self.deformed.iter().find(|deformed| deformed.world() == world)
     }
 
     /// The scene's own, and what deformations make of it.
     pub fn own_ones(&self) -> impl Iterator<Item = &'a CityOnGpu> + use<'a> {
-        std::iter::once(self.own).chain(self.deformed.map(|deformed| &deformed.city))
+        std::iter::once(self.own).chain(self.deformed(&World::OWN).map(|deformed| &deformed.city))
     }
 
     /// The box around all of them, metres.
@@ -84,13 +90,18 @@ impl<'a> Cities<'a> {
         };
         let content = |placed: PlacedCity<'a>| ContentFacts {
             number: placed.number,
-            chunks: chunks_of(placed.city, placed.chunks).collect(),
+            chunks: match self.deformed(placed.world) {
+                None => chunks_of(placed.city, placed.chunks).collect(),
+                Some(deformed) => {
+                    chunks_of(placed.city, &deformed.left).chain(chunks_of(&deformed.city, &[])).collect()
+                }
+            },
         };
         let own = &self.own.buffers;
         CityFacts {
             bounds: own.bounds,
             all: self.bounds(),
-            moved: self.deformed.map_or(Aabb::EMPTY, |deformed| deformed.city.buffers.bounds),
+            moved: self.deformed(&World::OWN).map_or(Aabb::EMPTY, |deformed| deformed.city.buffers.bounds),
             chunks: chunks_of(self.own, &[]).collect(),
             cells: &own.cells,
             has_blocks: own.has_blocks,
@@ -109,7 +120,7 @@ impl<'a> Cities<'a> {
             let own = Drawn { city, chunks, content: None, offset: 0, has_shadow: true, details };
             own.sections()
         };
-        match self.deformed {
+        match self.deformed(&World::OWN) {
             None => drawn.extend(own(self.own, &[])),
             Some(deformed) => {
                 drawn.extend(own(self.own, &deformed.left));
@@ -118,8 +129,17 @@ impl<'a> Cities<'a> {
         }
         let is_asked = |number| cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
         for placed in self.contents.placed(self.own).filter(|placed| is_asked(placed.number)) {
-            let PlacedCity { city, number, has_shadow, chunks, offset, .. } = placed;
-            drawn.extend(Drawn { city, chunks, content: Some(number), offset, has_shadow, details }.sections());
+            let PlacedCity { city, number, has_shadow, chunks, offsets: [at_rest, moved], .. } = placed;
+            let content = |city, chunks, offset| {
+                Drawn { city, chunks, content: Some(number), offset, has_shadow, details }.sections()
+            };
+            match self.deformed(placed.world) {
+                None => drawn.extend(content(city, chunks, at_rest)),
+                Some(deformed) => {
+                    drawn.extend(content(city, &deformed.left, at_rest));
+                    drawn.extend(content(&deformed.city, &[], moved));
+                }
+            }
         }
         drawn
     }

@@ -21,6 +21,9 @@ use crate::{
     render::{
         city::CityBuffers,
         contents::{ContentCity, Placement, WantedContent},
+        deformations::Moved,
+        deformed::Standing,
+        displayed::Showing,
         operations::ContentUse,
         stats,
         volume::LensVolume,
@@ -199,15 +202,19 @@ impl SceneContents {
         first as u32
     }
 
-    /// Box around what the lenses may show of it, metres; `own`: around the scene's city.
-    pub fn bounds(&self, own: &Aabb, volumes: &[LensVolume]) -> Aabb {
+    /// Box around what the lenses may show of it, metres; `own`: around the scene's city at rest.
+    pub fn bounds(&self, own: &Aabb, volumes: &[LensVolume], moved: &Moved) -> Aabb {
         let of = |shown: &ContentUse| {
             // A border may be as wide as it likes.
             let ends = |v: &&LensVolume| v.lens == shown.lens && v.region.is_bounded() && v.border.is_none();
             let reaches = volumes.iter().filter(ends);
             let room = reaches.fold(Aabb::EMPTY, |all, v| all.union(v.bounds));
             let is_inside = shown.class == Class::Inside && !room.is_empty();
-            let all = self.wanted.iter().find(|w| w.number == shown.city).map_or(Aabb::EMPTY, |w| w.bounds(own));
+            let all = self
+                .wanted
+                .iter()
+                .find(|w| w.number == shown.city)
+                .map_or(Aabb::EMPTY, |w| moved.bounds(&w.bounds(own)));
             let part = Aabb { min: all.min.max(room.min), max: all.max.min(room.max) };
             if is_inside { part } else { all }
         };
@@ -319,30 +326,31 @@ impl WantedContent {
     }
 
     /// City objects of which a triangle, where it stands, meets one of the volumes.
-    pub fn objects_meeting(&self, own: ShownCity, volumes: &[&LensVolume]) -> u64 {
+    pub fn objects_meeting(&self, own: ShownCity, volumes: &[&LensVolume], moved: &Moved) -> u64 {
         let (model, geometries) = self.shown(own);
-        met(model, geometries, &self.placement, volumes).len() as u64
-    }
-}
-
-fn met(model: &CityModel, geometries: &[u32], placement: &Placement, volumes: &[&LensVolume]) -> FxHashSet<u32> {
-    let mut met = FxHashSet::default();
-    for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
-        let bounds = placement.boxed(&geometry.bounds);
-        let near: Vec<_> = volumes.iter().filter(|v| v.bounds.meets(&bounds)).collect();
-        if near.is_empty() || met.contains(&geometry.object) {
-            continue;
+        let showing = Showing::new(moved);
+        let is_own = self.city.as_ref().is_none_or(|city| city.is_own);
+        let mut met = FxHashSet::default();
+        for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
+            let raised = moved.heights.of(geometry.object).filter(|_| is_own).copied();
+            let standing = Standing { raised, placement: &self.placement };
+            let bounds = moved.deformers.deformed_bounds(&standing.boxed(&geometry.bounds));
+            let near: Vec<_> = volumes.iter().filter(|v| v.bounds.meets(&bounds)).collect();
+            if near.is_empty() || met.contains(&geometry.object) {
+                continue;
+            }
+            let hit = |tile: &crate::city::Tile| {
+                let shown = showing.tile(model, tile, &standing);
+                let meets = |triangle: &[u32; 3]| {
+                    let corners = triangle.map(|corner| shown.corners[corner as usize]);
+                    near.iter().any(|v| v.region.meets(&corners, geometry.object))
+                };
+                shown.triangles.iter().any(meets)
+            };
+            if model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {
+                met.insert(geometry.object);
+            }
         }
-        let hit = |tile: &crate::city::Tile| {
-            (tile.indices.start as usize..tile.indices.end as usize).step_by(3).any(|i| {
-                let corner = |k: usize| model.position(tile, tile.vertices.start + model.indices[i + k]);
-                let corners = [0, 1, 2].map(|k| placement.point(corner(k)));
-                near.iter().any(|v| v.region.meets(&corners, geometry.object))
-            })
-        };
-        if model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {
-            met.insert(geometry.object);
-        }
+        met.len() as u64
     }
-    met
 }

@@ -147,11 +147,26 @@ pub(super) struct Contents {
     pub surfaces: Option<wgpu::TextureView>,
 }
 
+/// A city where it stands: the scene's own or a content's. Deformations move each by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct World {
+    /// Which city; 0: the scene's own.
+    pub city: u64,
+    /// Where it stands.
+    pub placement: Placement,
+    /// Whether its objects are those of the scene's own city, and are as high as these.
+    pub is_own: bool,
+}
+
+impl World {
+    /// The scene's own city.
+    pub const OWN: Self = Self { city: 0, placement: Placement::NONE, is_own: true };
+}
+
 #[derive(Debug)]
 struct ShownContent {
     number: u32,
-    id: u64,
-    placement: Placement,
+    world: World,
     has_shadow: bool,
     first_surface: u32,
     /// Chunks of each section where they stand; empty: where they are.
@@ -163,13 +178,13 @@ struct ShownContent {
 pub(super) struct PlacedCity<'a> {
     pub city: &'a CityOnGpu,
     pub number: u32,
-    pub placement: &'a Placement,
+    pub world: &'a World,
     /// Whether it throws shadows.
     pub has_shadow: bool,
     /// Chunks of each section where they stand; empty: where they are.
     pub chunks: &'a [Vec<Chunk>],
-    /// Offset of its uniform `City`.
-    pub offset: u32,
+    /// Offsets of its uniforms `City`: of what stands where the city has it, and of what was moved to where it is shown.
+    pub offsets: [u32; 2],
 }
 
 impl Contents {
@@ -246,12 +261,13 @@ impl Contents {
     fn place(&mut self, own: &CityOnGpu, wanted: &[WantedContent]) {
         let mut before = std::mem::take(&mut self.shown);
         let shown = wanted.iter().map(|w| {
-            let (id, placement) = (w.id(), w.placement);
-            let first_surface = self.first_surface(own, (id, w.first_object, placement.rotation));
-            let same = before.iter().position(|s| (s.id, s.placement) == (id, placement));
+            let placement = w.placement;
+            let world = World { city: w.id(), placement, is_own: w.city.as_ref().is_none_or(|city| city.is_own) };
+            let first_surface = self.first_surface(own, (world.city, w.first_object, placement.rotation));
+            let same = before.iter().position(|s| s.world == world);
             let chunks = same.map_or_else(
                 || {
-                    let city = self.city(own, id).filter(|_| !placement.is_none());
+                    let city = self.city(own, world.city).filter(|_| !placement.is_none());
                     let placed = |c: &Chunk| Chunk { bounds: placement.boxed(&c.bounds), ..c.clone() };
                     let sections = city.into_iter().flat_map(|city| &city.buffers.sections);
                     sections.map(|s| s.chunks.iter().map(placed).collect()).collect()
@@ -259,7 +275,7 @@ impl Contents {
                 |i| before.swap_remove(i).chunks,
             );
             let has_shadow = w.city.as_ref().is_none_or(|city| city.has_shadow);
-            ShownContent { number: w.number, id, placement, has_shadow, first_surface, chunks }
+            ShownContent { number: w.number, world, has_shadow, first_surface, chunks }
         });
         self.shown = shown.collect();
     }
@@ -281,31 +297,45 @@ impl Contents {
 
     /// The contents that frames may show.
     pub fn placed<'a>(&'a self, own: &'a CityOnGpu) -> impl Iterator<Item = PlacedCity<'a>> {
+        let count = self.shown.len();
         self.shown.iter().enumerate().filter_map(move |(i, content)| {
             Some(PlacedCity {
-                city: self.city(own, content.id)?,
+                city: self.city(own, content.world.city)?,
                 number: content.number,
-                placement: &content.placement,
+                world: &content.world,
                 has_shadow: content.has_shadow,
                 chunks: &content.chunks,
-                offset: (i as u32 + 1) * STAGE_STRIDE as u32,
+                offsets: [1 + i, 1 + count + i].map(|at| at as u32 * STAGE_STRIDE as u32),
             })
         })
     }
 
-    /// The uniforms `City` of the scene's own city and of all contents, for an eye; nothing without contents.
+    /// The numbers of contents, and which city each shows where.
+    pub fn worlds(&self) -> impl Iterator<Item = (u32, &World)> {
+        self.shown.iter().map(|content| (content.number, &content.world))
+    }
+
+    /// The uniforms `City` of the scene's own city, of all contents, and of what is moved of each; for an eye. Nothing without contents.
     pub fn uniforms(&self, eye: DVec3) -> Vec<u8> {
         if self.shown.is_empty() {
             return Vec::new();
         }
         let own = strided(&Placement::NONE.uniform(eye, 0, 0));
-        let contents = self.shown.iter().map(|c| strided(&c.placement.uniform(eye, c.number, c.first_surface)));
-        std::iter::once(own).chain(contents).flatten().collect()
+        let uniform =
+            |c: &ShownContent, placement: &Placement| strided(&placement.uniform(eye, c.number, c.first_surface));
+        let placed = self.shown.iter().map(|c| uniform(c, &c.world.placement));
+        let moved = self.shown.iter().map(|c| uniform(c, &Placement::NONE));
+        std::iter::once(own).chain(placed).chain(moved).flatten().collect()
     }
 
     /// The city that an id names.
     pub fn city<'a>(&'a self, own: &'a CityOnGpu, id: u64) -> Option<&'a CityOnGpu> {
         if id == 0 { Some(own) } else { self.cities.iter().find(|(i, _)| *i == id).map(|(_, city)| city) }
+    }
+
+    /// Those of them that are no city of the scene's own, to read them back.
+    pub fn city_mut(&mut self, id: u64) -> Option<&mut CityOnGpu> {
+        self.cities.iter_mut().find(|(i, _)| *i == id).map(|(_, city)| city)
     }
 
     /// Where the surfaces of a part begin.

@@ -17,6 +17,7 @@ use crate::{
     },
     lens::{Deform, Lens, Placement, Region, deform::Viewer, solids::ShownCity},
     render::{
+        displayed::Stand,
         heights::{Asked, Heights, Rule},
         occlusion::Occlusion,
         placement::Eye,
@@ -122,9 +123,8 @@ impl KnownDeformations {
             let wrong = |message: String| format!("[lens.{i}] {message}");
             if deform.is_of_objects() {
                 let mut asked = Asked {
-                    city: stage.city,
+                    stand: Stand { city: stage.city, pois: &stage.scene.pois },
                     occlusion: &mut *stage.occlusion,
-                    pois: &stage.scene.pois,
                     viewer: stage.eye.viewer(),
                 };
                 rules.extend(Rule::of_lens(i, &lens.name, deform, &mut asked));

@@ -1,5 +1,5 @@
-//! The deformed city: what deformation lenses move, made fine enough and moved on the GPU, as sections beside those of what
-//! they leave.
+//! Deformed cities: what deformation lenses move of the scene's own city and of contents, made fine enough and moved on the GPU, as
+//! sections beside those of what they leave.
 //!
 //! ```text
 //!   chunks of the city ──── meet no support ─────────────────────── drawn as they are
@@ -32,15 +32,18 @@ use crate::{
         city::{Chunk, CityBuffers, Section, SectionKind},
         city_on_gpu::{CityOnGpu, image_of},
         city_source::Source,
+        contents::{Contents, Placement, World},
         deform_words::Lattice,
         deformations::Moved,
-        deformed_edges::deformed_edges,
+        deformed_edges::{RestEdges, deformed_edges},
         edges::EdgeBuffers,
         frame::FrameInput,
         heights::{Height, Heights},
         layout::{self, CityVertex},
+        light::casts_shadows,
         refinery::{LAYER_SHIFT, Made, Refinery, Rest, RestTriangles, TURNED},
         resource::pipelines::Pipelines,
+        volume::LensVolume,
     },
     view::View,
 };
@@ -70,6 +73,7 @@ const LEAST_SUPPORT_ERROR_M: f64 = 1e-3;
 /// What a deformed city was made of.
 #[derive(Clone, Debug, PartialEq)]
 struct Of {
+    world: World,
     moved: Moved,
     view: View,
     chord_px: f64,
@@ -78,9 +82,10 @@ struct Of {
     edges: bool,
 }
 
-/// What deformations meet of the city, whatever the view.
+/// What deformations meet of a city, whatever the view.
 #[derive(Debug)]
 pub(super) struct Met {
+    world: World,
     moved: Moved,
     city: u64,
     /// What each section of the city still draws.
@@ -92,11 +97,13 @@ pub(super) struct Met {
     rest: Rest,
 }
 
-/// What deformations make of the city in a view.
+/// What deformations make of a city in a view.
 #[derive(Debug)]
 pub(super) struct Deformed {
     of: Of,
-    /// What each section of the city still draws.
+    /// Whether the city has normals per vertex at rest.
+    is_smooth: bool,
+    /// What each section of the city still draws, where it stands.
     pub left: Arc<Vec<Vec<Chunk>>>,
     /// What is moved.
     pub city: CityOnGpu,
@@ -119,10 +126,28 @@ pub struct DeformedFigures {
     pub report: Report,
 }
 
-/// What deforms a city, and what deformations meet of it, whatever the view.
+impl DeformedFigures {
+    /// Those of all deformed cities of a picture: sums, and the worst of what was kept. `None` without any.
+    pub(super) fn of_all(all: &[Deformed]) -> Option<Self> {
+        let worst = |a: Report, b: Report| Report {
+            tolerance_px: a.tolerance_px.max(b.tolerance_px),
+            shortest_m: a.shortest_m.max(b.shortest_m),
+            too_coarse: a.too_coarse + b.too_coarse,
+            unusable: a.unusable + b.unusable,
+        };
+        all.iter().map(|deformed| deformed.figures).reduce(|a, b| Self {
+            met: a.met + b.met,
+            triangles: a.triangles + b.triangles,
+            asked_px: a.asked_px,
+            report: worst(a.report, b.report),
+        })
+    }
+}
+
+/// What deforms cities, and what deformations meet of each, whatever the view.
 #[derive(Debug, Default)]
 pub(super) struct Deforming {
-    met: Option<Met>,
+    met: Vec<Met>,
     refinery: Option<Refinery>,
     /// Cities that were there so far.
     cities: u64,
@@ -131,32 +156,62 @@ pub(super) struct Deforming {
 impl Deforming {
     /// Another city is there now.
     pub fn begin_city(&mut self) {
-        self.met = None;
+        self.met.clear();
         self.cities += 1;
     }
 
-    /// Makes the deformed city fit a frame; nothing is made where it does. Whether it is another one now.
+    /// Makes the deformed cities fit a frame: the scene's own first, then those contents of which a lens may show something. Nothing is
+    /// made where they do. Whether some are others now.
     pub fn fit(
         &mut self,
         gpu: &Gpu,
         pipelines: &Pipelines,
-        city: &mut CityOnGpu,
-        deformed: &mut Option<Deformed>,
+        own: &mut CityOnGpu,
+        contents: &mut Contents,
+        deformed: &mut Vec<Deformed>,
         input: &FrameInput,
     ) -> Result<bool, GpuError> {
-        if input.moved.is_nothing() {
-            return Ok(deformed.take().is_some());
+        let worlds = if input.moved.is_nothing() { Vec::new() } else { worlds_of(contents, input) };
+        self.met.retain(|met| worlds.contains(&met.world));
+        let mut before = std::mem::take(deformed);
+        let count = before.len();
+        let mut is_other = false;
+        for world in worlds {
+            let city = match world.city {
+                0 => &mut *own,
+                id => match contents.city_mut(id) {
+                    Some(city) => city,
+                    None => continue,
+                },
+            };
+            let of = Of {
+                world,
+                moved: input.moved.clone(),
+                view: input.view,
+                chord_px: input.chord_px,
+                city: self.cities,
+                edges: city.edges.is_some(),
+            };
+            if let Some(at) = before.iter().position(|deformed| deformed.of == of) {
+                deformed.push(before.swap_remove(at));
+                continue;
+            }
+            if let Some(made) = self.deformed(gpu, pipelines, city, of)? {
+                deformed.push(made);
+                is_other = true;
+            }
         }
-        let of = Of {
-            moved: input.moved.clone(),
-            view: input.view,
-            chord_px: input.chord_px,
-            city: self.cities,
-            edges: city.edges.is_some(),
-        };
-        if deformed.as_ref().is_some_and(|deformed| deformed.of == of) {
-            return Ok(false);
-        }
+        Ok(is_other || deformed.len() != count)
+    }
+
+    /// What becomes of a city; `None` of a content that deformations do not reach.
+    fn deformed(
+        &mut self,
+        gpu: &Gpu,
+        pipelines: &Pipelines,
+        city: &mut CityOnGpu,
+        of: Of,
+    ) -> Result<Option<Deformed>, GpuError> {
         if city.sources.is_none() {
             let sources = city.buffers.sections.iter().map(|section| Source::read(gpu, section));
             city.sources = Some(sources.collect::<Result<_, _>>()?);
@@ -164,21 +219,25 @@ impl Deforming {
         if let (None, Some(edges)) = (&city.edge_sources, &city.edges) {
             city.edge_sources = Some(bytemuck::pod_collect_to_vec(&gpu.read_buffer(&edges.instances)?));
         }
-        let is_met = |met: &Met| met.moved == of.moved && met.city == of.city;
-        let met = match self.met.take().filter(is_met) {
-            Some(met) => met,
-            None => Met::new(gpu, city, &of)?,
-        };
-        let mut refinery = match self.refinery.take() {
-            Some(refinery) => refinery,
-            None => Refinery::new(gpu)?,
-        };
-        let stage = stage_of(&of.view, &met.rest.lattice, of.chord_px, city.buffers.smooth);
-        let made = refinery.refined(gpu, &met.rest, &stage)?;
-        self.refinery = Some(refinery);
-        *deformed = Some(Deformed::new(gpu, pipelines, city, &met, made, of)?);
-        self.met = Some(met);
-        Ok(true)
+        let known = self.met.iter().position(|met| met.world == of.world);
+        let met =
+            match known.map(|at| self.met.swap_remove(at)).filter(|met| met.moved == of.moved && met.city == of.city) {
+                Some(met) => met,
+                None => Met::new(gpu, city, &of)?,
+            };
+        let mut made = None;
+        if of.world == World::OWN || met.rest.triangles > 0 {
+            let mut refinery = match self.refinery.take() {
+                Some(refinery) => refinery,
+                None => Refinery::new(gpu)?,
+            };
+            let stage = stage_of(&of.view, &met.rest.lattice, of.chord_px, city.buffers.smooth);
+            let refined = refinery.refined(gpu, &met.rest, &stage)?;
+            self.refinery = Some(refinery);
+            made = Some(Deformed::new(gpu, pipelines, city, &met, refined, of)?);
+        }
+        self.met.push(met);
+        Ok(made)
     }
 
     /// How far the bent edges of a deformed city are from where they should be, by brute force in f64, pixels: the median of those that are
@@ -186,10 +245,14 @@ impl Deforming {
     ///
     /// # Errors
     /// What the GPU cannot read back.
-    pub fn chords(&self, gpu: &Gpu, deformed: &Deformed) -> Result<Option<[f64; 2]>, GpuError> {
-        let (Some(refinery), Some(met)) = (&self.refinery, &self.met) else { return Ok(None) };
-        let Of { moved, view, .. } = &deformed.of;
-        let edges = refinery.edges(gpu, &met.rest, deformed.figures.triangles as u32)?;
+    pub fn chords(&mut self, gpu: &Gpu, deformed: &Deformed) -> Result<Option<[f64; 2]>, GpuError> {
+        let Of { world, moved, view, .. } = &deformed.of;
+        let met = self.met.iter().find(|met| met.world == *world);
+        let (Some(refinery), Some(met)) = (&mut self.refinery, met) else { return Ok(None) };
+        // What it worked on last may have been another city.
+        let stage = stage_of(view, &met.rest.lattice, deformed.of.chord_px, deformed.is_smooth);
+        let made = refinery.refined(gpu, &met.rest, &stage)?;
+        let edges = refinery.edges(gpu, &met.rest, made.triangles)?;
         let off = |[a, b]: &[DVec3; 2]| {
             let [start, end] = [*a, *b].map(|place| moved.deformers.value(place));
             let at = |i: u32| {
@@ -205,7 +268,30 @@ impl Deforming {
     }
 }
 
+/// The cities that deformations may move in a frame, each once.
+fn worlds_of(contents: &Contents, input: &FrameInput) -> Vec<World> {
+    let has_shadows = casts_shadows(&input.sun);
+    let may_show = |lens: u32| {
+        let is_seen =
+            |v: &LensVolume| v.seen_part(&input.view, input.tile).is_some() || has_shadows && !v.keeps_shadows;
+        input.volumes.iter().any(|v| v.lens == lens && is_seen(v))
+    };
+    let shown = |number: u32| input.operations.contents.iter().any(|c| c.city == number && may_show(c.lens));
+    let mut worlds = vec![World::OWN];
+    for (number, world) in contents.worlds() {
+        if !worlds.contains(world) && shown(number) {
+            worlds.push(*world);
+        }
+    }
+    worlds
+}
+
 impl Deformed {
+    /// The city that it was made of, where that stands.
+    pub fn world(&self) -> &World {
+        &self.of.world
+    }
+
     fn new(
         gpu: &Gpu,
         pipelines: &Pipelines,
@@ -237,10 +323,14 @@ impl Deformed {
         };
         let of_city = city.edges.as_ref().zip(city.edge_sources.as_ref());
         let edges = of_city
-            .map(|(edges, all)| deformed_edges(gpu, edges, all, &refiner, &raised_of(&city.buffers, &of.moved.heights)))
+            .map(|(edges, all)| {
+                let rest = RestEdges { all, raised: &raised_of(&city.buffers, &of), placement: &of.world.placement };
+                deformed_edges(gpu, edges, &rest, &refiner)
+            })
             .transpose()?;
+        let is_smooth = city.buffers.smooth;
         let city = CityOnGpu::beside(city, images, buffers);
-        Ok(Self { of, left: met.left.clone(), city, edges, figures })
+        Ok(Self { of, is_smooth, left: met.left.clone(), city, edges, figures })
     }
 }
 
@@ -311,7 +401,7 @@ struct MetPart {
 impl Met {
     fn new(gpu: &Gpu, city: &CityOnGpu, of: &Of) -> Result<Self, GpuError> {
         let sections = || city.buffers.sections.iter().zip(city.sources.iter().flatten());
-        let bounds = city.buffers.bounds;
+        let bounds = of.world.placement.boxed(&city.buffers.bounds);
         let supports: Vec<Support> = of
             .moved
             .deformers
@@ -321,13 +411,18 @@ impl Met {
                 support.grown((SUPPORT_ERROR * farthest).max(LEAST_SUPPORT_ERROR_M))
             })
             .collect();
-        let raised = raised_of(&city.buffers, &of.moved.heights);
-        let reach = Reach { supports: &supports, heights: &of.moved.heights, raised: &raised };
+        let raised = raised_of(&city.buffers, of);
+        let heights = of.world.is_own.then_some(&*of.moved.heights);
+        let reach = Reach { supports: &supports, heights, raised: &raised, placement: &of.world.placement };
+        // What is placed is met as a whole or not at all.
+        let mut all_chunks = city.buffers.sections.iter().flat_map(|section| &section.chunks);
+        let is_met = reach.placement.is_none()
+            || all_chunks.any(|chunk| reach.may_raise(&chunk.bounds) || !reach.near(&chunk.bounds).is_empty());
         let has_textures = sections().any(|(section, _)| matches!(section.kind, SectionKind::Textured { .. }));
         let (mut left, mut met, mut chunks) = (Vec::new(), Vec::new(), Vec::new());
         let mut all = MetPart::default();
         let (mut firsts, mut layer) = (vec![0], 0);
-        for (section, source) in sections() {
+        for (section, source) in sections().filter(|_| is_met) {
             let is_coplanar = section.kind == SectionKind::Coplanar;
             let own_layer = if is_coplanar { layer } else { 0 };
             layer += u32::from(is_coplanar);
@@ -360,20 +455,85 @@ impl Met {
         let texcoords = is_textured.then_some(&all.texcoords[..]);
         let triangles = RestTriangles { corners: &all.corners, bits: &all.bits, texcoords, firsts };
         let rest = Rest::new(gpu, triangles, &of.moved.deformers, &reach)?;
-        Ok(Self { moved: of.moved.clone(), city: of.city, left: Arc::new(left), sections: met, chunks, rest })
+        Ok(Self {
+            world: of.world,
+            moved: of.moved.clone(),
+            city: of.city,
+            left: Arc::new(left),
+            sections: met,
+            chunks,
+            rest,
+        })
+    }
+}
+
+/// How something of a city stands before deformations move it: with another height, and placed.
+#[derive(Clone, Copy)]
+pub(super) struct Standing<'a> {
+    /// First.
+    pub raised: Option<Height>,
+    /// Then.
+    pub placement: &'a Placement,
+}
+
+impl Standing<'_> {
+    /// Whether it stands elsewhere than its city has it.
+    pub fn is_moved(&self) -> bool {
+        self.raised.is_some() || !self.placement.is_none()
+    }
+
+    /// Where a place of its city stands.
+    pub fn place(&self, place: DVec3) -> DVec3 {
+        self.placement.point(self.raised.map_or(place, |height| height.place(place)))
+    }
+
+    /// A box around what stands in a box of its city.
+    pub fn boxed(&self, bounds: &Aabb) -> Aabb {
+        if bounds.is_empty() {
+            return *bounds;
+        }
+        let raised =
+            self.raised.map_or(*bounds, |height| Aabb::from_points([bounds.min, bounds.max].map(|p| height.place(p))));
+        self.placement.boxed(&raised)
+    }
+
+    /// What a packed normal of its city becomes.
+    pub fn packed_normal(&self, packed: u32) -> u32 {
+        if !self.is_moved() {
+            return packed;
+        }
+        let normal = decode_normal(packed);
+        encode_normal(self.placement.rotation * self.raised.map_or(normal, |height| height.normal(normal)))
     }
 }
 
 /// What is met: what a support reaches, and objects of another height.
 struct Reach<'a> {
     supports: &'a [Support],
-    heights: &'a Heights,
+    /// Of a city whose objects have some.
+    heights: Option<&'a Heights>,
     raised: &'a [Option<Height>],
+    placement: &'a Placement,
+}
+
+impl Reach<'_> {
+    /// Whether some object of another height may have something of a box at rest.
+    fn may_raise(&self, bounds: &Aabb) -> bool {
+        self.heights.is_some_and(|heights| heights.reaches(bounds))
+    }
+
+    /// The supports that may have something of a chunk.
+    fn near(&self, bounds: &Aabb) -> Vec<&Support> {
+        let raised = self.heights.filter(|heights| heights.reaches(bounds));
+        let all = self.placement.boxed(&raised.map_or(*bounds, |heights| heights.changed_bounds(bounds)));
+        self.supports.iter().filter(|support| support.reaches(&all)).collect()
+    }
 }
 
 /// Of each surface of the table what its object's height becomes; none where no height does.
-fn raised_of(city: &CityBuffers, heights: &Heights) -> Vec<Option<Height>> {
-    if heights.is_empty() {
+fn raised_of(city: &CityBuffers, of: &Of) -> Vec<Option<Height>> {
+    let heights = &of.moved.heights;
+    if heights.is_empty() || !of.world.is_own {
         return Vec::new();
     }
     city.surface_table.iter().map(|surface| heights.of(surface.object).copied()).collect()
@@ -391,11 +551,11 @@ struct MetKind {
 impl MetPart {
     fn of(chunks: &[Chunk], source: &Source, reach: &Reach, kind: MetKind) -> Self {
         let mut part = Self::default();
+        // What is placed by the GPU is rounded in another way than what is placed here: no triangle of one has a neighbour of the other.
+        let is_placed = !reach.placement.is_none();
         for chunk in chunks {
-            let may_be_raised = reach.heights.reaches(&chunk.bounds);
-            let box_of_all = if may_be_raised { reach.heights.changed_bounds(&chunk.bounds) } else { chunk.bounds };
-            let near: Vec<&Support> = reach.supports.iter().filter(|support| support.reaches(&box_of_all)).collect();
-            if near.is_empty() && !may_be_raised {
+            let near = reach.near(&chunk.bounds);
+            if near.is_empty() && !reach.may_raise(&chunk.bounds) && !is_placed {
                 part.left.push(chunk.clone());
                 continue;
             }
@@ -406,10 +566,11 @@ impl MetPart {
                 let corners = [source.indices[at], source.indices[at + 1], source.indices[at + 2]];
                 let surface = source.vertices[corners[source.provoking] as usize].surface as usize;
                 let raised = reach.raised.get(surface).copied().flatten();
-                let places = corners.map(|i| raised.map_or(source.place(i), |height| height.place(source.place(i))));
-                if raised.is_some() || near.iter().any(|support| support.meets_triangle(&places)) {
+                let standing = Standing { raised, placement: reach.placement };
+                let places = corners.map(|i| standing.place(source.place(i)));
+                if standing.is_moved() || near.iter().any(|support| support.meets_triangle(&places)) {
                     close(&mut run, chunk, source, &mut part.left);
-                    part.add(source, corners, &places, raised, kind);
+                    part.add(source, corners, &places, standing, kind);
                 } else {
                     run = Some(run.map_or(start, |run: Range<u32>| run.start)..start + 3);
                 }
@@ -428,7 +589,7 @@ impl MetPart {
         source: &Source,
         corners: [u32; 3],
         places: &[DVec3; 3],
-        raised: Option<Height>,
+        standing: Standing,
         MetKind { layer, has_textures }: MetKind,
     ) {
         let mut sorted = [0, 1, 2];
@@ -438,13 +599,12 @@ impl MetPart {
         self.bits.push(provoking | if is_turned { TURNED } else { 0 } | layer << LAYER_SHIFT);
         for (i, place) in sorted.map(|i| (corners[i] as usize, places[i])) {
             let own = source.vertices[i];
-            self.corners.push(match raised {
-                None => own,
-                Some(height) => {
+            self.corners.push(match standing.is_moved() {
+                false => own,
+                true => {
                     let origin = origin_of(place);
                     let offset = (place - origin).as_vec3().to_array();
-                    let normal = encode_normal(height.normal(decode_normal(own.normal)));
-                    CityVertex::new(origin.as_ivec3(), own.surface, offset, normal)
+                    CityVertex::new(origin.as_ivec3(), own.surface, offset, standing.packed_normal(own.normal))
                 }
             });
             if has_textures {

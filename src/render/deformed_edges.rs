@@ -11,31 +11,42 @@ use crate::{
     },
     gpu::{Gpu, GpuError},
     render::{
-        deformed::origin_of,
+        contents::Placement,
+        deformed::{Standing, origin_of},
         edges::{Edge, EdgeBuffers, half, metres_of},
         heights::Height,
     },
 };
 
-/// The edges that stay as they are, and those that deformations reach.
+/// The edges of a city at rest, and where that stands.
+pub(super) struct RestEdges<'a> {
+    pub all: &'a [Edge],
+    /// Of each surface, what its object's height becomes; none where no height does.
+    pub raised: &'a [Option<Height>],
+    pub placement: &'a Placement,
+}
+
+/// The edges that stay as they are, and those that deformations reach; of a city that is placed, all are among these.
 pub(super) fn deformed_edges(
     gpu: &Gpu,
     edges: &EdgeBuffers,
-    all: &[Edge],
+    rest: &RestEdges,
     refiner: &Refiner,
-    raised: &[Option<Height>],
 ) -> Result<[EdgeBuffers; 2], GpuError> {
+    let RestEdges { all, raised, placement } = *rest;
     let deformers = refiner.deformers;
     // With other heights, anything may be met.
-    let is_met = |bounds: &Aabb| !raised.is_empty() || deformers.supports().any(|support| support.reaches(bounds));
+    let is_any = !raised.is_empty() || !placement.is_none();
+    let is_met = |bounds: &Aabb| is_any || deformers.supports().any(|support| support.reaches(bounds));
     let (met, left): (Vec<_>, Vec<_>) = edges.chunks.iter().cloned().partition(|(_, bounds)| is_met(bounds));
     let of_chunk = |range: &std::ops::Range<u32>| &all[range.start as usize..range.end as usize];
     let moved: Vec<Edge> = met
         .par_iter()
         .flat_map_iter(|(range, _)| {
-            of_chunk(range)
-                .iter()
-                .flat_map(|edge| moved(edge, refiner, raised.get(edge.surface_number() as usize).copied().flatten()))
+            of_chunk(range).iter().flat_map(|edge| {
+                let raised = raised.get(edge.surface_number() as usize).copied().flatten();
+                moved(edge, refiner, &Standing { raised, placement })
+            })
         })
         .collect();
     let left = EdgeBuffers { instances: edges.instances.clone(), chunks: left, count: 0, bytes: 0 };
@@ -43,20 +54,21 @@ pub(super) fn deformed_edges(
 }
 
 /// An edge in as many parts as it is halved into.
-fn moved(edge: &Edge, refiner: &Refiner, raised: Option<Height>) -> Vec<Edge> {
-    let world = |p: [f32; 3]| IVec3::from(edge.origin).as_dvec3() + Vec3::from(p).as_dvec3();
-    let ends = [world(edge.start), world(edge.end)];
-    let mut own = *edge;
-    let [start, end] = match raised {
-        None => ends,
-        Some(height) => {
-            let normal = |packed| encode_normal(height.normal(decode_normal(packed)));
-            (own.normal_a, own.normal_b) = (normal(edge.normal_a), normal(edge.normal_b));
-            ends.map(|place| height.place(place))
-        }
+fn moved(edge: &Edge, refiner: &Refiner, standing: &Standing) -> Vec<Edge> {
+    let world = |p: [f32; 3]| standing.place(IVec3::from(edge.origin).as_dvec3() + Vec3::from(p).as_dvec3());
+    let [start, end] = [edge.start, edge.end].map(world);
+    let scale = standing.placement.scale as f32;
+    let longer = |metres: u16| if scale == 1.0 { metres } else { half(metres_of(metres) * scale) };
+    let own = Edge {
+        normal_a: standing.packed_normal(edge.normal_a),
+        normal_b: standing.packed_normal(edge.normal_b),
+        along: edge
+            .along
+            .map(|packed| u32::from(longer(packed as u16)) | u32::from(longer((packed >> 16) as u16)) << 16),
+        ..*edge
     };
     if !refiner.meets(start, end) {
-        return if raised.is_some() {
+        return if standing.is_moved() {
             vec![piece(&own, [start, end], [start, end], refiner.deformers)]
         } else {
             vec![own]

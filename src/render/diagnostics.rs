@@ -8,11 +8,10 @@ use crate::{
         deformed::DeformedFigures,
         enclosed::{areas, objects_meeting, with_corners_outside},
         furniture::{Furniture, Piece},
-        operations::Operations,
         picture::{Picture, Studio},
+        resolve::Resolved,
         section_rounds::ends_of,
         text::{cleaned, has_glyph},
-        volume::LensVolume,
     },
     scene::Scene,
 };
@@ -101,7 +100,8 @@ fn coarse(picture: &Picture) -> Option<(u64, String)> {
 
 /// City objects by lens that are cut by it and would have a section, were they closed shells: some of their triangles meet it,
 /// and some of their corners lie outside.
-pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &Operations) -> BTreeMap<u32, u32> {
+pub(super) fn open_shells(studio: &Studio, resolved: &Resolved) -> BTreeMap<u32, u32> {
+    let Resolved { volumes, operations, deformations, .. } = resolved;
     let mut open = BTreeMap::new();
     let Some(city) = studio.renderer.city() else { return open };
     let is_closed =
@@ -111,9 +111,11 @@ pub(super) fn open_shells(studio: &Studio, volumes: &[LensVolume], operations: &
             continue;
         }
         let areas = areas(of_lens);
-        let mut met = objects_meeting(studio.shown(), &areas);
+        let stands = studio.stands(&deformations.moved, &[]);
+        let shown = stands.shown().city;
+        let mut met = objects_meeting(shown, &areas);
         met.retain(|object| !is_closed(object));
-        let count = with_corners_outside(studio.shown(), &met, &areas).len() as u32;
+        let count = with_corners_outside(shown, &met, &areas).len() as u32;
         if count > 0 {
             open.insert(of_lens[0].lens, count);
         }

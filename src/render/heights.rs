@@ -11,8 +11,10 @@ use crate::{
         solids::ShownCity,
         thematic::{attribute_names, number_of},
     },
-    render::occlusion::{Occlusion, Search},
-    scene::Poi,
+    render::{
+        displayed::Stand,
+        occlusion::{Occlusion, Search},
+    },
     visibility::Viewer,
 };
 
@@ -53,7 +55,7 @@ impl Rule {
     pub fn of_lens(lens: usize, name: &str, deform: &Deform, asked: &mut Asked) -> Vec<Self> {
         let weights = |step: &Step, asked: &mut Asked| {
             let Step::Lower { of, .. } = step else { return Vec::new() };
-            let shown = asked.occlusion.objects(name, Search { of, when: &[] }, asked.pois, asked.city, asked.viewer);
+            let shown = asked.occlusion.objects(name, Search { of, when: &[] }, asked.stand, asked.viewer);
             let settled = || shown.objects.iter().map(|is| f32::from(u8::from(*is))).collect();
             asked.occlusion.weights(name).unwrap_or_else(settled)
         };
@@ -74,9 +76,9 @@ pub struct Heights {
 
 /// What lenses ask about.
 pub(super) struct Asked<'a> {
-    pub city: ShownCity<'a>,
+    /// At rest: what moves objects is not told by where it moves them.
+    pub stand: Stand<'a>,
     pub occlusion: &'a mut Occlusion,
-    pub pois: &'a [Poi],
     pub viewer: Viewer,
 }
 

@@ -1,11 +1,11 @@
 //! What a picture says of the lenses of its scene: masks and figures, also where one stands for several that were drawn.
 
 use crate::{
-    lens::Class,
+    lens::{Class, solids::ShownCity},
     render::{
-        content_cities::SceneContents,
         enclosed::{areas, objects_meeting},
-        picture::{Picture, Studio},
+        picture::Picture,
+        resolve::Resolved,
         stats,
         volume::LensVolume,
     },
@@ -17,15 +17,17 @@ use crate::{
 pub(super) struct FiguresOf<'a> {
     pub scene: &'a Scene,
     pub drawn: &'a Drawn<'a>,
-    pub volumes: &'a [LensVolume],
-    pub contents: &'a SceneContents,
+    pub resolved: &'a Resolved,
+    /// The city where it is shown.
+    pub city: ShownCity<'a>,
     /// Which lenses of the scene can be seen.
     pub seen: &'a [bool],
 }
 
-/// What statistics say of a lens of the scene.
-pub(super) fn lens_figures(studio: &Studio, of: FiguresOf, picture: &Picture, index: usize) -> stats::LensFigures {
-    let FiguresOf { scene, drawn, volumes, contents, seen } = of;
+/// What statistics say of a lens of the scene; `at_rest`: its city.
+pub(super) fn lens_figures(of: FiguresOf, at_rest: ShownCity, picture: &Picture, index: usize) -> stats::LensFigures {
+    let FiguresOf { scene, drawn, resolved, city, seen } = of;
+    let Resolved { volumes, contents, deformations, .. } = resolved;
     let visible = seen[index];
     let lens = &scene.lenses[index];
     let whole = drawn.whole(index as u32);
@@ -48,8 +50,8 @@ pub(super) fn lens_figures(studio: &Studio, of: FiguresOf, picture: &Picture, in
         kind: lens.kind.word().to_owned(),
         visible,
         objects: match contents.of_lens(whole) {
-            Some(content) => content.objects_meeting(studio.shown(), &volumes),
-            None => objects_meeting(studio.shown(), &areas(&volumes)).len() as u64,
+            Some(content) => content.objects_meeting(at_rest, &volumes, &deformations.moved),
+            None => objects_meeting(city, &areas(&volumes)).len() as u64,
         },
         covered: inside,
         pixels: if acts_inside { inside } else { 0 },

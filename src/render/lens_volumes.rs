@@ -16,6 +16,7 @@ use crate::{
     },
     render::{
         deformations::Moved,
+        displayed::{Stand, Stands},
         enclosed::enclosed,
         occlusion::{Occlusion, Search},
         operations::AllTests,
@@ -25,7 +26,7 @@ use crate::{
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
     },
-    scene::{Drawn, Poi},
+    scene::Drawn,
     view::CameraError,
     visibility::Viewer,
 };
@@ -41,12 +42,16 @@ pub struct LensVolumes {
 
 /// What focus areas are made with.
 pub(super) struct Tools<'a> {
+    /// The city at rest.
+    pub city: ShownCity<'a>,
+    /// It at rest and where it is shown.
+    pub stands: &'a Stands<'a>,
+    /// Where the lens looks for objects of it.
+    pub stand: Stand<'a>,
     /// Solids made so far.
     pub solids: &'a mut Solids,
     /// Occluders that lenses found.
     pub occlusion: &'a mut Occlusion,
-    /// What it hides.
-    pub pois: &'a [Poi],
     /// From where.
     pub viewer: Viewer,
     /// How the city is shown.
@@ -58,21 +63,17 @@ pub(super) struct Tools<'a> {
 }
 
 /// Resolves the focus areas of a scene. An error names the key of the scene file.
-pub(super) fn volumes_of<'a>(
-    drawn: &'a Drawn,
-    city: ShownCity,
-    eye: &Eye,
-    tools: &mut Tools<'a>,
-) -> Result<LensVolumes, String> {
-    let (mut all, scene) = (LensVolumes::default(), &*drawn.scene);
+pub(super) fn volumes_of<'a>(drawn: &'a Drawn, eye: &Eye, tools: &mut Tools<'a>) -> Result<LensVolumes, String> {
+    let (mut all, scene, city) = (LensVolumes::default(), &*drawn.scene, tools.city);
     for (i, lens) in scene.lenses.iter().enumerate() {
         (tools.lens, tools.is_enabled) = (&lens.name, lens.enabled);
+        tools.stand = tools.stands.of_lens(lens);
         // Attached to what is not there, it acts nowhere.
         let motion = eye.motion(lens, scene, city.model);
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
         let mut of_lens: Vec<PlacedRegion> = Vec::new();
         for (j, region) in lens.shapes.iter().enumerate() {
-            match regions_of(region, city, &place, tools) {
+            match regions_of(region, &place, tools) {
                 Ok(mut placed) => {
                     let fades = lens.soft_border().is_some() && !ends_along_rays(lens);
                     if fades || has_surface(lens.drawn_body()) {
@@ -212,19 +213,11 @@ fn family_bounds(model: &CityModel, object: u32) -> Aabb {
 }
 
 /// The placed regions whose union a focus area is.
-fn regions_of(
-    region: &Region,
-    city: ShownCity,
-    place: &Place,
-    tools: &mut Tools,
-) -> Result<Vec<PlacedRegion>, RegionError> {
+fn regions_of(region: &Region, place: &Place, tools: &mut Tools) -> Result<Vec<PlacedRegion>, RegionError> {
     if !matches!(region, Region::Combined { .. }) {
-        return Ok(leaves_of(region, city, place, tools)?
-            .into_iter()
-            .map(|leaf| PlacedRegion::One(leaf.into()))
-            .collect());
+        return Ok(leaves_of(region, place, tools)?.into_iter().map(|leaf| PlacedRegion::One(leaf.into())).collect());
     }
-    let program = tree_of(region, city, place, tools)?.program();
+    let program = tree_of(region, place, tools)?.program();
     if let Some((what, count, most)) = too_large(&program) {
         return Err(("shapes".into(), format!("a combination may have at most {most} {what}, has {count}")));
     }
@@ -235,12 +228,7 @@ fn regions_of(
     })
 }
 
-fn tree_of(
-    region: &Region,
-    city: ShownCity,
-    place: &Place,
-    tools: &mut Tools,
-) -> Result<Tree<PlacedLeaf>, RegionError> {
+fn tree_of(region: &Region, place: &Place, tools: &mut Tools) -> Result<Tree<PlacedLeaf>, RegionError> {
     match region {
         Region::Combined { how, parts } => {
             let tree = |(i, part): (usize, &Region)| {
@@ -249,7 +237,7 @@ fn tree_of(
                         "kind".into(),
                         "a depth sprite is no part of a combination; a shape of its own would be right".into(),
                     )),
-                    _ => tree_of(part, city, place, tools),
+                    _ => tree_of(part, place, tools),
                 };
                 tree.map_err(|(key, message)| within(i, &key, message))
             };
@@ -257,7 +245,7 @@ fn tree_of(
             Ok(Tree::joined(*how, trees?))
         }
         _ => {
-            let leaves = leaves_of(region, city, place, tools)?;
+            let leaves = leaves_of(region, place, tools)?;
             let trees = leaves.into_iter().map(|leaf| match leaf.is_empty() {
                 true => Tree::Nothing,
                 false => Tree::Leaf(leaf.into()),
@@ -268,23 +256,24 @@ fn tree_of(
 }
 
 /// The leaves whose union a focus area is that is no combination.
-fn leaves_of(region: &Region, city: ShownCity, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, RegionError> {
+fn leaves_of(region: &Region, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, RegionError> {
+    let city = tools.city;
     let mut thresholds = None;
     let objects: Arc<[bool]> = match region {
         Region::Thematic(choice) => members(city.model, choice).into(),
         Region::Occluders(_) | Region::Case { .. } if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
         Region::Occluders(of) => {
-            let shown = tools.occlusion.objects(tools.lens, Search { of, when: &[] }, tools.pois, city, tools.viewer);
+            let shown = tools.occlusion.objects(tools.lens, Search { of, when: &[] }, tools.stand, tools.viewer);
             thresholds = shown.thresholds;
             shown.objects
         }
         Region::Case { of, when } => {
-            let shown = tools.occlusion.objects(tools.lens, Search { of, when }, tools.pois, city, tools.viewer);
+            let shown = tools.occlusion.objects(tools.lens, Search { of, when }, tools.stand, tools.viewer);
             thresholds = shown.thresholds;
             shown.objects
         }
         Region::Enclosed { parts, whole, types } => {
-            objects_in(parts, Held { whole: *whole, types }, city, place, tools)?.into()
+            objects_in(parts, Held { whole: *whole, types }, place, tools)?.into()
         }
         Region::Own { used, center, size, rotation } => {
             let own = OwnRegion::new(used, *center, *size, *rotation, &place.motion);
@@ -308,20 +297,14 @@ struct Held<'a> {
 }
 
 /// The objects that some shapes hold, one per object of the city.
-fn objects_in(
-    parts: &[Region],
-    held: Held,
-    city: ShownCity,
-    place: &Place,
-    tools: &mut Tools,
-) -> Result<Vec<bool>, RegionError> {
+fn objects_in(parts: &[Region], held: Held, place: &Place, tools: &mut Tools) -> Result<Vec<bool>, RegionError> {
     let mut placed = Vec::new();
     for (i, part) in parts.iter().enumerate() {
-        placed.extend(regions_of(part, city, place, tools).map_err(|(key, message)| within(i, &key, message))?);
+        placed.extend(regions_of(part, place, tools).map_err(|(key, message)| within(i, &key, message))?);
     }
     let areas: Vec<_> =
         placed.iter().filter(|region| !region.is_empty()).map(|region| (region, region.bounds())).collect();
-    Ok(enclosed(city, &areas, held.whole, held.types))
+    Ok(enclosed(tools.stand.city, &areas, held.whole, held.types))
 }
 
 /// What is wrong with part i of a focus area: a key of the part, and words.

@@ -22,6 +22,7 @@ pub mod deformations;
 pub mod deformed;
 mod deformed_edges;
 pub mod diagnostics;
+pub mod displayed;
 pub mod edges;
 mod enclosed;
 pub mod eye;

@@ -3,12 +3,14 @@
 use crate::{
     lens::{Lens, rendering::When},
     render::{
+        deformations::Moved,
+        displayed::Stands,
         occlusion::{Passing, Search},
         picture::{RenderError, Studio},
         placement::Eye,
         stats,
     },
-    scene::Scene,
+    scene::{Poi, Scene},
     view::View,
 };
 
@@ -21,16 +23,24 @@ fn cases_of(lens: &Lens) -> Vec<When> {
 }
 
 impl Studio {
+    /// The city and points of interest at rest, and where deformations show them.
+    pub(super) fn stands<'a>(&'a self, moved: &Moved, pois: &'a [Poi]) -> Stands<'a> {
+        Stands::displayed(self.shown(), pois, moved, &mut self.known().displayed)
+    }
+
     /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually. The first time everything
     /// begins settled. A picture of that scene then has its history; one of another moment has none.
     pub fn pass(&mut self, scene: &Scene, size: [u32; 2], dt: f64) -> Result<(), RenderError> {
+        let (moved, pois) = (self.moved(scene, size)?, scene.standing_pois());
+        let stands = self.stands(&moved, &pois);
         let mut lenses = Vec::new();
         for lens in scene.lenses.iter().filter(|lens| lens.enabled) {
             let Some(of) = lens.occluders() else { continue };
-            lenses.push(Passing { name: &lens.name, of, when: cases_of(lens) });
+            let stand = stands.of_lens(lens);
+            lenses.push(Passing { name: &lens.name, of, when: cases_of(lens), stand });
         }
         let eye = Eye::new(&self.camera(scene, size))?;
-        self.known().occlusion.pass(&lenses, &scene.standing_pois(), self.shown(), eye.viewer(), dt);
+        self.known().occlusion.pass(&lenses, eye.viewer(), dt);
         Ok(())
     }
 
@@ -51,22 +61,22 @@ impl Studio {
     }
 
     /// Occluders that an occlusion lens finds, with reasons; `None` for other lenses.
-    pub(super) fn occluders(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<Vec<stats::Occluder>> {
+    pub(super) fn occluders(&self, stands: &Stands, lens: &Lens, view: &View) -> Option<Vec<stats::Occluder>> {
         let of = lens.occluders()?;
         let Some(eye) = Eye::new(&view.camera).ok().filter(|_| lens.enabled) else { return Some(Vec::new()) };
         Some(self.known().occlusion.explained(
             &lens.name,
             Search { of, when: &cases_of(lens) },
-            &scene.standing_pois(),
-            self.shown(),
+            stands.of_lens(lens),
             eye.viewer(),
         ))
     }
 
     /// How many of them come and go; `None` where no time passed up to here.
-    pub(super) fn over_time(&self, scene: &Scene, lens: &Lens, view: &View) -> Option<stats::OverTime> {
+    pub(super) fn over_time(&self, stands: &Stands, lens: &Lens, view: &View) -> Option<stats::OverTime> {
         let (of, eye) = (lens.occluders().filter(|_| lens.enabled)?, Eye::new(&view.camera).ok()?);
-        self.known().occlusion.over_time(&lens.name, of, &scene.standing_pois(), eye.viewer())
+        let pois = stands.of_lens(lens).pois;
+        self.known().occlusion.over_time(&lens.name, of, pois, eye.viewer())
     }
 
     /// Whether occluders come, go or change at the moment up to which time passed ([`Self::pass`]).

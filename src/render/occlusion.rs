@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::{
     geom::Aabb,
     lens::{Occluders, chosen::members, rendering::When, solids::ShownCity},
-    render::stats,
+    render::{displayed::Stand, stats},
     scene::{Poi, PoiPlace},
     visibility::{self, CaseMemory, Detected, Memory, Query, Scope, Set, Units, Viewer},
 };
@@ -17,7 +17,8 @@ use crate::{
 /// What is known of the occluders that lenses look for.
 #[derive(Debug, Default)]
 pub struct Occlusion {
-    units: Option<Arc<Units>>,
+    /// Of the city at rest, and of the one that deformations showed last; by number.
+    units: Vec<(u64, Arc<Units>)>,
     known: Vec<Known>,
     /// Over time, by the names of lenses.
     remembered: BTreeMap<String, Remembered>,
@@ -61,6 +62,8 @@ pub struct Passing<'a> {
     pub of: &'a Occluders,
     /// The cases that it draws them in; none: all in one way.
     pub when: Vec<When>,
+    /// Where it looks for them.
+    pub stand: Stand<'a>,
 }
 
 /// What is drawn as an occluder.
@@ -92,6 +95,8 @@ fn by_object<T: Copy + Default>(units: &Units, city: ShownCity, of_unit: impl Fn
 /// The occluders of one lens, or of several that look for the same.
 #[derive(Debug)]
 struct Known {
+    /// The number of the city.
+    city: u64,
     /// Occluders that it is of.
     of: Occluders,
     places: Vec<PoiPlace>,
@@ -140,19 +145,12 @@ pub struct Search<'a> {
 impl Occlusion {
     /// The occluders of a lens, by its name: as remembered, if time was made to pass up to here, else as they are found. Of
     /// some cases those that the last one holds of, and none before it; without a case all.
-    pub fn objects(
-        &mut self,
-        lens: &str,
-        search: Search,
-        pois: &[Poi],
-        city: ShownCity,
-        viewer: Viewer,
-    ) -> ShownOccluders {
-        let Search { of, when } = search;
+    pub fn objects(&mut self, lens: &str, search: Search, stand: Stand, viewer: Viewer) -> ShownOccluders {
+        let (Search { of, when }, Stand { city, pois }) = (search, stand);
         let units = self.units_of(city);
         let remembered = self.memory_of(lens, of, pois, viewer).filter(|known| known.when.starts_with(when));
         let Some(Remembered { memory, cases, shown, .. }) = remembered else {
-            let Found { objects, detected, .. } = self.found(of, pois, city, viewer, How::default());
+            let Found { objects, detected, .. } = self.found(of, stand, viewer, How::default());
             let Some(last) = when.len().checked_sub(1) else { return ShownOccluders { objects, thresholds: None } };
             let cases = Cases::new(when, &units, city, viewer);
             let is_of_case = |unit| detected.occluders.has(unit) && cases.first(unit) == last;
@@ -179,7 +177,8 @@ impl Occlusion {
     /// The same by cases that it is drawn in; what is drawn in none is in none of them.
     pub fn case_weights(&self, lens: &str, city: ShownCity) -> Option<Vec<Vec<f32>>> {
         let Remembered { memory, when, cases, .. } = self.remembered.get(lens)?;
-        let units = self.units.as_ref()?;
+        // Which of an object's unit is the same wherever they are.
+        let (_, units) = self.units.first()?;
         let of_case = |case: usize| {
             let of_unit = |unit: u32| {
                 let weight = memory.weights()[unit as usize];
@@ -196,13 +195,14 @@ impl Occlusion {
 
     /// Time goes on by `dt` seconds, ≥ 0, to a moment when lenses look for these occluders and draw them in these cases; those that were
     /// not there before begin settled.
-    pub fn pass(&mut self, lenses: &[Passing], pois: &[Poi], city: ShownCity, viewer: Viewer, dt: f64) {
+    pub fn pass(&mut self, lenses: &[Passing], viewer: Viewer, dt: f64) {
         self.remembered.retain(|name, _| lenses.iter().any(|lens| lens.name == name));
-        for Passing { name, of, when } in lenses {
+        for &Passing { name, of, ref when, stand } in lenses {
+            let Stand { city, pois } = stand;
             let how = How { has_margin: true, ..How::default() };
-            let detected = self.found(of, pois, city, viewer, how).detected;
+            let detected = self.found(of, stand, viewer, how).detected;
             let units = self.units_of(city);
-            let before = self.remembered.remove(*name);
+            let before = self.remembered.remove(name);
             let (memory, cases_before) = match before {
                 None => (Memory::settled(&detected), None),
                 Some(Remembered { mut memory, cases, when: known, .. }) => {
@@ -224,23 +224,16 @@ impl Occlusion {
             let shown = ShownOccluders::between(by_object(&units, city, of_unit));
             let asked = Asked::new(of, pois, viewer);
             let when = when.clone();
-            self.remembered.insert((*name).to_owned(), Remembered { memory, asked, shown, when, cases });
+            self.remembered.insert(name.to_owned(), Remembered { memory, asked, shown, when, cases });
         }
         self.forget_others();
     }
 
     /// The occluders of a lens with their reasons, the shares that they cover and, over time, how far they have come.
-    pub fn explained(
-        &mut self,
-        lens: &str,
-        search: Search,
-        pois: &[Poi],
-        city: ShownCity,
-        viewer: Viewer,
-    ) -> Vec<stats::Occluder> {
-        let Search { of, when } = search;
+    pub fn explained(&mut self, lens: &str, search: Search, stand: Stand, viewer: Viewer) -> Vec<stats::Occluder> {
+        let (Search { of, when }, Stand { city, pois }) = (search, stand);
         let how = How { is_measured: true, ..How::default() };
-        let detected = self.found(of, pois, city, viewer, how).detected;
+        let detected = self.found(of, stand, viewer, how).detected;
         let units = self.units_of(city);
         let remembered = self.memory_of(lens, of, pois, viewer);
         let now = Cases::new(when, &units, city, viewer);
@@ -312,13 +305,20 @@ impl Occlusion {
     }
 
     fn units_of(&mut self, city: ShownCity) -> Arc<Units> {
-        self.units.get_or_insert_with(|| Arc::new(Units::new(city.model, city.geometries))).clone()
+        if let Some((_, units)) = self.units.iter().find(|(number, _)| *number == city.number) {
+            return units.clone();
+        }
+        let units = Arc::new(Units::new(city.model, city.geometries));
+        self.units.retain(|(number, _)| *number == 0);
+        self.units.push((city.number, units.clone()));
+        units
     }
 
-    fn found(&mut self, of: &Occluders, pois: &[Poi], city: ShownCity, viewer: Viewer, how: How) -> Found {
+    fn found(&mut self, of: &Occluders, stand: Stand, viewer: Viewer, how: How) -> Found {
+        let Stand { city, pois } = stand;
         let units = self.units_of(city);
         let Asked { places, .. } = Asked::new(of, pois, viewer);
-        let is_same = |known: &Known| known.of == *of && known.places == places;
+        let is_same = |known: &Known| known.city == city.number && known.of == *of && known.places == places;
         let at = self.known.iter().position(is_same).unwrap_or_else(|| {
             self.known.push(Known::new(of, places.clone(), city, &units));
             self.known.len() - 1
@@ -401,6 +401,7 @@ impl Known {
             Some(choice) => units.flagged(city.model, &members(city.model, choice)),
         };
         Self {
+            city: city.number,
             of: of.clone(),
             pois: places.iter().filter_map(|place| poi_of(place, city)).collect(),
             places,

@@ -256,7 +256,7 @@ impl Studio {
 
     /// The city, and what is shown of it.
     pub(super) fn shown(&self) -> ShownCity<'_> {
-        ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index }
+        ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index, number: 0 }
     }
 
     /// What finds the triangles that are shown, as soon as that is known: [`Self::find_triangles`], or a picture whose lenses are counted,
@@ -316,7 +316,7 @@ impl Studio {
         for part in parts(request.size) {
             self.render_part(&drawn, request, &resolved, part, furniture, &mut picture, &mut passes)?;
         }
-        picture.open = diagnostics::open_shells(self, &resolved.volumes, &resolved.operations);
+        picture.open = diagnostics::open_shells(self, &resolved);
         picture.not_derived = diagnostics::not_derived(&resolved.contents);
         picture.weakened = resolved.deformations.weakened.clone();
         picture.deformed = self.renderer.deformed_figures();
@@ -633,8 +633,9 @@ impl Studio {
         let mut seen = vec![false; scene.lenses.len()];
         let is_seen = |v: &&LensVolume| v.seen_part(&resolved.view, whole(request.size)).is_some();
         resolved.volumes.iter().filter(is_seen).for_each(|v| seen[drawn.owner(v.lens) as usize] = true);
-        let (volumes, contents) = (&resolved.volumes[..], &resolved.contents);
-        let of = FiguresOf { scene, drawn, volumes, contents, seen: &seen };
+        let pois = scene.standing_pois();
+        let stands = self.stands(&resolved.deformations.moved, &pois);
+        let of = FiguresOf { scene, drawn, resolved, city: stands.shown().city, seen: &seen };
         let narrowing = pipelines.narrowing;
         let compiled = pipelines.compiled + u32::from(narrowing == Some(true));
         let names: Vec<String> = pipelines.used.iter().map(|key| key.name()).collect();
@@ -678,9 +679,9 @@ impl Studio {
             handlers: self.renderer.handlers(),
             lenses: (0..scene.lenses.len())
                 .map(|i| stats::LensFigures {
-                    occluders: self.occluders(scene, &scene.lenses[i], &resolved.view),
-                    over_time: self.over_time(scene, &scene.lenses[i], &resolved.view),
-                    ..lens_figures(self, of, picture, i)
+                    occluders: self.occluders(&stands, &scene.lenses[i], &resolved.view),
+                    over_time: self.over_time(&stands, &scene.lenses[i], &resolved.view),
+                    ..lens_figures(of, self.shown(), picture, i)
                 })
                 .collect(),
             contents: resolved.contents.figures(drawn, self.shown(), |id| self.renderer.content_city(id)),

@@ -131,7 +131,7 @@ impl Renderer {
     /// The cities that frames draw.
     pub(super) fn cities(&self) -> Option<Cities<'_>> {
         let ViewState { contents, deformed, .. } = &self.view;
-        Some(Cities { own: self.city.as_ref()?, deformed: deformed.as_ref(), contents })
+        Some(Cities { own: self.city.as_ref()?, deformed, contents })
     }
 
     /// Gives back the targets and the lists of translucent layers; the next frame makes its own. City and pipelines stay.
@@ -188,8 +188,8 @@ impl Renderer {
         let Self { gpu, settings, images, pipelines, city, view, deforming, ran } = self;
         let Some(city) = city else { return Ok(Vec::new()) };
         let ViewState { contents, deformed, targets, shared, passes, own_sprites } = view;
-        shared.world += u64::from(deforming.fit(gpu, pipelines, city, deformed, input)?);
-        let cities = Cities { own: city, deformed: deformed.as_ref(), contents };
+        shared.world += u64::from(deforming.fit(gpu, pipelines, city, contents, deformed, input)?);
+        let cities = Cities { own: city, deformed, contents };
         let (sprite_bytes, count_bytes) = (shared.sprites.buffer().size(), passes.stored.count_bytes());
         let stayed = Stayed { own_sprites, sprite_bytes, count_bytes };
         let plan = FramePlan::new(input, &cities.facts(), adapter_of(gpu), *settings, stayed);
@@ -269,7 +269,7 @@ impl Renderer {
 
     /// What the deformations of the last frame took; `None`: there were none.
     pub fn deformed_figures(&self) -> Option<DeformedFigures> {
-        self.view.deformed.as_ref().map(|deformed| deformed.figures)
+        DeformedFigures::of_all(&self.view.deformed)
     }
 
     /// How far the bent edges of the last frame are from where they should be, by brute force in f64, pixels: the median of those that are
@@ -277,8 +277,8 @@ impl Renderer {
     ///
     /// # Errors
     /// What the GPU cannot read back.
-    pub fn chords(&self) -> Result<Option<[f64; 2]>, GpuError> {
-        match &self.view.deformed {
+    pub fn chords(&mut self) -> Result<Option<[f64; 2]>, GpuError> {
+        match self.view.deformed.first() {
             Some(deformed) => self.deforming.chords(&self.gpu, deformed),
             None => Ok(None),
         }

@@ -6,11 +6,15 @@ use std::sync::Arc;
 use crate::{
     city::{CityModel, load::LoadOptions},
     geom::Aabb,
-    lens::solids::{ShownCity, Solids},
+    lens::{
+        Lens, Region,
+        solids::{ShownCity, Solids},
+    },
     render::{
         city_facts::CityFacts,
         content_cities::{self, ContentCities, SceneContents},
         deformations::{self, KnownDeformations, Moved, SceneDeformations},
+        displayed::{LastDisplayed, Stands, looks_at_rest},
         footprints::{self, OwnFootprints},
         lens_volumes::{LensVolumes, Tools, volumes_of},
         occlusion::Occlusion,
@@ -18,8 +22,7 @@ use crate::{
         parts::whole,
         placed_region::Leaf,
         placement::Eye,
-        regions,
-        sights::sights,
+        regions, sights,
         solids::SolidTable,
         volume::LensVolume,
     },
@@ -54,6 +57,8 @@ pub(super) struct Known {
     /// Contents of lenses loaded so far.
     pub contents: ContentCities,
     pub deformations: KnownDeformations,
+    /// The city where they last showed it.
+    pub displayed: LastDisplayed,
 }
 
 /// What scenes are resolved in.
@@ -105,11 +110,12 @@ impl Surroundings<'_> {
         known.solid_table = found.place_solids(&known.solid_table).map_err(ResolveError::Scene)?;
         let LensVolumes { mut volumes, tests } = found;
         let contents = self.contents(drawn, &eye, camera, size, &volumes, known)?;
-        let mut operations = self.operations(scene, &eye, &volumes, tests, &contents, known)?;
+        let mut operations = self.operations(scene, &eye, &volumes, tests, &contents, &deformations.moved, known)?;
         add_members(&mut operations, &mut volumes, &self.models(&contents));
         check_counts(&operations, &volumes)?;
-        let own = deformations.moved.bounds(&self.bounds());
-        let view = View::new(*camera, size, &own.union(contents.bounds(&own, &volumes)))?;
+        let (own, moved) = (self.bounds(), &deformations.moved);
+        let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved));
+        let view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
         Ok(Resolved { view, volumes, solids, operations, contents, deformations })
     }
@@ -121,16 +127,23 @@ impl Surroundings<'_> {
     }
 
     fn placed(&self, drawn: &Drawn, eye: &Eye, moved: &Moved, known: &mut Known) -> Result<LensVolumes, ResolveError> {
+        let pois = &drawn.scene.pois;
+        let stands = match asks_where(&drawn.scene) {
+            true => Stands::displayed(self.city, pois, moved, &mut known.displayed),
+            false => Stands::at_rest(self.city, pois),
+        };
         let mut tools = Tools {
+            city: self.city,
+            stands: &stands,
+            stand: stands.shown(),
             solids: &mut known.solids,
             occlusion: &mut known.occlusion,
-            pois: &drawn.scene.pois,
             viewer: eye.viewer(),
             moved,
             lens: "",
             is_enabled: true,
         };
-        volumes_of(drawn, self.city, eye, &mut tools).map_err(ResolveError::Scene)
+        volumes_of(drawn, eye, &mut tools).map_err(ResolveError::Scene)
     }
 
     /// What the scene's lenses move.
@@ -200,13 +213,20 @@ impl Surroundings<'_> {
         volumes: &[LensVolume],
         tests: AllTests,
         contents: &SceneContents,
+        moved: &Moved,
         known: &mut Known,
     ) -> Result<Operations, ResolveError> {
         let mut present = vec![false; scene.lenses.len()];
         for volume in volumes {
             present[volume.lens as usize] = true;
         }
-        let sights = sights(scene, self.city, eye, &mut known.occlusion);
+        let sights = match sights::are_asked(scene) {
+            true => {
+                let stands = Stands::displayed(self.city, &scene.pois, moved, &mut known.displayed);
+                sights::sights(scene, &stands, eye, &mut known.occlusion)
+            }
+            false => sights::sights(scene, &Stands::at_rest(self.city, &scene.pois), eye, &mut known.occlusion),
+        };
         let footprints = footprints::tables(scene, self.city, self.footprints, contents, volumes);
         let (style, tables) = (&scene.style, LensTables { sights, footprints });
         let models = self.models(contents);
@@ -215,6 +235,15 @@ impl Surroundings<'_> {
         operations.contents.clone_from(&contents.uses);
         Ok(operations)
     }
+}
+
+/// Whether some lens asks which objects are where they are shown.
+fn asks_where(scene: &Scene) -> bool {
+    let is_asked =
+        |region: &Region| matches!(region, Region::Enclosed { .. } | Region::Occluders(_) | Region::Case { .. });
+    let asks =
+        |lens: &Lens| lens.enabled && !looks_at_rest(lens) && lens.shapes.iter().any(|shape| shape.any(&is_asked));
+    scene.lenses.iter().any(asks)
 }
 
 /// Puts the objects that lenses mean among the object values.

@@ -17,8 +17,8 @@ use crate::{
 pub(super) struct ViewState {
     /// Contents of lenses.
     pub contents: Contents,
-    /// What deformations make of the city in this view.
-    pub deformed: Option<Deformed>,
+    /// What deformations make of the city in this view, and of contents.
+    pub deformed: Vec<Deformed>,
     pub targets: Option<Targets>,
     pub shared: Shared,
     pub passes: Passes,
@@ -31,7 +31,7 @@ impl ViewState {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
             contents: Contents::default(),
-            deformed: None,
+            deformed: Vec::new(),
             targets: None,
             shared: Shared::new(gpu)?,
             passes: Passes::new(gpu)?,
@@ -41,7 +41,7 @@ impl ViewState {
 
     /// Another city is there now.
     pub fn begin_city(&mut self) {
-        self.deformed = None;
+        self.deformed.clear();
         self.contents = Contents::default();
         self.passes.layers.forget();
         self.passes.slots.drop_lists();

@@ -10,6 +10,7 @@ mod citydata;
 mod cli;
 mod contents;
 mod deformations;
+mod deformed_contents;
 mod deformed_scenes;
 mod derived;
 mod described;

@@ -62,7 +62,7 @@ impl City {
     }
 
     fn shown(&self) -> ShownCity<'_> {
-        ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index }
+        ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index, number: 0 }
     }
 
     fn ask(&self, solids: &mut Solids, region: &Region) -> Result<Vec<Volume>, RegionError> {

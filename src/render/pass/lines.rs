@@ -5,7 +5,8 @@ use crate::{
     gpu::{Gpu, GpuError},
     lens::Class,
     render::{
-        contents::Placement,
+        city_on_gpu::CityOnGpu,
+        contents::{Placement, World},
         cut::Cut,
         edges::{Edge, EdgeBuffers, VERTICES},
         frame::FrameInput,
@@ -127,16 +128,19 @@ struct PlacedEdges<'a> {
 /// The edges that a frame draws.
 fn drawn_edges<'a>(frame: &FrameContext<'a>, cut: Option<&Cut>) -> Vec<PlacedEdges<'a>> {
     let cities = frame.cities;
-    let own: Vec<&EdgeBuffers> = match cities.deformed.and_then(|deformed| deformed.edges.as_ref()) {
-        Some(parts) => parts.iter().collect(),
-        None => cities.own.edges.iter().collect(),
+    let edges_of = |city: &'a CityOnGpu, world: &'a World, content: Option<u32>, [at_rest, moved]: [u32; 2]| {
+        let of = |edges, placement, offset| PlacedEdges { edges, placement, content, offset };
+        let deformed = cities.deformed(world).and_then(|deformed| deformed.edges.as_ref());
+        let parts = match deformed {
+            Some([left, bent]) => [Some(of(left, &world.placement, at_rest)), Some(of(bent, &Placement::NONE, moved))],
+            None => [city.edges.as_ref().map(|edges| of(edges, &world.placement, at_rest)), None],
+        };
+        parts.into_iter().flatten()
     };
-    let own = own.into_iter().map(|edges| PlacedEdges { edges, placement: &Placement::NONE, content: None, offset: 0 });
+    let own = edges_of(cities.own, &World::OWN, None, [0; 2]);
     let is_asked = |number| cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
-    let contents = cities.contents.placed(cities.own).filter_map(|placed| {
-        let edges = placed.city.edges.as_ref().filter(|_| is_asked(placed.number))?;
-        Some(PlacedEdges { edges, placement: placed.placement, content: Some(placed.number), offset: placed.offset })
-    });
+    let contents = cities.contents.placed(cities.own).filter(|placed| is_asked(placed.number));
+    let contents = contents.flat_map(|placed| edges_of(placed.city, placed.world, Some(placed.number), placed.offsets));
     own.chain(contents).collect()
 }
 
