@@ -1,5 +1,7 @@
 //! The cities of a frame: the scene's own, what deformations make of it, and the contents of lenses.
 
+use glam::DVec3;
+
 use crate::{
     geom::Aabb,
     render::{
@@ -75,6 +77,11 @@ impl<'a> Cities<'a> {
     /// The box around all of them, metres.
     pub fn bounds(&self) -> Aabb {
         self.all().fold(Aabb::EMPTY, |all, c| all.union(c.buffers.bounds))
+    }
+
+    /// Their uniforms `City`, for an eye.
+    pub fn uniforms(&self, eye: DVec3) -> Vec<u8> {
+        self.contents.uniforms(eye, !self.deformed.is_empty())
     }
 
     /// The table of surfaces of all of them.

@@ -315,16 +315,14 @@ impl Contents {
         self.shown.iter().map(|content| (content.number, &content.world))
     }
 
-    /// The uniforms `City` of the scene's own city, of all contents, and of what is moved of each; for an eye. Nothing without contents.
-    pub fn uniforms(&self, eye: DVec3) -> Vec<u8> {
-        if self.shown.is_empty() {
-            return Vec::new();
-        }
+    /// The uniforms `City` of the scene's own city, of all contents, and (`is_moved`) of what is moved of each; for an eye. Programs that may show
+    /// contents place the scene's own city by its uniform in frames without contents, too.
+    pub fn uniforms(&self, eye: DVec3, is_moved: bool) -> Vec<u8> {
         let own = strided(&Placement::NONE.uniform(eye, 0, 0));
         let uniform =
             |c: &ShownContent, placement: &Placement| strided(&placement.uniform(eye, c.number, c.first_surface));
         let placed = self.shown.iter().map(|c| uniform(c, &c.world.placement));
-        let moved = self.shown.iter().map(|c| uniform(c, &Placement::NONE));
+        let moved = self.shown.iter().filter(|_| is_moved).map(|c| uniform(c, &Placement::NONE));
         std::iter::once(own).chain(placed).chain(moved).flatten().collect()
     }
 

@@ -178,6 +178,15 @@ struct MadeTile {
 }
 
 impl MadeTile {
+    /// A tile that is shown where it is.
+    fn left(model: &CityModel, tile: &Tile) -> Self {
+        let vertices = model.vertices[tile.vertices.start as usize..tile.vertices.end as usize].to_vec();
+        let indices = model.indices[tile.indices.start as usize..tile.indices.end as usize].to_vec();
+        let ends = [vertices.len() as u32, indices.len() as u32];
+        let tile = Tile { vertices: 0..ends[0], indices: 0..ends[1], texcoords: NONE, ..tile.clone() };
+        Self { tile, vertices, indices }
+    }
+
     fn new(model: &CityModel, tile: &Tile, shown: &ShownTile) -> Self {
         let bounds = Aabb::from_points(shown.triangles.iter().flatten().map(|&corner| shown.corners[corner as usize]));
         let origin = bounds.center().floor().as_ivec3();
@@ -213,7 +222,10 @@ fn displayed(city: ShownCity, moved: &Moved) -> CityModel {
         .map(|tile| {
             let object = model.geometries[tile.geometry as usize].object;
             let standing = Standing { raised: moved.heights.of(object).copied(), placement: &Placement::NONE };
-            MadeTile::new(model, tile, &showing.tile(model, tile, &standing))
+            match showing.leaves(&standing, &tile.bounds) {
+                true => MadeTile::left(model, tile),
+                false => MadeTile::new(model, tile, &showing.tile(model, tile, &standing)),
+            }
         })
         .collect();
     let mut out = CityModel {

@@ -51,7 +51,11 @@ pub(super) fn lens_figures(of: FiguresOf, at_rest: ShownCity, picture: &Picture,
         visible,
         objects: match contents.of_lens(whole) {
             Some(content) => content.objects_meeting(at_rest, &volumes, &deformations.moved),
-            None => objects_meeting(city, &areas(&volumes)).len() as u64,
+            None => {
+                // What it moves is in it at rest.
+                let city = if lens.deform().is_some() { at_rest } else { city };
+                objects_meeting(city, &areas(&volumes)).len() as u64
+            }
         },
         covered: inside,
         pixels: if acts_inside { inside } else { 0 },

@@ -38,6 +38,7 @@ mod own_handlers;
 mod panes;
 mod picture;
 mod placement;
+mod random_scenes;
 mod renderings;
 mod scenes;
 mod sections;

@@ -1,0 +1,111 @@
+//! Random scenes of two to four lenses of any kind: both back ends draw the same, to the byte.
+
+use std::time::Instant;
+
+use crate::studio::{
+    random_scene::{Wanted, scene},
+    *,
+};
+use veduta::{
+    figure::scene_file::{Options, parse},
+    render::{
+        frame::Backend,
+        picture::{Picture, Request, Studio},
+    },
+    scene::Scene,
+};
+
+const SIZE: [u32; 2] = [200, 125];
+/// Scenes that every run draws, and those of a thorough one.
+const SCENES: u64 = 14;
+const ALL_SCENES: u64 = 1000;
+
+fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Result<Picture, String> {
+    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    studio.render(scene, &request).map_err(|error| error.to_string())
+}
+
+/// What of two pictures differs.
+fn differences(one: &Picture, other: &Picture) -> Vec<&'static str> {
+    let same = [
+        ("colours", one.rgba == other.rgba),
+        ("depths", one.depth == other.depth),
+        ("object ids", one.object_id == other.object_id),
+        ("normals", one.normal == other.normal),
+        ("masks", one.lens_mask == other.lens_mask),
+    ];
+    same.into_iter().filter(|(_, is_same)| !is_same).map(|(what, _)| what).collect()
+}
+
+fn same_by_both(studio: &mut Studio, text: &str) -> Result<bool, String> {
+    let scene = parse(text, "random.toml", &Options::default()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let one = drawn(studio, &scene, Backend::Specialised);
+    let other = drawn(studio, &scene, Backend::Uber);
+    match (one, other) {
+        (Ok(one), Ok(other)) => {
+            let found = differences(&one, &other);
+            if found.is_empty() { Ok(true) } else { Err(format!("{} differ:\n{text}", found.join(", "))) }
+        }
+        (Err(one), Err(other)) if one == other => Ok(false),
+        (one, other) => {
+            let said = [one, other].map(|drawn| drawn.err().unwrap_or_else(|| "a picture".to_owned()));
+            Err(format!("{} and {}:\n{text}", said[0], said[1]))
+        }
+    }
+}
+
+/// Seeds that are tried, of so many in an ordinary run; `VEDUTA_SEEDS=FROM..TO`: these.
+fn seeds(ordinary: u64, thorough: u64) -> std::ops::Range<u64> {
+    let given = std::env::var("VEDUTA_SEEDS").ok().and_then(|text| {
+        let (from, to) = text.split_once("..")?;
+        Some(from.parse().ok()?..to.parse().ok()?)
+    });
+    given.unwrap_or(0..if is_thorough() { thorough } else { ordinary })
+}
+
+#[test]
+fn both_back_ends_draw_random_scenes_the_same() {
+    let wanted = Wanted { lenses: [2, 4], deformations: true };
+    let cities = ["builtin:square", "builtin:town"];
+    let mut studios = cities.map(|city| of_scene(&parse_city(city)));
+    let (mut count, mut wrong) = (0, Vec::new());
+    let all = seeds(SCENES, ALL_SCENES);
+    let total = all.end - all.start;
+    for seed in all {
+        let which = (seed % 2) as usize;
+        let text = scene(seed, cities[which], wanted);
+        let started = Instant::now();
+        match same_by_both(&mut studios[which], &text) {
+            Ok(is_drawn) => count += u64::from(is_drawn),
+            Err(difference) => wrong.push(format!("seed {seed}: {difference}")),
+        }
+        println!("seed {seed}: {:.1} s\n{text}", started.elapsed().as_secs_f64());
+    }
+    assert!(wrong.is_empty(), "{} of {total} scenes:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(count * 10 > total * 8, "{count} of {total} scenes can be drawn");
+}
+
+fn parse_city(city: &str) -> Scene {
+    parse(&format!("veduta = 1\n[city]\nfiles = [\"{city}\"]\n"), "city.toml", &Options::default())
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A content that no lens of the picture shows, beside a lens that hides: both programs place the city itself.
+#[test]
+fn a_content_that_is_not_in_the_picture_changes_nothing() {
+    let scene = |lens: &str| {
+        format!(
+            "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [-64.26, 44.99, 139.25]\ntarget = [0, 0, 8]\nfov_deg = 55\n\
+             [[poi]]\nname = \"p\"\nat = [-4.4, 19.7, 8]\n[[lens]]\nname = \"l1\"\nkind = \"occlusion\"\npoi = \"p\"\n\
+             test = {{ kind = \"exact\" }}\nrender = \"flatten\"\n{lens}"
+        )
+    };
+    let mut studio = of_scene(&parse_city("builtin:square"));
+    let cone = "{ kind = \"cone\", center = [-77.1, -36.0, 5.0], radius = 57.6, height = 42.7 }";
+    for effect in ["eraser", "screen-door", "peel", "x-ray"] {
+        let lens = format!(
+            "[[lens]]\nname = \"l2\"\nshape = {cone}\neffects = [{{ effect = \"{effect}\", class = \"behind\" }}]\n"
+        );
+        assert_eq!(same_by_both(&mut studio, &scene(&lens)), Ok(true), "{effect}");
+    }
+}
