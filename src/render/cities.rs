@@ -9,9 +9,10 @@ use crate::{
         city::{Chunk, Section, SectionKind},
         city_facts::{CityFacts, ContentFacts, SectionFacts},
         city_on_gpu::CityOnGpu,
-        contents::{Contents, PlacedCity, World},
+        contents::{Contents, PlacedCity},
         cut::Cut,
         deformed::Deformed,
+        standing::World,
     },
     view::View,
 };

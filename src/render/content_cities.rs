@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 use crate::{
     city::{
         CityModel, Lod,
-        derived::{Derive, Form, derive},
+        derived::{Derive, derive},
         ground::plain_ground,
         load::{self, LoadOptions},
         shown::shown_geometries,
@@ -20,11 +20,12 @@ use crate::{
     lens::{Class, Content, ContentSource, Lens, solids::ShownCity},
     render::{
         city::CityBuffers,
-        contents::{ContentCity, Placement, WantedContent},
-        deformations::Moved,
-        deformed::Standing,
+        contents::{ContentCity, WantedContent},
         displayed::Showing,
+        moved::Moved,
         operations::ContentUse,
+        standing::Placement,
+        standing::Standing,
         stats,
         volume::LensVolume,
     },
@@ -274,7 +275,7 @@ fn derived(id: u64, source: Arc<CityModel>, geometries: &[u32], how: &Derive, is
         ground: None,
         is_own,
         has_shadow: !how.form.is_pressed(),
-        is_lit_as_before: matches!(how.form, Form::Top { .. }),
+        is_lit_as_before: how.form.is_pressed(),
         not_derived: [made.unchanged, made.left_out, made.instead],
     }
 }

@@ -10,7 +10,6 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
     city::{CityModel, coplanar::stacked_triangles, decode_normal, encode_normal, ground::Ground},
-    geom::Aabb,
     gpu::{Gpu, GpuError},
     render::{
         city::{Chunk, Shown},
@@ -22,6 +21,7 @@ use crate::{
             bindings::{STAGE_STRIDE, strided},
             pipelines::Pipelines,
         },
+        standing::{Placement, World},
         surfaces,
     },
 };
@@ -62,57 +62,6 @@ impl ContentCity {
     }
 }
 
-/// Where a content stands: `from` comes to `to`, and all else turned and scaled about it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
-    /// What is turned and scaled about, metres.
-    pub from: DVec3,
-    /// Where that comes to stand, metres.
-    pub to: DVec3,
-    /// Turns.
-    pub rotation: DQuat,
-    /// Scales, > 0.
-    pub scale: f64,
-}
-
-impl Placement {
-    /// Where it is.
-    pub const NONE: Self = Self { from: DVec3::ZERO, to: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: 1.0 };
-
-    /// Whether nothing moves.
-    pub fn is_none(&self) -> bool {
-        self.from == self.to && self.rotation == DQuat::IDENTITY && self.scale == 1.0
-    }
-
-    /// Where a point comes to stand.
-    pub fn point(&self, p: DVec3) -> DVec3 {
-        if self.is_none() { p } else { self.rotation * ((p - self.from) * self.scale) + self.to }
-    }
-
-    /// A box around what a box holds.
-    pub fn boxed(&self, bounds: &Aabb) -> Aabb {
-        if self.is_none() || bounds.is_empty() {
-            return *bounds;
-        }
-        Aabb::from_points(bounds.corners().map(|c| self.point(c)))
-    }
-
-    /// As the shader reads it, for an eye.
-    fn uniform(&self, eye: DVec3, number: u32, first_surface: u32) -> layout::City {
-        let (from, to) = if self.is_none() { (eye, [0.0; 3]) } else { (self.from, relative(self.to, eye).to_array()) };
-        let (from_whole, from_fraction) = split_eye(from);
-        layout::City {
-            linear: padded(DMat3::from_quat(self.rotation) * self.scale),
-            from_whole,
-            number,
-            from_fraction,
-            first_surface,
-            to,
-            scale: self.scale as f32,
-        }
-    }
-}
-
 /// A content that frames may show.
 #[derive(Clone, Debug)]
 pub struct WantedContent {
@@ -147,22 +96,6 @@ pub(super) struct Contents {
     pub surfaces: Option<wgpu::TextureView>,
 }
 
-/// A city where it stands: the scene's own or a content's. Deformations move each by itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct World {
-    /// Which city; 0: the scene's own.
-    pub city: u64,
-    /// Where it stands.
-    pub placement: Placement,
-    /// Whether its objects are those of the scene's own city, and are as high as these.
-    pub is_own: bool,
-}
-
-impl World {
-    /// The scene's own city.
-    pub const OWN: Self = Self { city: 0, placement: Placement::NONE, is_own: true };
-}
-
 #[derive(Debug)]
 struct ShownContent {
     number: u32,
@@ -185,6 +118,22 @@ pub(super) struct PlacedCity<'a> {
     pub chunks: &'a [Vec<Chunk>],
     /// Offsets of its uniforms `City`: of what stands where the city has it, and of what was moved to where it is shown.
     pub offsets: [u32; 2],
+}
+
+/// A placement as the shader reads it, for an eye.
+fn uniform(placement: &Placement, eye: DVec3, number: u32, first_surface: u32) -> layout::City {
+    let (from, to) =
+        if placement.is_none() { (eye, [0.0; 3]) } else { (placement.from, relative(placement.to, eye).to_array()) };
+    let (from_whole, from_fraction) = split_eye(from);
+    layout::City {
+        linear: padded(DMat3::from_quat(placement.rotation) * placement.scale),
+        from_whole,
+        number,
+        from_fraction,
+        first_surface,
+        to,
+        scale: placement.scale as f32,
+    }
 }
 
 impl Contents {
@@ -318,11 +267,10 @@ impl Contents {
     /// The uniforms `City` of the scene's own city, of all contents, and (`is_moved`) of what is moved of each; for an eye. Programs that may show
     /// contents place the scene's own city by its uniform in frames without contents, too.
     pub fn uniforms(&self, eye: DVec3, is_moved: bool) -> Vec<u8> {
-        let own = strided(&Placement::NONE.uniform(eye, 0, 0));
-        let uniform =
-            |c: &ShownContent, placement: &Placement| strided(&placement.uniform(eye, c.number, c.first_surface));
-        let placed = self.shown.iter().map(|c| uniform(c, &c.world.placement));
-        let moved = self.shown.iter().filter(|_| is_moved).map(|c| uniform(c, &Placement::NONE));
+        let own = strided(&uniform(&Placement::NONE, eye, 0, 0));
+        let of = |c: &ShownContent, placement: &Placement| strided(&uniform(placement, eye, c.number, c.first_surface));
+        let placed = self.shown.iter().map(|c| of(c, &c.world.placement));
+        let moved = self.shown.iter().filter(|_| is_moved).map(|c| of(c, &Placement::NONE));
         std::iter::once(own).chain(placed).chain(moved).flatten().collect()
     }
 

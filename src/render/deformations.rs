@@ -7,8 +7,6 @@ use std::{
     sync::Arc,
 };
 
-use glam::DVec3;
-
 use crate::{
     city::CityModel,
     geom::{
@@ -18,7 +16,9 @@ use crate::{
     lens::{Deform, Lens, Placement, Region, deform::Viewer, solids::ShownCity},
     render::{
         displayed::Stand,
-        heights::{Asked, Heights, Rule},
+        height_rules::{Asked, Rule, heights_of},
+        heights::Heights,
+        moved::Moved,
         occlusion::Occlusion,
         placement::Eye,
     },
@@ -67,32 +67,6 @@ pub(super) struct SceneDeformations {
     pub moved: Moved,
     /// Of those that would fold space, by lens: thousandths of its strength that are used.
     pub weakened: BTreeMap<u32, u32>,
-}
-
-/// How a city is shown: with other heights of objects, and then moved.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Moved {
-    /// First.
-    pub heights: Arc<Heights>,
-    /// Then.
-    pub deformers: Arc<Deformers>,
-}
-
-impl Moved {
-    /// Whether all is where it was.
-    pub fn is_nothing(&self) -> bool {
-        self.heights.is_empty() && self.deformers.0.is_empty()
-    }
-
-    /// Where a place is shown; of an object's, given that object.
-    pub fn place(&self, object: Option<u32>, place: DVec3) -> DVec3 {
-        self.deformers.value(object.map_or(place, |object| self.heights.place(object, place)))
-    }
-
-    /// A box around all that a box of the city becomes.
-    pub fn bounds(&self, bounds: &Aabb) -> Aabb {
-        self.deformers.deformed_bounds(&self.heights.changed_bounds(bounds))
-    }
 }
 
 /// What a picture's deformations are found in.
@@ -144,7 +118,7 @@ impl KnownDeformations {
         self.strengths.retain(|known| known.is_wanted);
         self.strengths.iter_mut().for_each(|known| known.is_wanted = false);
         if self.heights.0 != rules {
-            self.heights = (rules.clone(), Arc::new(Heights::of_rules(&rules, stage.city)?));
+            self.heights = (rules.clone(), Arc::new(heights_of(&rules, stage.city)?));
         }
         found.moved = Moved { heights: self.heights.1.clone(), deformers: Arc::new(deformers) };
         Ok(found)

@@ -19,7 +19,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
-    city::{decode_normal, encode_normal},
     geom::{
         Aabb,
         deform::{
@@ -32,17 +31,18 @@ use crate::{
         city::{Chunk, CityBuffers, Section, SectionKind},
         city_on_gpu::{CityOnGpu, image_of},
         city_source::Source,
-        contents::{Contents, Placement, World},
+        contents::Contents,
         deform_words::Lattice,
-        deformations::Moved,
         deformed_edges::{RestEdges, deformed_edges},
         edges::EdgeBuffers,
         frame::FrameInput,
         heights::{Height, Heights},
         layout::{self, CityVertex},
         light::casts_shadows,
+        moved::Moved,
         refinery::{LAYER_SHIFT, Made, Refinery, Rest, RestTriangles, TURNED},
         resource::pipelines::Pipelines,
+        standing::{Placement, Standing, World},
         volume::LensVolume,
     },
     view::View,
@@ -464,46 +464,6 @@ impl Met {
             chunks,
             rest,
         })
-    }
-}
-
-/// How something of a city stands before deformations move it: with another height, and placed.
-#[derive(Clone, Copy)]
-pub(super) struct Standing<'a> {
-    /// First.
-    pub raised: Option<Height>,
-    /// Then.
-    pub placement: &'a Placement,
-}
-
-impl Standing<'_> {
-    /// Whether it stands elsewhere than its city has it.
-    pub fn is_moved(&self) -> bool {
-        self.raised.is_some() || !self.placement.is_none()
-    }
-
-    /// Where a place of its city stands.
-    pub fn place(&self, place: DVec3) -> DVec3 {
-        self.placement.point(self.raised.map_or(place, |height| height.place(place)))
-    }
-
-    /// A box around what stands in a box of its city.
-    pub fn boxed(&self, bounds: &Aabb) -> Aabb {
-        if bounds.is_empty() {
-            return *bounds;
-        }
-        let raised =
-            self.raised.map_or(*bounds, |height| Aabb::from_points([bounds.min, bounds.max].map(|p| height.place(p))));
-        self.placement.boxed(&raised)
-    }
-
-    /// What a packed normal of its city becomes.
-    pub fn packed_normal(&self, packed: u32) -> u32 {
-        if !self.is_moved() {
-            return packed;
-        }
-        let normal = decode_normal(packed);
-        encode_normal(self.placement.rotation * self.raised.map_or(normal, |height| height.normal(normal)))
     }
 }
 

@@ -11,10 +11,11 @@ use crate::{
     },
     gpu::{Gpu, GpuError},
     render::{
-        contents::Placement,
-        deformed::{Standing, origin_of},
+        deformed::origin_of,
         edges::{Edge, EdgeBuffers, half, metres_of},
         heights::Height,
+        standing::Placement,
+        standing::Standing,
     },
 };
 

@@ -22,7 +22,7 @@ use crate::{
         },
     },
     lens::{Lens, solids::ShownCity},
-    render::{contents::Placement, deformations::Moved, deformed::Standing},
+    render::{moved::Moved, standing::Placement, standing::Standing},
     scene::{Poi, PoiPlace},
 };
 

@@ -22,9 +22,7 @@ use crate::{
     geom::Aabb,
     lens::{Lens, solids::ShownCity},
     render::{
-        content_cities::SceneContents,
-        contents::{ContentCity, Placement},
-        placed_region::Leaf,
+        content_cities::SceneContents, contents::ContentCity, placed_region::Leaf, standing::Placement,
         volume::LensVolume,
     },
     scene::Scene,

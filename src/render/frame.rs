@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::{
     render::{
-        deformations::Moved, eye::PictureTile, furniture::Furniture, operations::Operations, solids::SolidTable,
+        eye::PictureTile, furniture::Furniture, moved::Moved, operations::Operations, solids::SolidTable,
         volume::LensVolume,
     },
     scene::{Background, BaseStyle, Sun, Technique, Transparency},

@@ -129,6 +129,7 @@ impl Invokers {
                     handler: lens.body.map_or(0, |body| body.kind.number()),
                     parameters: lens.body.map_or(0, |body| body.parameters),
                     number: lens.number,
+                    kind: u32::from(plan.is_convex(i)),
                     ..layout::Invoker::default()
                 };
                 add(invoker, Some(i), false)

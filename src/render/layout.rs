@@ -63,6 +63,11 @@ impl Surface {
         let [r, g, b] = color.map(|c| u32::from(palette::half(c)));
         Self { object, normal, color_rg: r | g << 16, color_b_flags: b | flags << 16 }
     }
+
+    /// Whether its normal is never turned to the eye: it is lit by one that it does not have where it lies.
+    pub fn is_lit_as_before(&self) -> bool {
+        (self.color_b_flags >> 16) & SURFACE_LIT_AS_BEFORE != 0
+    }
 }
 
 /// `lib/surface.wgsl`: no city object.

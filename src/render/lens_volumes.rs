@@ -15,9 +15,9 @@ use crate::{
         solids::{Place, RegionError, ShownCity, Solids},
     },
     render::{
-        deformations::Moved,
         displayed::{Stand, Stands},
         enclosed::enclosed,
+        moved::Moved,
         occlusion::{Occlusion, Search},
         operations::AllTests,
         own_sprites,

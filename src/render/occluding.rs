@@ -3,8 +3,8 @@
 use crate::{
     lens::{Lens, rendering::When},
     render::{
-        deformations::Moved,
         displayed::Stands,
+        moved::Moved,
         occlusion::{Passing, Search},
         picture::{RenderError, Studio},
         placement::Eye,

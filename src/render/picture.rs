@@ -26,7 +26,6 @@ use crate::{
     render::{
         best_views::KnownViews,
         city::Shown,
-        deformations::Moved,
         deformed::DeformedFigures,
         diagnostics,
         eye::PictureTile,
@@ -36,6 +35,7 @@ use crate::{
         insets::Inset,
         layers::{LayerFigures, MethodFigures},
         lens_figures::{FiguresOf, lens_figures},
+        moved::Moved,
         parts::{Part, parts, put, whole},
         pass::masks::CLEAR_MASKS,
         renderer::Renderer,
@@ -594,7 +594,9 @@ impl Studio {
                 }
                 let n = decode_normal(normal);
                 let [x, y] = [i as u32 % width + part.drawn.origin[0], i as u32 / width + part.drawn.origin[1]];
-                let away = n.dot(view.pixel_ray(x, y).direction) > 0.0;
+                // As in `lib/point.wgsl`.
+                let is_lit_as_before = surface(code - 1).is_some_and(|s| s.is_lit_as_before());
+                let away = !is_lit_as_before && n.dot(view.pixel_ray(x, y).direction) > 0.0;
                 (if away { -n } else { n }).as_vec3().to_array()
             };
             let normals: Vec<[f32; 3]> = codes.iter().enumerate().map(normal).collect();

@@ -13,10 +13,11 @@ use crate::{
     render::{
         city_facts::CityFacts,
         content_cities::{self, ContentCities, SceneContents},
-        deformations::{self, KnownDeformations, Moved, SceneDeformations},
+        deformations::{self, KnownDeformations, SceneDeformations},
         displayed::{LastDisplayed, Stands, looks_at_rest},
         footprints::{self, OwnFootprints},
         lens_volumes::{LensVolumes, Tools, volumes_of},
+        moved::Moved,
         occlusion::Occlusion,
         operations::{AllTests, LensTables, MOST_FILTERS, Operations},
         parts::whole,
@@ -110,7 +111,8 @@ impl Surroundings<'_> {
         known.solid_table = found.place_solids(&known.solid_table).map_err(ResolveError::Scene)?;
         let LensVolumes { mut volumes, tests } = found;
         let contents = self.contents(drawn, &eye, camera, size, &volumes, known)?;
-        let mut operations = self.operations(scene, &eye, &volumes, tests, &contents, &deformations.moved, known)?;
+        let sights = self.sights(scene, &eye, &deformations.moved, known);
+        let mut operations = self.operations(scene, &volumes, tests, &contents, sights)?;
         add_members(&mut operations, &mut volumes, &self.models(&contents));
         check_counts(&operations, &volumes)?;
         let (own, moved) = (self.bounds(), &deformations.moved);
@@ -206,27 +208,29 @@ impl Surroundings<'_> {
         std::iter::once(self.model).chain(&contents.models).map(|m| &**m).collect()
     }
 
-    fn operations(
-        &self,
-        scene: &Scene,
-        eye: &Eye,
-        volumes: &[LensVolume],
-        tests: AllTests,
-        contents: &SceneContents,
-        moved: &Moved,
-        known: &mut Known,
-    ) -> Result<Operations, ResolveError> {
-        let mut present = vec![false; scene.lenses.len()];
-        for volume in volumes {
-            present[volume.lens as usize] = true;
-        }
-        let sights = match sights::are_asked(scene) {
+    /// What effects know of where points of interest are in the picture.
+    fn sights(&self, scene: &Scene, eye: &Eye, moved: &Moved, known: &mut Known) -> Vec<Vec<u32>> {
+        match sights::are_asked(scene) {
             true => {
                 let stands = Stands::displayed(self.city, &scene.pois, moved, &mut known.displayed);
                 sights::sights(scene, &stands, eye, &mut known.occlusion)
             }
             false => sights::sights(scene, &Stands::at_rest(self.city, &scene.pois), eye, &mut known.occlusion),
-        };
+        }
+    }
+
+    fn operations(
+        &self,
+        scene: &Scene,
+        volumes: &[LensVolume],
+        tests: AllTests,
+        contents: &SceneContents,
+        sights: Vec<Vec<u32>>,
+    ) -> Result<Operations, ResolveError> {
+        let mut present = vec![false; scene.lenses.len()];
+        for volume in volumes {
+            present[volume.lens as usize] = true;
+        }
         let footprints = footprints::tables(scene, self.city, self.footprints, contents, volumes);
         let (style, tables) = (&scene.style, LensTables { sights, footprints });
         let models = self.models(contents);

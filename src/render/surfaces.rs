@@ -76,7 +76,8 @@ pub(super) fn entry(
             layout::NO_OBJECT,
             normal,
             palette::linear_bytes(palette::PLAIN_GROUND),
-            layout::PART_TERRAIN << layout::SURFACE_PART_SHIFT,
+            // As level ground, on slopes too.
+            layout::PART_TERRAIN << layout::SURFACE_PART_SHIFT | layout::SURFACE_LIT_AS_BEFORE,
         );
     };
     let material = model.materials.get(found.material as usize);

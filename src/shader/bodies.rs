@@ -30,6 +30,7 @@ pub(super) fn outlines(plan: &Plan) -> String {
     let over = [(plan.lines, WITH_LINES), (plan.transparency, WITH_TRANSPARENCY)];
     over.iter().filter(|(is_drawn, _)| *is_drawn).for_each(|(_, laid)| text.push_str(laid));
     for (i, PlanBody { kind, parameters }) in bodies {
+        let is_convex = plan.is_convex(i as u32);
         let (color, width) = (format!("parameters[{parameters}]"), format!("parameters[{}].x", parameters + 1));
         match kind {
             BodyKind::Halo => {
@@ -41,7 +42,7 @@ pub(super) fn outlines(plan: &Plan) -> String {
             }
             BodyKind::Outline => {}
         }
-        let _ = writeln!(text, "    paint = outlined(paint, silhouette_{i}(pixel, {width}), {color});");
+        let _ = writeln!(text, "    paint = outlined(paint, silhouette_{i}(pixel, {width}, {is_convex}), {color});");
     }
     text.push_str("    return paint;\n}\n\n");
     text

@@ -98,7 +98,8 @@ const WITH_LINES: &str = "    if table.ranges.z < table.ranges.w {\n        pain
 const WITH_TRANSPARENCY: &str =
     "    if table.tiles.w != 0u {\n        paint = with_transparency(paint, pixel);\n    }\n";
 
-/// `outlines`: lines, layers and the bodies of lenses over the shaded picture; `by.handler` is the kind of a body.
+/// `outlines`: lines, layers and the bodies of lenses over the shaded picture; `by.handler` is the kind of a body, and `by.kind` is 1 of
+/// a convex one.
 fn outlines(uber: &Uber) -> String {
     let over = [(uber.lines, WITH_LINES), (uber.transparency, WITH_TRANSPARENCY)];
     let over: String = over.iter().filter(|(is_drawn, _)| *is_drawn).map(|(_, laid)| *laid).collect();
@@ -121,7 +122,7 @@ fn outlines(uber: &Uber) -> String {
             BodyKind::Shell => "            paint = shell(lens, paint, pixel, color);\n",
             BodyKind::Halo => "            paint = halo(lens, paint, pixel, color, width);\n",
         };
-        let line = "            paint = outlined(paint, silhouette(lens, pixel, width), color);\n";
+        let line = "            paint = outlined(paint, silhouette(lens, pixel, width, by.kind == 1u), color);\n";
         let line = if kind.has_outline() { line } else { "" };
         let _ = write!(text, "        if by.handler == {}u {{\n{drawn}{line}        }}\n", kind.number());
     }

@@ -69,8 +69,11 @@ fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     }
 }
 
+/// A triangle, and whose it is.
+type Face = ([DVec3; 3], u32);
+
 /// Triangles of what a model shows where they stand, with their objects.
-fn faces(model: &CityModel, geometries: &[u32], place: impl Fn(DVec3) -> DVec3) -> Vec<([DVec3; 3], u32)> {
+fn faces(model: &CityModel, geometries: &[u32], place: impl Fn(DVec3) -> DVec3) -> Vec<Face> {
     let mut all = Vec::new();
     for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
         for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
@@ -85,7 +88,7 @@ fn faces(model: &CityModel, geometries: &[u32], place: impl Fn(DVec3) -> DVec3) 
 
 /// Of the pixels of a lens (every `step`-th), how far the places at rest are from what the content has there, at worst, pixels; and
 /// how many there were, how many of them moved by more than a metre.
-fn farthest(picture: &Picture, view: &View, deformers: &Deformers, faces: &[([DVec3; 3], u32)]) -> (f64, usize, usize) {
+fn farthest(picture: &Picture, view: &View, deformers: &Deformers, faces: &[Face]) -> (f64, usize, usize) {
     let (depths, ids) = (picture.depth.as_ref().unwrap(), picture.object_id.as_ref().unwrap());
     // The content lens is the second.
     let mask = bits(picture, 1);
@@ -114,7 +117,7 @@ fn content_of(lens: &Lens) -> &veduta::lens::Content {
 }
 
 /// What a content shows, where it stands at rest.
-fn content_faces(studio: &Studio, lens: &Lens) -> Vec<([DVec3; 3], u32)> {
+fn content_faces(studio: &Studio, lens: &Lens) -> Vec<Face> {
     let content = content_of(lens);
     let Copied { from, to, rotation, scale } = content.copied.unwrap_or_default();
     let (from, to) = (from.unwrap_or_default(), to.unwrap_or_default());
@@ -233,19 +236,18 @@ fn objects_are_counted_where_they_are_shown() {
     let moves = deformation("{ kind = \"translate\", by = [40.0, 0.0, 0.0] }", "control = \"everywhere\"");
     let shape = "{ kind = \"sphere\", center = [30, 0, 5], radius = 28 }";
     let plain = format!("[[lens]]\nname = \"plain\"\nbody = \"none\"\neffects = [\"sepia\"]\nshape = {shape}\n");
-    let count_of =
-        |studio: &mut Studio, lens: &str, moves: &str, faces_of: &dyn Fn(&Studio, &Scene) -> Vec<([DVec3; 3], u32)>| {
-            let scene = town(&(moves.to_owned() + lens));
-            let picture = drawn(studio, &scene, Backend::default());
-            let deformers = studio.deformers(&scene, SIZE).unwrap();
-            let center = DVec3::new(30.0, 0.0, 5.0);
-            let met = faces_of(studio, &scene)
-                .into_iter()
-                .filter(|(corners, _)| distance(center, corners.map(|p| deformers.value(p))) <= 28.0);
-            let objects: BTreeSet<u32> = met.map(|(_, object)| object).collect();
-            assert_eq!(picture.statistics.lenses.last().unwrap().objects, objects.len() as u64, "{lens}");
-            objects
-        };
+    let count_of = |studio: &mut Studio, lens: &str, moves: &str, faces_of: &dyn Fn(&Studio, &Scene) -> Vec<Face>| {
+        let scene = town(&(moves.to_owned() + lens));
+        let picture = drawn(studio, &scene, Backend::default());
+        let deformers = studio.deformers(&scene, SIZE).unwrap();
+        let center = DVec3::new(30.0, 0.0, 5.0);
+        let met = faces_of(studio, &scene)
+            .into_iter()
+            .filter(|(corners, _)| distance(center, corners.map(|p| deformers.value(p))) <= 28.0);
+        let objects: BTreeSet<u32> = met.map(|(_, object)| object).collect();
+        assert_eq!(picture.statistics.lenses.last().unwrap().objects, objects.len() as u64, "{lens}");
+        objects
+    };
     let own = |studio: &Studio, _: &Scene| faces(&studio.model, &studio.geometries, |p| p);
     let of_content = |studio: &Studio, scene: &Scene| {
         let content = content_of(scene.lenses.last().unwrap());

@@ -38,6 +38,7 @@ mod case_21_overlays;
 mod case_21_zero_size_window;
 mod case_22_points_of_interest;
 mod case_23_jitter;
+mod case_24_combinations;
 mod deformed;
 mod lenses;
 mod oracle;

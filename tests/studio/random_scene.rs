@@ -55,7 +55,7 @@ pub struct Wanted {
 pub fn scene(seed: u64, city: &str, wanted: Wanted) -> String {
     let mut dice = Dice::new(seed);
     let dice = &mut dice;
-    let angle = dice.number(0.0, 6.28);
+    let angle = dice.number(0.0, 6.25);
     let (distance, height) = (dice.number(40.0, 160.0), dice.number(4.0, 140.0));
     let mut text = format!(
         "veduta = 1\n[city]\nfiles = [\"{city}\"]\n[camera]\neye = [{:.2}, {:.2}, {height:.2}]\ntarget = [{:.2}, {:.2}, 8]\nfov_deg = 55\n\
@@ -70,8 +70,7 @@ pub fn scene(seed: u64, city: &str, wanted: Wanted) -> String {
         dice.number(1.0, 12.0),
     );
     if dice.once_in(6) {
-        let base = dice.pick(&["clay", "gooch", "cel", "hidden-line", "x-ray"]);
-        let _ = writeln!(text, "[style]\nbase = \"{base}\"");
+        text += "[style]\nbase = \"clay\"\n";
     }
     let [least, most] = wanted.lenses;
     for i in 0..least + dice.below(most - least + 1) {

@@ -6,7 +6,7 @@ use crate::{
     geom::outline,
     lens::{BestView, Lens, Placement, best_view::LocalView, color::Srgb},
     overlay::Focus,
-    render::{deformations::Moved, picture::Studio},
+    render::{moved::Moved, picture::Studio},
     scene::{Overlay, Poi, PoiPlace, Scene, anchor::anchor, overlay::LineEnd},
     view::View,
 };

@@ -6,7 +6,6 @@ use crate::{
     lens::Class,
     render::{
         city_on_gpu::CityOnGpu,
-        contents::{Placement, World},
         cut::Cut,
         edges::{Edge, EdgeBuffers, VERTICES},
         frame::FrameInput,
@@ -24,6 +23,7 @@ use crate::{
             synced::Synced,
             targets::Needs,
         },
+        standing::{Placement, World},
     },
     shader::{EffectDefinition, Module, Plan, Program, Scope, Step, handlers},
 };

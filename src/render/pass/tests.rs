@@ -11,10 +11,10 @@ use crate::{
     render::{
         city::{Chunk, SectionKind},
         city_facts::{CityFacts, SectionFacts},
-        deformations::Moved,
         eye::PictureTile,
         frame::{Backend, FrameInput},
         furniture::{self, Furniture},
+        moved::Moved,
         operations::{LensTables, Operations},
         own_sprites::OwnSprites,
         pass::{Inputs, list},

@@ -12,10 +12,12 @@ pub(super) mod regions;
 pub(super) mod step;
 pub(super) mod uber;
 
+use crate::geom::shape::form::Extent;
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     plan::{
         content::PlanContent,
+        form::Form,
         lens::{BODY_SLOTS, BodyKind, PlanBorder, PlanLens},
         lens_test::LensTest,
         regions::Regions,
@@ -117,6 +119,12 @@ impl Plan {
     pub fn volumes_of(&self, lens: u32) -> (u32, &[LensTest]) {
         let before = self.lenses[..lens as usize].iter().map(|l| l.volumes.len() as u32).sum();
         (before, &self.lenses[lens as usize].volumes)
+    }
+
+    /// Whether one lens is one convex body, tested by its own numbers.
+    pub fn is_convex(&self, lens: u32) -> bool {
+        let (_, tests) = self.volumes_of(lens);
+        matches!(tests, [LensTest::Numbers(Form::Volume(form))] if form.extent() == Extent::Convex)
     }
 
     /// Its steps of one prototype, in the order of their execution.
