@@ -4,12 +4,14 @@ use crate::{
     lens::{Class, solids::ShownCity},
     render::{
         enclosed::{areas, objects_meeting},
+        operations::{Operation, Operations},
         picture::Picture,
         resolve::Resolved,
         stats,
         volume::LensVolume,
     },
     scene::{Drawn, Scene},
+    shader::{EffectKind, handlers},
 };
 
 /// What is counted: the lenses of a scene, as they were drawn.
@@ -24,6 +26,25 @@ pub(super) struct FiguresOf<'a> {
     pub seen: &'a [bool],
 }
 
+/// Of the `planned` effects those that ran, by name: everywhere, or at some pixel of their class of a lens. What decides who is shown, or
+/// how much of it, is asked of more than what is shown, and runs where it is planned. Before lenses are folded ([`Picture::fold`]).
+pub(super) fn handlers_that_ran(planned: &[u32], operations: &Operations, picture: &Picture) -> Vec<String> {
+    let has_lines = operations.draws_lines();
+    let on_lines = |kind: EffectKind| has_lines && kind.touches_lines();
+    let has_ran = |operation: &Operation| {
+        let Some(lens) = operation.lens else { return true };
+        let is_soft = operations.borders.iter().any(|(of, _)| *of == lens);
+        let kind = handlers()[operation.effect as usize].kind;
+        let asks_all = is_soft || kind.decides_visibility() || kind == EffectKind::Opacity || on_lines(kind);
+        asks_all || picture.class_at(lens as usize).any(|class| class == operation.class)
+    };
+    let is_used = |effect: u32| operations.list.iter().any(|o| o.effect == effect && has_ran(o));
+    // What no lens or style names is the program's own.
+    let is_named = |effect: u32| operations.list.iter().any(|o| o.effect == effect);
+    let ran = planned.iter().filter(|&&effect| !is_named(effect) || is_used(effect));
+    ran.map(|&effect| handlers()[effect as usize].name.clone()).collect()
+}
+
 /// What statistics say of a lens of the scene; `at_rest`: its city.
 pub(super) fn lens_figures(of: FiguresOf, at_rest: ShownCity, picture: &Picture, index: usize) -> stats::LensFigures {
     let FiguresOf { scene, drawn, resolved, city, seen } = of;
@@ -32,18 +53,17 @@ pub(super) fn lens_figures(of: FiguresOf, at_rest: ShownCity, picture: &Picture,
     let lens = &scene.lenses[index];
     let whole = drawn.whole(index as u32);
     let volumes: Vec<&LensVolume> = volumes.iter().filter(|v| v.lens == whole).collect();
-    let planes = &picture.classes[3 * (index / 32)..3 * (index / 32) + 3];
-    let bit = |plane: &[u32], i: usize| plane[i] >> (index % 32) & 1 == 1;
     let (mut front, mut inside, mut behind, mut rest) = (0, 0, 0, 0);
-    for i in 0..planes[0].len() {
-        match (bit(&planes[0], i), bit(&planes[1], i), bit(&planes[2], i)) {
-            (true, ..) => inside += 1,
-            (_, true, false) => front += 1,
-            (_, false, true) => behind += 1,
-            _ => rest += 1,
+    for class in picture.class_at(index) {
+        match class {
+            Class::Inside => inside += 1,
+            Class::Front => front += 1,
+            Class::Behind => behind += 1,
+            Class::Rest => rest += 1,
         }
     }
-    let acts_inside = lens.classes().any(|class| class == Class::Inside);
+    let of_class = [(Class::Inside, inside), (Class::Front, front), (Class::Behind, behind), (Class::Rest, rest)];
+    let acts_on = |class: Class| !volumes.is_empty() && lens.classes().any(|own| own == class);
     stats::LensFigures {
         id: index as u32,
         name: lens.name.clone(),
@@ -58,7 +78,7 @@ pub(super) fn lens_figures(of: FiguresOf, at_rest: ShownCity, picture: &Picture,
             }
         },
         covered: inside,
-        pixels: if acts_inside { inside } else { 0 },
+        pixels: of_class.into_iter().filter(|(class, _)| acts_on(*class)).map(|(_, count)| count).sum(),
         classified: if volumes.is_empty() {
             stats::Classified::default()
         } else {
@@ -74,6 +94,20 @@ pub(super) fn lens_figures(of: FiguresOf, at_rest: ShownCity, picture: &Picture,
 }
 
 impl Picture {
+    /// The class of what each pixel shows with regard to a lens, as it was written down.
+    fn class_at(&self, lens: usize) -> impl Iterator<Item = Class> {
+        let planes = &self.classes[3 * (lens / 32)..3 * (lens / 32) + 3];
+        (0..planes[0].len()).map(move |i| {
+            let [inside, front, behind] = [0, 1, 2].map(|plane: usize| planes[plane][i] >> (lens % 32) & 1 == 1);
+            match (inside, front, behind) {
+                (true, ..) => Class::Inside,
+                (_, true, false) => Class::Front,
+                (_, false, true) => Class::Behind,
+                _ => Class::Rest,
+            }
+        })
+    }
+
     /// Makes what was noted of the lenses that were drawn that of the scene's lenses.
     pub(super) fn fold(&mut self, drawn: &Drawn, lens_count: usize) {
         if drawn.owners.is_none() {

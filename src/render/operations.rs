@@ -352,6 +352,9 @@ impl Operations {
         tables: &LensTables,
     ) -> Result<(), ChoiceError> {
         let Some(number) = shader::effect::number_of(&effect.effect) else { return Ok(()) };
+        if effect.weight == Some(0.0) && blend_of(effect).is_some() {
+            return Ok(());
+        }
         let definition = &shader::handlers()[number as usize];
         let first = self.parameters.len() as u32;
         let mut floats = Vec::new();

@@ -34,7 +34,7 @@ use crate::{
         furniture::{self, Furniture},
         insets::Inset,
         layers::{LayerFigures, MethodFigures},
-        lens_figures::{FiguresOf, lens_figures},
+        lens_figures::{FiguresOf, handlers_that_ran, lens_figures},
         moved::Moved,
         parts::{Part, parts, put, whole},
         pass::masks::CLEAR_MASKS,
@@ -321,6 +321,9 @@ impl Studio {
         picture.weakened = resolved.deformations.weakened.clone();
         picture.deformed = self.renderer.deformed_figures();
         picture.without_glyph = diagnostics::without_glyph(furniture);
+        if request.statistics {
+            picture.statistics.handlers = handlers_that_ran(self.renderer.planned(), &resolved.operations, &picture);
+        }
         picture.fold(&drawn, scene.lenses.len());
         diagnostics::messages(scene, &picture).iter().for_each(|message| log::warn!("{message}"));
         if request.statistics {
@@ -678,7 +681,7 @@ impl Studio {
                 ..Default::default()
             },
             pipelines: stats::Pipelines { compiled, reused: names.len() as u32 - compiled, names },
-            handlers: self.renderer.handlers(),
+            handlers: picture.statistics.handlers.clone(),
             lenses: (0..scene.lenses.len())
                 .map(|i| stats::LensFigures {
                     occluders: self.occluders(&stands, &scene.lenses[i], &resolved.view),

@@ -33,7 +33,6 @@ use crate::{
         stored::SpriteTexels,
         view_state::{ViewState, fit_targets},
     },
-    shader::handlers,
     view::View,
 };
 
@@ -150,9 +149,9 @@ impl Renderer {
         self.ran.clear();
     }
 
-    /// Names of the effects that ran since then, each once.
-    pub fn handlers(&self) -> Vec<String> {
-        self.ran.iter().map(|&e| handlers()[e as usize].name.clone()).collect()
+    /// Effects of the plans that were drawn since then, ascending.
+    pub fn planned(&self) -> &[u32] {
+        &self.ran
     }
 
     /// Keeps the image of a file ([`Images::of_file`]).

@@ -17,7 +17,7 @@ pub struct Statistics {
     pub passes: Vec<Pass>,
     /// Pipelines.
     pub pipelines: Pipelines,
-    /// Names of the handlers that ran.
+    /// Names of the handlers that ran: everywhere, or at a pixel of their class of a lens.
     pub handlers: Vec<String>,
     /// Every lens of the scene, disabled ones included.
     pub lenses: Vec<LensFigures>,
@@ -179,7 +179,7 @@ pub struct LensFigures {
     pub objects: u64,
     /// Pixels whose shown surface is inside.
     pub covered: u64,
-    /// Those of them on which an effect ran.
+    /// Pixels whose shown surface is of a class that it acts on.
     pub pixels: u64,
     /// Pixels by class.
     pub classified: Classified,

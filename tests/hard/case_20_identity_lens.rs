@@ -48,7 +48,7 @@ fn identities(middle: DVec3) -> Vec<(String, Lens)> {
             Lens { body: LensBody::Outline, ..studio::lens("identity", [shape], "invert") }
         }),
     ];
-    // Every effect that is laid over what is below, with nothing of its own; on each class, with borders and without.
+    // Every effect that is laid over what is below, with hardly anything of its own; on each class, with borders and without.
     let laid = |h: &&veduta::shader::EffectDefinition| h.mode == Mode::Local && !h.kind.decides_visibility();
     for (i, handler) in handlers().iter().filter(laid).enumerate() {
         let class = [Class::Inside, Class::Front, Class::Behind, Class::Rest][i % 4];
@@ -56,10 +56,10 @@ fn identities(middle: DVec3) -> Vec<(String, Lens)> {
         if handler.name == "thematic" || handler.name == "discard-color" {
             parameters.insert("attribute".to_owned(), Parameter::Text("height".into()));
         }
-        let effect = EffectUse { class, weight: Some(0.0), parameters, ..studio::used(&handler.name) };
+        let effect = EffectUse { class, weight: Some(1e-30), parameters, ..studio::used(&handler.name) };
         let border = Border { width: 15.0, unit: BorderUnit::Metres, discrete: Discrete::Dither };
         let border = (i % 3 == 1).then_some(border);
-        all.push((format!("{} of weight 0", handler.name), Lens { border, ..plain(i, vec![effect]) }));
+        all.push((format!("{} of hardly any weight", handler.name), Lens { border, ..plain(i, vec![effect]) }));
     }
     all
 }

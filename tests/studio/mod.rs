@@ -70,6 +70,37 @@ pub fn synthetic(buildings: u64) -> Studio {
     made
 }
 
+/// A city of boxes (south-west corner, size) and of a slope of terrain that climbs to the north by half, if it has one; with the plain ground
+/// where it has none, if that is wanted.
+pub fn boxes(name: &str, boxes: &[([i64; 3], [i64; 3])], has_slope: bool, ground: bool) -> Studio {
+    let mut vertices: Vec<[i64; 3]> = vec![[-100, 0, 0], [100, 0, 0], [100, 200, 100], [-100, 200, 100]];
+    let slope = r#""slope": {"type": "TINRelief", "geometry": [{"type": "CompositeSurface", "lod": "1", "boundaries": [[[0,1,2]],[[0,2,3]]]}]}"#;
+    let mut objects: Vec<String> = has_slope.then(|| slope.to_owned()).into_iter().collect();
+    for (i, (at, size)) in boxes.iter().enumerate() {
+        let first = vertices.len();
+        for z in [0, size[2]] {
+            let corners = [[0, 0], [size[0], 0], [size[0], size[1]], [0, size[1]]];
+            vertices.extend(corners.map(|[x, y]| [at[0] + x, at[1] + y, at[2] + z]));
+        }
+        let faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+        let faces = faces.map(|face| vec![face.map(|k: usize| first + k)]);
+        objects.push(format!(
+            r#""box {i}": {{"type": "Building", "geometry": [{{"type": "Solid", "lod": "2", "boundaries": [{faces:?}]}}]}}"#
+        ));
+    }
+    let text = format!(
+        r#"{{"type": "CityJSON", "version": "2.0", "transform": {{"scale": [1, 1, 1], "translate": [0, 0, 0]}}, "CityObjects": {{{}}}, "vertices": {vertices:?}}}"#,
+        objects.join(", ")
+    );
+    let path = std::env::temp_dir().join(format!("veduta-{name}-{}.city.json", std::process::id()));
+    std::fs::write(&path, text).expect("a temporary file");
+    let scene =
+        Scene { city: CitySpec { files: vec![path.clone()], ground, ..Default::default() }, ..Scene::default() };
+    let studio = of_scene(&scene);
+    std::fs::remove_file(path).expect("the temporary file");
+    studio
+}
+
 /// A triangle of what a studio shows.
 pub struct Triangle {
     /// Metres.

@@ -38,8 +38,8 @@ fn identities(middle: DVec3) -> Vec<Lens> {
     ];
     for (i, name) in ["sepia", "gooch", "blur", "overlay", "marble", "cel"].into_iter().enumerate() {
         let class = [Class::Inside, Class::Front, Class::Behind, Class::Rest][i % 4];
-        let effect = EffectUse { class, weight: Some(0.0), ..used(name) };
-        all.push(plain(&format!("{name} of weight 0"), vec![effect]));
+        let effect = EffectUse { class, weight: Some(1e-30), ..used(name) };
+        all.push(plain(&format!("{name} of hardly any weight"), vec![effect]));
     }
     all
 }

@@ -1,0 +1,113 @@
+//! Counts of statistics: each is 0 where nothing is to be counted, and what thought says where something is.
+
+use crate::studio::*;
+use glam::DVec3;
+use veduta::{
+    geom::Shape,
+    lens::{Class, EffectUse, Lens},
+    render::{
+        frame::Backend,
+        picture::{Picture, Request, Studio},
+    },
+    scene::Scene,
+    view::Camera,
+};
+
+const SIZE: [u32; 2] = [160, 100];
+
+fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
+    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    studio.render(scene, &request).expect("a picture")
+}
+
+fn passes(picture: &Picture) -> Vec<&str> {
+    picture.statistics.passes.iter().map(|pass| pass.name.as_str()).collect()
+}
+
+struct Stage {
+    studio: Studio,
+    camera: Camera,
+    middle: DVec3,
+}
+
+impl Stage {
+    fn new() -> Self {
+        let studio = synthetic(40);
+        let middle = studio.extent().center();
+        let camera = Camera::looking(middle + DVec3::new(60.0, -120.0, 80.0), middle, 0.7);
+        Self { studio, camera, middle }
+    }
+
+    fn draw(&mut self, lenses: Vec<Lens>, backend: Backend) -> Picture {
+        drawn(&mut self.studio, &scene(self.camera, lenses), backend)
+    }
+
+    fn ball(&self, up: f64, radius: f64) -> Shape {
+        Shape::Sphere { center: self.middle + DVec3::Z * up, radius }
+    }
+}
+
+#[test]
+fn handlers_are_those_that_ran() {
+    let mut stage = Stage::new();
+    let everything = stage.ball(0.0, 5e3);
+    for backend in [Backend::Specialised, Backend::Uber] {
+        // In the air before the houses, in the picture and with nothing in it; then around all of them.
+        let air = stage.ball(45.0, 8.0);
+        for effect in ["greyscale", "blur", "velvet", "gooch"] {
+            let empty = stage.draw(vec![lens("air", [air.clone()], effect)], backend);
+            let figures = &empty.statistics.lenses[0];
+            assert!(figures.visible, "{effect} is in the picture");
+            assert_eq!((figures.covered, figures.pixels, figures.objects), (0, 0, 0), "{effect}");
+            assert!(empty.statistics.handlers.is_empty(), "{effect}: {:?}", empty.statistics.handlers);
+            let full = stage.draw(vec![lens("all", [everything.clone()], effect)], backend);
+            assert_eq!(full.statistics.handlers, [effect], "{effect}");
+        }
+    }
+}
+
+#[test]
+fn pixels_are_those_of_the_classes_that_a_lens_acts_on() {
+    let mut stage = Stage::new();
+    let ball = stage.ball(0.0, 30.0);
+    let of = |class: Class| Lens {
+        effects: vec![EffectUse { class, ..used("sepia") }],
+        ..lens("l", [ball.clone()], "sepia")
+    };
+    let mut sum = 0;
+    for class in [Class::Inside, Class::Front, Class::Behind, Class::Rest] {
+        let picture = stage.draw(vec![of(class)], Backend::default());
+        let figures = &picture.statistics.lenses[0];
+        let classified = [
+            (Class::Inside, figures.classified.inside),
+            (Class::Front, figures.classified.front),
+            (Class::Behind, figures.classified.behind),
+            (Class::Rest, figures.classified.rest),
+        ];
+        let wanted = classified.into_iter().find(|(of, _)| *of == class).and_then(|(_, count)| count);
+        assert_eq!(Some(figures.pixels), wanted, "{class:?}");
+        // What inside is has a count of its own.
+        assert_eq!(figures.covered, bits(&picture, 0).into_iter().filter(|is_in| *is_in).count() as u64);
+        sum += figures.pixels;
+    }
+    assert_eq!(sum, u64::from(SIZE[0]) * u64::from(SIZE[1]), "each pixel is of one class");
+    let none = stage.draw(vec![Lens { effects: vec![], ..of(Class::Inside) }], Backend::default());
+    assert_eq!(none.statistics.lenses[0].pixels, 0, "without effects it acts on nothing");
+}
+
+#[test]
+fn an_effect_of_no_weight_costs_nothing() {
+    let mut stage = Stage::new();
+    let ball = stage.ball(0.0, 30.0);
+    let of = |effects: Vec<EffectUse>| Lens { effects, ..lens("l", [ball.clone()], "sepia") };
+    for backend in [Backend::Specialised, Backend::Uber] {
+        let plain = stage.draw(vec![of(vec![])], backend);
+        for effect in ["blur", "sepia", "velvet"] {
+            let weightless = EffectUse { weight: Some(0.0), ..used(effect) };
+            let picture = stage.draw(vec![of(vec![weightless])], backend);
+            assert_eq!(passes(&picture), passes(&plain), "{effect}");
+            assert_eq!(picture.statistics.handlers, plain.statistics.handlers, "{effect}");
+            assert!(picture.rgba == plain.rgba, "{effect}");
+        }
+    }
+}
