@@ -91,7 +91,7 @@ fn the_shipped_scenes_of_built_in_cities_are_the_same_on_both() {
     // Those of one figure are much alike, and their names begin alike.
     paths.sort();
     let mut drawn = 0;
-    for (_, path) in paths.into_iter().enumerate().filter(|(i, _)| is_tried(*i, 3)) {
+    for (_, path) in paths.into_iter().enumerate().filter(|(i, _)| is_tried(*i, 5)) {
         let scene = scene_file::read(&path, &Options::for_file(&path)).expect("a scene");
         let mut studio = studio::of_scene(&scene);
         let a = draw(&mut studio, &scene, Backend::Specialised);
@@ -99,7 +99,7 @@ fn the_shipped_scenes_of_built_in_cities_are_the_same_on_both() {
         assert_eq!(a.rgba, b.rgba, "{}", path.display());
         drawn += 1;
     }
-    assert!(drawn > 9, "only {drawn} scenes");
+    assert!(drawn > 5, "only {drawn} scenes");
 }
 
 #[test]

@@ -17,7 +17,7 @@ use veduta::{
 
 const SIZE: [u32; 2] = [200, 125];
 /// Scenes that every run draws, and those of a thorough one.
-const SCENES: u64 = 8;
+const SCENES: u64 = 5;
 const ALL_SCENES: u64 = 1000;
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Result<Picture, String> {

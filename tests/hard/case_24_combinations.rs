@@ -27,7 +27,7 @@ const SIZE: [u32; 2] = [80, 50];
 /// Of the pixels of lens masks that a thorough run asks for (`VEDUTA_HARD_PIXELS`), a tenth are held to the reference, over all scenes.
 const SHARE: u64 = 10;
 /// Scenes of an ordinary run beside all pairs of kinds: triples.
-const TRIPLES: u64 = 4;
+const TRIPLES: u64 = 3;
 /// How far the sight lines beside that of a pixel are, pixels: what rounding may move; where the city is deformed, how far that may be off
 /// and twice as far between its edges.
 const BESIDE_PX: f64 = 0.02;
@@ -584,7 +584,7 @@ fn lenses_of_every_two_and_three_kinds_show_what_a_slow_renderer_says() {
             total
         }
     };
-    for (i, kinds) in pairs.iter().enumerate().filter(|(i, _)| studio::is_tried(*i, 6)) {
+    for (i, kinds) in pairs.iter().enumerate().filter(|(i, _)| studio::is_tried(*i, 9)) {
         run(kinds, i as u64);
     }
     let wanted = std::env::var("VEDUTA_HARD_PIXELS").ok().and_then(|text| text.parse().ok()).unwrap_or(0) / SHARE;
@@ -601,5 +601,5 @@ fn lenses_of_every_two_and_three_kinds_show_what_a_slow_renderer_says() {
     wrong.truncate(4);
     assert!(scenes == 0, "{scenes} scenes differ:\n{}", wrong.join("\n"));
     println!("{total} pixels compared, {acted} of them in lenses");
-    assert!(acted * 12 > total && total > 30_000, "{acted} of {total} pixels are in lenses");
+    assert!(acted * 12 > total && total > 20_000, "{acted} of {total} pixels are in lenses");
 }
