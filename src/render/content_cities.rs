@@ -22,10 +22,10 @@ use crate::{
         city::CityBuffers,
         contents::{ContentCity, WantedContent},
         displayed::Showing,
+        enclosed::{Area, areas, meeting},
         moved::Moved,
         operations::ContentUse,
         standing::Placement,
-        standing::Standing,
         stats,
         volume::LensVolume,
     },
@@ -329,29 +329,9 @@ impl WantedContent {
     /// City objects of which a triangle, where it stands, meets one of the volumes.
     pub fn objects_meeting(&self, own: ShownCity, volumes: &[&LensVolume], moved: &Moved) -> u64 {
         let (model, geometries) = self.shown(own);
-        let showing = Showing::new(moved);
         let is_own = self.city.as_ref().is_none_or(|city| city.is_own);
-        let mut met = FxHashSet::default();
-        for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
-            let raised = moved.heights.of(geometry.object).filter(|_| is_own).copied();
-            let standing = Standing { raised, placement: &self.placement };
-            let bounds = moved.deformers.deformed_bounds(&standing.boxed(&geometry.bounds));
-            let near: Vec<_> = volumes.iter().filter(|v| v.bounds.meets(&bounds)).collect();
-            if near.is_empty() || met.contains(&geometry.object) {
-                continue;
-            }
-            let hit = |tile: &crate::city::Tile| {
-                let shown = showing.tile(model, tile, &standing);
-                let meets = |triangle: &[u32; 3]| {
-                    let corners = triangle.map(|corner| shown.corners[corner as usize]);
-                    near.iter().any(|v| v.region.meets(&corners, geometry.object))
-                };
-                shown.triangles.iter().any(meets)
-            };
-            if model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize].iter().any(hit) {
-                met.insert(geometry.object);
-            }
-        }
-        met.len() as u64
+        let areas = areas(volumes);
+        let areas: Vec<&Area> = areas.iter().collect();
+        meeting(model, geometries, &areas, &Showing::of_content(moved, &self.placement, is_own)).len() as u64
     }
 }

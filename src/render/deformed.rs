@@ -171,8 +171,14 @@ impl Deforming {
         deformed: &mut Vec<Deformed>,
         input: &FrameInput,
     ) -> Result<bool, GpuError> {
-        let worlds = if input.moved.is_nothing() { Vec::new() } else { worlds_of(contents, input) };
-        self.met.retain(|met| worlds.contains(&met.world));
+        if input.moved.is_nothing() {
+            // What is met stays for the next view in which something is moved.
+            let had_some = !deformed.is_empty();
+            deformed.clear();
+            return Ok(had_some);
+        }
+        let worlds = worlds_of(contents, input);
+        self.met.retain(|met| met.world == World::OWN || worlds.contains(&met.world));
         let mut before = std::mem::take(deformed);
         let count = before.len();
         let mut is_other = false;

@@ -6,6 +6,7 @@ use crate::{
     render::{
         content_cities::SceneContents,
         deformed::DeformedFigures,
+        displayed::Showing,
         enclosed::{areas, objects_meeting, with_corners_outside},
         furniture::{Furniture, Piece},
         picture::{Picture, Studio},
@@ -111,11 +112,10 @@ pub(super) fn open_shells(studio: &Studio, resolved: &Resolved) -> BTreeMap<u32,
             continue;
         }
         let areas = areas(of_lens);
-        let stands = studio.stands(&deformations.moved, &[]);
-        let shown = stands.shown().city;
-        let mut met = objects_meeting(shown, &areas);
+        let (city, showing) = (studio.shown(), Showing::of_city(&deformations.moved));
+        let mut met = objects_meeting(city, &areas, &showing);
         met.retain(|object| !is_closed(object));
-        let count = with_corners_outside(shown, &met, &areas).len() as u32;
+        let count = with_corners_outside(city, &met, &areas, &showing).len() as u32;
         if count > 0 {
             open.insert(of_lens[0].lens, count);
         }

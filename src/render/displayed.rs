@@ -1,4 +1,5 @@
-//! The city where deformations show it, on the host: for whatever asks which objects are where.
+//! The city where deformations show it, on the host: for whatever asks which objects are where. Of what lies in lenses, tile by tile
+//! ([`Showing`]); for occluders, to which anything may belong, as a whole ([`Displayed`]).
 //!
 //! Triangles are halved until they are within a centimetre of what they become, so that what is told from them is off by no more. Objects,
 //! geometries and their numbers are those of the city at rest.
@@ -21,9 +22,13 @@ use crate::{
             refine::{Limits, refined},
         },
     },
-    lens::{Lens, solids::ShownCity},
-    render::{moved::Moved, standing::Placement, standing::Standing},
-    scene::{Poi, PoiPlace},
+    lens::{Lens, Region, solids::ShownCity},
+    render::{
+        heights::Heights,
+        moved::Moved,
+        standing::{Placement, Standing},
+    },
+    scene::{Poi, PoiPlace, Scene},
 };
 
 /// How far an edge may be from what it becomes, metres.
@@ -87,18 +92,29 @@ pub(super) struct Stands<'a> {
 
 impl<'a> Stands<'a> {
     /// What nothing moves, or nobody asks for where it is shown.
-    pub fn at_rest(city: ShownCity<'a>, pois: &'a [Poi]) -> Self {
+    fn at_rest(city: ShownCity<'a>, pois: &'a [Poi]) -> Self {
         Self { at_rest: Stand { city, pois }, displayed: None }
     }
 
     /// What deformations show elsewhere.
-    pub fn displayed(city: ShownCity<'a>, pois: &'a [Poi], moved: &Moved, last: &mut LastDisplayed) -> Self {
+    fn displayed(city: ShownCity<'a>, pois: &'a [Poi], moved: &Moved, last: &mut LastDisplayed) -> Self {
         let place = |poi: &Poi| match poi.place {
             PoiPlace::At(at) => Poi { place: PoiPlace::At(moved.place(None, at)), ..poi.clone() },
             PoiPlace::Object(_) | PoiPlace::On(_) => poi.clone(),
         };
         let displayed = last.of(city, moved).map(|displayed| (displayed, pois.iter().map(place).collect()));
         Self { at_rest: Stand { city, pois }, displayed }
+    }
+
+    /// The second only where a lens of the scene asks for it.
+    pub fn of_scene(
+        scene: &Scene,
+        city: ShownCity<'a>,
+        pois: &'a [Poi],
+        moved: &Moved,
+        last: &mut LastDisplayed,
+    ) -> Self {
+        if asks_where(scene) { Self::displayed(city, pois, moved, last) } else { Self::at_rest(city, pois) }
     }
 
     /// What is shown.
@@ -114,19 +130,30 @@ impl<'a> Stands<'a> {
     }
 }
 
+/// Whether some lens of a scene asks for what it looks for where that is shown: for occluders.
+fn asks_where(scene: &Scene) -> bool {
+    let is_asked = |region: &Region| matches!(region, Region::Occluders(_) | Region::Case { .. });
+    let asks =
+        |lens: &Lens| lens.enabled && !looks_at_rest(lens) && lens.shapes.iter().any(|shape| shape.any(&is_asked));
+    scene.lenses.iter().any(asks)
+}
+
 /// Whether a lens looks for objects in the city at rest: where it says so, and where they tell what it moves.
 pub(super) fn looks_at_rest(lens: &Lens) -> bool {
     lens.at_rest || lens.deform().is_some()
 }
 
-/// How the parts of a city are shown.
-pub(super) struct Showing<'a> {
+/// Where a city, or a content of one, is shown.
+pub struct Showing<'a> {
     deformers: &'a Deformers,
     supports: Vec<&'a Support>,
+    /// Of a city whose objects have some.
+    heights: Option<&'a Heights>,
+    placement: &'a Placement,
 }
 
 /// A tile where it is shown.
-pub(super) struct ShownTile {
+pub struct ShownTile {
     /// Metres.
     pub corners: Vec<DVec3>,
     /// By `corners`.
@@ -136,23 +163,56 @@ pub(super) struct ShownTile {
 }
 
 impl<'a> Showing<'a> {
-    pub fn new(moved: &'a Moved) -> Self {
-        Self { deformers: &moved.deformers, supports: moved.deformers.supports().collect() }
+    /// Of the scene's own city.
+    pub fn of_city(moved: &'a Moved) -> Self {
+        Self::of_content(moved, &Placement::NONE, true)
+    }
+
+    /// Of a content that stands so; `is_own`: its objects are those of the scene's own city, and are as high as these.
+    pub fn of_content(moved: &'a Moved, placement: &'a Placement, is_own: bool) -> Self {
+        let heights = (is_own && !moved.heights.is_empty()).then_some(&*moved.heights);
+        Self { deformers: &moved.deformers, supports: moved.deformers.supports().collect(), heights, placement }
+    }
+
+    /// Whether all of it is shown where the city has it.
+    pub fn is_nothing(&self) -> bool {
+        self.supports.is_empty() && self.heights.is_none() && self.placement.is_none()
+    }
+
+    /// How an object stands before it is deformed.
+    fn standing(&self, object: u32) -> Standing<'a> {
+        let raised = self.heights.and_then(|heights| heights.of(object)).copied();
+        Standing { raised, placement: self.placement }
     }
 
     /// Whether what stands in a box is shown where it stands.
-    fn leaves(&self, standing: &Standing, bounds: &Aabb) -> bool {
-        !standing.is_moved() && !self.supports.iter().any(|support| support.reaches(bounds))
+    fn leaves(&self, bounds: &Aabb) -> bool {
+        !self.supports.iter().any(|support| support.reaches(bounds))
     }
 
-    /// A tile as it is shown, of an object that stands so.
-    pub fn tile(&self, model: &CityModel, tile: &Tile, standing: &Standing) -> ShownTile {
+    /// A box around what of an object is in a box of its city.
+    pub fn bounds(&self, object: u32, bounds: &Aabb) -> Aabb {
+        let bounds = self.standing(object).boxed(bounds);
+        if self.leaves(&bounds) { bounds } else { self.deformers.deformed_bounds(&bounds) }
+    }
+
+    /// The corners of a tile of an object.
+    pub fn corners(&self, model: &CityModel, tile: &Tile, object: u32) -> impl Iterator<Item = DVec3> {
+        let standing = self.standing(object);
+        let is_left = self.leaves(&standing.boxed(&tile.bounds));
+        let stands = tile.vertices.clone().map(move |vertex| standing.place(model.position(tile, vertex)));
+        stands.map(move |place| if is_left { place } else { self.deformers.value(place) })
+    }
+
+    /// A tile of an object, in parts that are within a centimetre of what they become.
+    pub fn tile(&self, model: &CityModel, tile: &Tile, object: u32) -> ShownTile {
+        let standing = self.standing(object);
         let corners: Vec<DVec3> =
             tile.vertices.clone().map(|vertex| standing.place(model.position(tile, vertex))).collect();
         let indices = &model.indices[tile.indices.start as usize..tile.indices.end as usize];
         let (triangles, _) = indices.as_chunks::<3>();
         let bounds = Aabb::from_points(corners.iter().copied());
-        if self.leaves(&Standing { raised: None, placement: &Placement::NONE }, &bounds) {
+        if self.leaves(&bounds) {
             let sources = (0..corners.len() as u32).collect();
             return ShownTile { corners, triangles: triangles.to_vec(), sources };
         }
@@ -215,16 +275,15 @@ impl MadeTile {
 /// The geometries of a city that it shows, where deformations show them; of all others nothing.
 fn displayed(city: ShownCity, moved: &Moved) -> CityModel {
     let model = city.model;
-    let showing = Showing::new(moved);
+    let showing = Showing::of_city(moved);
     let tiles: Vec<&Tile> = city.geometries.iter().flat_map(|&g| &model.tiles[tile_range(model, g)]).collect();
     let made: Vec<MadeTile> = tiles
         .par_iter()
         .map(|tile| {
             let object = model.geometries[tile.geometry as usize].object;
-            let standing = Standing { raised: moved.heights.of(object).copied(), placement: &Placement::NONE };
-            match showing.leaves(&standing, &tile.bounds) {
+            match !showing.standing(object).is_moved() && showing.leaves(&tile.bounds) {
                 true => MadeTile::left(model, tile),
-                false => MadeTile::new(model, tile, &showing.tile(model, tile, &standing)),
+                false => MadeTile::new(model, tile, &showing.tile(model, tile, object)),
             }
         })
         .collect();

@@ -3,7 +3,9 @@
 use crate::{
     lens::{Class, solids::ShownCity},
     render::{
+        displayed::Showing,
         enclosed::{areas, objects_meeting},
+        moved::Moved,
         operations::{Operation, Operations},
         picture::Picture,
         resolve::Resolved,
@@ -20,7 +22,7 @@ pub(super) struct FiguresOf<'a> {
     pub scene: &'a Scene,
     pub drawn: &'a Drawn<'a>,
     pub resolved: &'a Resolved,
-    /// The city where it is shown.
+    /// The city.
     pub city: ShownCity<'a>,
     /// Which lenses of the scene can be seen.
     pub seen: &'a [bool],
@@ -45,8 +47,8 @@ pub(super) fn handlers_that_ran(planned: &[u32], operations: &Operations, pictur
     ran.map(|&effect| handlers()[effect as usize].name.clone()).collect()
 }
 
-/// What statistics say of a lens of the scene; `at_rest`: its city.
-pub(super) fn lens_figures(of: FiguresOf, at_rest: ShownCity, picture: &Picture, index: usize) -> stats::LensFigures {
+/// What statistics say of a lens of the scene.
+pub(super) fn lens_figures(of: FiguresOf, picture: &Picture, index: usize) -> stats::LensFigures {
     let FiguresOf { scene, drawn, resolved, city, seen } = of;
     let Resolved { volumes, contents, deformations, .. } = resolved;
     let visible = seen[index];
@@ -70,11 +72,12 @@ pub(super) fn lens_figures(of: FiguresOf, at_rest: ShownCity, picture: &Picture,
         kind: lens.kind.word().to_owned(),
         visible,
         objects: match contents.of_lens(whole) {
-            Some(content) => content.objects_meeting(at_rest, &volumes, &deformations.moved),
+            Some(content) => content.objects_meeting(city, &volumes, &deformations.moved),
             None => {
                 // What it moves is in it at rest.
-                let city = if lens.deform().is_some() { at_rest } else { city };
-                objects_meeting(city, &areas(&volumes)).len() as u64
+                let nothing = Moved::default();
+                let moved = if lens.deform().is_some() { &nothing } else { &deformations.moved };
+                objects_meeting(city, &areas(&volumes), &Showing::of_city(moved)).len() as u64
             }
         },
         covered: inside,

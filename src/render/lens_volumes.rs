@@ -15,8 +15,8 @@ use crate::{
         solids::{Place, RegionError, ShownCity, Solids},
     },
     render::{
-        displayed::{Stand, Stands},
-        enclosed::enclosed,
+        displayed::{Showing, Stand, Stands, looks_at_rest},
+        enclosed::{Held, enclosed},
         moved::Moved,
         occlusion::{Occlusion, Search},
         operations::AllTests,
@@ -46,8 +46,10 @@ pub(super) struct Tools<'a> {
     pub city: ShownCity<'a>,
     /// It at rest and where it is shown.
     pub stands: &'a Stands<'a>,
-    /// Where the lens looks for objects of it.
+    /// Where the lens looks for occluders.
     pub stand: Stand<'a>,
+    /// Whether it holds objects by where they are at rest.
+    pub at_rest: bool,
     /// Solids made so far.
     pub solids: &'a mut Solids,
     /// Occluders that lenses found.
@@ -67,7 +69,7 @@ pub(super) fn volumes_of<'a>(drawn: &'a Drawn, eye: &Eye, tools: &mut Tools<'a>)
     let (mut all, scene, city) = (LensVolumes::default(), &*drawn.scene, tools.city);
     for (i, lens) in scene.lenses.iter().enumerate() {
         (tools.lens, tools.is_enabled) = (&lens.name, lens.enabled);
-        tools.stand = tools.stands.of_lens(lens);
+        (tools.stand, tools.at_rest) = (tools.stands.of_lens(lens), looks_at_rest(lens));
         // Attached to what is not there, it acts nowhere.
         let motion = eye.motion(lens, scene, city.model);
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
@@ -287,15 +289,6 @@ fn leaves_of(region: &Region, place: &Place, tools: &mut Tools) -> Result<Vec<Le
     Ok(vec![Leaf::Members(Members { objects, thresholds, bounds })])
 }
 
-/// Which objects shapes hold.
-#[derive(Clone, Copy)]
-struct Held<'a> {
-    /// Those that are in them as a whole, or those that have a part in them.
-    whole: bool,
-    /// Of these types; none: of any.
-    types: &'a [String],
-}
-
 /// The objects that some shapes hold, one per object of the city.
 fn objects_in(parts: &[Region], held: Held, place: &Place, tools: &mut Tools) -> Result<Vec<bool>, RegionError> {
     let mut placed = Vec::new();
@@ -304,7 +297,9 @@ fn objects_in(parts: &[Region], held: Held, place: &Place, tools: &mut Tools) ->
     }
     let areas: Vec<_> =
         placed.iter().filter(|region| !region.is_empty()).map(|region| (region, region.bounds())).collect();
-    Ok(enclosed(tools.stand.city, &areas, held.whole, held.types))
+    let nothing = Moved::default();
+    let showing = Showing::of_city(if tools.at_rest { &nothing } else { tools.moved });
+    Ok(enclosed(tools.city, &areas, held, &showing))
 }
 
 /// What is wrong with part i of a focus area: a key of the part, and words.

@@ -23,16 +23,16 @@ fn cases_of(lens: &Lens) -> Vec<When> {
 }
 
 impl Studio {
-    /// The city and points of interest at rest, and where deformations show them.
-    pub(super) fn stands<'a>(&'a self, moved: &Moved, pois: &'a [Poi]) -> Stands<'a> {
-        Stands::displayed(self.shown(), pois, moved, &mut self.known().displayed)
+    /// The city and points of interest at rest, and where deformations show them if a lens of the scene asks for that.
+    pub(super) fn stands<'a>(&'a self, scene: &Scene, moved: &Moved, pois: &'a [Poi]) -> Stands<'a> {
+        Stands::of_scene(scene, self.shown(), pois, moved, &mut self.known().displayed)
     }
 
     /// Lets time go on by `dt` seconds, ≥ 0, to the moment of a scene: occluders come and go gradually. The first time everything
     /// begins settled. A picture of that scene then has its history; one of another moment has none.
     pub fn pass(&mut self, scene: &Scene, size: [u32; 2], dt: f64) -> Result<(), RenderError> {
         let (moved, pois) = (self.moved(scene, size)?, scene.standing_pois());
-        let stands = self.stands(&moved, &pois);
+        let stands = self.stands(scene, &moved, &pois);
         let mut lenses = Vec::new();
         for lens in scene.lenses.iter().filter(|lens| lens.enabled) {
             let Some(of) = lens.occluders() else { continue };

@@ -639,8 +639,8 @@ impl Studio {
         let is_seen = |v: &&LensVolume| v.seen_part(&resolved.view, whole(request.size)).is_some();
         resolved.volumes.iter().filter(is_seen).for_each(|v| seen[drawn.owner(v.lens) as usize] = true);
         let pois = scene.standing_pois();
-        let stands = self.stands(&resolved.deformations.moved, &pois);
-        let of = FiguresOf { scene, drawn, resolved, city: stands.shown().city, seen: &seen };
+        let stands = self.stands(scene, &resolved.deformations.moved, &pois);
+        let of = FiguresOf { scene, drawn, resolved, city: self.shown(), seen: &seen };
         let narrowing = pipelines.narrowing;
         let compiled = pipelines.compiled + u32::from(narrowing == Some(true));
         let names: Vec<String> = pipelines.used.iter().map(|key| key.name()).collect();
@@ -686,7 +686,7 @@ impl Studio {
                 .map(|i| stats::LensFigures {
                     occluders: self.occluders(&stands, &scene.lenses[i], &resolved.view),
                     over_time: self.over_time(&stands, &scene.lenses[i], &resolved.view),
-                    ..lens_figures(of, self.shown(), picture, i)
+                    ..lens_figures(of, picture, i)
                 })
                 .collect(),
             contents: resolved.contents.figures(drawn, self.shown(), |id| self.renderer.content_city(id)),

@@ -6,15 +6,12 @@ use std::sync::Arc;
 use crate::{
     city::{CityModel, load::LoadOptions},
     geom::Aabb,
-    lens::{
-        Lens, Region,
-        solids::{ShownCity, Solids},
-    },
+    lens::solids::{ShownCity, Solids},
     render::{
         city_facts::CityFacts,
         content_cities::{self, ContentCities, SceneContents},
         deformations::{self, KnownDeformations, SceneDeformations},
-        displayed::{LastDisplayed, Stands, looks_at_rest},
+        displayed::{LastDisplayed, Stands},
         footprints::{self, OwnFootprints},
         lens_volumes::{LensVolumes, Tools, volumes_of},
         moved::Moved,
@@ -23,7 +20,8 @@ use crate::{
         parts::whole,
         placed_region::Leaf,
         placement::Eye,
-        regions, sights,
+        regions,
+        sights::sights,
         solids::SolidTable,
         volume::LensVolume,
     },
@@ -130,14 +128,12 @@ impl Surroundings<'_> {
 
     fn placed(&self, drawn: &Drawn, eye: &Eye, moved: &Moved, known: &mut Known) -> Result<LensVolumes, ResolveError> {
         let pois = &drawn.scene.pois;
-        let stands = match asks_where(&drawn.scene) {
-            true => Stands::displayed(self.city, pois, moved, &mut known.displayed),
-            false => Stands::at_rest(self.city, pois),
-        };
+        let stands = Stands::of_scene(&drawn.scene, self.city, pois, moved, &mut known.displayed);
         let mut tools = Tools {
             city: self.city,
             stands: &stands,
             stand: stands.shown(),
+            at_rest: false,
             solids: &mut known.solids,
             occlusion: &mut known.occlusion,
             viewer: eye.viewer(),
@@ -210,13 +206,8 @@ impl Surroundings<'_> {
 
     /// What effects know of where points of interest are in the picture.
     fn sights(&self, scene: &Scene, eye: &Eye, moved: &Moved, known: &mut Known) -> Vec<Vec<u32>> {
-        match sights::are_asked(scene) {
-            true => {
-                let stands = Stands::displayed(self.city, &scene.pois, moved, &mut known.displayed);
-                sights::sights(scene, &stands, eye, &mut known.occlusion)
-            }
-            false => sights::sights(scene, &Stands::at_rest(self.city, &scene.pois), eye, &mut known.occlusion),
-        }
+        let stands = Stands::of_scene(scene, self.city, &scene.pois, moved, &mut known.displayed);
+        sights(scene, &stands, eye, &mut known.occlusion)
     }
 
     fn operations(
@@ -239,15 +230,6 @@ impl Surroundings<'_> {
         operations.contents.clone_from(&contents.uses);
         Ok(operations)
     }
-}
-
-/// Whether some lens asks which objects are where they are shown.
-fn asks_where(scene: &Scene) -> bool {
-    let is_asked =
-        |region: &Region| matches!(region, Region::Enclosed { .. } | Region::Occluders(_) | Region::Case { .. });
-    let asks =
-        |lens: &Lens| lens.enabled && !looks_at_rest(lens) && lens.shapes.iter().any(|shape| shape.any(&is_asked));
-    scene.lenses.iter().any(asks)
 }
 
 /// Puts the objects that lenses mean among the object values.

@@ -28,11 +28,6 @@ pub(super) fn sights(scene: &Scene, stands: &Stands, eye: &Eye, occlusion: &mut 
     scene.lenses.iter().map(of_lens).collect()
 }
 
-/// Whether some lens of a scene asks for them.
-pub(super) fn are_asked(scene: &Scene) -> bool {
-    scene.lenses.iter().any(asks)
-}
-
 fn asks(lens: &Lens) -> bool {
     let is_one = |effect: &str| find(effect).is_some_and(|e| e.objects == Some(PerObject::Sights));
     lens.enabled && lens.uses().any(|used| is_one(&used.effect))

@@ -31,17 +31,8 @@ struct City {
 
 impl City {
     fn new(model: &CityModel, geometries: &[u32], first_object: u32, place: impl Fn(DVec3) -> DVec3) -> Self {
-        let mut triangles = Vec::new();
-        for &g in geometries {
-            let geometry = &model.geometries[g as usize];
-            for t in geometry.tiles.clone() {
-                let tile = &model.tiles[t as usize];
-                for corners in model.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
-                    let corner = |k: usize| place(model.position(tile, tile.vertices.start + corners[k]));
-                    triangles.push(([corner(0), corner(1), corner(2)], geometry.object + first_object + 1));
-                }
-            }
-        }
+        let placed = faces(model, geometries).into_iter();
+        let triangles = placed.map(|(corners, object)| (corners.map(&place), object + first_object + 1)).collect();
         Self { triangles }
     }
 }

@@ -72,18 +72,9 @@ fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
 /// A triangle, and whose it is.
 type Face = ([DVec3; 3], u32);
 
-/// Triangles of what a model shows where they stand, with their objects.
-fn faces(model: &CityModel, geometries: &[u32], place: impl Fn(DVec3) -> DVec3) -> Vec<Face> {
-    let mut all = Vec::new();
-    for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
-        for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
-            for corners in model.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
-                let corners = [0, 1, 2].map(|k| place(model.position(tile, tile.vertices.start + corners[k])));
-                all.push((corners, geometry.object));
-            }
-        }
-    }
-    all
+/// The triangles of some geometries where they stand.
+fn placed(model: &CityModel, geometries: &[u32], place: impl Fn(DVec3) -> DVec3) -> Vec<Face> {
+    faces(model, geometries).into_iter().map(|(corners, object)| (corners.map(&place), object)).collect()
 }
 
 /// Of the pixels of a lens (every `step`-th), how far the places at rest are from what the content has there, at worst, pixels; and
@@ -126,13 +117,13 @@ fn content_faces(studio: &Studio, lens: &Lens) -> Vec<Face> {
     match &content.derive {
         Some(how) => {
             let made = derive(&studio.model, &studio.geometries, how);
-            let mut all = faces(&made.model, &made.geometries(), place);
+            let mut all = placed(&made.model, &made.geometries(), place);
             // Terrain and what lies on it shows beside what is derived.
             let is_ground = |object: u32| studio.model.objects[object as usize].class.is_ground();
-            all.extend(faces(&studio.model, &studio.geometries, place).into_iter().filter(|(_, o)| is_ground(*o)));
+            all.extend(placed(&studio.model, &studio.geometries, place).into_iter().filter(|(_, o)| is_ground(*o)));
             all
         }
-        None => faces(&studio.model, &studio.geometries, place),
+        None => placed(&studio.model, &studio.geometries, place),
     }
 }
 
@@ -209,7 +200,7 @@ fn what_is_enclosed_is_told_from_where_it_is_shown() {
         let picture = drawn(&mut studio, &scene, Backend::default());
         let deformers = studio.deformers(&scene, SIZE).unwrap();
         let place = |p: DVec3| if rest.is_empty() { deformers.value(p) } else { p };
-        let all = faces(&studio.model, &studio.geometries, place);
+        let all = placed(&studio.model, &studio.geometries, place);
         let center = DVec3::new(30.0, 0.0, 5.0);
         let mut objects: BTreeSet<u32> = all
             .iter()
@@ -248,7 +239,7 @@ fn objects_are_counted_where_they_are_shown() {
         assert_eq!(picture.statistics.lenses.last().unwrap().objects, objects.len() as u64, "{lens}");
         objects
     };
-    let own = |studio: &Studio, _: &Scene| faces(&studio.model, &studio.geometries, |p| p);
+    let own = |studio: &Studio, _: &Scene| placed(&studio.model, &studio.geometries, |p| p);
     let of_content = |studio: &Studio, scene: &Scene| {
         let content = content_of(scene.lenses.last().unwrap());
         let Copied { from, to, rotation, scale } =
@@ -257,8 +248,8 @@ fn objects_are_counted_where_they_are_shown() {
         let made = content.derive.as_ref().map(|how| derive(&studio.model, &studio.geometries, how));
         let place = |p: DVec3| rotation * ((p - from) * scale) + to;
         made.map_or_else(
-            || faces(&studio.model, &studio.geometries, place),
-            |made| faces(&made.model, &made.geometries(), place),
+            || placed(&studio.model, &studio.geometries, place),
+            |made| placed(&made.model, &made.geometries(), place),
         )
     };
     let here = count_of(&mut studio, &plain, "", &own);

@@ -3,10 +3,7 @@
 use crate::studio::{self, *};
 use glam::DVec3;
 use veduta::{
-    city::{
-        CityModel,
-        derived::{Derive, Form, Height, derive},
-    },
+    city::derived::{Derive, Form, Height, derive},
     geom::{Shape, ray::TriangleTest},
     lens::{
         Content, Lens, Region,
@@ -40,20 +37,6 @@ fn showing(form: Form, focus: impl Into<Region>) -> Lens {
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
     let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
     studio.render(scene, &request).expect("a picture")
-}
-
-/// Triangles of a model's geometries with the index of their object.
-fn faces(model: &CityModel, geometries: &[u32]) -> Vec<([DVec3; 3], u32)> {
-    let tiles = geometries.iter().flat_map(|&g| model.geometries[g as usize].tiles.clone());
-    let mut all = Vec::new();
-    for tile in tiles.map(|t| &model.tiles[t as usize]) {
-        for corners in model.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
-            let vertex = |k: usize| tile.vertices.start + corners[k];
-            let object = model.surfaces[model.vertices[vertex(0) as usize].surface as usize].object;
-            all.push(([0, 1, 2].map(|k| model.position(tile, vertex(k))), object));
-        }
-    }
-    all
 }
 
 /// From above, and from the street.

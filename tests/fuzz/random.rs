@@ -35,7 +35,15 @@ impl Random {
         self.below(n) == 0
     }
 
+    /// A number, to a hundredth.
+    #[allow(dead_code, reason = "not all binaries have use for it")]
+    pub fn number(&mut self, low: f64, high: f64) -> f64 {
+        let steps = ((high - low) * 100.0) as usize + 1;
+        ((low * 100.0).round() + self.below(steps) as f64) / 100.0
+    }
+
     /// A range of at most `longest` inside 0..`length`.
+    #[allow(dead_code, reason = "not all binaries have use for it")]
     pub fn range(&mut self, length: usize, longest: usize) -> std::ops::Range<usize> {
         let start = self.below(length + 1);
         let end = (start + self.below(longest.max(1)) + 1).min(length);

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use veduta::{
-    city::{CityModel, derived::derive},
+    city::derived::derive,
     figure::scene_file::{Options, parse},
     geom::{Aabb, deform::Deformers},
     lens::{Class, Lens},
@@ -21,7 +21,7 @@ use veduta::{
     view::View,
 };
 
-use crate::studio::{self, ALL, bits, is_thorough, of_scene, random_scene::Dice};
+use crate::studio::{self, ALL, bits, faces, is_thorough, of_scene, random_scene::Random};
 
 const SIZE: [u32; 2] = [80, 50];
 /// Of the pixels of lens masks that a thorough run asks for (`VEDUTA_HARD_PIXELS`), a tenth are held to the reference, over all scenes.
@@ -143,7 +143,7 @@ fn class_word(class: Class) -> &'static str {
 }
 
 /// A lens of a kind, somewhere near the middle of the town.
-fn lens(kind: usize, number: usize, view: &View, dice: &mut Dice, has_moves: bool) -> Made {
+fn lens(kind: usize, number: usize, view: &View, dice: &mut Random, has_moves: bool) -> Made {
     let center = DVec3::new(dice.number(-25.0, 25.0), dice.number(-25.0, 25.0), dice.number(0.0, 10.0));
     let is_ball = dice.once_in(2);
     let (radius, half) =
@@ -252,20 +252,6 @@ fn lens(kind: usize, number: usize, view: &View, dice: &mut Dice, has_moves: boo
         }
     }
     Made { text, slow, content }
-}
-
-/// The triangles of some geometries.
-fn triangles(model: &CityModel, geometries: &[u32]) -> Vec<([DVec3; 3], u32)> {
-    let mut all = Vec::new();
-    for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
-        for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
-            for corners in model.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
-                let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + corners[k]));
-                all.push((corners, geometry.object));
-            }
-        }
-    }
-    all
 }
 
 /// Adds a triangle where it is shown: in parts of a metre and a half where something moves it.
@@ -441,7 +427,7 @@ impl Reference {
 
 /// A scene of the lenses of some kinds, in this order.
 fn scene_of(kinds: &[usize], seed: u64) -> (String, Vec<Made>) {
-    let mut dice = Dice::new(seed);
+    let mut dice = Random::new(seed, 0);
     let (angle, height) = (dice.number(0.0, 6.25), dice.number(8.0, 70.0));
     let eye = [70.0 * angle.cos(), 70.0 * angle.sin(), height].map(|v| (v * 100.0_f64).round() / 100.0);
     let head = format!(
@@ -483,9 +469,9 @@ fn compare(studio: &mut Studio, kinds: &[usize], seed: u64) -> Result<[u64; 2], 
 fn reference_of(studio: &Studio, scene: &Scene, made: Vec<Made>, deformers: &Deformers) -> Reference {
     let model = &studio.model;
     let is_ground = |object: u32| model.objects[object as usize].class.is_ground();
-    let mut faces = Vec::new();
-    for (corners, object) in triangles(model, &studio.geometries) {
-        add(&mut faces, corners, (object, 0, is_ground(object)), deformers);
+    let mut all = Vec::new();
+    for (corners, object) in faces(model, &studio.geometries) {
+        add(&mut all, corners, (object, 0, is_ground(object)), deformers);
     }
     let mut known: Vec<String> = Vec::new();
     let mut lenses = Vec::new();
@@ -494,7 +480,7 @@ fn reference_of(studio: &Studio, scene: &Scene, made: Vec<Made>, deformers: &Def
             *world = known.iter().position(|text| text == own).unwrap_or_else(|| {
                 known.push(own.clone());
                 for (corners, object) in content_of(studio, lens) {
-                    add(&mut faces, corners, (object, known.len(), is_ground(object)), deformers);
+                    add(&mut all, corners, (object, known.len(), is_ground(object)), deformers);
                 }
                 known.len() - 1
             }) + 1;
@@ -510,7 +496,7 @@ fn reference_of(studio: &Studio, scene: &Scene, made: Vec<Made>, deformers: &Def
     }
     // A quarter of a pixel, and twice that between edges.
     let pixel = view_of(scene).pixel_m(1.0);
-    Reference { faces, lenses, slack: if deformers.0.is_empty() { 0.0 } else { 0.75 * pixel } }
+    Reference { faces: all, lenses, slack: if deformers.0.is_empty() { 0.0 } else { 0.75 * pixel } }
 }
 
 /// The triangles of a content where it stands before deformations.
@@ -519,14 +505,14 @@ fn content_of(studio: &Studio, lens: &Lens) -> Vec<([DVec3; 3], u32)> {
     match (&content.derive, &content.copied) {
         (Some(how), _) => {
             let made = derive(&studio.model, &studio.geometries, how);
-            triangles(&made.model, &made.geometries())
+            faces(&made.model, &made.geometries())
         }
         (None, copied) => {
             let copied = copied.expect("a copy");
             let (from, to) = (copied.from.unwrap_or_default(), copied.to.unwrap_or_default());
             let (rotation, scale): (DQuat, f64) = (copied.rotation, copied.scale);
             let place = |p: DVec3| rotation * ((p - from) * scale) + to;
-            let all = triangles(&studio.model, &studio.geometries).into_iter();
+            let all = faces(&studio.model, &studio.geometries).into_iter();
             all.map(|(corners, object)| (corners.map(place), object)).collect()
         }
     }
@@ -571,7 +557,7 @@ fn held(drawn: &Picture, wanted: &[[Seen; 5]], lenses: usize) -> Result<[u64; 2]
 fn lenses_of_every_two_and_three_kinds_show_what_a_slow_renderer_says() {
     let mut studio = of_scene(&parsed("veduta = 1\n[city]\nfiles = [\"builtin:town\"]\nground = false\n"));
     let pairs: Vec<Vec<usize>> = (0..KINDS).flat_map(|a| (0..KINDS).map(move |b| vec![a, b])).collect();
-    let mut dice = Dice::new(24);
+    let mut dice = Random::new(24, 0);
     let (mut total, mut acted, mut wrong) = (0, 0, Vec::new());
     let mut run = |kinds: &[usize], seed: u64| match compare(&mut studio, kinds, seed) {
         Ok([compared, own]) => {

@@ -15,6 +15,7 @@ use std::{
 use glam::{DQuat, DVec2, DVec3};
 use veduta::{
     city::{
+        CityModel,
         load::{LoadOptions, Quiet, load},
         synth,
     },
@@ -109,6 +110,20 @@ pub struct Triangle {
     pub object: u32,
     /// Index of its surface.
     pub surface: u32,
+}
+
+/// The triangles of some geometries of a model, with their objects.
+pub fn faces(model: &CityModel, geometries: &[u32]) -> Vec<([DVec3; 3], u32)> {
+    let mut all = Vec::new();
+    for geometry in geometries.iter().map(|&g| &model.geometries[g as usize]) {
+        for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
+            for corners in model.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
+                let corners = [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + corners[k]));
+                all.push((corners, geometry.object));
+            }
+        }
+    }
+    all
 }
 
 /// All of them.

@@ -4,43 +4,10 @@ use std::fmt::Write as _;
 
 use veduta::shader::{EffectDefinition, EffectKind, PerObject, effects};
 
-/// Numbers from a seed (SplitMix64, Steele et al. 2014).
-pub struct Dice(u64);
+#[path = "../fuzz/random.rs"]
+mod random;
 
-impl Dice {
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// 0 to `count`, not included.
-    pub fn below(&mut self, count: usize) -> usize {
-        (self.next() % count as u64) as usize
-    }
-
-    /// One of some.
-    pub fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
-        &all[self.below(all.len())]
-    }
-
-    /// Whether, once in `every` times.
-    pub fn once_in(&mut self, every: usize) -> bool {
-        self.below(every) == 0
-    }
-
-    /// A number, to a hundredth.
-    pub fn number(&mut self, low: f64, high: f64) -> f64 {
-        let steps = ((high - low) * 100.0) as usize + 1;
-        ((low * 100.0).round() + self.below(steps) as f64) / 100.0
-    }
-}
+pub use random::Random;
 
 /// What a random scene may have.
 #[derive(Clone, Copy)]
@@ -53,7 +20,7 @@ pub struct Wanted {
 
 /// A scene file over a city around the origin.
 pub fn scene(seed: u64, city: &str, wanted: Wanted) -> String {
-    let mut dice = Dice::new(seed);
+    let mut dice = Random::new(seed, 0);
     let dice = &mut dice;
     let angle = dice.number(0.0, 6.25);
     let (distance, height) = (dice.number(40.0, 160.0), dice.number(4.0, 140.0));
@@ -79,7 +46,7 @@ pub fn scene(seed: u64, city: &str, wanted: Wanted) -> String {
     text
 }
 
-fn lens(dice: &mut Dice, number: usize, wanted: Wanted) -> String {
+fn lens(dice: &mut Random, number: usize, wanted: Wanted) -> String {
     let kinds = if wanted.deformations { 9 } else { 8 };
     let mut text = format!("[[lens]]\nname = \"l{number}\"\n");
     let body = *dice.pick(&["outline", "outline", "shell", "halo", "none"]);
@@ -135,11 +102,11 @@ fn lens(dice: &mut Dice, number: usize, wanted: Wanted) -> String {
     text
 }
 
-fn place(dice: &mut Dice) -> String {
+fn place(dice: &mut Random) -> String {
     format!("[{:.2}, {:.2}, {:.2}]", dice.number(-60.0, 60.0), dice.number(-60.0, 60.0), dice.number(-2.0, 20.0))
 }
 
-fn turned(dice: &mut Dice) -> String {
+fn turned(dice: &mut Random) -> String {
     if dice.once_in(2) {
         return String::new();
     }
@@ -147,8 +114,8 @@ fn turned(dice: &mut Dice) -> String {
 }
 
 /// A shape; combinations of some at most so deep.
-fn shape(dice: &mut Dice, depth: usize) -> String {
-    let of = |dice: &mut Dice, low: f64, high: f64| dice.number(low, high);
+fn shape(dice: &mut Random, depth: usize) -> String {
+    let of = |dice: &mut Random, low: f64, high: f64| dice.number(low, high);
     match dice.below(if depth > 0 { 12 } else { 7 }) {
         0 | 1 => format!("{{ kind = \"sphere\", center = {}, radius = {:.2} }}", place(dice), of(dice, 8.0, 50.0)),
         2 => {
@@ -203,12 +170,12 @@ fn shape(dice: &mut Dice, depth: usize) -> String {
 }
 
 /// A box or a cylinder that stands upright, as deformations want it.
-fn upright(dice: &mut Dice) -> String {
+fn upright(dice: &mut Random) -> String {
     let [x, y, z] = [0; 3].map(|_| dice.number(40.0, 110.0));
     format!("{{ kind = \"box\", center = {}, size = [{x:.2}, {y:.2}, {z:.2}] }}", place(dice))
 }
 
-fn deformed(dice: &mut Dice) -> String {
+fn deformed(dice: &mut Random) -> String {
     match dice.below(5) {
         0 => format!("{{ kind = \"twist\", angle_deg = {} }}", dice.below(120) as i32 - 60),
         1 => format!("{{ kind = \"taper\", factor = {:.2} }}", dice.number(0.5, 1.4)),
@@ -222,7 +189,7 @@ fn deformed(dice: &mut Dice) -> String {
     }
 }
 
-fn content(dice: &mut Dice) -> String {
+fn content(dice: &mut Random) -> String {
     let own = match dice.below(7) {
         0 => "derive = \"box\"".to_owned(),
         1 => "derive = \"hull\"".to_owned(),
@@ -242,7 +209,7 @@ fn content(dice: &mut Dice) -> String {
     format!("{{ {own}, class = \"{class}\" }}")
 }
 
-fn border(dice: &mut Dice) -> String {
+fn border(dice: &mut Random) -> String {
     let width = dice.number(1.0, 20.0);
     let discrete = if dice.once_in(3) { ", discrete = \"dither\"" } else { "" };
     format!("{{ width = {width:.2}{discrete} }}")
@@ -265,7 +232,7 @@ fn ready() -> impl Iterator<Item = &'static EffectDefinition> {
 }
 
 /// One to `most` effects; of scene styles and filters one at most.
-fn steps(dice: &mut Dice, most: usize) -> String {
+fn steps(dice: &mut Random, most: usize) -> String {
     let all: Vec<&EffectDefinition> = ready().collect();
     let (mut chosen, mut has_style): (Vec<String>, bool) = (Vec::new(), false);
     for _ in 0..1 + dice.below(most) {
