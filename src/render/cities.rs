@@ -12,6 +12,7 @@ use crate::{
         contents::{Contents, PlacedCity},
         cut::Cut,
         deformed::Deformed,
+        operations::Operations,
         standing::World,
     },
     view::View,
@@ -80,9 +81,12 @@ impl<'a> Cities<'a> {
         self.all().fold(Aabb::EMPTY, |all, c| all.union(c.buffers.bounds))
     }
 
-    /// Their uniforms `City`, for an eye.
-    pub fn uniforms(&self, eye: DVec3) -> Vec<u8> {
-        self.contents.uniforms(eye, !self.deformed.is_empty())
+    /// Their uniforms `City`, for an eye; nothing where no program of the scene may show contents.
+    pub fn uniforms(&self, eye: DVec3, operations: &Operations) -> Vec<u8> {
+        match operations.may_show_contents() {
+            true => self.contents.uniforms(eye, !self.deformed.is_empty()),
+            false => Vec::new(),
+        }
     }
 
     /// The table of surfaces of all of them.

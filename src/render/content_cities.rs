@@ -149,7 +149,10 @@ impl ContentCities {
             lod => shown_geometries(&model, lod),
         };
         if geometries.is_empty() {
-            return Err(("files", format!("{} hold nothing that can be shown", named(&content.files))));
+            return Err(match is_own {
+                true => ("lod", "the city holds nothing that can be shown".to_owned()),
+                false => ("files", format!("{} hold nothing that can be shown", named(&content.files))),
+            });
         }
         self.given += 1;
         let city = match &content.derive {

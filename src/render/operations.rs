@@ -220,6 +220,11 @@ impl Operations {
         Uber { haze, masks, ..self.uber.clone() }.layering(shader::handlers())
     }
 
+    /// Whether a lens of the scene has own content, in whatever frame.
+    pub fn may_show_contents(&self) -> bool {
+        self.uber.contents
+    }
+
     /// Whether the context or an enabled lens draws lines.
     pub fn draws_lines(&self) -> bool {
         self.list.iter().any(|o| shader::handlers()[o.effect as usize].lines)

@@ -142,7 +142,7 @@ impl Shared {
             self.solids_of = Some(input.solids.clone());
             self.world += 1;
         }
-        stale |= self.cities.sync(gpu, &cities.uniforms(eye))?;
+        stale |= self.cities.sync(gpu, &cities.uniforms(eye, input.operations))?;
         stale |= self.planes.sync(gpu, &numbers.planes)?;
         stale |= self.sprite_places.sync(gpu, &places)?;
         stale |= self.lens_regions.sync(gpu, &regions)?;

@@ -231,7 +231,7 @@ impl Pass for ShadowMap {
     fn prepare(&mut self, sun: &&View, stage: &mut Preparing) -> Result<(), GpuError> {
         let whole = PictureTile::whole(sun.size);
         let mut stale = self.view.sync(stage.gpu, &[view_uniform(sun, whole, DVec2::ZERO, 0, 0.0)])?;
-        stale |= self.cities.sync(stage.gpu, &stage.cities.uniforms(sun.camera.eye))?;
+        stale |= self.cities.sync(stage.gpu, &stage.cities.uniforms(sun.camera.eye, stage.plan.input.operations))?;
         if let Some(cut) = &stage.plan.cuts.sun {
             stale |= self.upload_cut(stage, cut)?;
         }
@@ -256,7 +256,7 @@ impl Pass for ShadowMap {
         let wanted = Held {
             view: view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0),
             cut: by.map(numbers),
-            cities: cities.uniforms(sun.camera.eye),
+            cities: cities.uniforms(sun.camera.eye, plan.input.operations),
             details: plan.details.clone(),
             world: shared.world,
             map: targets.shadow.texture.clone(),
