@@ -3,7 +3,7 @@
 use crate::studio::*;
 use glam::{DVec2, DVec3};
 use veduta::{
-    geom::{Aabb, Shape},
+    geom::{Aabb, Shape, combination::Operation},
     lens::{Lens, LensBody, Region, chosen::Choice},
     render::{
         frame::Backend,
@@ -162,4 +162,25 @@ fn what_has_no_surface_shows_a_line() {
     }
     let in_sprite = Lens { sprite: Some(Default::default()), ..body_of(LensBody::Halo, ball()) };
     assert_eq!(in_sprite.drawn_body(), LensBody::Outline);
+}
+
+#[test]
+fn a_line_around_a_convex_lens_is_that_around_any() {
+    let mut studio = synthetic(20);
+    let middle = studio.extent().center();
+    let camera = Camera::looking(middle + DVec3::new(60.0, -110.0, 80.0), middle, 0.8);
+    // With something out of the picture it is a combination, and its line is found without what is known of convex ones.
+    let away = Region::from(Shape::Sphere { center: middle + DVec3::new(-5e3, 9e3, 0.0), radius: 1.0 });
+    let mut on_line = 0;
+    for (i, shape) in shapes(middle, 30.0).into_iter().take(7).enumerate() {
+        let parts = vec![shape.clone(), away.clone()];
+        let combined = Region::Combined { how: Operation::Union, parts };
+        let plain = draw(&mut studio, &scene(camera, vec![body_of(LensBody::None, shape.clone())]), BACKENDS[i % 2]);
+        let [one, other] = [shape.clone(), combined]
+            .map(|region| draw(&mut studio, &scene(camera, vec![body_of(LensBody::Outline, region)]), BACKENDS[i % 2]));
+        on_line += one.rgba.iter().zip(&plain.rgba).filter(|(a, b)| a != b).count();
+        let differ = one.rgba.iter().zip(&other.rgba).filter(|(a, b)| a != b).count();
+        assert_eq!(differ, 0, "{shape:?}");
+    }
+    assert!(on_line > 3000, "{on_line} pixels are on lines");
 }
