@@ -72,8 +72,14 @@ impl CityFacts<'_> {
         terrain.map(|chunk| u64::from(triangles_in(&chunk.range))).sum()
     }
 
-    /// The sun's view where shadows are wanted. `contents`: what contents show in a frustum, and in all.
-    pub fn sun_view(&self, view: &View, sun: &Sun, contents: impl Fn(&Frustum) -> [Aabb; 2]) -> Option<View> {
+    /// The sun's view where shadows are wanted, of so many texels each way. `contents`: what contents show in a frustum, and in all.
+    pub fn sun_view(
+        &self,
+        view: &View,
+        sun: &Sun,
+        size: u32,
+        contents: impl Fn(&Frustum) -> [Aabb; 2],
+    ) -> Option<View> {
         if !light::casts_shadows(sun) {
             return None;
         }
@@ -87,7 +93,7 @@ impl CityFacts<'_> {
             .fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
         let [seen, all] = contents(&frustum);
         let seen = if frustum.meets(&self.moved) { seen.union(self.moved) } else { seen };
-        light::sun_view(sun, &receivers.union(seen), &self.bounds.union(all).union(self.moved))
+        light::sun_view(sun, &receivers.union(seen), &self.bounds.union(all).union(self.moved), size)
     }
 
     /// Box around what contents show that a frustum meets, and around all that they show, metres.

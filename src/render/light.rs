@@ -9,8 +9,10 @@ use crate::{
     view::{Camera, Projection, View},
 };
 
-/// Texels along a side of the shadow map.
+/// Texels along a side of the shadow map, unless [`crate::render::settings::Settings`] say otherwise.
 pub const SHADOW_SIZE: u32 = 4096;
+/// The fewest that it can have.
+pub const LEAST_SHADOW_SIZE: u32 = 256;
 
 /// Direction to the sun, unit: azimuth clockwise from north, elevation above the horizon.
 pub fn to_sun(sun: &Sun) -> DVec3 {
@@ -24,8 +26,9 @@ pub fn casts_shadows(sun: &Sun) -> bool {
     sun.shadows && sun.elevation > 0.01
 }
 
-/// The sun's orthographic view of `receivers`, from beyond `casters`.
-pub fn sun_view(sun: &Sun, receivers: &Aabb, casters: &Aabb) -> Option<View> {
+/// The sun's orthographic view of `receivers`, from beyond `casters`, of so many texels each way.
+pub fn sun_view(sun: &Sun, receivers: &Aabb, casters: &Aabb, size: u32) -> Option<View> {
+    let size = size.max(LEAST_SHADOW_SIZE);
     if receivers.is_empty() || casters.is_empty() {
         return None;
     }
@@ -46,9 +49,9 @@ pub fn sun_view(sun: &Sun, receivers: &Aabb, casters: &Aabb) -> Option<View> {
         .into_iter()
         .fold(0.0_f64, |half, c| half.max((c - center).dot(basis.right).abs()).max((c - center).dot(basis.up).abs()));
     // A texel's width more on each side, so that filters never look past the border.
-    let height_m = (2.0 * half * (1.0 + 4.0 / f64::from(SHADOW_SIZE))).clamp(1.0, 1e7);
+    let height_m = (2.0 * half * (1.0 + 4.0 / f64::from(size))).clamp(1.0, 1e7);
     let camera = Camera { projection: Projection::Orthographic { height_m }, ..probe };
-    View::new(camera, [SHADOW_SIZE; 2], &casters.union(*receivers)).ok()
+    View::new(camera, [size; 2], &casters.union(*receivers)).ok()
 }
 
 /// The light block; `shadow` is the sun's view where there is a shadow map.
@@ -113,7 +116,7 @@ mod tests {
         let sun = Sun::default();
         let receivers = Aabb { min: DVec3::new(8e4, 4e5, -3.0), max: DVec3::new(8.06e4, 4.004e5, 60.0) };
         let casters = Aabb { min: receivers.min - 500.0, max: receivers.max + 500.0 };
-        let view = sun_view(&sun, &receivers, &casters).unwrap();
+        let view = sun_view(&sun, &receivers, &casters, SHADOW_SIZE).unwrap();
         let matrix = shadow_from_relative(&view, receivers.min);
         for corner in receivers.corners() {
             let at = matrix.project_point3(corner - receivers.min);

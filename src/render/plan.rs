@@ -97,7 +97,8 @@ impl<'a> FramePlan<'a> {
         let Stayed { own_sprites, .. } = stayed;
         own_sprites.plan(input, &facts.all);
         let seen = seen_volumes(input, &facts.all, own_sprites.room());
-        let sun = facts.sun_view(&input.view, &input.sun, |frustum| facts.content_bounds(input, frustum));
+        let sun = facts
+            .sun_view(&input.view, &input.sun, settings.shadow_size, |frustum| facts.content_bounds(input, frustum));
         let plans = Plans::new(input, &seen.volumes);
         let is_seen = |lens| seen.volumes.iter().any(|v| v.lens == lens);
         let cuts = Cuts::new(input, is_seen, sun.as_ref(), plans.hiding.clone());

@@ -14,6 +14,7 @@ use crate::{
         displayed::{LastDisplayed, Stands},
         footprints::{self, OwnFootprints},
         lens_volumes::{LensVolumes, Tools, volumes_of},
+        light::LEAST_SHADOW_SIZE,
         moved::Moved,
         occlusion::Occlusion,
         operations::{AllTests, LensTables, MOST_FILTERS, Operations},
@@ -182,7 +183,9 @@ impl Surroundings<'_> {
             return Ok(SceneContents::default());
         }
         let view = View::new(*camera, size, &self.bounds())?;
-        let sun = self.facts.as_ref().and_then(|facts| facts.sun_view(&view, &scene.sun, |_| [Aabb::EMPTY; 2]));
+        // The coarsest map looks farthest beyond its edge.
+        let sun = |facts: &CityFacts| facts.sun_view(&view, &scene.sun, LEAST_SHADOW_SIZE, |_| [Aabb::EMPTY; 2]);
+        let sun = self.facts.as_ref().and_then(sun);
         let sun = sun.map(|sun| sun.frustum(1.0));
         let stage = content_cities::Stage {
             drawn,

@@ -1,5 +1,7 @@
 //! Settings of a renderer: room, and ways of drawing that leave the picture as it is.
 
+use crate::render::light::SHADOW_SIZE;
+
 /// Settings of a renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
@@ -15,11 +17,20 @@ pub struct Settings {
     /// Triangles of translucent layers are drawn one by one, in an order shuffled by this number; `None`: as they lie in the city.
     /// The picture is the same.
     pub shuffled: Option<u32>,
+    /// Texels along a side of the shadow map, at least [`crate::render::light::LEAST_SHADOW_SIZE`]; what drawing it costs grows with its square.
+    pub shadow_size: u32,
 }
 
 impl Settings {
     /// Those that suit an adapter.
     pub fn new(is_software: bool) -> Self {
-        Self { culls_hidden: is_software, narrows_lists: true, most_layers: None, picked_layer: None, shuffled: None }
+        Self {
+            culls_hidden: is_software,
+            narrows_lists: true,
+            most_layers: None,
+            picked_layer: None,
+            shuffled: None,
+            shadow_size: SHADOW_SIZE,
+        }
     }
 }

@@ -202,7 +202,7 @@ fn a_skin_hides_what_lies_on_it_alone() {
     assert!(one.rgba == other.rgba && one.depth == other.depth);
     let (view, mut gone) = (view_of(camera), 0);
     let [before, after] = [&plain, &one].map(|p| p.depth.as_ref().expect("depth was asked for"));
-    for (i, (was, is)) in before.iter().zip(after).enumerate() {
+    for (i, (was, is)) in before.iter().zip(after).enumerate().filter(|(i, _)| is_tried(*i, 3)) {
         let found = reference.intervals(&view.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]));
         let away = |d: f32| {
             let ends = found.iter().flat_map(|(a, b)| [*a, *b]);
@@ -216,7 +216,7 @@ fn a_skin_hides_what_lies_on_it_alone() {
         }
         assert!(!is.is_finite() || away(*is) > 1.999, "pixel {i} shows what lies on the skin");
     }
-    assert!(gone > 300, "{gone} pixels");
+    assert!(gone > 100, "{gone} pixels");
 }
 
 #[test]

@@ -280,6 +280,6 @@ fn many_of_them_hold_the_same() {
     if is_thorough() {
         check(&many, style, &eyes, WHOLE);
     } else {
-        check(&many, style, &eyes[..1], ([240, 180], 75));
+        check(&many, style, &eyes[..1], ([160, 120], 75));
     }
 }

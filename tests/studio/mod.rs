@@ -22,7 +22,10 @@ use veduta::{
     geom::{Ray, Shape, Volume, combination::Operation},
     gpu::Gpu,
     lens::{Class, EffectUse, Lens, LensBody, LensKind, Parameter, Region, classify::intervals},
-    render::picture::{Aovs, Picture, Request, Studio},
+    render::{
+        light::SHADOW_SIZE,
+        picture::{Aovs, Picture, Request, Studio},
+    },
     scene::{CitySpec, Scene, Sun},
     view::{Camera, Projection},
 };
@@ -49,13 +52,22 @@ pub fn citydata(name: &str) -> PathBuf {
 pub fn studio(files: &[PathBuf]) -> Studio {
     let model = load(files, &LoadOptions::default(), &Quiet).expect("the files load");
     let spec = CitySpec { ground: false, ..CitySpec::default() };
-    Studio::new(Gpu::open().expect("an adapter, hardware or software"), Arc::new(model), &spec).expect("a studio")
+    over(model, &spec)
+}
+
+/// A studio over a city, with shadow maps of a sixteenth of the texels: on the software adapter these are more than a small picture has, and
+/// what is asked of shadows here does not depend on them.
+fn over(model: CityModel, spec: &CitySpec) -> Studio {
+    let gpu = Gpu::open().expect("an adapter, hardware or software");
+    let mut studio = Studio::new(gpu, Arc::new(model), spec).expect("a studio");
+    studio.renderer.settings.shadow_size = SHADOW_SIZE / 4;
+    studio
 }
 
 /// A studio over a scene's city.
 pub fn of_scene(scene: &Scene) -> Studio {
     let model = load(&scene.city.files, &LoadOptions::default(), &Quiet).expect("the files load");
-    Studio::new(Gpu::open().expect("an adapter"), Arc::new(model), &scene.city).expect("a studio")
+    over(model, &scene.city)
 }
 
 /// A studio over the synthetic city.

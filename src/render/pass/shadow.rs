@@ -12,7 +12,7 @@ use crate::{
         cut::{Cut, Shapes},
         eye::{PictureTile, view_uniform},
         invokers::{InvokerPlans, Invokers},
-        layout, light,
+        layout,
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
             opaque::{CutBy, draw_runs},
@@ -219,8 +219,8 @@ impl Pass for ShadowMap {
         plan.sun.as_ref()
     }
 
-    fn add_needs(_: &&View, _: &FramePlan, needs: &mut Needs) {
-        needs.shadow = light::SHADOW_SIZE;
+    fn add_needs(sun: &&View, _: &FramePlan, needs: &mut Needs) {
+        needs.shadow = sun.size[0];
     }
 
     fn add_keys(&self, input: Option<&&View>, _: &FramePlan, programs: &Programs, keys: &mut Keys) {

@@ -64,7 +64,8 @@ impl Needs {
             transparency: self.transparency || before.transparency,
             tails: self.tails || before.tails,
             shown_layers: self.shown_layers || before.shown_layers,
-            shadow: self.shadow.max(before.shadow),
+            // Of one size at a time: its whole texture is the map.
+            shadow: if self.shadow == 0 { before.shadow } else { self.shadow },
         }
     }
 }
