@@ -6,14 +6,19 @@
 //!                                                 ─> which of its faces are covered ─> loops around those
 //! ```
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 use spade::{
     ConstrainedDelaunayTriangulation, Point2, Triangulation,
     handles::{DirectedEdgeHandle, FixedVertexHandle},
 };
 
-use crate::geom::exact::{cross, dot, orient, segments_meet, twice_area};
+use crate::geom::{
+    aabb::Aabb,
+    bvh::Bvh,
+    exact::{cross, dot, orient, segments_meet, twice_area},
+    ray::Ray,
+};
 
 /// A point of the lattice.
 pub type Point = [i64; 2];
@@ -23,16 +28,16 @@ pub type Part = Vec<Vec<Point>>;
 
 /// Rings of more edges are not tried pair by pair.
 const MOST_PAIRS: usize = 1000;
-/// More triangles that overlap or touch in other ways than edge to edge have no outline: each is tried against each place.
-const MOST_OVERLAID: usize = 2000;
+/// Triangles whose corners and crossings are more places than this have no outline: it would take seconds.
+const MOST_PLACES: usize = 1 << 17;
 /// Gaps and notches narrower than this are closed, lattice units: what rounding to the lattice opens between neighbours.
 const GAP: f64 = 2.0;
 
 /// The area that triangles cover together, whichever way they turn.
 ///
 /// Where they neither overlap nor enclose a hole the outline is exact, with the very corners of the triangles. Elsewhere crossings of
-/// edges are rounded to the lattice (by half a unit per axis at most) and gaps narrower than two units are closed; more than 2,000
-/// such triangles have no outline.
+/// edges are rounded to the lattice (by half a unit per axis at most) and gaps narrower than two units are closed; such triangles with
+/// more than 131,072 corners and crossings have no outline.
 pub fn union(triangles: &[[Point; 3]]) -> Vec<Part> {
     let turned: Vec<[Point; 3]> = triangles
         .iter()
@@ -44,7 +49,6 @@ pub fn union(triangles: &[[Point; 3]]) -> Vec<Part> {
         .collect();
     match border(&turned) {
         Some(ring) => vec![vec![ring]],
-        None if turned.len() > MOST_OVERLAID => Vec::new(),
         None => overlaid(&turned),
     }
 }
@@ -112,11 +116,18 @@ fn overlaid(triangles: &[[Point; 3]]) -> Vec<Part> {
     let local = |p: Point| Point2::new((p[0] - origin[0]) as f64, (p[1] - origin[1]) as f64);
     let Some(net) = net_of(triangles, local) else { return Vec::new() };
     let near: Vec<[DVec2; 3]> = triangles.iter().map(|t| t.map(|p| DVec2::new(local(p).x, local(p).y))).collect();
+    let boxes: Vec<Aabb> = near.iter().map(|t| Aabb::from_points(t.iter().map(|p| p.extend(0.0)))).collect();
+    let tree = Bvh::build(&boxes);
     let is_in = |p: DVec2| {
-        near.iter().any(|[a, b, c]| {
+        let mut is_found = false;
+        // Straight up, from below to above the plane; the first that holds the place is enough.
+        tree.along_ray(&Ray { origin: p.extend(-1.0), direction: DVec3::Z }, 2.0, |triangle, end| {
+            let [a, b, c] = &near[triangle as usize];
             let left = |from: &DVec2, to: &DVec2| (*to - *from).perp_dot(p - *from) >= 0.0;
-            left(a, b) && left(b, c) && left(c, a)
-        })
+            is_found |= left(a, b) && left(b, c) && left(c, a);
+            if is_found { f64::NEG_INFINITY } else { end }
+        });
+        is_found
     };
     let mut covered = vec![false; net.num_all_faces()];
     for face in net.inner_faces() {
@@ -128,7 +139,7 @@ fn overlaid(triangles: &[[Point; 3]]) -> Vec<Part> {
     loops(&net, &covered, point)
 }
 
-/// The triangulation of all edges; `None` where a number is beyond what it takes.
+/// The triangulation of all edges; `None` where a number is beyond what it takes, or there are more places than an outline may have.
 fn net_of(triangles: &[[Point; 3]], local: impl Fn(Point) -> Point2<f64>) -> Option<Net> {
     let mut sites: Vec<Point> = triangles.iter().flatten().copied().collect();
     sites.sort_unstable();
@@ -146,6 +157,9 @@ fn net_of(triangles: &[[Point; 3]], local: impl Fn(Point) -> Point2<f64>) -> Opt
     let handle = |p: Point| handles.get(&[local(p).x.to_bits(), local(p).y.to_bits()]).copied();
     for [a, b] in edges {
         net.add_constraint_and_split(handle(a)?, handle(b)?, |p| p);
+        if net.num_vertices() > MOST_PLACES {
+            return None;
+        }
     }
     Some(net)
 }
@@ -338,6 +352,23 @@ mod tests {
         assert_eq!((union(&apart).len(), area(&union(&apart))), (2, 40_000));
         let at_a_corner = all(&[rectangle([0, 100], [0, 100]), rectangle([100, 200], [100, 200])]);
         assert_eq!((union(&at_a_corner).len(), area(&union(&at_a_corner))), (2, 40_000));
+    }
+
+    #[test]
+    fn thousands_that_overlap_have_an_outline_and_what_crosses_too_often_has_none() {
+        // Squares of 300 units, 200 apart: each overlaps its neighbours.
+        let squares: Vec<_> = (0..3600)
+            .map(|i| [200 * (i % 60), 200 * (i / 60)])
+            .map(|[x, y]| rectangle([x, x + 300], [y, y + 300]))
+            .collect();
+        let found = union(&all(&squares));
+        assert_eq!((found.len(), found[0].len(), area(&found)), (1, 1, 2 * 12_100 * 12_100));
+        // Bars across bars: 4 · 250² crossings.
+        let bars = (0..250).flat_map(|i| {
+            let (from, long) = (40 * i, [-10, 10_000]);
+            [rectangle([from, from + 20], long), rectangle(long, [from, from + 20])]
+        });
+        assert_eq!(union(&all(&bars.collect::<Vec<_>>())), Vec::<Part>::new());
     }
 
     #[test]

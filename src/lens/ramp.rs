@@ -1,22 +1,21 @@
 //! Colour ramps and category colours that people with colour-weak eyes can tell apart.
 //!
-//! * `viridis`: S. van der Walt, N. Smith (matplotlib, CC0). * `cividis`: J. Nuñez, C. Anderton, R. Renslow, PLOS ONE
-//!   13(7), 2018, as sampled in viridisLite. * `purple-orange`: PuOr of ColorBrewer (C. Brewer, M. Harrower; Apache 2.0),
+//! * `viridis`: S. van der Walt, N. Smith (matplotlib, CC0), all 256 colours. * `cividis`: J. Nuñez, C. Anderton, R. Renslow, PLOS ONE
+//!   13(7), 2018, the authors' 256 colours. * `purple-orange`: PuOr of ColorBrewer (C. Brewer, M. Harrower; Apache 2.0) in eleven classes,
 //!   diverging. * Categories: M. Okabe, K. Ito, "Color Universal Design" (2008), and the same again lighter and darker.
+
+use std::sync::LazyLock;
 
 use crate::lens::color::{Srgb, mixed};
 
 /// The ramps' names.
 pub const NAMES: &[&str] = &["viridis", "cividis", "purple-orange"];
 
-const VIRIDIS: &[u32] = &[
-    0x44_01_54, 0x48_1a_6c, 0x47_2f_7d, 0x41_44_87, 0x39_56_8c, 0x31_68_8e, 0x2a_78_8e, 0x23_88_8e, 0x1f_98_8b,
-    0x22_a8_84, 0x35_b7_79, 0x54_c5_68, 0x7a_d1_51, 0xa5_db_36, 0xd2_e2_1b, 0xfd_e7_25,
-];
-const CIVIDIS: &[u32] = &[
-    0x00_20_4d, 0x00_33_6f, 0x39_48_6b, 0x57_5c_6d, 0x70_71_73, 0x8a_87_79, 0xa6_9d_75, 0xc4_b5_6c, 0xe4_cf_5b,
-    0xff_ea_46,
-];
+/// The 256 colours of a published table.
+type Table = LazyLock<Vec<u32>>;
+
+static VIRIDIS: Table = LazyLock::new(|| table(include_str!("ramp/viridis.txt")));
+static CIVIDIS: Table = LazyLock::new(|| table(include_str!("ramp/cividis.txt")));
 const PURPLE_ORANGE: &[u32] = &[
     0x2d_00_4b, 0x54_27_88, 0x80_73_ac, 0xb2_ab_d2, 0xd8_da_eb, 0xf7_f7_f7, 0xfe_e0_b6, 0xfd_b8_63, 0xe0_82_14,
     0xb3_58_06, 0x7f_3b_08,
@@ -32,12 +31,16 @@ fn srgb(hex: u32) -> Srgb {
     [hex >> 16, hex >> 8 & 0xff, hex & 0xff].map(|c| c as f32 / 255.0)
 }
 
+fn table(text: &str) -> Vec<u32> {
+    text.split_whitespace().filter_map(|hex| u32::from_str_radix(hex, 16).ok()).collect()
+}
+
 /// The colour at `t` (0 = low, 1 = high; clamped, NaN = low) of a ramp; unknown names give `viridis`.
 pub fn ramp(name: &str, t: f64) -> Srgb {
-    let entries = match name {
-        "cividis" => CIVIDIS,
+    let entries: &[u32] = match name {
+        "cividis" => &CIVIDIS,
         "purple-orange" => PURPLE_ORANGE,
-        _ => VIRIDIS,
+        _ => &VIRIDIS,
     };
     let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
     let at = t * (entries.len() - 1) as f64;
@@ -93,6 +96,33 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Colours as the publications have them in numbers, not from the tables here: every 17th of viridis, and places of cividis
+    /// as its authors' list of parts says.
+    #[test]
+    fn published_colours_are_met_to_a_255th() {
+        let viridis = [
+            0x44_01_54, 0x48_1a_6c, 0x47_2f_7d, 0x41_44_87, 0x39_56_8c, 0x31_68_8e, 0x2a_78_8e, 0x23_88_8e, 0x1f_98_8b,
+            0x22_a8_84, 0x35_b7_79, 0x54_c5_68, 0x7a_d1_51, 0xa5_db_36, 0xd2_e2_1b, 0xfd_e7_25,
+        ];
+        let cividis: [(usize, Srgb); 8] = [
+            (8, [0.0000, 0.1492, 0.3537]),
+            (43, [0.1431, 0.2442, 0.4245]),
+            (78, [0.3132, 0.3424, 0.4236]),
+            (113, [0.4388, 0.4419, 0.4521]),
+            (148, [0.5657, 0.5461, 0.4727]),
+            (183, [0.7060, 0.6577, 0.4463]),
+            (218, [0.8548, 0.7781, 0.3818]),
+            (253, [1.0000, 0.9094, 0.2634]),
+        ];
+        let parts = viridis.iter().enumerate().map(|(i, hex)| ("viridis", 17 * i, srgb(*hex)));
+        for (name, i, published) in parts.chain(cividis.iter().map(|(i, c)| ("cividis", *i, *c))) {
+            let shown = ramp(name, i as f64 / 255.0);
+            let most = (0..3).map(|k| (shown[k] - published[k]).abs()).fold(0.0, f32::max);
+            assert!(most <= 1.0 / 255.0, "{name} {i}: {shown:?} {published:?}");
+        }
+        assert!(VIRIDIS.len() == 256 && CIVIDIS.len() == 256);
     }
 
     #[test]

@@ -237,7 +237,7 @@ mod tests {
     fn of_rings(parts: &[&[&[[f64; 2]]]]) -> Footprints {
         let ring = |ring: &&[[f64; 2]]| ring.iter().map(|p| DVec2::from(*p)).collect();
         let parts = parts.iter().map(|part| part.iter().map(ring).collect()).collect();
-        let list = vec![Footprint { objects: vec![0], parts }];
+        let list = vec![Footprint { objects: vec![0], parts, is_hull: false }];
         Footprints { list, of_object: vec![Some(0)], words: vec![OnceLock::new()] }
     }
 

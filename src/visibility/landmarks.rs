@@ -112,6 +112,8 @@ pub struct Landmark {
     pub neighbours_m: f64,
     /// The ground that it covers, square metres.
     pub footprint_m2: f64,
+    /// Whether that is the area of a convex hull: what is covered has too many crossings for an outline.
+    pub footprint_is_hull: bool,
     /// The distance to the nearest object that is at least as high, metres in plan; `None`: there is none.
     pub isolation_m: Option<f64>,
     /// Its name, if it has one.
@@ -153,7 +155,7 @@ pub fn landmarks(model: &CityModel, shown: &[u32], n: usize) -> Vec<Landmark> {
     let town = Town::new(model, &units, &chosen);
     let facts = UnitFacts::new(model, &units);
     let landmark = |at: usize| {
-        let (height_m, footprint_m2) = (town.heights[at], town.areas[at]);
+        let (height_m, (footprint_m2, footprint_is_hull)) = (town.heights[at], town.areas[at]);
         let [neighbours_m, usual_m2] = town.neighbourhood(at);
         let isolation_m = town.isolation(at);
         let unit = chosen[at];
@@ -166,7 +168,17 @@ pub fn landmarks(model: &CityModel, shown: &[u32], n: usize) -> Vec<Landmark> {
             attributes,
         };
         let object = units.roots[unit as usize];
-        Landmark { object, score: terms.score(), terms, height_m, neighbours_m, footprint_m2, isolation_m, name }
+        Landmark {
+            object,
+            score: terms.score(),
+            terms,
+            height_m,
+            neighbours_m,
+            footprint_m2,
+            footprint_is_hull,
+            isolation_m,
+            name,
+        }
     };
     let mut all: Vec<Landmark> = (0..chosen.len()).into_par_iter().map(landmark).collect();
     all.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.object.cmp(&b.object)));
@@ -180,8 +192,8 @@ struct Town {
     boxes: Vec<Aabb>,
     /// Metres.
     heights: Vec<f64>,
-    /// Square metres.
-    areas: Vec<f64>,
+    /// Square metres, and whether they are those of a convex hull.
+    areas: Vec<(f64, bool)>,
     tree: Bvh,
     /// The longest way in it, metres.
     reach_m: f64,
@@ -195,15 +207,17 @@ impl Town {
         let geometries: Vec<u32> = chosen.iter().flat_map(|&unit| units.geometries(unit)).copied().collect();
         let mut sorted = geometries;
         sorted.sort_unstable();
-        let mut covered: FxHashMap<u32, f64> = FxHashMap::default();
+        let mut covered: FxHashMap<u32, (f64, bool)> = FxHashMap::default();
         for footprint in footprints(model, &sorted, false) {
             let area: f64 = footprint.parts.iter().flatten().map(|ring| area_of(ring)).sum();
-            *covered.entry(units.of_object[footprint.objects[0] as usize]).or_default() += area;
+            let (sum, is_hull) = covered.entry(units.of_object[footprint.objects[0] as usize]).or_default();
+            *sum += area;
+            *is_hull |= footprint.is_hull;
         }
         let all = boxes.iter().fold(Aabb::EMPTY, |all, b| all.union(*b));
         Self {
             heights: chosen.iter().map(full).map(|b| b.size().z).collect(),
-            areas: chosen.iter().map(|unit| covered.get(unit).copied().unwrap_or(0.0)).collect(),
+            areas: chosen.iter().map(|unit| covered.get(unit).copied().unwrap_or_default()).collect(),
             tree: Bvh::build(&boxes),
             reach_m: all.size().length(),
             boxes,
@@ -229,8 +243,8 @@ impl Town {
         let mut neighbours = Vec::new();
         self.near(at, NEIGHBOURHOOD_M, |other, _| neighbours.push(other));
         neighbours.sort_unstable();
-        let area: f64 = neighbours.iter().map(|&other| self.areas[other]).sum();
-        let volume: f64 = neighbours.iter().map(|&other| self.areas[other] * self.heights[other]).sum();
+        let area: f64 = neighbours.iter().map(|&other| self.areas[other].0).sum();
+        let volume: f64 = neighbours.iter().map(|&other| self.areas[other].0 * self.heights[other]).sum();
         let mean = |sum: f64, of: f64| if of > 0.0 { sum / of } else { 0.0 };
         [mean(volume, area), mean(area, neighbours.len() as f64)]
     }

@@ -5,7 +5,7 @@ use std::{
     process::{Command, Output, Stdio},
 };
 
-use crate::studio::of_scene;
+use crate::studio::{of_scene, with_full_shadows};
 use glam::DVec3;
 use veduta::{
     figure::{
@@ -189,7 +189,7 @@ fn a_frame_with_a_history_does_not_depend_on_which_frames_are_drawn() {
     }
     // Some frames are not what their moment is by itself; the first is.
     let film = Film::new(&scene_file::parse(&text_of_scene, "s", &Options::for_command_line()).unwrap()).unwrap();
-    let mut studio = of_scene(&scene());
+    let mut studio = with_full_shadows(of_scene(&scene()));
     let fading: Vec<u32> = (0..film.frames())
         .filter(|frame| {
             let scene = film.scene(*frame).unwrap();

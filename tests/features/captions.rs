@@ -46,7 +46,7 @@ impl Stage {
         let mut scene = scene_file::read(&path, &Options::for_file(&path)).expect("a scene");
         scene.lenses.iter_mut().for_each(|lens| lens.body = LensBody::None);
         change(&mut scene);
-        let mut studio = of_scene(&scene);
+        let mut studio = with_full_shadows(of_scene(&scene));
         let plain = picture(&mut studio, &Scene { lenses: vec![], ..scene.clone() }, SIZE);
         let places = (0..scene.lenses.len()).map(|i| places(&scene, &plain, i)).collect();
         Self { scene, studio, plain, places }

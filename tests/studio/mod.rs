@@ -70,6 +70,12 @@ pub fn of_scene(scene: &Scene) -> Studio {
     over(model, &scene.city)
 }
 
+/// The studio with the shadow maps that people have.
+pub fn with_full_shadows(mut studio: Studio) -> Studio {
+    studio.renderer.settings.shadow_size = SHADOW_SIZE;
+    studio
+}
+
 /// A studio over the synthetic city.
 pub fn synthetic(buildings: u64) -> Studio {
     static MADE: AtomicU32 = AtomicU32::new(0);

@@ -1,7 +1,7 @@
 //! Footprints: what objects cover of the ground, seen from above, by its outline.
 //!
 //! A footprint is the union of the faces that lie on the ground where the object is pressed flat (`flat`), on a lattice of millimetres;
-//! [`outline::union`] says how exact that is. What has too many faces over one another for an outline has that of its convex hull.
+//! [`outline::union`] says how exact that is. What has too many crossings for an outline has that of its convex hull, and says so.
 
 use super::{
     flat,
@@ -29,6 +29,8 @@ pub struct Footprint {
     pub objects: Vec<u32>,
     /// Its connected parts: each an outer ring counter-clockwise, then holes clockwise; metres, x east and y north.
     pub parts: Vec<Vec<Vec<DVec2>>>,
+    /// Whether it is the convex hull of what is covered, which has too many crossings for an outline.
+    pub is_hull: bool,
 }
 
 /// The footprints of what is `shown` of a city (indices of geometries), of each object by itself where `parts` says so. Objects that cover
@@ -48,7 +50,8 @@ fn footprint(source: &Source, unit: &Unit) -> Option<Footprint> {
     let seen = source.faces_of(unit).filter(|face| kept(source, face, &change).is_some());
     let faces: Vec<[Point; 3]> = seen.map(|face| face.corners.map(|p| on_lattice(p.truncate()))).collect();
     let mut figure = outline::union(&faces);
-    if figure.is_empty() {
+    let is_hull = figure.is_empty();
+    if is_hull {
         let hull = outline::convex(faces.iter().flatten().copied());
         figure = if hull.len() < 3 { Vec::new() } else { vec![vec![hull]] };
     }
@@ -58,5 +61,5 @@ fn footprint(source: &Source, unit: &Unit) -> Option<Footprint> {
     let metres = |p: &Point| origin + DVec2::new(p[0] as f64, p[1] as f64) / PER_M;
     let ring = |ring: &Vec<Point>| ring.iter().map(metres).collect();
     let parts = figure.iter().map(|part| part.iter().map(ring).collect()).collect();
-    (!figure.is_empty()).then_some(Footprint { objects, parts })
+    (!figure.is_empty()).then_some(Footprint { objects, parts, is_hull })
 }

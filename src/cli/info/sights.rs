@@ -101,6 +101,8 @@ pub struct LandmarkFacts {
     pub neighbours_m: f64,
     /// The ground that it covers, square metres.
     pub footprint_m2: f64,
+    /// Whether that is the area of a convex hull: what is covered has too many crossings for an outline.
+    pub footprint_is_hull: bool,
     /// The distance to the nearest object that is at least as high, metres in plan; `null`: there is none.
     pub isolation_m: Option<f64>,
     /// The terms of the score.
@@ -133,6 +135,7 @@ impl LandmarkFacts {
             height_m: landmark.height_m,
             neighbours_m: landmark.neighbours_m,
             footprint_m2: landmark.footprint_m2,
+            footprint_is_hull: landmark.footprint_is_hull,
             isolation_m: landmark.isolation_m,
             terms: TermFacts {
                 height: terms.height,
@@ -187,6 +190,7 @@ mod tests {
             height_m: 30.0,
             neighbours_m: 10.0,
             footprint_m2: 400.0,
+            footprint_is_hull: false,
             isolation_m: None,
             terms: TermFacts { height: 0.5, footprint: 0.5, isolation: 1.0, attributes: 0.0 },
         };

@@ -57,7 +57,7 @@ impl Report {
                 format!("{:.3}", landmark.score),
                 length(landmark.height_m),
                 length(landmark.neighbours_m),
-                format!("{:.0} m²", landmark.footprint_m2),
+                format!("{:.0} m²{}", landmark.footprint_m2, if landmark.footprint_is_hull { " (hull)" } else { "" }),
                 landmark.isolation_m.map_or("none".to_owned(), length),
                 cut(&clean(landmark.name.as_deref().unwrap_or("")), 40),
             ]);
