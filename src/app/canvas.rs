@@ -290,12 +290,13 @@ impl Window {
         let Some(camera) = self.camera() else { return };
         let delta = response.drag_delta();
         let Some(now) = response.interact_pointer_pos() else { return };
-        let turn = -TURN * DVec2::new(f64::from(delta.x), f64::from(delta.y));
+        let turn = TURN * DVec2::new(f64::from(delta.x), f64::from(delta.y));
         match drag {
             _ if delta == Vec2::ZERO => {}
-            Drag::Orbit { pivot } => self.document.look(navigate::orbit(&camera, pivot, turn)),
+            // What is before the place goes with the pointer.
+            Drag::Orbit { pivot } => self.document.look(navigate::orbit(&camera, pivot, DVec2::new(turn.x, -turn.y))),
             // The picture goes with the pointer.
-            Drag::Look => self.document.look(navigate::look_around(&camera, DVec2::new(turn.x, -turn.y))),
+            Drag::Look => self.document.look(navigate::look_around(&camera, DVec2::new(-turn.x, turn.y))),
             Drag::Pan { at } => {
                 if let Some(view) = self.view_in(rect) {
                     let to = navigate::pan(&view, at, in_rect(rect, now - delta), in_rect(rect, now));

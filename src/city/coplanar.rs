@@ -356,6 +356,54 @@ mod tests {
         assert!(coplanar_triangles(&model, &[0]).is_empty(), "nothing to cover when the neighbour is hidden");
     }
 
+    /// Each type of surface against each, and each class of object: the later one wins, whatever their ids say.
+    #[test]
+    fn ranks_are_in_order_each_against_each() {
+        let surfaces: [&[Option<&str>]; 7] = [
+            &[Some("GroundSurface")],
+            &[Some("ClosureSurface"), Some("InteriorWallSurface"), Some("FloorSurface"), Some("CeilingSurface")],
+            &[None, Some("SomethingElse")],
+            &[Some("WallSurface"), Some("OuterFloorSurface"), Some("OuterCeilingSurface")],
+            &[Some("RoofSurface")],
+            &[Some("Window"), Some("WindowSurface")],
+            &[Some("Door"), Some("DoorSurface")],
+        ];
+        let classes =
+            [ObjectClass::Terrain, ObjectClass::Land, ObjectClass::Water, ObjectClass::Road, ObjectClass::Building];
+        let winner = |below: (ObjectClass, Option<&str>), above: (ObjectClass, Option<&str>), flip: bool| {
+            let square = |size: i64| vec![[0, 0, 0], [size, 0, 0], [size, size, 0], [0, size, 0]];
+            let face = [vec![0, 1, 2, 3]];
+            // An id that comes first wins where ranks are equal.
+            let ids = if flip { ["b", "a"] } else { ["a", "b"] };
+            let mut b = builder();
+            add(&mut b, ids[0], below.0, below.1, square(9_000), &face);
+            add(&mut b, ids[1], above.0, above.1, square(5_000), &face);
+            let model = b.finish();
+            let found = coplanar_triangles(&model, &all(&model));
+            let of_winner = object_of(&model, found.last().expect("they overlap"));
+            of_winner == ids[1]
+        };
+        for (i, one) in surfaces.iter().enumerate() {
+            for (j, other) in surfaces.iter().enumerate() {
+                for (a, b) in one.iter().flat_map(|a| other.iter().map(move |b| (*a, *b))) {
+                    for flip in [false, true].into_iter().filter(|_| i != j || a != b) {
+                        let building = ObjectClass::Building;
+                        let wins = winner((building, a), (building, b), flip);
+                        let wanted = if i == j { flip } else { j > i };
+                        assert_eq!(wins, wanted, "{b:?} over {a:?}");
+                    }
+                }
+            }
+        }
+        for (i, &one) in classes.iter().enumerate() {
+            for (j, &other) in classes.iter().enumerate().filter(|(j, _)| *j != i) {
+                for flip in [false, true] {
+                    assert_eq!(winner((one, None), (other, None), flip), j > i, "{other:?} over {one:?}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn doors_win_over_walls_and_buildings_over_the_ground() {
         let rectangle = |x0, x1, z0, z1| vec![[x0, 0, z0], [x1, 0, z0], [x1, 0, z1], [x0, 0, z1]];

@@ -389,6 +389,24 @@ mod tests {
     }
 
     #[test]
+    fn quantiles_of_counts_that_do_not_divide_and_values_at_a_border() {
+        let model = city(&[Some("7"), Some("1"), Some("5"), Some("3"), Some("2"), Some("6"), Some("4")], number);
+        let word = |w: &str| Parameter::Text(w.into());
+        let parts = |classes: f64, more: &[(&str, Parameter)]| {
+            let own = [&[("scale", word("quantile")), ("classes", Parameter::Number(classes))], more].concat();
+            let scale = ThematicScale::new(&model, &used(&own)).unwrap();
+            let Rule::Classes { breaks, .. } = &scale.rule else { panic!("classes") };
+            (breaks.clone(), scale.legend.iter().map(|entry| entry.count).collect::<Vec<u64>>())
+        };
+        // Of seven: two, two and three; one, two, two and two.
+        assert_eq!(parts(3.0, &[]), (vec![3.0, 5.0], vec![2, 2, 3]));
+        assert_eq!(parts(4.0, &[]), (vec![2.0, 4.0, 6.0], vec![1, 2, 2, 2]));
+        // Those of 2 to 6 alone, both ends among them: five are two and three. What is beyond is in the end classes.
+        let [low, high] = [("min", Parameter::Number(2.0)), ("max", Parameter::Number(6.0))];
+        assert_eq!(parts(2.0, &[low, high]), (vec![4.0], vec![3, 4]));
+    }
+
+    #[test]
     fn texts_are_categories_most_frequent_first() {
         let model = city(&[Some("shop"), Some("home"), Some("home"), None], string);
         let scale = ThematicScale::new(&model, &used(&[])).unwrap();

@@ -87,8 +87,15 @@ impl Cut {
 }
 
 impl Cuts {
-    /// What is hidden in a frame. `picture`: what hides something in the picture, where the lenses that `is_seen` are.
-    pub fn new(input: &FrameInput, is_seen: impl Fn(u32) -> bool, sun: Option<&View>, picture: Option<Plan>) -> Self {
+    /// What is hidden in a frame. `picture`: what hides something in the picture, where the lenses that `is_seen` are; nothing is
+    /// inside those that are `empty`.
+    pub fn new(
+        input: &FrameInput,
+        is_seen: impl Fn(u32) -> bool,
+        empty: &[u32],
+        sun: Option<&View>,
+        picture: Option<Plan>,
+    ) -> Self {
         let of = |hiding: Hiding, plan: Option<Plan>| plan.map(|plan| Cut { hiding, plan });
         let hiding =
             |is_active: &dyn Fn(u32) -> bool| Hiding::new(input.operations, input.volumes, &input.view, is_active);
@@ -102,7 +109,7 @@ impl Cuts {
             let own = input.volumes.iter().filter(|v| hiding.lenses.contains(&v.lens));
             // What the picture's sprites hold says nothing of what only the sun sees.
             let own = own.map(|v| (v.lens, v.test_from_sun(), v.region.forms_in_combination()));
-            let plan = input.operations.lens_plan(&own.collect::<Vec<_>>(), false, false).hiding(handlers());
+            let plan = input.operations.lens_plan(&own.collect::<Vec<_>>(), empty, false, false).hiding(handlers());
             // Nor of how wide a border is that is measured in pixels: shadows end at the volume.
             let plan = plan.map(Plan::without_borders);
             of(hiding, plan)

@@ -24,6 +24,7 @@ mod deformed_edges;
 pub mod diagnostics;
 pub mod displayed;
 pub mod edges;
+mod empty_lenses;
 mod enclosed;
 pub mod eye;
 mod flat;

@@ -19,8 +19,8 @@ impl Renderer {
     /// The text of a module as it runs where the lenses are in the picture; without lenses in view everywhere.
     pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
         let bounds = self.cities().map_or(Aabb::EMPTY, |cities| cities.bounds());
-        let seen = seen_volumes(input, &bounds, SpriteRoom::default()).volumes;
-        let plans = Plans::new(input, &seen);
+        let seen = seen_volumes(input, &bounds, SpriteRoom::default(), &[]).volumes;
+        let plans = Plans::new(input, &seen, &[]);
         let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
         let is_written_out = input.backend == Backend::Specialised && !plans.is_long();
         let (plan, operations) = (if seen.is_empty() { plans.context } else { plans.lenses }, input.operations);

@@ -50,6 +50,11 @@ pub struct Translucent {
 }
 
 impl Operation {
+    /// Whether it acts on what is inside one of these lenses, which ascend.
+    fn is_in(&self, lenses: &[u32]) -> bool {
+        self.class == Class::Inside && self.lens.is_some_and(|lens| lenses.binary_search(&lens).is_ok())
+    }
+
     fn is_filter(&self) -> bool {
         shader::handlers()[self.effect as usize].kind == EffectKind::Filter
     }
@@ -240,13 +245,14 @@ impl Operations {
 
     /// What shading has to do outside all lenses.
     pub fn context_plan(&self, haze: bool) -> Plan {
-        let steps = self.steps(|_| None);
+        let steps = self.steps(&[], |_| None);
         Plan { lines: draws_lines(&steps), steps, haze, ..Plan::default() }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
-    /// tested, and what the leaves of a combination are. With `masks` every pixel's classes are written down.
-    pub fn lens_plan(&self, seen: &[(u32, LensTest, Vec<Form>)], haze: bool, masks: bool) -> Plan {
+    /// tested, and what the leaves of a combination are. Nothing is inside the lenses `empty`, which ascend. With `masks` every pixel's
+    /// classes are written down.
+    pub fn lens_plan(&self, seen: &[(u32, LensTest, Vec<Form>)], empty: &[u32], haze: bool, masks: bool) -> Plan {
         let mut lenses: Vec<PlanLens> = Vec::new();
         let mut numbers = Vec::new();
         for (lens, test, leaves) in seen {
@@ -265,7 +271,7 @@ impl Operations {
             numbers.push(lens);
         }
         let place = |lens| numbers.binary_search(&lens).ok().map(|i| i as u32);
-        let steps = self.steps(place);
+        let steps = self.steps(empty, place);
         let content = |c: &ContentUse| {
             let (lens, class) = (place(c.lens)?, class_test(c.class));
             Some(PlanContent { lens, class, city: c.city, clip: c.clip, keeps_terrain: c.keeps_terrain })
@@ -275,7 +281,7 @@ impl Operations {
     }
 
     /// The list as steps; `place` finds a lens in the plan.
-    fn steps(&self, place: impl Fn(u32) -> Option<u32>) -> Vec<Step> {
+    fn steps(&self, empty: &[u32], place: impl Fn(u32) -> Option<u32>) -> Vec<Step> {
         let step = |operation: &Operation| {
             let scope = match operation.lens {
                 None => Scope::Everywhere,
@@ -283,18 +289,21 @@ impl Operations {
             };
             Some(Step { effect: operation.effect, scope, parameters: operation.parameters, blend: operation.blend })
         };
-        self.list.iter().filter_map(step).collect()
+        self.list.iter().filter(|o| !o.is_in(empty)).filter_map(step).collect()
     }
 
-    /// The neighbourhood filters of the context and of the lenses `seen`, which ascend, in the order of their images: each with the
+    /// The neighbourhood filters of the context and of the lenses `seen`, which ascend as those do in which nothing is, in the order of
+    /// their images: each with the
     /// plan of the image it filters. That is its lens' own, unmasked: what the context does, then what the lens does to
     /// the same class before it.
-    pub fn filters(&self, seen: &[u32], haze: bool) -> Vec<Filter> {
+    pub fn filters(&self, seen: &[u32], empty: &[u32], haze: bool) -> Vec<Filter> {
         if !self.list.iter().any(Operation::is_filter) {
             return Vec::new();
         }
         let hides = |o: &Operation| shader::handlers()[o.effect as usize].kind.decides_visibility();
-        let is_seen = |o: &&Operation| !hides(o) && o.lens.is_none_or(|lens| seen.binary_search(&lens).is_ok());
+        let is_seen = |o: &&Operation| {
+            !hides(o) && !o.is_in(empty) && o.lens.is_none_or(|lens| seen.binary_search(&lens).is_ok())
+        };
         let operations: Vec<&Operation> = self.list.iter().filter(is_seen).collect();
         let filter = |(i, operation): (usize, &&Operation)| {
             let is_own = |o: &Operation| o.lens.is_none() || (o.lens, o.class) == (operation.lens, operation.class);

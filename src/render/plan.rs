@@ -9,6 +9,7 @@ use crate::{
         cells::Details,
         city_facts::{CityFacts, SectionFacts},
         cut::Cuts,
+        empty_lenses::{empty_lenses, idle_lenses},
         eye::view_uniform,
         frame::{Backend, FrameInput},
         layout,
@@ -96,12 +97,13 @@ impl<'a> FramePlan<'a> {
     ) -> Self {
         let Stayed { own_sprites, .. } = stayed;
         own_sprites.plan(input, &facts.all);
-        let seen = seen_volumes(input, &facts.all, own_sprites.room());
+        let empty = empty_lenses(input, facts);
+        let seen = seen_volumes(input, &facts.all, own_sprites.room(), &idle_lenses(&empty, input));
         let sun = facts
             .sun_view(&input.view, &input.sun, settings.shadow_size, |frustum| facts.content_bounds(input, frustum));
-        let plans = Plans::new(input, &seen.volumes);
+        let plans = Plans::new(input, &seen.volumes, &empty);
         let is_seen = |lens| seen.volumes.iter().any(|v| v.lens == lens);
-        let cuts = Cuts::new(input, is_seen, sun.as_ref(), plans.hiding.clone());
+        let cuts = Cuts::new(input, is_seen, &empty, sun.as_ref(), plans.hiding.clone());
         let sprite_bytes = 4 * seen.words;
         let counts = 1 + u64::from(own_sprites.room().counts) + seen.volumes.len() as u64;
         let count_bytes = if seen.lists > 0 || own_sprites.counts() { 4 * counts } else { 0 };

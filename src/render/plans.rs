@@ -39,14 +39,15 @@ pub(super) struct Plans {
 }
 
 impl Plans {
-    pub fn new(input: &FrameInput, seen: &[SeenVolume]) -> Self {
+    /// `seen`: the volumes in view; `empty`: the lenses, ascending, in which nothing is.
+    pub fn new(input: &FrameInput, seen: &[SeenVolume], empty: &[u32]) -> Self {
         let haze = input.haze_per_radius() > 0.0;
         let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
-        let filters = input.operations.filters(&lenses, haze);
+        let filters = input.operations.filters(&lenses, empty, haze);
         let volumes: Vec<_> = seen.iter().map(|v| (v.lens, v.test, v.leaves.clone())).collect();
         let lenses = match seen.is_empty() {
             true => Plan::default(),
-            false => input.operations.lens_plan(&volumes, haze, input.wants_masks()),
+            false => input.operations.lens_plan(&volumes, empty, haze, input.wants_masks()),
         };
         let context = input.operations.context_plan(haze);
         let whole = if seen.is_empty() { &context } else { &lenses };

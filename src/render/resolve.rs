@@ -253,7 +253,7 @@ fn check_counts(operations: &Operations, volumes: &[LensVolume]) -> Result<(), R
     let counts = [
         ("volumes", volumes.len(), MOST_VOLUMES as usize),
         ("parameters of effects and outlines, in fours,", operations.parameters.len(), MOST_SLOTS as usize),
-        ("different neighbourhood filters", operations.filters(&all, false).len(), MOST_FILTERS),
+        ("different neighbourhood filters", operations.filters(&all, &[], false).len(), MOST_FILTERS),
     ];
     match counts.into_iter().find(|(_, count, most)| count > most) {
         Some((what, count, most)) => {

@@ -9,6 +9,7 @@ use crate::{
         screen_bound::ScreenBound,
         sprites::{self, Pages, Place},
         stored::{self, SpriteRoom, Stored},
+        volume::LensVolume,
     },
     shader::{Form, LensTest},
 };
@@ -66,12 +67,13 @@ fn sprite_size(input: &FrameInput, sprite: LensSprite) -> [u32; 2] {
 }
 
 /// The volumes of a frame that its picture may show; `city`: the box around what is drawn; `own`: what the sprites take that come
-/// first, those with eyes of their own.
-pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom) -> Seen {
+/// first, those with eyes of their own; `idle`: lenses that do nothing, ascending.
+pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom, idle: &[u32]) -> Seen {
     let mut seen: Vec<SeenVolume> = Vec::new();
     let (mut words, mut lists, mut counts) = (own.words, 0, own.counts);
     let masks = input.masks && input.sample == 0;
-    for (index, volume) in input.volumes.iter().enumerate() {
+    let is_busy = |volume: &LensVolume| idle.binary_search(&volume.lens).is_err();
+    for (index, volume) in input.volumes.iter().enumerate().filter(|(_, volume)| is_busy(volume)) {
         // Other classes may be anywhere in the own space of a sprite.
         let has_any_part = masks && volume.has_own_eye();
         let any_part = has_any_part.then(|| ScreenBound::whole(input.tile.size));

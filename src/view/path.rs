@@ -485,6 +485,16 @@ mod tests {
         CameraKey { at, eye: eye.into(), target: target.into(), up: DVec3::Z, projection }
     }
 
+    #[test]
+    fn between_keys_unequally_apart_a_parabola_is_met() {
+        let times = [0.0_f64, 1.0, 3.0, 4.0];
+        let curve = Curve::new(&times, &times.map(|t| t * t));
+        for i in 0..=200 {
+            let t = 1.0 + f64::from(i) / 100.0;
+            assert!((curve.at(t) - t * t).abs() < 1e-12, "{t}: {}", curve.at(t));
+        }
+    }
+
     proptest! {
         #![proptest_config(crate::seeds::config())]
 

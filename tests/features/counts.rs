@@ -111,3 +111,41 @@ fn an_effect_of_no_weight_costs_nothing() {
         }
     }
 }
+
+#[test]
+fn a_lens_with_nothing_in_it_adds_no_pass() {
+    let mut stage = Stage::new();
+    let over = stage.studio.extent().max.z - stage.middle.z;
+    for backend in [Backend::Specialised, Backend::Uber] {
+        let without = |aovs| Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: true, backend };
+        for (up, place) in [(over + 25.0, "in the air"), (-400.0, "in the ground")] {
+            let ball = stage.ball(up, 8.0);
+            for effect in ["sepia", "blur", "x-ray", "eraser", "wireframe", "transparent"] {
+                let one = scene(stage.camera, vec![lens("l", [ball.clone()], effect)]);
+                let none = scene(
+                    stage.camera,
+                    vec![lens("l", [ball.clone()], effect)]
+                        .into_iter()
+                        .map(|l| Lens { effects: vec![], ..l })
+                        .collect(),
+                );
+                for aovs in [ALL, Default::default()] {
+                    let [one, none] =
+                        [&one, &none].map(|scene| stage.studio.render(scene, &without(aovs)).expect("a picture"));
+                    assert_eq!(passes(&one), passes(&none), "{effect} {place}");
+                    assert_eq!(one.statistics.lenses[0].visible, up > 0.0, "{effect} {place}");
+                    assert!(one.statistics.handlers.is_empty(), "{effect} {place}: {:?}", one.statistics.handlers);
+                    assert!(one.rgba == none.rgba && one.depth == none.depth, "{effect} {place}");
+                }
+            }
+        }
+        // With a second part among the houses it acts there.
+        let parts = [stage.ball(over + 25.0, 8.0), stage.ball(0.0, 30.0)];
+        let both = stage.draw(vec![lens("l", parts, "sepia")], backend);
+        assert_eq!(both.statistics.handlers, ["sepia"]);
+        // Around the highest roof something may be in it again.
+        let full = stage.ball(over, 8.0);
+        let roofs = stage.draw(vec![lens("l", [full], "blur")], backend);
+        assert!(passes(&roofs).iter().any(|pass| pass.contains("filter")), "{:?}", passes(&roofs));
+    }
+}

@@ -307,6 +307,79 @@ fn a_way_is_drawn_and_becomes_a_lens() {
 }
 
 #[test]
+fn wheel_keys_and_drags_go_the_way_they_say() {
+    let mut harness = window();
+    arrive(&mut harness);
+    let start = harness.state().camera().unwrap();
+    let basis = start.basis().unwrap();
+    let away = |harness: &Panels| {
+        let now = harness.state().camera().unwrap();
+        (now.eye.distance(start.target), (now.eye - start.eye).dot(basis.right), now.eye.z - start.eye.z)
+    };
+    let back = |harness: &mut Panels| {
+        harness.state_mut().document.look(start);
+        until_drawn(harness);
+    };
+    let far = start.eye.distance(start.target);
+    let at = middle(&harness);
+    for (points, is_nearer) in [(60.0, true), (-60.0, false)] {
+        harness.hover_at(at);
+        harness.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: egui::vec2(0.0, points),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Unknown,
+            modifiers: Modifiers::NONE,
+        });
+        harness.run_steps(8);
+        let distance = away(&harness).0;
+        assert!(if is_nearer { distance < 0.98 * far } else { distance > 1.02 * far }, "{points}: {far} to {distance}");
+        back(&mut harness);
+    }
+    // Keys: to which side the eye goes, and whether up.
+    for (key, side, up) in [
+        (Key::ArrowRight, -1.0, 0.0),
+        (Key::ArrowLeft, 1.0, 0.0),
+        (Key::ArrowUp, 0.0, 1.0),
+        (Key::ArrowDown, 0.0, -1.0),
+    ] {
+        harness.key_down(key);
+        harness.run_steps(4);
+        harness.key_up(key);
+        harness.step();
+        let (distance, right, higher) = away(&harness);
+        assert!((distance - far).abs() < 1e-6 * far, "{key:?}: the eye goes around");
+        let is_right = |way: f64, wanted: f64| if wanted == 0.0 { way.abs() < 1e-3 * far } else { way * wanted > 1e-3 };
+        assert!((side == 0.0 || is_right(right, side)) && is_right(higher, up), "{key:?}: {right} {higher}");
+        back(&mut harness);
+    }
+    for (key, is_nearer) in [(Key::Plus, true), (Key::Minus, false)] {
+        harness.key_down(key);
+        harness.run_steps(4);
+        harness.key_up(key);
+        harness.step();
+        let distance = away(&harness).0;
+        assert!(if is_nearer { distance < far } else { distance > far }, "{key:?}: {far} to {distance}");
+        back(&mut harness);
+    }
+    // What is before the place that is held goes with the pointer.
+    drag(&mut harness, at, at + egui::vec2(80.0, 0.0));
+    assert!(away(&harness).1 < -1e-3 * far, "{:?}", away(&harness));
+    back(&mut harness);
+    drag(&mut harness, at, at + egui::vec2(0.0, 40.0));
+    assert!(away(&harness).2 > 1e-3 * far, "{:?}", away(&harness));
+    back(&mut harness);
+    // Looking around, all of it does.
+    harness.event(egui::Event::ModifiersChanged(Modifiers::COMMAND));
+    drag(&mut harness, at, at + egui::vec2(80.0, 40.0));
+    harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    harness.step();
+    let forward = harness.state().camera().unwrap().basis().unwrap().forward;
+    assert!(forward.dot(basis.right) < -0.01 && forward.dot(basis.up) > 0.01, "{forward}");
+    assert!((harness.state().camera().unwrap().eye - start.eye).length() < 1e-9 * far, "the eye stays");
+}
+
+#[test]
 fn who_walks_stays_on_the_ground() {
     let mut harness = window();
     let context = harness.ctx.clone();
