@@ -416,6 +416,11 @@ mod tests {
         let chosen = used(&[("categories", Parameter::Texts(vec!["shop".into()]))]);
         let scale = ThematicScale::new(&model, &chosen).unwrap();
         assert_eq!(scale.object_colors(&model)[..2], [category(0), OTHER]);
+        // As frequent: by the alphabet, in whatever order they come.
+        let model = city(&[Some("mill"), Some("barn"), Some("shop"), Some("shop"), Some("kiosk")], string);
+        let scale = ThematicScale::new(&model, &used(&[])).unwrap();
+        let labels: Vec<&str> = scale.legend.iter().map(|e| e.label.as_str()).collect();
+        assert_eq!(labels, ["shop", "barn", "kiosk", "mill"]);
     }
 
     #[test]

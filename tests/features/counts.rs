@@ -139,6 +139,13 @@ fn a_lens_with_nothing_in_it_adds_no_pass() {
                 }
             }
         }
+        // What it does to what is behind it is done; and to all that misses it.
+        for class in [Class::Behind, Class::Rest] {
+            let air = lens("l", [stage.ball(over + 25.0, 8.0)], "sepia");
+            let air = Lens { effects: vec![EffectUse { class, ..used("sepia") }], ..air };
+            let picture = stage.draw(vec![air], backend);
+            assert_eq!(picture.statistics.handlers, ["sepia"], "{class:?}");
+        }
         // With a second part among the houses it acts there.
         let parts = [stage.ball(over + 25.0, 8.0), stage.ball(0.0, 30.0)];
         let both = stage.draw(vec![lens("l", parts, "sepia")], backend);

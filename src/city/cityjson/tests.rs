@@ -282,3 +282,31 @@ fn several_files_are_one_city() {
     let codes: Vec<&str> = model.warnings.iter().map(|(code, _)| code.code()).collect();
     assert_eq!(codes, ["crs-mismatch"]);
 }
+
+#[test]
+fn a_polygon_has_the_texture_that_all_its_rings_have_and_else_none() {
+    let plate = |id: &str, hole: u32| {
+        format!(
+            r#""{id}": {{"type": "GenericCityObject", "geometry": [{{"type": "MultiSurface", "lod": "2",
+               "boundaries": [[[0,1,2,3],[4,7,6,5]]], "texture": {{"t": {{"values": [[[0,0,1,2,3],[{hole},0,1,2,3]]]}}}}}}]}}"#
+        )
+    };
+    let text = format!(
+        r#"{{"type": "CityJSON", "version": "2.0", "transform": {{"scale": [1,1,1], "translate": [0,0,0]}},
+           "appearance": {{"default-theme-texture": "t", "vertices-texture": [[0,0],[1,0],[1,1],[0,1]],
+             "textures": [{{"type": "PNG", "image": "a.png"}}, {{"type": "PNG", "image": "b.png"}}]}},
+           "CityObjects": {{{}, {}}},
+           "vertices": [[0,0,0],[9,0,0],[9,9,0],[0,9,0],[3,3,0],[6,3,0],[6,6,0],[3,6,0]]}}"#,
+        plate("same", 0),
+        plate("other", 1)
+    );
+    let path = std::env::temp_dir().join(format!("veduta-rings-{}.city.json", std::process::id()));
+    std::fs::write(&path, text).unwrap();
+    let model = load(&[path.clone()], &LoadOptions::default(), &Quiet).unwrap_or_else(|error| panic!("{error}"));
+    std::fs::remove_file(path).unwrap();
+    let texture = |id: &str| {
+        let material = triangles(&model, id)[0].1.material;
+        model.materials.get(material as usize).map_or(NONE, |own| own.texture)
+    };
+    assert_eq!((texture("same"), texture("other")), (0, NONE));
+}

@@ -211,3 +211,19 @@ pub(super) fn best_views(subject: &Subject, field: &Field, most: usize) -> Resul
     };
     best.into_iter().map(view).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scores_are_those_of_the_formula() {
+        let half_hidden = Seen { visible: 0.3, unoccluded: 0.5, facade: 0.4, facade_alone: 0.8 };
+        let elevation = 30_f64.to_radians();
+        assert_eq!(quality(&half_hidden, elevation, false), 0.4 * 0.5 * upright(elevation));
+        assert_eq!(quality(&half_hidden, elevation, true), 0.8 * upright(elevation));
+        assert!(upright(elevation) > 0.0);
+        assert_eq!(score_of(0.75, &[0.25, 0.5, 0.0, 0.25]), 0.5);
+        assert_eq!(score_of(0.75, &[]), 0.75);
+    }
+}
