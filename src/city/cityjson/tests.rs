@@ -302,7 +302,8 @@ fn a_polygon_has_the_texture_that_all_its_rings_have_and_else_none() {
     );
     let path = std::env::temp_dir().join(format!("veduta-rings-{}.city.json", std::process::id()));
     std::fs::write(&path, text).unwrap();
-    let model = load(&[path.clone()], &LoadOptions::default(), &Quiet).unwrap_or_else(|error| panic!("{error}"));
+    let model =
+        load(std::slice::from_ref(&path), &LoadOptions::default(), &Quiet).unwrap_or_else(|error| panic!("{error}"));
     std::fs::remove_file(path).unwrap();
     let texture = |id: &str| {
         let material = triangles(&model, id)[0].1.material;
