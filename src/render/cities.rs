@@ -110,9 +110,12 @@ impl<'a> Cities<'a> {
             },
         };
         let own = &self.own.buffers;
+        let contents: Vec<ContentFacts> = self.contents.placed(self.own).map(content).collect();
+        // Copies stand where no city does.
+        let placed = contents.iter().flat_map(|content| &content.chunks).copied().flatten();
         CityFacts {
             bounds: own.bounds,
-            all: self.bounds(),
+            all: placed.fold(self.bounds(), |all, chunk| all.union(chunk.bounds)),
             moved: self.deformed(&World::OWN).map_or(Aabb::EMPTY, |deformed| deformed.city.buffers.bounds),
             chunks: chunks_of(self.own, &[]).collect(),
             cells: &own.cells,
@@ -121,7 +124,7 @@ impl<'a> Cities<'a> {
             has_smooth: self.all().any(|city| city.buffers.smooth),
             sections: self.all().flat_map(sections_of).collect(),
             own_sections: self.own_ones().flat_map(sections_of).collect(),
-            contents: self.contents.placed(self.own).map(content).collect(),
+            contents,
         }
     }
 

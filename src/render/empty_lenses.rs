@@ -14,15 +14,17 @@ const MOST_TESTS: usize = 1 << 16;
 
 /// The lenses, ascending, in whose volumes nothing is drawn. Where something is deformed none is known to be: its parts have one box.
 pub(super) fn empty_lenses(input: &FrameInput, facts: &CityFacts) -> Vec<u32> {
+    if input.volumes.is_empty() || !facts.moved.is_empty() {
+        return Vec::new();
+    }
     let of_city = facts.chunks.iter();
     let of_contents = facts.contents.iter().flat_map(|content| &content.chunks);
     let chunks: Vec<&Aabb> = of_city.chain(of_contents).copied().flatten().map(|chunk| &chunk.bounds).collect();
-    if !facts.moved.is_empty() || input.volumes.is_empty() || chunks.len() * input.volumes.len() > MOST_TESTS {
+    if chunks.len() * input.volumes.len() > MOST_TESTS {
         return Vec::new();
     }
     let is_empty = |volume: &LensVolume| {
-        let room = room_of(volume, &input.view);
-        room.is_some_and(|room| !facts.all.meets(&room) || !chunks.iter().any(|chunk| chunk.meets(&room)))
+        room_of(volume, &input.view).is_some_and(|room| !chunks.iter().any(|chunk| chunk.meets(&room)))
     };
     let of_lens = input.volumes.chunk_by(|a, b| a.lens == b.lens);
     of_lens.filter(|volumes| volumes.iter().all(is_empty)).map(|volumes| volumes[0].lens).collect()
@@ -30,7 +32,7 @@ pub(super) fn empty_lenses(input: &FrameInput, facts: &CityFacts) -> Vec<u32> {
 
 /// The box of all that a volume may hold, with what is drawn beside it, metres; `None`: it has none that numbers alone tell.
 fn room_of(volume: &LensVolume, view: &View) -> Option<Aabb> {
-    // A sprite rounds, and what contents and sections do there is more than an effect.
+    // A sprite rounds, and a section is seen where no face is.
     let is_told = volume.region.is_bounded() && volume.sprite.is_none() && !volume.has_own_eye();
     if !is_told || volume.section.is_some() || volume.everywhere {
         return None;

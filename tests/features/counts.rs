@@ -4,7 +4,7 @@ use crate::studio::*;
 use glam::DVec3;
 use veduta::{
     geom::Shape,
-    lens::{Class, EffectUse, Lens},
+    lens::{Class, Content, Copied, EffectUse, Lens, kind::ContentLens},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -154,5 +154,42 @@ fn a_lens_with_nothing_in_it_adds_no_pass() {
         let full = stage.ball(over, 8.0);
         let roofs = stage.draw(vec![lens("l", [full], "blur")], backend);
         assert!(passes(&roofs).iter().any(|pass| pass.contains("filter")), "{:?}", passes(&roofs));
+    }
+}
+
+/// Whether a lens shows what only a content or the plain ground puts there.
+#[test]
+fn a_lens_around_a_copy_or_around_bare_ground_acts() {
+    let mut stage = Stage::new();
+    let top = stage.studio.extent().max.z - stage.middle.z;
+    let in_the_air = stage.ball(top + 60.0, 20.0);
+    let copied = Some(Copied { from: Some(stage.middle), ..Copied::default() });
+    let content = Content { copied, ..Content::default() };
+    let around = lens("copy", [in_the_air.clone()], "sepia");
+    let copy = Lens { kind: ContentLens { content }.into(), effects: vec![], ..around };
+    let camera = Camera::looking(
+        stage.middle + DVec3::new(0.0, -120.0, top + 100.0),
+        stage.middle + DVec3::Z * (top + 60.0),
+        0.7,
+    );
+    for backend in [Backend::Specialised, Backend::Uber] {
+        for effect in ["sepia", "eraser"] {
+            let over = lens("over", [in_the_air.clone()], effect);
+            let alone = drawn(&mut stage.studio, &scene(camera, vec![copy.clone()]), backend);
+            let both = drawn(&mut stage.studio, &scene(camera, vec![copy.clone(), over]), backend);
+            assert!(alone.rgba != both.rgba, "{effect} does nothing to the copy");
+            assert_eq!(both.statistics.handlers, [effect]);
+        }
+    }
+    // On the plain ground, beside all houses.
+    let mut grounded = boxes("bare-ground", &[([0, 0, 0], [10, 10, 10])], false, true);
+    let extent = grounded.extent();
+    let corner = DVec3::new(extent.min.x + 0.2, extent.min.y + 0.2, 0.0);
+    let camera = Camera::looking(corner + DVec3::new(-6.0, -9.0, 12.0), corner, 0.9);
+    let ball = Shape::Sphere { center: corner, radius: 2.0 };
+    for backend in [Backend::Specialised, Backend::Uber] {
+        let picture = drawn(&mut grounded, &scene(camera, vec![lens("l", [ball.clone()], "sepia")]), backend);
+        assert!(picture.statistics.lenses[0].covered > 20, "the corner of the ground is in it");
+        assert_eq!(picture.statistics.handlers, ["sepia"]);
     }
 }
