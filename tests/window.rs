@@ -17,7 +17,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 
 const PATIENCE: Duration = Duration::from_secs(300);
 /// Longer than the window needs to take a key, where it opens within three of these; else a third of what it takes to open.
-const SHORTEST_BEAT: Duration = Duration::from_millis(350);
+const SHORTEST_BEAT: Duration = Duration::from_millis(250);
 /// A key that showed nothing after so many beats was not heard.
 const UNHEARD: u32 = 30;
 /// How often something is tried that a busy machine may miss.
@@ -145,12 +145,12 @@ impl Desk {
         self.until_title(title)
     }
 
-    /// Writes a path into the dialog that a key opens, and waits until it is closed.
-    fn names(&self, (key, title): (&str, &str), path: &Path) -> Result<(), Failed> {
+    /// Writes a file's name into the dialog that a key opens, and waits until it is closed.
+    fn names(&self, (key, title): (&str, &str), name: &str) -> Result<(), Failed> {
         let title = format!("{title} — Veduta");
         self.key(key, &title)?;
         self.does(&["key", "ctrl+a"])?;
-        self.does(&["type", "--delay", "20", &path.display().to_string()])?;
+        self.does(&["type", "--delay", "20", name])?;
         self.does(&["key", "Return"])?;
         let started = Instant::now();
         while self.title()? == title {
@@ -215,13 +215,13 @@ fn figure() -> Result<(), Failed> {
     desk.until_title("builtin:square — Veduta")?;
 
     let open = ("ctrl+o", "Open city files, a scene or effects");
-    desk.names(open, &at("town.city.json"))?;
+    desk.names(open, "town.city.json")?;
     desk.until_title("town.city.json — Veduta")?;
     sleep(9 * desk.beat);
 
     let saved = |name: &str| -> Result<toml::Table, Failed> {
         let file = at(name);
-        desk.names(("ctrl+shift+s", "Save the scene"), &file)?;
+        desk.names(("ctrl+shift+s", "Save the scene"), name)?;
         until_there(&file)?;
         Ok(fs::read_to_string(file)?.parse()?)
     };
@@ -263,10 +263,10 @@ fn figure() -> Result<(), Failed> {
     if lens(&saved("again.toml")?) != changed {
         return Err("done again is not as it was".into());
     }
-    desk.names(open, &at("moved.toml"))?;
+    desk.names(open, "moved.toml")?;
     desk.until_title("moved.toml — Veduta")?;
     sleep(6 * desk.beat);
-    desk.names(("ctrl+e", "Export the figure"), &at("figure.png"))?;
+    desk.names(("ctrl+e", "Export the figure"), "figure.png")?;
     until_there(&at("figure.png"))?;
     let rendered = Command::new(env!("CARGO_BIN_EXE_veduta"))
         .args(["render", "-q", "moved.toml", "-o", "by-command.png"])

@@ -44,7 +44,7 @@ use veduta::{
 static MEMORY: watch::Counting = watch::Counting;
 
 /// Mutations in `cargo test`.
-const SMOKE_MUTATIONS: u64 = 1500;
+const SMOKE_MUTATIONS: u64 = 900;
 /// What any of these small files may make live: mostly what a glTF file may unfold to by instancing.
 const MAX_BYTES: usize = 700 << 20;
 /// A file that takes longer hangs: the slowest takes well under a second on an idle machine.

@@ -7,6 +7,7 @@
 use std::fmt::Write as _;
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
+use rayon::prelude::*;
 use veduta::{
     city::derived::derive,
     figure::scene_file::{Options, parse},
@@ -390,15 +391,15 @@ impl Reference {
     fn picture(&self, view: &View, beside: f64) -> Vec<[Seen; 5]> {
         let [w, h] = SIZE;
         let offsets = [[0.0, 0.0], [-beside, -beside], [beside, -beside], [-beside, beside], [beside, beside]];
-        let mut hits: Vec<[Vec<Hit>; 5]> = (0..w * h).map(|_| Default::default()).collect();
         let ray_of = |x: u32, y: u32, [i, j]: [f64; 2]| {
             let ray = view.ray(DVec2::new(f64::from(x) + 0.5 + i, f64::from(y) + 0.5 + j));
             (ray.origin, ray.direction)
         };
-        for (number, face) in self.faces.iter().enumerate() {
+        // The pixels that a face may be in, along x and y.
+        let spans = |face: &Face| {
             // What crosses the eye's plane may be anywhere.
             let corners: Option<Vec<DVec3>> = face.shown.iter().map(|p| view.pixel(*p)).collect();
-            let of = |axis: usize, side: u32| match &corners {
+            [(0, w), (1, h)].map(|(axis, side)| match &corners {
                 None => 0..side,
                 Some(corners) => {
                     let all = corners.iter().map(|p| p[axis]);
@@ -406,22 +407,27 @@ impl Reference {
                     let end = f64::from(side);
                     (low - 2.0).clamp(0.0, end) as u32..(high + 2.0).clamp(0.0, end) as u32
                 }
-            };
-            for (x, y) in of(1, h).flat_map(|y| of(0, w).map(move |x| (x, y))) {
-                for (k, offset) in offsets.into_iter().enumerate() {
-                    let (origin, direction) = ray_of(x, y, offset);
-                    let Some((t, u, v)) = hit(origin, direction, &face.shown) else { continue };
-                    let [a, b, c] = face.rest;
-                    let rest = a + (b - a) * u + (c - a) * v;
-                    hits[(y * w + x) as usize][k].push(Hit { t, rest, face: number });
+            })
+        };
+        let spans: Vec<_> = self.faces.iter().map(spans).collect();
+        let row = |y: u32| {
+            let rays: Vec<_> = (0..w).map(|x| offsets.map(|offset| ray_of(x, y, offset))).collect();
+            let mut hits: Vec<[Vec<Hit>; 5]> = (0..w).map(|_| Default::default()).collect();
+            for (number, [across, _]) in spans.iter().enumerate().filter(|(_, [_, down])| down.contains(&y)) {
+                let face = &self.faces[number];
+                for x in across.clone() {
+                    for (k, (origin, direction)) in rays[x as usize].into_iter().enumerate() {
+                        let Some((t, u, v)) = hit(origin, direction, &face.shown) else { continue };
+                        let [a, b, c] = face.rest;
+                        let rest = a + (b - a) * u + (c - a) * v;
+                        hits[x as usize][k].push(Hit { t, rest, face: number });
+                    }
                 }
             }
-        }
-        let pixels = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
-        let one = |((x, y), mut of): ((u32, u32), [Vec<Hit>; 5])| {
-            std::array::from_fn(|k| self.seen(&mut of[k], ray_of(x, y, offsets[k])))
+            let one = |(rays, mut of): ([_; 5], [Vec<Hit>; 5])| std::array::from_fn(|k| self.seen(&mut of[k], rays[k]));
+            rays.into_iter().zip(hits).map(one).collect::<Vec<_>>()
         };
-        pixels.zip(hits).map(one).collect()
+        (0..h).into_par_iter().flat_map_iter(row).collect()
     }
 }
 
@@ -570,7 +576,7 @@ fn lenses_of_every_two_and_three_kinds_show_what_a_slow_renderer_says() {
             total
         }
     };
-    for (i, kinds) in pairs.iter().enumerate().filter(|(i, _)| studio::is_tried(*i, 9)) {
+    for (i, kinds) in pairs.iter().enumerate().filter(|(i, _)| studio::is_tried(*i, 11)) {
         run(kinds, i as u64);
     }
     let wanted = std::env::var("VEDUTA_HARD_PIXELS").ok().and_then(|text| text.parse().ok()).unwrap_or(0) / SHARE;
