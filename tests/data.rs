@@ -25,6 +25,8 @@ mod own_handlers;
 mod pictures;
 #[path = "data/scenes.rs"]
 mod scenes;
+#[path = "data/shadows.rs"]
+mod shadows;
 mod studio;
 #[path = "data/walks.rs"]
 mod walks;
@@ -70,6 +72,7 @@ fn main() {
         own_handlers::trials(),
         pictures::trials(),
         scenes::trials(),
+        shadows::trials(),
         walks::trials(),
     ];
     let trials = rooms.into_iter().flatten().collect();

@@ -2,15 +2,17 @@
 
 struct Light {
     to_sun: vec3f,              // unit, world axes
-    shadow_texel: f32,          // metres per shadow-map texel; 0 = no shadow map
+    shadow_scale: f32,          // share of the first level's side that a metre is
     sun: vec3f,
     shadow_depth_step: f32,     // metres that one unit of shadow depth spans
     sky: vec3f,
-    reserved_0: f32,
+    shadow_levels: f32,         // a whole number: where the levels grow from, in 64ths of their sides, x and from bit 8 on y; from bit 16 on how
+                                // much wider each is than the last
     ground: vec3f,
     reserved_1: f32,
-    // Shadow map from positions relative to the eye: u, v in 0..1, depth as the map stores it.
-    shadow_from_relative: mat4x4f,
+    // From positions relative to the eye: right and down from where the levels grow from, as the sun sees it, metres; depth as
+    // the map stores it.
+    sun_from_relative: mat4x4f,
     zenith: vec3f,              // the sky picture, linear; or the one colour of the background
     reserved_2: u32,
     horizon: vec3f,
@@ -25,24 +27,43 @@ override SHADOWS: bool = false;
 
 // Share of the sun that arrives, 0..1: four bilinear comparisons, pushed along the normal so that a
 // surface does not shade itself; the filter turns from sample to sample, which softens the border.
+//
+// The map has one level, or four, two by two, each wider than the one before; the first that holds a place has its smallest texels.
 fn sun_share(relative: vec3f, normal: vec3f) -> f32 {
     if !SHADOWS {
         return 1.0;
     }
+    let across = (light.sun_from_relative * vec4f(relative, 1.0)).xyz;
+    let push = (light.sun_from_relative * vec4f(normal, 0.0)).xyz;
+    let levels = u32(light.shadow_levels);
+    let shift = vec2f(vec2u(levels, levels >> 8u) & vec2u(0xffu)) * (1.0 / 64.0);
+    let ratio = f32(levels >> 16u);
+    let side = select(0.5, 1.0, ratio == 1.0);                          // of a level, of the map's
+    let texel = 1.0 / (f32(textureDimensions(shadow_map).x) * side);   // of a level's side
+    let wider = 1.0 / ratio;
+    var scale = light.shadow_scale;
+    var level = 0u;
+    for (var i = 0; i < 3; i++) {
+        let aside = abs(across.xy * scale + (shift - 0.5));
+        let is_outside = ratio > 1.0 && max(aside.x, aside.y) > 0.5 - 5.0 * texel;
+        scale *= select(1.0, wider, is_outside);
+        level += select(0u, 1u, is_outside);
+    }
+    let metres = texel / scale;
     let slant = 1.0 - max(dot(normal, light.to_sun), 0.0);
-    let start = relative + normal * light.shadow_texel * (0.6 + 1.8 * slant);
-    let at = light.shadow_from_relative * vec4f(start, 1.0);
-    if any(at.xy < vec2f(0.0)) || any(at.xy > vec2f(1.0)) {
+    let start = across + push * (metres * (0.6 + 1.8 * slant));
+    let local = start.xy * scale + shift;
+    if any(local < vec2f(0.0)) || any(local > vec2f(1.0)) {
         return 1.0;
     }
-    let texel = 1.0 / vec2f(textureDimensions(shadow_map));
-    let depth = at.z + 0.35 * light.shadow_texel / light.shadow_depth_step;
+    let at = (vec2f(f32(level & 1u), f32(level >> 1u)) + local) * side;
+    let depth = start.z + 0.35 * metres / light.shadow_depth_step;
     let angle = 2.399963 * f32(view.sample_index);
-    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
+    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle)) * (1.3 * texel * side);
     var share = 0.0;
     for (var i = 0; i < 4; i++) {
-        let offset = turn * vec2f(f32(i & 1) - 0.5, f32(i >> 1) - 0.5) * 1.3;
-        share += textureSampleCompareLevel(shadow_map, shadow_sampler, at.xy + offset * texel, depth);
+        let offset = turn * vec2f(f32(i & 1) - 0.5, f32(i >> 1) - 0.5);
+        share += textureSampleCompareLevel(shadow_map, shadow_sampler, at + offset, depth);
     }
     return 0.25 * share;
 }

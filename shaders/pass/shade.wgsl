@@ -23,12 +23,12 @@ struct Corner {
     @location(3) @interpolate(flat, either) view_z: vec4f,      // haze
     @location(4) @interpolate(flat, either) across: vec4f,
     @location(5) @interpolate(flat, either) sun: vec4f,         // shadow_depth_step
-    @location(6) @interpolate(flat, either) to_sun: vec4f,      // shadow_texel
+    @location(6) @interpolate(flat, either) to_sun: vec4f,      // shadow_scale
     @location(7) @interpolate(flat, either) sky: vec4f,         // scene_radius
     @location(8) @interpolate(flat, either) ground: vec4f,      // width of the target
     @location(9) @interpolate(flat, either) zenith: vec4f,      // its height
-    @location(10) @interpolate(flat, either) horizon: vec3f,
-    @location(11) @interpolate(flat, either) shadow_x: vec4f,   // rows of shadow_from_relative
+    @location(10) @interpolate(flat, either) horizon: vec4f,    // shadow_levels
+    @location(11) @interpolate(flat, either) shadow_x: vec4f,   // rows of sun_from_relative
     @location(12) @interpolate(flat, either) shadow_y: vec4f,
     @location(13) @interpolate(flat, either) shadow_z: vec4f,
 //@carried
@@ -39,7 +39,7 @@ struct Corner {
 fn vertex(@location(0) at: vec2f, @builtin(instance_index) part: u32) -> Corner {
     let v = view_uniform;
     let l = light_uniform;
-    let shadow = transpose(l.shadow_from_relative);
+    let shadow = transpose(l.sun_from_relative);
     var corner: Corner;
     corner.clip = vec4f(at, 0.0, 1.0);
     corner.part = vec4u(part, v.orthographic, v.sample_index, v.first_pixel);
@@ -48,11 +48,11 @@ fn vertex(@location(0) at: vec2f, @builtin(instance_index) part: u32) -> Corner 
     corner.view_z = vec4f(v.view_from_world[2], v.haze);
     corner.across = v.across_from_pixel;
     corner.sun = vec4f(l.sun, l.shadow_depth_step);
-    corner.to_sun = vec4f(l.to_sun, l.shadow_texel);
+    corner.to_sun = vec4f(l.to_sun, l.shadow_scale);
     corner.sky = vec4f(l.sky, l.scene_radius);
     corner.ground = vec4f(l.ground, v.size.x);
     corner.zenith = vec4f(l.zenith, v.size.y);
-    corner.horizon = l.horizon;
+    corner.horizon = vec4f(l.horizon, l.shadow_levels);
     corner.shadow_x = shadow[0];
     corner.shadow_y = shadow[1];
     corner.shadow_z = shadow[2];
@@ -75,14 +75,15 @@ fn take(in: Corner) {
     view.size = vec2f(in.ground.w, in.zenith.w);
     view.haze = in.view_z.w;
     light.to_sun = in.to_sun.xyz;
-    light.shadow_texel = in.to_sun.w;
+    light.shadow_scale = in.to_sun.w;
+    light.shadow_levels = in.horizon.w;
     light.sun = in.sun.xyz;
     light.shadow_depth_step = in.sun.w;
     light.sky = in.sky.xyz;
     light.ground = in.ground.xyz;
-    light.shadow_from_relative = transpose(mat4x4f(in.shadow_x, in.shadow_y, in.shadow_z, vec4f(0.0, 0.0, 0.0, 1.0)));
+    light.sun_from_relative = transpose(mat4x4f(in.shadow_x, in.shadow_y, in.shadow_z, vec4f(0.0, 0.0, 0.0, 1.0)));
     light.zenith = in.zenith.xyz;
-    light.horizon = in.horizon;
+    light.horizon = in.horizon.xyz;
     light.scene_radius = in.sky.w;
     take_own(in);
 }

@@ -8,6 +8,7 @@ use crate::{
         frame::FrameInput,
         hiding::reaches_of,
         light,
+        sun_eye::SunEye,
     },
     scene::Sun,
     view::{Frustum, View},
@@ -72,33 +73,31 @@ impl CityFacts<'_> {
         terrain.map(|chunk| u64::from(triangles_in(&chunk.range))).sum()
     }
 
-    /// The sun's view where shadows are wanted, of so many texels each way. `contents`: what contents show in a frustum, and in all.
-    pub fn sun_view(
+    /// The sun's eye where shadows are wanted, for a map of so many texels each way. `contents`: what contents show in a frustum, and in
+    /// all.
+    pub fn sun_eye(
         &self,
         view: &View,
         sun: &Sun,
         size: u32,
-        contents: impl Fn(&Frustum) -> [Aabb; 2],
-    ) -> Option<View> {
+        contents: impl Fn(&Frustum) -> (Vec<Aabb>, Aabb),
+    ) -> Option<SunEye> {
         if !light::casts_shadows(sun) {
             return None;
         }
         let frustum = view.frustum(1.0);
-        let receivers = self
-            .chunks
-            .iter()
-            .copied()
-            .flatten()
-            .filter(|c| c.details & Detail::Full.bit() != 0 && frustum.meets(&c.bounds))
-            .fold(Aabb::EMPTY, |all, c| all.union(c.bounds));
-        let [seen, all] = contents(&frustum);
-        let seen = if frustum.meets(&self.moved) { seen.union(self.moved) } else { seen };
-        light::sun_view(sun, &receivers.union(seen), &self.bounds.union(all).union(self.moved), size)
+        let chunks = self.chunks.iter().copied().flatten();
+        let is_seen = |c: &&Chunk| c.details & Detail::Full.bit() != 0 && frustum.meets(&c.bounds);
+        let mut seen: Vec<Aabb> = chunks.filter(is_seen).map(|c| c.bounds).collect();
+        let (of_contents, all) = contents(&frustum);
+        seen.extend(of_contents);
+        seen.extend(Some(self.moved).filter(|bounds| frustum.meets(bounds)));
+        SunEye::new(view, sun, &seen, &self.bounds.union(all).union(self.moved), size)
     }
 
-    /// Box around what contents show that a frustum meets, and around all that they show, metres.
-    pub fn content_bounds(&self, input: &FrameInput, frustum: &Frustum) -> [Aabb; 2] {
-        let mut found = [Aabb::EMPTY; 2];
+    /// Boxes around what contents show that a frustum meets, and one around all that they show, metres.
+    pub fn content_bounds(&self, input: &FrameInput, frustum: &Frustum) -> (Vec<Aabb>, Aabb) {
+        let (mut seen, mut all) = (Vec::new(), Aabb::EMPTY);
         for content in &self.contents {
             let uses = input.operations.contents.iter().filter(|c| c.city == content.number);
             let reaches = uses.flat_map(|c| reaches_of(Some(c.lens), c.class, input.volumes, &input.view));
@@ -109,12 +108,12 @@ impl CityFacts<'_> {
                 if part.is_empty() {
                     continue;
                 }
-                found[1] = found[1].union(part);
+                all = all.union(part);
                 if frustum.meets(&part) {
-                    found[0] = found[0].union(part);
+                    seen.push(part);
                 }
             }
         }
-        found
+        (seen, all)
     }
 }

@@ -1,6 +1,6 @@
 //! A view as the shaders read it, and what it can see.
 
-use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
+use glam::{DMat3, DVec2, DVec3, Vec3};
 
 use crate::{render::layout, view::View};
 
@@ -71,12 +71,6 @@ fn joined(a: DVec2, b: DVec2) -> [f32; 4] {
 /// Columns of a 3×3 matrix at WGSL's stride.
 pub fn padded(m: DMat3) -> [[f32; 4]; 3] {
     [m.x_axis, m.y_axis, m.z_axis].map(|c| c.as_vec3().extend(0.0).to_array())
-}
-
-/// Shadow-map coordinates (u, v in 0..1 with v down, depth as stored) from positions relative to `eye`.
-pub fn shadow_from_relative(sun: &View, eye: DVec3) -> DMat4 {
-    let to_map = DMat4::from_translation(DVec3::new(0.5, 0.5, 0.0)) * DMat4::from_scale(DVec3::new(0.5, -0.5, 1.0));
-    to_map * sun.clip_from_relative(DVec2::ZERO) * DMat4::from_translation(eye - sun.camera.eye)
 }
 
 /// CPU twin of `relative_to_eye` in `lib/view.wgsl`, in the same f32 steps (hard case 1).

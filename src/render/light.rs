@@ -1,12 +1,11 @@
-//! Sun, sky, and the sun's own view of the city for its shadows.
+//! Sun and sky.
 
 use glam::{DVec2, DVec3};
 
 use crate::{
     geom::Aabb,
-    render::{eye::shadow_from_relative, layout, palette},
+    render::{layout, palette, sun_eye::SunEye},
     scene::{Background, Sun},
-    view::{Camera, Projection, View},
 };
 
 /// Texels along a side of the shadow map, unless [`crate::render::settings::Settings`] say otherwise.
@@ -26,39 +25,11 @@ pub fn casts_shadows(sun: &Sun) -> bool {
     sun.shadows && sun.elevation > 0.01
 }
 
-/// The sun's orthographic view of `receivers`, from beyond `casters`, of so many texels each way.
-pub fn sun_view(sun: &Sun, receivers: &Aabb, casters: &Aabb, size: u32) -> Option<View> {
-    let size = size.max(LEAST_SHADOW_SIZE);
-    if receivers.is_empty() || casters.is_empty() {
-        return None;
-    }
-    let direction = to_sun(sun);
-    let center = receivers.center();
-    let reach = casters.corners().into_iter().map(|c| (c - center).dot(direction)).fold(0.0, f64::max) + 10.0;
-    let eye = center + direction * reach;
-    let probe = Camera {
-        eye,
-        target: center,
-        up: DVec3::Z,
-        projection: Projection::Orthographic { height_m: 1.0 },
-        near_m: 1.0,
-    };
-    let basis = probe.basis().ok()?;
-    let half = receivers
-        .corners()
-        .into_iter()
-        .fold(0.0_f64, |half, c| half.max((c - center).dot(basis.right).abs()).max((c - center).dot(basis.up).abs()));
-    // A texel's width more on each side, so that filters never look past the border.
-    let height_m = (2.0 * half * (1.0 + 4.0 / f64::from(size))).clamp(1.0, 1e7);
-    let camera = Camera { projection: Projection::Orthographic { height_m }, ..probe };
-    View::new(camera, [size; 2], &casters.union(*receivers)).ok()
-}
-
-/// The light block; `shadow` is the sun's view where there is a shadow map.
+/// The light block; `shadow` is the sun's eye where there is a shadow map.
 pub fn uniform(
     sun: &Sun,
     background: Background,
-    shadow: Option<&View>,
+    shadow: Option<&SunEye>,
     eye: DVec3,
     scene_radius: f64,
 ) -> layout::Light {
@@ -72,18 +43,17 @@ pub fn uniform(
         Background::Color(srgb) => palette::linear(srgb),
         Background::Sky => palette::linear([0.57, 0.70, 0.84]).map(|c| c * ambient),
     };
-    let matrix = shadow.map(|view| shadow_from_relative(view, eye));
-    let texel = shadow.map_or(0.0, |view| view.pixel_m(1.0));
+    let across = shadow.map(|sun| sun.across_from_relative(eye));
     layout::Light {
         to_sun: to_sun(sun).as_vec3().to_array(),
-        shadow_texel: texel as f32,
+        shadow_scale: shadow.map_or(0.0, SunEye::scale) as f32,
         sun: sun_color,
-        shadow_depth_step: shadow.map_or(1.0, |view| view.far_m - view.camera.near_m) as f32,
+        shadow_depth_step: shadow.map_or(1.0, SunEye::depth_step_m) as f32,
         sky: [0.335, 0.375, 0.43].map(|c| c * ambient),
-        reserved_0: 0.0,
+        shadow_levels: shadow.map_or(0, SunEye::packed) as f32,
         ground: [0.20, 0.185, 0.165].map(|c| c * ambient),
         reserved_1: 0.0,
-        shadow_from_relative: matrix.unwrap_or_default().as_mat4().to_cols_array_2d(),
+        sun_from_relative: across.unwrap_or_default().as_mat4().to_cols_array_2d(),
         zenith,
         reserved_2: 0,
         horizon: palette::linear([0.90, 0.925, 0.94]).map(|c| c * ambient),
@@ -109,21 +79,5 @@ mod tests {
         assert!(at(0.0, 0.0).abs_diff_eq(DVec3::Y, 1e-12));
         assert!(at(90.0, 0.0).abs_diff_eq(DVec3::X, 1e-12));
         assert!(at(123.0, 90.0).abs_diff_eq(DVec3::Z, 1e-12));
-    }
-
-    #[test]
-    fn the_shadow_map_holds_all_receivers() {
-        let sun = Sun::default();
-        let receivers = Aabb { min: DVec3::new(8e4, 4e5, -3.0), max: DVec3::new(8.06e4, 4.004e5, 60.0) };
-        let casters = Aabb { min: receivers.min - 500.0, max: receivers.max + 500.0 };
-        let view = sun_view(&sun, &receivers, &casters, SHADOW_SIZE).unwrap();
-        let matrix = shadow_from_relative(&view, receivers.min);
-        for corner in receivers.corners() {
-            let at = matrix.project_point3(corner - receivers.min);
-            assert!(at.cmpge(DVec3::ZERO).all() && at.cmple(DVec3::ONE).all(), "{corner} lands at {at}");
-        }
-        for corner in casters.corners() {
-            assert!(matrix.project_point3(corner - receivers.min).z <= 1.0, "{corner} is cut off");
-        }
     }
 }

@@ -82,6 +82,7 @@ mod sprites;
 pub mod standing;
 pub mod stats;
 pub mod stored;
+mod sun_eye;
 mod surfaces;
 pub mod text;
 mod textures;

@@ -22,9 +22,10 @@ use crate::{
         section_rounds,
         seen::{Seen, seen_volumes},
         settings::Settings,
+        sun_eye::SunEye,
     },
     scene::{BaseStyle, Technique},
-    view::View,
+    view::Frustum,
 };
 
 /// What a frame depends on of the adapter.
@@ -67,7 +68,7 @@ pub(super) struct FramePlan<'a> {
     pub seen: Seen,
     pub numbers: LensNumbers,
     /// The sun's eye, where there are shadows.
-    pub sun: Option<View>,
+    pub sun: Option<SunEye>,
     /// What shaders do.
     pub plans: Plans,
     /// What is hidden.
@@ -99,11 +100,11 @@ impl<'a> FramePlan<'a> {
         own_sprites.plan(input, &facts.all);
         let empty = empty_lenses(input, facts);
         let seen = seen_volumes(input, &facts.all, own_sprites.room(), &idle_lenses(&empty, input));
-        let sun = facts
-            .sun_view(&input.view, &input.sun, settings.shadow_size, |frustum| facts.content_bounds(input, frustum));
+        let of_contents = |frustum: &Frustum| facts.content_bounds(input, frustum);
+        let sun = facts.sun_eye(&input.view, &input.sun, settings.shadow_size, of_contents);
         let plans = Plans::new(input, &seen.volumes, &empty);
         let is_seen = |lens| seen.volumes.iter().any(|v| v.lens == lens);
-        let cuts = Cuts::new(input, is_seen, &empty, sun.as_ref(), plans.hiding.clone());
+        let cuts = Cuts::new(input, is_seen, &empty, sun.as_ref().map(SunEye::widest), plans.hiding.clone());
         let sprite_bytes = 4 * seen.words;
         let counts = 1 + u64::from(own_sprites.room().counts) + seen.volumes.len() as u64;
         let count_bytes = if seen.lists > 0 || own_sprites.counts() { 4 * counts } else { 0 };

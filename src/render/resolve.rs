@@ -184,9 +184,10 @@ impl Surroundings<'_> {
         }
         let view = View::new(*camera, size, &self.bounds())?;
         // The coarsest map looks farthest beyond its edge.
-        let sun = |facts: &CityFacts| facts.sun_view(&view, &scene.sun, LEAST_SHADOW_SIZE, |_| [Aabb::EMPTY; 2]);
+        let sun =
+            |facts: &CityFacts| facts.sun_eye(&view, &scene.sun, LEAST_SHADOW_SIZE, |_| (Vec::new(), Aabb::EMPTY));
         let sun = self.facts.as_ref().and_then(sun);
-        let sun = sun.map(|sun| sun.frustum(1.0));
+        let sun = sun.map(|sun| sun.widest().frustum(1.0));
         let stage = content_cities::Stage {
             drawn,
             model: self.model,

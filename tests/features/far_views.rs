@@ -44,7 +44,7 @@ fn per_pixel(picture: &Picture, view: &str, pass: &str) -> f64 {
 
 #[test]
 fn far_overlays_take_at_most_four_triangles_for_each_pixel() {
-    let mut studio = of_scene(&town([32, 24], 300.0, ""));
+    let mut studio = with_full_shadows(of_scene(&town([32, 24], 300.0, "")));
     let all = studio.renderer.city().unwrap().triangles;
     for (size, far) in [([32, 24], 300.0), ([32, 24], 60.0), ([24, 40], 500.0), ([8, 6], 400.0), ([48, 30], 300.0)] {
         let scene = town(size, far, "");

@@ -1,6 +1,5 @@
 //! The shadow map: depth from the sun, drawn where the map does not hold this view yet.
 
-use glam::DVec2;
 use wgpu::ShaderStages as S;
 
 use crate::{
@@ -10,7 +9,6 @@ use crate::{
         cities::DrawnSection,
         city::{Chunk, CityBuffers, draws_of},
         cut::{Cut, Shapes},
-        eye::{PictureTile, view_uniform},
         invokers::{InvokerPlans, Invokers},
         layout,
         pass::{
@@ -28,6 +26,7 @@ use crate::{
             targets::Needs,
             vertices,
         },
+        sun_eye::SunEye,
     },
     shader::{Module, Plan, Program, handlers},
     view::View,
@@ -77,8 +76,8 @@ impl PipelineKey for ShadowKey {
 /// What a shadow map shows.
 #[derive(Clone, Debug, PartialEq)]
 struct Held {
-    /// The sun's view.
-    view: layout::View,
+    /// The sun's views.
+    views: Vec<layout::View>,
     /// What is hidden from it, and all numbers that this depends on.
     cut: Option<(Program, Vec<u8>)>,
     /// Where contents stand.
@@ -94,7 +93,8 @@ struct Held {
 /// What the pass keeps.
 #[derive(Debug)]
 pub struct ShadowMap {
-    view: Synced,
+    /// What each level is seen with.
+    views: Vec<(Synced, KeptGroup)>,
     cities: Synced,
     /// Where something is hidden: the main view, shapes of lens volumes, their planes, invokers.
     eye: Synced,
@@ -102,7 +102,6 @@ pub struct ShadowMap {
     shape_planes: Synced,
     invoker_table: Synced,
     invokers: Synced,
-    view_group: KeptGroup,
     city_group: KeptGroup,
     shapes_group: KeptGroup,
     /// What the map holds.
@@ -130,8 +129,9 @@ impl ShadowMap {
     fn fit_groups(&mut self, frame: &FrameContext) {
         let FrameContext { gpu, pipelines, shared, cities, .. } = *frame;
         let stamp = shared.stamp;
-        self.view_group
-            .fit(stamp, || group(gpu, "sun's view", &pipelines.layout(&VIEW), &[(0, whole(self.view.buffer()))]));
+        for (view, kept) in &mut self.views {
+            kept.fit(stamp, || group(gpu, "sun's view", &pipelines.layout(&VIEW), &[(0, whole(view.buffer()))]));
+        }
         self.city_group.fit(stamp, || {
             let entries = [
                 (0, wgpu::BindingResource::TextureView(cities.surfaces())),
@@ -156,7 +156,7 @@ impl ShadowMap {
         });
     }
 
-    /// Draws what a section has for the sun.
+    /// Draws what a section has for a level of the sun's eye.
     fn draw_section(
         &self,
         frame: &FrameContext,
@@ -192,7 +192,7 @@ impl ShadowMap {
 
 impl Pass for ShadowMap {
     /// The sun's eye.
-    type Input<'a> = &'a View;
+    type Input<'a> = &'a SunEye;
 
     const LIST: &'static [Line] = &[("shadow map", "if the sun casts shadows and the map does not hold this view yet")];
 
@@ -201,51 +201,56 @@ impl Pass for ShadowMap {
         let uniform = |label| Synced::new(gpu, label, U::UNIFORM);
         let storage = |label| Synced::new(gpu, label, U::STORAGE);
         Ok(Self {
-            view: uniform("sun's view")?,
+            views: Vec::new(),
             cities: uniform("cities for the sun")?,
             eye: uniform("main view for the sun")?,
             shapes: storage("lens shapes for the sun")?,
             shape_planes: storage("lens planes for the sun")?,
             invoker_table: uniform("invoker table for the sun")?,
             invokers: storage("invokers for the sun")?,
-            view_group: KeptGroup::default(),
             city_group: KeptGroup::default(),
             shapes_group: KeptGroup::default(),
             held: None,
         })
     }
 
-    fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<&'a View> {
+    fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<&'a SunEye> {
         plan.sun.as_ref()
     }
 
-    fn add_needs(sun: &&View, _: &FramePlan, needs: &mut Needs) {
-        needs.shadow = sun.size[0];
+    fn add_needs(sun: &&SunEye, _: &FramePlan, needs: &mut Needs) {
+        needs.shadow = sun.size;
     }
 
-    fn add_keys(&self, input: Option<&&View>, _: &FramePlan, programs: &Programs, keys: &mut Keys) {
+    fn add_keys(&self, input: Option<&&SunEye>, _: &FramePlan, programs: &Programs, keys: &mut Keys) {
         keys.add(10, input.map(|_| ShadowKey(None)));
         keys.add_programs(25, programs.made_for_sun.iter().map(|program| ShadowKey(Some(program.clone()))));
     }
 
-    fn prepare(&mut self, sun: &&View, stage: &mut Preparing) -> Result<(), GpuError> {
-        let whole = PictureTile::whole(sun.size);
-        let mut stale = self.view.sync(stage.gpu, &[view_uniform(sun, whole, DVec2::ZERO, 0, 0.0)])?;
-        stale |= self.cities.sync(stage.gpu, &stage.cities.uniforms(sun.camera.eye, stage.plan.input.operations))?;
+    fn prepare(&mut self, sun: &&SunEye, stage: &mut Preparing) -> Result<(), GpuError> {
+        let mut stale = false;
+        for level in 0..sun.levels.len() {
+            if self.views.len() == level {
+                let view = Synced::new(stage.gpu, "sun's view", wgpu::BufferUsages::UNIFORM)?;
+                self.views.push((view, KeptGroup::default()));
+            }
+            stale |= self.views[level].0.sync(stage.gpu, &[sun.uniform(level)])?;
+        }
+        let eye = sun.widest().camera.eye;
+        stale |= self.cities.sync(stage.gpu, &stage.cities.uniforms(eye, stage.plan.input.operations))?;
         if let Some(cut) = &stage.plan.cuts.sun {
             stale |= self.upload_cut(stage, cut)?;
         }
         if stale {
-            [&mut self.view_group, &mut self.city_group, &mut self.shapes_group]
-                .into_iter()
-                .for_each(KeptGroup::forget);
+            let of_views = self.views.iter_mut().map(|(_, group)| group);
+            of_views.chain([&mut self.city_group, &mut self.shapes_group]).for_each(KeptGroup::forget);
         }
         Ok(())
     }
 
     fn record(
         &mut self,
-        sun: &&View,
+        sun: &&SunEye,
         frame: &FrameContext,
         recording: &mut Recording,
         _: &mut Board,
@@ -254,9 +259,9 @@ impl Pass for ShadowMap {
         let by = plan.cuts.sun.as_ref().zip(programs.sun.as_ref()).map(|(cut, program)| CutBy { cut, program });
         let numbers = |by: CutBy| (by.program.clone(), by.cut.all_numbers(plan.input, plan.own_sprites));
         let wanted = Held {
-            view: view_uniform(sun, PictureTile::whole(sun.size), DVec2::ZERO, 0, 0.0),
+            views: (0..sun.levels.len()).map(|level| sun.uniform(level)).collect(),
             cut: by.map(numbers),
-            cities: cities.uniforms(sun.camera.eye, plan.input.operations),
+            cities: cities.uniforms(sun.widest().camera.eye, plan.input.operations),
             details: plan.details.clone(),
             world: shared.world,
             map: targets.shadow.texture.clone(),
@@ -275,11 +280,17 @@ impl Pass for ShadowMap {
             depth: Some(cleared_depth(&targets.shadow.view, 0.0)),
         };
         recording.draw(pass, |pass| {
-            pass.set_bind_group(0, self.view_group.get(), &[]);
             let mut counted = Counted::NONE;
             let sections = cities.drawn_sections(&plan.details, by.map(|by| by.cut));
-            for drawn in sections.iter().filter(|drawn| drawn.has_shadow) {
-                counted += self.draw_section(frame, pass, drawn, sun, by);
+            for (level, (view, (_, group))) in sun.levels.iter().zip(&self.views).enumerate() {
+                let [left, top, side] = sun.place(level);
+                let [x, y, width] = [left, top, side].map(|texels| texels as f32);
+                pass.set_viewport(x, y, width, width, 0.0, 1.0);
+                pass.set_scissor_rect(left, top, side, side);
+                pass.set_bind_group(0, group.get(), &[]);
+                for drawn in sections.iter().filter(|drawn| drawn.has_shadow) {
+                    counted += self.draw_section(frame, pass, drawn, view, by);
+                }
             }
             counted
         });
