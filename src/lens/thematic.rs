@@ -421,6 +421,7 @@ mod tests {
         let scale = ThematicScale::new(&model, &used(&[])).unwrap();
         let labels: Vec<&str> = scale.legend.iter().map(|e| e.label.as_str()).collect();
         assert_eq!(labels, ["shop", "barn", "kiosk", "mill"]);
+        assert_eq!(scale.object_colors(&model), [3, 1, 0, 0, 2].map(category));
     }
 
     #[test]

@@ -495,6 +495,17 @@ mod tests {
         }
     }
 
+    #[test]
+    fn what_rises_from_key_to_key_rises_everywhere() {
+        // A flat piece between two steep ones: a cubic as steep at both its ends as its neighbours allow would fall in its middle.
+        for flat in [1.0, 0.1, 1e-3] {
+            let curve = Curve::new(&[0.0, 1.0, 2.0, 3.0], &[0.0, 10.0, 10.0 + flat, 20.0 + flat]);
+            let values: Vec<f64> = (0..=3000).map(|i| curve.at(f64::from(i) / 1000.0)).collect();
+            let least = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+            assert!(least > 0.0, "{flat}: {least}");
+        }
+    }
+
     proptest! {
         #![proptest_config(crate::seeds::config())]
 

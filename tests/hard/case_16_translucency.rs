@@ -75,6 +75,34 @@ fn the_order_in_which_the_city_is_drawn_does_not_matter() {
 }
 
 #[test]
+fn long_lists_are_laid_in_the_order_of_short_ones() {
+    // Each two share a plane; the first twenty take nearly all light.
+    let all: Vec<Pane> = (0..10_000)
+        .map(|i| Pane {
+            name: i,
+            x: (i / 2) as i64,
+            low: [0, 0],
+            high: [10_000, 10_000],
+            material: i % MATERIALS.len(),
+        })
+        .collect();
+    let first: Vec<usize> = (0..20).collect();
+    let opacity = |a: f64, except: bool| rule("transparent", &[("opacity", a)], Some(&first), except);
+    let scene = of_context(vec![opacity(0.3, false), opacity(0.0003, true)]);
+    let size = [4, 4];
+    let mut studio = studio_of(&all[..20]);
+    let short = transparency(&mut studio, &scene, Backend::Specialised, size);
+    set_city(&mut studio, &all);
+    let base = Request { size, aovs: Aovs::default(), statistics: true, ..request(Backend::Specialised) };
+    let passes = studio.render(&scene, &base).expect("a picture").statistics.passes;
+    assert!(passes.iter().any(|pass| pass.name == "sort layers"), "{passes:?}");
+    let long = transparency(&mut studio, &scene, Backend::Specialised, size);
+    // 0.7²⁰ of the light is left to what lies behind; two layers in another order would make a hundredth.
+    let apart = long.iter().zip(&short).flat_map(|(a, b)| (0..4).map(move |k| (a[k] - b[k]).abs())).fold(0.0, f32::max);
+    assert!(apart < 0.7_f32.powi(20), "{apart:e}");
+}
+
+#[test]
 fn ten_thousand_layers_are_laid_over_each_other() {
     let all: Vec<Pane> = (0..10_000)
         .map(|i| Pane { name: i, x: 2 * i as i64, low: [0, 0], high: [10_000, 10_000], material: i % MATERIALS.len() })
