@@ -187,6 +187,7 @@ impl Renderer {
         let Self { gpu, settings, images, pipelines, city, view, deforming, ran } = self;
         let Some(city) = city else { return Ok(Vec::new()) };
         let ViewState { contents, deformed, targets, shared, passes, own_sprites } = view;
+        pipelines.begin_frame(settings.most_pipelines);
         shared.world += u64::from(deforming.fit(gpu, pipelines, city, contents, deformed, input)?);
         let cities = Cities { own: city, deformed, contents };
         let (sprite_bytes, count_bytes) = (shared.sprites.buffer().size(), passes.stored.count_bytes());

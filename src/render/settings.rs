@@ -19,7 +19,12 @@ pub struct Settings {
     pub shuffled: Option<u32>,
     /// Texels along a side of the shadow map, at least [`crate::render::light::LEAST_SHADOW_SIZE`]; what drawing it costs grows with its square.
     pub shadow_size: u32,
+    /// Pipelines that are kept for frames to come; a scene takes some twenty. More than a frame uses.
+    pub most_pipelines: usize,
 }
+
+/// A software adapter keeps a tenth of a megabyte for each.
+const MOST_PIPELINES: usize = 2000;
 
 impl Settings {
     /// Those that suit an adapter.
@@ -31,6 +36,7 @@ impl Settings {
             picked_layer: None,
             shuffled: None,
             shadow_size: SHADOW_SIZE,
+            most_pipelines: MOST_PIPELINES,
         }
     }
 }

@@ -116,6 +116,33 @@ fn a_lens_of_no_volume_at_all_shows_nothing_on_either() {
 }
 
 #[test]
+fn pipelines_that_no_frame_uses_any_more_are_given_back() {
+    const MOST: usize = 20;
+    let (mut studio, mut scene) = town();
+    scene.lenses.truncate(1);
+    studio.renderer.settings.most_pipelines = MOST;
+    let mut with = |effect: &str| {
+        scene.lenses[0].effects = vec![used(effect)];
+        let drawn = draw_of_size(&mut studio, &scene, [48, 27], Backend::Specialised);
+        (drawn, studio.renderer.pipelines().kept())
+    };
+    let first = with("sepia").0;
+    let taken = first.statistics.pipelines.compiled as usize;
+    assert!(taken < MOST, "a scene takes {taken}");
+    let mut most_kept = 0;
+    for effect in ["invert", "posterise", "cel", "gooch", "darken", "brighten", "greyscale", "saturate", "brick"] {
+        let (drawn, kept) = with(effect);
+        assert!(drawn.statistics.pipelines.compiled > 0, "{effect}");
+        most_kept = most_kept.max(kept);
+    }
+    assert!(most_kept > taken && most_kept <= MOST + taken, "{most_kept} of {MOST} and {taken} are kept");
+    // What comes back is made anew, and what stays is not.
+    let again = with("sepia").0;
+    assert!(again.statistics.pipelines.compiled > 0 && again.rgba == first.rgba);
+    assert_eq!(with("sepia").0.statistics.pipelines.compiled, 0);
+}
+
+#[test]
 fn moving_toggling_and_changing_parameters_compile_nothing() {
     let (mut studio, mut scene) = town();
     // What is compiled is the same for pictures of any size.

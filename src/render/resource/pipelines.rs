@@ -1,4 +1,5 @@
-//! Pipelines by canonical key, made when first needed, or off the frame; how many were made and met again is counted.
+//! Pipelines by canonical key, made when first needed, or off the frame; how many were made and met again is counted. Where there are
+//! too many, those that no frame has used for longest are given back.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -12,12 +13,21 @@ use crate::{
     },
 };
 
+/// A pipeline, and the last frame that used it.
+#[derive(Debug)]
+struct Made {
+    pipeline: Pipeline,
+    frame: u64,
+}
+
 /// All pipelines.
 #[derive(Debug)]
 pub struct Pipelines {
     maker: Maker,
     modules: Modules,
-    made: FxHashMap<Key, Pipeline>,
+    made: FxHashMap<Key, Made>,
+    /// The number of this frame.
+    frame: u64,
     /// Pipelines that a frame waited for, since the last [`Pipelines::begin_picture`].
     pub compiled: u32,
     /// Whether lists were narrowed since then, and whether the pipeline for it was made.
@@ -38,6 +48,7 @@ impl Pipelines {
             maker: Maker::new(gpu),
             modules: Modules::default(),
             made: FxHashMap::default(),
+            frame: 0,
             compiled: 0,
             narrowing: None,
             arrived: 0,
@@ -72,12 +83,29 @@ impl Pipelines {
         self.used.clear();
     }
 
+    /// Starts a frame, which prepares all that it uses. Where there are more than `most`, a quarter of them goes.
+    pub fn begin_frame(&mut self, most: usize) {
+        self.frame += 1;
+        if self.made.len() <= most {
+            return;
+        }
+        let mut frames: Vec<u64> = self.made.values().map(|made| made.frame).collect();
+        frames.sort_unstable();
+        let oldest = frames[(frames.len() - most + most / 4).min(frames.len() - 1)];
+        self.made.retain(|_, made| made.frame >= oldest);
+        self.modules.clear();
+    }
+
     /// Makes a pipeline if it is not there yet.
     pub fn prepare(&mut self, key: &Key) {
-        if !self.made.contains_key(key) {
-            let pipeline = self.maker.make(&mut self.modules, &**key);
-            self.made.insert(key.clone(), pipeline);
-            self.compiled += 1;
+        let frame = self.frame;
+        match self.made.get_mut(key) {
+            Some(made) => made.frame = frame,
+            None => {
+                let pipeline = self.maker.make(&mut self.modules, &**key);
+                self.made.insert(key.clone(), Made { pipeline, frame });
+                self.compiled += 1;
+            }
         }
         if !self.used.contains(key) {
             self.used.push(key.clone());
@@ -89,7 +117,7 @@ impl Pipelines {
         while let Some(Ok((key, pipeline))) = self.worker.as_ref().map(|w| w.ready.try_recv()) {
             self.asked.remove(&key);
             // The frame may have made it meanwhile.
-            self.made.entry(key).or_insert(pipeline);
+            self.made.entry(key).or_insert(Made { pipeline, frame: self.frame });
             self.arrived += 1;
         }
         if self.made.contains_key(key) {
@@ -111,6 +139,11 @@ impl Pipelines {
         false
     }
 
+    /// How many pipelines are there.
+    pub fn kept(&self) -> usize {
+        self.made.len()
+    }
+
     /// How many pipelines are being made off the frame.
     pub fn pending(&self) -> usize {
         self.asked.len()
@@ -118,7 +151,7 @@ impl Pipelines {
 
     /// A prepared pipeline.
     pub fn get(&self, key: &(dyn AnyKey + 'static)) -> &wgpu::RenderPipeline {
-        match self.made.get(key) {
+        match self.made.get(key).map(|made| &made.pipeline) {
             Some(Pipeline::Render(pipeline)) => pipeline,
             _ => unreachable!("{key:?} was not prepared"),
         }
@@ -126,7 +159,7 @@ impl Pipelines {
 
     /// A prepared pipeline that computes.
     pub fn get_compute(&self, key: &(dyn AnyKey + 'static)) -> &wgpu::ComputePipeline {
-        match self.made.get(key) {
+        match self.made.get(key).map(|made| &made.pipeline) {
             Some(Pipeline::Compute(pipeline)) => pipeline,
             _ => unreachable!("{key:?} was not prepared"),
         }

@@ -14,6 +14,9 @@ use crate::render::resource::{
     pipeline::{Maker, Modules, Pipeline},
 };
 
+/// Modules that it keeps for pipelines that share them.
+const MOST_MODULES: usize = 256;
+
 /// A thread that makes pipelines. Dropping it waits for the one in hand: a driver that is torn down while it compiles may
 /// crash.
 #[derive(Debug)]
@@ -49,6 +52,9 @@ impl Worker {
             for key in orders {
                 if is_enough.load(Ordering::Relaxed) {
                     return;
+                }
+                if modules.len() >= MOST_MODULES {
+                    modules.clear();
                 }
                 let pipeline = maker.make(&mut modules, &*key);
                 if deliveries.send((key, pipeline)).is_err() {
