@@ -19,11 +19,11 @@ pub struct Settings {
     pub shuffled: Option<u32>,
     /// Texels along a side of the shadow map, at least [`crate::render::light::LEAST_SHADOW_SIZE`]; what drawing it costs grows with its square.
     pub shadow_size: u32,
-    /// Pipelines that are kept for frames to come; a scene takes some twenty. More than a frame uses.
+    /// Pipelines that may be kept when a frame starts; where there are more, those go that were used longest ago.
     pub most_pipelines: usize,
 }
 
-/// A software adapter keeps a tenth of a megabyte for each.
+/// Far more than one scene with its lenses asks for.
 const MOST_PIPELINES: usize = 2000;
 
 impl Settings {
