@@ -1,7 +1,7 @@
 //! name = "brighten"
 //! kind = "post"
 //! spec = "Trapp §3.5"
-//! doc = "Lifts colours towards white, like a veil of light; contrast falls, hues stay."
+//! doc = "Lifts colours towards white, like a veil of light; contrast falls, hues stay: a straight way in OKLab."
 //!
 //! [[parameter]]
 //! name = "amount"

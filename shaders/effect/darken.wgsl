@@ -1,7 +1,7 @@
 //! name = "darken"
 //! kind = "post"
 //! spec = "Trapp §3.5"
-//! doc = "Takes lightness away evenly; hues stay, so that what is beside it comes forward."
+//! doc = "Takes lightness away evenly; hues stay, so that what is beside it comes forward: OKLab's lightness and chroma times 1 - amount."
 //!
 //! [[parameter]]
 //! name = "amount"

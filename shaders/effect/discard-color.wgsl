@@ -1,7 +1,7 @@
 //! name = "discard-color"
 //! kind = "post"
 //! spec = "Trapp §3.5"
-//! doc = "Turns colours like the given one to grey; or, with keep, all others."
+//! doc = "Turns colours like the given one to grey; or, with keep, all others. The border between them is soft, from 0.8 to 1.2 times the tolerance."
 //!
 //! [[parameter]]
 //! name = "color"

@@ -1,7 +1,7 @@
 //! name = "edges"
 //! kind = "post"
 //! spec = "Trapp §3.5"
-//! doc = "Lines where objects, faces or depths meet, as one would draw them (Saito and Takahashi 1990)."
+//! doc = "Lines where objects, faces or depths meet, as one would draw them (Saito and Takahashi 1990): full where depth steps or bends by 1.2 % from pixel to pixel, none at 0.4 %; full where faces turn by 37 degrees, none at 20. They are weaker where a pixel is wider than 1.8 m, a quarter from 7.2 m on."
 //!
 //! [[parameter]]
 //! name = "color"

@@ -1,7 +1,7 @@
 //! name = "invert"
 //! kind = "post"
 //! spec = "Trapp §3.5"
-//! doc = "Turns light into dark and every hue into its opposite, like a photographic negative."
+//! doc = "Turns light into dark and every hue into its opposite, like a photographic negative: sRGB values from the other end."
 //!
 //! [[parameter]]
 //! name = "amount"

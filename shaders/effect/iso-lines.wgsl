@@ -1,7 +1,7 @@
 //! name = "iso-lines"
 //! kind = "post"
 //! spec = "Tiesel §3"
-//! doc = "Lines of equal distance, or of equal height."
+//! doc = "Lines of equal distance, or of equal height: 70 % of their colour, every fifth twice as wide and 95 %. Lines closer than 5 pixels go over into an even tone, which fades out from 2.5 pixels to 1."
 //!
 //! [[parameter]]
 //! name = "equal"

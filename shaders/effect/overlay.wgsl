@@ -21,7 +21,7 @@
 //! type = "word"
 //! words = ["alpha", "multiply", "screen", "overlay"]
 //! default = "alpha"
-//! doc = "How it is laid over: as paint, as a filter (darker), as light (lighter), or one or the other by what is below."
+//! doc = "How it is laid over: as paint, as a filter (darker), as light (lighter), or one or the other by whether what is below is darker than middle grey (0.214 of the light)."
 
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     return mix(color, blended(clamp(color, vec3f(0.0), vec3f(1.0)), p), p.opacity);

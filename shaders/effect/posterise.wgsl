@@ -1,7 +1,7 @@
 //! name = "posterise"
 //! kind = "post"
 //! spec = "Trapp §3.5"
-//! doc = "Few steps of lightness instead of many, like a print of few inks."
+//! doc = "Few steps of lightness instead of many, like a print of few inks: in OKLab each step is shown as its middle, and chroma follows lightness."
 //!
 //! [[parameter]]
 //! name = "steps"

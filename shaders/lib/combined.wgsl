@@ -76,7 +76,7 @@ fn is_within(s: Combination, ray: Ray, t: f32, is_after: bool, own: u32, is_in_o
         let span = spans[i];
         var is_in = select(span.enter < t && t <= span.exit, span.enter <= t && t < span.exit, is_after);
         if leaf.region.test == SOLID {
-            is_in = solid_holds(solid_of(leaf.region), ray.origin + t * ray.direction, t);
+            is_in = solid_holds(solid_of(leaf.region), ray.origin + t * ray.direction, t, 0.0);
         }
         bits = pushed(bits, select(is_in, is_in_own, i == own), leaf.operations);
         if i + 1u == s.count {

@@ -32,9 +32,9 @@ fn span_of_ball(ray: Ray, center: vec3f, radius: f32) -> Span {
 // its depth: so flat faces hold half of the band of analytic tests more (S7: 8 * 2^-23 of the larger distance from the eye).
 const ON_FACE: f32 = 4.0 * 1.1920929e-7;
 
-// For a volume around `center`, seen at distance D, metres. |x| + |y| + |z| is at most 1.73 of the length.
-fn face_slack(center: vec3f, distance: f32) -> f32 {
-    return ON_FACE * max(abs(distance), 0.57735 * dot(abs(center), vec3f(1.0)));
+// The same for the rasteriser that draws what is seen, metres. For a volume around `center`; |x| + |y| + |z| is at most 1.73 of the length.
+fn face_slack(center: vec3f, sight: Sight) -> f32 {
+    return ON_FACE * max(abs(sight.distance), 0.57735 * dot(abs(center), vec3f(1.0))) + sight.off;
 }
 
 // How far a place is from a box around the origin, metres, negative inside.

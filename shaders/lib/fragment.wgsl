@@ -13,21 +13,23 @@ struct Fragment {
     is_parallel: bool,          // whether the main view's rays are: it is orthographic
     city: u32,                  // which of the cities that are drawn: 0 the scene's own, else a content of lenses
     threshold: f32,             // what a share must be above to be there, 0..1; of what only the sun sees the half
+    off: f32,                   // how far the place may be beside its face, metres
 }
 
 fn sight_of(fragment: Fragment) -> Sight {
     return Sight(fragment.pixel, fragment.depth, fragment.ray, -fragment.position.z, fragment.position, fragment.is_parallel,
-                 fragment.object);
+                 fragment.object, fragment.off);
 }
 
 // The fragment at a place of the target.
 fn fragment_at(at: vec2f, depth: f32, code: u32) -> Fragment {
     let ray = ray_of_pixel(at);
-    let position = ray.origin + distance_of_depth(depth) * ray.direction;
+    let distance = distance_of_depth(depth);
+    let position = ray.origin + distance * ray.direction;
     let up = view.view_from_world[2];       // dot(column, p) = p's share of the world's z
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + dot(up, position);
     let surface = surface_at(code - 1u);
     return Fragment(vec2i(at), depth, position, height, code - 1u, surface.object, part_of(surface),
                     decode_normal(surface.normal), ray, view.orthographic == 1u, city_number(),
-                    dither(vec2i(at), view.sample_index));
+                    dither(vec2i(at), view.sample_index), off_face(distance));
 }

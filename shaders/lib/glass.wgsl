@@ -19,7 +19,7 @@ fn sight_near(pixel: vec2i, position: vec3f) -> Sight {
     if !is_parallel {
         ray = Ray(vec3f(0.0), vec3f(position.xy / max(-position.z, 1e-20), -1.0));
     }
-    return Sight(pixel, 0.0, ray, -position.z, position, is_parallel, NO_OBJECT);
+    return Sight(pixel, 0.0, ray, -position.z, position, is_parallel, NO_OBJECT, 0.0);
 }
 
 // The span of both spans, and of what is between.

@@ -8,6 +8,18 @@ struct Sight {
     position: vec3f,            // metres
     is_parallel: bool,          // whether all rays are: the view is orthographic
     object: u32,                // that it belongs to, or NO_OBJECT
+    off: f32,                   // how far the place may be beside its face for the rasteriser's grid, metres
+}
+
+// How far from their places corners are drawn at most, pixels: it says what adapter this is for.
+//@snapping
+
+// What is drawn of corners that have been moved by some part of a pixel is off by as much along the normal of its face, metres.
+fn off_face(distance: f32) -> f32 {
+    if SNAPPING == 0.0 {
+        return 0.0;
+    }
+    return SNAPPING * abs(view.across_from_pixel.y) * select(distance, 1.0, view.orthographic == 1u);
 }
 
 // With a number for a place, where nothing is shown.
@@ -20,5 +32,6 @@ fn with_place(sight: Sight) -> Sight {
 // The place that a pixel shows.
 fn sight_at(pixel: vec2i, ray: Ray, depth: f32, object: u32) -> Sight {
     let distance = select(FAR_AWAY, distance_of_depth(depth), depth > 0.0);
-    return Sight(pixel, depth, ray, distance, ray.origin + distance * ray.direction, view.orthographic == 1u, object);
+    return Sight(pixel, depth, ray, distance, ray.origin + distance * ray.direction, view.orthographic == 1u, object,
+                 off_face(distance));
 }

@@ -53,5 +53,5 @@ fn distance_to_solid(s: Solid, sight: Sight) -> f32 {
             distance = min(distance, distance_to_face(o, a, b, c));
         }
     }
-    return select(distance, -distance, solid_holds(s, sight.position, sight.distance));
+    return select(distance, -distance, solid_holds(s, sight.position, sight.distance, sight.off));
 }

@@ -73,7 +73,7 @@ fn end_of_span(span: Span) -> f32 {
 
 fn sight_along(ray: Ray, pixel: vec2i, distance: f32) -> Sight {
     return Sight(pixel, depth_of_distance(distance), ray, distance, place_at(ray, distance), view.orthographic == 1u,
-                 NO_OBJECT);
+                 NO_OBJECT, 0.0);
 }
 
 // Of a volume without closed form; `whole`: from its first entry to its last exit, as its sprite knows them.
@@ -155,7 +155,7 @@ fn inside_of(surface: Surface, number: u32, ray: Ray, pixel: vec2i, distance: f3
     let part = select(PART_SECTION, PART_TERRAIN, part_of(surface) == PART_TERRAIN);
     return Fragment(pixel, depth_of_distance(distance), position, height, number, surface.object, part,
                     -normalize(ray.direction) * view.view_from_world, ray, view.orthographic == 1u, city_number(),
-                    dither(pixel, view.sample_index));
+                    dither(pixel, view.sample_index), 0.0);
 }
 
 @fragment

@@ -34,7 +34,7 @@ fn fragment(in: Varying) {
     }
     let fragment = Fragment(vec2i(in.clip.xy), in.clip.z, in.position, in.height, in.surface, surface.object,
                             part_of(surface), decode_normal(surface.normal), ray, is_parallel, in.flags >> 1u,
-                            0.5);
+                            0.5, 0.0);
     if !visible(fragment) {
         discard;
     }

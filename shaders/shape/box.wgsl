@@ -10,7 +10,7 @@ struct Box {
 
 fn box_holds(s: Box, sight: Sight) -> bool {
     let o = sight.position - s.center;
-    let slack = face_slack(s.center, sight.distance);
+    let slack = face_slack(s.center, sight);
     return abs(dot(o, s.x)) <= s.half.x + slack && abs(dot(o, s.y)) <= s.half.y + slack && abs(dot(o, s.z)) <= s.half.z + slack;
 }
 

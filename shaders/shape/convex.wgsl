@@ -8,7 +8,8 @@ struct Convex {
 fn convex_holds(s: Convex, sight: Sight) -> bool {
     var is_below = true;
     for (var i = s.first; i < s.first + s.count; i++) {
-        is_below = is_below && dot(planes[i].xyz, sight.position) <= planes[i].w + ON_FACE * max(abs(sight.distance), abs(planes[i].w));
+        let slack = ON_FACE * max(abs(sight.distance), abs(planes[i].w)) + sight.off;
+        is_below = is_below && dot(planes[i].xyz, sight.position) <= planes[i].w + slack;
         // Here, not at the beginning: a software adapter goes through a whole round to find that there is none.
         if i + 1u == s.first + s.count {
             break;

@@ -11,7 +11,7 @@ fn cylinder_holds(s: Cylinder, sight: Sight) -> bool {
     let o = sight.position - s.center;
     let along = dot(o, s.axis);
     let across = o - along * s.axis;
-    return abs(along) <= s.half + face_slack(s.center, sight.distance) && dot(across, across) <= s.radius * s.radius;
+    return abs(along) <= s.half + face_slack(s.center, sight) && dot(across, across) <= s.radius * s.radius;
 }
 
 fn span_of_cylinder(ray: Ray, s: Cylinder) -> Span {

@@ -52,11 +52,18 @@ fn is_in_polygon(first: u32, count: u32, p: vec2f) -> bool {
     return around != 0;
 }
 
+// Whether a place is behind a figure's plane, which its ray crosses at `enter` with the weight `w`, or in it: w is how fast a ray comes
+// away from the plane, and what is in the plane comes with the rounding of its depth.
+fn is_behind_plane(sight: Sight, enter: f32, w: f32) -> bool {
+    let is_before_eye = sight.is_parallel || (enter > 0.0 && sight.distance > 0.0);
+    return w > 1e-20 && is_before_eye && (sight.distance - enter) * w >= -(ON_FACE * abs(sight.distance) + sight.off);
+}
+
 // Whether a place at D of the main view's ray is behind a figure, or in its plane; also where nothing is.
 fn flat_holds(s: Flat, sight: Sight) -> bool {
     let span = span_of_flat(sight.ray, s);
-    let is_before_eye = sight.is_parallel || (span.enter > 0.0 && sight.distance > 0.0);
-    return is_before_eye && span.enter <= span.exit && sight.distance >= span.enter;
+    let w = dot(s.weight, sight.ray.origin + sight.ray.direction);
+    return span.enter <= span.exit && is_behind_plane(sight, span.enter, w);
 }
 
 fn distance_to_sides(first: u32, count: u32, p: vec2f) -> f32 {
@@ -73,7 +80,6 @@ fn distance_to_flat(s: Flat, sight: Sight, border: vec4f) -> f32 {
     let w = dot(s.weight, a);
     let at = clamp(vec2f(dot(s.x, a), dot(s.y, a)) / w, vec2f(-1e15), vec2f(1e15));
     let enter = clamp(dot(s.depth, a) / w, -FAR_AWAY, FAR_AWAY);
-    let is_behind_plane = w > 1e-20 && sight.distance >= enter && (sight.is_parallel || (enter > 0.0 && sight.distance > 0.0));
     var across = length(at) - s.size.x;
     if s.figure == POLYGON {
         across = distance_to_sides(s.first, s.count, at);
@@ -81,5 +87,5 @@ fn distance_to_flat(s: Flat, sight: Sight, border: vec4f) -> f32 {
         across = distance_to_block(vec3f(at, 0.0), vec3f(s.size, 1e30));
     }
     let further = select(sight.distance / enter, 1.0, border.y < 0.5 || sight.is_parallel);
-    return select(FAR_AWAY, across * further, is_behind_plane);
+    return select(FAR_AWAY, across * further, is_behind_plane(sight, enter, w));
 }

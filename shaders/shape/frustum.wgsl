@@ -13,7 +13,7 @@ fn frustum_holds(s: Frustum, sight: Sight) -> bool {
     let along = dot(o, s.axis);
     let across = o - along * s.axis;
     let radius = s.radius + s.growth * along;
-    return abs(along) <= s.half + face_slack(s.center, sight.distance) && dot(across, across) <= radius * radius;
+    return abs(along) <= s.half + face_slack(s.center, sight) && dot(across, across) <= radius * radius;
 }
 
 // |across| <= radius along the ray is a quadratic, set up around the point of the ray nearest the middle: two cones that meet

@@ -2,6 +2,7 @@
 
 mod device;
 mod readback;
+mod snapping;
 mod timer;
 
 pub use device::{Gpu, GpuError};

@@ -7,6 +7,7 @@ use crate::{
         frame::{Backend, FrameInput, ShaderPart},
         plans::Plans,
         renderer::Renderer,
+        resource::pipeline::adapter,
         seen::seen_volumes,
         stored::SpriteRoom,
     },
@@ -42,8 +43,7 @@ impl Renderer {
                 _ => None,
             };
             if let Some(module) = module {
-                let room = self.gpu.device.limits().max_inter_stage_shader_variables;
-                return module.source_for_people(handlers(), &names, room);
+                return module.source_for_people(handlers(), &names, &adapter(&self.gpu));
             }
         }
         let layering = match is_written_out {
@@ -73,6 +73,6 @@ impl Renderer {
                 None => return "// Nothing draws lines.\n".to_owned(),
             },
         };
-        module.source_for_people(handlers(), &names, self.gpu.device.limits().max_inter_stage_shader_variables)
+        module.source_for_people(handlers(), &names, &adapter(&self.gpu))
     }
 }

@@ -149,15 +149,16 @@ impl Forms {
             }
             text + "}\n\n"
         };
-        let mut text =
-            choice("leaf_holds(leaf: Leaf, sight: Sight) -> bool", "leaf.region", "false", &|form| match form {
+        let mut text = choice("leaf_holds(leaf: Leaf, sight: Sight) -> bool", "leaf.region", "false", &|form| {
+            match form {
                 _ if form.has_span() => holds(form, "leaf.region", "sight"),
                 Form::Members | Form::FadingMembers => {
                     format!("sight.distance < FAR_AWAY && {}", is_member(form))
                 }
-                _ => "sight.distance < FAR_AWAY && solid_holds(solid_of(leaf.region), sight.position, sight.distance)"
+                _ => "sight.distance < FAR_AWAY && solid_holds(solid_of(leaf.region), sight.position, sight.distance, sight.off)"
                     .to_owned(),
-            });
+            }
+        });
         // A solid's ends are not asked for here; a choice of objects is the box around them.
         text += &choice("span_of_leaf(ray: Ray, s: Region) -> Span", "s", "EMPTY_SPAN", &|form| match form {
             _ if form.has_span() => span(form, "ray", "s"),

@@ -2,6 +2,7 @@
 //! what shades a pixel, what tells which fragments are translucent, and what draws the city.
 
 use crate::shader::{
+    adapter::Adapter,
     backend,
     effect::definition::EffectDefinition,
     files,
@@ -46,12 +47,12 @@ impl Forward {
     }
 
     /// The whole WGSL text.
-    pub(super) fn source(&self, handlers: &[EffectDefinition], lenses: &[&str]) -> String {
-        merged(&self.shading_text(handlers, lenses), &self.city_text(handlers, lenses))
+    pub(super) fn source(&self, handlers: &[EffectDefinition], lenses: &[&str], adapter: &Adapter) -> String {
+        merged(&self.shading_text(handlers, lenses, adapter), &self.city_text(handlers, lenses))
     }
 
     /// The text that shades a fragment, and says what becomes of it then.
-    fn shading_text(&self, handlers: &[EffectDefinition], lenses: &[&str]) -> String {
+    fn shading_text(&self, handlers: &[EffectDefinition], lenses: &[&str], adapter: &Adapter) -> String {
         // As many parameters as the longer list reads.
         let slots = match &self.hidden {
             Program::Specialised(plan) => plan.slots(handlers),
@@ -64,6 +65,7 @@ impl Forward {
         let text = Template::of_files(&files::of_shading(&self.shading, handlers))
             .then(Template::below_path(SHADE.path, &shade))
             .fill("ray", rays::source())
+            .fill("snapping", adapter.snapping())
             .fill("carried", own.members)
             .fill("handlers", own.functions + &opacity)
             .then(Template::of_files(&[FORWARD]));

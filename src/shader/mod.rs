@@ -3,6 +3,7 @@
 //! No wgpu handle lives here. Entry points stand in `shaders/pass` alone; everything else is importable
 //! and free of side effects.
 
+mod adapter;
 mod backend;
 mod bodies;
 mod carried;
@@ -40,6 +41,7 @@ mod uber;
 pub mod wgsl;
 mod writer;
 
+pub use adapter::Adapter;
 pub use carried::LEAST_CARRIED;
 pub use deforming::{DEFORMER_NUMBERS, DeformPlan, PlanControl, PlanDeformer, PlanStep, STEP_HEAD};
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};

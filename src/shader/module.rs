@@ -3,6 +3,7 @@
 use crate::{
     geom::shape::VolumeForm,
     shader::{
+        adapter::Adapter,
         backend, carried,
         deforming::DeformPlan,
         effect::{definition::EffectDefinition, registry::handlers},
@@ -93,15 +94,15 @@ impl Module {
 
     /// The whole WGSL text, where a program's numbers count these handlers.
     pub fn source_with(&self, handlers: &[EffectDefinition]) -> String {
-        self.source_for_people(handlers, &[], carried::LEAST_CARRIED)
+        self.source_for_people(handlers, &[], &Adapter::LEAST)
     }
 
-    /// The whole WGSL text with the names of a plan's lenses in comments, for an adapter that carries so many vectors
-    /// from vertices to fragments: [`carried::LEAST_CARRIED`] or more.
-    pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], room: u32) -> String {
+    /// The whole WGSL text with the names of a plan's lenses in comments, for an adapter.
+    pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], adapter: &Adapter) -> String {
         let files = files::with_threshold(self.files(handlers));
         let text = Template::of_files(&files);
         let text = if files.contains(&VIEW) { text.fill("ray", rays::source()) } else { text };
+        let text = if files.contains(&SIGHT) { text.fill("snapping", adapter.snapping()) } else { text };
         let hidden = |program, eye| hiding::source(program, handlers, lenses, eye);
         let filled = match self {
             Self::CombinedSprite(leaves) | Self::StoredLayers(leaves) => {
@@ -109,13 +110,13 @@ impl Module {
             }
             Self::StoredForm(form) => return text.text() + &forms::of_stage(*form),
             Self::Sprite | Self::SpriteList => return text.text() + &forms::numbers_of(VolumeForm::Solid),
-            Self::Forward(own) => return own.source(handlers, lenses),
+            Self::Forward(own) => return own.source(handlers, lenses, adapter),
             Self::Shade(program) => {
-                let own = backend::shading(program, handlers, lenses, &Shading::of_surfaces(room));
+                let own = backend::shading(program, handlers, lenses, &Shading::of_surfaces(adapter.carried));
                 text.fill("carried", own.members).fill("handlers", own.functions)
             }
             Self::Composite(program) => {
-                let own = backend::shading(program, handlers, lenses, &Shading::of_layers(room));
+                let own = backend::shading(program, handlers, lenses, &Shading::of_layers(adapter.carried));
                 let text = text.fill("carried", own.members).fill("handlers", own.functions);
                 sorting::filled(text).fill("opacity", backend::opacity(program, handlers))
             }

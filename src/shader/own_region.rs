@@ -34,7 +34,7 @@ fn {away}(s: OwnRegion, position: vec3f) -> f32 {{
 }}
 
 fn {name}_holds(s: OwnRegion, sight: Sight) -> bool {{
-    return {away}(s, sight.position) <= face_slack(s.center, sight.distance);
+    return {away}(s, sight.position) <= face_slack(s.center, sight);
 }}
 
 fn distance_to_{name}(s: OwnRegion, sight: Sight, border: vec4f) -> f32 {{

@@ -330,7 +330,7 @@ fn what_finds_no_room_is_read_where_it_stands() {
     let plan = Plan { lenses: (0..9).map(lens).collect(), ..Plan::default() };
     let module = Module::Shade(Program::Specialised(plan));
     for room in [14, LEAST_CARRIED, 31, 1000] {
-        let source = module.source_for_people(handlers(), &[], room);
+        let source = module.source_for_people(handlers(), &[], &Adapter { carried: room, ..Adapter::LEAST });
         validate_text(&module.name(), &source);
         let members = source.matches("@interpolate(flat, either)").count() as u32;
         let left = source.matches(" = lens_regions_uniform[").count();
@@ -359,6 +359,8 @@ fn every_file_of_the_library_is_in_the_table_and_has_sound_hooks() {
             found.push(format!("{part}/{}", entry.file_name().to_string_lossy()));
         }
     }
+    // What an adapter is measured with is drawn before there are modules.
+    found.retain(|path| path != "pass/snapping.wgsl");
     let forms = VolumeForm::ALL.iter().map(|form| library::file_of(*form));
     let files: Vec<_> = library::ALL.iter().copied().chain(forms).collect();
     let mut listed: Vec<_> = files.iter().map(|file| file.path.to_owned()).collect();

@@ -44,6 +44,7 @@ mod placement;
 mod random_scenes;
 mod renderings;
 mod scenes;
+mod second_driver;
 mod sections;
 mod sheets;
 mod sprite_files;

@@ -2,8 +2,19 @@
 //! it, whichever side the body is on, and so it stays when the camera moves by less than a pixel. Oracle: the facade's plane
 //! is known, and where the lens's face is on it.
 
-use glam::{DQuat, DVec3};
-use veduta::{geom::Shape, view::Camera};
+use std::{f64::consts::PI, sync::Arc};
+
+use glam::{DQuat, DVec2, DVec3};
+use veduta::{
+    geom::{Shape, shape::FlatFigure},
+    gpu::Gpu,
+    render::{
+        frame::Backend,
+        picture::{Request, Studio},
+    },
+    scene::CitySpec,
+    view::Camera,
+};
 
 use crate::{lenses::view, studio};
 
@@ -68,6 +79,22 @@ fn shapes(face: &Face, side: f64) -> Vec<(&'static str, Shape, Part)> {
             rectangle(2.5, 1.7),
         ),
     ];
+    // What is seen through a figure begins at its plane, whichever way that faces.
+    let half = DVec2::new(2.5, 1.7);
+    for (name, figure, part) in [
+        ("disc", FlatFigure::Disc { radius: 2.2 }, disc(2.2)),
+        ("rectangle", FlatFigure::Rectangle { size: 2.0 * half }, rectangle(2.5, 1.7)),
+        (
+            "polygon",
+            FlatFigure::Polygon {
+                points: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|c| half * DVec2::from(c)).to_vec(),
+            },
+            rectangle(2.5, 1.7),
+        ),
+    ] {
+        let rotation = if side > 0.0 { rotation } else { rotation * DQuat::from_rotation_x(PI) };
+        list.push((name, Shape::Flat { center: face.at, rotation, figure }, part));
+    }
     if face.normal == DVec3::Z {
         // Level, its top or its bottom on the roof; round at its ends.
         let points = vec![middle - 2.0 * u, middle + 2.0 * u];
@@ -138,4 +165,60 @@ fn a_face_in_the_plane_of_a_wall_or_a_roof_holds_it_in_every_frame() {
         }
     }
     assert!(on_face > 1_000_000 && beside > 1_000_000, "{on_face} on the face, {beside} beside it");
+}
+
+#[test]
+fn a_face_holds_what_a_rasterisers_grid_puts_before_it_and_no_more() {
+    let face = &faces()[2];
+    let cameras = [
+        Camera::looking(face.at + DVec3::new(2.0, -3.0, 20.0), face.at, 0.8),
+        studio::orthographic(face.at + DVec3::new(9.0, 4.0, 30.0), face.at, 14.0),
+    ];
+    // Corners that an adapter draws up to half a pixel from their places.
+    let snapping = 0.5;
+    let mut gpu = Gpu::open().unwrap();
+    gpu.snapping = snapping;
+    let plain = studio::studio(&[studio::citydata("cube.city.json")]);
+    let mut coarse =
+        Studio::new(gpu, Arc::clone(&plain.model), &CitySpec { ground: false, ..CitySpec::default() }).unwrap();
+    for camera in cameras {
+        let still = view(camera, SIZE);
+        let pixel = still.pixel_m(still.depth(face.at));
+        for (share, expected) in [(0.7, true), (1.3, false)] {
+            // Lenses whose faces are under the roof, or whose planes are behind it, by so much.
+            let below =
+                Face { at: face.at - share * snapping * pixel * face.normal, normal: face.normal, along: face.along };
+            let (names, rest): (Vec<_>, Vec<_>) = shapes(&below, -1.0).into_iter().map(|(n, s, p)| (n, (s, p))).unzip();
+            let (shapes, parts): (Vec<Shape>, Vec<Part>) = rest.into_iter().unzip();
+            let lenses = names.iter().zip(shapes).map(|(n, s)| studio::lens(n, vec![s], "sepia")).collect();
+            let scene = studio::scene(camera, lenses);
+            for backend in [Backend::Specialised, Backend::Uber] {
+                let request = Request {
+                    size: SIZE,
+                    samples: 1,
+                    transparent: false,
+                    aovs: studio::ALL,
+                    statistics: false,
+                    backend,
+                };
+                let drawn = coarse.render(&scene, &request).expect("a picture");
+                let normals = drawn.normal.as_ref().expect("normals");
+                for (k, (name, part)) in names.iter().zip(&parts).enumerate() {
+                    let bits = studio::bits(&drawn, k);
+                    let mut asked = 0;
+                    for i in (0..bits.len()).filter(|i| normals[*i][2] > 0.99) {
+                        let ray = still.pixel_ray(i as u32 % SIZE[0], i as u32 / SIZE[0]);
+                        let t = (face.at - ray.origin).dot(face.normal) / ray.direction.dot(face.normal);
+                        let p = ray.at(t) - face.at;
+                        // Well inside the part: at its rim the grid would move it along the face, too.
+                        if part(p.dot(face.along[0]), p.dot(face.along[1])) < -2.0 * pixel {
+                            asked += 1;
+                            assert_eq!(bits[i], expected, "{name} {share} of the grid below, {backend:?}, pixel {i}");
+                        }
+                    }
+                    assert!(asked > 50, "{name}: {asked} pixels");
+                }
+            }
+        }
+    }
 }

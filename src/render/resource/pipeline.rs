@@ -8,7 +8,7 @@ use crate::{
         key::{AnyKey, Draw, Parts, Stage},
         layouts::Layouts,
     },
-    shader::Module,
+    shader::{Adapter, Module},
 };
 
 /// A pipeline that draws, or computes.
@@ -23,10 +23,16 @@ pub enum Pipeline {
 /// Shader modules by what is in them.
 pub type Modules = FxHashMap<Module, wgpu::ShaderModule>;
 
+/// What texts of shaders need to know of an adapter.
+pub fn adapter(gpu: &Gpu) -> Adapter {
+    Adapter { carried: gpu.device.limits().max_inter_stage_shader_variables, snapping: gpu.snapping }
+}
+
 /// What makes pipelines.
 #[derive(Clone, Debug)]
 pub struct Maker {
     device: wgpu::Device,
+    adapter: Adapter,
     /// The bind group layouts.
     pub layouts: Layouts,
     /// Where samples are summed: f32 where it can be blended, else f16.
@@ -41,15 +47,16 @@ impl Maker {
         } else {
             wgpu::TextureFormat::Rgba16Float
         };
-        Self { device: gpu.device.clone(), layouts: Layouts::new(gpu), sums }
+        Self { device: gpu.device.clone(), adapter: adapter(gpu), layouts: Layouts::new(gpu), sums }
     }
 
     fn module(&self, modules: &mut Modules, module: Module) -> wgpu::ShaderModule {
-        let room = self.device.limits().max_inter_stage_shader_variables;
         let make = |m: &Module| {
             self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(&m.name()),
-                source: wgpu::ShaderSource::Wgsl(m.source_for_people(crate::shader::handlers(), &[], room).into()),
+                source: wgpu::ShaderSource::Wgsl(
+                    m.source_for_people(crate::shader::handlers(), &[], &self.adapter).into(),
+                ),
             })
         };
         modules.entry(module.clone()).or_insert_with(|| make(&module)).clone()

@@ -32,15 +32,17 @@ pub struct Findings {
     pub wrong: u64,
     /// The first that is wrong.
     pub first: Option<String>,
+    /// How far the adapter moves corners of triangles at most, pixels ([`crate::gpu::Gpu::snapping`]).
+    pub snapping: f64,
     /// Whether time ran out before everything was looked at.
     pub is_cut: bool,
     until: Instant,
 }
 
 impl Findings {
-    /// None yet; the check is to end soon after `until`.
-    pub fn new(until: Instant) -> Self {
-        Self { tried: 0, wrong: 0, first: None, is_cut: false, until }
+    /// None yet, of an adapter that moves corners by so much; the check is to end soon after `until`.
+    pub fn new(until: Instant, snapping: f64) -> Self {
+        Self { snapping, tried: 0, wrong: 0, first: None, is_cut: false, until }
     }
 
     /// Compares one answer; `message` says what is wrong with it.
@@ -67,13 +69,13 @@ mod tests {
 
     #[test]
     fn the_first_that_is_wrong_is_told_and_all_are_counted() {
-        let mut found = Findings::new(Instant::now() + Duration::from_secs(60));
+        let mut found = Findings::new(Instant::now() + Duration::from_secs(60), 0.0);
         for i in 0..5 {
             found.ask(i % 2 == 0, || i.to_string());
         }
         assert!(found.goes_on());
         assert_eq!((found.tried, found.wrong, found.first.as_deref(), found.is_cut), (5, 2, Some("1"), false));
-        let mut late = Findings::new(Instant::now());
+        let mut late = Findings::new(Instant::now(), 0.0);
         assert!(!late.goes_on() && late.is_cut);
     }
 }

@@ -21,6 +21,7 @@ pub fn markdown(report: &Report) -> String {
         ("Program", format!("Veduta {VERSION} ({PROFILE} build), {}", report.date)),
         ("Adapter", format!("{} ({}, {})", adapter.name, adapter.backend, adapter.kind)),
         ("Driver", report.driver.clone()),
+        ("Corners of triangles are moved by", snapping(report.snapping)),
         ("Time", format!("{:.0} s of {:.0} s", report.seconds[1], report.seconds[0])),
         ("Result", format!("{} of {} fail", failures.len(), report.count())),
     ];
@@ -93,5 +94,13 @@ fn frames(text: &mut String, frames: &Frames) {
     for row in &frames.rows {
         let by_gpu = row.gpu_ms.map(number).unwrap_or_default();
         line(text, &[&row.name, &row.about, &range(row.ms), &by_gpu, &range(row.ratio)]);
+    }
+}
+
+/// How far corners are moved, for people.
+fn snapping(pixels: f64) -> String {
+    match pixels {
+        0.0 => "nothing where depth is made of them".to_owned(),
+        _ => format!("up to {pixels:.4} pixels"),
     }
 }

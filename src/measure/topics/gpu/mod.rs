@@ -107,6 +107,7 @@ pub fn probe(plan: &Plan, watch: Watch<'_>) -> Result<Report, GpuError> {
         date: plan.date.clone(),
         adapter,
         driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        snapping: gpu.snapping,
         is_software: gpu.is_software(),
         seconds: [plan.limit.as_secs_f64(), 0.0],
         checks: Vec::new(),
@@ -135,20 +136,20 @@ fn run_checks(plan: &Plan, clock: &Clock, watch: Watch<'_>, report: &mut Report)
             continue;
         }
         watch(check.name, i, wanted.len());
-        report.checks.push(checked(check, clock.turn(Part::Checks, wanted.len() - i)));
+        report.checks.push(checked(check, clock.turn(Part::Checks, wanted.len() - i), report.snapping));
     }
 }
 
-/// Runs one check; it is to end soon after `until`.
-pub fn checked(check: &Check, until: Instant) -> Checked {
+/// Runs one check on an adapter that moves corners by so much, pixels; it is to end soon after `until`.
+pub fn checked(check: &Check, until: Instant, snapping: f64) -> Checked {
     let start = Instant::now();
     let run = check.run;
     let found = patience::wait(until + PATIENCE, &mut |_, _, _| (), move |_| {
-        let mut found = Findings::new(until);
+        let mut found = Findings::new(until, snapping);
         let trouble = run(&mut found).err().map(|error| error.to_string());
         Ok((found, trouble))
     });
-    let (found, trouble) = found.unwrap_or_else(|trouble| (Findings::new(until), Some(trouble)));
+    let (found, trouble) = found.unwrap_or_else(|trouble| (Findings::new(until, snapping), Some(trouble)));
     Checked { check: *check, found, trouble, seconds: start.elapsed().as_secs_f64() }
 }
 

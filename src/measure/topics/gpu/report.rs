@@ -25,6 +25,8 @@ pub struct Report {
     pub adapter: stats::Adapter,
     /// The driver and its version, as far as it tells.
     pub driver: String,
+    /// How far it moves corners of triangles at most, pixels ([`crate::gpu::Gpu::snapping`]).
+    pub snapping: f64,
     /// Whether the adapter is a program, not a GPU.
     pub is_software: bool,
     /// The time that the probe was to take at most, and the time it took, seconds.
@@ -174,6 +176,7 @@ impl Report {
             "date": self.date,
             "adapter": self.adapter,
             "driver": self.driver,
+            "snapping_pixels": self.snapping,
             "is_software": self.is_software,
             "limit_seconds": self.seconds[0],
             "seconds": self.seconds[1],
@@ -204,7 +207,8 @@ mod tests {
 
     #[test]
     fn who_looked_at_nothing_fails() {
-        let mut one = Checked { check: CHECKS[0], found: Findings::new(Instant::now()), trouble: None, seconds: 0.0 };
+        let mut one =
+            Checked { check: CHECKS[0], found: Findings::new(Instant::now(), 0.0), trouble: None, seconds: 0.0 };
         assert_eq!(one.verdict(), "violated", "nothing was looked at");
         one.found.goes_on();
         assert_eq!((one.verdict(), one.failure()), ("holds", None), "time ran out");

@@ -101,9 +101,11 @@ pub fn holds(shape: &Shape, p: DVec3) -> bool {
     }
 }
 
-/// The stated band of an analytic test around a volume, metres, for a place at distance D: 8 · 2⁻²³ · max(D, |centre − eye|).
-pub fn band(volume: &Volume, eye: DVec3, d: f64) -> f64 {
-    8.0 * 2_f64.powi(-23) * d.max(volume.bounds().center().distance(eye))
+/// The stated band of an analytic test around a volume, metres, for a place at distance D: 8 · 2⁻²³ · max(D, |centre − eye|), and what the
+/// adapter may move corners by ([`crate::gpu::Gpu::snapping`], pixels) at that distance.
+pub fn band(volume: &Volume, view: &View, d: f64, snapping: f64) -> f64 {
+    let reach = d.max(volume.bounds().center().distance(view.camera.eye));
+    8.0 * 2_f64.powi(-23) * reach + snapping * view.pixel_m(d.clamp(0.0, 1e30))
 }
 
 /// The volumes of all shapes of a lens.
@@ -126,14 +128,14 @@ pub fn ask_mask(
     lens: &Lens,
     number: usize,
 ) -> Result<(), RenderError> {
-    let volumes = volumes(lens)?;
+    let (volumes, snapping) = (volumes(lens)?, found.snapping);
     for (i, &d) in depths(picture).iter().enumerate() {
         let d = f64::from(d);
         let [x, y] = column_row(picture.size, i);
         let is_in = bit(picture, number, i);
         let p = view.pixel_ray(x, y).at(d);
         let right = d.is_finite() && lens.shapes.iter().any(|s| matches!(s, Region::Shape(s) if holds(s, p)));
-        let beyond = |v: &Volume| v.signed_distance(p).abs() - band(v, view.camera.eye, d);
+        let beyond = |v: &Volume| v.signed_distance(p).abs() - band(v, view, d, snapping);
         let least = || volumes.iter().map(beyond).fold(f64::INFINITY, f64::min);
         let is_right = d > 0.0 && (is_in == right || d.is_finite() && least() <= 0.0);
         found.ask(is_right, || {
@@ -171,11 +173,11 @@ pub fn painted_class(color: [u8; 4]) -> Option<Class> {
 
 /// The classes that a place at D on a ray may have, where a ray within a thousandth of a pixel, and ends within the band,
 /// could be meant.
-pub fn possible_classes(volume: &Volume, view: &View, at: DVec2, d: f64) -> Vec<Class> {
+pub fn possible_classes(volume: &Volume, view: &View, at: DVec2, d: f64, snapping: f64) -> Vec<Class> {
     let mut classes = Vec::new();
     for (i, j) in (-1..=1).flat_map(|j| (-1..=1).map(move |i| (i, j))) {
         let ray = view.ray(at + 1e-3 * DVec2::new(f64::from(i), f64::from(j)));
-        let slack = band(volume, view.camera.eye, d);
+        let slack = band(volume, view, d, snapping);
         let span = volume.entry_exit(&ray);
         for by in [-slack, 0.0, slack] {
             let moved: Vec<(f64, f64)> = span.iter().map(|(enter, exit)| (enter - by, exit + by)).collect();

@@ -80,7 +80,7 @@ fn ask_classes(found: &mut Findings, studio: &mut Studio, lens: Lens, camera: Ca
     // Of several bodies each alone is before or behind.
     let [volume] = &volumes[..] else { return Ok(()) };
     for (i, id) in ids(&drawn).iter().enumerate().filter(|(_, id)| **id != 0) {
-        let possible = possible_classes(volume, &view, middle(SIZE, i), f64::from(depths(&drawn)[i]));
+        let possible = possible_classes(volume, &view, middle(SIZE, i), f64::from(depths(&drawn)[i]), found.snapping);
         let class = painted_class(drawn.rgba[i]);
         found.ask(class.is_some_and(|class| possible.contains(&class)), || {
             format!("{}: pixel {i} of object {id} is {class:?}, not {possible:?}", lens.name)
