@@ -22,6 +22,10 @@ const STEP: f64 = std::f64::consts::FRAC_PI_2 / ZENITH as f64;
 const TURN: i32 = 3;
 /// The difference of scores from which they are told apart, as a part of the better: about what samples are off by.
 const TIE: f64 = 0.02;
+/// Of so many samples one is looked at where all directions are looked over.
+const GLANCE: usize = 8;
+/// Directions from which that finds most, and from which the way up is tried.
+const GLANCED: usize = 4;
 /// A step is taken where it gains more than this part.
 const GAIN: f64 = 0.002;
 
@@ -181,6 +185,23 @@ fn apart(places: impl IntoIterator<Item = Place>, most: usize) -> Vec<Place> {
     kept
 }
 
+/// The directions of a lattice from which a few samples promise most, of those that promise more than all around them: places of gaps that rows
+/// wide apart miss.
+fn glance(subject: &Subject, distance: f64) -> Vec<Place> {
+    let rows = (0..ZENITH).flat_map(|j| (0..AZIMUTHS).map(move |i| (i, j)));
+    let all: Vec<Place> = rows.chain([(0, ZENITH)]).collect();
+    let rate = |&at: &Place| (at, subject.seen_by(GLANCE, subject.ball.center + distance * direction(at)));
+    let known: FxHashMap<Place, Seen> = all.par_iter().map(rate).collect();
+    let mut glances = Ratings { subject, distance, known, is_alone: false };
+    glances.is_alone = all.iter().all(|&at| glances.quality(at) <= 0.0);
+    let is_top = |at: &Place| {
+        let here = glances.score(*at);
+        here > 0.0 && around(*at, 1).into_iter().all(|other| glances.score(other) <= here)
+    };
+    let tops = glances.ordered(all.into_iter().filter(is_top));
+    tops.into_iter().map(|(at, _)| at).take(GLANCED).collect()
+}
+
 /// The views of a subject, best first.
 pub(super) fn best_views(subject: &Subject, field: &Field, most: usize) -> Result<Vec<BestView>, NoView> {
     // What no camera sees is told before anything is looked at.
@@ -189,8 +210,10 @@ pub(super) fn best_views(subject: &Subject, field: &Field, most: usize) -> Resul
     let mut ratings = Ratings { subject, distance, known: FxHashMap::default(), is_alone: false };
     let rows = (0..ZENITH / TURN).flat_map(|j| (0..AZIMUTHS / TURN).map(move |i| (i * TURN, j * TURN)));
     let first: Vec<Place> = rows.chain([(0, ZENITH)]).collect();
+    let glanced = glance(subject, distance);
     ratings.want(&first);
-    ratings.is_alone = first.iter().all(|&at| ratings.quality(at) <= 0.0);
+    ratings.want(&glanced);
+    ratings.is_alone = ratings.known.keys().all(|&at| ratings.quality(at) <= 0.0);
     let is_top = |at: &Place| {
         let here = ratings.score(*at);
         here > 0.0 && around(*at, TURN).into_iter().all(|other| ratings.score(other) <= here)
@@ -199,6 +222,8 @@ pub(super) fn best_views(subject: &Subject, field: &Field, most: usize) -> Resul
     let tops = ratings.ordered(tops);
     let least = tops.first().map_or(0.0, |(_, best)| LEAST * best);
     let mut starts = apart(tops.into_iter().filter(|(_, score)| *score >= least).map(|(at, _)| at), most);
+    // What is seen through a gap lies between those.
+    starts.extend(glanced.into_iter().filter(|at| ratings.score(*at) > 0.0));
     if starts.is_empty() {
         // Nothing is seen even of an object alone: faces that are seen from their edges only.
         starts = vec![(0, TURN)];

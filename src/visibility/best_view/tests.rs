@@ -143,6 +143,26 @@ fn a_tower_in_a_court_is_seen_over_its_roofs() {
 }
 
 #[test]
+fn what_is_seen_through_one_gap_is_seen() {
+    // Under a roof and behind walls of 60 m, but for a gap 25° from south: between the rows that are rated first.
+    let around = [
+        ("house", [-4_000, -4_000, 0], [4_000, 4_000, 8_000]),
+        ("roof", [-45_000, -45_000, 60_000], [45_000, 45_000, 61_000]),
+        ("north", [-45_000, 40_000, 0], [45_000, 45_000, 60_000]),
+        ("west", [-45_000, -45_000, 0], [-40_000, 45_000, 60_000]),
+        ("east", [40_000, -45_000, 0], [45_000, 45_000, 60_000]),
+        ("south-west", [-45_000, -45_000, 0], [-24_000, -40_000, 60_000]),
+        ("south-east", [-14_000, -45_000, 0], [45_000, -40_000, 60_000]),
+    ];
+    for quarters in 0..4 {
+        let best = boxes(&around, quarters).views("house", &FROM_FAR)[0];
+        let wanted = (205.0 - 90.0 * quarters as f64).rem_euclid(360.0);
+        assert!((azimuth_deg(&best) - wanted).abs() < 3.0, "{quarters}: {best:?}");
+        assert!(best.seen.visible > 0.2 && best.seen.unoccluded > 0.7, "{quarters}: {best:?}");
+    }
+}
+
+#[test]
 fn a_city_that_turns_takes_its_views_along() {
     let city = [
         ("house", [-6_000, -9_000, 0], [6_000, 9_000, 8_000]),
