@@ -17,7 +17,7 @@ use veduta::{
     city::load::{LoadOptions, Quiet, load},
     geom::{Aabb, Shape},
     gpu::Gpu,
-    lens::{Lens, Region},
+    lens::{Lens, LensBody, Region},
     measure::{
         ratio::{Estimate, in_turn, ratios},
         stage::plain_scene,
@@ -78,6 +78,9 @@ fn main() {
         frames.push((format!("{v} moving"), Frame::Turns(moving.collect(), Cell::new(0))));
         let one_moves = (0..8).map(|step| moved(&lensed, f64::from(step)));
         frames.push((format!("{v} lens moving"), Frame::Turns(one_moves.collect(), Cell::new(0))));
+        for (name, scene) in [("lens", &lensed), ("ten", &many), ("few", &few), ("thousand", &thousand)] {
+            frames.push((format!("{v} {name} outlined"), Frame::Full(outlined(scene))));
+        }
         frames.push((format!("{v} few"), Frame::Full(few)));
         frames.push((format!("{v} thousand"), Frame::Full(thousand)));
         frames.push((format!("{v} bare"), Frame::Bare(view(&scene))));
@@ -91,7 +94,7 @@ fn main() {
         let found = frames.iter().find(|(n, _)| n == name);
         &found
             .unwrap_or_else(|| {
-                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten, ten all, few, thousand, lens moving, moving, see-through or see-through city")
+                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten, few, thousand, these four also outlined, ten all, lens moving, moving, see-through or see-through city")
             })
             .1
     };
@@ -118,7 +121,7 @@ fn main() {
 }
 
 /// Frames A and B, and what their ratio is to be at most.
-const ROWS: [(&str, &str, f64); 18] = [
+const ROWS: [(&str, &str, f64); 24] = [
     ("V1 plain", "V1 bare", 1.30),
     ("V2 all", "V2 bare", 1.45),
     ("V2 plain", "V2 bare", 1.45),
@@ -130,6 +133,12 @@ const ROWS: [(&str, &str, f64); 18] = [
     ("V2 ten", "V2 plain", 1.30),
     ("V1 thousand", "V1 few", 1.50),
     ("V2 thousand", "V2 few", 1.50),
+    ("V1 lens outlined", "V1 plain", 1.05),
+    ("V2 lens outlined", "V2 plain", 1.05),
+    ("V1 ten outlined", "V1 plain", 1.30),
+    ("V2 ten outlined", "V2 plain", 1.30),
+    ("V1 thousand outlined", "V1 few outlined", 1.50),
+    ("V2 thousand outlined", "V2 few outlined", 1.50),
     ("V1 moving", "V1 thousand", 1.05),
     ("V2 moving", "V2 thousand", 1.05),
     ("V1 see-through", "V1 plain", 1.50),
@@ -149,6 +158,13 @@ const HOSTS: [(&str, &str); 4] = [
 
 fn view(scene: &Scene) -> View {
     View::new(scene.camera.expect("a camera"), SIZE, &Aabb::EMPTY).expect("a view")
+}
+
+/// The scene with the outlines that lenses have where nothing else is asked for.
+fn outlined(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.lenses.iter_mut().for_each(|lens| lens.body = LensBody::default());
+    scene
 }
 
 /// The scene with one of its lenses some metres away.

@@ -53,8 +53,8 @@ fn are_under_edge(left: vec3f, right: vec3f, x: vec4f, y: vec4f) -> vec4i {
 // Places beside one are no further away than this part of the extent: the faces over them are in its column too.
 const BESIDE: f32 = 1.0 / 32768.0;
 
-// `distance`: D of the place, which may be `off` beside its face, metres. A solid holds what lies on its faces, as other shapes do on flat ones: those that look up or down
-// by their height, upright ones by asking for the places beside it as well.
+// `distance`: D of the place, which may be `off` beside its face, metres. A solid holds what lies on its faces, as other shapes do on
+// flat ones: those that look up or down by their height, upright ones by asking for the places beside it as well.
 fn solid_holds(s: Solid, p: vec3f, distance: f32, off: f32) -> bool {
     let on_face = ON_FACE * max(abs(distance), length(s.center)) + off;
     let o = in_solid(s, p - s.center);
