@@ -4,7 +4,8 @@
 fn silhouette(lens: u32, pixel: vec2i, width: f32, is_convex: bool) -> f32 {
     let last = vec2i(view.size) - 1;
     let here = lens_covers(lens, pixel);
-    let reach = i32(ceil(0.5 * width + 0.5));
+    // What is farther away adds nothing.
+    let reach = i32(ceil(0.5 * width + 1.0)) - 1;
     if is_convex && here {
         let low = max(pixel - reach, vec2i(0));
         let high = min(pixel + reach, last);
