@@ -61,9 +61,6 @@ const LEAST_COSINE: f64 = 0.25;
 /// How far a layer of coplanar faces is lifted off the one below, towards the eye, by the tolerance: it stays where it is in the picture. Two
 /// chords of one curved plane may be twice the tolerance apart, but walls between houses that are lifted by so much come through the roofs.
 const LIFT: f64 = 0.5;
-/// The same by how far the adapter moves corners: two faces that it moves apart from each other stay in order down to a quarter of a
-/// right angle's sine (15°) between them and the sight line.
-const LIFT_OF_GRID: f64 = 8.0;
 
 /// What is narrower in the picture, of its longest side, is not drawn: corners are rounded to f32 before slopes are told from them.
 const NARROWEST: f64 = 4.0 / (1 << 23) as f64;
@@ -240,7 +237,7 @@ impl Deforming {
                 Some(refinery) => refinery,
                 None => Refinery::new(gpu)?,
             };
-            let stage = stage_of(&of.view, &met.rest.lattice, [of.chord_px, gpu.snapping], city.buffers.smooth);
+            let stage = stage_of(&of.view, &met.rest.lattice, of.chord_px, city.buffers.smooth);
             let refined = refinery.refined(gpu, &met.rest, &stage)?;
             self.refinery = Some(refinery);
             made = Some(Deformed::new(gpu, pipelines, city, &met, refined, of)?);
@@ -259,7 +256,7 @@ impl Deforming {
         let met = self.met.iter().find(|met| met.world == *world);
         let (Some(refinery), Some(met)) = (&mut self.refinery, met) else { return Ok(None) };
         // What it worked on last may have been another city.
-        let stage = stage_of(view, &met.rest.lattice, [deformed.of.chord_px, gpu.snapping], deformed.is_smooth);
+        let stage = stage_of(view, &met.rest.lattice, deformed.of.chord_px, deformed.is_smooth);
         let made = refinery.refined(gpu, &met.rest, &stage)?;
         let edges = refinery.edges(gpu, &met.rest, made.triangles)?;
         let off = |[a, b]: &[DVec3; 2]| {
@@ -364,8 +361,8 @@ fn sections_of(met: &Met, made: &Made) -> Vec<Section> {
     met.sections.iter().map(section).collect()
 }
 
-/// The view as what is refined is seen in it, to a tolerance and by an adapter that moves corners by so much, pixels.
-fn stage_of(view: &View, lattice: &Lattice, [chord_px, snapping]: [f64; 2], is_smooth: bool) -> layout::Refinement {
+/// The view as what is refined is seen in it.
+fn stage_of(view: &View, lattice: &Lattice, chord_px: f64, is_smooth: bool) -> layout::Refinement {
     let (eye, offset) = lattice.cell_of(view.camera.eye);
     layout::Refinement {
         eye: eye.to_array(),
@@ -376,7 +373,7 @@ fn stage_of(view: &View, lattice: &Lattice, [chord_px, snapping]: [f64; 2], is_s
         orthographic: u32::from(view.is_orthographic()),
         tolerance: chord_px as f32,
         shortest: Limits::default().shortest_m as f32,
-        lift: (LIFT * chord_px + LIFT_OF_GRID * snapping) as f32,
+        lift: (LIFT * chord_px) as f32,
         narrowest: (NARROWEST * f64::from(view.size[0].max(view.size[1]))) as f32,
         is_smooth: u32::from(is_smooth),
         ..layout::Refinement::zeroed()

@@ -67,7 +67,7 @@ fn possible(volumes: &[Volume], view: &View, at: DVec2, d: f64) -> Vec<Class> {
         let ray = view.ray(at + 1e-3 * DVec2::new(f64::from(i), f64::from(j)));
         let spans: Vec<(f64, f64, f64)> = volumes
             .iter()
-            .filter_map(|v| v.entry_exit(&ray).map(|(enter, exit)| (enter, exit, band(v, view.camera.eye, d))))
+            .filter_map(|v| v.entry_exit(&ray).map(|(enter, exit)| (enter, exit, band(v, view, d))))
             .collect();
         for by in [-1.0, 0.0, 1.0] {
             let moved: Vec<(f64, f64)> = spans.iter().map(|(enter, exit, b)| (enter - by * b, exit + by * b)).collect();

@@ -104,7 +104,7 @@ fn sub_pixel_jitter_changes_only_silhouettes_and_borders() {
                     // No place is farther from the border than the shown place moved.
                     let volumes = || lens.shapes.iter().flat_map(|s| s.volumes().expect("volumes"));
                     let distance = volumes().map(|v| v.signed_distance(was.0)).fold(f64::INFINITY, f64::min).abs();
-                    let slack = volumes().map(|v| band(&v, camera.eye, was.1.max(is.1))).fold(0.0, f64::max);
+                    let slack = volumes().map(|v| band(&v, &to, was.1.max(is.1))).fold(0.0, f64::max);
                     let reach = was.0.distance(is.0) + 2.0 * slack;
                     assert!(
                         distance <= reach,

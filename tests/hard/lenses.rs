@@ -109,9 +109,9 @@ pub fn holds(shape: &Shape, p: DVec3) -> bool {
     }
 }
 
-/// The stated band of an analytic test around a volume, metres, for a place at D.
-pub fn band(volume: &veduta::geom::Volume, eye: DVec3, d: f64) -> f64 {
-    8.0 * 2_f64.powi(-23) * d.max(volume.bounds().center().distance(eye))
+/// The stated band of an analytic test around a volume, metres, for a place at D; the adapter's grid included.
+pub fn band(volume: &veduta::geom::Volume, view: &View, d: f64) -> f64 {
+    veduta::measure::topics::gpu::shapes::band(volume, view, d, studio::snapping())
 }
 
 /// The first pixel whose bit is not what the shapes hold, outside the band; and how many were inside.
@@ -129,7 +129,7 @@ pub fn check_mask(picture: &Picture, view: &View, lens: &Lens, bit: usize) -> Re
             continue;
         }
         let volumes = lens.shapes.iter().flat_map(|s| s.volumes().expect("volumes"));
-        let beyond = |v: &veduta::geom::Volume| v.signed_distance(p).abs() - band(v, view.camera.eye, d);
+        let beyond = |v: &veduta::geom::Volume| v.signed_distance(p).abs() - band(v, view, d);
         let least = volumes.map(|v| beyond(&v)).fold(f64::INFINITY, f64::min);
         if !d.is_finite() || least > 0.0 {
             return Err(format!("pixel {x},{y} at {d} m is {}, {least} m beyond the band: {lens:?}", inside[i]));

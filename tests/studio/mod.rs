@@ -7,7 +7,7 @@ use std::{
     collections::BTreeMap,
     path::PathBuf,
     sync::{
-        Arc,
+        Arc, OnceLock,
         atomic::{AtomicU32, Ordering::Relaxed},
     },
 };
@@ -41,6 +41,12 @@ pub fn is_thorough() -> bool {
 /// Whether the `i`-th of what a property is tried with is tried in this run: each one in a thorough run, else one in `every`.
 pub fn is_tried(i: usize, every: usize) -> bool {
     is_thorough() || i.is_multiple_of(every)
+}
+
+/// How far the adapter of the tests moves corners of triangles at most, pixels: what it shows may be so far beside its face.
+pub fn snapping() -> f64 {
+    static MEASURED: OnceLock<f64> = OnceLock::new();
+    *MEASURED.get_or_init(|| Gpu::open().expect("an adapter, hardware or software").snapping)
 }
 
 /// A file of `citydata/`.
@@ -334,7 +340,7 @@ pub fn bits(picture: &Picture, lens: usize) -> Vec<bool> {
 }
 
 /// Pixels of the lens' mask that are wrong against f64, by how far the shown point is from the border. A test from shapes
-/// may err within 8 · 2⁻²³ · max(D, |centre − eye|) of it, a sprite within a pixel besides.
+/// may err within 8 · 2⁻²³ · max(D, |centre − eye|) of it and the adapter's grid, a sprite within a pixel besides.
 pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, bit: usize) -> usize {
     let parts: Vec<Reference> = lens.shapes.iter().map(Reference::of).collect();
     let depth = picture.depth.as_ref().expect("depth was asked for");
@@ -350,7 +356,7 @@ pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, b
         }
         let p = view.pixel_ray(x, y).at(d);
         let distance = parts.iter().map(|part| part.distance(p)).fold(f64::INFINITY, f64::min);
-        let texel = if lens.sprite.is_some() { view.pixel_m(d) } else { 0.0 };
+        let texel = view.pixel_m(d) * if lens.sprite.is_some() { 1.0 } else { snapping() };
         if distance.abs() > texel + 8.0 * f64::from(f32::EPSILON) * d.max(farthest) {
             wrong += usize::from(inside[i] != (distance < 0.0));
         }

@@ -17,7 +17,7 @@
 //! * *stable*: neighbours are 15° away in azimuth and elevation, so a view that a small turn spoils is worth less than one that it
 //!   does not.
 //!
-//! **Cost.** Directions are those of a lattice of 5° over the upper half sphere, 1297 of them. All are looked over by every eighth sample; then
+//! **Cost.** Directions are those of a lattice of 5° over the upper half sphere, 1297 of them. All are looked over by every sixteenth sample; then
 //! every third in azimuth and elevation (145) is rated, then those around the best of both; none twice. A rating is [`SAMPLES`] sight lines.
 //!
 //! **Error.** A share by 512 samples has a standard error below ½/√512 = 2.2 %; samples stand evenly along the faces, so it is mostly

@@ -23,9 +23,9 @@ const TURN: i32 = 3;
 /// The difference of scores from which they are told apart, as a part of the better: about what samples are off by.
 const TIE: f64 = 0.02;
 /// Of so many samples one is looked at where all directions are looked over.
-const GLANCE: usize = 8;
+const GLANCE: usize = 16;
 /// Directions from which that finds most, and from which the way up is tried.
-const GLANCED: usize = 4;
+const GLANCED: usize = 2;
 /// A step is taken where it gains more than this part.
 const GAIN: f64 = 0.002;
 
@@ -40,6 +40,12 @@ fn place(i: i32, j: i32) -> Option<Place> {
         _ if j > ZENITH => Some(((i + AZIMUTHS / 2).rem_euclid(AZIMUTHS), 2 * ZENITH - j)),
         _ => Some((i.rem_euclid(AZIMUTHS), j)),
     }
+}
+
+/// Directions so many steps apart; of each elevation the same azimuths.
+fn lattice(by: i32) -> Vec<Place> {
+    let rows = (0..ZENITH / by).flat_map(|j| (0..AZIMUTHS / by).map(move |i| (i * by, j * by)));
+    rows.chain([(0, ZENITH)]).collect()
 }
 
 /// East, north, up; unit.
@@ -188,8 +194,7 @@ fn apart(places: impl IntoIterator<Item = Place>, most: usize) -> Vec<Place> {
 /// The directions of a lattice from which a few samples promise most, of those that promise more than all around them: places of gaps that rows
 /// wide apart miss.
 fn glance(subject: &Subject, distance: f64) -> Vec<Place> {
-    let rows = (0..ZENITH).flat_map(|j| (0..AZIMUTHS).map(move |i| (i, j)));
-    let all: Vec<Place> = rows.chain([(0, ZENITH)]).collect();
+    let all = lattice(1);
     let rate = |&at: &Place| (at, subject.seen_by(GLANCE, subject.ball.center + distance * direction(at)));
     let known: FxHashMap<Place, Seen> = all.par_iter().map(rate).collect();
     let mut glances = Ratings { subject, distance, known, is_alone: false };
@@ -208,8 +213,7 @@ pub(super) fn best_views(subject: &Subject, field: &Field, most: usize) -> Resul
     Framing::new(&subject.ball, DVec3::Z, field, None)?;
     let distance = field.distance_to(subject.ball.radius);
     let mut ratings = Ratings { subject, distance, known: FxHashMap::default(), is_alone: false };
-    let rows = (0..ZENITH / TURN).flat_map(|j| (0..AZIMUTHS / TURN).map(move |i| (i * TURN, j * TURN)));
-    let first: Vec<Place> = rows.chain([(0, ZENITH)]).collect();
+    let first = lattice(TURN);
     let glanced = glance(subject, distance);
     ratings.want(&first);
     ratings.want(&glanced);
@@ -235,6 +239,16 @@ pub(super) fn best_views(subject: &Subject, field: &Field, most: usize) -> Resul
         Ok(BestView { framing, seen: ratings.known[&at], score: ratings.score(at) })
     };
     best.into_iter().map(view).collect()
+}
+
+/// The best score of all directions.
+#[cfg(test)]
+pub(super) fn best_of_all(subject: &Subject, field: &Field) -> f64 {
+    let distance = field.distance_to(subject.ball.radius);
+    let mut ratings = Ratings { subject, distance, known: FxHashMap::default(), is_alone: false };
+    let all = lattice(1);
+    ratings.want(&all);
+    all.into_iter().map(|at| ratings.score(at)).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
