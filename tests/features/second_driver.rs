@@ -51,7 +51,7 @@ fn words(samples: &FlatSamples) -> &[u32] {
 }
 
 fn drawn(adapter: &str, file: &Path, folder: &Path) -> Result<Drawn, String> {
-    let [picture, ids, masks, depths] = ["picture.png", "ids.exr", "masks.exr", "depths.exr"].map(|n| folder.join(n));
+    let [picture, ids, masks, depths] = ["picture.png", "ids.png", "masks.exr", "depths.exr"].map(|n| folder.join(n));
     let run = Command::new("sh")
         .args(["-c", LIMITS, env!("CARGO_BIN_EXE_veduta"), "render"])
         .arg(file)
@@ -70,7 +70,12 @@ fn drawn(adapter: &str, file: &Path, folder: &Path) -> Result<Drawn, String> {
         return Err(format!("{}: {}", run.status, said.lines().last().unwrap_or_default()));
     }
     let colors = image::open(picture).expect("a picture").to_rgba8().pixels().map(|pixel| pixel.0).collect();
-    let ids = words(&channels(&ids)[0]).to_vec();
+    let ids: Vec<u32> = image::open(ids)
+        .expect("numbers")
+        .to_rgb8()
+        .pixels()
+        .map(|p| p.0.iter().fold(0, |id, c| id << 8 | u32::from(*c)))
+        .collect();
     let planes = channels(&masks);
     let masks = (0..ids.len()).map(|i| planes.iter().map(|plane| words(plane)[i]).collect()).collect();
     let depths = channels(&depths)[0].values_as_f32().collect();
@@ -168,7 +173,7 @@ fn two_drivers_draw_the_same_within_a_pixel() {
                 }
                 found
             }
-            // What is refused is no scene, as random ones may be.
+            // Random scenes may ask for too much.
             [Err(one), Err(other)] if one == other && name.starts_with("random") => one,
             [one, other] => {
                 let why = [one, other].map(|drawn| drawn.err().unwrap_or_else(|| "a picture".to_owned())).join(" and ");
