@@ -13,7 +13,8 @@
 // So a pixel of the line takes the depth that the face on its side of the edge has there (`edge_depth`): a line is in front
 // of its faces by construction, and in front of another wall only where its own face is. Beside an outline, where there
 // is no face, it falls back as the faces do on the other side. What is left to a bias are roundings (EDGE_BIAS: 1 cm at
-// 100 m), and to EDGE_SLACK_PX the rasterizer's 1/256 pixel. A wall of 5 cm hides it all.
+// 100 m); and the grid of the rasteriser (SNAPPING), by which faces are off across the edge (EDGE_SLACK_PX) and along it. A wall of 5 cm
+// hides it all.
 
 struct Edge {
     @location(0) origin: vec3i,     // whole metres
@@ -36,7 +37,7 @@ const EDGE_FLAT: u32 = 2u;
 const EDGE_BIAS: f32 = 1e-4;
 // In orthographic views: metres.
 const EDGE_BIAS_M: f32 = 0.01;
-const EDGE_SLACK_PX: f32 = 0.03125;
+const EDGE_SLACK_PX: f32 = max(0.03125, 2.0 * SNAPPING);
 // Faces that lean away more than this (the tangent of 76°) are not followed that far.
 const EDGE_MOST_FALL: f32 = 4.0;
 // Pixels around the picture where lines are kept, beyond their width.
@@ -207,7 +208,8 @@ fn edge_depth(line: vec3f, ends: vec4f, face_a: vec4f, face_b: vec4f, along: vec
         drawn = max(select(0.0, a.x, a.y > 0.0), select(0.0, b.x, b.y > 0.0));
     }
     let bias = select(EDGE_BIAS * depth, EDGE_BIAS_M / (view.far - view.near), view.orthographic == 1u);
-    return min(drawn + bias, 1.0);
+    let off_along = abs(ends.y - ends.x) * min(SNAPPING, line.z) / max(line.z, 1e-6);
+    return min(drawn + bias + off_along, 1.0);
 }
 
 // How much of a pixel the line covers, 0..1; its ends are round.

@@ -11,9 +11,6 @@ struct Sight {
     off: f32,                   // how far the place may be beside its face for the rasteriser's grid, metres
 }
 
-// How far from their places corners are drawn at most, pixels: it says what adapter this is for.
-//@snapping
-
 // What is drawn of corners that have been moved by some part of a pixel is off by as much along the normal of its face, metres.
 fn off_face(distance: f32) -> f32 {
     if SNAPPING == 0.0 {

@@ -33,6 +33,9 @@ fn clip_from_relative(relative: vec3f) -> vec4f {
     return vec4f(p.xy * view.projection.xy + view.projection.zw * w, z, w);
 }
 
+// How far from their places corners are drawn at most, pixels: it says what adapter this is for.
+//@snapping
+
 // "For ever": beyond any city, far below f32's overflow.
 const FAR_AWAY: f32 = 1e30;
 

@@ -1,7 +1,7 @@
 // The bare lit draw that the plain frame is measured against: the same buffers, one pass, one colour target.
 
 struct Varying {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) normal: vec3f,
 }
 

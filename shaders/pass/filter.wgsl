@@ -29,7 +29,7 @@ struct Lines {
 var<private> stage: FilterStage;
 
 struct Corner {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) way: vec4i,         // step, reach, length
     @location(1) @interpolate(flat, either) layers: vec2i,      // layers, layer
 //@carried

@@ -22,7 +22,7 @@ struct Vertex {
 // Values that every fragment knows. Flat values are those of a triangle's provoking vertex; its other vertices may belong
 // to other faces. Each kind of face carries no more than it uses: what is handed over is paid per vertex.
 struct Varying {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) code: u32,
 }
 
@@ -62,7 +62,7 @@ fn full(in: Varying) -> Full {
 // ---- faces in a city where some have a normal per vertex
 
 struct SmoothVarying {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) code: u32,
     @location(1) normal: vec3f,
 }
@@ -101,7 +101,7 @@ fn smooth_full(in: SmoothVarying) -> Full {
 override ALPHA_CUTOFF: f32 = 0.0;
 
 struct TexturedVarying {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) code: u32,
     @location(1) normal: vec3f,
     @location(2) texcoord: vec2f,
@@ -130,7 +130,7 @@ fn textured(in: TexturedVarying) -> Full {
 // depths are equal to the bit and the draw order (their fixed priority) decides in every frame.
 
 struct CoplanarVarying {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) code: u32,
     @location(1) normal: vec3f,
     @location(2) @interpolate(flat, either) plane: vec3f,   // dot(plane, (pixel, 1)) = depth
@@ -213,5 +213,7 @@ fn coplanar_full(in: CoplanarVarying) -> CoplanarFull {
     let depth = depth_on_plane(in);
     cut(in.clip.xy, depth, in.code);
     let color = vec4f(surface_at(in.code - 1u).color, 1.0);
-    return CoplanarFull(coplanar_code(in), color, in.clip.z/*@region*/, depth);
+    // Where corners are drawn elsewhere, the interpolated depth is off, and not what lenses are asked by.
+    let own_depth = select(depth, in.clip.z, SNAPPING == 0.0);
+    return CoplanarFull(coplanar_code(in), color, own_depth/*@region*/, depth);
 }

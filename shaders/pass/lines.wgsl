@@ -14,7 +14,7 @@ struct LineStage {
 @group(3) @binding(0) var<uniform> stage: LineStage;
 
 struct Line {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) line: vec3f,
     @location(1) @interpolate(flat, either) ends: vec4f,
     @location(2) @interpolate(flat, either) face_a: vec4f,

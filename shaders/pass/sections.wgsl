@@ -1,6 +1,6 @@
 // Sections: where a lens takes part of a closed body away, or shows part of one, its own surface closes what is left.
 //
-// Volume by volume, three draws:
+// Volume by volume, three draws, each in a pass of its own: draws of one pass do not wait for what others store.
 //   ends    where each pixel's ray leaves the volume (or enters it), by its own lens test
 //   count   every face of a closed shell that lies beyond that end and whose object is there behind it and not before: one that
 //           looks away counts 1, one that looks at the eye takes 1 away. What is left is the number of shells that the end lies
@@ -138,7 +138,7 @@ struct Vertex {
 }
 
 struct Face {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) surface: u32,
 }
 

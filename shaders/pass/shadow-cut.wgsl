@@ -3,7 +3,7 @@
 @group(2) @binding(7) var<uniform> eye: View;                   // the main view
 
 struct Varying {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) surface: u32,
     @location(1) position: vec3f,       // in the main view's space, metres
     @location(2) height: f32,

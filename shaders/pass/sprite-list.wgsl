@@ -30,7 +30,7 @@ const CLIPPED: f32 = 0.01;
 var<private> view: View;
 
 struct SolidCorner {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) distance: f32,         // metres along the axis of the sprite
 }
 

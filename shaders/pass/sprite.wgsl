@@ -36,7 +36,7 @@ fn missed() -> @location(0) vec2f {
 const CLIPPED: f32 = 0.01;
 
 struct SolidCorner {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) distance: f32,         // metres along the view axis
 }
 

@@ -15,7 +15,7 @@ impl Adapter {
     /// One that carries as few vectors as there may be, and draws corners where they are.
     pub const LEAST: Self = Self { carried: LEAST_CARRIED, snapping: 0.0 };
 
-    /// The filling of the hook `snapping` (`lib/sight.wgsl`).
+    /// The filling of the hook `snapping` (`lib/view.wgsl`).
     pub(super) fn snapping(&self) -> String {
         format!("const SNAPPING: f32 = {:?};\n", self.snapping as f32)
     }

@@ -101,8 +101,10 @@ impl Module {
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], adapter: &Adapter) -> String {
         let files = files::with_threshold(self.files(handlers));
         let text = Template::of_files(&files);
-        let text = if files.contains(&VIEW) { text.fill("ray", rays::source()) } else { text };
-        let text = if files.contains(&SIGHT) { text.fill("snapping", adapter.snapping()) } else { text };
+        let text = match files.contains(&VIEW) {
+            true => text.fill("ray", rays::source()).fill("snapping", adapter.snapping()),
+            false => text,
+        };
         let hidden = |program, eye| hiding::source(program, handlers, lenses, eye);
         let filled = match self {
             Self::CombinedSprite(leaves) | Self::StoredLayers(leaves) => {

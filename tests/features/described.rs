@@ -1,7 +1,7 @@
 //! Scenes as `docs/scene.md` describes them, written as text: the mask of each lens is what the words there mean, worked out here in
 //! f64 without any of the program's geometry.
 
-use crate::studio::{bits, is_thorough, of_scene, picture};
+use crate::studio::{bits, is_thorough, of_scene, picture, snapping};
 use glam::{DMat3, DVec2, DVec3};
 use veduta::figure::scene_file::{self, Options};
 
@@ -179,6 +179,11 @@ impl Eye {
         Self { keys, at, axes: [right, right.cross(forward), forward], half, is_level }
     }
 
+    /// The width of a pixel at distance D, metres.
+    fn pixel_m(&self, size: [u32; 2], d: f64) -> f64 {
+        2.0 * self.half / f64::from(size[1]) * if self.is_level { 1.0 } else { d }
+    }
+
     /// Where a pixel's sight line is at distance D.
     fn place(&self, [x, y]: [u32; 2], size: [u32; 2], d: f64) -> DVec3 {
         let [w, h] = size.map(f64::from);
@@ -245,7 +250,9 @@ fn check(described: &[Described], style: &str, eyes: &[Eye], (size, least): ([u3
                 if mask[pixel] == holds {
                     continue;
                 }
-                let band = 12.0 * f64::from(f32::EPSILON) * d.max(place.length() + eye.at.length());
+                // Steps along axes cross a face that leans by its distance times sqrt(3) at most.
+                let off = 3_f64.sqrt() * snapping() * eye.pixel_m(size, d);
+                let band = 12.0 * f64::from(f32::EPSILON) * d.max(place.length() + eye.at.length()) + off;
                 let steps = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis * band, axis * -band]);
                 let is_near = steps.into_iter().any(|step| (one.holds)(place + step) != holds);
                 assert!(

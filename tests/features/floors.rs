@@ -185,6 +185,20 @@ fn entry_points_live_in_the_pass_folder() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Whether corners are given places that a compiler may round in one program and not in another: passes that look at the same faces
+/// would see them at other depths.
+fn has_variant_places(wgsl: &str) -> bool {
+    code(wgsl).contains("@builtin(position) clip")
+}
+
+#[test]
+fn corners_have_the_same_places_in_all_passes() {
+    let passes = files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/pass"), "wgsl");
+    let is_wrong = |path: &&PathBuf| has_variant_places(&fs::read_to_string(path).unwrap());
+    let wrong: Vec<&PathBuf> = passes.iter().filter(is_wrong).collect();
+    assert!(wrong.is_empty(), "`@invariant` is missing: {wrong:?}");
+}
+
 #[test]
 fn the_rules_catch_what_they_should() {
     let wrong = |room: &str, source: &str| wrong_imports(room, "x.rs", source).len();
@@ -197,4 +211,6 @@ fn the_rules_catch_what_they_should() {
     assert_eq!(wrong("attic", ""), 1, "no floor");
     assert!(has_entry_point("@vertex fn main() {}"));
     assert!(!has_entry_point("// @vertex\nfn shade() {}"));
+    assert!(has_variant_places("struct Face { @builtin(position) clip: vec4f }"));
+    assert!(!has_variant_places("struct Face { @builtin(position) @invariant clip: vec4f }"));
 }

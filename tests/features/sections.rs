@@ -99,8 +99,9 @@ fn compare(studio: &mut Studio, scene: &Scene, classes: &[Class]) -> (usize, usi
         if wanted.section.is_none() && ids[i] == wanted.object && is_right {
             continue;
         }
-        // A pixel belongs to whoever covers its centre, to 1/256 pixel and what floats make of it.
-        let beside = [[0.02, 0.0], [-0.02, 0.0], [0.0, 0.02], [0.0, -0.02]].map(|step| {
+        // A pixel belongs to whoever covers its centre, to the adapter's grid and what floats make of it.
+        let by = 0.02_f64.max(2.0 * snapping());
+        let beside = [[by, 0.0], [-by, 0.0], [0.0, by], [0.0, -by]].map(|step| {
             let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
             shown(city, &lenses, &view.ray(middle + DVec2::from(step)))
         });

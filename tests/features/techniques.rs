@@ -92,7 +92,9 @@ fn town(camera: Camera, lenses: Vec<Lens>) -> Scene {
 fn assert_same(a: &Picture, b: &Picture, what: &str) {
     let unequal = a.rgba.iter().zip(&b.rgba).filter(|(a, b)| a != b).count();
     let steps = a.rgba.iter().flatten().zip(b.rgba.iter().flatten()).map(|(a, b)| a.abs_diff(*b)).max();
-    assert_eq!(unequal, 0, "{what}: pixels that differ, by at most {steps:?}");
+    // Compilers of GPUs join products and sums in one program and not in the other.
+    let most = u8::from(snapping() > 0.0);
+    assert!(steps <= Some(most), "{what}: {unequal} pixels differ, by at most {steps:?}");
     assert_eq!(a.lens_mask, b.lens_mask, "{what}: lens masks");
     assert_eq!(a.object_id, b.object_id, "{what}: objects");
     assert_eq!(a.normal, b.normal, "{what}: normals");

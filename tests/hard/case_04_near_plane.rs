@@ -69,9 +69,13 @@ fn possible(volumes: &[Volume], view: &View, at: DVec2, d: f64) -> Vec<Class> {
             .iter()
             .filter_map(|v| v.entry_exit(&ray).map(|(enter, exit)| (enter, exit, band(v, view, d))))
             .collect();
-        for by in [-1.0, 0.0, 1.0] {
+        let of_moved = |by: f64| {
             let moved: Vec<(f64, f64)> = spans.iter().map(|(enter, exit, b)| (enter - by * b, exit + by * b)).collect();
-            let class = classify(&moved, d);
+            classify(&moved, d)
+        };
+        // Where the ray goes along a face, what is near it may be far from the end.
+        let is_near = volumes.iter().any(|v| v.signed_distance(ray.at(d)).abs() <= band(v, view, d));
+        for class in [-1.0, 0.0, 1.0].map(of_moved).into_iter().chain(is_near.then_some(Class::Inside)) {
             if !classes.contains(&class) {
                 classes.push(class);
             }

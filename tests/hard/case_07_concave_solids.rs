@@ -162,7 +162,10 @@ fn concave_lenses_hold_what_their_surface_goes_around() {
                     let p = ray.at(f64::from(*d));
                     let turns = winding(&faces, own(p));
                     let whole = turns.round();
-                    let band = 8.0 * 2_f64.powi(-23) * f64::from(*d).max(at.distance(eye)) + 1e-6 * scale;
+                    let d = f64::from(*d);
+                    let band = 8.0 * 2_f64.powi(-23) * d.max(at.distance(eye))
+                        + 1e-6 * scale
+                        + 2.0 * studio::off_face(&view, d);
                     if (turns - whole).abs() > 1e-6 || volume.signed_distance(p).abs() <= band {
                         continue;
                     }

@@ -146,8 +146,10 @@ fn a_face_in_the_plane_of_a_wall_or_a_roof_holds_it_in_every_frame() {
                             let t = (face.at - ray.origin).dot(face.normal) / ray.direction.dot(face.normal);
                             let p = ray.at(t) - face.at;
                             let outside_by = part(p.dot(u), p.dot(v));
-                            // The rim: as far as the rounding of D moves a place along the wall.
-                            let rim = 8.0 * 2_f64.powi(-23) * t * ray.direction.length() * 2.0;
+                            // The rim: as far as the rounding of D and the adapter's grid move a place along the wall.
+                            let slant = ray.direction.length() / ray.direction.dot(face.normal).abs();
+                            let rim = 8.0 * 2_f64.powi(-23) * t * ray.direction.length() * 2.0
+                                + studio::off_face(&view, t) * slant;
                             if outside_by.abs() > rim {
                                 let expected = outside_by < 0.0;
                                 on_face += u64::from(expected);

@@ -10,6 +10,7 @@ use veduta::{
 use crate::{
     bodies::{Body, METHODS, ORIGIN, Outline, layers, layers_by_all, middle, place, studio_of},
     oracle::{Numbers, P3},
+    studio,
 };
 
 const KILOMETRE: i64 = 1_000_000;
@@ -58,7 +59,9 @@ fn check(found: &[u32], view: &View, corners: &[DVec3], (inside, closest): (bool
     for (i, count) in found.iter().enumerate() {
         let by = outline.inside_by(middle(view.size, i));
         let expected = if inside { 1 } else { 2 };
+        // What is thinner than an adapter's grid folds on it, which adds layers two by two.
         let is_right = match by {
+            _ if studio::snapping() > 0.0 && (inside || by > rim) => *count >= expected && (count - expected) % 2 == 0,
             _ if inside => *count == 1,
             by if by > rim => *count == expected,
             by if by < -rim => *count == 0,

@@ -49,6 +49,11 @@ pub fn snapping() -> f64 {
     *MEASURED.get_or_init(|| Gpu::open().expect("an adapter, hardware or software").snapping)
 }
 
+/// How far a place that is shown at distance D may be beside its face for the adapter's grid, metres.
+pub fn off_face(view: &veduta::view::View, d: f64) -> f64 {
+    snapping() * view.pixel_m(d)
+}
+
 /// A file of `citydata/`.
 pub fn citydata(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("citydata").join(name)
@@ -356,7 +361,8 @@ pub fn wrong_pixels(picture: &Picture, view: &veduta::view::View, lens: &Lens, b
         }
         let p = view.pixel_ray(x, y).at(d);
         let distance = parts.iter().map(|part| part.distance(p)).fold(f64::INFINITY, f64::min);
-        let texel = view.pixel_m(d) * if lens.sprite.is_some() { 1.0 } else { snapping() };
+        // Solids ask beside a place, and of each place as far along the normal.
+        let texel = if lens.sprite.is_some() { view.pixel_m(d) } else { 2.0 * off_face(view, d) };
         if distance.abs() > texel + 8.0 * f64::from(f32::EPSILON) * d.max(farthest) {
             wrong += usize::from(inside[i] != (distance < 0.0));
         }

@@ -56,10 +56,12 @@ struct Segment { p: vec3f, q: vec3f, guard: vec2f }
 }
 ";
 
-/// The whole module.
-pub fn source() -> String {
+/// The whole module for an adapter that moves corners so far, pixels.
+pub fn source(snapping: f64) -> String {
+    let view = include_str!("../../../shaders/lib/view.wgsl");
+    let snapping = format!("const SNAPPING: f32 = {:?};", snapping as f32);
     [
-        include_str!("../../../shaders/lib/view.wgsl"),
+        &view.replace("//@snapping", &snapping),
         include_str!("../../../shaders/lib/view-uniform.wgsl"),
         include_str!("../../../shaders/lib/surface.wgsl"),
         include_str!("../../../shaders/lib/one-city.wgsl"),
@@ -104,7 +106,7 @@ impl Bench {
     }
 
     fn module(&self) -> wgpu::ShaderModule {
-        let source = wgpu::ShaderSource::Wgsl(source().into());
+        let source = wgpu::ShaderSource::Wgsl(source(self.gpu.snapping).into());
         self.gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
     }
 

@@ -91,7 +91,7 @@ fn assert_same(what: &str, view: &View, drawn: &[f64], expected: &[f64], toleran
 
 #[test]
 fn the_shader_is_valid_and_has_the_hosts_layout() {
-    let source = source();
+    let source = source(0.0);
     let parsed =
         wgpu::naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
     let mut validator = wgpu::naga::valid::Validator::new(

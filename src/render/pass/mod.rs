@@ -11,7 +11,8 @@
 //! geometry beyond         what that does not hide, where it hides much
 //! geometry                where a technique goes by regions: chunks that no lens reaches, as ever
 //! geometry of a region    for each region that may occur: chunks that may reach into it; fragments in other regions are discarded before visibility
-//! count sections          where lenses that ask for sections lay closed shells open: how many shells are there,
+//! ends of lenses          where rays leave lenses that ask for sections, and enter them,
+//! count sections          how many closed shells are laid open there,
 //! sections                and the surface that closes them
 //! clear lens masks        where AOVs or statistics ask for them
 //! layers                  every fragment that is seen through and not behind what is opaque, into the list of its pixel

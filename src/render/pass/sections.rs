@@ -145,22 +145,32 @@ impl RoundDraw<'_> {
         pass.set_bind_group(3, self.own, &[self.offset]);
     }
 
-    /// Counts shells from all faces beyond the end.
-    fn count(&self, frame: &FrameContext, recording: &mut Recording, sections: &[DrawnSection]) {
-        let pass = DrawnPass {
-            name: "count sections",
+    /// A pass that draws into storage alone.
+    fn noting<'a>(&'a self, frame: &FrameContext<'a>, name: &'static str) -> DrawnPass<'a> {
+        DrawnPass {
+            name,
             view: "main",
-            lenses: &[self.round.lens],
+            lenses: std::slice::from_ref(&self.round.lens),
             shaded: Shaded::Unmeasured,
             colors: &[],
             depth: Some(read_depth(&frame.targets.depth.view)),
-        };
-        let [ends, count, _] = self.keys;
-        recording.draw(pass, |pass| {
-            self.set(frame, pass, ends);
+        }
+    }
+
+    /// Finds where rays end. A pass of its own: what one draw stores, another of the same pass need not see.
+    fn find_ends(&self, frame: &FrameContext, recording: &mut Recording) {
+        recording.draw(self.noting(frame, "ends of lenses"), |pass| {
+            self.set(frame, pass, &self.keys[0]);
             pass.draw(0..3, 0..1);
-            let mut counted = Counted::ONE;
-            self.set(frame, pass, count);
+            Counted::ONE
+        });
+    }
+
+    /// Counts shells from all faces beyond the end.
+    fn count(&self, frame: &FrameContext, recording: &mut Recording, sections: &[DrawnSection]) {
+        recording.draw(self.noting(frame, "count sections"), |pass| {
+            let mut counted = Counted::NONE;
+            self.set(frame, pass, &self.keys[1]);
             for drawn in sections {
                 let seen = visible(drawn, frame, Some(self.by.cut));
                 let touches = |c: &&Chunk| self.round.reach.touches(&c.bounds, &frame.plan.input.view);
@@ -206,7 +216,8 @@ impl Pass for Sections {
     type Input<'a> = Vec<SectionRound>;
 
     const LIST: &'static [Line] = &[
-        ("count sections", "where lenses that ask for sections lay closed shells open: how many shells are there,"),
+        ("ends of lenses", "where rays leave lenses that ask for sections, and enter them,"),
+        ("count sections", "how many closed shells are laid open there,"),
         ("sections", "and the surface that closes them"),
     ];
 
@@ -253,6 +264,7 @@ impl Pass for Sections {
         for (i, round) in rounds.iter().enumerate().filter(|(_, round)| !round.part.is_empty()) {
             let offset = STAGE_STRIDE as u32 * i as u32;
             let draw = RoundDraw { round, offset, keys: &keys, own: &own.group, by };
+            draw.find_ends(frame, recording);
             draw.count(frame, recording, &sections);
             draw.fill(frame, recording);
         }

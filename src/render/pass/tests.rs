@@ -191,7 +191,7 @@ fn effects_call_for_their_own_passes_alone() {
     let sprite = Asked { sprite: Some(LensSprite::default()), ..Asked::effect("greyscale") };
     assert_eq!(sprite.passes(), ["crossings of sprites", "geometry", "shade"]);
     let section = Asked { section: Some([1.0; 3]), ..Asked::effect("cut-away") };
-    assert_eq!(section.passes(), ["geometry", "count sections", "shade"]);
+    assert_eq!(section.passes(), ["geometry", "ends of lenses", "shade"]);
     let uncut = Asked { section: Some([1.0; 3]), ..Asked::effect("greyscale") };
     assert_eq!(uncut.passes(), ["geometry", "shade"], "what is not cut has no section");
 }

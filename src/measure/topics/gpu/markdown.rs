@@ -5,7 +5,10 @@ use std::fmt::Write as _;
 use crate::measure::{
     ratio::Estimate,
     report::number,
-    topics::gpu::report::{Checked, Compared, Frames, PROFILE, Report, VERSION},
+    topics::gpu::{
+        pictures::STEPS,
+        report::{Checked, Compared, Frames, PROFILE, Report, VERSION},
+    },
 };
 
 /// The report, in Markdown.
@@ -69,7 +72,8 @@ fn pictures(text: &mut String, rows: &[Compared]) {
         return;
     }
     *text += "\n## Pictures against those of the software adapter\n\n";
-    line(text, &["scene", "result", "off by more than 1 of 255", "allowed", "of pixels", "largest, steps", "s"]);
+    let off = format!("off by more than {STEPS} of 255");
+    line(text, &["scene", "result", &off, "allowed", "of pixels", "largest, steps", "s"]);
     line(text, &["---", "---", "---:", "---:", "---:", "---:", "---:"]);
     for row in rows {
         let result = if row.failure().is_none() { "alike" } else { "differs" };

@@ -6,7 +6,10 @@ use serde_json::{Value as Json, json};
 use crate::{
     measure::{
         ratio::Estimate,
-        topics::gpu::check::{Check, Findings},
+        topics::gpu::{
+            check::{Check, Findings},
+            pictures::STEPS,
+        },
     },
     render::stats,
 };
@@ -110,7 +113,7 @@ impl Compared {
         }
         let at = self.worst.map(|[x, y]| format!(", most at {x},{y}")).unwrap_or_default();
         (wrong > allowed).then(|| {
-            format!("{scene}: {wrong} of {pixels} pixels are off by more than 1 of 255 ({allowed} may be), by up to {max_steps}{at}")
+            format!("{scene}: {wrong} of {pixels} pixels are off by more than {STEPS} of 255 ({allowed} may be), by up to {max_steps}{at}")
         })
     }
 }
@@ -230,6 +233,6 @@ mod tests {
         };
         assert_eq!(one.failure(), None);
         one.wrong = 4;
-        assert!(one.failure().unwrap().contains("4 of 30000 pixels are off by more than 1 of 255 (3 may be)"));
+        assert!(one.failure().unwrap().contains("4 of 30000 pixels are off by more than 2 of 255 (3 may be)"));
     }
 }

@@ -179,9 +179,13 @@ pub fn possible_classes(volume: &Volume, view: &View, at: DVec2, d: f64, snappin
         let ray = view.ray(at + 1e-3 * DVec2::new(f64::from(i), f64::from(j)));
         let slack = band(volume, view, d, snapping);
         let span = volume.entry_exit(&ray);
-        for by in [-slack, 0.0, slack] {
+        // Where the ray goes along a face, what is near it may be far from the end.
+        let near = (volume.signed_distance(ray.at(d)).abs() <= slack).then_some(Class::Inside);
+        let of_moved = |by: f64| {
             let moved: Vec<(f64, f64)> = span.iter().map(|(enter, exit)| (enter - by, exit + by)).collect();
-            let class = classify(&moved, d);
+            classify(&moved, d)
+        };
+        for class in [-slack, 0.0, slack].map(of_moved).into_iter().chain(near) {
             if !classes.contains(&class) {
                 classes.push(class);
             }

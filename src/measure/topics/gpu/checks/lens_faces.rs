@@ -104,8 +104,10 @@ fn ask_face(
             let t = (face.at - ray.origin).dot(face.normal) / ray.direction.dot(face.normal);
             let p = ray.at(t) - face.at;
             let (a, b) = (p.dot(u), p.dot(v));
-            // As far as the rounding of D moves a place along the wall.
-            let rim = 8.0 * 2_f64.powi(-23) * t * ray.direction.length() * 2.0;
+            // As far as the rounding of D and the adapter's grid move a place along the wall.
+            let slant = ray.direction.length() / ray.direction.dot(face.normal).abs();
+            let rim =
+                8.0 * 2_f64.powi(-23) * t * ray.direction.length() * 2.0 + found.snapping * view.pixel_m(t) * slant;
             let outside_by = [(a.abs() - HALF[0]).max(b.abs() - HALF[1]), a.hypot(b) - RADIUS];
             for (number, outside_by) in outside_by.into_iter().enumerate().filter(|(_, by)| by.abs() > rim) {
                 found.ask(bit(&drawn, number, i) == (outside_by < 0.0), || {

@@ -98,7 +98,10 @@ fn run(found: &mut Findings) -> Result<(), RenderError> {
                     let [x, y] = column_row(SIZE, i);
                     let p = view.pixel_ray(x, y).at(d);
                     let is_in = bit(&drawn, number, i);
-                    let band = 8.0 * 2_f64.powi(-23) * d.max(camera.eye.distance(p)) + 1e-6 * 40.0;
+                    // Solids ask beside a place, and of each place as far along the normal.
+                    let band = 8.0 * 2_f64.powi(-23) * d.max(camera.eye.distance(p))
+                        + 1e-6 * 40.0
+                        + 2.0 * found.snapping * view.pixel_m(d.min(1e30));
                     let is_right =
                         is_in == (d.is_finite() && prism.holds(p)) || d.is_finite() && prism.distance(p) <= band;
                     found.ask(is_right, || format!("{}: pixel {x},{y} at {d} m is in it: {is_in}", prism.name));
