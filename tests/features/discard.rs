@@ -71,7 +71,7 @@ fn compare(
             nearest = nearest.min(d);
             objects.push(triangle.object + 1);
             let [a, b, c] = triangle.corners;
-            slant = ray.direction.length() / (b - a).cross(c - a).normalize().dot(ray.direction).abs();
+            slant = ray.direction.length() / (b - a).cross(c - a).normalize_or(DVec3::Z).dot(ray.direction).abs();
         }
         // What is beside its face by the adapter's grid is farther off along the ray.
         let room = 1e-4 * nearest + if nearest.is_finite() { slant * off_face(&view, nearest) } else { 0.0 };

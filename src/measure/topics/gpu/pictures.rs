@@ -154,15 +154,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pixels_that_are_off_by_more_than_a_step_are_counted() {
+    fn pixels_that_are_off_by_more_than_two_steps_are_counted() {
         let compared = |found: &[[u8; 4]]| {
             let mut compared = Compared::default();
             differ(&mut compared, &[[10, 20, 30]; 3], found);
             (compared.wrong, compared.max_steps, compared.worst)
         };
         assert_eq!(compared(&[[10, 20, 30, 255]; 3]), (0, 0, None));
-        assert_eq!(compared(&[[11, 19, 31, 255]; 3]), (0, 1, None));
-        let off = [[10, 20, 30, 255], [10, 20, 33, 255], [12, 20, 30, 255]];
+        assert_eq!(compared(&[[12, 18, 32, 255]; 3]), (0, 2, None));
+        let off = [[10, 20, 30, 255], [10, 20, 33, 255], [13, 20, 30, 255]];
         assert_eq!(compared(&off), (2, 3, Some([1, 0])));
     }
 }
