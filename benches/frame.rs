@@ -274,14 +274,20 @@ fn compare<'a>(studio: &mut Studio, pairs: usize, named: impl Fn(&str) -> &'a Fr
         timed(studio, a);
         timed(studio, b);
     }
-    let times = in_turn(2, pairs, |i| Ok::<_, std::convert::Infallible>(timed(studio, [a, b][i])));
+    let mut hosts = [Vec::new(), Vec::new()];
+    let times = in_turn(2, pairs, |i| {
+        let [host, whole] = parts(studio, [a, b][i]);
+        hosts[i].push(host);
+        Ok::<_, std::convert::Infallible>(whole)
+    });
     let Ok(times) = times;
     let of = |values: &[f64]| Estimate::of(values).expect("one pair or more, and finite times");
     let [of_a, of_b] = [0, 1].map(|i| of(&times[i]).median);
+    let [host_a, host_b] = hosts.map(|host| of(&host).median);
     let Estimate { median, low, high } = of(&ratios(&times[0], &times[1]));
     let verdict = if high <= target { "met" } else { "MISSED" };
     println!(
-        "{:<22} {:>9.1} {:>9.1} {median:>9.3} ({low:.3}..{high:.3}) {target:>6.2} {verdict}",
+        "{:<22} {:>9.1} {:>9.1} {median:>9.3} ({low:.3}..{high:.3}) {target:>6.2} {verdict:<6} host {host_a:.2} {host_b:.2}",
         names.join(" / "),
         of_a,
         of_b

@@ -2,10 +2,13 @@
 // the other state. `is_convex`: the lens is one convex body, and so is what it covers: where four corners are covered, all between
 // them is.
 fn silhouette(lens: u32, pixel: vec2i, width: f32, is_convex: bool) -> f32 {
-    let last = vec2i(view.size) - 1;
-    let here = lens_covers(lens, pixel);
     // What is farther away adds nothing.
     let reach = i32(ceil(0.5 * width + 1.0)) - 1;
+    if lens_is_sure(lens, pixel, reach) {
+        return 0.0;
+    }
+    let last = vec2i(view.size) - 1;
+    let here = lens_covers(lens, pixel);
     if is_convex && here {
         let low = max(pixel - reach, vec2i(0));
         let high = min(pixel + reach, last);

@@ -21,12 +21,14 @@ pub(super) struct Forms {
     pub(super) leaves: Vec<Form>,
     /// Whether it asks how far places are from them.
     pub(super) distances: bool,
+    /// Whether it draws their outlines.
+    pub(super) outlines: bool,
 }
 
 impl Forms {
     /// A combination of such leaves alone.
     pub(super) fn of_leaves(leaves: &[Form]) -> Self {
-        Self { tests: vec![LensTest::Numbers(Form::Combined)], leaves: leaves.to_vec(), distances: false }
+        Self { tests: vec![LensTest::Numbers(Form::Combined)], leaves: leaves.to_vec(), ..Self::default() }
     }
 
     /// Forms that know where rays enter and leave, which are tested by that, not as leaves.
@@ -109,7 +111,7 @@ impl Forms {
         text
     }
 
-    /// `form_holds`, `span_of_form` and `distance_to_form`.
+    /// `form_holds`, `span_of_form`, `distance_to_form` and `form_is_sure`.
     fn choices(&self) -> String {
         let spanned = self.spanned();
         if spanned.is_empty() {
@@ -124,6 +126,10 @@ impl Forms {
         if self.distances {
             let head = "distance_to_form(s: Region, form: u32, sight: Sight, border: vec4f) -> f32";
             text += &choice(head, &|f| distance(f, "s"));
+        }
+        if self.outlines {
+            let head = "form_is_sure(ray: Ray, s: Region, form: u32, turn: f32) -> bool";
+            text += &choice(head, &|f| is_sure(f, "s"));
         }
         text
     }
@@ -266,6 +272,19 @@ fn region_of(form: Form, region: &str) -> String {
 fn holds(form: Form, region: &str, sight: &str) -> String {
     let own = format!("{}_holds({}, {sight})", name(form), region_of(form, region));
     if ends(form) { format!("{sight}.distance < FAR_AWAY && {own}") } else { own }
+}
+
+/// Whether a form knows how far rays may turn until what they meet may change.
+pub(super) fn has_sure(form: Form) -> bool {
+    matches!(form, Form::Volume(own) if file_of(own).says(&format!("fn {}_is_sure(", name(form))))
+}
+
+/// Whether all rays that turn from one by no more than `turn` (parallel ones: that are so much aside, metres) surely meet a form as it does.
+fn is_sure(form: Form, region: &str) -> String {
+    match has_sure(form) {
+        true => format!("{}_is_sure(ray, {}, turn)", name(form), region_of(form, region)),
+        false => "false".to_owned(),
+    }
 }
 
 /// Where a ray is in a form that has a span.

@@ -16,6 +16,11 @@ pub(super) struct File {
 }
 
 impl File {
+    /// Whether some words stand in it.
+    pub(super) fn says(&self, words: &str) -> bool {
+        self.text.contains(words)
+    }
+
     /// Its text as a paragraph of another.
     pub(super) fn paragraph(&self) -> String {
         format!("{}\n", self.text)
@@ -103,6 +108,7 @@ files! {
     CUT = "lib/cut.wgsl";
     OUTLINE = "lib/outline.wgsl";
     SILHOUETTE = "lib/silhouette.wgsl";
+    SURE = "lib/sure.wgsl";
     GLASS = "lib/glass.wgsl";
     SHELL = "lib/shell.wgsl";
     SHELL_SIDES = "lib/shell-sides.wgsl";
@@ -144,6 +150,7 @@ files! {
     SHARE_OF_INVOKER = "lib/share-of-invoker.wgsl";
     SHARE_AT_INVOKER = "lib/share-at-invoker.wgsl";
     LENS_COVERS = "lib/lens-covers.wgsl";
+    LENS_SURE = "lib/lens-sure.wgsl";
     LENS_DISTANCE = "lib/lens-distance.wgsl";
     LENS_ENDS = "lib/lens-ends.wgsl";
     FRAGMENT_RUNS = "lib/fragment-runs.wgsl";

@@ -184,3 +184,44 @@ fn a_line_around_a_convex_lens_is_that_around_any() {
     }
     assert!(on_line > 3000, "{on_line} pixels are on lines");
 }
+
+/// A ball, its middle as far away as `away` radii, seen by an eye that looks past it by `aside` radii.
+fn past_a_ball(middle: DVec3, radius: f64, away: f64, aside: f64, fov: f64) -> Camera {
+    let eye = middle + radius * away * DVec3::new(0.48, -0.64, 0.6);
+    let target = middle + radius * aside * DVec3::new(0.8, 0.6, 0.0);
+    Camera { near_m: 1e-3, ..Camera::looking(eye, target, fov) }
+}
+
+#[test]
+fn a_line_around_a_ball_is_the_same_where_nothing_is_known_of_it_from_anywhere() {
+    let mut studio = synthetic(20);
+    let (middle, radius) = (studio.extent().center() + DVec3::Z * 40.0, 20.0);
+    let ball = Region::from(Shape::Sphere { center: middle, radius });
+    let away = Region::from(Shape::Sphere { center: middle + DVec3::new(-5e3, 9e3, 0.0), radius: 1e-3 });
+    let unknown = Region::Combined { how: Operation::Union, parts: vec![ball.clone(), away] };
+    // Inside, at the border, outside; past it, towards it, away from it; from hundredths of a degree to nearly a half turn.
+    let mut cameras = Vec::new();
+    for away in [0.2, 0.999, 1.001, 1.3, 6.0, 300.0] {
+        for (aside, fov) in [(0.0, 0.9), (1.0, 0.3), (0.99, 2e-3), (1.6, 3.1), (-40.0, 2.6), (1.01, 0.05)] {
+            cameras.push(past_a_ball(middle, radius, away, aside, fov));
+        }
+    }
+    for (aside, height) in [(0.0, 60.0), (1.0, 5.0), (1.001, 0.2), (0.5, 4e3)] {
+        let eye = past_a_ball(middle, radius, 6.0, aside, 0.9);
+        cameras.push(orthographic(eye.eye + (eye.target - middle), eye.target, height));
+    }
+    let (mut on_line, mut tried) = (0, 0);
+    for (i, camera) in cameras.into_iter().enumerate() {
+        let mut of = |region: Option<&Region>| {
+            let lenses = region.into_iter().map(|region| body_of(LensBody::Outline, region.clone())).collect();
+            draw(&mut studio, &scene(camera, lenses), BACKENDS[i % 2]).rgba
+        };
+        let [none, known, unknown] = [None, Some(&ball), Some(&unknown)].map(&mut of);
+        let differ = known.iter().zip(&unknown).filter(|(a, b)| a != b).count();
+        assert_eq!(differ, 0, "camera {i}: {camera:?}");
+        let lined = known.iter().zip(&none).filter(|(a, b)| a != b).count();
+        on_line += lined;
+        tried += usize::from(lined > 0);
+    }
+    assert!(tried > 12 && on_line > 3000, "{on_line} pixels are on the lines of {tried} pictures");
+}

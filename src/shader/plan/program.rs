@@ -83,7 +83,7 @@ impl Program {
         };
         tests.sort_unstable();
         tests.dedup();
-        Forms { tests, leaves: self.leaves(), distances: self.has().distances }
+        Forms { tests, leaves: self.leaves(), distances: self.has().distances, outlines: self.has().outlines }
     }
 
     /// Forms of the leaves of its combinations, ascending, each once.
