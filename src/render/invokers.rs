@@ -10,6 +10,9 @@ use crate::{
 /// Sections of the lists of a tile, as `shader::uber` numbers them: opacity rules, materials, lights, styles, bodies, masks.
 const SECTIONS: usize = 6;
 
+/// The section of bodies.
+const BODIES: usize = 4;
+
 /// An invoker of a section, and the lens of the plan that it belongs to; none: the context.
 type Entry = (u32, Option<u32>);
 
@@ -162,7 +165,13 @@ impl Invokers {
 
     /// The lists of all tiles of a picture, where the lenses of the plan may be seen in these parts of it: for each tile where
     /// its sections begin and the last one ends, and then the invokers, three words each. First those outside of all lenses.
-    pub fn tile_lists(&self, parts: &[ScreenBound], size: [u32; 2]) -> Vec<u32> {
+    /// `has_body`: whether a lens may draw its body in a tile.
+    pub fn tile_lists(
+        &self,
+        parts: &[ScreenBound],
+        size: [u32; 2],
+        has_body: impl Fn(u32, PictureTile) -> bool,
+    ) -> Vec<u32> {
         let [across, down] = size.map(|side| side.div_ceil(TILE_PX));
         // Which lenses a tile may show; ascending, as they are gone through in order.
         let mut pairs: Vec<(u32, u32)> = Vec::new();
@@ -201,7 +210,9 @@ impl Invokers {
             for (i, section) in lenses.iter().enumerate() {
                 words[record + i] = words.len() as u32;
                 section[..begins[i][0] as usize].iter().for_each(|entry| put(&mut words, entry));
-                for (_, lens) in own {
+                let origin = [tile % across * TILE_PX, tile / across * TILE_PX];
+                let tile = PictureTile { origin, size: [TILE_PX; 2] };
+                for (_, lens) in own.iter().filter(|(_, lens)| i != BODIES || has_body(*lens, tile)) {
                     let [from, to] = [0, 1].map(|end| begins[i][*lens as usize + end] as usize);
                     section[from..to].iter().for_each(|entry| put(&mut words, entry));
                 }

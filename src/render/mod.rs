@@ -77,6 +77,7 @@ mod settings;
 mod shared;
 mod shells;
 mod sights;
+pub mod silhouettes;
 pub mod solids;
 mod sprites;
 pub mod standing;

@@ -12,6 +12,7 @@ use crate::{
         regions::RegionPasses,
         screen_bound::ScreenBound,
         seen::{SeenVolume, part_of},
+        silhouettes::Silhouette,
     },
     scene::{Technique, technique::MOST_WRITTEN_OUT},
     shader::{Plan, Regions, handlers},
@@ -33,6 +34,8 @@ pub(super) struct Plans {
     pub parts: Vec<ScreenBound>,
     /// The boxes in which each acts as *inside*, as [`LensVolume::room`](super::volume::LensVolume::room) has them.
     pub rooms: Vec<[DVec3; 2]>,
+    /// Where their outlines are.
+    pub silhouettes: Vec<Silhouette>,
     invokers: OnceCell<Invokers>,
     /// The regions that the city is drawn by, where the technique has passes for them.
     pub regions: Option<RegionPasses>,
@@ -69,6 +72,9 @@ impl Plans {
         Self {
             parts: of_lens().filter_map(|volumes| part_of(volumes.iter())).collect(),
             rooms: of_lens().map(room).collect(),
+            silhouettes: of_lens()
+                .map(|volumes| Silhouette::of(volumes.iter().map(|v| &input.volumes[v.index])))
+                .collect(),
             invokers: OnceCell::new(),
             filters,
             hiding,

@@ -6,6 +6,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         cities::Cities,
+        eye::PictureTile,
         invokers::Invokers,
         layout, light,
         plan::FramePlan,
@@ -17,6 +18,7 @@ use crate::{
             targets::Targets,
         },
         solids::SolidTable,
+        volume::WIDE_MARGIN_PX,
     },
     shader::{MOST_SLOTS, MOST_VOLUMES},
 };
@@ -129,7 +131,12 @@ impl Shared {
             let invokers: &Invokers = plans.invokers();
             stale |= self.invoker_table.sync(gpu, &invokers.table(input.tile.size))?;
             stale |= self.invokers.sync(gpu, invokers.all())?;
-            stale |= self.tile_lists.sync(gpu, &invokers.tile_lists(&plans.parts, input.tile.size))?;
+            let has_body = |lens: u32, PictureTile { origin: [x, y], size }: PictureTile| {
+                let [left, top] = input.tile.origin;
+                let tile = PictureTile { origin: [left + x, top + y], size };
+                plans.silhouettes[lens as usize].may_touch(&input.view, tile, WIDE_MARGIN_PX.into())
+            };
+            stale |= self.tile_lists.sync(gpu, &invokers.tile_lists(&plans.parts, input.tile.size, has_body))?;
         }
         let eye = input.view.camera.eye;
         stale |= self.view.sync(gpu, &[plan.view_uniform()])?;

@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// Pixels around a volume's projection that may still show its outline, or be where a coarse sprite has it.
-const WIDE_MARGIN_PX: i32 = 4;
+pub const WIDE_MARGIN_PX: i32 = 4;
 /// Without these: for samples up to half a pixel beside the pixels' centres, and what rounding moves.
 const MARGIN_PX: i32 = 1;
 
