@@ -125,13 +125,35 @@ impl Timer {
         let bytes = gpu.read_buffer(&self.results)?;
         let value = |at: u64| bytes[at as usize..].first_chunk().map_or(0, |b: &[u8; 8]| u64::from_le_bytes(*b));
         let period = f64::from(gpu.queue.get_timestamp_period());
-        let measure = |slot: &Slot| PassMeasure {
-            gpu_ms: self.times.as_ref().map(|_| {
-                let begin = u64::from(slot.time) * 16;
-                value(begin + 8).saturating_sub(value(begin)) as f64 * period / 1e6
-            }),
+        let times = (0..).map_while(|time| ((time as usize) < self.slots.len()).then_some(16 * time));
+        let spans = spans(times.map(|begin| [value(begin), value(begin + 8)]));
+        let measure = |(slot, span): (&Slot, u64)| PassMeasure {
+            gpu_ms: self.times.as_ref().map(|_| span as f64 * period / 1e6),
             pixels: slot.count.map(|count| value(COUNTS_AT + u64::from(count) * 8)),
         };
-        Ok(self.slots.iter().map(measure).collect())
+        Ok(self.slots.iter().zip(spans).map(measure).collect())
+    }
+}
+
+/// How long each pass ran, from when they began and ended, in their order. GPUs begin a pass while those before it still run; that time is
+/// theirs alone, so that all passes together take no longer than the frame.
+fn spans(times: impl Iterator<Item = [u64; 2]>) -> Vec<u64> {
+    let mut last = 0;
+    let span = |[begin, end]: [u64; 2]| {
+        let span = end.saturating_sub(begin.max(last));
+        last = last.max(end);
+        span
+    };
+    times.map(span).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spans;
+
+    #[test]
+    fn what_runs_beside_a_pass_before_it_is_counted_once() {
+        assert_eq!(spans([[10, 20], [25, 30]].into_iter()), [10, 5]);
+        assert_eq!(spans([[10, 20], [12, 26], [13, 24], [14, 30]].into_iter()), [10, 6, 0, 4]);
     }
 }

@@ -95,10 +95,10 @@ impl Studio {
         inset.of = None;
         std::mem::swap(&mut inset.state, &mut self.renderer.view);
         std::mem::swap(&mut inset.occlusion, &mut self.known().occlusion);
-        let drawn = self.draw_with(scene, request, furniture, Some(most)).and_then(|passes| {
+        let drawn = self.draw_with(scene, request, furniture, Some(most), None).and_then(|passes| {
             // Lists that were too short are long enough the second time.
             let grows = self.renderer.makes_room()? | self.renderer.sorts_longer()?;
-            if grows { self.draw_with(scene, request, furniture, Some(most)) } else { Ok(passes) }
+            if grows { self.draw_with(scene, request, furniture, Some(most), None) } else { Ok(passes) }
         });
         if drawn.is_ok()
             && let Some(targets) = &self.renderer.view.targets

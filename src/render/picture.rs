@@ -348,21 +348,33 @@ impl Studio {
     /// The same with `furniture` over it. As long as that stays equal, nothing is set, allocated or uploaded again.
     pub fn redraw_with(&mut self, scene: &Scene, size: [u32; 2], furniture: &Furniture) -> Result<(), RenderError> {
         let request = Request { backend: self.backend, ..Request::plain(size) };
-        self.draw_with(scene, &request, furniture, None).map(|_| ())
+        self.draw_with(scene, &request, furniture, None, None).map(|_| ())
+    }
+
+    /// Draws a scene again as [`Self::redraw`] does, to its end; milliseconds by the GPU's clock, where it has one.
+    ///
+    /// # Errors
+    /// What cannot be drawn.
+    pub fn redraw_timed(&mut self, scene: &Scene, size: [u32; 2]) -> Result<Option<f64>, RenderError> {
+        let request = Request { backend: self.backend, ..Request::plain(size) };
+        let mut timer = Timer::new(&self.renderer.gpu)?;
+        self.draw_with(scene, &request, &furniture::NONE, None, Some(&mut timer))?;
+        Ok(timer.read(&self.renderer.gpu)?.iter().map(|pass| pass.gpu_ms).sum())
     }
 
     /// Draws all samples of a picture that fits one target, without reading anything back.
     pub fn draw(&mut self, scene: &Scene, request: &Request) -> Result<(), RenderError> {
-        self.draw_with(scene, request, &furniture::NONE, None).map(|_| ())
+        self.draw_with(scene, request, &furniture::NONE, None, None).map(|_| ())
     }
 
-    /// The passes that ran, of all samples.
+    /// The passes that ran, of all samples; `timer` measures those of the first.
     pub(super) fn draw_with(
         &mut self,
         scene: &Scene,
         request: &Request,
         furniture: &Furniture,
         most_triangles: Option<u64>,
+        mut timer: Option<&mut Timer>,
     ) -> Result<Vec<stats::Pass>, RenderError> {
         let drawn = scene.drawn();
         let resolved = self.resolve(&drawn, request.size)?;
@@ -372,7 +384,7 @@ impl Studio {
         let mut passes = Vec::new();
         for sample in 0..input.samples {
             input.sample = sample;
-            let records = self.renderer.draw(&input, None)?;
+            let records = self.renderer.draw(&input, timer.take())?;
             collect(&mut passes, &records, &[], &drawn);
         }
         Ok(passes)
