@@ -12,7 +12,7 @@ use crate::{
             views::{overview, see_through_city, see_through_lens, spread, street, with_lens, with_ten},
         },
     },
-    render::picture::{RenderError, Request, Studio},
+    render::picture::{RenderError, Studio},
     scene::Scene,
 };
 
