@@ -4,7 +4,7 @@
 fn silhouette(lens: u32, pixel: vec2i, width: f32, is_convex: bool) -> f32 {
     // What is farther away adds nothing.
     let reach = i32(ceil(0.5 * width + 1.0)) - 1;
-    if lens_is_sure(lens, pixel, reach) {
+    if lens_is_clear(lens, pixel, reach) {
         return 0.0;
     }
     let last = vec2i(view.size) - 1;

@@ -15,7 +15,7 @@ fn sphere_holds(s: Sphere, sight: Sight) -> bool {
 }
 
 // |miss - radius| is |centre| |sin a - sin b|, which is at most |centre| |a - b|: no smaller turn changes what is met.
-fn sphere_is_sure(ray: Ray, s: Sphere, turn: f32) -> bool {
+fn sphere_is_clear(ray: Ray, s: Sphere, turn: f32) -> bool {
     let to_center = s.center - ray.origin;
     let away = length(to_center);
     let middle = dot(to_center, ray.direction) / dot(ray.direction, ray.direction);

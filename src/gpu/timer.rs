@@ -125,8 +125,8 @@ impl Timer {
         let bytes = gpu.read_buffer(&self.results)?;
         let value = |at: u64| bytes[at as usize..].first_chunk().map_or(0, |b: &[u8; 8]| u64::from_le_bytes(*b));
         let period = f64::from(gpu.queue.get_timestamp_period());
-        let times = (0..).map_while(|time| ((time as usize) < self.slots.len()).then_some(16 * time));
-        let spans = spans(times.map(|begin| [value(begin), value(begin + 8)]));
+        let begins = (0..self.slots.len() as u64).map(|slot| 16 * slot);
+        let spans = spans(begins.map(|begin| [value(begin), value(begin + 8)]));
         let measure = |(slot, span): (&Slot, u64)| PassMeasure {
             gpu_ms: self.times.as_ref().map(|_| span as f64 * period / 1e6),
             pixels: slot.count.map(|count| value(COUNTS_AT + u64::from(count) * 8)),

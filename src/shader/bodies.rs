@@ -63,9 +63,9 @@ fn body_functions(plan: &Plan, i: usize, kind: BodyKind) -> String {
     let answer = |head: &str, value: &str| format!("fn lens_{i}_{head} {{\n    return {value};\n}}\n\n");
     let mut text = answer("covers(pixel: vec2i) -> bool", &lens_test::covers(plan, lens, "pixel"));
     if kind.has_outline() {
-        let is_sure = lens_test::is_sure(plan, lens, "pixel, reach");
-        text.push_str(&answer("is_sure(pixel: vec2i, reach: i32) -> bool", &is_sure));
-        text.push_str(&own(&SILHOUETTE, &["lens_covers", "lens_is_sure", "silhouette"]));
+        let is_clear = lens_test::is_clear(plan, lens, "pixel, reach");
+        text.push_str(&answer("is_clear(pixel: vec2i, reach: i32) -> bool", &is_clear));
+        text.push_str(&own(&SILHOUETTE, &["lens_covers", "lens_is_clear", "silhouette"]));
     }
     if kind != BodyKind::Outline {
         let distance = lens_test::distance_of(plan, lens, "vec4f(0.0)");

@@ -3,11 +3,11 @@
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     library::{
-        BLEND, BORDER, CITIES, CLASS, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION, COMBINED_SPRITE,
+        BLEND, BORDER, CITIES, CLASS, CLEAR, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION, COMBINED_SPRITE,
         DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FORM, FRAGMENT, File, GLASS, LENS,
         LENS_SPRITE, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE,
         PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT, SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE,
-        SURE, SURFACE, TRANSPARENCY, VIEW, VIEW_UNIFORM,
+        SURFACE, TRANSPARENCY, VIEW, VIEW_UNIFORM,
     },
     plan::program::Program,
 };
@@ -83,7 +83,7 @@ pub(super) fn of_lenses(program: &Program) -> Vec<File> {
     files.extend(program.forms().files());
     files.extend(used(&[
         (parts.closed, LENS),
-        (parts.closed && parts.outlines, SURE),
+        (parts.closed && parts.outlines, CLEAR),
         (parts.sprites || parts.own_sprites || parts.side_sprites, LENS_SPRITE),
         (parts.sprites || parts.own_sprites, DEPTH_CODE),
         (parts.sprites || parts.own_sprites, STORED_SPRITE),

@@ -111,7 +111,7 @@ impl Forms {
         text
     }
 
-    /// `form_holds`, `span_of_form`, `distance_to_form` and `form_is_sure`.
+    /// `form_holds`, `span_of_form`, `distance_to_form` and `form_is_clear`.
     fn choices(&self) -> String {
         let spanned = self.spanned();
         if spanned.is_empty() {
@@ -128,8 +128,8 @@ impl Forms {
             text += &choice(head, &|f| distance(f, "s"));
         }
         if self.outlines {
-            let head = "form_is_sure(ray: Ray, s: Region, form: u32, turn: f32) -> bool";
-            text += &choice(head, &|f| is_sure(f, "s"));
+            let head = "form_is_clear(ray: Ray, s: Region, form: u32, turn: f32) -> bool";
+            text += &choice(head, &|f| is_clear(f, "s"));
         }
         text
     }
@@ -274,15 +274,15 @@ fn holds(form: Form, region: &str, sight: &str) -> String {
     if ends(form) { format!("{sight}.distance < FAR_AWAY && {own}") } else { own }
 }
 
-/// Whether a form knows how far rays may turn until what they meet may change.
-pub(super) fn has_sure(form: Form) -> bool {
-    matches!(form, Form::Volume(own) if file_of(own).says(&format!("fn {}_is_sure(", name(form))))
+/// Whether a form tells which rays are clear of its silhouette.
+pub(super) fn has_clear(form: Form) -> bool {
+    matches!(form, Form::Volume(own) if file_of(own).says(&format!("fn {}_is_clear(", name(form))))
 }
 
 /// Whether all rays that turn from one by no more than `turn` (parallel ones: that are so much aside, metres) surely meet a form as it does.
-fn is_sure(form: Form, region: &str) -> String {
-    match has_sure(form) {
-        true => format!("{}_is_sure(ray, {}, turn)", name(form), region_of(form, region)),
+fn is_clear(form: Form, region: &str) -> String {
+    match has_clear(form) {
+        true => format!("{}_is_clear(ray, {}, turn)", name(form), region_of(form, region)),
         false => "false".to_owned(),
     }
 }

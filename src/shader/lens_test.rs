@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    forms::{has_sure, loaded},
+    forms::{has_clear, loaded},
     own_region,
     plan::{Plan, form::Form, lens_test::LensTest, program::Program, uber::Uber},
     table::MOST_VOLUMES,
@@ -48,8 +48,8 @@ enum Question {
     Inside,
     /// Whether a pixel's ray meets it.
     Covers,
-    /// Whether pixels around one surely meet it as that one does.
-    Sure,
+    /// Whether a pixel is clear of its silhouette: those around it surely meet it as it does.
+    Clear,
 }
 
 /// A question to a volume by its number, about a `place`.
@@ -58,10 +58,10 @@ fn call(question: Question, test: LensTest, volume: &str, place: &str) -> String
     let (region, sprite) = (format!("lens_regions[{volume}]"), format!("sprite_places[{volume}]"));
     let own = loaded(test, &region);
     match (question, test) {
-        (Q::Sure, T::Numbers(form)) if has_sure(form) => {
-            format!("is_sure_of_form({region}, {}, {place})", form.constant())
+        (Q::Clear, T::Numbers(form)) if has_clear(form) => {
+            format!("is_clear_of_form({region}, {}, {place})", form.constant())
         }
-        (Q::Sure, _) => "false".to_owned(),
+        (Q::Clear, _) => "false".to_owned(),
         (Q::Covers, T::Sprite) => format!("covers_sprite({sprite}, {place})"),
         (_, T::Sprite) => format!("class_in_sprite({sprite}, {place})"),
         (Q::Covers, T::LayeredSprite) => format!("covers_layers({sprite}, {place})"),
@@ -113,9 +113,9 @@ pub(super) fn covers(plan: &Plan, lens: u32, pixel: &str) -> String {
     joined(plan, lens, Question::Covers, pixel, " || ")
 }
 
-/// Whether all pixels around one surely meet one lens of a plan or surely miss it.
-pub(super) fn is_sure(plan: &Plan, lens: u32, around: &str) -> String {
-    joined(plan, lens, Question::Sure, around, " && ")
+/// Whether a pixel is clear of the silhouettes of one lens of a plan.
+pub(super) fn is_clear(plan: &Plan, lens: u32, around: &str) -> String {
+    joined(plan, lens, Question::Clear, around, " && ")
 }
 
 /// The degree of interest of a place in one lens of a plan; `border` are the parameters of its border.
@@ -238,8 +238,8 @@ pub(super) fn volume_covers(tests: &[LensTest]) -> String {
     format!("fn volume_covers(v: u32, pixel: vec2i) -> bool {{\n{body}}}\n\n")
 }
 
-/// `volume_is_sure`, for the uber back end.
-pub(super) fn volume_is_sure(tests: &[LensTest]) -> String {
-    let body = by_number(tests, Question::Sure, "pixel, reach");
-    format!("fn volume_is_sure(v: u32, pixel: vec2i, reach: i32) -> bool {{\n{body}}}\n\n")
+/// `volume_is_clear`, for the uber back end.
+pub(super) fn volume_is_clear(tests: &[LensTest]) -> String {
+    let body = by_number(tests, Question::Clear, "pixel, reach");
+    format!("fn volume_is_clear(v: u32, pixel: vec2i, reach: i32) -> bool {{\n{body}}}\n\n")
 }

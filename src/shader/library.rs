@@ -108,7 +108,7 @@ files! {
     CUT = "lib/cut.wgsl";
     OUTLINE = "lib/outline.wgsl";
     SILHOUETTE = "lib/silhouette.wgsl";
-    SURE = "lib/sure.wgsl";
+    CLEAR = "lib/clear.wgsl";
     GLASS = "lib/glass.wgsl";
     SHELL = "lib/shell.wgsl";
     SHELL_SIDES = "lib/shell-sides.wgsl";
@@ -150,7 +150,7 @@ files! {
     SHARE_OF_INVOKER = "lib/share-of-invoker.wgsl";
     SHARE_AT_INVOKER = "lib/share-at-invoker.wgsl";
     LENS_COVERS = "lib/lens-covers.wgsl";
-    LENS_SURE = "lib/lens-sure.wgsl";
+    LENS_CLEAR = "lib/lens-clear.wgsl";
     LENS_DISTANCE = "lib/lens-distance.wgsl";
     LENS_ENDS = "lib/lens-ends.wgsl";
     FRAGMENT_RUNS = "lib/fragment-runs.wgsl";

@@ -8,7 +8,7 @@ use crate::shader::{
     invoke::{each, invoke, shade, share_argument, styled, used},
     lens_test,
     library::{
-        HALO, INVOKER_CLASSES, LENS_COVERS, LENS_DISTANCE, LENS_ENDS, LENS_SURE, NO_CLASSES, SHARE_AT_INVOKER,
+        HALO, INVOKER_CLASSES, LENS_CLEAR, LENS_COVERS, LENS_DISTANCE, LENS_ENDS, NO_CLASSES, SHARE_AT_INVOKER,
         SHARE_OF_INVOKER, SHELL, SILHOUETTE, TILE_INVOKERS,
     },
     masks,
@@ -42,7 +42,7 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition], shading: &Shadi
         text.push_str(&(lens_test::volume_covers(&uber.tests) + &LENS_COVERS.paragraph()));
     }
     if parts.outlines {
-        text.push_str(&(lens_test::volume_is_sure(&uber.tests) + &LENS_SURE.paragraph() + &SILHOUETTE.paragraph()));
+        text.push_str(&(lens_test::volume_is_clear(&uber.tests) + &LENS_CLEAR.paragraph() + &SILHOUETTE.paragraph()));
     }
     if parts.shells || parts.halos {
         text.push_str(&LENS_DISTANCE.paragraph());

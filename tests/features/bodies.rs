@@ -211,7 +211,7 @@ fn a_line_around_a_ball_is_the_same_where_nothing_is_known_of_it_from_anywhere()
         cameras.push(orthographic(eye.eye + (eye.target - middle), eye.target, height));
     }
     let (mut on_line, mut tried) = (0, 0);
-    for (i, camera) in cameras.into_iter().enumerate().filter(|(i, _)| is_tried(*i, 3)) {
+    for (i, camera) in cameras.into_iter().enumerate().filter(|(i, _)| is_tried(*i, 5)) {
         let mut of = |region: Option<&Region>| {
             let lenses = region.into_iter().map(|region| body_of(LensBody::Outline, region.clone())).collect();
             draw(&mut studio, &scene(camera, lenses), BACKENDS[i % 2]).rgba
@@ -223,5 +223,5 @@ fn a_line_around_a_ball_is_the_same_where_nothing_is_known_of_it_from_anywhere()
         on_line += lined;
         tried += usize::from(lined > 0);
     }
-    assert!(tried > 5 && on_line > 1000, "{on_line} pixels are on the lines of {tried} pictures");
+    assert!(tried > 2 && on_line > 1000, "{on_line} pixels are on the lines of {tried} pictures");
 }
