@@ -69,6 +69,13 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
     return point;
 }
 
+// How a point is seen. Sections lie beside the volumes that they close, and on no face that the rasteriser moves.
+fn sight_of_point(point: Point, ray: Ray) -> Sight {
+    var sight = sight_at(point.pixel, ray, point.depth, point.object);
+    sight.off = select(sight.off, 0.0, is_section(point.surface));
+    return sight;
+}
+
 // That of a number, and where it has one a normal, in the geometry target; it has no base colour yet.
 fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u) -> Point {
     var point: Point;

@@ -265,7 +265,7 @@ fn composite(in: Corner) -> Composite {
         // Which of the layers is the shown surface is not known: it is what is opaque.
         if through <= 0.5 && shown.x == 0u {
             let point = point_at(pixel, ray, textureLoad(scene_depth, pixel, 0));
-            write_classes(pixel, point, classes_at(sight_at(pixel, ray, point.depth, point.object), in.part.x));
+            write_classes(pixel, point, classes_at(sight_of_point(point, ray), in.part.x));
         }
     }
     if RECORD > 1u && laid > 0u {

@@ -147,7 +147,7 @@ fn unfiltered(in: Corner) -> Unfiltered {
 fn paint_of_surface(pixel: vec2i, middle: vec2f, depth: f32, part: u32) -> vec4f {
     let ray = ray_of_pixel(middle);
     var point = point_at(pixel, ray, depth);
-    let classes = classes_at(sight_at(pixel, ray, point.depth, point.object), part);
+    let classes = classes_at(sight_of_point(point, ray), part);
     return finished(vec4f(shade(&point, classes), 1.0), point, pixel, classes);
 }
 
