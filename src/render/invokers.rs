@@ -3,7 +3,12 @@
 use glam::DVec3;
 
 use crate::{
-    render::{eye::PictureTile, layout, screen_bound::ScreenBound},
+    render::{
+        eye::PictureTile,
+        layout,
+        screen_bound::ScreenBound,
+        silhouettes::{Rays, Silhouette},
+    },
     shader::{Blend, ClassTest, EffectDefinition, EffectKind, Plan, PlanLens, Scope, Step, TILE_PX, scope_number},
 };
 
@@ -165,12 +170,13 @@ impl Invokers {
 
     /// The lists of all tiles of a picture, where the lenses of the plan may be seen in these parts of it: for each tile where
     /// its sections begin and the last one ends, and then the invokers, three words each. First those outside of all lenses.
-    /// `has_body`: whether a lens may draw its body in a tile.
+    /// `rays`: of a tile; a lens's body is left out where its silhouette is not seen.
     pub fn tile_lists(
         &self,
         parts: &[ScreenBound],
         size: [u32; 2],
-        has_body: impl Fn(u32, PictureTile) -> bool,
+        silhouettes: &[Silhouette],
+        rays: impl Fn(PictureTile) -> Rays,
     ) -> Vec<u32> {
         let [across, down] = size.map(|side| side.div_ceil(TILE_PX));
         // Which lenses a tile may show; ascending, as they are gone through in order.
@@ -207,12 +213,13 @@ impl Invokers {
         for tile in 0..across * down {
             let own = shown.next_if(|pairs| pairs[0].0 == tile).unwrap_or_default();
             let record = (SECTIONS + 1) * (1 + tile as usize);
+            let origin = [tile % across * TILE_PX, tile / across * TILE_PX];
+            let rays = rays(PictureTile { origin, size: [TILE_PX; 2] });
             for (i, section) in lenses.iter().enumerate() {
                 words[record + i] = words.len() as u32;
                 section[..begins[i][0] as usize].iter().for_each(|entry| put(&mut words, entry));
-                let origin = [tile % across * TILE_PX, tile / across * TILE_PX];
-                let tile = PictureTile { origin, size: [TILE_PX; 2] };
-                for (_, lens) in own.iter().filter(|(_, lens)| i != BODIES || has_body(*lens, tile)) {
+                let is_seen = |lens: u32| i != BODIES || silhouettes[lens as usize].may_be_seen_by(&rays);
+                for (_, lens) in own.iter().filter(|(_, lens)| is_seen(*lens)) {
                     let [from, to] = [0, 1].map(|end| begins[i][*lens as usize + end] as usize);
                     section[from..to].iter().for_each(|entry| put(&mut words, entry));
                 }

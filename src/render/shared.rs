@@ -17,6 +17,7 @@ use crate::{
             synced::{Room, Synced},
             targets::Targets,
         },
+        silhouettes::Rays,
         solids::SolidTable,
         volume::WIDE_MARGIN_PX,
     },
@@ -131,12 +132,13 @@ impl Shared {
             let invokers: &Invokers = plans.invokers();
             stale |= self.invoker_table.sync(gpu, &invokers.table(input.tile.size))?;
             stale |= self.invokers.sync(gpu, invokers.all())?;
-            let has_body = |lens: u32, PictureTile { origin: [x, y], size }: PictureTile| {
+            let rays = |PictureTile { origin: [x, y], size }: PictureTile| {
                 let [left, top] = input.tile.origin;
                 let tile = PictureTile { origin: [left + x, top + y], size };
-                plans.silhouettes[lens as usize].may_touch(&input.view, tile, WIDE_MARGIN_PX.into())
+                Rays::of(&input.view, tile, WIDE_MARGIN_PX.into())
             };
-            stale |= self.tile_lists.sync(gpu, &invokers.tile_lists(&plans.parts, input.tile.size, has_body))?;
+            let lists = invokers.tile_lists(&plans.parts, input.tile.size, &plans.silhouettes, rays);
+            stale |= self.tile_lists.sync(gpu, &lists)?;
         }
         let eye = input.view.camera.eye;
         stale |= self.view.sync(gpu, &[plan.view_uniform()])?;

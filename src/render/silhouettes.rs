@@ -4,7 +4,10 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    geom::shape::{Sphere, Volume, VolumeForm},
+    geom::{
+        Ray,
+        shape::{Sphere, Volume, VolumeForm},
+    },
     lens::LensBody,
     render::{eye::PictureTile, volume::LensVolume},
     shader::LensTest,
@@ -29,23 +32,38 @@ impl Silhouette {
         Self(volumes.map(ball).collect())
     }
 
-    /// Whether a line along it may touch a rectangle of the picture that is so many pixels larger on all sides.
+    /// Whether a line along it may be seen by some rays.
     ///
-    /// A ray passes the middle of a ball at `m`; |m − r| is at most the distance of the middle times the angle from the ray to the silhouette,
-    /// and no ray of the rectangle turns from that of its middle by more than the width of its half diagonal at distance 1.
-    pub fn may_touch(&self, view: &View, PictureTile { origin, size }: PictureTile, margin_px: f64) -> bool {
+    /// A ray passes the middle of a ball at `m`; |m − r| is at most the distance of the middle times the angle from the ray to the silhouette.
+    pub fn may_be_seen_by(&self, rays: &Rays) -> bool {
         let Some(balls) = &self.0 else { return true };
-        let [origin, size] = [origin, size].map(|[x, y]| DVec2::new(x.into(), y.into()));
-        let ray = view.ray(origin + 0.5 * size);
-        let turn = (0.5 * size + margin_px).length() * view.pixel_m(1.0);
+        let Rays { middle: Ray { origin, direction }, turn, are_parallel } = *rays;
         balls.iter().any(|(center, radius)| {
-            let to_center = *center - ray.origin;
-            let along = to_center.dot(ray.direction) / ray.direction.length_squared();
-            let miss = (to_center - along * ray.direction).length();
-            let reach = if view.is_orthographic() { turn } else { turn * to_center.length() };
+            let to_center = *center - origin;
+            let away = to_center.length();
+            let along = to_center.dot(direction) / direction.length_squared();
+            let miss = (to_center - along * direction).length();
             // And what is lost to rounding.
-            (miss - radius).abs() <= reach + 1e-6 * to_center.length()
+            (miss - radius).abs() <= if are_parallel { turn } else { turn * away } + 1e-6 * away
         })
+    }
+}
+
+/// The rays of a rectangle of the picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Rays {
+    middle: Ray,
+    /// No ray of it turns from that of its middle by more: the half diagonal at distance 1; parallel ones are no more than this aside, metres.
+    turn: f64,
+    are_parallel: bool,
+}
+
+impl Rays {
+    /// Of a rectangle that is so many pixels larger on all sides.
+    pub fn of(view: &View, PictureTile { origin, size }: PictureTile, margin_px: f64) -> Self {
+        let [origin, size] = [origin, size].map(|[x, y]| DVec2::new(x.into(), y.into()));
+        let turn = (0.5 * size + margin_px).length() * view.pixel_m(1.0);
+        Self { middle: view.ray(origin + 0.5 * size), turn, are_parallel: view.is_orthographic() }
     }
 }
 
@@ -87,7 +105,7 @@ mod tests {
             let all = (-margin..32 + margin).flat_map(|y| (-margin..32 + margin).map(move |x| (x, y)));
             let found: Vec<bool> = all.map(|(x, y)| meets(x, y)).collect();
             let is_mixed = found.contains(&true) && found.contains(&false);
-            prop_assert!(!is_mixed || ball.may_touch(&view, tile, f64::from(margin)));
+            prop_assert!(!is_mixed || ball.may_be_seen_by(&Rays::of(&view, tile, f64::from(margin))));
         }
     }
 
@@ -97,9 +115,10 @@ mod tests {
         let view = View::new(camera, [960, 960], &Aabb::EMPTY).expect("a view");
         let ball = Silhouette(Some(vec![(DVec3::ZERO, 10.0)]));
         let tiles = (0..30).flat_map(|y| (0..30).map(move |x| PictureTile { origin: [32 * x, 32 * y], size: [32; 2] }));
-        let touched = tiles.filter(|tile| ball.may_touch(&view, *tile, 4.0)).count();
+        let touched = tiles.filter(|tile| ball.may_be_seen_by(&Rays::of(&view, *tile, 4.0))).count();
         // A ring of 290 pixels' radius goes through 72 of them, and beside as many in reach of the diagonal.
         assert!((72..250).contains(&touched), "{touched} of 900");
-        assert!(Silhouette::default().may_touch(&view, PictureTile { origin: [0; 2], size: [32; 2] }, 4.0));
+        let corner = Rays::of(&view, PictureTile { origin: [0; 2], size: [32; 2] }, 4.0);
+        assert!(Silhouette::default().may_be_seen_by(&corner));
     }
 }
