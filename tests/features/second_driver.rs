@@ -12,7 +12,7 @@ use std::{
 
 use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
 
-use crate::studio::random_scene::{Wanted, scene};
+use crate::studio::random_scene::{FAMILY, Wanted, scene};
 
 const SIZE: [usize; 2] = [640, 360];
 /// Steps of 255 that colours may differ by.
@@ -26,7 +26,8 @@ const FEW_COLORS: usize = SIZE[0] * SIZE[1] / 500;
 const AS_FAR: f32 = 2e-3;
 /// What one picture may cost: a software driver's compiler takes more than all memory for some programs.
 const LIMITS: &str = "ulimit -v 16000000; exec timeout 150 \"$0\" \"$@\"";
-const SEEDS: std::ops::Range<u64> = 0..40;
+/// Families of random scenes; the first of each is drawn.
+const FAMILIES: std::ops::Range<u64> = 0..40;
 
 /// A picture, row by row.
 struct Drawn {
@@ -144,10 +145,10 @@ fn scenes(folder: &Path) -> Vec<PathBuf> {
         name.ends_with(".toml") && !name.ends_with(".sheet.toml") && is_there()
     });
     all.sort();
-    for seed in SEEDS {
-        let path = folder.join(format!("random-{seed}.toml"));
-        let city = ["builtin:square", "builtin:town"][seed as usize % 2];
-        std::fs::write(&path, scene(seed, city, Wanted { lenses: [2, 4], deformations: true })).unwrap();
+    for family in FAMILIES {
+        let path = folder.join(format!("random-{family}.toml"));
+        let city = ["builtin:square", "builtin:town"][family as usize % 2];
+        std::fs::write(&path, scene(family * FAMILY, city, Wanted { lenses: [2, 4], deformations: true })).unwrap();
         all.push(path);
     }
     all

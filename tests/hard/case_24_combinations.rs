@@ -24,7 +24,9 @@ use veduta::{
 
 use crate::studio::{self, ALL, bits, faces, is_thorough, of_scene, random_scene::Random};
 
+/// Of pictures in an ordinary run; a thorough one asks each program for more.
 const SIZE: [u32; 2] = [80, 50];
+const THOROUGH_SIZE: [u32; 2] = [240, 150];
 /// Of the pixels of lens masks that a thorough run asks for (`VEDUTA_HARD_PIXELS`), a tenth are held to the reference, over all scenes.
 const SHARE: u64 = 10;
 /// Scenes of an ordinary run beside all pairs of kinds: triples.
@@ -133,6 +135,10 @@ struct Made {
 
 /// The kinds of lenses that are combined.
 const KINDS: usize = 9;
+
+fn size() -> [u32; 2] {
+    if is_thorough() { THOROUGH_SIZE } else { SIZE }
+}
 
 fn class_word(class: Class) -> &'static str {
     match class {
@@ -389,7 +395,7 @@ impl Reference {
 
     /// What every pixel shows, and what is seen beside its middle.
     fn picture(&self, view: &View, beside: f64) -> Vec<[Seen; 5]> {
-        let [w, h] = SIZE;
+        let [w, h] = size();
         let offsets = [[0.0, 0.0], [-beside, -beside], [beside, -beside], [-beside, beside], [beside, beside]];
         let ray_of = |x: u32, y: u32, [i, j]: [f64; 2]| {
             let ray = view.ray(DVec2::new(f64::from(x) + 0.5 + i, f64::from(y) + 0.5 + j));
@@ -453,7 +459,7 @@ fn parsed(text: &str) -> Scene {
 
 fn view_of(scene: &Scene) -> View {
     let around = Aabb { min: DVec3::splat(-1e3), max: DVec3::splat(1e3) };
-    View::new(scene.camera.expect("a camera"), SIZE, &around).expect("a view")
+    View::new(scene.camera.expect("a camera"), size(), &around).expect("a view")
 }
 
 /// Draws a scene and holds it to the reference. How many pixels were compared, and how many of them show what a lens does.
@@ -462,9 +468,9 @@ fn compare(studio: &mut Studio, kinds: &[usize], seed: u64) -> Result<[u64; 2], 
     let scene = parsed(&text);
     let view = view_of(&scene);
     let backend = if seed.is_multiple_of(2) { Backend::Specialised } else { Backend::Uber };
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: false, backend };
+    let request = Request { size: size(), samples: 1, transparent: false, aovs: ALL, statistics: false, backend };
     let drawn = studio.render(&scene, &request).map_err(|error| format!("{error}\n{text}"))?;
-    let deformers = studio.deformers(&scene, SIZE).map_err(|error| error.to_string())?;
+    let deformers = studio.deformers(&scene, size()).map_err(|error| error.to_string())?;
     let moves = !deformers.0.is_empty();
     let reference = reference_of(studio, &scene, made, &deformers);
     let beside = if moves { BESIDE_DEFORMED_PX } else { BESIDE_PX };
@@ -537,7 +543,7 @@ fn held(drawn: &Picture, wanted: &[[Seen; 5]], lenses: usize) -> Result<[u64; 2]
         }
         compared += 1;
         acted += u64::from(own.masks.iter().any(|is_in| *is_in));
-        let at = || format!("pixel {}, {}", i as u32 % SIZE[0], i as u32 / SIZE[0]);
+        let at = || format!("pixel {}, {}", i as u32 % size()[0], i as u32 / size()[0]);
         if ids[i] != own.id && !own.others.contains(&ids[i]) {
             return Err(format!("{}: object {} at {}, wanted {} at {}", at(), ids[i], depth[i], own.id, own.t));
         }

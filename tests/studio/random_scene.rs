@@ -1,4 +1,6 @@
-//! Random scenes: two to four lenses of any kind in one place, as text of scene files. A number gives the same scene each time.
+//! Random scenes: two to four lenses of any kind in one place, as text of scene files. A number gives the same scene each time. Scenes
+//! come in families of [`FAMILY`], which have the same lenses in other places, of other sizes, from other eyes: one program draws them all,
+//! and most of what a small picture takes is the making of its program.
 
 use std::fmt::Write as _;
 
@@ -18,10 +20,38 @@ pub struct Wanted {
     pub deformations: bool,
 }
 
+/// Scenes of a family, one after the other in number.
+pub const FAMILY: u64 = 10;
+
+/// What is thrown for a scene.
+struct Dice {
+    /// What a family has in common.
+    choices: Random,
+    /// Places, sizes, shares.
+    numbers: Random,
+}
+
+impl Dice {
+    fn below(&mut self, end: usize) -> usize {
+        self.choices.below(end)
+    }
+
+    fn pick<'a, T>(&mut self, list: &'a [T]) -> &'a T {
+        self.choices.pick(list)
+    }
+
+    fn once_in(&mut self, n: usize) -> bool {
+        self.choices.once_in(n)
+    }
+
+    fn number(&mut self, low: f64, high: f64) -> f64 {
+        self.numbers.number(low, high)
+    }
+}
+
 /// A scene file over a city around the origin.
 pub fn scene(seed: u64, city: &str, wanted: Wanted) -> String {
-    let mut dice = Random::new(seed, 0);
-    let dice = &mut dice;
+    let dice = &mut Dice { choices: Random::new(seed / FAMILY, 0), numbers: Random::new(seed, 1) };
     let angle = dice.number(0.0, 6.25);
     let (distance, height) = (dice.number(40.0, 160.0), dice.number(4.0, 140.0));
     let mut text = format!(
@@ -46,7 +76,7 @@ pub fn scene(seed: u64, city: &str, wanted: Wanted) -> String {
     text
 }
 
-fn lens(dice: &mut Random, number: usize, wanted: Wanted) -> String {
+fn lens(dice: &mut Dice, number: usize, wanted: Wanted) -> String {
     let kinds = if wanted.deformations { 9 } else { 8 };
     let mut text = format!("[[lens]]\nname = \"l{number}\"\n");
     let body = *dice.pick(&["outline", "outline", "shell", "halo", "none"]);
@@ -102,11 +132,11 @@ fn lens(dice: &mut Random, number: usize, wanted: Wanted) -> String {
     text
 }
 
-fn place(dice: &mut Random) -> String {
+fn place(dice: &mut Dice) -> String {
     format!("[{:.2}, {:.2}, {:.2}]", dice.number(-60.0, 60.0), dice.number(-60.0, 60.0), dice.number(-2.0, 20.0))
 }
 
-fn turned(dice: &mut Random) -> String {
+fn turned(dice: &mut Dice) -> String {
     if dice.once_in(2) {
         return String::new();
     }
@@ -114,8 +144,8 @@ fn turned(dice: &mut Random) -> String {
 }
 
 /// A shape; combinations of some at most so deep.
-fn shape(dice: &mut Random, depth: usize) -> String {
-    let of = |dice: &mut Random, low: f64, high: f64| dice.number(low, high);
+fn shape(dice: &mut Dice, depth: usize) -> String {
+    let of = |dice: &mut Dice, low: f64, high: f64| dice.number(low, high);
     match dice.below(if depth > 0 { 12 } else { 7 }) {
         0 | 1 => format!("{{ kind = \"sphere\", center = {}, radius = {:.2} }}", place(dice), of(dice, 8.0, 50.0)),
         2 => {
@@ -170,12 +200,12 @@ fn shape(dice: &mut Random, depth: usize) -> String {
 }
 
 /// A box or a cylinder that stands upright, as deformations want it.
-fn upright(dice: &mut Random) -> String {
+fn upright(dice: &mut Dice) -> String {
     let [x, y, z] = [0; 3].map(|_| dice.number(40.0, 110.0));
     format!("{{ kind = \"box\", center = {}, size = [{x:.2}, {y:.2}, {z:.2}] }}", place(dice))
 }
 
-fn deformed(dice: &mut Random) -> String {
+fn deformed(dice: &mut Dice) -> String {
     match dice.below(5) {
         0 => format!("{{ kind = \"twist\", angle_deg = {} }}", dice.below(120) as i32 - 60),
         1 => format!("{{ kind = \"taper\", factor = {:.2} }}", dice.number(0.5, 1.4)),
@@ -189,7 +219,7 @@ fn deformed(dice: &mut Random) -> String {
     }
 }
 
-fn content(dice: &mut Random) -> String {
+fn content(dice: &mut Dice) -> String {
     let own = match dice.below(7) {
         0 => "derive = \"box\"".to_owned(),
         1 => "derive = \"hull\"".to_owned(),
@@ -209,7 +239,7 @@ fn content(dice: &mut Random) -> String {
     format!("{{ {own}, class = \"{class}\" }}")
 }
 
-fn border(dice: &mut Random) -> String {
+fn border(dice: &mut Dice) -> String {
     let width = dice.number(1.0, 20.0);
     let discrete = if dice.once_in(3) { ", discrete = \"dither\"" } else { "" };
     format!("{{ width = {width:.2}{discrete} }}")
@@ -232,7 +262,7 @@ fn ready() -> impl Iterator<Item = &'static EffectDefinition> {
 }
 
 /// One to `most` effects; of scene styles and filters one at most.
-fn steps(dice: &mut Random, most: usize) -> String {
+fn steps(dice: &mut Dice, most: usize) -> String {
     let all: Vec<&EffectDefinition> = ready().collect();
     let (mut chosen, mut has_style): (Vec<String>, bool) = (Vec::new(), false);
     for _ in 0..1 + dice.below(most) {
