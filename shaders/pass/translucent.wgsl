@@ -53,7 +53,7 @@ fn vertex_in_plane(in: Vertex, plane: Plane, @builtin(instance_index) layer: u32
 // Its depth is that of the plane, not the interpolated one that the depth test would take.
 @fragment
 fn lay_coplanar(in: CoplanarVarying) -> Laid {
-    let depth = depth_on_plane(in);
+    let depth = depth_on_plane(in.plane, in.clip);
     //@behind-plane
     let code = in.code & KEPT_CODE;
     let normal = select(0u, normal_code(in.normal, code), SMOOTH);

@@ -59,6 +59,9 @@ pub struct Gpu {
     /// How far from their places corners of triangles are drawn at most, pixels, measured when it is opened; 0 where depth is made of corners
     /// that have not been moved. What is seen may be off along the normal of its face by so much.
     pub snapping: f64,
+    /// Whether depths of thin triangles leave those of their corners: pixels are covered by corners on a grid, and depth is made of corners
+    /// in their places.
+    pub strays: bool,
     allocations: AtomicU64,
     uploads: AtomicU64,
     allocated_bytes: AtomicU64,
@@ -146,11 +149,12 @@ impl Gpu {
             queue,
             info,
             snapping: 0.0,
+            strays: false,
             allocations: AtomicU64::new(0),
             uploads: AtomicU64::new(0),
             allocated_bytes: AtomicU64::new(0),
         };
-        gpu.snapping = snapping::measured(&gpu)?;
+        (gpu.snapping, gpu.strays) = snapping::measured(&gpu)?;
         if gpu.is_software() {
             log::info!("software graphics adapter in use: {}", gpu.name());
         }
@@ -256,6 +260,14 @@ impl Gpu {
         self.count_allocation(contents.len() as u64);
         self.uploads.fetch_add(1, Relaxed);
         Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage }))
+    }
+
+    /// What vertices and indices of so many bytes are used for beside being drawn from, where corners must be read by each other so that
+    /// triangles hold their depth; nothing where they need not, or there are too many of them.
+    pub fn read_by_corners(&self, bytes: usize) -> wgpu::BufferUsages {
+        let limits = self.device.limits();
+        let is_bound = limits.max_bind_groups > 4 && bytes as u64 <= limits.max_storage_buffer_binding_size;
+        if self.strays && is_bound { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() }
     }
 
     /// A buffer of `bytes` zeros (at least [`LEAST_BYTES`]).

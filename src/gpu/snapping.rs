@@ -1,6 +1,9 @@
 //! How far a rasteriser moves the corners of triangles, measured: GPUs put them on a grid of 1/256 pixel, some software adapters on
 //! one of 1/16, and make coverage and depth of what stands there.
 //!
+//! An adapter may also cover pixels by corners on a grid and make depth of corners in their places. Then thin triangles have depths that none
+//! of their places has.
+//!
 //! What is moved within the picture by δ pixels is off along the normal of its face by no more than δ times the width of a pixel at its
 //! distance, however steep the face is.
 
@@ -17,8 +20,19 @@ const SLOPE: f64 = 1.0 / 16.0;
 /// What f32 rounds while depth is interpolated, pixels; grids that are as fine do not matter.
 const EXACT: f64 = 1.0 / 8192.0;
 
-/// How far from its place a corner may be drawn at most, pixels; 0 where depth is made of corners that have not been moved.
-pub(super) fn measured(gpu: &Gpu) -> Result<f64, GpuError> {
+/// The depths of a sliver, and what f32 may round them by.
+const SLIVER: std::ops::RangeInclusive<f32> = 0.249..=0.501;
+
+/// How far from its place a corner may be drawn at most, pixels; 0 where depth is made of corners that have not been moved. And whether depths
+/// of thin triangles leave those of their corners.
+pub(super) fn measured(gpu: &Gpu) -> Result<(f64, bool), GpuError> {
+    let moved = of_depths(&drawn(gpu, "vertex")?);
+    let strays = drawn(gpu, "sliver")?.iter().any(|depth| *depth != 0.0 && !SLIVER.contains(depth));
+    Ok((moved, strays))
+}
+
+/// The depths of the cells, each with what an entry point of the vertex shader makes.
+fn drawn(gpu: &Gpu, entry: &str) -> Result<Vec<f32>, GpuError> {
     let target = gpu.texture(
         "snapping",
         [CELLS * CELL, CELLS * CELL, 1],
@@ -27,21 +41,21 @@ pub(super) fn measured(gpu: &Gpu) -> Result<f64, GpuError> {
         wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
     );
     gpu.guarded(|| {
-        draw(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()));
+        draw(gpu, &target.create_view(&wgpu::TextureViewDescriptor::default()), entry);
         Ok(())
     })?;
     let bytes = gpu.read_texture(&target, 0, wgpu::TextureAspect::DepthOnly)?;
-    Ok(of_depths(bytemuck::cast_slice(&bytes)))
+    Ok(bytemuck::pod_collect_to_vec(&bytes))
 }
 
-fn draw(gpu: &Gpu, target: &wgpu::TextureView) {
+fn draw(gpu: &Gpu, target: &wgpu::TextureView, entry: &str) {
     let module = gpu.device.create_shader_module(wgpu::include_wgsl!("../../shaders/pass/snapping.wgsl"));
     let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("snapping"),
         layout: None,
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some("vertex"),
+            entry_point: Some(entry),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             buffers: &[],
         },
@@ -93,7 +107,7 @@ mod tests {
     use super::*;
 
     /// The picture of a rasteriser that moves corners with `moved`, pixels.
-    fn drawn(moved: impl Fn(f64) -> f64) -> Vec<f32> {
+    fn picture(moved: impl Fn(f64) -> f64) -> Vec<f32> {
         let row = CELLS * CELL;
         let mut depths = vec![0.0; (row * row) as usize];
         for cell in 0..CELLS * CELLS {
@@ -108,12 +122,12 @@ mod tests {
     #[test]
     fn grids_are_found_whatever_way_corners_are_moved_to_them() {
         let root = std::f64::consts::SQRT_2;
-        assert_eq!(of_depths(&drawn(|x| x)), 0.0);
+        assert_eq!(of_depths(&picture(|x| x)), 0.0);
         for bits in [4, 6, 8, 10] {
             let steps = f64::from(1 << bits);
             let [near, below] = [
-                of_depths(&drawn(|x| (x * steps).round() / steps)),
-                of_depths(&drawn(|x| (x * steps).floor() / steps)),
+                of_depths(&picture(|x| (x * steps).round() / steps)),
+                of_depths(&picture(|x| (x * steps).floor() / steps)),
             ];
             assert_eq!(near, 0.5 * root / steps, "{bits} bits");
             assert_eq!(below, root / steps, "{bits} bits, cut off");
@@ -123,12 +137,12 @@ mod tests {
     #[test]
     fn an_adapter_says_where_it_draws_corners() {
         let gpu = Gpu::open().expect("an adapter");
-        let snapping = measured(&gpu).expect("a picture");
-        assert_eq!(snapping, gpu.snapping);
+        let (snapping, strays) = measured(&gpu).expect("a picture");
+        assert_eq!((snapping, strays), (gpu.snapping, gpu.strays));
         // Four bits are the least that Vulkan, Metal and Direct3D allow.
         assert!((0.0..=root_of_a_half() / 8.0).contains(&snapping), "{snapping}");
         if gpu.name().contains("llvmpipe") {
-            assert_eq!(snapping, 0.0);
+            assert_eq!((snapping, strays), (0.0, true));
         }
     }
 

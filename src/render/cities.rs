@@ -50,6 +50,11 @@ pub(super) struct DrawnSection<'a> {
 }
 
 impl DrawnSection<'_> {
+    /// What pipelines need to know of it.
+    pub fn facts(&self) -> SectionFacts {
+        SectionFacts::new(self.section, self.city.buffers.smooth)
+    }
+
     /// Whether a chunk of it may show something.
     pub fn shows(&self, chunk: &Chunk, cut: Option<&Cut>, view: &View) -> bool {
         match self.content {
@@ -98,7 +103,7 @@ impl<'a> Cities<'a> {
     pub fn facts(&self) -> CityFacts<'a> {
         let sections_of = |city: &CityOnGpu| -> Vec<SectionFacts> {
             let is_smooth = city.buffers.smooth;
-            city.buffers.sections.iter().map(|s| SectionFacts { kind: s.kind, is_smooth }).collect()
+            city.buffers.sections.iter().map(|s| SectionFacts::new(s, is_smooth)).collect()
         };
         let content = |placed: PlacedCity<'a>| ContentFacts {
             number: placed.number,

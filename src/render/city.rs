@@ -70,6 +70,13 @@ pub struct Section {
     pub chunks: Vec<Chunk>,
 }
 
+impl Section {
+    /// Whether its corners can be read by each other.
+    pub fn is_read(&self) -> bool {
+        self.vertices.usage().contains(wgpu::BufferUsages::STORAGE)
+    }
+}
+
 /// What a section's pipeline must do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SectionKind {
@@ -592,13 +599,15 @@ fn upload<T: bytemuck::NoUninit>(
     if indices.is_empty() {
         return Ok(None);
     }
+    let bytes = [size_of_val(&vertices[..]), size_of_val(&indices[..]), size_of_val(extra.each)];
+    let usage = U::COPY_SRC | gpu.read_by_corners(bytes.into_iter().max().unwrap_or(0));
     let section = Section {
         kind,
-        vertices: gpu.buffer("vertices", U::VERTEX | U::COPY_SRC, vertices)?,
-        indices: gpu.buffer("indices", U::INDEX | U::COPY_SRC, indices)?,
+        vertices: gpu.buffer("vertices", U::VERTEX | usage, vertices)?,
+        indices: gpu.buffer("indices", U::INDEX | usage, indices)?,
         extra: match extra.each {
             [] => None,
-            each => Some(gpu.buffer(extra.name, U::VERTEX | U::COPY_SRC, each)?),
+            each => Some(gpu.buffer(extra.name, U::VERTEX | usage, each)?),
         },
         chunks: gathered.chunks(),
     };

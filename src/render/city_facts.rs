@@ -4,7 +4,7 @@ use crate::{
     geom::Aabb,
     render::{
         cells::{CellFigures, Detail, Details, triangles_in},
-        city::{Chunk, SectionKind},
+        city::{Chunk, Section, SectionKind},
         frame::FrameInput,
         hiding::reaches_of,
         light,
@@ -20,6 +20,15 @@ pub(super) struct SectionFacts {
     pub kind: SectionKind,
     /// Whether its city has normals per vertex.
     pub is_smooth: bool,
+    /// Whether its corners can be read by each other.
+    pub is_read: bool,
+}
+
+impl SectionFacts {
+    /// Those of a section of a city.
+    pub fn new(section: &Section, is_smooth: bool) -> Self {
+        Self { kind: section.kind, is_smooth, is_read: section.is_read() }
+    }
 }
 
 /// Where the chunks of a content are.

@@ -28,6 +28,9 @@ use crate::{
     view::Frustum,
 };
 
+/// The sine of the angle from the horizon from which on a view counts as straight up or down: a fortieth of a degree from it.
+const UPRIGHT: f64 = 1.0 - 1e-7;
+
 /// What a frame depends on of the adapter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Adapter {
@@ -35,6 +38,8 @@ pub(super) struct Adapter {
     pub is_software: bool,
     /// Whether it can test depth before the shader runs.
     pub tests_depth_early: bool,
+    /// Whether depths of thin triangles leave those of their corners.
+    pub strays: bool,
 }
 
 /// What stayed from the frame before.
@@ -88,6 +93,14 @@ pub(super) struct FramePlan<'a> {
 }
 
 impl<'a> FramePlan<'a> {
+    /// Whether triangles of a section hold their depth where they are seen edge on: parallel rays, and an eye straight above or below, see
+    /// whole families of faces like that.
+    pub fn holds_depth(&self, section: &SectionFacts) -> bool {
+        let view = &self.input.view;
+        let is_upright = view.basis.forward.z.abs() > UPRIGHT;
+        self.adapter.strays && section.is_read && (view.is_orthographic() || is_upright)
+    }
+
     /// The plan of a frame.
     pub fn new(
         input: &'a FrameInput<'a>,

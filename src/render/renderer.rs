@@ -286,7 +286,7 @@ impl Renderer {
 }
 
 fn adapter_of(gpu: &Gpu) -> Adapter {
-    Adapter { is_software: gpu.is_software(), tests_depth_early: gpu.tests_depth_early() }
+    Adapter { is_software: gpu.is_software(), tests_depth_early: gpu.tests_depth_early(), strays: gpu.strays }
 }
 
 /// The targets that a frame draws into.

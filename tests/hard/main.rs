@@ -18,6 +18,7 @@ mod case_10_layers;
 mod case_11_layers;
 mod case_11_rays_through_edges;
 mod case_12_deformed_slivers;
+mod case_12_edge_on;
 mod case_12_layers;
 mod case_12_slivers;
 mod case_13_dirty_rings;

@@ -8,6 +8,7 @@ use wgpu::ShaderStages as S;
 use crate::{
     gpu::{Gpu, GpuError},
     render::{
+        city_facts::SectionFacts,
         eye::PictureTile,
         layers::{LAYER_BYTES, LayerFigures, MethodFigures},
         pass::{
@@ -22,7 +23,7 @@ use crate::{
         resource::{
             bindings::{DEPTHS, DRAWN, GroupLayout, UNIFORM, WRITTEN, all_of, group, whole},
             key::{Draw, Parts, PipelineKey, Stage, depth_test, flag, words},
-            layouts::{CUT_CITY, LENSES},
+            layouts::{CORNERS, CUT_CITY, LENSES},
             recording::{Counted, DrawnPass, Recording, Shaded, read_depth, scissor},
             targets::Needs,
         },
@@ -62,14 +63,25 @@ struct ListKey {
     all: bool,
     /// Whether the depth test can come first.
     early: bool,
+    /// Whether triangles hold their depth where they are seen edge on.
+    holds_depth: bool,
 }
 
 impl ListKey {
     fn module(&self) -> Module {
-        Module::Layers(self.program.clone(), self.early && self.section != GeometryKind::Coplanar)
+        Module::Layers(self.program.clone(), self.early && self.is_interpolated())
+    }
+
+    /// Whether depths are those that the rasteriser makes.
+    fn is_interpolated(&self) -> bool {
+        self.section != GeometryKind::Coplanar && !self.holds_depth
     }
 
     fn entry_points(&self) -> (&'static str, &'static str) {
+        if self.holds_depth {
+            let is_textured = matches!(self.section, GeometryKind::Textured(_));
+            return ("vertex_held_layer", if is_textured { "note_held_textured" } else { "note_held" });
+        }
         match (self.section, self.normals.smooth) {
             (GeometryKind::Plain, false) => ("vertex", "note_plain"),
             (GeometryKind::Plain, true) => ("vertex_smooth", "note_smooth"),
@@ -82,7 +94,13 @@ impl ListKey {
 impl PipelineKey for ListKey {
     fn name(&self) -> String {
         let Normals { smooth, flat } = self.normals;
-        let flags = words(&[(self.all, "of all"), (self.textured, "textured"), (smooth, "smooth"), (flat, "flat")]);
+        let flags = words(&[
+            (self.all, "of all"),
+            (self.textured, "textured"),
+            (smooth, "smooth"),
+            (flat, "flat"),
+            (self.holds_depth, "held"),
+        ]);
         format!("{}{}{flags}", self.module().name(), self.section.layer_words())
     }
 
@@ -93,18 +111,23 @@ impl PipelineKey for ListKey {
             ("TEXTURED", flag(self.textured)),
             ("ALL", flag(self.all)),
         ];
-        // The depth of a face of a plane is not the interpolated one.
-        let compare = match self.section {
-            GeometryKind::Coplanar => wgpu::CompareFunction::Always,
-            _ => wgpu::CompareFunction::Greater,
+        let compare = match self.is_interpolated() {
+            true => wgpu::CompareFunction::Greater,
+            false => wgpu::CompareFunction::Always,
         };
         let (vertex, fragment) = self.entry_points();
         Parts {
             module: self.module(),
-            groups: vec![Some(&LAYERS), Some(&CUT_CITY), Some(&LENSES), self.section.image()],
-            constants: constants.into_iter().chain(self.section.constants()).collect(),
+            groups: vec![
+                Some(&LAYERS),
+                Some(&CUT_CITY),
+                Some(&LENSES),
+                self.section.image(),
+                self.holds_depth.then_some(&CORNERS),
+            ],
+            constants: constants.into_iter().chain(self.section.constants(self.holds_depth)).collect(),
             stage: Stage::Draw(Draw {
-                buffers: self.section.vertex_buffers(),
+                buffers: self.section.vertex_buffers(self.holds_depth),
                 depth: Some(depth_test(compare, false)),
                 ..Draw::new(vertex, Some(fragment))
             }),
@@ -249,14 +272,15 @@ fn count_key(plan: &FramePlan) -> Option<OrderKey> {
     layering::asks_most(plan).then(|| OrderKey::Count { words: layering::words(plan) })
 }
 
-fn list_key(plan: &FramePlan, program: &Program, section: GeometryKind, is_smooth_city: bool, all: bool) -> ListKey {
+fn list_key(plan: &FramePlan, program: &Program, section: &SectionFacts, all: bool) -> ListKey {
     ListKey {
-        section,
-        normals: Normals::new(plan.smooth, is_smooth_city),
+        section: section.kind.into(),
+        normals: Normals::new(plan.smooth, section.is_smooth),
         textured: plan.is_textured(),
         program: program.clone(),
         all,
         early: plan.adapter.tests_depth_early,
+        holds_depth: plan.holds_depth(section),
     }
 }
 
@@ -290,7 +314,8 @@ impl Run<'_> {
                 self.frame,
                 pass,
                 self.layering.cut,
-                |kind, is_smooth, all| list_key(plan, self.noting, kind.into(), is_smooth, all),
+                true,
+                |section, all| list_key(plan, self.noting, section, all),
                 |pass, offset| pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
             )
         });
@@ -439,12 +464,7 @@ impl Pass for ExactLayers {
         keys.add_programs(28, [self.composite_key(plan, composite)]);
         keys.add_programs(28, count_key(plan));
         keys.add_programs(28, sorting(layering::words(plan), self.longest));
-        keys.add(
-            30,
-            plan.sections
-                .iter()
-                .flat_map(|s| [false, true].map(|all| list_key(plan, noting, s.kind.into(), s.is_smooth, all))),
-        );
+        keys.add(30, plan.sections.iter().flat_map(|s| [false, true].map(|all| list_key(plan, noting, s, all))));
     }
 
     fn record(

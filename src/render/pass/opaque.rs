@@ -3,7 +3,8 @@
 use crate::{
     render::{
         cities::DrawnSection,
-        city::{Chunk, CityBuffers, Draw as Run, SectionKind, draws_of},
+        city::{Chunk, CityBuffers, Draw as Run, Section, draws_of},
+        city_facts::SectionFacts,
         cut::Cut,
         pass::{
             context::{FrameContext, Keys},
@@ -11,10 +12,10 @@ use crate::{
         },
         plan::FramePlan,
         resource::{
-            bindings::{DRAWN, GroupLayout, STAGE, UNIFORM},
+            bindings::{DRAWN, GroupLayout, STAGE, UNIFORM, group, whole},
             formats::{COLORS, OWN_DEPTH, REGIONS, codes},
             key::{Draw, Parts, PipelineKey, Stage, depth_test, flag, words},
-            layouts::{CITY, CUT_CITY, LENSES, VIEW},
+            layouts::{CITY, CORNERS, CUT_CITY, LENSES, VIEW},
             recording::{Counted, DrawnPass, Recording, Shaded, cleared, cleared_depth, kept, kept_depth},
         },
     },
@@ -37,17 +38,20 @@ pub struct GeometryKey {
     pub measured: bool,
     /// What is hidden; of a program that tells regions apart, what is not in the one that is drawn.
     pub cut: Option<Program>,
+    /// Whether triangles hold their depth where they are seen edge on.
+    pub holds_depth: bool,
 }
 
 impl GeometryKey {
     /// The pipeline that draws a section of a frame; `cut`: where something may be hidden.
-    pub fn new(plan: &FramePlan, kind: SectionKind, is_smooth_city: bool, cut: Option<Program>) -> Self {
+    pub fn new(plan: &FramePlan, section: &SectionFacts, cut: Option<Program>) -> Self {
         Self {
-            section: kind.into(),
+            section: section.kind.into(),
             colored: plan.colored,
-            normals: Normals::new(plan.smooth, is_smooth_city),
+            normals: Normals::new(plan.smooth, section.is_smooth),
             measured: plan.input.measured,
             cut,
+            holds_depth: plan.holds_depth(section),
         }
     }
 
@@ -56,6 +60,10 @@ impl GeometryKey {
     }
 
     fn entry_points(&self) -> (&'static str, &'static str) {
+        if self.holds_depth {
+            let is_textured = matches!(self.section, GeometryKind::Textured(_));
+            return ("vertex_held", if is_textured { "held_textured" } else { "held_full" });
+        }
         let full = self.colored || self.measured || self.is_of_region();
         match (self.section, self.normals.smooth) {
             (GeometryKind::Plain, false) => ("vertex", if full { "full" } else { "plain" }),
@@ -87,8 +95,13 @@ impl PipelineKey for GeometryKey {
             GeometryKind::Coplanar => " coplanar",
         };
         let Normals { smooth, flat } = self.normals;
-        let flags =
-            words(&[(self.colored, "colored"), (smooth, "smooth"), (flat, "flat"), (self.measured, "measured")]);
+        let flags = words(&[
+            (self.colored, "colored"),
+            (smooth, "smooth"),
+            (flat, "flat"),
+            (self.measured, "measured"),
+            (self.holds_depth, "held"),
+        ]);
         format!("{}{kind}{flags}", Module::Geometry(self.cut.clone()).name())
     }
 
@@ -107,10 +120,11 @@ impl PipelineKey for GeometryKey {
                 Some(if is_cut { &CUT_CITY } else { &CITY }),
                 is_cut.then_some(&LENSES),
                 self.section.image(),
+                self.holds_depth.then_some(&CORNERS),
             ],
-            constants: constants.into_iter().chain(self.section.constants()).collect(),
+            constants: constants.into_iter().chain(self.section.constants(self.holds_depth)).collect(),
             stage: Stage::Draw(Draw {
-                buffers: self.section.vertex_buffers(),
+                buffers: self.section.vertex_buffers(self.holds_depth),
                 targets: self.targets(),
                 depth: Some(depth_test(compare, true)),
                 ..Draw::new(vertex, Some(fragment))
@@ -143,14 +157,12 @@ impl<'a> CutBy<'a> {
 
 /// Adds the pipelines of what no lens reaches.
 pub fn add_whole_keys(plan: &FramePlan, keys: &mut Keys) {
-    keys.add(11, plan.own_sections.iter().map(|s| GeometryKey::new(plan, s.kind, s.is_smooth, None)));
+    keys.add(11, plan.own_sections.iter().map(|s| GeometryKey::new(plan, s, None)));
 }
 
 /// Adds those of what a program hides something of: for all sections, contents' too.
 pub fn add_cut_keys(plan: &FramePlan, program: &Program, keys: &mut Keys) {
-    let key = |s: &crate::render::city_facts::SectionFacts| {
-        GeometryKey::new(plan, s.kind, s.is_smooth, Some(program.clone()))
-    };
+    let key = |s: &SectionFacts| GeometryKey::new(plan, s, Some(program.clone()));
     keys.add_programs(23, plan.sections.iter().map(key));
 }
 
@@ -166,10 +178,18 @@ pub fn visible<'a>(
 }
 
 /// Sets what a section is drawn from, but for its pipeline.
-pub fn set_section(pass: &mut wgpu::RenderPass, drawn: &DrawnSection) {
-    pass.set_vertex_buffer(0, drawn.section.vertices.slice(..));
-    if let Some(extra) = &drawn.section.extra {
-        pass.set_vertex_buffer(1, extra.slice(..));
+pub fn set_section(frame: &FrameContext, pass: &mut wgpu::RenderPass, drawn: &DrawnSection, holds_depth: bool) {
+    let Section { vertices, indices, extra, .. } = drawn.section;
+    if holds_depth {
+        let entries = [(0, whole(indices)), (1, whole(vertices)), (2, whole(extra.as_ref().unwrap_or(indices)))];
+        let corners = group(frame.gpu, "corners", &frame.pipelines.layout(&CORNERS), &entries);
+        pass.set_bind_group(4, &corners, &[]);
+    } else {
+        pass.set_vertex_buffer(0, vertices.slice(..));
+        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        if let Some(extra) = extra {
+            pass.set_vertex_buffer(1, extra.slice(..));
+        }
     }
     if let Some(image) = drawn.image {
         pass.set_bind_group(3, image, &[]);
@@ -205,7 +225,7 @@ pub fn draw_opaque(
         pass.set_bind_group(0, &groups.view, &[]);
         let mut counted = Counted::NONE;
         for part in parts.iter().filter(|part| !part.chunks.is_empty()) {
-            set_section(pass, &part.drawn);
+            set_section(frame, pass, &part.drawn, plan.holds_depth(&part.drawn.facts()));
             counted += draw_part(frame, pass, part, cut);
         }
         counted
@@ -215,7 +235,8 @@ pub fn draw_opaque(
 /// Draws what a part has, what is cut and what is not each by its pipeline.
 fn draw_part(frame: &FrameContext, pass: &mut wgpu::RenderPass, part: &SectionPart, by: Option<CutBy>) -> Counted {
     let FrameContext { groups, plan, .. } = *frame;
-    let DrawnSection { city, section, content, offset, .. } = part.drawn;
+    let DrawnSection { city, content, offset, .. } = part.drawn;
+    let facts = part.drawn.facts();
     let mut counted = Counted::NONE;
     for (chunks, is_cut) in Cut::parts(by.map(|by| by.cut), &plan.input.view, &part.chunks, content.is_some()) {
         let (runs, triangles) = draws_of(chunks.into_iter());
@@ -227,12 +248,22 @@ fn draw_part(frame: &FrameContext, pass: &mut wgpu::RenderPass, part: &SectionPa
             true => pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
             false => pass.set_bind_group(1, &city.group, &[]),
         }
-        let key = GeometryKey::new(plan, section.kind, city.buffers.smooth, program);
+        let key = GeometryKey::new(plan, &facts, program);
         pass.set_pipeline(frame.pipelines.get(&key));
-        draw_runs(pass, &section.indices, &runs);
+        draw_corners(pass, &runs, 0, key.holds_depth);
         counted += Counted { draws: runs.len() as u32, triangles };
     }
     counted
+}
+
+/// Draws runs of what [`set_section`] has set, as this instance.
+pub fn draw_corners(pass: &mut wgpu::RenderPass, runs: &[Run], instance: u32, holds_depth: bool) {
+    for run in runs {
+        match holds_depth {
+            true => pass.draw(run.clone(), instance..instance + 1),
+            false => pass.draw_indexed(run.clone(), 0, instance..instance + 1),
+        }
+    }
 }
 
 /// Draws runs of an index buffer.

@@ -35,8 +35,11 @@ const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float3
 const PLANE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x3, 5 => Sint32x3, 6 => Float32];
 
 impl GeometryKind {
-    /// What it is drawn from.
-    pub fn vertex_buffers(self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
+    /// What it is drawn from; where triangles hold their depth, corners are read from storage.
+    pub fn vertex_buffers(self, holds_depth: bool) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
+        if holds_depth {
+            return Vec::new();
+        }
         let extra = match self {
             Self::Plain => None,
             Self::Textured(_) => per_vertex(8, TEXCOORD),
@@ -50,12 +53,15 @@ impl GeometryKind {
         matches!(self, Self::Textured(_)).then_some(&IMAGE)
     }
 
-    /// The opacity below which texels are holes, as pipelines read it.
-    pub fn constants(self) -> Option<(&'static str, f64)> {
-        match self {
-            Self::Textured(cutoff) => Some(("ALPHA_CUTOFF", f64::from(f32::from_bits(cutoff)))),
-            _ => None,
-        }
+    /// The opacity below which texels are holes, as pipelines read it; where triangles hold their depth, how many words corners have besides.
+    pub fn constants(self, holds_depth: bool) -> Vec<(&'static str, f64)> {
+        let (cutoff, words) = match self {
+            Self::Plain => (None, 0),
+            Self::Textured(cutoff) => (Some(cutoff), 2),
+            Self::Coplanar => (None, size_of::<layout::Plane>() / 4),
+        };
+        let cutoff = cutoff.map(|cutoff| ("ALPHA_CUTOFF", f64::from(f32::from_bits(cutoff))));
+        cutoff.into_iter().chain(holds_depth.then_some(("WORDS_BESIDES", words as f64))).collect()
     }
 
     /// What names of pipelines of layers say of it.

@@ -134,7 +134,7 @@ impl Asked {
             most_triangles: None,
         };
         let chunks = [Chunk { range: 0..36, bounds, cell: 0, details: 1 }];
-        let sections = vec![SectionFacts { kind: SectionKind::Plain, is_smooth: false }];
+        let sections = vec![SectionFacts { kind: SectionKind::Plain, is_smooth: false, is_read: false }];
         let facts = CityFacts {
             bounds,
             all: bounds,

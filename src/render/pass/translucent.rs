@@ -4,23 +4,25 @@ use std::hash::BuildHasher as _;
 
 use crate::render::{
     cities::DrawnSection,
-    city::{Chunk, SectionKind, draws_of},
+    city::{Chunk, draws_of},
+    city_facts::SectionFacts,
     cut::Cut,
     pass::{
         context::FrameContext,
-        opaque::{set_section, visible},
+        opaque::{draw_corners, set_section, visible},
     },
     resource::{key::PipelineKey, recording::Counted},
 };
 
-/// Draws the chunks that may be translucent, each kind of section by the pipeline that `key_of` names (its second argument: whether
-/// its city has normals per vertex; its third: whether all of the chunks is translucent, nothing opaque or hidden among it); `bind`
-/// binds the group that has the city's offset.
+/// Draws the chunks that may be translucent, each section by the pipeline that `key_of` names (its second argument: whether all of the
+/// chunks is translucent, nothing opaque or hidden among it); `bind` binds the group that has the city's offset. `can_hold`: whether
+/// these are pipelines of triangles that hold their depth, where the plan asks for it.
 pub fn draw_translucent<K: PipelineKey>(
     frame: &FrameContext,
     pass: &mut wgpu::RenderPass,
     cut: &Cut,
-    key_of: impl Fn(SectionKind, bool, bool) -> K,
+    can_hold: bool,
+    key_of: impl Fn(&SectionFacts, bool) -> K,
     bind: impl Fn(&mut wgpu::RenderPass, u32),
 ) -> Counted {
     let (view, shuffled) = (&frame.plan.input.view, frame.plan.settings.shuffled);
@@ -31,6 +33,8 @@ pub fn draw_translucent<K: PipelineKey>(
     }
     for drawn in sections {
         let seen = visible(&drawn, frame, Some(cut));
+        let facts = drawn.facts();
+        let holds_depth = can_hold && frame.plan.holds_depth(&facts);
         let (all, some): (Vec<&Chunk>, Vec<&Chunk>) = seen
             .iter()
             .map(|s| s.chunk)
@@ -40,10 +44,11 @@ pub fn draw_translucent<K: PipelineKey>(
             if chunks.is_empty() {
                 continue;
             }
-            let key = key_of(drawn.section.kind, drawn.city.buffers.smooth, is_all);
+            let key = key_of(&facts, is_all);
             pass.set_pipeline(frame.pipelines.get(&key));
             bind(pass, drawn.offset);
-            counted += draw_chunks(pass, &drawn, chunks, shuffled);
+            set_section(frame, pass, &drawn, holds_depth);
+            counted += draw_chunks(pass, &drawn, chunks, shuffled, holds_depth);
         }
     }
     counted
@@ -55,16 +60,15 @@ fn draw_chunks(
     drawn: &DrawnSection,
     mut chunks: Vec<&Chunk>,
     shuffled: Option<u32>,
+    holds_depth: bool,
 ) -> Counted {
     // What is opaque is there already, so the order is free: neighbours become one draw.
     chunks.sort_unstable_by_key(|chunk| chunk.range.start);
-    set_section(pass, drawn);
     let (mut runs, triangles) = draws_of(chunks.into_iter());
     if let Some(by) = shuffled {
         runs = runs.into_iter().flatten().step_by(3).map(|first| first..first + 3).collect();
         runs.sort_by_key(|run| rustc_hash::FxBuildHasher.hash_one([run.start, by]));
     }
-    pass.set_index_buffer(drawn.section.indices.slice(..), wgpu::IndexFormat::Uint32);
-    runs.iter().for_each(|run| pass.draw_indexed(run.clone(), 0, drawn.layer..drawn.layer + 1));
+    draw_corners(pass, &runs, drawn.layer, holds_depth);
     Counted { draws: runs.len() as u32, triangles }
 }

@@ -20,6 +20,11 @@ pub static CITY: GroupLayout = GroupLayout { label: "city", entries: &[(0, S::FR
 /// Geometry, group 3: a texture.
 pub static IMAGE: GroupLayout =
     GroupLayout { label: "image", entries: &[(0, S::FRAGMENT, SAMPLED), (1, S::FRAGMENT, SAMPLER)] };
+/// Geometry of triangles that hold their depth, group 4: indices, vertices, what each has besides.
+pub static CORNERS: GroupLayout = GroupLayout {
+    label: "corners",
+    entries: &[(0, S::VERTEX, STORAGE), (1, S::VERTEX, STORAGE), (2, S::VERTEX, STORAGE)],
+};
 /// Sprites, group 1: planes of convex volumes, faces of solids.
 pub static PLANES: GroupLayout =
     GroupLayout { label: "planes", entries: &[(1, COMPUTED, STORAGE), (2, COMPUTED, STORAGE)] };

@@ -8,7 +8,7 @@ use crate::{
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
             opaque::{
-                GeometryKey, REGION, SectionPart, add_cut_keys, add_whole_keys, draw_opaque, draw_runs, set_section,
+                GeometryKey, REGION, SectionPart, add_cut_keys, add_whole_keys, draw_corners, draw_opaque, set_section,
                 visible,
             },
         },
@@ -91,13 +91,12 @@ impl RegionDraw<'_> {
             pass.set_bind_group(2, &groups.lenses, &[]);
             let mut counted = Counted::NONE;
             for SectionPart { drawn, chunks } in parts {
-                set_section(pass, drawn);
+                let key = GeometryKey::new(plan, &drawn.facts(), Some(self.program.clone()));
+                set_section(self.frame, pass, drawn, key.holds_depth);
                 pass.set_bind_group(1, &groups.cut_city, &[drawn.offset; 2]);
-                let is_smooth = drawn.city.buffers.smooth;
-                let key = GeometryKey::new(plan, drawn.section.kind, is_smooth, Some(self.program.clone()));
                 pass.set_pipeline(pipelines.get(&key));
                 let (runs, triangles) = draws_of(chunks.iter().copied());
-                draw_runs(pass, &drawn.section.indices, &runs);
+                draw_corners(pass, &runs, 0, key.holds_depth);
                 counted += Counted { draws: runs.len() as u32, triangles };
             }
             counted

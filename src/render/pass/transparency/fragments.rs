@@ -235,7 +235,7 @@ impl FragmentKey {
         if let Some(own) = &self.shading {
             list.extend([("CLAY", flag(own.clay)), ("SHADOWS", flag(own.shadows)), ("PART", f64::from(own.part))]);
         }
-        list.extend(self.section.constants());
+        list.extend(self.section.constants(false));
         list
     }
 
@@ -305,7 +305,7 @@ impl PipelineKey for FragmentKey {
             groups: self.groups(),
             constants: self.constants(),
             stage: Stage::Draw(Draw {
-                buffers: self.section.vertex_buffers(),
+                buffers: self.section.vertex_buffers(false),
                 targets: self.targets(sums),
                 depth: Some(depth_test(self.depth_compare(), writes_depth)),
                 ..Draw::new(vertex, Some(fragment))

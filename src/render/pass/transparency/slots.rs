@@ -223,7 +223,8 @@ impl Run<'_> {
                     self.frame,
                     pass,
                     self.layering.cut,
-                    |kind, is_smooth, _| FragmentKey::new(plan, self.programs, of, self.slots, kind.into(), is_smooth),
+                    false,
+                    |s, _| FragmentKey::new(plan, self.programs, of, self.slots, s.kind.into(), s.is_smooth),
                     |pass, offset| pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
                 )
             });
@@ -277,7 +278,8 @@ impl Run<'_> {
                 self.frame,
                 pass,
                 self.layering.cut,
-                |kind, is_smooth, _| FragmentKey::new(plan, self.programs, of, self.slots, kind.into(), is_smooth),
+                false,
+                |s, _| FragmentKey::new(plan, self.programs, of, self.slots, s.kind.into(), s.is_smooth),
                 |pass, offset| pass.set_bind_group(0, &view, &[band.offset(), offset]),
             )
         });

@@ -117,9 +117,8 @@ impl Pass for StochasticLayers {
                 frame,
                 pass,
                 layering.cut,
-                |kind, is_smooth, _| {
-                    FragmentKey::new(plan, programs, FragmentPass::Chance, Slots::NONE, kind.into(), is_smooth)
-                },
+                false,
+                |s, _| FragmentKey::new(plan, programs, FragmentPass::Chance, Slots::NONE, s.kind.into(), s.is_smooth),
                 |pass, offset| pass.set_bind_group(0, &view, &[0, offset]),
             )
         });
