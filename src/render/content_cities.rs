@@ -25,6 +25,7 @@ use crate::{
         enclosed::{Area, areas, meeting},
         moved::Moved,
         operations::ContentUse,
+        placed_region::Leaf,
         standing::Placement,
         stats,
         volume::LensVolume,
@@ -206,6 +207,19 @@ impl SceneContents {
         first as u32
     }
 
+    /// Makes the boxes of lenses around objects hold these wherever contents show them, those of other lenses too: what belongs to a
+    /// chosen object is in the lens, wherever it is.
+    pub fn add_to_members(&self, volumes: &mut [LensVolume], own: ShownCity, moved: &Moved) {
+        for volume in volumes.iter_mut().filter(|volume| volume.region.has_members()) {
+            for leaf in volume.region.leaves_mut() {
+                let Leaf::Members(members) = &mut leaf.leaf else { continue };
+                let shown = self.wanted.iter().map(|content| moved.bounds(&content.bounds_of(&members.objects, own)));
+                members.bounds = shown.fold(members.bounds, |all, bounds| all.union(bounds));
+            }
+            volume.bounds = volume.region.bounds();
+        }
+    }
+
     /// Box around what the lenses may show of it, metres; `own`: around the scene's city at rest.
     pub fn bounds(&self, own: &Aabb, volumes: &[LensVolume], moved: &Moved) -> Aabb {
         let of = |shown: &ContentUse| {
@@ -317,6 +331,17 @@ impl WantedContent {
     /// The model that it shows, and the geometries of it; `own`: the scene's city.
     fn shown<'a>(&'a self, own: ShownCity<'a>) -> (&'a CityModel, &'a [u32]) {
         self.city.as_ref().map_or((own.model, own.geometries), |city| (&*city.model, &city.geometries[..]))
+    }
+
+    /// Box around where these objects of the scene's city stand in it, metres.
+    fn bounds_of(&self, objects: &[bool], own: ShownCity) -> Aabb {
+        if self.city.as_ref().is_some_and(|city| !city.is_own) {
+            return Aabb::EMPTY;
+        }
+        let (model, geometries) = self.shown(own);
+        let all = geometries.iter().map(|&g| &model.geometries[g as usize]);
+        let of_objects = all.filter(|g| objects.get(g.object as usize) == Some(&true));
+        self.placement.boxed(&of_objects.fold(Aabb::EMPTY, |all, g| all.union(g.bounds)))
     }
 
     /// Box around where it stands, metres.

@@ -110,6 +110,7 @@ impl Surroundings<'_> {
         known.solid_table = found.place_solids(&known.solid_table).map_err(ResolveError::Scene)?;
         let LensVolumes { mut volumes, tests } = found;
         let contents = self.contents(drawn, &eye, camera, size, &volumes, known)?;
+        contents.add_to_members(&mut volumes, self.city, &deformations.moved);
         let sights = self.sights(scene, &eye, &deformations.moved, known);
         let mut operations = self.operations(scene, &volumes, tests, &contents, sights)?;
         add_members(&mut operations, &mut volumes, &self.models(&contents));

@@ -8,6 +8,7 @@ use veduta::{
         load::{LoadOptions, Quiet, load},
         shown::shown_geometries,
     },
+    figure::scene_file::{Options, parse},
     geom::{Aabb, Ray, Shape, ray::TriangleTest},
     lens::{
         Border, BorderUnit, Class, Content, Copied, Discrete, Lens, Parameter, Region, classify::classify,
@@ -501,6 +502,45 @@ fn lenses_without_content_act_on_what_is_shown() {
         // Lines of a lens above keep their colour.
         assert!(grey * 10 > all * 9, "{grey} of {all}");
     }
+}
+
+/// Whatever shows chosen buildings, and wherever: it is in their lens, by both back ends.
+#[test]
+fn what_other_lenses_show_of_chosen_objects_is_in_a_lens_of_these() {
+    let head = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\nground = false\n[camera]\neye = [-190, 90, 120]\ntarget = [0, 0, 30]\n\
+                [sun]\nshadows = false\n[[lens]]\nname = \"buildings\"\nshape = { kind = \"thematic\", ids = [\"town-hall\", \"house-020\"] }\n\
+                effects = [\"greyscale\"]\n";
+    let air = "shape = { kind = \"box\", center = [0, 0, 100], size = [400, 400, 400] }";
+    let lifted = "[[lens]]\nname = \"lifts\"\nkind = \"deformation\"\nshape = { kind = \"box\", center = [0, 0, 150], size = [300, 300, 302] }\n\
+                  deform = [{ kind = \"translate\", by = [0, 0, 25] }]\nbody = \"none\"\n";
+    let contents = [
+        "{ derive = \"height\", factor = 5.0 }",
+        "{ derive = \"box\", from = [0, 0, 0], to = [-40, 30, 40] }",
+        "{ from = [0, 0, 0], to = [10, 60, 45], rotation_deg = [40, 0, 0], scale = 0.7 }",
+    ];
+    let mut elsewhere = [0; 2];
+    for (content, deformation) in contents.into_iter().flat_map(|content| ["", lifted].map(|lens| (content, lens))) {
+        let text = format!(
+            "{head}[[lens]]\nname = \"other\"\nkind = \"content\"\n{air}\ncontent = {content}\nbody = \"none\"\n{deformation}"
+        );
+        let scene = parse(&text, "others.toml", &Options::default()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let mut studio = of_scene(&scene);
+        let alone = Scene { lenses: scene.lenses[..1].to_vec(), ..scene.clone() };
+        let at_home = bits(&draw(&mut studio, &alone, Backend::Specialised), 0);
+        for (k, backend) in [Backend::Specialised, Backend::Uber].into_iter().enumerate() {
+            let picture = draw(&mut studio, &scene, backend);
+            let (ids, is_in) = (picture.object_id.as_ref().expect("ids"), bits(&picture, 0));
+            for (i, id) in ids.iter().enumerate() {
+                let model = &studio.model;
+                let name = |object: u32| &*model.objects[object as usize].id;
+                let is_chosen = *id != 0 && ["town-hall", "house-020"].contains(&name(model.root(*id - 1)));
+                let at = || format!("pixel {}, {}, {backend:?}\n{text}", i as u32 % SIZE[0], i as u32 / SIZE[0]);
+                assert_eq!(is_in[i], is_chosen, "{}", at());
+                elsewhere[k] += usize::from(is_chosen && !at_home[i]);
+            }
+        }
+    }
+    assert!(elsewhere[0] > 1_000 && elsewhere[0] == elsewhere[1], "{elsewhere:?} pixels show one where none stands");
 }
 
 #[test]
