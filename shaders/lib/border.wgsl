@@ -12,8 +12,8 @@ fn degree_of_interest(distance: f32, border: vec4f, sight: Sight) -> f32 {
         return select(0.0, 1.0, distance <= 0.5 * border.x);
     }
     let width = max(border_width(border, sight), 1e-30);
-    let t = clamp(0.5 - distance / width, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
+    let t = clamp(0.5 - number_as_is(distance) / width, 0.0, 1.0);
+    return number_as_is(t * t * (3.0 - 2.0 * t));
 }
 
 // How far a place is along its ray from where that enters or leaves a volume. A perspective ray starts at the eye: in a

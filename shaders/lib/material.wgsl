@@ -27,3 +27,7 @@ fn contained_material(material: Material) -> Material {
     return Material(contained(material.base), contained(material.emission), contained(material.specular),
                     clamp(material.shininess, 1.0, 1024.0));
 }
+
+fn material_as_is(material: Material) -> Material {
+    return Material(as_is(material.base), as_is(material.emission), as_is(material.specular), number_as_is(material.shininess));
+}

@@ -2,12 +2,12 @@
 
 // Which way the surface of a lens looks at a place: how its distance grows, from four places around (a tetrahedron).
 fn lens_normal(lens: u32, pixel: vec2i, ray: Ray, t: f32) -> vec3f {
-    let step = 1e-3 * max(t, 1.0);
+    let step = number_as_is(1e-3 * max(t, 1.0));
     var normal = vec3f(0.0);
     for (var i = 0u; i < 4u; i++) {
         let aside = select(vec3f(-0.57735), vec3f(0.57735), vec3<bool>((i & 1u) == 1u, (i & 2u) == 2u, i == 0u || i == 3u));
-        let position = ray.origin + t * ray.direction + step * aside;
-        normal += aside * clamp(lens_distance(lens, sight_near(pixel, position)), -1e3 * step, 1e3 * step);
+        let position = as_is(ray.origin + t * ray.direction + step * aside);
+        normal += aside * clamp(number_as_is(lens_distance(lens, sight_near(pixel, position))), -1e3 * step, 1e3 * step);
     }
     // It grows by 4/3 of the step; by nothing but roundings where a sprite alone tells the surface.
     let growth = length(normal);
@@ -28,10 +28,11 @@ fn shell(lens: u32, paint: vec4f, pixel: vec2i, color: vec4f) -> vec4f {
     // The far side first; it is not seen where it has no end.
     for (var side = 0; side < 2; side++) {
         let is_far = side == 0;
-        let t = select(ends.enter, ends.exit, is_far);
+        let t = number_as_is(select(ends.enter, ends.exit, is_far));
         if t > nearest && t < shown && t < 0.5 * FAR_AWAY {
-            let outwards = lens_normal(lens, pixel, ray, t);
-            seen = glazed(seen, select(outwards, -outwards, is_far), ray, color.rgb, select(1.0, 0.5, is_far) * color.a);
+            let outwards = as_is(lens_normal(lens, pixel, ray, t));
+            let most = number_as_is(select(1.0, 0.5, is_far) * color.a);
+            seen = paint_as_is(glazed(seen, select(outwards, -outwards, is_far), ray, color.rgb, most));
         }
     }
     return seen;

@@ -13,8 +13,8 @@ use crate::shader::{
 };
 
 /// Layers over the shaded picture and below the bodies of lenses: lines of the city, and translucent layers over these.
-const WITH_LINES: &str = "    paint = with_lines(paint, pixel);\n";
-const WITH_TRANSPARENCY: &str = "    paint = with_transparency(paint, pixel);\n";
+const WITH_LINES: &str = "    paint = paint_as_is(with_lines(paint, pixel));\n";
+const WITH_TRANSPARENCY: &str = "    paint = paint_as_is(with_transparency(paint, pixel));\n";
 
 /// The lenses' bodies.
 pub(super) fn outlines(plan: &Plan) -> String {
@@ -26,7 +26,7 @@ pub(super) fn outlines(plan: &Plan) -> String {
         text.push_str("    return start;\n}\n\n");
         return text;
     }
-    text.push_str("    var paint = start;\n");
+    text.push_str("    var paint = paint_as_is(start);\n");
     let over = [(plan.lines, WITH_LINES), (plan.transparency, WITH_TRANSPARENCY)];
     over.iter().filter(|(is_drawn, _)| *is_drawn).for_each(|(_, laid)| text.push_str(laid));
     for (i, PlanBody { kind, parameters }) in bodies {
@@ -34,15 +34,18 @@ pub(super) fn outlines(plan: &Plan) -> String {
         let (color, width) = (format!("parameters[{parameters}]"), format!("parameters[{}].x", parameters + 1));
         match kind {
             BodyKind::Halo => {
-                let _ = writeln!(text, "    paint = halo_{i}(paint, pixel, {color}, {width});");
+                let _ = writeln!(text, "    paint = paint_as_is(halo_{i}(paint, pixel, {color}, {width}));");
                 continue;
             }
             BodyKind::Shell => {
-                let _ = writeln!(text, "    paint = shell_{i}(paint, pixel, {color});");
+                let _ = writeln!(text, "    paint = paint_as_is(shell_{i}(paint, pixel, {color}));");
             }
             BodyKind::Outline => {}
         }
-        let _ = writeln!(text, "    paint = outlined(paint, silhouette_{i}(pixel, {width}, {is_convex}), {color});");
+        let _ = writeln!(
+            text,
+            "    paint = paint_as_is(outlined(paint, silhouette_{i}(pixel, {width}, {is_convex}), {color}));"
+        );
     }
     text.push_str("    return paint;\n}\n\n");
     text

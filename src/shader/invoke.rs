@@ -8,6 +8,7 @@ use crate::shader::{
         prototype::{EffectKind, Mode, Stage},
     },
     plan::uber::Uber,
+    writer::as_is,
 };
 
 /// The handlers of the module, with their numbers.
@@ -38,6 +39,7 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
     }
     let (_, type_name) = kinds[0].subject();
     let share = if fades(uber) { ", share: f32" } else { "" };
+    let as_is = as_is(kinds[0]);
     let mut text = format!(
         "fn invoke_{word}(below: {type_name}, point: Point, by: Invoker{share}) -> {type_name} {{\n    var above = below;\n    switch \
          by.handler {{\n"
@@ -59,14 +61,17 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
                 let asked = asked.map_or_else(String::new, |asked| format!("if {asked} {{ above = "));
                 let end = if asked.is_empty() { "" } else { "; }" };
                 let start = if asked.is_empty() { "above = " } else { "" };
-                let _ = writeln!(text, "        case {number}u: {{ {asked}{start}contained_opacity({call}){end} }}");
+                let _ = writeln!(
+                    text,
+                    "        case {number}u: {{ {asked}{start}number_as_is(contained_opacity({call})){end} }}"
+                );
                 continue;
             }
             (false, _) | (_, EffectKind::Filter) => call,
             (true, EffectKind::Material) => format!("contained_material({call})"),
             (true, _) => format!("contained({call})"),
         };
-        let _ = writeln!(text, "        case {number}u: {{ above = {call}; }}");
+        let _ = writeln!(text, "        case {number}u: {{ above = {as_is}({call}); }}");
     }
     text.push_str("        default: {}\n    }\n");
     let is_rule = kinds[0] == EffectKind::Opacity;
@@ -75,7 +80,7 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
             EffectKind::Material => "blended_material(by.blend, below, above, parameters[by.weight].x)",
             _ => "weighed(below, blend(by.blend, below, above), parameters[by.weight].x)",
         };
-        let _ = writeln!(text, "    if by.blend != 0u {{\n        above = {blended};\n    }}");
+        let _ = writeln!(text, "    if by.blend != 0u {{\n        above = {as_is}({blended});\n    }}");
     }
     if fades(uber) {
         let laid = match kinds[0] {
@@ -83,7 +88,7 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
             EffectKind::Opacity => "mix(below, above, share)",
             _ => "weighed(below, above, share)",
         };
-        let _ = writeln!(text, "    if by.border != 0u {{\n        above = {laid};\n    }}");
+        let _ = writeln!(text, "    if by.border != 0u {{\n        above = {as_is}({laid});\n    }}");
     }
     text.push_str("    return above;\n}\n\n");
     text
@@ -148,18 +153,19 @@ pub(super) fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let share = share_argument(uber);
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
     if has(EffectKind::Material) {
-        text.push_str("    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);\n");
+        text.push_str("    var material = Material(as_is((*point).base), vec3f(0.0), vec3f(0.0), 32.0);\n");
         let call = format!("material = invoke_material(material, *point, by{share});\n");
         text.push_str(&each(uber, "MATERIALS", &call));
         text.push_str("    (*point).base = material.base;\n");
     }
     if has(EffectKind::Light) {
+        text.push_str("    (*point).arriving = as_is((*point).arriving);\n");
         let call = format!("(*point).arriving = invoke_light((*point).arriving, *point, by{share});\n");
         text.push_str(&each(uber, "LIGHTS", &call));
         text.push_str("    (*point).shade = luminance((*point).arriving);\n");
     }
     let plus = if has(EffectKind::Material) {
-        text.push_str("    (*point).highlight = highlights(material, *point);\n");
+        text.push_str("    (*point).highlight = as_is(highlights(material, *point));\n");
         " + (*point).highlight"
     } else {
         ""
@@ -198,7 +204,7 @@ if !is_scene_style || point.surface != NO_SURFACE {{
 }}
 "
     );
-    let text =
-        "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n    var color = start;\n".to_owned();
+    let text = "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n    var color = as_is(start);\n"
+        .to_owned();
     text + &each(uber, "STYLES", &body) + "    return color;\n}\n\n"
 }

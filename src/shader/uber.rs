@@ -94,16 +94,18 @@ pub(super) fn classes(uber: &Uber) -> String {
 }
 
 /// Where nothing is drawn in lines or seen through in a frame, lines and layers are those of another.
-const WITH_LINES: &str = "    if table.ranges.z < table.ranges.w {\n        paint = with_lines(paint, pixel);\n    }\n";
+const WITH_LINES: &str =
+    "    if table.ranges.z < table.ranges.w {\n        paint = paint_as_is(with_lines(paint, pixel));\n    }\n";
 const WITH_TRANSPARENCY: &str =
-    "    if table.tiles.w != 0u {\n        paint = with_transparency(paint, pixel);\n    }\n";
+    "    if table.tiles.w != 0u {\n        paint = paint_as_is(with_transparency(paint, pixel));\n    }\n";
 
 /// `outlines`: lines, layers and the bodies of lenses over the shaded picture; `by.handler` is the kind of a body, and `by.kind` is 1 of
 /// a convex one.
 fn outlines(uber: &Uber) -> String {
     let over = [(uber.lines, WITH_LINES), (uber.transparency, WITH_TRANSPARENCY)];
     let over: String = over.iter().filter(|(is_drawn, _)| *is_drawn).map(|(_, laid)| *laid).collect();
-    let head = "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n    var paint = start;\n";
+    let head =
+        "fn outlines(start: vec4f, pixel: vec2i, classes: Classes) -> vec4f {\n    var paint = paint_as_is(start);\n";
     if uber.bodies.is_empty() {
         return format!("{head}{over}    return paint;\n}}\n\n");
     }
@@ -119,10 +121,11 @@ fn outlines(uber: &Uber) -> String {
     for kind in &uber.bodies {
         let drawn = match kind {
             BodyKind::Outline => "",
-            BodyKind::Shell => "            paint = shell(lens, paint, pixel, color);\n",
-            BodyKind::Halo => "            paint = halo(lens, paint, pixel, color, width);\n",
+            BodyKind::Shell => "            paint = paint_as_is(shell(lens, paint, pixel, color));\n",
+            BodyKind::Halo => "            paint = paint_as_is(halo(lens, paint, pixel, color, width));\n",
         };
-        let line = "            paint = outlined(paint, silhouette(lens, pixel, width, by.kind == 1u), color);\n";
+        let line =
+            "            paint = paint_as_is(outlined(paint, silhouette(lens, pixel, width, by.kind == 1u), color));\n";
         let line = if kind.has_outline() { line } else { "" };
         let _ = write!(text, "        if by.handler == {}u {{\n{drawn}{line}        }}\n", kind.number());
     }

@@ -106,11 +106,13 @@ impl Writer<'_> {
             let contained = if is_material { "contained_material" } else { "contained" };
             call = format!("{contained}({call})");
         }
+        let as_is = as_is(handler.kind);
+        call = format!("{as_is}({call})");
         let Some((blend, weight)) = step.blend.zip(step.weight(handler)) else { return call };
         let weight = format!("parameters[{weight}].x");
         match is_material {
-            true => format!("blended_material({}u, {subject}, {call}, {weight})", blend.number()),
-            false => format!("weighed({subject}, blend_{}({subject}, {call}), {weight})", blend.word()),
+            true => format!("{as_is}(blended_material({}u, {subject}, {call}, {weight}))", blend.number()),
+            false => format!("{as_is}(weighed({subject}, blend_{}({subject}, {call}), {weight}))", blend.word()),
         }
     }
 
@@ -133,8 +135,8 @@ impl Writer<'_> {
         }
         if let Some(share) = self.share(step) {
             let laid = match handler.kind {
-                EffectKind::Material => format!("blended_material(1u, {subject}, {value}, share)"),
-                _ => format!("weighed({subject}, {value}, share)"),
+                EffectKind::Material => format!("material_as_is(blended_material(1u, {subject}, {value}, share))"),
+                _ => format!("as_is(weighed({subject}, {value}, share))"),
             };
             let plus = if plus.is_empty() { "" } else { " + point.highlight * share" };
             conditions.insert(0, "share > 0.0".to_owned());
@@ -173,17 +175,18 @@ impl Writer<'_> {
     pub(super) fn shade(&self, suffix: &str) -> String {
         let mut text = format!("fn shade{suffix}(point: ptr<function, Point>, classes: Classes) -> vec3f {{\n");
         if self.has(EffectKind::Material) {
-            text.push_str("    var material = Material((*point).base, vec3f(0.0), vec3f(0.0), 32.0);\n");
+            text.push_str("    var material = Material(as_is((*point).base), vec3f(0.0), vec3f(0.0), 32.0);\n");
             text.push_str(&self.statements(EffectKind::Material));
             text.push_str("    (*point).base = material.base;\n");
         }
         if self.has(EffectKind::Light) {
+            text.push_str("    (*point).arriving = as_is((*point).arriving);\n");
             text.push_str(&self.statements(EffectKind::Light));
             text.push_str("    (*point).shade = luminance((*point).arriving);\n");
         }
         let highlights = self.has(EffectKind::Material);
         if highlights {
-            text.push_str("    (*point).highlight = highlights(material, *point);\n");
+            text.push_str("    (*point).highlight = as_is(highlights(material, *point));\n");
         }
         text.push_str("    var color = vec3f(0.0);\n");
         let own = |kind, mode| self.handlers.iter().find(move |h| h.kind == kind && h.mode == mode);
@@ -209,10 +212,10 @@ impl Writer<'_> {
                 0 => String::new(),
                 _ => format!(", {}({first})", handler.own("parameters")),
             };
-            let value = format!("contained_opacity({}(opacity, point{own}))", handler.wgsl_name());
+            let value = format!("number_as_is(contained_opacity({}(opacity, point{own})))", handler.wgsl_name());
             let (scope, value) = match (step.scope, self.share(step)) {
                 (Scope::Everywhere, _) => (None, value),
-                (_, Some(share)) => (None, format!("mix(opacity, {value}, {share})")),
+                (_, Some(share)) => (None, format!("number_as_is(mix(opacity, {value}, {share}))")),
                 (Scope::Lens(lens, class), None) => (Some(format!("{}(classes.lens_{lens})", class.function())), value),
             };
             let conditions: Vec<String> = scope.into_iter().chain(handler.acts_on("point", &first)).collect();
@@ -233,7 +236,16 @@ impl Writer<'_> {
         let head = format!("fn styled{suffix}(start: vec3f, point: Point, classes: Classes) -> vec3f {{\n");
         match lines.is_empty() {
             true => format!("{head}    return start;\n}}\n\n"),
-            false => format!("{head}    var color = start;\n{lines}    return color;\n}}\n\n"),
+            false => format!("{head}    var color = as_is(start);\n{lines}    return color;\n}}\n\n"),
         }
+    }
+}
+
+/// What keeps compilers from putting the answer of a handler of this kind together with what follows (`lib/point.wgsl`).
+pub(super) fn as_is(kind: EffectKind) -> &'static str {
+    match kind {
+        EffectKind::Material => "material_as_is",
+        EffectKind::Opacity => "number_as_is",
+        _ => "as_is",
     }
 }
