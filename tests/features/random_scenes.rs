@@ -15,13 +15,16 @@ use veduta::{
     scene::Scene,
 };
 
+/// Of pictures in an ordinary run; a thorough one draws more of them.
 const SIZE: [u32; 2] = [200, 125];
+const THOROUGH_SIZE: [u32; 2] = [120, 75];
 /// Scenes that every run draws, of as many families, and those of a thorough one, which draws all of a family.
 const SCENES: u64 = 5;
 const ALL_SCENES: u64 = 10_000;
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Result<Picture, String> {
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    let size = if is_thorough() { THOROUGH_SIZE } else { SIZE };
+    let request = Request { size, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
     studio.render(scene, &request).map_err(|error| error.to_string())
 }
 

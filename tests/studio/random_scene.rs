@@ -21,7 +21,7 @@ pub struct Wanted {
 }
 
 /// Scenes of a family, one after the other in number.
-pub const FAMILY: u64 = 10;
+pub const FAMILY: u64 = 40;
 
 /// What is thrown for a scene.
 struct Dice {
