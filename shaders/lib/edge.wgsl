@@ -38,6 +38,8 @@ const EDGE_BIAS: f32 = 1e-4;
 // In orthographic views: metres.
 const EDGE_BIAS_M: f32 = 0.01;
 const EDGE_SLACK_PX: f32 = max(0.03125, 2.0 * SNAPPING);
+// And by how much rasterisers take a pixel to be on the other side of the edge than it is.
+const EDGE_SIDE_PX: f32 = max(0.0078125, 2.0 * SNAPPING);
 // Faces that lean away more than this (the tangent of 76°) are not followed that far.
 const EDGE_MOST_FALL: f32 = 4.0;
 // Pixels around the picture where lines are kept, beyond their width.
@@ -186,7 +188,7 @@ fn edge_most_fall(depth: f32) -> f32 {
 // `face`, `span`: of an `EdgeVertex`. A face that comes nearer counts no farther than it goes.
 fn edge_face_depth(line: vec3f, ends: vec4f, depth: f32, face: vec4f, span: vec2f) -> vec2f {
     let side = select(-1.0, 1.0, face.y >= 0.0);
-    let is_beside = face.w >= 0.0 && side * line.y >= 0.0;
+    let is_beside = face.w >= 0.0 && side * line.y >= -EDGE_SIDE_PX;
     let across = side * (max(side * line.y, 0.0) + EDGE_SLACK_PX);
     let on_plane = depth + face.x * across;
     let inward = face.y * across / edge_weight(on_plane);
