@@ -262,12 +262,16 @@ impl Gpu {
         Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage }))
     }
 
+    /// Whether triangles hold their depth where they are seen edge on: it needs that, and can bind what it takes.
+    pub fn holds_depth(&self) -> bool {
+        self.strays && self.device.limits().max_bind_groups > 4
+    }
+
     /// What vertices and indices of so many bytes are used for beside being drawn from, where corners must be read by each other so that
     /// triangles hold their depth; nothing where they need not, or there are too many of them.
     pub fn read_by_corners(&self, bytes: usize) -> wgpu::BufferUsages {
-        let limits = self.device.limits();
-        let is_bound = limits.max_bind_groups > 4 && bytes as u64 <= limits.max_storage_buffer_binding_size;
-        if self.strays && is_bound { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() }
+        let is_bound = bytes as u64 <= self.device.limits().max_storage_buffer_binding_size;
+        if self.holds_depth() && is_bound { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() }
     }
 
     /// A buffer of `bytes` zeros (at least [`LEAST_BYTES`]).

@@ -38,8 +38,8 @@ pub(super) struct Adapter {
     pub is_software: bool,
     /// Whether it can test depth before the shader runs.
     pub tests_depth_early: bool,
-    /// Whether depths of thin triangles leave those of their corners.
-    pub strays: bool,
+    /// Whether triangles hold their depth where they are seen edge on.
+    pub holds_depth: bool,
 }
 
 /// What stayed from the frame before.
@@ -98,7 +98,7 @@ impl<'a> FramePlan<'a> {
     pub fn holds_depth(&self, section: &SectionFacts) -> bool {
         let view = &self.input.view;
         let is_upright = view.basis.forward.z.abs() > UPRIGHT;
-        self.adapter.strays && section.is_read && (view.is_orthographic() || is_upright)
+        self.adapter.holds_depth && section.is_read && (view.is_orthographic() || is_upright)
     }
 
     /// The plan of a frame.

@@ -286,7 +286,11 @@ impl Renderer {
 }
 
 fn adapter_of(gpu: &Gpu) -> Adapter {
-    Adapter { is_software: gpu.is_software(), tests_depth_early: gpu.tests_depth_early(), strays: gpu.strays }
+    Adapter {
+        is_software: gpu.is_software(),
+        tests_depth_early: gpu.tests_depth_early(),
+        holds_depth: gpu.holds_depth(),
+    }
 }
 
 /// The targets that a frame draws into.

@@ -9,11 +9,13 @@ pub struct Adapter {
     pub carried: u32,
     /// How far from their places it draws corners of triangles at most, pixels.
     pub snapping: f64,
+    /// Whether triangles hold their depth where they are seen edge on.
+    pub holds_depth: bool,
 }
 
 impl Adapter {
     /// One that carries as few vectors as there may be, and draws corners where they are.
-    pub const LEAST: Self = Self { carried: LEAST_CARRIED, snapping: 0.0 };
+    pub const LEAST: Self = Self { carried: LEAST_CARRIED, snapping: 0.0, holds_depth: false };
 
     /// The filling of the hook `snapping` (`lib/view.wgsl`).
     pub(super) fn snapping(&self) -> String {

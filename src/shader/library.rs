@@ -123,6 +123,8 @@ files! {
     LINES = "pass/lines.wgsl";
     FRAGMENT_NODES = "lib/fragment-nodes.wgsl";
     LAYERS = "pass/layers.wgsl";
+    HELD = "pass/held.wgsl";
+    HELD_LAYERS = "pass/held-layers.wgsl";
     COMPOSITE = "pass/composite.wgsl";
     COUNT_LAYERS = "pass/count-layers.wgsl";
     SORT_LAYERS = "pass/sort-layers.wgsl";

@@ -14,10 +14,10 @@ use crate::{
         hiding::{self, Eye},
         library::{
             BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM, DEPTH_CODE, FILTER,
-            FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, LAYERS, LINK_SLOTS, NARROW, OBJECTS,
-            ONE_CITY, PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS,
-            SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE, TRANSLUCENT, VIEW,
-            VIEW_UNIFORM,
+            FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS, LAYERS, LINK_SLOTS,
+            NARROW, OBJECTS, ONE_CITY, PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHOWN,
+            SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE,
+            TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
         lining,
         plan::{Plan, form::Form, lens_test::LensTest, program::Program},
@@ -99,7 +99,8 @@ impl Module {
 
     /// The whole WGSL text with the names of a plan's lenses in comments, for an adapter.
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], adapter: &Adapter) -> String {
-        let files = files::with_threshold(self.files(handlers));
+        let mut files = files::with_threshold(self.files(handlers));
+        files.extend_from_slice(self.held(adapter));
         let text = Template::of_files(&files);
         let text = match files.contains(&VIEW) {
             true => text.fill("ray", rays::source()).fill("snapping", adapter.snapping()),
@@ -154,6 +155,15 @@ impl Module {
             _ => text,
         };
         filled.text()
+    }
+
+    /// What it has besides where triangles hold their depth.
+    fn held(&self, adapter: &Adapter) -> &'static [File] {
+        match self {
+            Self::Geometry(_) if adapter.holds_depth => &[HELD],
+            Self::Layers(..) if adapter.holds_depth => &[HELD, HELD_LAYERS],
+            _ => &[],
+        }
     }
 
     /// The files it is made of, in order.

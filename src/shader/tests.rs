@@ -324,6 +324,20 @@ fn regions_of_all_kinds_are_told_apart_by_valid_wgsl() {
     }
 }
 
+/// Adapters may have four bind groups and no more; those on which triangles hold their depth have another.
+#[test]
+fn a_fifth_bind_group_is_asked_of_adapters_that_need_it_alone() {
+    let mut held = 0;
+    let of_effects = numbered(singles(1)).into_iter().flat_map(|(list, seed)| modules(&list, seed));
+    for module in all_modules().into_iter().chain(of_effects) {
+        assert!(!module.source().contains("@group(4)"), "{}", module.name());
+        let source = module.source_for_people(handlers(), &[], &Adapter { holds_depth: true, ..Adapter::LEAST });
+        held += usize::from(source.contains("@group(4)"));
+        validate_text(&module.name(), &source);
+    }
+    assert!(held > 10, "{held} modules");
+}
+
 #[test]
 fn what_finds_no_room_is_read_where_it_stands() {
     let lens = |number| PlanLens { number, volumes: tests(), leaves: LEAVES.to_vec(), body: None, border: None };

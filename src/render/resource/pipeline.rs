@@ -25,7 +25,11 @@ pub type Modules = FxHashMap<Module, wgpu::ShaderModule>;
 
 /// What texts of shaders need to know of an adapter.
 pub fn adapter(gpu: &Gpu) -> Adapter {
-    Adapter { carried: gpu.device.limits().max_inter_stage_shader_variables, snapping: gpu.snapping }
+    Adapter {
+        carried: gpu.device.limits().max_inter_stage_shader_variables,
+        snapping: gpu.snapping,
+        holds_depth: gpu.holds_depth(),
+    }
 }
 
 /// What makes pipelines.
@@ -67,7 +71,9 @@ impl Maker {
         let name = key.name();
         let Parts { module, groups, constants, stage } = key.parts(self.sums);
         let module = self.module(modules, module);
-        let groups: Vec<_> = groups.into_iter().map(|group| group.map(|group| self.layouts.of(group))).collect();
+        let mut groups: Vec<_> = groups.into_iter().map(|group| group.map(|group| self.layouts.of(group))).collect();
+        // Some adapters have four and count those that are empty.
+        groups.truncate(groups.iter().rposition(Option::is_some).map_or(0, |last| last + 1));
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(&name),
             bind_group_layouts: &groups.iter().map(Option::as_ref).collect::<Vec<_>>(),
