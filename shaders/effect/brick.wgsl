@@ -50,7 +50,11 @@ fn effect(material: Material, point: Point, p: Parameters) -> Material {
 
 const JOINT = 0.16;             // of a brick's height
 
-// A number 0..1 that belongs to a place.
+// A number 0..1 that belongs to a brick: of whole numbers, which are the same on every adapter.
 fn random(place: vec2f) -> f32 {
-    return fract(sin(dot(place, vec2f(12.9898, 78.233))) * 43758.547);
+    let c = vec2u(vec2i(place));
+    var h = (c.x * 0x8da6b343u) ^ (c.y * 0xd8163841u);
+    h = (h ^ (h >> 16u)) * 0x7feb352du;
+    h = (h ^ (h >> 15u)) * 0x846ca68bu;
+    return f32((h ^ (h >> 16u)) >> 8u) / 16777216.0;
 }
