@@ -216,7 +216,9 @@ fn the_text_of_a_scene_is_readable_and_says_whose_it_is() {
     let (studio, scene) = town();
     let text = studio.shader(&scene, SIZE, Backend::Specialised, ShaderPart::Shade).expect("a text");
     assert!(text.contains("lens_0: u32,  // lens 0"), "{text}");
-    assert!(text.contains("if is_inside(classes.lens_0) {\n        color = as_is(sepia(color, point, sepia_parameters("));
+    assert!(
+        text.contains("if is_inside(classes.lens_0) {\n        color = as_is(sepia(color, point, sepia_parameters(")
+    );
     assert!(text.lines().all(|line| line.len() <= 160 && line.trim_end() == line), "a long line, or blanks at its end");
     let uber = studio.shader(&scene, SIZE, Backend::Uber, ShaderPart::Shade).expect("a text");
     assert!(uber.contains("invokers: array<PackedInvoker>") && !text.contains("Invoker"));
