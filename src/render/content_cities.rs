@@ -213,7 +213,9 @@ impl SceneContents {
         for volume in volumes.iter_mut().filter(|volume| volume.region.has_members()) {
             for leaf in volume.region.leaves_mut() {
                 let Leaf::Members(members) = &mut leaf.leaf else { continue };
-                let shown = self.wanted.iter().map(|content| moved.bounds(&content.bounds_of(&members.objects, own)));
+                let shown = self.wanted.iter().map(|content| content.bounds_of(&members.objects, own));
+                // What shows none of them is nowhere, whatever is moved.
+                let shown = shown.filter(|bounds| !bounds.is_empty()).map(|bounds| moved.bounds(&bounds));
                 members.bounds = shown.fold(members.bounds, |all, bounds| all.union(bounds));
             }
             volume.bounds = volume.region.bounds();
