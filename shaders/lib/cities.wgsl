@@ -37,3 +37,13 @@ fn city_surface(number: u32) -> u32 {
 fn city_number() -> u32 {
     return city.number;
 }
+
+// How far a content may be from what is opaque and still be in one plane with it, as depth: this part of its distance, and what the
+// rasteriser's grid makes of the plane's slope (depth per pixel).
+const PLANE_DEPTH: f32 = 1.0 / 262144.0;
+
+// By how much what is translucent must be before what is opaque: a content that lies in the plane of what stays is hidden by it. Else
+// the last bits of both would decide, here so and there so.
+fn room_before_opaque(depth: f32, slope: vec2f) -> f32 {
+    return select(PLANE_DEPTH * depth + 2.0 * SNAPPING * (abs(slope.x) + abs(slope.y)), 0.0, city.number == 0u);
+}

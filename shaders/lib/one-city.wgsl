@@ -19,3 +19,7 @@ fn city_surface(number: u32) -> u32 {
 fn city_number() -> u32 {
     return 0u;
 }
+
+fn room_before_opaque(depth: f32, slope: vec2f) -> f32 {
+    return 0.0;
+}

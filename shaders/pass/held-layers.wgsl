@@ -10,7 +10,7 @@ fn vertex_held_layer(@builtin(vertex_index) index: u32, @builtin(instance_index)
 
 fn add_held(in: HeldVarying, color: u32) {
     let depth = held_depths(in).y;
-    if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) > depth {
+    if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) > depth - room_before_opaque(depth, vec2f(0.0)) {
         return;
     }
     let code = in.code & NODE_CODE;

@@ -114,7 +114,7 @@ fn code_in_plane(code: u32, layer: u32) -> u32 {
 @fragment
 fn note_coplanar(in: CoplanarVarying) {
     let depth = depth_on_plane(in.plane, in.clip);
-    if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) > depth {
+    if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) > depth - room_before_opaque(depth, in.plane.xy) {
         return;
     }
     let code = in.code & NODE_CODE;

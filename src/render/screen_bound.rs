@@ -86,6 +86,14 @@ impl ScreenBound {
         [2, 3].map(|i| [f64::from(self.low[i]) - 0.5, f64::from(self.high[i]) + 0.5])
     }
 
+    /// Whether a pixel's centre is in it.
+    #[cfg(test)]
+    pub fn holds(&self, pixel: [u32; 2]) -> bool {
+        let [x, y] = pixel.map(|i| f64::from(i) + 0.5);
+        let lies = |i: usize, at: f64| f64::from(self.low[i]) <= at && at <= f64::from(self.high[i]);
+        [x, y, x + y, x - y].into_iter().enumerate().all(|(i, at)| lies(i, at))
+    }
+
     /// Its corners in order; three to eight, or none.
     fn corners(&self) -> Vec<DVec2> {
         let [x0, y0, ..] = self.low.map(f64::from);

@@ -21,6 +21,9 @@ pub const WIDE_MARGIN_PX: i32 = 4;
 /// Without these: for samples up to half a pixel beside the pixels' centres, and what rounding moves.
 const MARGIN_PX: i32 = 1;
 
+/// The angle from the axis up to which places bound something in a picture: from there on they are as good as beside the eye.
+const WIDEST: f64 = 1.55;
+
 /// A volume of one lens.
 #[derive(Clone, Debug)]
 pub struct LensVolume {
@@ -147,7 +150,10 @@ impl LensVolume {
             return Some(whole);
         }
         let margin = match self.drawn {
-            LensBody::Halo => HALO_PX.ceil() as i32 + MARGIN_PX,
+            LensBody::Halo => match self.halo_reach_px(view) {
+                Some(reach) => reach.ceil() as i32 + MARGIN_PX,
+                None => return Some(whole),
+            },
             LensBody::None if self.sprite.is_none() => MARGIN_PX,
             _ => WIDE_MARGIN_PX,
         };
@@ -165,6 +171,32 @@ impl LensVolume {
         // What lies beside or behind the eye bounds nothing.
         let Some((low, high)) = self.projected(view) else { return Some(whole) };
         ScreenBound::around(low, high).grown([margin; 2]).within(tile)
+    }
+
+    /// How far from its projection a halo is seen at most, pixels; `None` where that may be anywhere.
+    ///
+    /// A halo is as wide as an angle (`lib/halo.wgsl`): its ray passes a place at a distance of no more than [`HALO_PX`] pixels on the axis,
+    /// seen from as far along it. The further from the axis, the more pixels that angle takes.
+    fn halo_reach_px(&self, view: &View) -> Option<f64> {
+        let is_own = |leaf: &PlacedLeaf| matches!(leaf.leaf, Leaf::Own(_));
+        if self.region.leaves().any(is_own) {
+            // Its distance may be any that is not too large.
+            return None;
+        }
+        // What tells less than a distance, axis by axis, is no more than that beside the box around it.
+        let is_exact = self.region.volume().is_some() && !self.region.has_solids();
+        let width = f64::from(HALO_PX) * if is_exact { 1.0 } else { 3.0_f64.sqrt() };
+        if view.is_orthographic() {
+            return Some(width);
+        }
+        let [x, y] = view.size.map(f64::from);
+        let slant = |corner: [f64; 2]| {
+            let direction = view.ray(corner.into()).direction;
+            direction.angle_between(view.basis.forward)
+        };
+        let aside = [[0.0, 0.0], [x, 0.0], [0.0, y], [x, y]].map(slant).into_iter().fold(0.0, f64::max);
+        let angle = (width * view.pixel_m(1.0) * aside.cos()).min(1.0).asin();
+        (aside + angle < WIDEST).then(|| ((aside + angle).tan() - aside.tan()) / view.pixel_m(1.0))
     }
 
     /// The box around its projection, pixels; `None` where it may be anywhere.
@@ -241,8 +273,13 @@ fn projected_sphere(view: &View, center: DVec3, radius: f64) -> Option<([f64; 4]
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
-    use crate::{geom::Shape, view::Camera};
+    use crate::{
+        geom::{Shape, combination::Operation},
+        view::Camera,
+    };
 
     #[test]
     fn the_bounds_of_a_volume_hold_it_and_touch_it() {
@@ -275,6 +312,62 @@ mod tests {
                 // A sharp corner may pass between the centres of some rows.
                 let apart = (least[i] - low[i]).max(high[i] - most[i]);
                 assert!(apart < 3.0, "{low:?} {high:?} {least:?} {most:?}");
+            }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(crate::seeds::config())]
+
+        /// By the formula of `lib/halo.wgsl`, in the corners of wide pictures too, and where two balls hardly meet: how far they are is less
+        /// than how far what they share is.
+        #[test]
+        fn beyond_the_bounds_of_a_halo_no_ray_comes_near(
+            fov in 0.1..2.6_f64,
+            parallel in prop::bool::weighted(0.2),
+            at in prop::array::uniform2(0.0..1.0_f64),
+            away in 5.0..200.0_f64,
+            radius in 0.5..20.0_f64,
+            second in prop::option::of((0.3..2.0_f64, prop::array::uniform3(-1.0..1.0_f64))),
+        ) {
+            let mut camera = Camera::looking(DVec3::new(3.0, -40.0, 12.0), DVec3::new(1.0, 5.0, 2.0), fov);
+            if parallel {
+                camera.projection = crate::view::Projection::Orthographic { height_m: 90.0 };
+            }
+            let size = [96, 64];
+            let view = View::new(camera, size, &Aabb::EMPTY).expect("a view");
+            let ray = view.ray(DVec2::from(at) * DVec2::new(96.0, 64.0));
+            let center = ray.origin + away * ray.direction;
+            let mut balls = vec![(center, radius)];
+            if let Some((size, aside)) = second {
+                let aside = DVec3::from(aside).normalize_or(DVec3::X);
+                balls.push((center + 0.98 * (1.0 + size) * radius * aside, size * radius));
+            }
+            let ball = |(center, radius): &(DVec3, f64)| -> PlacedLeaf {
+                Leaf::Volume(Volume::Sphere(Sphere { center: *center, radius: *radius })).into()
+            };
+            let region = match &balls[..] {
+                [one] => PlacedRegion::One(ball(one)),
+                _ => PlacedRegion::Combined(vec![
+                    (ball(&balls[0]), vec![]),
+                    (ball(&balls[1]), vec![Operation::Intersection]),
+                ]),
+            };
+            let lens = LensVolume { drawn: LensBody::Halo, ..LensVolume::plain(0, region) };
+            prop_assume!(!lens.bounds.is_empty());
+            let tile = PictureTile { origin: [0; 2], size };
+            let seen = lens.seen_part(&view, tile);
+            let pixels = (0..size[1]).step_by(3).flat_map(|y| (0..size[0]).step_by(3).map(move |x| [x, y]));
+            for [x, y] in pixels.filter(|[x, y]| !seen.is_some_and(|part| part.holds([*x, *y]))) {
+                let ray = view.pixel_ray(x, y);
+                let to_depth = 1.0 / ray.direction.dot(view.basis.forward);
+                let width = |depth: f64| {
+                    let place = ray.origin + depth * to_depth * ray.direction;
+                    let away = balls.iter().map(|(c, r)| c.distance(place) - r).fold(f64::NEG_INFINITY, f64::max);
+                    away / view.pixel_m(depth)
+                };
+                let closest = (0..1500).map(|i| width(0.1 * 1.006_f64.powi(i))).fold(f64::INFINITY, f64::min);
+                prop_assert!(closest > f64::from(HALO_PX), "{closest} pixels at {x}, {y}, {seen:?}");
             }
         }
     }

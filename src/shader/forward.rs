@@ -94,7 +94,10 @@ impl Forward {
         let hidden = hiding::source(&self.hidden, handlers, lenses, Eye::Fragments) + NOTHING_CUT;
         let text = geometry::filled(Template::of_files(&files), Drawn::Shaded, &hidden);
         // The opaque depth is read where shading reads it. Where the depth test comes after the shader, it writes too.
-        let plane = if self.kind == ForwardKind::Tail { behind_plane("scene_depth") } else { String::new() };
-        translucent::filled(text, DepthTest::Any, "").leave("opaque-depth").fill("behind-plane", plane).text()
+        let opaque = (self.kind == ForwardKind::Tail).then_some("scene_depth");
+        translucent::filled(text, DepthTest::Any, self.hidden.has().contents, opaque, "discard;")
+            .leave("opaque-depth")
+            .fill("behind-plane", opaque.map(behind_plane).unwrap_or_default())
+            .text()
     }
 }

@@ -125,14 +125,26 @@ impl Module {
             }
             Self::Layers(program, is_early) => {
                 let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
-                translucent::filled(text, DepthTest::of_nodes(*is_early), "return;")
+                translucent::filled(
+                    text,
+                    DepthTest::of_nodes(*is_early),
+                    program.has().contents,
+                    Some("opaque_depth"),
+                    "return;",
+                )
             }
             Self::Slots(program, is_early) => {
                 let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
                 // They are of a pass that has something to return.
-                translucent::filled(text, DepthTest::of_nodes(*is_early), "discard;")
-                    .fill("opaque-depth", OPAQUE_DEPTH)
-                    .fill("behind-plane", behind_plane("opaque_depth"))
+                translucent::filled(
+                    text,
+                    DepthTest::of_nodes(*is_early),
+                    program.has().contents,
+                    Some("opaque_depth"),
+                    "discard;",
+                )
+                .fill("opaque-depth", OPAQUE_DEPTH)
+                .fill("behind-plane", behind_plane("opaque_depth"))
             }
             Self::Lines(program) => text.fill("handlers", lining::source(program, handlers, lenses)),
             Self::Refine(plan) => text.fill("deformers", plan.shown(handlers)).fill("traced", plan.traced(handlers)),

@@ -20,14 +20,24 @@ impl DepthTest {
     }
 }
 
-/// Fills the hooks of the entry points; `leave` is the statement with which a fragment goes that is behind.
-pub(super) fn filled<'a>(text: Template<'a>, test: DepthTest, leave: &str) -> Template<'a> {
+/// Fills the hooks of the entry points. `opaque`: the texture that the opaque depth can be read from; `leave`: the statement with which a
+/// fragment goes that is behind.
+///
+/// What a content shows is tested by the shader wherever that can read: it must be before the plane of what is opaque.
+pub(super) fn filled<'a>(
+    text: Template<'a>,
+    test: DepthTest,
+    has_contents: bool,
+    opaque: Option<&str>,
+    leave: &str,
+) -> Template<'a> {
     let early = if test == DepthTest::Early { " @early_depth_test(force)" } else { "" };
-    let behind = match test {
-        DepthTest::InShader => {
-            format!("    if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) >= in.clip.z {{\n        {leave}\n    }}\n")
-        }
-        DepthTest::Early | DepthTest::Any => String::new(),
+    let behind = match opaque.filter(|_| has_contents || test == DepthTest::InShader) {
+        Some(texture) => format!(
+            "    let room = room_before_opaque(in.clip.z, vec2f(dpdx(in.clip.z), dpdy(in.clip.z)));\n    \
+             if textureLoad({texture}, vec2i(in.clip.xy), 0) >= in.clip.z - room {{\n        {leave}\n    }}\n"
+        ),
+        None => String::new(),
     };
     text.fill("early", early).fill("behind", behind)
 }
@@ -37,5 +47,7 @@ pub(super) const OPAQUE_DEPTH: &str = "@group(0) @binding(3) var opaque_depth: t
 
 /// Compares a fragment whose depth is that of its plane with the opaque depth in this texture.
 pub(super) fn behind_plane(texture: &str) -> String {
-    format!("    if textureLoad({texture}, vec2i(in.clip.xy), 0) > depth {{\n        discard;\n    }}\n")
+    format!(
+        "    if textureLoad({texture}, vec2i(in.clip.xy), 0) > depth - room_before_opaque(depth, in.plane.xy) {{\n        discard;\n    }}\n"
+    )
 }

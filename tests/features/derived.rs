@@ -14,7 +14,7 @@ use veduta::{
         frame::Backend,
         picture::{Picture, Request, Studio},
     },
-    scene::{Scene, Sun},
+    scene::{CitySpec, Scene, Sun, Transparency},
     view::{Camera, View},
 };
 
@@ -34,9 +34,12 @@ fn showing(form: Form, focus: impl Into<Region>) -> Lens {
     Lens { kind: ContentLens { content }.into(), effects: vec![], ..lens("derived", [focus.into()], "sepia") }
 }
 
+fn request(backend: Backend) -> Request {
+    Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend }
+}
+
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
-    studio.render(scene, &request).expect("a picture")
+    studio.render(scene, &request(backend)).expect("a picture")
 }
 
 /// From above, and from the street.
@@ -274,4 +277,48 @@ fn level_light_stays_level_however_low_the_eye_is() {
     let ground = looks(&picture, 0);
     assert!(ground.len() > 2000, "{} pixels show ground", ground.len());
     assert!(ground.iter().all(|(normal, _)| *normal == [0.0, 0.0, 1.0]));
+}
+
+/// A floor that lies in the plane of ground that stays is hidden by it: last bits of depths decide nothing. Layers are counted by rays in
+/// f64.
+#[test]
+fn floors_of_contents_are_hidden_by_the_ground_in_their_plane() {
+    let city = CitySpec { files: vec!["builtin:square".into()], ..CitySpec::default() };
+    let mut studio = of_scene(&Scene { city, ..Scene::default() });
+    let (model, geometries) = (studio.model.clone(), studio.geometries.clone());
+    let form = Form::Box { oriented: false };
+    let made = derive(&model, &geometries, &Derive { form, parts: false });
+    let is_ground = |object: u32| model.objects[object as usize].class.is_ground();
+    let [mut ground, mut blocks] = [faces(&model, &geometries), faces(&made.model, &made.geometries())];
+    ground.retain(|(_, object)| is_ground(*object));
+    blocks.retain(|(_, object)| !is_ground(*object));
+    let everywhere = Shape::Sphere { center: DVec3::ZERO, radius: 2000.0 };
+    let lens = Lens { effects: vec![used("transparent")], ..showing(form, everywhere) };
+    let size = [64, 40];
+    for (number, camera) in cameras(&studio).into_iter().enumerate() {
+        let view = View::new(camera, size, &studio.extent()).expect("a view");
+        let (mut layers, mut floors) = (0_u64, 0_u64);
+        for ray in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y])).map(|[x, y]| view.pixel_ray(x, y)) {
+            let test = TriangleTest::new(&ray).expect("a direction");
+            let hits = |faces: &[([DVec3; 3], u32)]| -> Vec<f64> {
+                faces.iter().filter_map(|(corners, _)| test.hit(*corners)).collect()
+            };
+            let end = hits(&ground).into_iter().fold(f64::INFINITY, f64::min);
+            for d in hits(&blocks) {
+                layers += u64::from(d < end * (1.0 - 1e-5));
+                floors += u64::from((d - end).abs() <= 1e-5 * end);
+            }
+        }
+        assert!(floors * 20 > layers, "{floors} floors in the ground among {layers} layers");
+        for transparency in [Transparency::Exact, Transparency::Peel { layers: 0 }] {
+            let mut scene = scene(camera, vec![lens.clone()]);
+            scene.style.transparency = transparency;
+            let request = Request { size, ..request(Backend::Specialised) };
+            let picture = studio.render(&scene, &request).expect("a picture");
+            let drawn = picture.statistics.frame.layers.expect("layers").fragments;
+            // The rasteriser's grid moves borders.
+            let off = drawn.abs_diff(layers);
+            assert!(off * 100 < layers, "view {number}, {transparency:?}: {drawn} for {layers} and {floors} floors");
+        }
+    }
 }
