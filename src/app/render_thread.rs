@@ -506,7 +506,10 @@ impl Worker {
             ms: [ms("read", stats.read), ms("parse", stats.parse), ms("build", stats.build)].into_iter().collect(),
             peak_bytes: stats::peak_memory(),
         };
-        let warnings = facts::warning_facts(&model).iter().map(|warning| warning.message.clone()).collect();
+        let nothing = facts::nothing_drawn(&model, &studio.geometries);
+        let nothing = nothing.map(|why| format!("Nothing of the city is drawn: {why}."));
+        let others = facts::warning_facts(&model);
+        let warnings = nothing.into_iter().chain(others.iter().map(|warning| warning.message.clone())).collect();
         let gpu = &studio.renderer.gpu;
         let opened = Opened {
             roots: model.roots(),

@@ -202,7 +202,9 @@ impl Window {
         let mut roots: Vec<PathBuf> = self.spec.files.iter().filter(|path| path.is_dir()).cloned().collect();
         roots.push(document.options().base);
         self.loading = Some("Reading".to_owned());
-        self.render_thread.open(self.spec.clone(), LoadOptions { allow_outside: self.allows_outside, roots });
+        let reading =
+            LoadOptions { allow_outside: self.allows_outside, roots, up: self.spec.up, ..LoadOptions::default() };
+        self.render_thread.open(self.spec.clone(), reading);
     }
 
     /// Loads again what edits of the scene ask for: other files, another level of detail.

@@ -6,7 +6,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use crate::{
-    city::model::{Attribute, CityModel, NONE, StringId, TextureImage, Value},
+    city::model::{Attribute, CityModel, Geometry, Lod, NONE, StringId, Value},
     geom::Aabb,
 };
 
@@ -200,7 +200,7 @@ pub fn facts(city: &CityModel, list: bool) -> Facts {
         attributes: attribute_facts(city),
         textures: TextureFacts {
             declared: city.textures.len() as u64,
-            found: city.textures.iter().filter(|t| t.image != TextureImage::Missing).count() as u64,
+            found: city.textures.iter().filter(|t| !t.image.is_missing()).count() as u64,
         },
         faces_dropped: city.faces_dropped + city.geometries.iter().map(|g| u64::from(g.dropped)).sum::<u64>(),
         warnings: warning_facts(city),
@@ -293,6 +293,31 @@ pub fn warning_facts(city: &CityModel) -> Vec<WarningFacts> {
         meaning: code.meaning(),
     };
     city.warnings.iter().map(fact).collect()
+}
+
+/// Why nothing of a city is drawn, where these geometries of it are shown; `None`: something is.
+pub fn nothing_drawn(city: &CityModel, shown: &[u32]) -> Option<String> {
+    let has_triangles = |geometry: &Geometry| geometry.triangles > 0;
+    if shown.iter().any(|geometry| has_triangles(&city.geometries[*geometry as usize])) {
+        return None;
+    }
+    let objects = city.objects.len();
+    let faulty = city.faces_dropped + city.geometries.iter().map(|geometry| u64::from(geometry.dropped)).sum::<u64>();
+    let mut levels: Vec<Lod> = city.geometries.iter().filter(|g| has_triangles(g)).map(|g| g.lod).collect();
+    levels.sort_unstable();
+    levels.dedup();
+    Some(if !levels.is_empty() {
+        let levels: Vec<String> = levels.iter().map(Lod::to_string).collect();
+        format!("`city.lod` leaves out all levels of detail that there are ({})", levels.join(", "))
+    } else if objects == 0 {
+        "the files hold no city objects".to_owned()
+    } else if faulty > 0 {
+        format!("all {faulty} faces are faulty; the warnings of `veduta info` say how")
+    } else if city.geometries.is_empty() {
+        format!("none of the {objects} city objects has geometry")
+    } else {
+        format!("the {objects} city objects have points or lines alone, which are not drawn")
+    })
 }
 
 /// Counts objects by the types on the way from their topmost parent.

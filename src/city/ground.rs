@@ -1,7 +1,8 @@
 //! A plain ground under a city that has no terrain of its own, so that buildings stand on something.
 //!
 //! A height field through the bases of the buildings: every grid point around a building lies no higher than its base,
-//! so the ground never cuts through a ground floor; between buildings heights are relaxed (Laplace's equation with the
+//! so the ground never cuts through a ground floor (what files do not say the type of may be a lamp or an upper floor: it all has the
+//! base of the lowest); between buildings heights are relaxed (Laplace's equation with the
 //! bases fixed), and towards the border they level out by themselves. It is no part of the model: `info`, the picker
 //! and the lists of objects never see it.
 
@@ -74,7 +75,13 @@ fn footprints(model: &CityModel, shown: &[u32]) -> Option<Vec<Aabb>> {
         let family = families.entry(roots[object as usize]).or_insert(Aabb::EMPTY);
         *family = family.union(bounds);
     }
+    let untyped = found.iter().filter(|(object, _)| model.is_untyped(*object));
+    let level = untyped.map(|(_, bounds)| bounds.min.z).fold(f64::INFINITY, f64::min);
     let with_base = |(object, mut bounds): (u32, Aabb)| {
+        if model.is_untyped(object) {
+            bounds.min.z = level;
+            return bounds;
+        }
         let family = families[&roots[object as usize]];
         if family.size().truncate().max_element() <= LARGEST_FAMILY_M {
             bounds.min.z = family.min.z;
@@ -299,7 +306,10 @@ fn in_tiles(points: &[DVec3], triangles: &[[usize; 3]], size: f64) -> Ground {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::city::test_city::{add_box, builder, grid_of_cubes, terrain};
+    use crate::city::{
+        model::{GROUP, MESH},
+        test_city::{add_box, builder, grid_of_cubes, terrain},
+    };
 
     fn all(model: &CityModel) -> Vec<u32> {
         (0..model.geometries.len() as u32).collect()
@@ -398,6 +408,24 @@ mod tests {
         let model = b.finish();
         let ground = plain_ground(&model, &all(&model)).unwrap();
         assert!(ground.bounds.max.z < 0.0, "the ground does not rise to the balcony");
+    }
+
+    /// A lamp's head and a bridge's deck are groups like the houses beside them.
+    #[test]
+    fn what_has_no_type_stands_on_one_level() {
+        for kind in [GROUP, MESH] {
+            let mut b = builder();
+            add_box(&mut b, "house", [0, 0, 2_000], [10_000, 10_000, 8_000]);
+            add_box(&mut b, "head", [300_000, 0, 9_000], [301_000, 1_000, 9_300]);
+            let mut model = b.finish();
+            let uneven = plain_ground(&model, &all(&model)).unwrap();
+            assert!(uneven.bounds.max.z > 8.0, "buildings have bases of their own");
+            let kind = model.strings.intern(kind);
+            model.objects.iter_mut().for_each(|object| object.kind = kind);
+            let ground = plain_ground(&model, &all(&model)).unwrap();
+            let heights = triangles(&ground).into_iter().flatten().map(|p| p.z);
+            assert!(heights.map(|z| (z - 2.0 + BELOW_M).abs()).fold(0.0, f64::max) < 1e-6);
+        }
     }
 
     #[test]

@@ -56,6 +56,11 @@ impl Ids {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StringId(pub u32);
 
+/// What objects of files are called that do not say what their objects are: groups of OBJ, meshes of glTF.
+pub const GROUP: &str = "Group";
+/// See [`GROUP`].
+pub const MESH: &str = "Mesh";
+
 /// No surface, material, texture, parent, ...
 pub const NONE: u32 = u32::MAX;
 
@@ -401,10 +406,17 @@ pub struct Texture {
 pub enum TextureImage {
     /// A file that exists and stays inside the folders the user named.
     File(PathBuf),
-    /// An encoded image (PNG, JPEG) inside the model file.
+    /// An encoded image inside the model file.
     Bytes(Arc<[u8]>),
-    /// Declared but not found; the material's colour is used.
-    Missing,
+    /// Declared but not found, or not readable; the material's colour is used. Why, as long as that has not been told.
+    Missing(String),
+}
+
+impl TextureImage {
+    /// Whether there is none.
+    pub fn is_missing(&self) -> bool {
+        matches!(self, Self::Missing(_))
+    }
 }
 
 /// Texture addressing.
@@ -428,6 +440,20 @@ impl CityModel {
     /// Box around the vertices used by any geometry, metres; empty for an empty city.
     pub fn extent(&self) -> Aabb {
         self.geometries.iter().fold(Aabb::EMPTY, |all, g| all.union(g.bounds))
+    }
+
+    /// The files of its textures.
+    pub fn texture_files(&self) -> Vec<PathBuf> {
+        let file = |texture: &Texture| match &texture.image {
+            TextureImage::File(path) => Some(path.clone()),
+            TextureImage::Bytes(_) | TextureImage::Missing(_) => None,
+        };
+        self.textures.iter().filter_map(file).collect()
+    }
+
+    /// Whether its file does not say what it is.
+    pub fn is_untyped(&self, object: u32) -> bool {
+        [GROUP, MESH].contains(&self.strings.get(self.objects[object as usize].kind))
     }
 
     /// The top of the object's family: itself, or its first parent's root.

@@ -7,12 +7,13 @@ use crate::city::model::{CityModel, Lod};
 /// Per root object the finest LoD that any of its geometry-bearing descendants (itself included) has, not finer than
 /// `cap`; each object shows its own finest LoD that is not finer than that; a parent's geometry is hidden where a
 /// descendant shows some. As the root's LoD is the finest of its family, each object's own finest is never finer:
-/// what is left to do is the cap and the hiding. Geometry without a level of detail passes any cap and is shown where
+/// what is left to do is the cap and the hiding: a whole is hidden where one of its parts (`BuildingPart` and the like) shows some;
+/// installations, rooms, furniture and whatever else belongs to it stand beside it. Geometry without a level of detail passes any cap and is shown where
 /// its object has no other; it is hidden by levels only: nested meshes of glTF stand beside each other.
 pub fn shown_geometries(model: &CityModel, cap: Option<Lod>) -> Vec<u32> {
     let own: Vec<Option<Lod>> = (0..model.objects.len()).map(|object| finest(model, object, cap)).collect();
-    let covered = covered_by_descendants(model, |object| own[object].is_some());
-    let covered_by_levels = covered_by_descendants(model, |object| own[object].is_some_and(|lod| lod != Lod::NONE));
+    let covered = covered_by_parts(model, |object| own[object].is_some());
+    let covered_by_levels = covered_by_parts(model, |object| own[object].is_some_and(|lod| lod != Lod::NONE));
     let mut shown = Vec::new();
     for (i, (object, lod)) in model.objects.iter().zip(&own).enumerate() {
         let hidden = if *lod == Some(Lod::NONE) { &covered_by_levels } else { &covered };
@@ -34,16 +35,22 @@ fn finest(model: &CityModel, object: usize, cap: Option<Lod>) -> Option<Lod> {
     lods.max_by_key(|lod| (*lod != Lod::NONE, *lod))
 }
 
-/// Per object, whether a descendant is one that covers. Walks up from each such object; an ancestor already
-/// marked has marked its own ancestors, so every link is followed once.
-fn covered_by_descendants(model: &CityModel, covers: impl Fn(usize) -> bool) -> Vec<bool> {
+/// Per object, whether a part of it, or a part of a part, is one that covers. Walks up from each such part; a whole already marked has
+/// marked those it is part of, so every link is followed once.
+fn covered_by_parts(model: &CityModel, covers: impl Fn(usize) -> bool) -> Vec<bool> {
+    let kind = |object: usize| model.strings.get(model.objects[object].kind);
+    let is_part = |object: usize| kind(object).ends_with("Part");
     let mut covered = vec![false; model.objects.len()];
     let mut open: Vec<u32> = Vec::new();
-    for object in (0..model.objects.len()).filter(|o| covers(*o)) {
+    for object in (0..model.objects.len()).filter(|o| covers(*o) && is_part(*o)) {
         open.extend(&model.objects[object].parents);
-        while let Some(parent) = open.pop() {
-            if !std::mem::replace(&mut covered[parent as usize], true) {
-                open.extend(&model.objects[parent as usize].parents);
+        while let Some(whole) = open.pop().map(|whole| whole as usize) {
+            // Members of a group are no parts of it.
+            if kind(whole) == "CityObjectGroup" || std::mem::replace(&mut covered[whole], true) {
+                continue;
+            }
+            if is_part(whole) {
+                open.extend(&model.objects[whole].parents);
             }
         }
     }
@@ -58,14 +65,21 @@ fn as_range(range: &std::ops::Range<u32>) -> std::ops::Range<usize> {
 mod tests {
     use super::*;
     use crate::{
-        city::model::{CityObject, Geometry, ObjectClass, StringId},
+        city::model::{CityObject, Geometry, ObjectClass},
         geom::Aabb,
     };
 
-    /// A model of objects given as (parents, lods).
+    /// A model of buildings and their parts, given as (parents, lods).
     fn model(objects: &[(&[u32], &[&str])]) -> CityModel {
+        let kind = |parents: &[u32]| if parents.is_empty() { "Building" } else { "BuildingPart" };
+        model_of(&objects.iter().map(|(parents, lods)| (kind(parents), *parents, *lods)).collect::<Vec<_>>())
+    }
+
+    /// A model of objects given as (kind, parents, lods).
+    fn model_of(objects: &[(&str, &[u32], &[&str])]) -> CityModel {
         let mut model = CityModel::default();
-        for (object, (parents, lods)) in objects.iter().enumerate() {
+        for (object, (kind, parents, lods)) in objects.iter().enumerate() {
+            let kind = model.strings.intern(kind);
             let start = model.geometries.len() as u32;
             for lod in *lods {
                 model.geometries.push(Geometry {
@@ -81,7 +95,7 @@ mod tests {
             }
             model.objects.push(CityObject {
                 id: object.to_string().into(),
-                kind: StringId(0),
+                kind,
                 class: ObjectClass::Building,
                 parents: parents.to_vec(),
                 children: Vec::new(),
@@ -120,6 +134,42 @@ mod tests {
         assert_eq!(shown(family, None), pairs(&[(1, "2.2")]));
         assert_eq!(shown(family, Some("1.2")), pairs(&[(1, "1.2")]));
         assert_eq!(shown(family, Some("0")), pairs(&[(0, "0")]), "under this cap only the footprint is left");
+    }
+
+    #[test]
+    fn what_is_no_part_stands_beside_what_it_belongs_to() {
+        let shown = |objects: &[(&str, &[u32], &[&str])]| -> Vec<u32> {
+            let model = model_of(objects);
+            shown_geometries(&model, None).iter().map(|g| model.geometries[*g as usize].object).collect()
+        };
+        for kind in [
+            "BuildingInstallation",
+            "BuildingRoom",
+            "BuildingFurniture",
+            "BuildingStorey",
+            "BuildingUnit",
+            "BuildingConstructiveElement",
+            "+Chimney",
+            "BridgeInstallation",
+            "TunnelHollowSpace",
+        ] {
+            assert_eq!(shown(&[("Building", &[], &["2"]), (kind, &[0], &["2"])]), [0, 1], "{kind}");
+            // Below a part, too, and as a part's whole.
+            let below: &[(&str, &[u32], &[&str])] =
+                &[("Building", &[], &["1"]), ("BuildingPart", &[0], &["2"]), (kind, &[1], &["2"])];
+            assert_eq!(shown(below), [1, 2], "{kind}");
+            let between: &[(&str, &[u32], &[&str])] =
+                &[("Building", &[], &["2"]), (kind, &[0], &[]), ("BuildingPart", &[1], &["2"])];
+            assert_eq!(shown(between), [0, 2], "{kind}");
+        }
+        for (whole, part) in [("Bridge", "BridgePart"), ("Tunnel", "TunnelPart"), ("+Mill", "+MillPart")] {
+            assert_eq!(shown(&[(whole, &[], &["2"]), (part, &[0], &["2"])]), [1], "{part}");
+            let in_part: &[(&str, &[u32], &[&str])] = &[(whole, &[], &["2"]), (part, &[0], &[]), (part, &[1], &["2"])];
+            assert_eq!(shown(in_part), [2], "{part}");
+        }
+        let group: &[(&str, &[u32], &[&str])] =
+            &[("Building", &[], &[]), ("BuildingPart", &[0, 2], &["2"]), ("CityObjectGroup", &[], &["2"])];
+        assert_eq!(shown(group), [1, 2]);
     }
 
     #[test]

@@ -6,21 +6,30 @@
 
 use std::{
     fs::File,
-    io::{BufReader, Cursor},
-    sync::LazyLock,
+    io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom},
+    path::Path,
+    sync::{Arc, LazyLock},
 };
 
-use image::{ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
 use rayon::prelude::*;
 
-use crate::city::model::{Texture, TextureImage};
+use crate::city::{
+    load::options::LFS_POINTER,
+    model::{CityModel, NONE, Texture, TextureImage},
+    warning::WarningCode,
+};
 
 /// The longest side that is kept; larger images are halved until they fit.
 pub const MAX_SIDE: u32 = 8192;
 /// The longest side that is decoded at all.
 const MAX_DECODED_SIDE: u32 = 32_768;
-/// The memory that decoding may allocate.
+/// The memory that decoding may allocate, and that the pixels of an image may take.
 const MAX_DECODED_BYTES: u64 = 1 << 30;
+/// What is read, as messages say it.
+const FORMATS: &str = "PNG, JPEG, TIFF, WebP, BMP, GIF and TGA";
+/// The end of a file, in which a whole PNG or JPEG says that it ends there.
+const END_BYTES: usize = 4096;
 
 /// A decoded texture.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,42 +57,149 @@ impl Pixels {
     }
 }
 
-/// Decodes a PNG or JPEG and makes its mip levels; the error says what is wrong, for
-/// [`crate::city::warning::WarningCode::MissingTexture`].
-pub fn decode(texture: &Texture) -> Result<Pixels, String> {
-    let limited = |mut limits: Limits| {
-        limits.max_image_width = Some(MAX_DECODED_SIDE);
-        limits.max_image_height = Some(MAX_DECODED_SIDE);
-        limits.max_alloc = Some(MAX_DECODED_BYTES);
-        limits
-    };
-    let (name, image) = match &texture.image {
-        TextureImage::Missing => return Err("the image was not found".to_owned()),
-        TextureImage::Bytes(bytes) => {
-            let mut reader = ImageReader::new(Cursor::new(&bytes[..]));
-            reader.limits(limited(Limits::default()));
-            ("the embedded image".to_owned(), reader.with_guessed_format().map(ImageReader::decode))
-        }
+/// Where the bytes of an image come from.
+trait Source: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Source for T {}
+
+/// An image that has been opened: what messages call it, and what reads it.
+struct Opened {
+    name: String,
+    reader: ImageReader<Box<dyn Source>>,
+}
+
+/// Opens an image, which says by its first bytes what it is, or else by its name.
+fn open(image: &TextureImage) -> Result<Opened, String> {
+    let (name, source, by_name): (_, Box<dyn Source>, _) = match image {
+        TextureImage::Missing(_) => return Err("the image was not found".to_owned()),
+        TextureImage::Bytes(bytes) => ("the embedded image".to_owned(), Box::new(Cursor::new(Arc::clone(bytes))), None),
         TextureImage::File(path) => {
-            let opened = File::open(path).and_then(|file| {
-                let mut reader = ImageReader::new(BufReader::new(file));
-                reader.limits(limited(Limits::default()));
-                reader.with_guessed_format().map(ImageReader::decode)
-            });
-            (path.display().to_string(), opened)
+            let name = path.display().to_string();
+            let file = File::open(path).map_err(|e| format!("{name} cannot be read: {e}"))?;
+            (name, Box::new(BufReader::new(file)), ImageFormat::from_path(path).ok())
         }
     };
-    let image = match image {
-        Ok(Ok(image)) => image.into_rgba8(),
-        Ok(Err(image::ImageError::Unsupported(_))) => return Err(format!("{name} is neither PNG nor JPEG")),
-        Ok(Err(e)) => return Err(format!("{name} cannot be decoded: {e}")),
-        Err(e) => return Err(format!("{name} cannot be read: {e}")),
+    let mut reader = ImageReader::new(source);
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_DECODED_SIDE);
+    limits.max_image_height = Some(MAX_DECODED_SIDE);
+    limits.max_alloc = Some(MAX_DECODED_BYTES);
+    reader.limits(limits);
+    if let Some(format) = by_name.filter(|format| *format == ImageFormat::Tga) {
+        reader.set_format(format);
+    }
+    let reader = reader.with_guessed_format().map_err(|e| format!("{name} cannot be read: {e}"))?;
+    match reader.format() {
+        Some(format) if format.reading_enabled() => Ok(Opened { name, reader }),
+        Some(format) => Err(format!("{name} is {format:?}, which is not read; {FORMATS} are")),
+        None if begins_as_pointer(image) => {
+            Err(format!("{name} is a Git LFS pointer; `git lfs pull` brings the image"))
+        }
+        None => Err(format!("{name} is no image of a kind that is read; {FORMATS} are")),
+    }
+}
+
+/// Whether an image stands for one kept elsewhere.
+fn begins_as_pointer(image: &TextureImage) -> bool {
+    let mut head = vec![0; LFS_POINTER.len()];
+    match image {
+        TextureImage::Bytes(bytes) => bytes.starts_with(LFS_POINTER),
+        TextureImage::File(path) => {
+            File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == LFS_POINTER
+        }
+        TextureImage::Missing(_) => false,
+    }
+}
+
+fn too_large(name: &str, [width, height]: [u32; 2]) -> Option<String> {
+    let bytes = 4 * u64::from(width) * u64::from(height);
+    let most = MAX_DECODED_BYTES >> 20;
+    (bytes > MAX_DECODED_BYTES).then(|| format!("{name} has {width} × {height} pixels, more than {most} MiB of them"))
+}
+
+/// Whether an image can be read, without reading all of it: its size, and that its end is there; where that is in doubt it is decoded.
+///
+/// # Errors
+/// What is wrong, as [`decode`] says it.
+pub fn check(image: &TextureImage) -> Result<(), String> {
+    let Opened { name, reader } = open(image)?;
+    let end: &[u8] = match reader.format() {
+        Some(ImageFormat::Png) => b"IEND",
+        Some(ImageFormat::Jpeg) => &[0xff, 0xd9],
+        _ => return decoded(Opened { name, reader }).map(drop),
     };
-    let size = [image.width(), image.height()];
-    if size.contains(&0) {
+    let size = reader.into_dimensions().map_err(|e| format!("{name} cannot be decoded: {e}"))?;
+    if let Some(what) = too_large(&name, size.into()) {
+        return Err(what);
+    }
+    let last = match image {
+        TextureImage::Bytes(bytes) => bytes[bytes.len().saturating_sub(END_BYTES)..].to_vec(),
+        TextureImage::File(path) => last_bytes(path).map_err(|e| format!("{name} cannot be read: {e}"))?,
+        TextureImage::Missing(_) => Vec::new(),
+    };
+    if last.windows(end.len()).any(|bytes| bytes == end) { Ok(()) } else { decoded(open(image)?).map(drop) }
+}
+
+fn last_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(END_BYTES as u64)))?;
+    let mut bytes = Vec::new();
+    file.take(END_BYTES as u64).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn decoded(Opened { name, reader }: Opened) -> Result<RgbaImage, String> {
+    let failed = |e: ImageError| format!("{name} cannot be decoded: {e}");
+    let decoder = reader.into_decoder().map_err(failed)?;
+    if let Some(what) = too_large(&name, decoder.dimensions().into()) {
+        return Err(what);
+    }
+    let image = DynamicImage::from_decoder(decoder).map_err(failed)?.into_rgba8();
+    if [image.width(), image.height()].contains(&0) {
         return Err(format!("{name} has no pixels"));
     }
-    Ok(with_levels(size, image.into_raw()))
+    Ok(image)
+}
+
+/// Decodes an image and makes its mip levels; the error says what is wrong, for
+/// [`crate::city::warning::WarningCode::MissingTexture`].
+pub fn decode(texture: &Texture) -> Result<Pixels, String> {
+    let image = decoded(open(&texture.image)?)?;
+    Ok(with_levels([image.width(), image.height()], image.into_raw()))
+}
+
+/// Marks the images that cannot be read as missing, and warns of all that are, with the first object that has each.
+pub fn settle(model: &mut CityModel) {
+    let troubles: Vec<Option<String>> = model
+        .textures
+        .par_iter()
+        .map(|texture| match &texture.image {
+            TextureImage::Missing(why) => Some(why.clone()),
+            image => check(image).err(),
+        })
+        .collect();
+    if troubles.iter().all(Option::is_none) {
+        return;
+    }
+    let mut objects = vec![None; troubles.len()];
+    for surface in model.surfaces.iter().rev() {
+        let texture = model.materials.get(surface.material as usize).map_or(NONE, |material| material.texture);
+        if let Some(object) = objects.get_mut(texture as usize) {
+            *object = Some(surface.object);
+        }
+    }
+    for ((texture, trouble), object) in model.textures.iter_mut().zip(troubles).zip(objects) {
+        let Some(trouble) = trouble else { continue };
+        texture.image = TextureImage::Missing(String::new());
+        // What lies outside of the folders has been told by that name.
+        if !trouble.is_empty() {
+            let object = object.and_then(|object| model.objects.get(object as usize)).map_or("", |object| &object.id);
+            model
+                .warnings
+                .add(WarningCode::MissingTexture, object, || format!("{trouble}; the material's colour is used"));
+        }
+    }
 }
 
 /// Makes the mip levels of an RGBA8 image.
@@ -264,9 +380,16 @@ mod tests {
     #[test]
     fn what_is_no_image_is_an_error_in_words() {
         let bytes = |b: &[u8]| Texture { image: TextureImage::Bytes(Arc::from(b)), wrap: [Wrap::Repeat; 2] };
-        assert!(decode(&bytes(b"")).unwrap_err().contains("neither PNG nor JPEG"));
-        assert!(decode(&bytes(b"GIF89a......")).unwrap_err().contains("neither PNG nor JPEG"));
-        assert!(decode(&bytes(b"\x89PNG\r\n\x1a\n")).unwrap_err().contains("cannot be decoded"));
+        for (content, said) in [
+            (&b""[..], "no image of a kind that is read; PNG, JPEG, TIFF"),
+            (b"<html></html>", "no image of a kind that is read"),
+            (b"DDS ............", "is Dds, which is not read"),
+            (b"GIF89a......", "cannot be decoded"),
+            (b"\x89PNG\r\n\x1a\n", "cannot be decoded"),
+        ] {
+            assert!(decode(&bytes(content)).unwrap_err().contains(said), "{:?}", decode(&bytes(content)));
+            assert_eq!(check(&bytes(content).image).unwrap_err(), decode(&bytes(content)).unwrap_err());
+        }
         // A header that claims 60000 × 60000 pixels.
         let mut huge = png(1, 1, &[0; 4]);
         if let TextureImage::Bytes(png) = &mut huge.image {
@@ -275,7 +398,33 @@ mod tests {
             *png = Arc::from(lying);
         }
         assert!(decode(&huge).is_err());
+        assert!(check(&huge.image).is_err());
         let file = |path: &str| Texture { image: TextureImage::File(path.into()), wrap: [Wrap::Repeat; 2] };
         assert!(decode(&file("no/such.png")).unwrap_err().contains("no/such.png cannot be read"));
+    }
+
+    #[test]
+    fn what_has_lost_its_end_is_not_there() {
+        let noise: Vec<u8> = (0..64 * 64 * 4_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        for format in [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Tiff, ImageFormat::WebP, ImageFormat::Bmp] {
+            let image = RgbaImage::from_raw(64, 64, noise.clone()).expect("an image");
+            let mut whole = Cursor::new(Vec::new());
+            DynamicImage::ImageRgba8(image).to_rgb8().write_to(&mut whole, format).expect("written");
+            let whole = whole.into_inner();
+            let of = |bytes: &[u8]| TextureImage::Bytes(Arc::from(bytes));
+            assert_eq!(check(&of(&whole)), Ok(()), "{format:?}");
+            // With something behind it, it is whole.
+            assert_eq!(check(&of(&[&whole[..], &[0; 9000]].concat())), Ok(()), "{format:?}");
+            let part = of(&whole[..whole.len() / 2]);
+            let texture = Texture { image: part.clone(), wrap: [Wrap::Repeat; 2] };
+            assert_eq!(check(&part).is_ok(), decode(&texture).is_ok(), "{format:?}");
+            assert!(format == ImageFormat::Jpeg || check(&part).is_err(), "{format:?}");
+        }
+    }
+
+    #[test]
+    fn pixels_are_bounded_before_they_are_made() {
+        assert_eq!(too_large("x", [16_384, 16_384]), None);
+        assert!(too_large("x", [32_768, 16_384]).expect("too large").contains("32768 × 16384"));
     }
 }

@@ -117,10 +117,11 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if arguments.output.as_os_str() == "-" {
         return Err(Failure::usage("animate: frames are files, and cannot go to stdout; -o DIR would be right"));
     }
-    output::check(&arguments.stats)?;
+    output::check(&arguments.stats, [file])?;
     let options = render::options_of(Some(file), global);
     let scene = figure::scene_file::read(file, &options).map_err(Failure::failed)?;
     let mut scene = render::changed(scene, &arguments.settings)?;
+    output::check(&arguments.stats, &figure::scene_file::files_of(&scene))?;
     if let Some(size) = arguments.size {
         scene.figure.size = size.0;
     }

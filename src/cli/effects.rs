@@ -99,10 +99,7 @@ pub fn run(arguments: &Arguments, _: &GlobalArguments) -> Outcome {
     let effects = effect::named().filter(is_asked);
     if arguments.json {
         let list: Vec<Value> = effects.map(json_of).collect();
-        return output::write(Path::new("-"), |out| {
-            serde_json::to_writer_pretty(&mut *out, &list)?;
-            writeln!(out)
-        });
+        return output::print(&(serde_json::to_string_pretty(&list).map_err(Failure::failed)? + "\n"));
     }
     let paint = Paint::for_stdout();
     let texts: Vec<String> = effects.map(|effect| text_of(effect, paint)).collect();

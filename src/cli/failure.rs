@@ -16,7 +16,6 @@ pub struct Failure {
 enum Kind {
     Failed,
     Usage,
-    ClosedPipe,
 }
 
 /// The result of a command.
@@ -33,38 +32,19 @@ impl Failure {
         Self { message: message.to_string(), kind: Kind::Usage }
     }
 
-    /// Reading or writing `place` failed. The reader of a pipe that leaves early is no failure: it has seen enough.
+    /// Reading or writing `place` failed.
     pub fn io(place: &str, error: &std::io::Error) -> Self {
-        let kind = if error.kind() == std::io::ErrorKind::BrokenPipe { Kind::ClosedPipe } else { Kind::Failed };
-        Self { message: format!("{place}: {error}"), kind }
+        Self::failed(format!("{place}: {error}"))
     }
 
     /// Prints the message on stderr; gives the exit code.
     pub fn report(&self) -> ExitCode {
         let code = match self.kind {
-            Kind::ClosedPipe => return ExitCode::SUCCESS,
             Kind::Failed => 1,
             Kind::Usage => 2,
         };
         let paint = Paint::for_stderr();
-        terminal::say(&format!("{} {}", paint.error("error:"), self.message));
+        terminal::say(&format!("{} {}", paint.error("error:"), terminal::shown(&self.message)));
         ExitCode::from(code)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::io::{Error, ErrorKind};
-
-    use super::*;
-
-    #[test]
-    fn a_closed_pipe_is_no_failure() {
-        let code = |failure: Failure| format!("{:?}", failure.report());
-        assert_eq!(
-            code(Failure::io("stdout", &Error::from(ErrorKind::BrokenPipe))),
-            format!("{:?}", ExitCode::SUCCESS)
-        );
-        assert_eq!(code(Failure::io("x.json", &Error::from(ErrorKind::NotFound))), format!("{:?}", ExitCode::from(1)));
     }
 }

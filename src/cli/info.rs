@@ -85,16 +85,13 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let best_views = arguments.best_views.as_ref().map(|id| best_views(&city, id)).transpose()?;
     let landmarks = arguments.landmarks.map(|n| landmarks(&city, n));
     if let Some(file) = &arguments.scene {
-        output::check([file])?;
+        output::check([file], &arguments.files)?;
         let text = sights::scene(&arguments.files, landmarks.iter().flatten(), file);
         output::write(file, |out| out.write_all(text.as_bytes()))?;
     }
     let answer = Answer { facts: facts::facts(&city, arguments.list), best_views, landmarks };
     if arguments.json {
-        return output::write(std::path::Path::new("-"), |out| {
-            serde_json::to_writer_pretty(&mut *out, &answer)?;
-            writeln!(out)
-        });
+        return output::print(&(serde_json::to_string_pretty(&answer).map_err(Failure::failed)? + "\n"));
     }
     output::print(&report::text(&answer, &city.sources, Paint::for_stdout()))
 }

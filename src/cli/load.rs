@@ -35,15 +35,20 @@ impl load::Progress for Shown {
 
 /// Loads `files` as one city, with how long each stage took.
 pub fn load(files: &[PathBuf], global: &GlobalArguments) -> Outcome<(CityModel, LoadStats)> {
-    load_below(files, named_folders(files), global)
+    let options =
+        LoadOptions { allow_outside: global.allow_outside, roots: named_folders(files), ..LoadOptions::default() };
+    load_with(files, &options, global)
 }
 
-/// [`load()`], with folders that paths inside the files may lead to; the folders of the files themselves are always
-/// among them.
-pub fn load_below(files: &[PathBuf], roots: Vec<PathBuf>, global: &GlobalArguments) -> Outcome<(CityModel, LoadStats)> {
-    let options = LoadOptions { allow_outside: global.allow_outside, roots };
+/// [`load()`], with folders that paths inside the files may lead to, those of the files themselves always among them, and with what
+/// files leave open.
+pub fn load_with(
+    files: &[PathBuf],
+    options: &LoadOptions,
+    global: &GlobalArguments,
+) -> Outcome<(CityModel, LoadStats)> {
     let shown = Shown { line: terminal::Progress::spinning("loading", global) };
-    let (city, stats) = load::load_with_stats(files, &options, &shown).map_err(Failure::failed)?;
+    let (city, stats) = load::load_with_stats(files, options, &shown).map_err(Failure::failed)?;
     drop(shown);
     log::info!(
         "{} objects, {} triangles: read {:.0?}, parsed {:.0?}, built {:.0?}",

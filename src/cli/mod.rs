@@ -26,7 +26,7 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 pub use arguments::GlobalArguments;
 pub use failure::{Failure, Outcome};
 
-use crate::{app, city::builtin};
+use crate::{app, city::builtin, figure::file::remove_parts};
 
 /// The command line.
 #[derive(Debug, Parser)]
@@ -114,11 +114,36 @@ pub fn main() -> ExitCode {
         }
     };
     terminal::start_log(&cli.global);
+    ends_cleanly();
     match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }
 }
+
+/// Has half-written files removed where the program is asked to end.
+#[cfg(unix)]
+fn ends_cleanly() {
+    use signal_hook::{
+        consts::{SIGHUP, SIGINT, SIGTERM},
+        iterator::Signals,
+        low_level::emulate_default_handler,
+    };
+    let Ok(mut signals) = Signals::new([SIGHUP, SIGINT, SIGTERM]) else { return };
+    let wait = move || {
+        for signal in &mut signals {
+            remove_parts();
+            let _ = emulate_default_handler(signal);
+        }
+    };
+    // Without the thread signals end the program as they do.
+    if let Err(error) = std::thread::Builder::new().name("signals".into()).spawn(wait) {
+        log::debug!("no thread waits for signals: {error}");
+    }
+}
+
+#[cfg(not(unix))]
+fn ends_cleanly() {}
 
 fn run(cli: Cli) -> Outcome {
     let global = &cli.global;

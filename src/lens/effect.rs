@@ -88,11 +88,31 @@ pub fn problems_of_parameters(
     problems
 }
 
+/// What other programs and papers call effects, and what they are called here.
+const OTHER_NAMES: [(&str, &str); 12] = [
+    ("outline", "edges"),
+    ("outlines", "edges"),
+    ("contour", "edges"),
+    ("contours", "edges"),
+    ("silhouette", "edges"),
+    ("gray", "greyscale"),
+    ("grey", "greyscale"),
+    ("monochrome", "greyscale"),
+    ("ghost", "x-ray"),
+    ("alpha", "transparent"),
+    ("opacity", "transparent"),
+    ("translucent", "transparent"),
+];
+
 /// The message for a name that is no effect of this version.
 pub fn unknown_effect(name: &str) -> String {
     if let Some(handler) = named().find(|handler| handler.name == name) {
         let row = handler.kind.prototype();
         return format!("\"{name}\" is a {}; it would be right as the kind of {}", row.name, row.asked_by.place());
+    }
+    let other = OTHER_NAMES.iter().find(|(other, _)| name.eq_ignore_ascii_case(other));
+    if let Some((_, own)) = other {
+        return format!("there is no effect \"{name}\"; did you mean \"{own}\"?");
     }
     match did_you_mean(name, effects().map(|e| e.name.as_str())) {
         hint if hint.is_empty() => {
@@ -270,6 +290,10 @@ mod tests {
         let message =
             |problems: Vec<EffectProblem>| problems.first().map(|p| format!("{}: {}", p.key, p.message)).unwrap();
         assert_eq!(message(with("sepai", &[])), "effect: there is no effect \"sepai\"; did you mean \"sepia\"?");
+        assert_eq!(message(with("outline", &[])), "effect: there is no effect \"outline\"; did you mean \"edges\"?");
+        for (other, own) in OTHER_NAMES {
+            assert!(effects().any(|e| e.name == own) && !effects().any(|e| e.name == other), "{other}");
+        }
         assert!(message(with("thematic", &[])).starts_with("attribute: is missing"));
         assert_eq!(
             message(with("sepia", &[("amonut", Parameter::Number(1.0))])),

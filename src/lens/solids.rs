@@ -304,7 +304,7 @@ fn made(from: &Region, city: ShownCity) -> Result<(Option<Solid>, DVec3), Region
                 return Err(wrong(format!("{} is a folder; a file would be right", file.display())));
             }
             let folder = file.parent().map(Path::to_owned).into_iter().collect();
-            let options = LoadOptions { allow_outside: false, roots: folder };
+            let options = LoadOptions { roots: folder, ..LoadOptions::default() };
             let loaded = load::load(std::slice::from_ref(file), &options, &load::Quiet);
             let model = loaded.map_err(|e| wrong(e.to_string()))?;
             let geometries = shown_geometries(&model, None);

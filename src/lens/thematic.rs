@@ -100,8 +100,34 @@ pub enum ThematicError {
     UnknownAttribute(String, String),
 }
 
-/// The number a value stands for: itself, a text that is a number, or the year of an ISO date (`1931-05-01`).
+/// Numbers that exporters write where there is no value.
+const SENTINELS: [f64; 3] = [-9999.0, -99_999.0, -999_999.0];
+/// From here on a number says that there is none: the largest f32s and f64s.
+const SENTINEL: f64 = 1e38;
+
+/// Whether a number stands for no value: −9999 and the like, ±3.4e38.
+fn is_sentinel(number: f64) -> bool {
+    number.abs() >= SENTINEL || SENTINELS.contains(&number)
+}
+
+/// The number a value stands for: itself, a text that is a number, or the year of an ISO date (`1931-05-01`). None for numbers by which
+/// exporters say that there is no value.
 pub fn number_of(value: Value, strings: &Strings) -> Option<f64> {
+    written_number(value, strings).filter(|number| !is_sentinel(*number))
+}
+
+/// Numbers of drawn objects that stand for no value of an attribute: how many objects have each, those of most first.
+pub fn sentinels(model: &CityModel, attribute: &str) -> Vec<(f64, u64)> {
+    let Some(id) = model.strings.find(attribute) else { return Vec::new() };
+    let numbers = drawn(model).filter_map(|object| written_number(model.attribute(object, id)?, &model.strings));
+    let mut counts: FxHashMap<u64, u64> = FxHashMap::default();
+    numbers.filter(|number| is_sentinel(*number)).for_each(|number| *counts.entry(number.to_bits()).or_default() += 1);
+    let mut all: Vec<(f64, u64)> = counts.into_iter().map(|(bits, count)| (f64::from_bits(bits), count)).collect();
+    all.sort_by(|(x, few), (y, many)| many.cmp(few).then(x.total_cmp(y)));
+    all
+}
+
+fn written_number(value: Value, strings: &Strings) -> Option<f64> {
     match value {
         Value::Integer(i) => Some(i as f64),
         Value::Number(n) => Some(n).filter(|n| n.is_finite()),
@@ -145,7 +171,8 @@ impl ThematicScale {
             return Err(ThematicError::UnknownAttribute(name.to_owned(), did_you_mean(name, attribute_names(model))));
         }
         let threshold = used.number("threshold").map(|at| (at, used.color("highlight").unwrap_or(HIGHLIGHT)));
-        let given: Vec<Value> = values.iter().flatten().copied().filter(|v| *v != Value::Null).collect();
+        let is_given = |v: &Value| *v != Value::Null && !written_number(*v, &model.strings).is_some_and(is_sentinel);
+        let given: Vec<Value> = values.iter().flatten().copied().filter(is_given).collect();
         let mut numbers: Vec<f64> = given.iter().filter_map(|v| number_of(*v, &model.strings)).collect();
         numbers.sort_unstable_by(f64::total_cmp);
         // A few texts like "unknown" among numbers are missing data, not categories.
@@ -441,6 +468,24 @@ mod tests {
         let wrong = used(&[("attribute", Parameter::Text("A".into()))]);
         let message = ThematicScale::new(&model, &wrong).unwrap_err().to_string();
         assert_eq!(message, "no object has the attribute \"A\"; did you mean \"a\"?");
+    }
+
+    #[test]
+    fn numbers_that_say_that_there_is_none_are_no_data() {
+        let values = ["5", "25", "-9999", "3.4e38", "-3.402823e38", "-99999.0", "15", "-9999"];
+        let model = city(&values.map(Some), |text, _| Value::Number(text.parse().expect("a number")));
+        let scale = ThematicScale::new(&model, &used(&[])).expect("a scale");
+        assert!(matches!(scale.rule, Rule::Ramp { min: 5.0, max: 25.0, .. }), "{:?}", scale.rule);
+        let no_data = scale.legend.iter().find(|entry| entry.kind == LegendKind::NoData).expect("some have none");
+        assert_eq!(no_data.count, 5);
+        assert_eq!(scale.color_of(Some(Value::Integer(-9999)), &model.strings), NO_DATA);
+        let found = sentinels(&model, "a");
+        assert_eq!((found[0], found.len()), ((-9999.0, 2), 4));
+        assert_eq!(sentinels(&model, "b"), []);
+        // Numbers beside them are numbers.
+        for number in [-9998.0, 9999.0, -999.0, 1e30] {
+            assert_eq!(number_of(Value::Number(number), &model.strings), Some(number));
+        }
     }
 
     #[test]

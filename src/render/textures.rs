@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::{
-    city::{Texture, TextureImage, Wrap, texture},
+    city::{Texture, Wrap, texture},
     gpu::{Gpu, GpuError},
     render::city::Shown,
 };
@@ -58,7 +58,7 @@ impl Textures {
                     }
                     Ok(pixels) => entries[i] = Some(upload(gpu, &pixels, &model.textures[i])),
                     // Whoever loaded the city has said this, for all of them at once.
-                    Err(_) if model.textures[i].image == TextureImage::Missing => {}
+                    Err(_) if model.textures[i].image.is_missing() => {}
                     Err(message) => log::warn!("texture {i}: {message}"),
                 }
             }

@@ -7,7 +7,7 @@ use crate::{
         chosen::{absent, absent_types},
         nearest::did_you_mean,
         rendering::Case,
-        thematic::attribute_names,
+        thematic::{attribute_names, sentinels},
     },
     scene::{
         anchor::{AnchorProblem, anchor},
@@ -48,6 +48,19 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
                     table: table.clone(),
                     key: format!("{list}.{i}.attribute"),
                     message: format!("no object of the city has the attribute \"{attribute}\"{hint}"),
+                });
+            }
+            let none = sentinels(model, attribute);
+            if !none.is_empty() {
+                let told: Vec<String> =
+                    none.iter().take(4).map(|(number, count)| format!("{number:e} ({count})")).collect();
+                problems.push(SceneProblem {
+                    table: table.clone(),
+                    key: format!("{list}.{i}.attribute"),
+                    message: format!(
+                        "objects have numbers for \"{attribute}\" that stand for no value, and are drawn as such: {}",
+                        told.join(", ")
+                    ),
                 });
             }
         }

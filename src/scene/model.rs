@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use crate::{
+    city::load::Up,
     lens::{
         EffectUse, Lens,
         best_view::{Background, BaseStyle},
@@ -55,13 +56,15 @@ pub struct CitySpec {
     pub files: Vec<PathBuf>,
     /// No LoD finer than this, canonical (`1.3`).
     pub lod: Option<String>,
+    /// What is up in OBJ files, which do not say so.
+    pub up: Up,
     /// Whether a plain ground is put under a city without terrain.
     pub ground: bool,
 }
 
 impl Default for CitySpec {
     fn default() -> Self {
-        Self { files: Vec::new(), lod: None, ground: true }
+        Self { files: Vec::new(), lod: None, up: Up::default(), ground: true }
     }
 }
 

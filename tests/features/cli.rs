@@ -228,15 +228,19 @@ fn synth_writes_every_format_by_its_ending() {
 }
 
 #[test]
-fn a_reader_that_leaves_is_no_failure() {
-    let mut child = veduta(&["synth", "--buildings", "5000", "--seed", "1", "-o", "-"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    drop(child.stdout.take());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!((code(&output), err(&output).as_str()), (0, ""));
+fn a_reader_that_leaves_has_read_enough_and_has_no_file() {
+    let folder = Folder::new("leaves");
+    let large = folder.path("large.city.json");
+    assert_eq!(code(&run(&["synth", "--buildings", "3000", "--seed", "1", "-o", &large])), 0);
+    let left = |arguments: &[&str]| {
+        let mut child = veduta(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        (code(&output), err(&output))
+    };
+    assert_eq!(left(&["info", "--json", "--list", &large]), (0, String::new()));
+    let (code, said) = left(&["synth", "--buildings", "5000", "--seed", "1", "-o", "-"]);
+    assert!(code == 1 && said.contains("stdout"), "{code}: {said}");
 }
 
 #[test]

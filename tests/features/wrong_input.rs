@@ -267,7 +267,7 @@ fn meshes() -> Vec<Case> {
             Error(&["byteStride"]),
         ),
         case("type-wrong.gltf", gltf("VEC3", "VEC9"), Error(&["accessors[0]"])),
-        case("mesh-missing.gltf", gltf("\"mesh\":0", "\"mesh\":9"), Error(&["mesh 9"])),
+        case("mesh-missing.gltf", gltf("\"mesh\":0", "\"mesh\":9"), Error(&["meshes[9]"])),
         case("no-position.gltf", gltf("POSITION", "NORMAL"), Error(&["POSITION"])),
         case("node-cycle.gltf", gltf("\"mesh\":0}", "\"mesh\":0,\"children\":[0]}"), Shown(1, &["cyclic-parents"])),
         case("node-chain.gltf", gltf("\"nodes\":[{\"name\":\"a\",\"mesh\":0}]", &chain), Shown(1, &[])),
@@ -447,4 +447,36 @@ fn wrong_usage_is_2_and_what_is_not_there_is_1() {
     let absent = run(&["info", "no/such/city.json"]);
     assert_eq!(absent.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&absent.stderr).contains("no/such/city.json"));
+}
+
+/// Lists of scenes are bounded before what is in them is looked into.
+#[test]
+fn scenes_of_too_many_things_are_refused_at_once() {
+    use veduta::figure::scene_file::{Options, parse};
+    let head = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n";
+    let sphere = "{ kind = \"sphere\", center = [0, 0, 5], radius = 3 }";
+    let of = |key: &str, one: &str| format!("{key} = [{}]\n", vec![one; 100_000].join(", "));
+    let lens = "[[lens]]\nname = \"l\"\neffects = [\"sepia\"]\n";
+    let shape = format!("shape = {sphere}\n");
+    for (name, text, said) in [
+        (
+            "lenses",
+            (0..100_000).map(|i| format!("[[lens]]\nname = \"l{i}\"\n{shape}effects = [\"sepia\"]\n")).collect(),
+            "lens: has 100000 entries; at most 4096",
+        ),
+        ("shapes", lens.to_owned() + &of("shapes", sphere), "shapes: has 100000 entries; at most 1024"),
+        (
+            "parts",
+            format!("{lens}shape = {{ kind = \"union\", {} }}\n", of("shapes", sphere).trim_end()),
+            "shape.shapes: has 100000 entries; at most 1024",
+        ),
+        (
+            "effects",
+            format!("[[lens]]\nname = \"l\"\n{shape}{}", of("effects", "\"sepia\"")),
+            "effects: has 100000 entries; at most 1024",
+        ),
+    ] {
+        let error = parse(&(head.to_owned() + &text), "t.toml", &Options::default()).expect_err(name).to_string();
+        assert!(error.contains(said) && error.len() < 400, "{name}: {error:.400}");
+    }
 }

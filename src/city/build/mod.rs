@@ -24,9 +24,14 @@ mod tiles;
 pub use self::lattice::Lattice;
 pub use self::points::{BAD_POINT, Points, Pool};
 pub use self::raw::{Polygons, RawGeometry, RawObject};
+use std::path::Path;
+
+use glam::DVec3;
+
 use self::staging::PackedStaging;
 use crate::city::{
     build::raw::KeptObject,
+    crs::{LocalFrame, UtmZone},
     memory::give_back,
     model::{Attribute, CityModel, CityObject, Source, StringId, Surface, SurfaceDetail},
     warning::WarningCode,
@@ -38,7 +43,9 @@ pub struct ModelBuilder {
     /// The model so far; loaders fill `sources`, `crs`, `materials`, `textures`, `unknown`, `warnings` directly.
     pub model: CityModel,
     /// The metric frame of a city in degrees, once its first vertex is known.
-    pub zone: Option<crate::city::crs::UtmZone>,
+    pub zone: Option<UtmZone>,
+    /// The frame that earth-centred files are put in, once there is one.
+    pub frame: Option<LocalFrame>,
     objects: Vec<KeptObject>,
     /// Kinds of objects, as `KeptObject::kind` counts them.
     kinds: Vec<Box<str>>,
@@ -110,6 +117,19 @@ impl ModelBuilder {
     /// Interns a string.
     pub fn intern(&mut self, text: &str) -> StringId {
         self.model.strings.intern(text)
+    }
+
+    /// The frame of a file that does not say where it is, by one of its places, z up; `None` where that need not be earth-centred. That of
+    /// earlier files, if there is one.
+    pub fn frame_of_unnamed(&mut self, file: &Path, place: DVec3) -> Option<LocalFrame> {
+        let own = LocalFrame::of_unnamed(place)?;
+        self.model.warnings.add(WarningCode::UnknownCrs, "", || {
+            format!(
+                "{}: coordinates can only be earth-centred (EPSG:4978); they are turned to east, north and up",
+                file.display()
+            )
+        });
+        Some(*self.frame.get_or_insert(own))
     }
 
     /// Makes the model: ids and links, then all geometry.

@@ -196,7 +196,7 @@ impl SharedAppearance {
         }
         if bad > 0 {
             builder.model.warnings.add(WarningCode::AppearanceIndex, object, || {
-                format!("object {object}: {bad} material or texture values of a geometry point past their list or do not match its boundaries; they are ignored")
+                format!("object {object}: {bad} material or texture values of a geometry point past their list or do not match its boundaries; their faces have none")
             });
         }
         (materials, texcoords)
@@ -238,24 +238,19 @@ fn resolve(image: &str, builder: &mut ModelBuilder, path: &Path, options: &LoadO
     let warnings = &mut builder.model.warnings;
     let file = path.display();
     if image.is_empty() {
-        warnings.add(WarningCode::MissingTexture, "", || format!("{file}: a texture names no image"));
-        return TextureImage::Missing;
+        return TextureImage::Missing(format!("{file}: a texture names no image"));
     }
     if image.contains("://") {
-        warnings.add(WarningCode::MissingTexture, "", || format!("{file}: {image} is on the web; nothing is fetched"));
-        return TextureImage::Missing;
+        return TextureImage::Missing(format!("{file}: {image} is on the web; nothing is fetched"));
     }
     match options.sibling(path, image) {
         Sibling::Found(path) => TextureImage::File(path),
-        Sibling::Missing(path) => {
-            warnings.add(WarningCode::MissingTexture, "", || format!("{file}: no image at {}", path.display()));
-            TextureImage::Missing
-        }
+        Sibling::Missing(path) => TextureImage::Missing(format!("{file}: no image at {}", path.display())),
         Sibling::Outside(path) => {
             warnings.add(WarningCode::OutsidePath, "", || {
                 format!("{file}: {} leaves the folders named; --allow-outside would follow it", path.display())
             });
-            TextureImage::Missing
+            TextureImage::Missing(String::new())
         }
     }
 }
@@ -287,16 +282,15 @@ fn set_materials(
         }
         MaterialUse::Each(values) => values,
     };
-    let matches = values.for_each(&geometry.boundaries.ends[..depth - 1], |polygon, tokens| {
-        if let [Token::Index(index)] = tokens {
-            out[polygon] = find(*index);
-        }
+    let mut beside = 0;
+    let wrong = values.for_each(&geometry.boundaries.ends[..depth - 1], |polygon, tokens| match tokens {
+        [Token::Index(index)] => out[polygon] = find(*index),
+        // In place of a face's value may stand one for all of its rings.
+        [Token::Open, Token::Index(index), Token::Close] => out[polygon] = find(*index),
+        [.., Token::Index(_), _] => beside += 1,
+        _ => {}
     });
-    if !matches {
-        out.fill(NONE);
-        return 1;
-    }
-    bad
+    bad + wrong + beside
 }
 
 /// The texture of a ring.
@@ -317,7 +311,7 @@ fn ring_textures(
     let ring_ends = &boundaries.ends[depth];
     let mut rings = vec![RingTexture::default(); ring_ends.len()];
     let mut bad = 0;
-    let matches = values.for_each(&boundaries.ends[..depth], |ring, tokens| {
+    let wrong = values.for_each(&boundaries.ends[..depth], |ring, tokens| {
         let start = if ring == 0 { 0 } else { ring_ends[ring - 1] };
         let corners = (ring_ends[ring] - start) as usize;
         match tokens {
@@ -341,7 +335,7 @@ fn ring_textures(
             _ => bad += 1,
         }
     });
-    if matches { (rings, bad) } else { (vec![RingTexture::default(); ring_ends.len()], 1) }
+    (rings, bad + wrong)
 }
 
 #[cfg(test)]

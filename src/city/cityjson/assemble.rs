@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, DVec4};
 use rustc_hash::FxHashMap;
 
 use crate::city::{
@@ -177,7 +177,16 @@ impl Assembly<'_> {
             }
             return;
         };
-        let world_from_template = DMat4::from_translation(anchor) * DMat4::from_cols_array(&matrix).transpose();
+        let by_rows = DMat4::from_cols_array(&matrix).transpose();
+        let is_by_columns = by_rows.row(3).truncate() != DVec3::ZERO && by_rows.col(3) == DVec4::W;
+        if is_by_columns {
+            self.warn(WarningCode::Malformed, id, || {
+                "a transformationMatrix moves by its last row, where CityJSON has it in the last column; it is read column by column"
+                    .to_owned()
+            });
+        }
+        let placing = if is_by_columns { by_rows.transpose() } else { by_rows };
+        let world_from_template = DMat4::from_translation(anchor) * placing;
         if world_from_template.determinant() < 0.0 {
             reverse_rings(&mut polygons);
         }

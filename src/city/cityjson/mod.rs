@@ -26,7 +26,7 @@ use crate::city::{
         document::Document,
         vertices::{Placing, Transform},
     },
-    crs::{Axes, Crs, UtmZone},
+    crs::{Axes, Crs, LocalFrame, UtmZone},
     json::{self, Json},
     load::{error::LoadError, input::Input, options::LoadOptions},
     memory::give_back,
@@ -171,10 +171,7 @@ impl<'a> File<'a> {
             Axes::Feet => {
                 self.warn(WarningCode::UnknownCrs, || format!(": {} is in feet; they are used as metres", crs.name))
             }
-            Axes::Geocentric => self.warn(WarningCode::UnknownCrs, || {
-                format!(": {} is earth-centred; coordinates are used as they are, z is not up", crs.name)
-            }),
-            Axes::Metric | Axes::LatLon | Axes::LonLat => {}
+            Axes::Metric | Axes::LatLon | Axes::LonLat | Axes::Geocentric => {}
         }
         match self.builder.model.crs.clone() {
             None => {
@@ -243,7 +240,8 @@ impl<'a> File<'a> {
         .add(document);
     }
 
-    /// The way from this document's numbers to metres; the first vertex in degrees decides the zone of the whole city.
+    /// The way from this document's numbers to metres; the first vertex in degrees decides the zone of the whole city, and the first that
+    /// is earth-centred its frame.
     fn placing(&mut self, document: &Document) -> Placing {
         let first = document.vertices.transformed(0, &self.transform);
         let degrees = match self.axes {
@@ -261,23 +259,61 @@ impl<'a> File<'a> {
                 self.builder.zone.get_or_insert(UtmZone::at(place.x, place.y));
             }
         }
+        if self.axes == Axes::Geocentric && first.is_finite() && self.builder.frame.is_none() {
+            self.builder.frame = LocalFrame::at(first);
+            if self.builder.frame.is_none() {
+                self.axes = Axes::Metric;
+                self.warn(WarningCode::UnknownCrs, || {
+                    ": the reference system is earth-centred, the coordinates are not near the ground; they are used as metres"
+                        .to_owned()
+                });
+            }
+        }
         let zone = self.builder.zone.unwrap_or(UtmZone { number: 31, is_south: false });
-        Placing { transform: self.transform, axes: self.axes, zone }
+        Placing { transform: self.transform, axes: self.axes, zone, frame: self.builder.frame }
     }
 
-    /// The lines after the header; a bad one is named and left out.
+    /// The lines after the header; a bad one is named and left out. Features that span several lines are read, too, as long as each is
+    /// whole.
     fn read_features(&mut self, bytes: &[u8], start: usize) {
-        let first = bytes[..start].iter().filter(|b| **b == b'\n').count() + 1;
-        for (line_number, line) in (first..).zip(bytes[start..].split(|b| *b == b'\n')) {
-            if !line.trim_ascii().is_empty() {
-                self.read_feature(line, line_number);
+        let lines = |bytes: &[u8]| bytes.iter().filter(|b| **b == b'\n').count();
+        let (mut at, mut line_number, mut can_span) = (start, lines(&bytes[..start]) + 1, true);
+        while at < bytes.len() {
+            let rest = &bytes[at..];
+            let mut end = rest.iter().position(|b| *b == b'\n').map_or(rest.len(), |newline| newline + 1);
+            if !rest[..end].trim_ascii().is_empty() {
+                end = self.read_feature(rest, end, line_number, &mut can_span);
             }
+            at += end;
+            line_number += lines(&rest[..end]);
         }
     }
 
-    fn read_feature(&mut self, line: &[u8], line_number: usize) {
-        let mut json = Json::new(line);
-        let document = Document::read(&mut json, self.builder);
+    /// Reads a feature from the beginning of a text whose first line is so long; returns how much of it was read. `can_span`: whether
+    /// features may go on in the next lines.
+    fn read_feature(&mut self, text: &[u8], line: usize, line_number: usize, can_span: &mut bool) -> usize {
+        let own = &text[..line];
+        let mut json = Json::new(own.strip_suffix(b"\n").unwrap_or(own));
+        let mut document = Document::read(&mut json, self.builder);
+        let mut read = line;
+        if document.damage.is_some_and(|damage| *can_span && damage.at >= own.trim_ascii_end().len()) {
+            let mut whole = Json::new(text);
+            let spanning = Document::read(&mut whole, self.builder);
+            *can_span = spanning.damage.is_none();
+            if *can_span {
+                (document, read, json) = (spanning, whole.offset(), Json::new(b""));
+                self.warn(WarningCode::Malformed, || {
+                    format!(
+                        ", line {line_number}: a feature spans several lines; one line each is what other programs read"
+                    )
+                });
+            }
+        }
+        self.add_feature(document, &mut json, line_number);
+        read
+    }
+
+    fn add_feature(&mut self, document: Document, json: &mut Json<'_>, line_number: usize) {
         if let Some(damage) = document.damage {
             return self.warn(WarningCode::Malformed, || {
                 format!(", line {line_number}, column {}: {}; the line is skipped", damage.at + 1, damage.message)

@@ -159,12 +159,15 @@ impl Values {
     }
 
     /// Calls `each(item, tokens)` for the items `items_depth` below the arrays of `ends`, with the tokens that stand in
-    /// the item's place: one index or null, or a whole array. A null in place of an outer array stands for all inside it.
-    /// Returns whether the arrays match.
-    pub fn for_each(&self, ends: &[Vec<u32>], mut each: impl FnMut(usize, &[Token])) -> bool {
-        let mut walk = Walk { tokens: &self.tokens, at: 0, ends, each: &mut each };
-        let top = ends.first().map_or(0, Vec::len);
-        !self.is_malformed && top == 1 && walk.item(0, 0) && walk.at == self.tokens.len()
+    /// the item's place: one index or null, or a whole array. A null in place of an outer array stands for all inside it, and so
+    /// does an array of nulls alone, however many. Returns how many places do not match; there is nothing in them, and in no other.
+    pub fn for_each(&self, ends: &[Vec<u32>], mut each: impl FnMut(usize, &[Token])) -> u64 {
+        if ends.first().is_none_or(|all| all.len() != 1) {
+            return 1;
+        }
+        let mut walk = Walk { tokens: &self.tokens, at: 0, ends, each: &mut each, wrong: self.is_malformed.into() };
+        walk.item(0, 0);
+        walk.wrong
     }
 }
 
@@ -174,39 +177,42 @@ struct Walk<'a> {
     at: usize,
     ends: &'a [Vec<u32>],
     each: &'a mut dyn FnMut(usize, &[Token]),
+    /// Places that do not match.
+    wrong: u64,
 }
 
 impl Walk<'_> {
     /// The array `index` of `depth`, or an item when `depth` is below the last ends.
-    fn item(&mut self, depth: usize, index: usize) -> bool {
-        let Some(token) = self.tokens.get(self.at) else { return false };
+    fn item(&mut self, depth: usize, index: usize) {
+        let start = self.at;
         if depth == self.ends.len() {
-            let start = self.at;
             self.skip();
-            (self.each)(index, &self.tokens[start..self.at]);
-            return true;
+            return (self.each)(index, &self.tokens[start..self.at]);
         }
         let ends = &self.ends[depth];
-        let start = if index == 0 { 0 } else { ends[index - 1] as usize };
-        let inner = start..ends[index] as usize;
-        match token {
-            Token::Null => {
-                self.at += 1;
-                self.nothing(depth + 1, inner);
-                true
-            }
-            Token::Open => {
-                self.at += 1;
-                inner.into_iter().all(|i| self.tokens.get(self.at) != Some(&Token::Close) && self.item(depth + 1, i))
-                    && self.close()
-            }
-            _ => false,
+        let first = if index == 0 { 0 } else { ends[index - 1] as usize };
+        let inner = first..ends[index] as usize;
+        if self.tokens.get(start) != Some(&Token::Open) {
+            self.wrong += u64::from(self.tokens.get(start) != Some(&Token::Null));
+            self.skip();
+            return self.nothing(depth + 1, inner);
         }
-    }
-
-    fn close(&mut self) -> bool {
         self.at += 1;
-        self.tokens.get(self.at - 1) == Some(&Token::Close)
+        let (mut left, mut are_more) = (inner, false);
+        while self.tokens.get(self.at).is_some_and(|token| *token != Token::Close) {
+            match left.next() {
+                Some(i) => self.item(depth + 1, i),
+                None => {
+                    self.skip();
+                    are_more = true;
+                }
+            }
+        }
+        self.at += 1;
+        let is_matched = left.is_empty() && !are_more;
+        self.wrong +=
+            u64::from(!is_matched && self.tokens[start..self.at].iter().any(|t| matches!(t, Token::Index(_))));
+        self.nothing(depth + 1, left);
     }
 
     /// Every item inside the arrays `range` of `depth` gets null.
@@ -286,35 +292,52 @@ mod tests {
         assert!(Boundaries::default().read_again(&mut Json::new(b"[[[1,2")).is_err());
     }
 
-    fn per_polygon(boundary: &str, depth: usize, text: &str) -> Option<Vec<Token>> {
+    fn per_polygon(boundary: &str, depth: usize, text: &str) -> (u64, Vec<Token>) {
         let b = boundaries(boundary);
         let mut out = vec![Token::Close; b.ends[depth - 1].len()];
-        values(text).for_each(&b.ends[..depth - 1], |i, tokens| out[i] = tokens[0]).then_some(out)
+        let wrong = values(text).for_each(&b.ends[..depth - 1], |i, tokens| out[i] = tokens[0]);
+        (wrong, out)
     }
 
     #[test]
     fn values_run_parallel_to_polygons() {
         use Token::{Index, Null};
         let surfaces = "[[[0,1,2]],[[0,1,3]],[[1,2,3]]]";
-        assert_eq!(per_polygon(surfaces, 2, "[0,null,1]"), Some(vec![Index(0), Null, Index(1)]));
-        assert_eq!(per_polygon(surfaces, 2, "null"), Some(vec![Null; 3]));
-        for wrong in ["[0,1]", "[0,1,2,3]", "[[0,1,2]]x", "5", "[0,1,\"a\"]"] {
-            assert_eq!(per_polygon(surfaces, 2, wrong), None, "{wrong}");
+        assert_eq!(per_polygon(surfaces, 2, "[0,null,1]"), (0, vec![Index(0), Null, Index(1)]));
+        for nothing in ["null", "[null]", "[]", "[null,null,null,null]"] {
+            assert_eq!(per_polygon(surfaces, 2, nothing), (0, vec![Null; 3]), "{nothing}");
         }
         let solid = "[[[[0,1,2]],[[0,1,3]]],[[[1,2,3]]]]";
-        assert_eq!(per_polygon(solid, 3, "[[0,1],[2]]"), Some(vec![Index(0), Index(1), Index(2)]));
-        assert_eq!(per_polygon(solid, 3, "[null,[2]]"), Some(vec![Null, Null, Index(2)]));
-        assert_eq!(per_polygon(solid, 3, "[0,1,2]"), None, "values of a Solid are one array deeper");
+        assert_eq!(per_polygon(solid, 3, "[[0,1],[2]]"), (0, vec![Index(0), Index(1), Index(2)]));
+        assert_eq!(per_polygon(solid, 3, "[null,[2]]"), (0, vec![Null, Null, Index(2)]));
+        assert_eq!(per_polygon(solid, 3, "[[null],[2]]"), (0, vec![Null, Null, Index(2)]));
         let multi = "[[[[[0,1,2]],[[0,1,3]]]],[[[[1,2,3]]]]]";
-        assert_eq!(per_polygon(multi, 4, "[[[4,5]],null]"), Some(vec![Index(4), Index(5), Null]));
+        assert_eq!(per_polygon(multi, 4, "[[[4,5]],null]"), (0, vec![Index(4), Index(5), Null]));
+    }
+
+    #[test]
+    fn what_does_not_match_costs_its_own_place() {
+        use Token::{Index, Null};
+        let surfaces = "[[[0,1,2]],[[0,1,3]],[[1,2,3]]]";
+        assert_eq!(per_polygon(surfaces, 2, "[0,1]"), (1, vec![Index(0), Index(1), Null]));
+        assert_eq!(per_polygon(surfaces, 2, "[0,1,2,3]"), (1, vec![Index(0), Index(1), Index(2)]));
+        assert_eq!(per_polygon(surfaces, 2, "5"), (1, vec![Null; 3]));
+        assert_eq!(per_polygon(surfaces, 2, "[0,\"a\",2]"), (1, vec![Index(0), Null, Index(2)]));
+        let solid = "[[[[0,1,2]],[[0,1,3]]],[[[1,2,3]]]]";
+        // Of a Solid they are one array deeper.
+        assert_eq!(per_polygon(solid, 3, "[0,1]"), (2, vec![Null; 3]));
+        assert_eq!(per_polygon(solid, 3, "[[0],[2]]"), (1, vec![Index(0), Null, Index(2)]));
     }
 
     #[test]
     fn texture_values_come_ring_by_ring() {
         let b = boundaries("[[[0,1,2],[3,4,5]],[[0,1,3]]]");
         let mut rings = Vec::new();
-        let matches = values("[[[0,10,11,12],[null]],null]").for_each(&b.ends[..2], |i, t| rings.push((i, t.len())));
-        assert!(matches);
-        assert_eq!(rings, [(0, 6), (1, 3), (2, 1)]);
+        let wrong = values("[[[0,10,11,12],[null]],null]").for_each(&b.ends[..2], |i, t| rings.push((i, t.len())));
+        assert_eq!((wrong, &rings[..]), (0, &[(0, 6), (1, 3), (2, 1)][..]));
+        // A face of two rings without a texture may say so once.
+        rings.clear();
+        let wrong = values("[[[null]],[[0,1,2,3]]]").for_each(&b.ends[..2], |i, t| rings.push((i, t.len())));
+        assert_eq!((wrong, &rings[..]), (0, &[(0, 3), (1, 1), (2, 6)][..]));
     }
 }

@@ -24,28 +24,27 @@ pub fn of_polygons(geometry: &GeometryRead, depth: usize, builder: &mut ModelBui
     };
     let mut chosen = vec![NONE; out.len()];
     let mut bad = 0_u64;
-    let matches = values.for_each(&geometry.boundaries.ends[..depth - 1], |polygon, tokens| match tokens {
+    let wrong = values.for_each(&geometry.boundaries.ends[..depth - 1], |polygon, tokens| match tokens {
         [Token::Index(index)] if (*index as usize) < geometry.semantics.len() => chosen[polygon] = *index,
-        [Token::Null] => {}
+        [Token::Null] | [Token::Open, Token::Null, Token::Close] => {}
         _ => bad += 1,
     });
-    if !matches || bad > 0 {
+    if bad > 0 {
         builder.model.warnings.add(WarningCode::SemanticsMismatch, object, || {
-            if matches {
-                format!(
-                    "object {object}: {bad} polygons name a semantic surface past the list of {}",
-                    geometry.semantics.len()
-                )
-            } else {
-                format!("object {object}: the arrays of semantics.values do not match those of boundaries")
-            }
+            format!(
+                "object {object}: {bad} polygons name a semantic surface past the list of {}",
+                geometry.semantics.len()
+            )
         });
     }
-    if matches {
-        let details = add_details(&geometry.semantics, builder, object);
-        for (meaning, index) in out.iter_mut().zip(chosen).filter(|(_, index)| *index != NONE) {
-            *meaning = (geometry.semantics[index as usize].kind, details[index as usize]);
-        }
+    if wrong > 0 {
+        builder.model.warnings.add(WarningCode::SemanticsMismatch, object, || {
+            format!("object {object}: {wrong} places in semantics.values do not match the boundaries; their polygons have none")
+        });
+    }
+    let details = add_details(&geometry.semantics, builder, object);
+    for (meaning, index) in out.iter_mut().zip(chosen).filter(|(_, index)| *index != NONE) {
+        *meaning = (geometry.semantics[index as usize].kind, details[index as usize]);
     }
     out
 }

@@ -165,7 +165,7 @@ fn textures_stand_upright() {
 fn textures_that_cannot_be_had_are_declared_all_the_same() {
     let model = city("texture-missing.city.json");
     assert_eq!(model.textures.len(), 2);
-    assert!(model.textures.iter().all(|t| t.image == TextureImage::Missing));
+    assert!(model.textures.iter().all(|t| t.image.is_missing()));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::city::{
         lattice::Lattice,
         points::{Points, Pool},
     },
-    crs::{Axes, UtmZone},
+    crs::{Axes, LocalFrame, UtmZone},
     json::{Json, Kind, Number, Step},
 };
 
@@ -58,6 +58,8 @@ pub struct Placing {
     pub axes: Axes,
     /// The zone, for degrees.
     pub zone: UtmZone,
+    /// The frame, for earth-centred coordinates.
+    pub frame: Option<LocalFrame>,
 }
 
 impl Placing {
@@ -66,14 +68,15 @@ impl Placing {
         match self.axes {
             Axes::LatLon => self.zone.project(p.x, p.y, p.z),
             Axes::LonLat => self.zone.project(p.y, p.x, p.z),
-            Axes::Metric | Axes::Feet | Axes::Geocentric => p,
+            Axes::Geocentric => self.frame.map_or(p, |frame| frame.local_from_earth().transform_point3(p)),
+            Axes::Metric | Axes::Feet => p,
         }
     }
 
     /// Whether integers can stay what they are.
     fn keeps_lattice(&self) -> bool {
         let Transform { scale, translate } = self.transform;
-        !matches!(self.axes, Axes::LatLon | Axes::LonLat)
+        !matches!(self.axes, Axes::LatLon | Axes::LonLat | Axes::Geocentric)
             && scale.is_finite()
             && translate.is_finite()
             && scale.cmpge(DVec3::splat(SMALLEST_STEP_M)).all()
@@ -204,6 +207,7 @@ mod tests {
         transform: Transform { scale: DVec3::splat(0.001), translate: DVec3::new(85_000.0, 446_000.0, 0.0) },
         axes: Axes::Metric,
         zone: UtmZone { number: 31, is_south: false },
+        frame: None,
     };
 
     fn pool(text: &str, placing: &Placing) -> Pool {
@@ -243,7 +247,8 @@ mod tests {
 
     #[test]
     fn degrees_become_metres() {
-        let placing = Placing { transform: Transform::IDENTITY, axes: Axes::LatLon, zone: UtmZone::at(48.9, 2.3) };
+        let placing =
+            Placing { transform: Transform::IDENTITY, axes: Axes::LatLon, zone: UtmZone::at(48.9, 2.3), frame: None };
         let pool = pool("[[48.8582, 2.2945, 35.5]]", &placing);
         let at = pool.lattice.to_world(pool.points.get(0).unwrap());
         assert!((at - DVec3::new(448_252.0, 5_411_933.0, 35.5)).abs().max_element() < 1.0, "{at}");

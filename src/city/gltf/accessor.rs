@@ -3,12 +3,11 @@
 //! Nothing is allocated from an accessor's `count`: a view holds slices only.
 
 use gltf::json::{
-    Root,
     accessor::{Accessor, ComponentType, Type},
     validation::Checked,
 };
 
-use super::buffers::Buffers;
+use super::{buffers::Buffers, document::Document};
 
 /// A checked accessor.
 #[derive(Debug)]
@@ -33,10 +32,8 @@ struct Sparse<'a> {
 }
 
 /// Opens accessor `index`; an error says what is wrong, with its JSON path.
-pub(super) fn open<'a>(root: &Root, buffers: &'a Buffers<'_>, index: usize) -> Result<View<'a>, String> {
-    let Some(accessor) = root.accessors.get(index) else {
-        return Err(format!("accessors[{index}] does not exist; the file has {}", root.accessors.len()));
-    };
+pub(super) fn open<'a>(document: &Document, buffers: &'a Buffers<'_>, index: usize) -> Result<View<'a>, String> {
+    let accessor = document.accessors.get(index)?;
     let at = |what: String| format!("accessors[{index}]: {what}");
     let (Checked::Valid(component), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
         return Err(at("unknown type or componentType".into()));
@@ -47,7 +44,7 @@ pub(super) fn open<'a>(root: &Root, buffers: &'a Buffers<'_>, index: usize) -> R
     let (bytes, stride) = match accessor.buffer_view {
         None => (&[][..], 0),
         Some(view) => {
-            let (bytes, view) = buffers.view(root, view.value()).map_err(at)?;
+            let (bytes, view) = buffers.view(document, view.value()).map_err(at)?;
             let stride = view.byte_stride.map_or(size, |s| s.0);
             let offset = accessor.byte_offset.map_or(0, |o| o.0);
             check_room(bytes.len(), offset, stride, size, count).map_err(at)?;
@@ -56,7 +53,7 @@ pub(super) fn open<'a>(root: &Root, buffers: &'a Buffers<'_>, index: usize) -> R
         }
     };
     let sparse =
-        accessor.sparse.is_some().then(|| open_sparse(root, buffers, accessor, size)).transpose().map_err(at)?;
+        accessor.sparse.is_some().then(|| open_sparse(document, buffers, accessor, size)).transpose().map_err(at)?;
     Ok(View { bytes, stride, component, dimension, normalized: accessor.normalized, count, sparse })
 }
 
@@ -87,7 +84,7 @@ fn check_room(room: usize, offset: u64, stride: usize, size: usize, count: u64) 
 }
 
 fn open_sparse<'a>(
-    root: &Root,
+    document: &Document,
     buffers: &'a Buffers<'_>,
     accessor: &Accessor,
     size: usize,
@@ -97,7 +94,7 @@ fn open_sparse<'a>(
         return Err("sparse.indices.componentType must be an unsigned integer".into());
     };
     let part = |view: usize, offset: u64, size: usize| {
-        let (bytes, _) = buffers.view(root, view)?;
+        let (bytes, _) = buffers.view(document, view)?;
         check_room(bytes.len(), offset, size, size, sparse.count.0)?;
         Ok::<_, String>(&bytes[(offset as usize).min(bytes.len())..])
     };

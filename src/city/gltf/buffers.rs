@@ -7,11 +7,12 @@ use std::{
     sync::Arc,
 };
 
-use gltf::json::{Root, buffer::View, image::Image};
+use gltf::json::{buffer::View, image::Image};
 use rustc_hash::FxHashMap;
 
+use super::document::Document;
 use crate::city::{
-    load::options::{LoadOptions, Sibling},
+    load::options::{LFS_POINTER, LoadOptions, Sibling},
     model::TextureImage,
     warning::{WarningCode, Warnings},
 };
@@ -43,15 +44,24 @@ pub(super) struct Buffers<'a> {
 
 impl<'a> Buffers<'a> {
     /// Reads what the buffers name; problems become warnings.
-    pub fn read(root: &Root, binary: Option<&'a [u8]>, around: Surroundings<'_>, warnings: &mut Warnings) -> Self {
+    pub fn read(
+        document: &Document,
+        binary: Option<&'a [u8]>,
+        around: Surroundings<'_>,
+        warnings: &mut Warnings,
+    ) -> Self {
         let mut files: FxHashMap<String, Result<Bytes<'a>, String>> = FxHashMap::default();
         let mut total = binary.map_or(0, |b| b.len() as u64);
-        let mut list = Vec::with_capacity(root.buffers.len());
-        for (i, buffer) in root.buffers.iter().enumerate() {
-            let content = match &buffer.uri {
-                None if i == 0 => binary.map(Bytes::Chunk).ok_or("has no uri, and the file no binary chunk".to_owned()),
-                None => Err("has no uri; only buffer 0 of a GLB may".to_owned()),
-                Some(uri) => files
+        let mut list = Vec::with_capacity(document.buffers.len());
+        for (i, buffer) in document.buffers.iter().enumerate() {
+            let uri = buffer.map(|buffer| (buffer, &buffer.uri));
+            let content = match uri {
+                Err(what) => Err(what.to_owned()),
+                Ok((_, None)) if i == 0 => {
+                    binary.map(Bytes::Chunk).ok_or("has no uri, and the file no binary chunk".to_owned())
+                }
+                Ok((_, None)) => Err("has no uri; only buffer 0 of a GLB may".to_owned()),
+                Ok((buffer, Some(uri))) => files
                     .entry(uri.clone())
                     .or_insert_with(|| {
                         let read = follow(uri, buffer.byte_length.0, around, warnings).map(Bytes::Owned);
@@ -71,11 +81,8 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes of a buffer view, cut to what exists; an error names the JSON path.
-    pub fn view<'r>(&self, root: &'r Root, index: usize) -> Result<(&[u8], &'r View), String> {
-        let view = root
-            .buffer_views
-            .get(index)
-            .ok_or_else(|| format!("bufferViews[{index}] does not exist; the file has {}", root.buffer_views.len()))?;
+    pub fn view<'r>(&self, document: &'r Document, index: usize) -> Result<(&[u8], &'r View), String> {
+        let view = document.buffer_views.get(index)?;
         let at = view.buffer.value();
         let buffer = match self.list.get(at) {
             Some(Ok(bytes)) => bytes.slice(),
@@ -109,9 +116,18 @@ fn follow(uri: &str, wanted: u64, around: Surroundings<'_>, warnings: &mut Warni
     let mut bytes = Vec::new();
     let read = File::open(&path).and_then(|f| f.take(wanted.min(MAX_BYTES)).read_to_end(&mut bytes));
     match read {
+        Ok(_) if is_lfs_pointer(&bytes) => {
+            Err(format!("{} is a Git LFS pointer; `git lfs pull` brings the file", path.display()))
+        }
         Ok(_) => Ok(bytes.into()),
         Err(e) => Err(format!("{} cannot be read: {e}", path.display())),
     }
+}
+
+/// Whether bytes that begin a file stand for one kept elsewhere; so many as tell it from anything else will do.
+fn is_lfs_pointer(bytes: &[u8]) -> bool {
+    let length = bytes.len().min(LFS_POINTER.len());
+    length >= 16 && bytes[..length] == LFS_POINTER[..length]
 }
 
 /// The file a relative URI names, inside the folders the user named.
@@ -133,12 +149,12 @@ fn sibling(uri: &str, around: Surroundings<'_>, warnings: &mut Warnings) -> Resu
     }
 }
 
-/// Where an image's pixels are; problems become warnings and [`TextureImage::Missing`]. `budget` is the number of
+/// Where an image's pixels are; problems become [`TextureImage::Missing`]. `budget` is the number of
 /// bytes that embedded images may still take: views may overlap, so their sum is not bounded by the file.
 pub(super) fn image(
     index: usize,
     image: &Image,
-    root: &Root,
+    document: &Document,
     buffers: &Buffers<'_>,
     around: Surroundings<'_>,
     budget: &mut u64,
@@ -147,18 +163,14 @@ pub(super) fn image(
     let found = match (&image.uri, &image.buffer_view) {
         (Some(uri), _) if uri.starts_with("data:") => data_uri(uri).map(|b| TextureImage::Bytes(b.into())),
         (Some(uri), _) => sibling(uri, around, warnings).map(TextureImage::File),
-        (None, Some(view)) => buffers.view(root, view.value()).and_then(|(bytes, _)| {
+        (None, Some(view)) => buffers.view(document, view.value()).and_then(|(bytes, _)| {
             *budget = budget.checked_sub(bytes.len() as u64).ok_or("images overlap in the buffer many times")?;
             Ok(TextureImage::Bytes(bytes.into()))
         }),
         (None, None) => Err("has neither uri nor bufferView".to_owned()),
     };
-    found.unwrap_or_else(|reason| {
-        warnings.add(WarningCode::MissingTexture, "", || {
-            format!("{}, images[{index}]: {reason}; the material's colour is used", around.path.display())
-        });
-        TextureImage::Missing
-    })
+    found
+        .unwrap_or_else(|reason| TextureImage::Missing(format!("{}, images[{index}]: {reason}", around.path.display())))
 }
 
 /// The content of a `data:` URI, base64 or percent-encoded.

@@ -1,12 +1,8 @@
 //! The outside of a glTF file: the GLB box, the JSON inside, versions and required extensions.
-//!
-//! The `gltf` crate gives the JSON types. Its document wrapper is not used: it panics on an index out of range
-//! unless the whole file validates, and here what is usable is shown; and it holds node transforms in f32, which
-//! national coordinates do not fit.
 
-use gltf::json::Root;
 use serde::Deserialize;
 
+use super::document::{Document, DocumentError, said};
 use crate::city::{
     load::{error::LoadError, input::Input},
     warning::{WarningCode, Warnings},
@@ -32,17 +28,19 @@ const READ_EXTENSIONS: &[&str] = &[
     "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_materials_transmission",
+    "KHR_materials_anisotropy",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_iridescence",
+    "KHR_animation_pointer",
+    "KHR_node_visibility",
+    "KHR_xmp",
     "KHR_xmp_json_ld",
+    "EXT_texture_webp",
+    "EXT_lights_image_based",
+    "EXT_instance_features",
+    "CESIUM_primitive_outline",
 ];
-
-/// A node's placement in f64; exactly the fields of the file.
-#[derive(Clone, Debug, Default, Deserialize)]
-pub(super) struct Placement {
-    pub matrix: Option<[f64; 16]>,
-    pub translation: Option<[f64; 3]>,
-    pub rotation: Option<[f64; 4]>,
-    pub scale: Option<[f64; 3]>,
-}
 
 /// The part of a file that must be known before the rest can be believed.
 #[derive(Deserialize)]
@@ -57,20 +55,12 @@ struct Asset {
     version: String,
 }
 
-/// The part of a file whose numbers the `gltf` crate would round to f32.
-#[derive(Deserialize)]
-struct Exact {
-    #[serde(default)]
-    nodes: Vec<Placement>,
-}
-
 /// A glTF file, opened but not yet followed.
 #[derive(Debug)]
 pub(super) struct Container<'a> {
-    /// The JSON.
-    pub root: Root,
-    /// One per node.
-    pub placements: Vec<Placement>,
+    /// The version that it says it is of.
+    pub version: String,
+    pub document: Document,
     /// The binary chunk of a GLB.
     pub binary: Option<&'a [u8]>,
 }
@@ -84,8 +74,7 @@ pub(super) fn open<'a>(input: &'a Input, warnings: &mut Warnings) -> Result<Cont
     let chunk = if input.bytes.starts_with(b"glTF") { "JSON chunk, " } else { "" };
     let failed = |e: serde_json::Error| {
         let place = format!("{chunk}line {} column {}", e.line(), e.column());
-        let text = e.to_string();
-        let what = text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what);
+        let what = said(&e);
         let hint = match e.classify() {
             serde_json::error::Category::Eof => "; the file ends early: is the download complete?",
             _ => "",
@@ -104,9 +93,11 @@ pub(super) fn open<'a>(input: &'a Input, warnings: &mut Warnings) -> Result<Cont
         let message = format!("the file requires {}, which cannot be read; {}", unread.escape_debug(), advice(unread));
         return Err(LoadError::at(&input.path, "extensionsRequired", message));
     }
-    let root: Root = serde_json::from_slice(json).map_err(failed)?;
-    let exact: Exact = serde_json::from_slice(json).map_err(failed)?;
-    Ok(Container { root, placements: exact.nodes, binary })
+    let document = Document::parse(json).map_err(|error| match error {
+        DocumentError::Syntax(error) => failed(error),
+        DocumentError::Member(name, what) => LoadError::at(&input.path, format!("{chunk}{name}"), what),
+    })?;
+    Ok(Container { version: asset.version, document, binary })
 }
 
 /// Advice about an extension that is not read.
@@ -115,9 +106,7 @@ fn advice(extension: &str) -> &'static str {
         "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
             "export it without mesh compression"
         }
-        "KHR_texture_basisu" | "EXT_texture_webp" | "EXT_texture_avif" | "MSFT_texture_dds" => {
-            "export its textures as PNG or JPEG"
-        }
+        "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds" => "export its textures as PNG or JPEG",
         _ => "export it without that extension",
     }
 }

@@ -1,14 +1,16 @@
 //! glTF materials as [`Material`]s: made when first used, once per (material, textured, vertex colour).
 
 use gltf::json::{
-    Root,
     material::{AlphaMode, Material as Json},
     texture::{Info, WrappingMode},
     validation::Checked,
 };
 use rustc_hash::FxHashMap;
 
-use super::buffers::{self, Buffers, Surroundings};
+use super::{
+    buffers::{self, Buffers, Surroundings},
+    document::Document,
+};
 use crate::city::{
     model::{CityModel, Material, NONE, Texture, Wrap},
     warning::WarningCode,
@@ -64,7 +66,7 @@ pub(super) struct Materials {
 /// The source that materials are read from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Palette<'a> {
-    pub root: &'a Root,
+    pub document: &'a Document,
     pub buffers: &'a Buffers<'a>,
     pub around: Surroundings<'a>,
 }
@@ -97,7 +99,7 @@ impl Materials {
     }
 
     fn make(&mut self, key: Key, from: Palette<'_>, city: &mut CityModel) -> Material {
-        let json = key.material.and_then(|m| from.root.materials.get(m));
+        let json = key.material.and_then(|m| from.document.materials.get(m).ok());
         // glTF 2.0, 5.19: the default material is white; a city in pure white hides its edges, so ours is used.
         let mut material = json.map_or_else(Material::default, |json| colors(json, from, city));
         if let (Some(info), true) = (json.and_then(color_texture), key.textured) {
@@ -128,21 +130,23 @@ impl Materials {
         if let Some(made) = self.textures.get(&index) {
             return *made;
         }
-        let root = from.root;
-        let texture = root.textures.get(index);
-        let image = texture.and_then(|t| root.images.get(t.source.value()).map(|image| (t.source.value(), image)));
-        let made = match (texture, image) {
-            (Some(texture), Some((at, image))) => {
-                let sampler = texture.sampler.and_then(|s| root.samplers.get(s.value()));
+        let document = from.document;
+        let found = document.textures.get(index).and_then(|texture| {
+            let at = texture.image().ok_or_else(|| format!("textures[{index}] has no image that can be read"))?;
+            Ok((texture, at, document.images.get(at)?))
+        });
+        let made = match found {
+            Ok((texture, at, image)) => {
+                let sampler = texture.sampler.and_then(|s| document.samplers.get(s as usize).ok());
                 let wrap = sampler.map_or([Wrap::Repeat; 2], |s| [s.wrap_s, s.wrap_t].map(wrap));
                 let budget = &mut self.image_budget;
-                let image = buffers::image(at, image, root, from.buffers, from.around, budget, &mut city.warnings);
+                let image = buffers::image(at, image, document, from.buffers, from.around, budget, &mut city.warnings);
                 city.textures.push(Texture { image, wrap });
                 (city.textures.len() - 1) as u32
             }
-            _ => {
+            Err(what) => {
                 city.warnings.add(WarningCode::AppearanceIndex, "", || {
-                    format!("{}, textures[{index}]: it or its image does not exist", from.around.path.display())
+                    format!("{}, {what}; the material's colour is used", from.around.path.display())
                 });
                 NONE
             }
@@ -153,8 +157,8 @@ impl Materials {
 }
 
 /// The mapping of the base colour texture of a material, if it has one.
-pub(super) fn mapping(root: &Root, material: Option<usize>) -> Option<Mapping> {
-    let info = color_texture(root.materials.get(material?)?)?;
+pub(super) fn mapping(document: &Document, material: Option<usize>) -> Option<Mapping> {
+    let info = color_texture(document.materials.get(material?).ok()?)?;
     let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
     let Some(t) = transform else {
         return Some(Mapping { set: info.tex_coord, rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] });

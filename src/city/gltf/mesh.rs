@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 use gltf::json::{
-    Root,
     mesh::{Mode, Primitive as Json, Semantic},
     validation::Checked,
 };
@@ -13,7 +12,9 @@ use rustc_hash::FxHashMap;
 use super::{
     accessor::{self, View},
     buffers::Buffers,
+    document::Document,
     material::{self, Key, Mapping, Materials, Palette, UNTINTED},
+    node::Visit,
 };
 use crate::city::{
     build::{
@@ -45,20 +46,24 @@ pub(super) struct Primitive<'a> {
 }
 
 /// Opens a primitive; `Ok(None)` for points and lines, an error for what is malformed.
-pub(super) fn open<'a>(root: &Root, buffers: &'a Buffers<'_>, json: &Json) -> Result<Option<Primitive<'a>>, String> {
+pub(super) fn open<'a>(
+    document: &Document,
+    buffers: &'a Buffers<'_>,
+    json: &Json,
+) -> Result<Option<Primitive<'a>>, String> {
     let Checked::Valid(mode) = json.mode else { return Err("mode must be 0 to 6".into()) };
     if matches!(mode, Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
         return Ok(None);
     }
     let find = |semantic| {
         let found = json.attributes.get(&Checked::Valid(semantic));
-        found.map(|index| accessor::open(root, buffers, index.value())).transpose()
+        found.map(|index| accessor::open(document, buffers, index.value())).transpose()
     };
     let positions = find(Semantic::Positions)?.ok_or("has no POSITION")?;
     if positions.dimension != 3 {
         return Err("POSITION must be VEC3".into());
     }
-    let indices = json.indices.map(|i| accessor::open(root, buffers, i.value())).transpose()?;
+    let indices = json.indices.map(|i| accessor::open(document, buffers, i.value())).transpose()?;
     if indices.as_ref().is_some_and(|i| !i.is_indices()) {
         return Err("indices must be SCALAR, of an unsigned integer type".into());
     }
@@ -66,13 +71,21 @@ pub(super) fn open<'a>(root: &Root, buffers: &'a Buffers<'_>, json: &Json) -> Re
     let of_each_vertex = |view: Option<View<'a>>, dimension: usize| {
         view.filter(|v| v.dimension >= dimension && v.count >= positions.count)
     };
-    let texcoords = match material::mapping(root, material) {
+    let texcoords = match material::mapping(document, material) {
         Some(mapping) => of_each_vertex(find(Semantic::TexCoords(mapping.set))?, 2).map(|view| (view, mapping)),
         None => None,
     };
     let normals = of_each_vertex(find(Semantic::Normals)?, 3);
     let colors = of_each_vertex(find(Semantic::Colors(0))?, 3);
     Ok(Some(Primitive { positions, indices, normals, texcoords, colors, material, mode }))
+}
+
+/// Where the first vertex of a mesh node is; `None` where its first primitive has none that can be read.
+pub(super) fn first_place(document: &Document, buffers: &Buffers<'_>, visit: &Visit<'_>) -> Option<DVec3> {
+    let primitive = document.meshes.get(visit.mesh).ok()?.primitives.first()?;
+    let primitive = open(document, buffers, primitive).ok()??;
+    let place = (primitive.positions.count > 0).then(|| DVec3::from(primitive.positions.get::<3>(0)))?;
+    Some(visit.world_from_node.transform_point3(place))
 }
 
 impl Primitive<'_> {
@@ -307,10 +320,9 @@ impl Painter {
         corners: [u64; 3],
         id: &str,
     ) -> u32 {
-        if let Some(index) = primitive.material.filter(|m| *m >= from.root.materials.len()) {
+        if let Some(Err(what)) = primitive.material.map(|index| from.document.materials.get(index)) {
             builder.model.warnings.add(WarningCode::AppearanceIndex, id, || {
-                let (file, count) = (from.around.path.display(), from.root.materials.len());
-                format!("{file}, {id}: names materials[{index}] of {count}; the default is used")
+                format!("{}, {id}: {what}; the default is used", from.around.path.display())
             });
             self.key.material = None;
         }

@@ -7,24 +7,26 @@
 mod accessor;
 mod buffers;
 mod container;
+mod document;
 mod extras;
 mod material;
 mod mesh;
 mod node;
 
 use glam::{DAffine3, DVec3};
-use gltf::json::{Root, mesh::Mesh};
+use gltf::json::mesh::Mesh;
 use rustc_hash::FxHashMap;
 
 use self::{
     buffers::{Buffers, Surroundings},
+    document::Document,
     material::{Materials, Palette},
     mesh::{Gathered, Placed},
 };
 use crate::city::{
     build::{ModelBuilder, raw::RawObject},
     load::{error::LoadError, input::Input, options::LoadOptions},
-    model::{ObjectClass, Source},
+    model::{MESH, ObjectClass, Source},
     warning::WarningCode,
 };
 
@@ -38,12 +40,11 @@ const MAX_CORNERS: u64 = 1 << 26;
 /// Reads a glTF file into `builder`.
 pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) -> Result<(), LoadError> {
     let container = container::open(input, &mut builder.model.warnings)?;
-    let root = &container.root;
+    let document = &container.document;
     let around = Surroundings { path: &input.path, options };
-    let buffers = Buffers::read(root, container.binary, around, &mut builder.model.warnings);
-    let from = Palette { root, buffers: &buffers, around };
-    let version = root.asset.version.clone();
-    builder.begin_file(Source { path: input.path.clone(), format: "glTF", version });
+    let buffers = Buffers::read(document, container.binary, around, &mut builder.model.warnings);
+    let from = Palette { document, buffers: &buffers, around };
+    builder.begin_file(Source { path: input.path.clone(), format: "glTF", version: container.version.clone() });
     let bytes = input.bytes.len() as u64 + buffers.total;
     let corners = FREE_CORNERS.saturating_add(bytes.saturating_mul(CORNERS_PER_BYTE)).min(MAX_CORNERS);
     let mut reader = Reader {
@@ -54,7 +55,11 @@ pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) ->
         triangles: 0,
         trouble: None,
     };
-    let visits = node::visits(root, &container.placements, &input.path, &mut builder.model.warnings);
+    let mut visits = node::visits(document, &input.path, &mut builder.model.warnings);
+    let first = visits.iter().find_map(|visit| mesh::first_place(document, &buffers, visit));
+    if let Some(frame) = first.and_then(|place| builder.frame_of_unnamed(&input.path, place)) {
+        visits.iter_mut().for_each(|visit| visit.world_from_node = frame.local_from_earth() * visit.world_from_node);
+    }
     let mut ids: Vec<String> = Vec::new();
     for visit in &visits {
         let parent = visit.parent.and_then(|p| ids.get(p).cloned());
@@ -83,14 +88,13 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     /// Adds the object of a mesh node and its geometry; returns its id.
-    fn read_node(&mut self, builder: &mut ModelBuilder, visit: &node::Visit, parent: Option<String>) -> String {
-        let root = self.from.root;
-        let node = &root.nodes[visit.node];
+    fn read_node(&mut self, builder: &mut ModelBuilder, visit: &node::Visit<'_>, parent: Option<String>) -> String {
+        let node = visit.node;
         let name = node.name.as_deref().filter(|n| !n.is_empty());
-        let id = self.unique(builder, name.map_or_else(|| format!("node-{}", visit.node), str::to_owned));
-        let mesh = root.meshes.get(visit.mesh);
+        let id = self.unique(builder, name.map_or_else(|| format!("node-{}", visit.number), str::to_owned));
+        let mesh = self.from.document.meshes.get(visit.mesh);
         let mut attributes = Vec::new();
-        for extras in [node.extras.as_ref(), mesh.and_then(|m| m.extras.as_ref())].into_iter().flatten() {
+        for extras in [node.extras.as_ref(), mesh.as_ref().ok().and_then(|m| m.extras.as_ref())].into_iter().flatten() {
             for attribute in extras::attributes(builder, extras, &id) {
                 // The node's own word counts before that of the mesh it shares.
                 if !attributes.iter().any(|a: &crate::city::model::Attribute| a.name == attribute.name) {
@@ -100,7 +104,7 @@ impl Reader<'_> {
         }
         let object = builder.add_object(RawObject {
             id: id.clone(),
-            kind: "Mesh".into(),
+            kind: MESH.into(),
             class: ObjectClass::Building,
             parents: parent.into_iter().collect(),
             children: Vec::new(),
@@ -110,11 +114,8 @@ impl Reader<'_> {
             self.unsupported(builder, &id, "skins are not drawn; the mesh stands in its bind pose");
         }
         match mesh {
-            Some(mesh) => self.read_mesh(builder, visit, mesh, Gathered::new(object, id.clone()), &id),
-            None => {
-                let reason = format!("mesh {} does not exist; the file has {}", visit.mesh, root.meshes.len());
-                self.bad(builder, &id, format!("nodes[{}].mesh", visit.node), reason);
-            }
+            Ok(mesh) => self.read_mesh(builder, visit, mesh, Gathered::new(object, id.clone()), &id),
+            Err(reason) => self.bad(builder, &id, format!("nodes[{}].mesh", visit.number), reason),
         }
         id
     }
@@ -122,23 +123,23 @@ impl Reader<'_> {
     fn read_mesh(
         &mut self,
         builder: &mut ModelBuilder,
-        visit: &node::Visit,
+        visit: &node::Visit<'_>,
         mesh: &Mesh,
         mut gathered: Gathered,
         id: &str,
     ) {
         let from = self.from;
-        let instances = match node::instances(from.root, from.buffers, visit.node) {
+        let instances = match node::instances(from.document, from.buffers, visit.node) {
             Ok(instances) => instances,
             Err(reason) => {
-                let place = format!("nodes[{}].extensions.EXT_mesh_gpu_instancing", visit.node);
+                let place = format!("nodes[{}].extensions.EXT_mesh_gpu_instancing", visit.number);
                 return self.bad(builder, id, place, reason);
             }
         };
         for (i, json) in mesh.primitives.iter().enumerate() {
             let place = format!("meshes[{}].primitives[{i}]", visit.mesh);
             self.corners = self.corners.saturating_sub(mesh::OPENING_CORNERS);
-            let primitive = match mesh::open(from.root, from.buffers, json) {
+            let primitive = match mesh::open(from.document, from.buffers, json) {
                 Ok(Some(primitive)) => primitive,
                 Ok(None) => {
                     self.unsupported(builder, id, "points and lines are not drawn");
@@ -212,8 +213,8 @@ fn z_up() -> DAffine3 {
 }
 
 /// Where the whole model stands: `CESIUM_RTC`, a translation in the z-up frame (as CesiumJS applies it).
-fn world_from_scene(root: &Root) -> DAffine3 {
-    let rtc = root.extensions.as_ref().and_then(|e| e.others.get("CESIUM_RTC"));
+fn world_from_scene(document: &Document) -> DAffine3 {
+    let rtc = document.extensions.get("CESIUM_RTC");
     let center: Option<[f64; 3]> = rtc.and_then(|r| serde_json::from_value(r.get("center")?.clone()).ok());
     DAffine3::from_translation(center.unwrap_or_default().into()) * z_up()
 }

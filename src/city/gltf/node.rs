@@ -3,21 +3,21 @@
 use std::path::Path;
 
 use glam::{DAffine3, DMat4, DQuat, DVec3};
-use gltf::json::Root;
 
 use super::{
     accessor::{self, View},
     buffers::Buffers,
-    container::Placement,
+    document::{Document, Node},
     world_from_scene,
 };
 use crate::city::warning::{WarningCode, Warnings};
 
 /// A mesh node on the way through the tree.
 #[derive(Clone, Debug)]
-pub(super) struct Visit {
+pub(super) struct Visit<'a> {
     /// Index in the file's nodes.
-    pub node: usize,
+    pub number: usize,
+    pub node: &'a Node,
     /// Index in the file's meshes; may be out of range.
     pub mesh: usize,
     /// Position in the list of visits of the nearest ancestor that has a mesh.
@@ -34,64 +34,77 @@ struct Pending {
 }
 
 /// All mesh nodes of the default scene (else the first; else every root), depth first, children in order.
-pub(super) fn visits(root: &Root, placements: &[Placement], path: &Path, warnings: &mut Warnings) -> Vec<Visit> {
-    let world = world_from_scene(root);
-    let starts = start_nodes(root);
+pub(super) fn visits<'a>(document: &'a Document, path: &Path, warnings: &mut Warnings) -> Vec<Visit<'a>> {
+    let world = world_from_scene(document);
+    let starts = start_nodes(document, path, warnings);
     let mut stack: Vec<Pending> =
         starts.into_iter().rev().map(|node| Pending { node, parent: None, world_from_parent: world }).collect();
-    let mut seen = vec![false; root.nodes.len()];
+    let mut seen = vec![false; document.nodes.len()];
     let mut visits = Vec::new();
-    while let Some(Pending { node, parent, world_from_parent }) = stack.pop() {
-        let Some(json) = root.nodes.get(node) else {
-            warnings.add(WarningCode::Malformed, "", || {
-                format!("{}, nodes[{node}] does not exist; the file has {}", path.display(), root.nodes.len())
-            });
-            continue;
+    while let Some(Pending { node: number, parent, world_from_parent }) = stack.pop() {
+        let node = match document.nodes.get(number) {
+            Ok(node) => node,
+            Err(what) => {
+                warnings.add(WarningCode::Malformed, "", || format!("{}, {what}", path.display()));
+                continue;
+            }
         };
-        if std::mem::replace(&mut seen[node], true) {
+        if std::mem::replace(&mut seen[number], true) {
             warnings.add(WarningCode::CyclicParents, "", || {
                 format!(
-                    "{}, nodes[{node}] has several parents or is its own ancestor; it is shown once",
+                    "{}, nodes[{number}] has several parents or is its own ancestor; it is shown once",
                     path.display()
                 )
             });
             continue;
         }
-        let world_from_node = world_from_parent * placements.get(node).map_or(DAffine3::IDENTITY, local);
-        let mut below = parent;
-        if let Some(mesh) = json.mesh {
-            below = Some(visits.len());
-            visits.push(Visit { node, mesh: mesh.value(), parent, world_from_node });
+        if !node.is_visible() {
+            continue;
         }
-        let children = json.children.iter().flatten().rev();
-        stack.extend(children.map(|c| Pending { node: c.value(), parent: below, world_from_parent: world_from_node }));
+        let world_from_node = world_from_parent * local(node);
+        let mut below = parent;
+        if let Some(mesh) = node.mesh {
+            below = Some(visits.len());
+            visits.push(Visit { number, node, mesh: mesh as usize, parent, world_from_node });
+        }
+        let children = node.children.iter().rev();
+        stack.extend(children.map(|c| Pending {
+            node: *c as usize,
+            parent: below,
+            world_from_parent: world_from_node,
+        }));
     }
     visits
 }
 
-fn start_nodes(root: &Root) -> Vec<usize> {
-    let scene = root.scene.and_then(|s| root.scenes.get(s.value())).or(root.scenes.first());
-    if let Some(scene) = scene {
-        return scene.nodes.iter().map(|n| n.value()).collect();
+/// The roots of the scene to be shown: the one that the file names, else the first that has some, else every node that is no child.
+fn start_nodes(document: &Document, path: &Path, warnings: &mut Warnings) -> Vec<usize> {
+    let named = document.scene.map(|number| document.scenes.get(number));
+    if let Some(Err(what)) = &named {
+        warnings.add(WarningCode::Malformed, "", || format!("{}, {what}; another is shown", path.display()));
     }
-    let mut is_child = vec![false; root.nodes.len()];
-    for child in root.nodes.iter().flat_map(|n| n.children.iter().flatten()) {
-        if let Some(flag) = is_child.get_mut(child.value()) {
+    let first = || document.scenes.iter().flatten().find(|scene| !scene.nodes.is_empty());
+    if let Some(scene) = named.and_then(Result::ok).or_else(first) {
+        return scene.nodes.iter().map(|n| *n as usize).collect();
+    }
+    let mut is_child = vec![false; document.nodes.len()];
+    for child in document.nodes.iter().flatten().flat_map(|node| &node.children) {
+        if let Some(flag) = is_child.get_mut(*child as usize) {
             *flag = true;
         }
     }
-    (0..root.nodes.len()).filter(|n| !is_child[*n]).collect()
+    (0..document.nodes.len()).filter(|n| !is_child[*n]).collect()
 }
 
 /// The node's own transform: its matrix, else translation × rotation × scale.
-fn local(placement: &Placement) -> DAffine3 {
-    if let Some(matrix) = &placement.matrix {
+fn local(node: &Node) -> DAffine3 {
+    if let Some(matrix) = &node.matrix {
         return DAffine3::from_mat4(DMat4::from_cols_array(matrix));
     }
     affine(
-        placement.translation.unwrap_or_default(),
-        placement.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]),
-        placement.scale.unwrap_or([1.0; 3]),
+        node.translation.unwrap_or_default(),
+        node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]),
+        node.scale.unwrap_or([1.0; 3]),
     )
 }
 
@@ -111,15 +124,14 @@ pub(super) struct Instances<'a> {
 
 /// The instances of a node, if it is instanced.
 pub(super) fn instances<'a>(
-    root: &Root,
+    document: &Document,
     buffers: &'a Buffers<'_>,
-    node: usize,
+    node: &Node,
 ) -> Result<Option<Instances<'a>>, String> {
-    let extensions = root.nodes[node].extensions.as_ref();
-    let Some(json) = extensions.and_then(|e| e.others.get("EXT_mesh_gpu_instancing")) else { return Ok(None) };
+    let Some(json) = node.extensions.get("EXT_mesh_gpu_instancing") else { return Ok(None) };
     let find = |name: &str| {
         let index = json.get("attributes").and_then(|a| a.get(name)).and_then(serde_json::Value::as_u64);
-        index.map(|i| accessor::open(root, buffers, usize::try_from(i).unwrap_or(usize::MAX))).transpose()
+        index.map(|i| accessor::open(document, buffers, usize::try_from(i).unwrap_or(usize::MAX))).transpose()
     };
     let found = Instances { translation: find("TRANSLATION")?, rotation: find("ROTATION")?, scale: find("SCALE")? };
     let counts: Vec<u64> = found.views().map(|v| v.count).collect();

@@ -24,6 +24,8 @@ pub struct Input {
     pub bytes: Vec<u8>,
     /// Whether compressed content ends early: the loader shows what is there, [`super::read_input`] says so.
     pub is_cut: bool,
+    /// Bytes behind compressed content that are none of it.
+    pub passed_over: usize,
 }
 
 impl Input {
@@ -66,43 +68,54 @@ pub fn from_bytes(path: &Path, mut bytes: Vec<u8>) -> Result<Input, LoadError> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large(path));
     }
-    let mut is_cut = false;
-    if bytes.starts_with(&[0x1f, 0x8b]) {
+    let (mut is_cut, mut passed_over) = (false, 0);
+    if bytes.starts_with(GZIP) {
         let packed = std::mem::take(&mut bytes);
-        (bytes, is_cut) = gunzip(path, &packed)?;
+        (bytes, is_cut, passed_over) = gunzip(path, &packed)?;
         give_back(packed);
-        if bytes.starts_with(&[0x1f, 0x8b]) {
+        if bytes.starts_with(GZIP) {
             return Err(LoadError::new(path, "is gzip inside gzip; unpack it once"));
         }
     }
     if bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
         bytes.drain(..3);
     }
-    Ok(Input { path: path.to_owned(), bytes, is_cut })
+    Ok(Input { path: path.to_owned(), bytes, is_cut, passed_over })
 }
 
 fn too_large(path: &Path) -> LoadError {
     LoadError::new(path, "is larger than 4 GiB; cut it into tiles and name several files")
 }
 
-/// Decompresses every member of a gzip file; and whether its end is cut off.
-fn gunzip(path: &Path, packed: &[u8]) -> Result<(Vec<u8>, bool), LoadError> {
+/// How compressed content begins.
+const GZIP: &[u8] = &[0x1f, 0x8b];
+
+/// Decompresses every member of a gzip file; and whether its end is cut off, and how many bytes behind it are none (RFC 1952, 2.2: members
+/// follow each other; padding with zeros, and what transfers leave behind, is no member).
+fn gunzip(path: &Path, packed: &[u8]) -> Result<(Vec<u8>, bool, usize), LoadError> {
     let limit = MAX_BYTES.min(FREE_BYTES.max(packed.len() as u64 * MAX_RATIO));
-    let mut bytes = Vec::new();
-    let result = flate2::read::MultiGzDecoder::new(packed).take(limit + 1).read_to_end(&mut bytes);
-    if bytes.len() as u64 > limit {
-        let mib = limit >> 20;
-        return Err(LoadError::new(
-            path,
-            format!(
-                "decompresses to more than {mib} MiB, {MAX_RATIO} times its size; unpack it yourself if you trust it"
-            ),
-        ));
+    let (mut bytes, mut rest) = (Vec::new(), packed);
+    let mut result = Ok(0);
+    while rest.starts_with(GZIP) && result.is_ok() {
+        let room = limit + 1 - bytes.len() as u64;
+        let mut member = flate2::bufread::GzDecoder::new(rest).take(room);
+        result = member.read_to_end(&mut bytes);
+        rest = member.into_inner().into_inner();
+        if bytes.len() as u64 > limit {
+            let mib = limit >> 20;
+            return Err(LoadError::new(
+                path,
+                format!(
+                    "decompresses to more than {mib} MiB, {MAX_RATIO} times its size; unpack it yourself if you trust it"
+                ),
+            ));
+        }
     }
     match result {
         Err(e) if bytes.is_empty() || e.kind() != std::io::ErrorKind::UnexpectedEof => {
             Err(LoadError::new(path, format!("is damaged gzip: {e}")))
         }
-        result => Ok((bytes, result.is_err())),
+        Err(_) => Ok((bytes, true, 0)),
+        Ok(_) => Ok((bytes, false, if rest.iter().all(|byte| *byte == 0) { 0 } else { rest.len() })),
     }
 }

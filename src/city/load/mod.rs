@@ -17,10 +17,13 @@ use std::{
 
 pub use error::LoadError;
 pub use input::Input;
-pub use options::{LoadOptions, Sibling};
+pub use options::{LFS_POINTER, LoadOptions, Sibling, Up};
 pub use progress::{Progress, Quiet, Stage};
 
-use crate::city::{build::ModelBuilder, load::sniff::Format, model::CityModel, warning::WarningCode};
+use crate::{
+    city::{build::ModelBuilder, load::sniff::Format, model::CityModel, texture, warning::WarningCode},
+    geom::Aabb,
+};
 
 /// The time that loading took, by stage, over all files; `load.ms` of `--stats`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,9 +53,26 @@ pub fn load_with_stats(
     still_wanted(progress, paths)?;
     progress.enter(Stage::Build, paths.len(), paths.len(), Path::new(""));
     let start = Instant::now();
-    let model = builder.finish();
+    let mut model = builder.finish();
+    texture::settle(&mut model);
+    tell_degrees(&mut model, paths);
     stats.build = start.elapsed();
     Ok((model, stats))
+}
+
+/// Warns of a city that is a needle: degrees east and north, metres up, and no reference system that says so.
+fn tell_degrees(model: &mut CityModel, paths: &[PathBuf]) {
+    let Aabb { min, max } = model.extent();
+    let size = max - min;
+    let across = size.x.max(size.y);
+    let are_degrees = |low: f64, high: f64, most: f64| low >= -most && high <= most;
+    let is_needle = across > 0.0 && across < 10.0 && size.z > 1000.0 * across;
+    if model.crs.is_none() && is_needle && are_degrees(min.x, max.x, 180.0) && are_degrees(min.y, max.y, 180.0) {
+        let file = paths.first().map_or(Path::new(""), PathBuf::as_path).display();
+        model.warnings.add(WarningCode::UnknownCrs, "", || {
+            format!("{file}: {across:.1e} across and {:.0} high, these coordinates look like degrees; a reference system in the file (EPSG:4979, latitude first, or OGC:CRS84h) makes metres of them", size.z)
+        });
+    }
 }
 
 fn still_wanted(progress: &dyn Progress, paths: &[PathBuf]) -> Result<(), LoadError> {
@@ -124,6 +144,12 @@ pub fn read_input(builder: &mut ModelBuilder, input: Input, options: &LoadOption
     if input.is_cut {
         builder.model.warnings.add(WarningCode::TruncatedFile, "", || {
             format!("{}: the compressed file ends early; is the download complete?", input.path.display())
+        });
+    }
+    if input.passed_over > 0 {
+        builder.model.warnings.add(WarningCode::Malformed, "", || {
+            let (file, count) = (input.path.display(), input.passed_over);
+            format!("{file}: {count} bytes behind the compressed file are passed over")
         });
     }
     match sniff::format(&input) {

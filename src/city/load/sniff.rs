@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use crate::city::load::input::{self, Input};
+use crate::city::load::{
+    input::{self, Input},
+    options::LFS_POINTER,
+};
 
 /// The formats that can be read, for messages.
 pub(super) const READABLE: &str =
@@ -40,6 +43,7 @@ const MAGIC: &[(&[u8], Format)] = &[
     (b"GIF8", Format::Not("is a GIF image, not a city model")),
     (b"II*\0", Format::Not("is a TIFF image, not a city model")),
     (b"MM\0*", Format::Not("is a TIFF image, not a city model")),
+    (LFS_POINTER, Format::Not("is a Git LFS pointer, not the file itself; `git lfs pull` brings that")),
     (b"%PDF", Format::Not("is a PDF document, not a city model")),
     (b"PK\x03\x04", Format::Not("is a ZIP archive; unpack it and name the model inside")),
     (b"7z\xbc\xaf", Format::Not("is a 7-Zip archive; unpack it and name the model inside")),

@@ -11,7 +11,7 @@ use crate::city::{
         ModelBuilder,
         raw::{Polygons, RawObject},
     },
-    model::{NONE, ObjectClass, StringId, Surface},
+    model::{GROUP, NONE, ObjectClass, StringId, Surface},
     warning::WarningCode,
 };
 
@@ -51,7 +51,7 @@ impl Group {
         *self.object.get_or_insert_with(|| {
             let id = if self.name.is_empty() { format!("group-{objects}") } else { self.name.clone() };
             *objects += 1;
-            let kind = "Group".to_owned();
+            let kind = GROUP.to_owned();
             builder.add_object(RawObject { id, kind, class: ObjectClass::Building, ..RawObject::default() })
         })
     }

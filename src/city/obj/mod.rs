@@ -1,6 +1,7 @@
 //! Wavefront OBJ with MTL: groups with faces become city objects.
 //!
-//! OBJ does not say which way is up; city exporters (cjio, FME, 3dfier) write z up, and so it is read. `o NAME` and
+//! OBJ does not say which way is up; city exporters (cjio, FME, 3dfier) write z up, and so it is read unless the scene says
+//! otherwise (`city.up`). `o NAME` and
 //! `g NAMES` both begin a group (its id is the text after the keyword); a group named again goes on; faces before
 //! any name belong to `group-K`, K being the index of the object.
 //!
@@ -14,13 +15,13 @@ mod mtl;
 
 use std::{path::Path, sync::Arc};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use self::{
     face::Group,
     lines::{Lines, number, statement, text, words},
-    mtl::Look,
+    mtl::{Look, Looks},
 };
 use crate::city::{
     build::{
@@ -29,7 +30,11 @@ use crate::city::{
         points::{Points, Pool},
         raw::RawGeometry,
     },
-    load::{error::LoadError, input::Input, options::LoadOptions},
+    load::{
+        error::LoadError,
+        input::Input,
+        options::{LoadOptions, Up},
+    },
     model::{Lod, Source},
     warning::WarningCode,
 };
@@ -72,7 +77,7 @@ const IGNORED: &[&[u8]] = &[
 /// Reads an OBJ file into `builder`.
 pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) -> Result<(), LoadError> {
     builder.begin_file(Source { path: input.path.clone(), format: "OBJ", version: String::new() });
-    let mut reader = Reader::new(&input.path);
+    let mut reader = Reader::new(&input.path, options.up);
     for (line_number, line) in Lines::new(&input.bytes) {
         if let Some((keyword, arguments)) = statement(&line) {
             reader.statement(builder, options, line_number, keyword, arguments);
@@ -88,6 +93,7 @@ pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) ->
 /// The state of reading one file.
 struct Reader<'a> {
     path: &'a Path,
+    up: Up,
     points: Vec<DVec3>,
     texcoords: Vec<[f32; 2]>,
     normals: Vec<[f32; 3]>,
@@ -97,7 +103,7 @@ struct Reader<'a> {
     /// Groups by name; the nameless one is `""`.
     by_name: FxHashMap<String, usize>,
     group: usize,
-    looks: FxHashMap<String, Look>,
+    looks: Looks,
     look: Option<Look>,
     /// Libraries that were read or tried.
     libraries: FxHashSet<String>,
@@ -108,9 +114,10 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(path: &'a Path) -> Self {
+    fn new(path: &'a Path, up: Up) -> Self {
         Self {
             path,
+            up,
             points: Vec::new(),
             texcoords: Vec::new(),
             normals: Vec::new(),
@@ -118,7 +125,7 @@ impl<'a> Reader<'a> {
             groups: vec![Group::new(String::new())],
             by_name: FxHashMap::from_iter([(String::new(), 0)]),
             group: 0,
-            looks: FxHashMap::default(),
+            looks: Looks::default(),
             look: None,
             libraries: FxHashSet::default(),
             objects: 0,
@@ -145,7 +152,7 @@ impl<'a> Reader<'a> {
             }
             b"vn" => {
                 let [x, y, z] = self.numbers(builder, line, "vn", arguments, 3);
-                self.normals.push(DVec3::new(x, y, z).normalize_or_zero().as_vec3().to_array());
+                self.normals.push(self.up.placed(DVec3::new(x, y, z)).normalize_or_zero().as_vec3().to_array());
             }
             b"f" | b"fo" => self.face(builder, line, arguments),
             b"o" | b"g" => self.group = self.group_named(text(arguments)),
@@ -198,7 +205,7 @@ impl<'a> Reader<'a> {
                 format!("{path}, line {line}: vertex colours of OBJ are not drawn; materials are")
             });
         }
-        let point = DVec3::from(self.numbers(builder, line, "v", arguments, 3));
+        let point = self.up.placed(DVec3::from(self.numbers(builder, line, "v", arguments, 3)));
         // A vertex that is wrong keeps its place, or all later indices would be off; its faces are dropped.
         self.points.push(point);
         if self.decimals.is_some() && is_usable(point) {
@@ -216,7 +223,7 @@ impl<'a> Reader<'a> {
     }
 
     fn use_material(&mut self, builder: &mut ModelBuilder, line: usize, name: &str) {
-        self.look = self.looks.get(name).copied();
+        self.look = self.looks.get(name);
         if self.look.is_none() {
             let path = self.path.display();
             builder.model.warnings.add(WarningCode::AppearanceIndex, "", || {
@@ -248,7 +255,14 @@ impl<'a> Reader<'a> {
     }
 
     /// Puts the positions on their lattice and hands all groups to the builder.
-    fn finish(self, builder: &mut ModelBuilder) {
+    fn finish(mut self, builder: &mut ModelBuilder) {
+        let first = self.points.first().copied();
+        let frame = first.and_then(|place| builder.frame_of_unnamed(self.path, place));
+        let local = frame.map(|frame| frame.local_from_earth());
+        if let Some(local) = local {
+            self.points.iter_mut().for_each(|point| *point = local.transform_point3(*point));
+            self.decimals = None;
+        }
         let farthest =
             self.points.iter().filter(|p| is_usable(**p)).fold(0.0, |far: f64, p| far.max(p.abs().max_element()));
         let scale = self.decimals.map(|d| 10f64.powi(d as i32)).filter(|scale| farthest * scale <= MAX_STEPS);
@@ -257,7 +271,11 @@ impl<'a> Reader<'a> {
         let points: Points = self.points.iter().map(|p| lattice.nearest(*p).unwrap_or_default()).collect();
         let pool = Arc::new(Pool { lattice, points });
         for group in self.groups {
-            for (object, polygons) in group.into_parts() {
+            for (object, mut polygons) in group.into_parts() {
+                for normal in polygons.normals.iter_mut().filter(|_| local.is_some()) {
+                    let turned = local.unwrap_or_default().matrix3 * Vec3::from(*normal).as_dvec3();
+                    *normal = turned.as_vec3().to_array();
+                }
                 builder.add_geometry(RawGeometry {
                     object,
                     lod: Lod::NONE,

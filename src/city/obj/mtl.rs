@@ -20,13 +20,33 @@ pub(super) struct Look {
     pub plain: u32,
 }
 
+/// Materials by name.
+#[derive(Debug, Default)]
+pub(super) struct Looks {
+    exact: FxHashMap<String, Look>,
+    /// By their names in small letters.
+    in_any_case: FxHashMap<String, Look>,
+}
+
+impl Looks {
+    fn insert(&mut self, name: String, look: Look) {
+        self.in_any_case.entry(name.to_lowercase()).or_insert(look);
+        self.exact.insert(name, look);
+    }
+
+    /// The material of this name, or else the first of this name in other letter case.
+    pub fn get(&self, name: &str) -> Option<Look> {
+        self.exact.get(name).or_else(|| self.in_any_case.get(&name.to_lowercase())).copied()
+    }
+}
+
 /// The largest library; a longer one is no hand-written or exported list of materials.
 const MAX_BYTES: u64 = 256 << 20;
 
 /// Reads the library `name` that stands in the model file `obj` into `looks`.
 pub(super) fn read(
     city: &mut CityModel,
-    looks: &mut FxHashMap<String, Look>,
+    looks: &mut Looks,
     obj: &Path,
     name: &str,
     options: &LoadOptions,
@@ -139,21 +159,19 @@ fn texture(city: &mut CityModel, material: &str, statement: &str, path: &Path, o
     let image = match options.sibling(path, name) {
         Sibling::Found(file) => TextureImage::File(file),
         Sibling::Missing(file) => {
-            city.warnings.add(WarningCode::MissingTexture, "", || {
-                format!("{}, material {material:?}: {} does not exist", path.display(), file.display())
-            });
-            TextureImage::Missing
+            let (path, file) = (path.display(), file.display());
+            TextureImage::Missing(format!("{path}, material {material:?}: {file} does not exist"))
         }
         Sibling::Outside(file) => {
             city.warnings.add(WarningCode::OutsidePath, "", || {
                 let file = file.display();
                 format!("{}: {file} is outside the folders you named; --allow-outside reads it", path.display())
             });
-            TextureImage::Missing
+            TextureImage::Missing(String::new())
         }
     };
     let known = city.textures.iter().rposition(|t| t.image == image && t.wrap == [wrap; 2]);
-    match known.filter(|_| image != TextureImage::Missing) {
+    match known.filter(|_| !image.is_missing()) {
         Some(known) => known as u32,
         None => {
             city.textures.push(Texture { image, wrap: [wrap; 2] });

@@ -102,16 +102,15 @@ impl Arguments {
         if self.output.as_os_str() != "-" && extension.as_deref() != Some("png") {
             return Err(Failure::usage(format!("{}: pictures are PNG; OUT.png would be right", self.output.display())));
         }
-        let mut outputs: Vec<&PathBuf> = self.outputs().collect();
-        outputs.sort();
-        match outputs.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(twice) => Err(Failure::usage(format!("{}: two results cannot go to one file", twice[0].display()))),
-            None => output::check(self.outputs()),
+        let streams = self.outputs().filter(|file| file.as_os_str() == "-").count();
+        if streams > 1 {
+            return Err(Failure::usage("-: two results cannot go to one file"));
         }
+        output::check(self.outputs(), &self.files)
     }
 
     /// All files to write, the picture first.
-    fn outputs(&self) -> impl Iterator<Item = &PathBuf> {
+    pub fn outputs(&self) -> impl Iterator<Item = &PathBuf> {
         let aovs = self.aovs.iter().map(|aov| &aov.file);
         let sprites = self.sprites.iter().map(|sprite| &sprite.file);
         std::iter::once(&self.output).chain(&self.stats).chain(aovs).chain(sprites)

@@ -11,7 +11,7 @@ use std::{
 use arguments::{AovFormat, AovKind, AovRequest, Arguments};
 
 use crate::{
-    city::{TextureImage, facts, load::LoadOptions},
+    city::{facts, load::LoadOptions},
     cli::{
         arguments::GlobalArguments,
         failure::{Failure, Outcome},
@@ -40,18 +40,21 @@ const PNG_LENSES: usize = 16;
 pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     arguments.check()?;
     let options = options_of(arguments.scene(), global);
-    let mut scene = scene_of(&arguments.files, &arguments.settings, &options)?;
+    let (mut scene, of_camera) = scene_of(&arguments.files, &arguments.settings, &options)?;
     if let Some(size) = arguments.size {
         scene.figure.size = size.0;
     }
     if let Some(samples) = arguments.samples {
         scene.figure.samples = samples;
     }
+    output::check(arguments.outputs(), &scene_file::files_of(&scene))?;
     check_masks(&arguments.aovs, &scene)?;
     for sprite in &arguments.sprites {
         sprite.lens(&scene)?;
     }
     let (mut studio, warnings) = open(&scene, &options, global)?;
+    output::check(arguments.outputs(), &studio.model.texture_files())?;
+    let mut scene = with_camera(scene, &of_camera, &studio)?;
     if let Some(name) = &arguments.through {
         let from = studio.camera(&scene, scene.figure.size);
         portal(&scene, name, from)?.redo(&mut scene);
@@ -123,8 +126,9 @@ pub fn options_of(scene: Option<&PathBuf>, global: &GlobalArguments) -> Options 
     }
 }
 
-/// The scene that is drawn: the file's, or one of the city files alone, then every `--set` in order.
-pub fn scene_of(files: &[PathBuf], settings: &[String], options: &Options) -> Outcome<Scene> {
+/// The scene that is drawn: the file's, or one of the city files alone, then every `--set` in order; and those of them that change a
+/// camera which the scene leaves to the program, for [`with_camera`].
+pub fn scene_of(files: &[PathBuf], settings: &[String], options: &Options) -> Outcome<(Scene, Vec<String>)> {
     let scene = match arguments::scene_among(files) {
         Some(file) => scene_file::read(file, options).map_err(Failure::failed)?,
         None => {
@@ -133,7 +137,22 @@ pub fn scene_of(files: &[PathBuf], settings: &[String], options: &Options) -> Ou
             scene
         }
     };
-    changed(scene, settings)
+    let (of_camera, others): (Vec<String>, Vec<String>) =
+        settings.iter().cloned().partition(|setting| setting.trim_start().starts_with("camera."));
+    // One that sets the whole camera may stand among them.
+    let sets_camera = others.iter().any(|setting| setting.trim_start().starts_with("camera"));
+    if scene.camera.is_some() || sets_camera {
+        return Ok((changed(scene, settings)?, Vec::new()));
+    }
+    Ok((changed(scene, &others)?, of_camera))
+}
+
+/// The scene after what changes the camera that it leaves to the program: a good first view of the city.
+pub fn with_camera(mut scene: Scene, of_camera: &[String], studio: &Studio) -> Outcome<Scene> {
+    if !of_camera.is_empty() {
+        scene.camera = Some(studio.camera(&scene, scene.figure.size));
+    }
+    changed(scene, of_camera)
 }
 
 /// The scene after every `--set`, in order.
@@ -166,15 +185,17 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
     }
     let mut roots: Vec<PathBuf> = options.roots.clone();
     roots.push(options.base.clone());
-    let (model, load) = load::load_below(&scene.city.files, roots.clone(), global)?;
+    let reading =
+        LoadOptions { allow_outside: global.allow_outside, roots, up: scene.city.up, ..LoadOptions::default() };
+    let (model, load) = load::load_with(&scene.city.files, &reading, global)?;
     let mut warnings: Vec<serde_json::Value> =
         facts::warning_facts(&model).iter().filter_map(|warning| serde_json::to_value(warning).ok()).collect();
     if !warnings.is_empty() {
         log::info!("{} kinds of warnings about the city; `veduta info` lists them", warnings.len());
     }
-    let missing = model.textures.iter().filter(|texture| texture.image == TextureImage::Missing).count();
+    let missing = model.textures.iter().filter(|texture| texture.image.is_missing()).count();
     if missing > 0 {
-        log::warn!("{missing} of {} textures were not found; their materials' colours are used", model.textures.len());
+        log::warn!("{missing} of {} textures cannot be read; their materials' colours are used", model.textures.len());
     }
     for problem in check_against(scene, &model) {
         log::warn!("scene: {problem}");
@@ -187,7 +208,11 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
         SAID.call_once(|| terminal::say(&format!("note: there is no graphics hardware; {} draws, slowly", gpu.name())));
     }
     let mut studio = Studio::new(gpu, Arc::new(model), &scene.city).map_err(Failure::failed)?;
-    studio.reading = LoadOptions { allow_outside: global.allow_outside, roots };
+    studio.reading = reading;
+    if let Some(why) = facts::nothing_drawn(&studio.model, &studio.geometries) {
+        log::warn!("nothing of the city is drawn: {why}");
+        warnings.push(serde_json::json!({"code": "nothing-drawn", "count": 1, "objects": [], "message": why}));
+    }
     let ms = |stage: &str, time: std::time::Duration| (stage.to_owned(), time.as_secs_f64() * 1e3);
     studio.load = stats::Load {
         ms: [ms("read", load.read), ms("parse", load.parse), ms("build", load.build)].into_iter().collect(),

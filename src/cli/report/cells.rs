@@ -1,6 +1,6 @@
 //! Text in columns: how wide, how cut, how numbers are written for people.
 
-use crate::cli::terminal::Paint;
+use crate::cli::terminal::{Paint, steers};
 
 /// Where a cell's text stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,7 +112,6 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
 
 /// Text from a file as it may be shown: control and direction characters become `·`.
 pub fn clean(text: &str) -> String {
-    let steers = |c: char| c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     text.chars().map(|c| if steers(c) { '·' } else { c }).collect()
 }
 

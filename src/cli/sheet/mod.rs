@@ -88,7 +88,8 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if output.as_os_str() != "-" && extension.as_deref() != Some("png") {
         return Err(Failure::usage(format!("{}: sheets are PNG; OUT.png would be right", output.display())));
     }
-    output::check(std::iter::once(output).chain(&arguments.figures))?;
+    let outputs = || std::iter::once(output).chain(&arguments.figures);
+    output::check(outputs(), [&arguments.sheet])?;
     let name = arguments.sheet.display().to_string();
     let sheet = sheet::file::read(&arguments.sheet).map_err(Failure::failed)?;
     let of_sheet = render::options_of(Some(&arguments.sheet), global);
@@ -100,6 +101,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let scene =
         scene_file::read(&file, &options).map_err(|error| Failure::failed(format!("{name}: scene: {error}")))?;
     let scene = render::changed(scene, &arguments.settings)?;
+    output::check(outputs(), scene_file::files_of(&scene).iter().chain([&file]))?;
     let drawn = draw(&Task { name, sheet, scene, options: options.clone() }, &mut None, global)?;
     let cells = cell_files(arguments, &drawn)?;
     if let Some(folder) = &arguments.cells {

@@ -185,8 +185,21 @@ impl<'a> Fields<'a> {
     }
 }
 
+/// How many of a kind a list may have; told before any of them is looked into.
+fn most_of(kind: &Kind) -> usize {
+    match kind {
+        Kind::Shapes | Kind::Effects | Kind::Tests | Kind::Steps => 1024,
+        Kind::Tables(_) => 4096,
+        _ => usize::MAX,
+    }
+}
+
 /// What is wrong with a value, if anything. Tables, shapes and effects are looked into later.
 fn wrong(kind: &Kind, node: &Node) -> Option<String> {
+    let (count, most) = (node.list().map_or(0, <[Node]>::len), most_of(kind));
+    if count > most {
+        return Some(format!("has {count} entries; at most {most} are read"));
+    }
     let each =
         |range: std::ops::RangeInclusive<f64>| node.numbers::<3>().is_some_and(|v| v.iter().all(|c| range.contains(c)));
     let ok = match kind {

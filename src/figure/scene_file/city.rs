@@ -3,7 +3,7 @@
 use crate::{
     figure::scene_file::{
         check::lod,
-        forms::{Degrees, Same},
+        forms::{Degrees, Same, Word},
         keys::{Kind, Table, key},
         node::Data,
         row::{Row, field, keys_of},
@@ -15,7 +15,6 @@ use crate::{
 pub const CITY: Table =
     Table { name: "city", doc: "Which city to load, and how much of it to show.", keys: keys_of!(CITY_ROWS) };
 
-/// Its rows.
 /// Its rows.
 pub const CITY_ROWS: &[Row<CitySpec>] = &[
     Row::<CitySpec>::new(
@@ -40,6 +39,18 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
         key("lod", Kind::Lod, "the finest there is", "", "Shows no level of detail finer than this.", "\"1.3\""),
         |city, _| city.lod.as_ref().map(Data::from),
         |city, given| city.lod = lod(given.node).map(|lod| lod.to_string()),
+    ),
+    field!(
+        key(
+            "up",
+            Kind::Word { now: &["z", "y"], later: &[] },
+            "\"z\"",
+            "",
+            "What is up in OBJ files, which do not say so: exporters of cities write `z`, modelling programs `y`.",
+            "\"y\"",
+        ),
+        Word,
+        |city: CitySpec| city.up
     ),
     field!(
         key("ground", Kind::Boolean, "true", "", "Puts a plain ground under a city without terrain.", "false"),

@@ -3,6 +3,7 @@
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use crate::{
+    city::load::Up,
     figure::scene_file::node::{Data, Node},
     lens::{
         BorderUnit, Class, Discrete, LensBody, Parameter,
@@ -241,6 +242,7 @@ words! {
     Mapping: Self::WORDS;
     MapMode: Self::WORDS;
     Along: Self::WORDS;
+    Up: Self::WORDS;
     Sizes: Self::WORDS;
     BuiltInFrame: Self::WORDS;
     LineKind: Self::WORDS;

@@ -41,7 +41,10 @@ pub mod test_keys;
 mod text;
 mod trajectory;
 
-use std::{io::Read, path::Path};
+use std::{
+    io::Read,
+    path::{Path, PathBuf},
+};
 
 pub use check::Problem;
 pub use edit::{Edit, rename_lens, set, set_within};
@@ -116,6 +119,21 @@ pub fn to_edited(text: &str, was: &Options, scene: &Scene, options: &Options) ->
         [false, true].into_iter().find_map(|strict| save::changed(text, &before, &now, strict).filter(means_it))
     };
     edited().unwrap_or(anew)
+}
+
+/// The files and folders that a scene names, as far as they are there: of what it says in words what is the path of one.
+pub fn files_of(scene: &Scene) -> Vec<PathBuf> {
+    fn add(node: &node::Node, files: &mut Vec<PathBuf>) {
+        match &node.data {
+            node::Data::Text(text) => files.extend(Some(PathBuf::from(text)).filter(|path| path.exists())),
+            node::Data::List(nodes) => nodes.iter().for_each(|node| add(node, files)),
+            node::Data::Table(entries) => entries.iter().for_each(|(_, _, node)| add(node, files)),
+            _ => {}
+        }
+    }
+    let mut files = Vec::new();
+    add(&tree(scene, &Options { data: None, base: PathBuf::new(), ..Options::default() }), &mut files);
+    files
 }
 
 /// The scene as the tree of that file.

@@ -53,7 +53,7 @@ impl Options {
         };
         let base = if self.base.as_os_str().is_empty() { Path::new(".") } else { &self.base };
         let roots = self.roots.iter().chain(&self.data).cloned().chain([base.to_owned()]).collect();
-        if (LoadOptions { allow_outside: self.allow_outside, roots }).allows(&path) {
+        if (LoadOptions { allow_outside: self.allow_outside, roots, ..LoadOptions::default() }).allows(&path) {
             Ok(path)
         } else {
             Err(PathProblem::Wrong(format!(

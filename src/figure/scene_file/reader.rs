@@ -44,6 +44,9 @@ impl<'o> Reader<'o> {
     /// The file that a value of a table names; noted where it may not be read.
     pub fn path(&mut self, fields: &Fields, key: &str, node: &Node) -> Option<PathBuf> {
         let message = match self.options.resolve(node.text().unwrap_or_default()) {
+            Ok(path) if is_no_file(&path) => {
+                format!("{} is a pipe or a device; a file would be right", node.quoted())
+            }
             Ok(path) => return Some(path),
             Err(PathProblem::NoData) => {
                 self.lacks_data = true;
@@ -78,6 +81,11 @@ impl<'o> Reader<'o> {
         }
         files
     }
+}
+
+/// Whether something is there that is neither a file nor a folder, and would be waited for.
+fn is_no_file(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
 }
 
 /// Whether nothing is there. What is there and cannot be read, loading tells.

@@ -270,7 +270,7 @@ fn wrong_files_are_named_with_their_key() {
         height: 1.0,
     };
     for (region, key, name, words) in [
-        (mask(&text), "image", "text.png", "neither PNG nor JPEG"),
+        (mask(&text), "image", "text.png", "no image of a kind that is read"),
         (mask(&black), "image", "black.png", "empty"),
         (mask(&missing), "image", "none.png", "cannot be read"),
         (mesh(&no_face), "file", "points.obj", "no faces"),

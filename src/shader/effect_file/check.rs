@@ -9,6 +9,7 @@ use crate::shader::{
         prototype::{AskedBy, EffectKind, Mode, Prototype, Stage},
     },
     effect_file::{
+        bounds::check_bounds,
         cost::check_cost,
         error::{File, FileError},
         flow::check_control_flow,
@@ -41,6 +42,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         let message = "objects, and parameters of type shares and colors, are for effects of the program";
         return Err(file.error(0, message));
     }
+    check_bounds(&file)?;
     check_control_flow(&file)?;
     check_cost(&file)?;
     let row = effect.kind.prototype();

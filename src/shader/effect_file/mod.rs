@@ -22,6 +22,7 @@
 //! Without parameters for WGSL it takes no `p`. The file may declare functions, constants, structs and aliases of its own:
 //! every name it declares is qualified by the effect's, so that files never clash.
 
+pub(super) mod bounds;
 pub(super) mod check;
 pub(super) mod cost;
 pub(super) mod error;

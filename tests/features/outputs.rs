@@ -1,0 +1,168 @@
+//! What commands write: never in place of what they read, whole or not at all, through links and into pipes.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+    time::{Duration, Instant},
+};
+
+/// A folder of one test, removed at its end, with a scene, its city, a sheet and an animation.
+struct Folder(PathBuf);
+
+const CITY: &str = r#"{"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},"CityObjects":{"a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}]}},"vertices":[[0,0,0],[9,0,0],[0,0,9]]}"#;
+const SCENE: &str = "veduta = 1\n[city]\nfiles = [\"city.city.json\"]\n";
+const OBJ: &str = "mtllib wall.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nv 0 0 0\nv 10 0 0\nv 10 0 10\nusemtl m\nf 1/1 2/2 3/3\n";
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("veduta-outputs-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).expect("a folder");
+        let folder = Self(path);
+        let mut texture = std::io::Cursor::new(Vec::new());
+        image::RgbImage::new(2, 2).write_to(&mut texture, image::ImageFormat::Png).expect("an image");
+        for (name, bytes) in [
+            ("city.city.json", CITY.as_bytes()),
+            ("scene.toml", SCENE.as_bytes()),
+            ("sheet.toml", b"veduta_sheet = 1\nscene = \"scene.toml\"\n[[row]]\nname = \"a\"\n[[column]]\nname = \"b\"\nset = [\"sun.azimuth_deg=10\"]\n"),
+            ("wall.obj", OBJ.as_bytes()),
+            ("wall.mtl", b"newmtl m\nKd 1 1 1\nmap_Kd wall.png\n"),
+            ("wall.png", &texture.into_inner()[..]),
+        ] {
+            fs::write(folder.0.join(name), bytes).expect("a file");
+        }
+        folder
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_veduta"));
+        command.args(arguments).current_dir(&self.0).stdin(Stdio::null()).env_remove("VEDUTA_DATA");
+        command.output().expect("the program")
+    }
+
+    /// All files and what is in them.
+    fn content(&self) -> Vec<(PathBuf, Vec<u8>)> {
+        let mut all: Vec<(PathBuf, Vec<u8>)> = fs::read_dir(&self.0)
+            .expect("the folder")
+            .map(|entry| entry.expect("an entry").path())
+            .filter(|path| path.is_file())
+            .map(|path| (path.clone(), fs::read(path).expect("a file")))
+            .collect();
+        all.sort();
+        all
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn code(output: &Output) -> Option<i32> {
+    output.status.code()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[cfg(unix)]
+#[test]
+fn no_result_replaces_what_is_read() {
+    let folder = Folder::new("inputs");
+    std::os::unix::fs::symlink("city.city.json", folder.0.join("linked.json")).expect("a link");
+    std::os::unix::fs::symlink("wall.png", folder.0.join("linked.png")).expect("a link");
+    fs::hard_link(folder.0.join("city.city.json"), folder.0.join("same.json")).expect("a link");
+    let before = folder.content();
+    for arguments in [
+        // The city, the scene, by other spellings and links.
+        &["render", "scene.toml", "-o", "a.png", "--stats", "city.city.json"][..],
+        &["render", "scene.toml", "-o", "a.png", "--stats", "./city.city.json"],
+        &["render", "scene.toml", "-o", "a.png", "--stats", "linked.json"],
+        &["render", "scene.toml", "-o", "a.png", "--stats", "same.json"],
+        &["render", "scene.toml", "-o", "a.png", "--stats", "scene.toml"],
+        &["render", "city.city.json", "-o", "a.png", "--stats", "city.city.json"],
+        &["render", ".", "-o", "a.png", "--stats", "city.city.json"],
+        // Textures of the city.
+        &["render", "wall.obj", "-o", "wall.png"],
+        &["render", "wall.obj", "-o", "linked.png"],
+        &["render", "wall.obj", "-o", "a.png", "--aov", "normal=wall.png"],
+        // Two results for one file.
+        &["render", "scene.toml", "-o", "a.png", "--aov", "normal=./a.png"],
+        &["render", "scene.toml", "-o", "a.png", "--aov", "normal=b.png", "--aov", "object-id=b.png"],
+        // The other commands.
+        &["info", "city.city.json", "--landmarks", "1", "--scene", "city.city.json"],
+        &["info", "city.city.json", "--landmarks", "1", "--scene", "linked.json"],
+        &["sheet", "sheet.toml", "-o", "a.png", "--figures", "sheet.toml"],
+        &["sheet", "sheet.toml", "-o", "a.png", "--figures", "scene.toml"],
+        &["sheet", "sheet.toml", "-o", "a.png", "--figures", "city.city.json"],
+        &["animate", "scene.toml", "-o", "frames", "--stats", "scene.toml"],
+    ] {
+        let output = folder.run(arguments);
+        assert_eq!(code(&output), Some(2), "{arguments:?}: {}", said(&output));
+        let is_told = said(&output).contains("is read, and would be replaced") || said(&output).contains("two results");
+        assert!(is_told, "{arguments:?}: {}", said(&output));
+        assert!(folder.content() == before, "{arguments:?} changed a file");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_result_that_nobody_takes_is_no_success() {
+    let folder = Folder::new("pipe");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_veduta"))
+        .args(["render", "scene.toml", "-o", "-", "--size", "64x40", "--samples", "1"])
+        .current_dir(&folder.0)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(code(&output), Some(1), "{}", said(&output));
+    assert!(said(&output).contains("stdout"), "{}", said(&output));
+}
+
+fn parts(folder: &Path) -> usize {
+    let names = fs::read_dir(folder).expect("the folder").map(|entry| entry.expect("an entry").file_name());
+    names.filter(|name| name.to_string_lossy().contains(".part")).count()
+}
+
+/// A program that writes a file, and is in the middle of it.
+#[cfg(unix)]
+fn writing(folder: &Path) -> std::process::Child {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_veduta"))
+        .args(["synth", "--buildings", "2000000", "--seed", "1", "-o", "large.city.json"])
+        .current_dir(folder)
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program");
+    let started = Instant::now();
+    while parts(folder) == 0 {
+        assert!(started.elapsed() < Duration::from_secs(60), "nothing is written");
+        assert!(child.try_wait().expect("a state").is_none(), "it has ended");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+#[cfg(unix)]
+#[test]
+fn a_program_that_is_ended_leaves_the_file_that_was_there_and_nothing_beside_it() {
+    use std::os::unix::process::ExitStatusExt;
+    let folder = Folder::new("ended");
+    let target = folder.0.join("large.city.json");
+    fs::write(&target, "before").expect("a file");
+    for (signal, number, left) in [("TERM", 15, 0), ("INT", 2, 0), ("HUP", 1, 0), ("KILL", 9, 1)] {
+        let mut child = writing(&folder.0);
+        let kill = Command::new("sh").arg("-c").arg(format!("kill -{signal} {}", child.id())).status();
+        assert!(kill.expect("a shell").success());
+        assert_eq!(child.wait().expect("it ends").signal(), Some(number), "{signal}");
+        assert_eq!(fs::read_to_string(&target).expect("the file"), "before", "{signal}");
+        assert_eq!(parts(&folder.0), left, "{signal}");
+    }
+    // What could not be removed goes with the next result in this folder.
+    let output = folder.run(&["synth", "--buildings", "5", "--seed", "1", "-o", "small.city.json"]);
+    assert_eq!((code(&output), parts(&folder.0)), (Some(0), 0), "{}", said(&output));
+}
