@@ -266,6 +266,15 @@ fn meshes() -> Vec<Case> {
             gltf("\"byteLength\":36}],\"buffers\"", "\"byteLength\":36,\"byteStride\":0}],\"buffers\""),
             Error(&["byteStride"]),
         ),
+        case(
+            "sparse-outside.gltf",
+            // The second corner's x, as a number of a corner.
+            gltf(
+                "\"count\":3",
+                "\"count\":3,\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,\"byteOffset\":12,\"componentType\":5125},\"values\":{\"bufferView\":0}}",
+            ),
+            Error(&["accessors[0]", "sparse.indices"]),
+        ),
         case("type-wrong.gltf", gltf("VEC3", "VEC9"), Error(&["accessors[0]"])),
         case("mesh-missing.gltf", gltf("\"mesh\":0", "\"mesh\":9"), Error(&["meshes[9]"])),
         case("no-position.gltf", gltf("POSITION", "NORMAL"), Error(&["POSITION"])),

@@ -106,6 +106,9 @@ fn open_sparse<'a>(
     if indices.windows(2).any(|w| w[0] >= w[1]) {
         return Err("sparse.indices must strictly increase".into());
     }
+    if let Some(last) = indices.last().filter(|last| u64::from(**last) >= accessor.count.0) {
+        return Err(format!("sparse.indices has {last}, the accessor {} elements", accessor.count.0));
+    }
     Ok(Sparse { indices, values })
 }
 
