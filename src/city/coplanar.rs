@@ -3,7 +3,11 @@
 //! Depth cannot tell them apart, so a fixed order does: the same triangle wins in every frame, from every side (hard
 //! case 3). Which planes are the same is known exactly from load ([`CityModel::planes`]).
 
-use std::{cmp::Reverse, collections::BTreeSet};
+use std::{
+    cmp::Reverse,
+    collections::BTreeSet,
+    sync::atomic::{AtomicUsize, Ordering},
+};
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -22,6 +26,10 @@ const LEAST_WIDTH_M: f64 = 5e-5;
 const ROUNDING_M: f64 = 1e-3;
 /// Planes of more triangles than this use a hierarchy, fewer are tried pair by pair.
 const PAIRWISE: usize = 32;
+/// Triangles over one another in a place, at most, of which the one that wins is sure; each of them is a draw.
+const MOST_OVER: usize = 256;
+/// How many are tried for each of these.
+const TRIES: usize = 16;
 
 /// A triangle that shares its place with another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,39 +76,47 @@ pub fn stacked_triangles(model: &CityModel, shown: &[u32], heights: &[[f32; 3]])
     let ranks: FxHashMap<StringId, u8> = surface_ranks(model);
     let groups: Vec<&[CoplanarTriangle]> =
         members.chunk_by(|a, b| a.group == b.group).filter(|group| group.len() > 1).collect();
-    groups.into_par_iter().flat_map_iter(|group| covered(model, group, &ranks, heights)).collect()
+    let crowded = AtomicUsize::new(0);
+    let covered = groups.into_par_iter().flat_map_iter(|group| {
+        let (members, own) = covered(model, group, &ranks, heights);
+        crowded.fetch_add(own, Ordering::Relaxed);
+        members
+    });
+    let all = covered.collect();
+    let crowded = crowded.into_inner();
+    if crowded > 0 {
+        log::warn!(
+            "{crowded} triangles lie in one plane with {MOST_OVER} others over them or more; which of them is seen is not sure"
+        );
+    }
+    all
 }
 
-/// The members of one plane that cover another one, by priority.
+/// The members of one plane that cover another one, by priority; and how many lie over or under more others than are looked at.
 fn covered(
     model: &CityModel,
     group: &[CoplanarTriangle],
     ranks: &FxHashMap<StringId, u8>,
     heights: &[[f32; 3]],
-) -> Vec<CoplanarTriangle> {
+) -> (Vec<CoplanarTriangle>, usize) {
     let corners: Vec<[DVec3; 3]> = group.iter().map(|member| world_corners(model, member)).collect();
     let flat = flatten(&corners, model.plane_equations[group[0].group as usize - 1].normal);
     // Which others each one overlaps.
-    let others: Vec<Vec<u32>> = if group.len() <= PAIRWISE {
+    let (others, crowded): (Vec<Vec<u32>>, usize) = if group.len() <= PAIRWISE {
         let of = |i: usize| -> Vec<u32> {
             (0..group.len()).filter(|&j| i != j && overlap(&flat[i], &flat[j])).map(|j| j as u32).collect()
         };
-        (0..group.len()).map(of).collect()
+        ((0..group.len()).map(of).collect(), 0)
     } else {
         // Flat boxes of one plane may lie apart by the rounding of their tiles.
         let grown = |bounds: Aabb| Aabb { min: bounds.min - ROUNDING_M, max: bounds.max + ROUNDING_M };
         let boxes: Vec<Aabb> = corners.iter().map(|&corners| grown(Aabb::from_points(corners))).collect();
         let bvh = Bvh::build(&boxes);
         let of = |i: usize| {
-            let mut found = Vec::new();
-            bvh.in_box(&boxes[i], |j| {
-                if j as usize != i && overlap(&flat[i], &flat[j as usize]) {
-                    found.push(j);
-                }
-            });
-            found
+            let is_other = |j: u32| j as usize != i && overlap(&flat[i], &flat[j as usize]);
+            bvh.some_in_box(&boxes[i], MOST_OVER, TRIES, is_other)
         };
-        (0..group.len()).into_par_iter().map(of).collect()
+        mutual((0..group.len()).into_par_iter().map(of).collect())
     };
     let mut order: Vec<usize> = (0..group.len()).filter(|&i| !others[i].is_empty()).collect();
     if heights.is_empty() {
@@ -124,11 +140,32 @@ fn covered(
     let mut layers: Vec<Option<u32>> = vec![None; group.len()];
     let number = |(priority, i): (usize, usize)| {
         let below = others[i].iter().filter_map(|&j| layers[j as usize]).max();
-        let layer = below.map_or(0, |layer| layer + 1);
+        let layer = below.map_or(0, |layer| layer + 1).min(MOST_OVER as u32 - 1);
         layers[i] = Some(layer);
         CoplanarTriangle { priority: priority as u32, layer, ..group[i] }
     };
-    order.into_iter().enumerate().map(number).collect()
+    (order.into_iter().enumerate().map(number).collect(), crowded)
+}
+
+/// Which others each one overlaps, of lists that may be cut short: one that many lie over is in the lists of these. And how many overlap some
+/// that neither of them knows of.
+fn mutual(found: Vec<(Vec<u32>, bool)>) -> (Vec<Vec<u32>>, usize) {
+    let (mut others, are_whole): (Vec<Vec<u32>>, Vec<bool>) = found.into_iter().unzip();
+    if are_whole.iter().all(|is_whole| *is_whole) {
+        return (others, 0);
+    }
+    let mut of: Vec<Vec<u32>> = vec![Vec::new(); others.len()];
+    for (i, own) in others.iter().enumerate() {
+        own.iter().filter(|j| !are_whole[**j as usize]).for_each(|j| of[*j as usize].push(i as u32));
+    }
+    let mut crowded = 0;
+    for (i, (own, more)) in others.iter_mut().zip(of).enumerate() {
+        own.extend(more);
+        own.sort_unstable();
+        own.dedup();
+        crowded += usize::from(!are_whole[i] && own.iter().any(|j| !are_whole[*j as usize]));
+    }
+    (others, crowded)
 }
 
 /// A level triangle, and how high each corner was.
@@ -481,5 +518,32 @@ mod tests {
         expected.sort_unstable();
         found.sort_unstable();
         assert_eq!(found, expected);
+    }
+
+    /// A lawn under a thousand plots is under all of them, although it overlaps more than are looked for; thousands of faces in one place take
+    /// no time, and no more layers than there may be.
+    #[test]
+    fn what_many_lie_over_is_under_all_of_them() {
+        let mut b = builder();
+        let mut square = |id: String, class, [x, y, size]: [i64; 3]| {
+            let corners = vec![[x, y, 0], [x + size, y, 0], [x + size, y + size, 0], [x, y + size, 0]];
+            add(&mut b, &id, class, None, corners, &[vec![0, 1, 2, 3]]);
+        };
+        square("lawn".into(), ObjectClass::Land, [0, 0, 400_000]);
+        for i in 0..1000 {
+            square(format!("plot {i}"), ObjectClass::Road, [10_000 * (i % 32), 10_000 * (i / 32), 9_000]);
+        }
+        for i in 0..3000 {
+            square(format!("again {i}"), ObjectClass::Building, [500_000, 0, 9_000]);
+        }
+        let model = b.finish();
+        let found = coplanar_triangles(&model, &all(&model));
+        let layers = |of: &str| -> Vec<u32> {
+            found.iter().filter(|t| object_of(&model, t).starts_with(of)).map(|t| t.layer).collect()
+        };
+        assert_eq!(layers("lawn"), [0, 0]);
+        assert!(layers("plot").len() == 2000 && layers("plot").iter().all(|layer| *layer == 1));
+        let again = layers("again");
+        assert!(again.len() == 6000 && again.iter().all(|layer| (*layer as usize) < MOST_OVER));
     }
 }

@@ -8,6 +8,7 @@ use obvhs::{
     BvhBuildParams,
     bvh2::{Bvh2, builder::build_bvh2, node::Bvh2Node},
 };
+use rustc_hash::FxHashMap;
 
 use crate::geom::{aabb::Aabb, ray::Ray};
 
@@ -58,22 +59,67 @@ impl Bvh {
         let origin = if all.is_empty() { DVec3::ZERO } else { all.center() };
         let numbered = boxes.iter().zip(0_u32..).filter(|(b, _)| !b.is_empty());
         let (rounded, numbers): (Vec<_>, Vec<_>) = numbered.map(|(b, i)| (round_outwards(*b, origin), i)).unzip();
+        let (rounded, numbers) = heaped(rounded, numbers);
         let mut tree = if rounded.is_empty() {
             Bvh2::default()
         } else {
             build_bvh2(&rounded, BvhBuildParams::fast_build(), &mut std::time::Duration::default())
         };
-        for index in &mut tree.primitive_indices {
-            *index = numbers[*index as usize];
+        let mut items = Vec::with_capacity(boxes.len());
+        for leaf in tree.nodes.iter_mut().filter(|node| node.is_leaf()) {
+            let (first, count) = (leaf.first_index as usize, leaf.prim_count as usize);
+            leaf.first_index = items.len() as u32;
+            let own = &tree.primitive_indices[first..first + count];
+            own.iter().for_each(|index| items.extend_from_slice(&numbers[*index as usize]));
+            leaf.prim_count = items.len() as u32 - leaf.first_index;
         }
+        tree.primitive_indices = items;
         Self { tree, origin, origin_size: origin.abs().max_element() }
     }
 
     /// Visits all items whose boxes meet `region`, in no particular order.
     pub fn in_box(&self, region: &Aabb, mut visit: impl FnMut(u32)) {
-        let pad = ROUNDING * (self.origin_size + region.min.abs().max(region.max.abs()).max_element());
-        let region = Aabb { min: region.min - self.origin - pad, max: region.max - self.origin + pad };
+        let region = self.local(region);
         self.walk(|node| bounds(node).meets(&region).then_some(()), |item, ()| visit(item));
+    }
+
+    /// Of the items whose boxes meet `region` those that `holds` is true of, or some of them and `false`: at most `most`, and of so many
+    /// times as many tried, which bounds what a search takes where all items lie in one place.
+    pub fn some_in_box(
+        &self,
+        region: &Aabb,
+        most: usize,
+        times: usize,
+        holds: impl Fn(u32) -> bool,
+    ) -> (Vec<u32>, bool) {
+        let region = self.local(region);
+        let (mut found, mut tried) = (Vec::new(), 0);
+        let mut stack: Vec<&Bvh2Node> = self.tree.nodes.first().into_iter().collect();
+        while let Some(node) = stack.pop() {
+            if !bounds(node).meets(&region) {
+                continue;
+            }
+            if !node.is_leaf() {
+                stack.extend(self.children(node));
+                continue;
+            }
+            for &item in self.items(node) {
+                tried += 1;
+                if holds(item) {
+                    found.push(item);
+                }
+                if found.len() == most || tried == most.saturating_mul(times) {
+                    return (found, false);
+                }
+            }
+        }
+        (found, true)
+    }
+
+    /// A box in the coordinates of the hierarchy, and a little larger.
+    fn local(&self, region: &Aabb) -> Aabb {
+        let pad = ROUNDING * (self.origin_size + region.min.abs().max(region.max.abs()).max_element());
+        Aabb { min: region.min - self.origin - pad, max: region.max - self.origin + pad }
     }
 
     /// Visits all items whose boxes may meet the intersection of half-spaces; `true`: the box lies wholly in it.
@@ -209,6 +255,33 @@ impl Bvh {
         let first = node.first_index as usize;
         [&self.tree.nodes[first], &self.tree.nodes[first + 1]]
     }
+}
+
+/// Equal boxes from so many on are one to the builder.
+const HEAP: usize = 16;
+
+/// Boxes with the items of each: of many equal ones one that has all of their items. The builder joins boxes that are each other's nearest; of
+/// equal ones only the first two are, and it would go over all the others once for each.
+fn heaped(boxes: Vec<obvhs::aabb::Aabb>, numbers: Vec<u32>) -> (Vec<obvhs::aabb::Aabb>, Vec<Vec<u32>>) {
+    let bits = |own: &obvhs::aabb::Aabb| [own.min.to_array(), own.max.to_array()].map(|p| p.map(f32::to_bits));
+    let mut counts: FxHashMap<[[u32; 3]; 2], usize> = FxHashMap::default();
+    boxes.iter().for_each(|own| *counts.entry(bits(own)).or_default() += 1);
+    let mut heaps: FxHashMap<[[u32; 3]; 2], usize> = FxHashMap::default();
+    let (mut kept, mut items): (Vec<_>, Vec<Vec<u32>>) = (Vec::with_capacity(boxes.len()), Vec::new());
+    for (own, number) in boxes.into_iter().zip(numbers) {
+        let is_heap = counts.get(&bits(&own)).is_some_and(|count| *count >= HEAP);
+        match heaps.get(&bits(&own)).filter(|_| is_heap) {
+            Some(heap) => items[*heap].push(number),
+            None => {
+                if is_heap {
+                    heaps.insert(bits(&own), kept.len());
+                }
+                kept.push(own);
+                items.push(vec![number]);
+            }
+        }
+    }
+    (kept, items)
 }
 
 /// A ray made ready for the boxes of one hierarchy.
@@ -392,5 +465,30 @@ mod tests {
             assert!(count([-5.0, 0.1, z], [1.0, -0.0, 0.0]).contains(&(i as u32)), "along an edge of box {i}");
         }
         assert_eq!(count([1.2, 0.5, -1.0], [0.0, 0.0, 1.0]).len(), 0);
+    }
+
+    #[test]
+    fn equal_boxes_are_all_found() {
+        let one = |x: f64| Aabb { min: DVec3::splat(x), max: DVec3::splat(x + 1.0) };
+        let many: Vec<Aabb> = (0..5000).map(|i| one(f64::from(if i % 3 == 0 { i } else { i % 2 }))).collect();
+        let bvh = Bvh::build(&many);
+        for at in [0.5, 1.5, 300.5, 9000.0] {
+            let region = Aabb { min: DVec3::splat(at), max: DVec3::splat(at) };
+            let mut found = Vec::new();
+            bvh.in_box(&region, |i| found.push(i));
+            found.sort_unstable();
+            let wanted: Vec<u32> = (0..5000).filter(|i| many[*i as usize].meets(&region)).collect();
+            // Those of a leaf's other boxes are visited, too.
+            assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "{at}");
+            found.retain(|i| many[*i as usize].meets(&region));
+            assert_eq!(found, wanted, "{at}");
+            let meets = |i: u32| i.is_multiple_of(2) && many[i as usize].meets(&region);
+            let (mut some, is_all) = bvh.some_in_box(&region, 100, 4, meets);
+            some.sort_unstable();
+            let all: Vec<u32> = wanted.into_iter().filter(|i| meets(*i)).collect();
+            assert!(some.len() <= 100 && some.iter().all(|i| all.contains(i)), "{at}");
+            assert!(!is_all || some == all, "{at}");
+            assert!(is_all || at < 2.0, "{at}: few are there");
+        }
     }
 }
