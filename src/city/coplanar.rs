@@ -26,10 +26,12 @@ const LEAST_WIDTH_M: f64 = 5e-5;
 const ROUNDING_M: f64 = 1e-3;
 /// Planes of more triangles than this use a hierarchy, fewer are tried pair by pair.
 const PAIRWISE: usize = 32;
-/// Triangles over one another in a place, at most, of which the one that wins is sure; each of them is a draw.
+/// Others that are looked for of each triangle in a hierarchy.
 const MOST_OVER: usize = 256;
 /// How many are tried for each of these.
 const TRIES: usize = 16;
+/// Triangles of one plane that overlap more, of which it is still found out which overlap each other; and layers, each of which is a draw.
+const MOST_BROAD: usize = 2048;
 
 /// A triangle that shares its place with another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +88,7 @@ pub fn stacked_triangles(model: &CityModel, shown: &[u32], heights: &[[f32; 3]])
     let crowded = crowded.into_inner();
     if crowded > 0 {
         log::warn!(
-            "{crowded} triangles lie in one plane with {MOST_OVER} others over them or more; which of them is seen is not sure"
+            "{crowded} triangles lie in one plane and each over {MOST_OVER} others or more; which of them is seen is not sure"
         );
     }
     all
@@ -111,12 +113,7 @@ fn covered(
         // Flat boxes of one plane may lie apart by the rounding of their tiles.
         let grown = |bounds: Aabb| Aabb { min: bounds.min - ROUNDING_M, max: bounds.max + ROUNDING_M };
         let boxes: Vec<Aabb> = corners.iter().map(|&corners| grown(Aabb::from_points(corners))).collect();
-        let bvh = Bvh::build(&boxes);
-        let of = |i: usize| {
-            let is_other = |j: u32| j as usize != i && overlap(&flat[i], &flat[j as usize]);
-            bvh.some_in_box(&boxes[i], MOST_OVER, TRIES, is_other)
-        };
-        mutual((0..group.len()).into_par_iter().map(of).collect())
+        mutual(&boxes, &|i, j| overlap(&flat[i], &flat[j]))
     };
     let mut order: Vec<usize> = (0..group.len()).filter(|&i| !others[i].is_empty()).collect();
     if heights.is_empty() {
@@ -140,32 +137,54 @@ fn covered(
     let mut layers: Vec<Option<u32>> = vec![None; group.len()];
     let number = |(priority, i): (usize, usize)| {
         let below = others[i].iter().filter_map(|&j| layers[j as usize]).max();
-        let layer = below.map_or(0, |layer| layer + 1).min(MOST_OVER as u32 - 1);
+        let layer = below.map_or(0, |layer| layer + 1).min(MOST_BROAD as u32 - 1);
         layers[i] = Some(layer);
         CoplanarTriangle { priority: priority as u32, layer, ..group[i] }
     };
     (order.into_iter().enumerate().map(number).collect(), crowded)
 }
 
-/// Which others each one overlaps, of lists that may be cut short: one that many lie over is in the lists of these. And how many overlap some
-/// that neither of them knows of.
-fn mutual(found: Vec<(Vec<u32>, bool)>) -> (Vec<Vec<u32>>, usize) {
-    let (mut others, are_whole): (Vec<Vec<u32>>, Vec<bool>) = found.into_iter().unzip();
-    if are_whole.iter().all(|is_whole| *is_whole) {
+/// Of some triangles of a plane, by their boxes: which others each one overlaps, or `most` of them and `false`.
+fn overlapping(
+    some: &[usize],
+    boxes: &[Aabb],
+    most: usize,
+    overlap: &(impl Fn(usize, usize) -> bool + Sync),
+) -> Vec<(Vec<u32>, bool)> {
+    let own: Vec<Aabb> = some.iter().map(|i| boxes[*i]).collect();
+    let bvh = Bvh::build(&own);
+    let of = |i: &usize| {
+        let is_other = |j: u32| some[j as usize] != *i && overlap(*i, some[j as usize]);
+        let (found, is_whole) = bvh.some_in_box(&boxes[*i], most, TRIES, is_other);
+        (found.into_iter().map(|j| some[j as usize] as u32).collect(), is_whole)
+    };
+    some.par_iter().map(of).collect()
+}
+
+/// Which others each triangle of a plane overlaps. Where not all are looked for, one that many lie over is in the lists of these, and such broad
+/// ones are looked for among each other. And of how many not even those are known.
+fn mutual(boxes: &[Aabb], overlap: &(impl Fn(usize, usize) -> bool + Sync)) -> (Vec<Vec<u32>>, usize) {
+    let all: Vec<usize> = (0..boxes.len()).collect();
+    let (mut others, are_whole): (Vec<Vec<u32>>, Vec<bool>) =
+        overlapping(&all, boxes, MOST_OVER, overlap).into_iter().unzip();
+    let broad: Vec<usize> = all.into_iter().filter(|i| !are_whole[*i]).collect();
+    if broad.is_empty() {
         return (others, 0);
     }
-    let mut of: Vec<Vec<u32>> = vec![Vec::new(); others.len()];
+    let mut more: Vec<Vec<u32>> = vec![Vec::new(); others.len()];
     for (i, own) in others.iter().enumerate() {
-        own.iter().filter(|j| !are_whole[**j as usize]).for_each(|j| of[*j as usize].push(i as u32));
+        own.iter().filter(|j| !are_whole[**j as usize]).for_each(|j| more[*j as usize].push(i as u32));
     }
-    let mut crowded = 0;
-    for (i, (own, more)) in others.iter_mut().zip(of).enumerate() {
-        own.extend(more);
-        own.sort_unstable();
-        own.dedup();
-        crowded += usize::from(!are_whole[i] && own.iter().any(|j| !are_whole[*j as usize]));
+    let most = if broad.len() <= MOST_BROAD { MOST_BROAD } else { MOST_OVER };
+    let mut unsure = 0;
+    for (i, (among, is_whole)) in broad.iter().zip(overlapping(&broad, boxes, most, overlap)) {
+        unsure += usize::from(!is_whole);
+        others[*i].append(&mut more[*i]);
+        others[*i].extend(among);
+        others[*i].sort_unstable();
+        others[*i].dedup();
     }
-    (others, crowded)
+    (others, unsure)
 }
 
 /// A level triangle, and how high each corner was.
@@ -530,6 +549,8 @@ mod tests {
             add(&mut b, &id, class, None, corners, &[vec![0, 1, 2, 3]]);
         };
         square("lawn".into(), ObjectClass::Land, [0, 0, 400_000]);
+        // It overlaps more than are looked for, too, and lies on the lawn.
+        square("pond".into(), ObjectClass::Water, [0, 0, 390_000]);
         for i in 0..1000 {
             square(format!("plot {i}"), ObjectClass::Road, [10_000 * (i % 32), 10_000 * (i / 32), 9_000]);
         }
@@ -542,8 +563,9 @@ mod tests {
             found.iter().filter(|t| object_of(&model, t).starts_with(of)).map(|t| t.layer).collect()
         };
         assert_eq!(layers("lawn"), [0, 0]);
-        assert!(layers("plot").len() == 2000 && layers("plot").iter().all(|layer| *layer == 1));
+        assert_eq!(layers("pond"), [1, 1]);
+        assert!(layers("plot").len() == 2000 && layers("plot").iter().all(|layer| *layer == 2));
         let again = layers("again");
-        assert!(again.len() == 6000 && again.iter().all(|layer| (*layer as usize) < MOST_OVER));
+        assert!(again.len() == 6000 && again.iter().all(|layer| (*layer as usize) < MOST_BROAD));
     }
 }

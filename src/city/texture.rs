@@ -15,7 +15,7 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Li
 use rayon::prelude::*;
 
 use crate::city::{
-    load::options::LFS_POINTER,
+    load::options::{LFS_POINTER, is_lfs_pointer},
     model::{CityModel, NONE, Texture, TextureImage},
     warning::WarningCode,
 };
@@ -103,9 +103,9 @@ fn open(image: &TextureImage) -> Result<Opened, String> {
 fn begins_as_pointer(image: &TextureImage) -> bool {
     let mut head = vec![0; LFS_POINTER.len()];
     match image {
-        TextureImage::Bytes(bytes) => bytes.starts_with(LFS_POINTER),
+        TextureImage::Bytes(bytes) => is_lfs_pointer(bytes),
         TextureImage::File(path) => {
-            File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == LFS_POINTER
+            File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && is_lfs_pointer(&head)
         }
         TextureImage::Missing(_) => false,
     }

@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 
 use super::document::Document;
 use crate::city::{
-    load::options::{LFS_POINTER, LoadOptions, Sibling},
+    load::options::{LoadOptions, Sibling, is_lfs_pointer},
     model::TextureImage,
     warning::{WarningCode, Warnings},
 };
@@ -122,12 +122,6 @@ fn follow(uri: &str, wanted: u64, around: Surroundings<'_>, warnings: &mut Warni
         Ok(_) => Ok(bytes.into()),
         Err(e) => Err(format!("{} cannot be read: {e}", path.display())),
     }
-}
-
-/// Whether bytes that begin a file stand for one kept elsewhere; so many as tell it from anything else will do.
-fn is_lfs_pointer(bytes: &[u8]) -> bool {
-    let length = bytes.len().min(LFS_POINTER.len());
-    length >= 16 && bytes[..length] == LFS_POINTER[..length]
 }
 
 /// The file a relative URI names, inside the folders the user named.

@@ -42,6 +42,12 @@ impl Up {
 /// How a file begins that stands for one kept elsewhere by Git LFS.
 pub const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
 
+/// Whether bytes that begin a file are those of a pointer; so many as tell it from anything else will do.
+pub fn is_lfs_pointer(bytes: &[u8]) -> bool {
+    let length = bytes.len().min(LFS_POINTER.len());
+    length >= 16 && bytes[..length] == LFS_POINTER[..length]
+}
+
 /// Permissions of a loader, and what files leave open.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
