@@ -9,10 +9,10 @@ fn end_by_leaves(s: Combination, ray: Ray) -> f32 {
         for (var end = 0u; end < 2u * s.count; end += 1u) {
             let own = spans[end / 2u];
             let t = select(own.enter, own.exit, end % 2u == 1u);
-            let before = is_within(s, ray, t, false, NO_LEAF, false);
-            let after = is_within(s, ray, t, true, NO_LEAF, false);
-            let is_next = own.enter < own.exit && t > last && before == leaves && after != leaves;
-            next = select(next, min(next, t), is_next);
+            if own.enter < own.exit && t > last && t < next {
+                let is_in = around(s, ray, t, NO_LEAF, false);
+                next = select(next, t, is_in.before == leaves && is_in.after != leaves);
+            }
         }
         last = next;
     }

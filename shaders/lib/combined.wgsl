@@ -67,23 +67,35 @@ fn find_spans(s: Combination, ray: Ray) {
     }
 }
 
-// Whether that ray is inside just after `t` (just before it): leaves of closed forms by where they begin and end, solids by the
-// place, but `own`, which says itself what it is there.
-fn is_within(s: Combination, ray: Ray, t: f32, is_after: bool, own: u32, is_in_own: bool) -> bool {
-    var bits = 0u;
+// Whether that ray is inside just before `t`, and whether just after it: leaves of closed forms by where they begin and end, solids by the
+// place, but `own`, which says itself that it begins there, or ends.
+struct Around {
+    before: bool,
+    after: bool,
+}
+
+fn around(s: Combination, ray: Ray, t: f32, own: u32, is_entry: bool) -> Around {
+    var before = 0u;
+    var after = 0u;
     for (var i = 0u; i < s.count; i++) {
         let leaf = leaf_at(s, i);
         let span = spans[i];
-        var is_in = select(span.enter < t && t <= span.exit, span.enter <= t && t < span.exit, is_after);
-        if leaf.region.test == SOLID {
-            is_in = solid_holds(solid_of(leaf.region), ray.origin + t * ray.direction, t, 0.0);
+        var is_before = span.enter < t && t <= span.exit;
+        var is_after = span.enter <= t && t < span.exit;
+        if i == own {
+            is_before = !is_entry;
+            is_after = is_entry;
+        } else if leaf.region.test == SOLID {
+            is_before = solid_holds(solid_of(leaf.region), ray.origin + t * ray.direction, t, 0.0);
+            is_after = is_before;
         }
-        bits = pushed(bits, select(is_in, is_in_own, i == own), leaf.operations);
+        before = pushed(before, is_before, leaf.operations);
+        after = pushed(after, is_after, leaf.operations);
         if i + 1u == s.count {
             break;
         }
     }
-    return bits == 1u;
+    return Around(before == 1u, after == 1u);
 }
 
 const NO_LEAF: u32 = 0xffffffffu;
@@ -95,11 +107,12 @@ fn span_of_forms(s: Combination, ray: Ray, starts_at_eye: bool) -> Span {
     for (var end = 0u; end < 2u * s.count; end++) {
         let own = spans[end / 2u];
         let t = select(own.enter, own.exit, end % 2u == 1u);
-        let before = is_within(s, ray, t, false, NO_LEAF, false);
-        let after = is_within(s, ray, t, true, NO_LEAF, false);
-        let is_end = own.enter < own.exit && before != after && (!starts_at_eye || t > 0.0);
-        span.enter = select(span.enter, min(span.enter, t), is_end && after);
-        span.exit = select(span.exit, max(span.exit, t), is_end && before);
+        // The others are asked for only where there is an end.
+        if own.enter < own.exit && (!starts_at_eye || t > 0.0) {
+            let is_in = around(s, ray, t, NO_LEAF, false);
+            span.enter = select(span.enter, min(span.enter, t), is_in.after && !is_in.before);
+            span.exit = select(span.exit, max(span.exit, t), is_in.before && !is_in.after);
+        }
         if end + 1u == 2u * s.count {
             break;
         }
@@ -107,7 +120,7 @@ fn span_of_forms(s: Combination, ray: Ray, starts_at_eye: bool) -> Span {
     return span;
 }
 
-// The same for the ends of its solids too, each face asked: of a place that the picture may not show.
+// The same for the ends of its solids too: of a place that the picture may not show.
 fn class_by_leaves(s: Combination, sight: Sight) -> u32 {
     let starts_at_eye = !sight.is_parallel;
     var span = span_of_forms(s, sight.ray, starts_at_eye);
@@ -117,16 +130,20 @@ fn class_by_leaves(s: Combination, sight: Sight) -> u32 {
             continue;
         }
         let solid = solid_of(leaf);
-        let sizes = solids[solid.first + 1u];
-        for (var f = 0u; f < sizes.w; f++) {
-            let hit = face_hit(sight.ray, solid, f);
-            if !hit.is_met || (starts_at_eye && hit.t <= 0.0) {
-                continue;
+        let origin = in_solid(solid, sight.ray.origin - solid.center);
+        let direction = in_solid(solid, sight.ray.direction);
+        var met = next_leaf(solid, 0u, origin, direction);
+        while met.count > 0u {
+            for (var f = 0u; f < met.count; f++) {
+                let hit = face_hit(origin, direction, solid_face(met.first + 4u * f));
+                if !hit.is_met || (starts_at_eye && hit.t <= 0.0) {
+                    continue;
+                }
+                let is_in = around(s, sight.ray, hit.t, i, hit.is_entry);
+                span.enter = select(span.enter, min(span.enter, hit.t), is_in.after && !is_in.before);
+                span.exit = select(span.exit, max(span.exit, hit.t), is_in.before && !is_in.after);
             }
-            let before = is_within(s, sight.ray, hit.t, false, i, !hit.is_entry);
-            let after = is_within(s, sight.ray, hit.t, true, i, hit.is_entry);
-            span.enter = select(span.enter, min(span.enter, hit.t), after && !before);
-            span.exit = select(span.exit, max(span.exit, hit.t), before && !after);
+            met = next_leaf(solid, met.next, origin, direction);
         }
     }
     span.enter = select(span.enter, 0.0, starts_at_eye && s.holds_eye > 0.5 && span.exit > -FAR_AWAY);

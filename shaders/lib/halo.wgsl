@@ -13,8 +13,10 @@ fn halo(lens: u32, paint: vec4f, pixel: vec2i, color: vec4f, width: f32) -> vec4
     var t = view.near;
     for (var i = 0; i < 32; i++) {
         let position = as_is(ray.origin + t * ray.direction);
-        let free = number_as_is(lens_distance(lens, Sight(pixel, 0.0, ray, t, position, is_parallel, NO_OBJECT, 0.0)));
-        closest = min(closest, free / (per_distance * select(t, 1.0, is_parallel)));
+        let metres_per_pixel = per_distance * select(t, 1.0, is_parallel);
+        let sight = Sight(pixel, 0.0, ray, t, position, is_parallel, NO_OBJECT, 0.0);
+        let free = number_as_is(lens_distance(lens, sight, 2.0 * width * metres_per_pixel));
+        closest = min(closest, free / metres_per_pixel);
         if free <= 0.0 || free > 1e9 {
             break;
         }

@@ -1,9 +1,5 @@
-// How far a place is from a solid; where that is more than its table is made for, not less than that. Twin:
-// `veduta::geom::shape::solid::Near`, which says how.
-//
-// From `near` on: low x, y, z of the grid, cells per metre (f32); cells in x, y and z, fours of words that the next list
-// takes; fours that the numbers of faces take, how far the table goes (f32, metres); where the faces of each cell begin; their numbers;
-// the corners of all faces.
+// How far a place is from a solid: exact where that is less than half the width of a border, else no more than it is and no less than
+// that half. Twin: `veduta::geom::shape::Solid`.
 
 fn distance_to_face(p: vec3f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
     let ab = b - a;
@@ -24,34 +20,73 @@ fn distance_to_face(p: vec3f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
     return sqrt(min(dot(to_ab, to_ab), min(dot(to_bc, to_bc), dot(to_ca, to_ca))));
 }
 
-fn distance_to_solid(s: Solid, sight: Sight) -> f32 {
+fn squared_distance_to_box(p: vec3f, low: vec3f, high: vec3f) -> f32 {
+    let away = max(max(low - p, p - high), vec3f(0.0));
+    return dot(away, away);
+}
+
+// The least distance of the faces of a leaf, of those at the border.
+fn distance_to_leaf_of_solid(s: Solid, node: SolidNode, p: vec3f) -> f32 {
+    let faces = s.first + solids[s.first + 2u].z;
+    var distance = FAR_AWAY;
+    for (var i = node.first; i < node.first + node.count; i++) {
+        let face = faces + 4u * i;
+        let b = solids[face + 1u];
+        if b.w == 1u {
+            let a = bitcast<vec3f>(solids[face].xyz);
+            let c = bitcast<vec3f>(solids[face + 2u].xyz);
+            distance = min(distance, distance_to_face(p, a, bitcast<vec3f>(b.xyz), c));
+        }
+    }
+    return distance;
+}
+
+// Of the surface, own coordinates.
+fn distance_to_surface(s: Solid, p: vec3f, reach: f32) -> f32 {
+    let sizes = solids[s.first + 2u];
+    let nodes = s.first + sizes.x;
+    var node = solid_node(nodes);
+    let outside = sqrt(squared_distance_to_box(p, node.low, node.high));
+    if outside >= reach {
+        return outside;
+    }
+    // Down to a leaf that is near first: what is farther than that is not gone into.
+    var at = 0u;
+    while node.count == 0u {
+        let left = solid_node(nodes + 2u * (at + 1u));
+        let right = solid_node(nodes + 2u * left.next);
+        let is_right = squared_distance_to_box(p, right.low, right.high) < squared_distance_to_box(p, left.low, left.high);
+        at = select(at + 1u, left.next, is_right);
+        node = left;
+        if is_right {
+            node = right;
+        }
+    }
+    var beyond = distance_to_leaf_of_solid(s, node, p);
+    var least = min(beyond, reach);
+    for (var i = 0u; i < sizes.y;) {
+        let own = solid_node(nodes + 2u * i);
+        let free = sqrt(squared_distance_to_box(p, own.low, own.high));
+        if free >= least {
+            beyond = min(beyond, free);
+            i = own.next;
+        } else if own.count > 0u {
+            let distance = distance_to_leaf_of_solid(s, own, p);
+            beyond = min(beyond, distance);
+            least = min(least, distance);
+            i = own.next;
+        } else {
+            i++;
+        }
+    }
+    return select(beyond, least, least < reach);
+}
+
+fn distance_to_solid(s: Solid, sight: Sight, border: vec4f) -> f32 {
     if sight.distance >= FAR_AWAY {
         return FAR_AWAY;
     }
     let o = in_solid(s, sight.position - s.center);
-    let first = s.near;
-    let grid = bitcast<vec4f>(solids[first]);
-    let sizes = solids[first + 1u];
-    let cell = floor((o - grid.xyz) * grid.w);
-    let reach = bitcast<f32>(solids[first + 2u].y);
-    let half = 0.5 * vec3f(sizes.xyz) / grid.w;
-    let beside = max(abs(o - grid.xyz - half) - half, vec3f(0.0));
-    var distance = reach + length(beside);
-    if all(cell >= vec3f(0.0)) && all(cell < vec3f(sizes.xyz)) {
-        let at = vec3u(cell);
-        let number = (at.z * sizes.y + at.y) * sizes.x + at.x;
-        let starts = first + 3u;
-        let begin = solids[starts + number / 4u][number % 4u];
-        let end = solids[starts + (number + 1u) / 4u][(number + 1u) % 4u];
-        let numbers = starts + sizes.w;
-        let corners = numbers + solids[first + 2u].x;
-        for (var i = begin; i < end; i++) {
-            let face = corners + 3u * solids[numbers + i / 4u][i % 4u];
-            let a = bitcast<vec3f>(solids[face].xyz);
-            let b = bitcast<vec3f>(solids[face + 1u].xyz);
-            let c = bitcast<vec3f>(solids[face + 2u].xyz);
-            distance = min(distance, distance_to_face(o, a, b, c));
-        }
-    }
+    let distance = distance_to_surface(s, o, 0.5 * border_width(border, sight));
     return select(distance, -distance, solid_holds(s, sight.position, sight.distance, sight.off));
 }

@@ -40,9 +40,8 @@ fn farthest_form(@builtin(position) at: vec4f) -> Stored {
 fn end_at(in: SolidCorner, is_entry: bool) -> u32 {
     let ray = ray_of_texel(in.clip.xy);
     find_spans(combination(), ray);
-    let before = is_within(combination(), ray, in.distance, false, stage.leaves.z, !is_entry);
-    let after = is_within(combination(), ray, in.distance, true, stage.leaves.z, is_entry);
-    return select(select(0u, 2u, before && !after), 1u, after && !before);
+    let is_in = around(combination(), ray, in.distance, stage.leaves.z, is_entry);
+    return select(select(0u, 2u, is_in.before && !is_in.after), 1u, is_in.after && !is_in.before);
 }
 
 @fragment

@@ -6,15 +6,25 @@ struct Solid {
     x: vec3f,                   // b.xyz: its axes, unit
     first: u32,                 // b.w: number of its first entry
     y: vec3f,                   // c.xyz
-    near: u32,                  // c.w: number of the first entry of the table of its distances
     z: vec3f,                   // d.xyz
     around: f32,                // d.w: how often it goes around the eye, and a quarter more where that is in doubt
 }
 
-// Each solid has: low x, y of the columns, columns per metre in x, y (f32); columns in x and y, fours of words that the next
-// list takes, number of faces; where the faces of each column begin; the faces, four entries each: corners by x, and whether
-// that is their turn (1 or -1); upward normal, and how much higher than its first corner an upright face counts as above.
+// Each solid has: low x, y of the columns, columns per metre in x, y (f32); columns in x and y, where the numbers of their faces begin,
+// counted from the first entry as all that follow; where the nodes begin, how many there are, where the faces begin. Then where
+// the faces of each column begin; the numbers of the faces of all columns; the nodes, two entries each: a box, the node that
+// follows when all in it is done with, its first face and how many it has (three bits; an inner one, whose first child follows
+// it, none); the faces, four entries each: corners by x, and whether that is their turn (1 or -1), whether it is at the border and not
+// where bodies touch (1 or 0); upward normal, and how much higher than its first corner an upright face counts as above.
 @group(1) @binding(2) var<storage, read> solids: array<vec4u>;
+
+struct SolidNode {
+    low: vec3f,
+    high: vec3f,
+    next: u32,
+    first: u32,                 // face
+    count: u32,
+}
 
 struct SolidFace {
     a: vec3f,
@@ -27,6 +37,12 @@ struct SolidFace {
 
 fn in_solid(s: Solid, v: vec3f) -> vec3f {
     return vec3f(dot(v, s.x), dot(v, s.y), dot(v, s.z));
+}
+
+fn solid_node(at: u32) -> SolidNode {
+    let low = solids[at];
+    let high = solids[at + 1u];
+    return SolidNode(bitcast<vec3f>(low.xyz), bitcast<vec3f>(high.xyz), low.w, high.w >> 3u, high.w & 7u);
 }
 
 fn solid_face(at: u32) -> SolidFace {
@@ -66,8 +82,10 @@ fn solid_holds(s: Solid, p: vec3f, distance: f32, off: f32) -> bool {
         return false;
     }
     let number = u32(column.y) * sizes.x + u32(column.x);
-    let begin = solids[first + 2u + number / 4u][number % 4u];
-    let end = solids[first + 2u + (number + 1u) / 4u][(number + 1u) % 4u];
+    let begin = solids[first + 3u + number / 4u][number % 4u];
+    let end = solids[first + 3u + (number + 1u) / 4u][(number + 1u) % 4u];
+    let numbers = first + sizes.z;
+    let faces = first + solids[first + 2u].z;
     let extent = vec2f(sizes.xy) / grid.zw;
     let aside = min(on_face, BESIDE * max(extent.x, extent.y));
     let x = o.x + vec4f(aside, -aside, 0.0, 0.0);
@@ -75,7 +93,7 @@ fn solid_holds(s: Solid, p: vec3f, distance: f32, off: f32) -> bool {
     var winding = 0;
     var beside = vec4i(0);
     for (var i = begin; i < end; i++) {
-        let face = solid_face(first + 2u + sizes.z + 4u * i);
+        let face = solid_face(faces + 4u * solids[numbers + i / 4u][i % 4u]);
         let turns = face.turn * (i32(is_under_edge(face.a, face.c, o.xy)) - i32(is_under_edge(face.a, face.b, o.xy))
             - i32(is_under_edge(face.b, face.c, o.xy)));
         let height = dot(face.normal, o - face.a) - face.rise;
@@ -100,11 +118,7 @@ struct FaceHit {
     t: f32,
 }
 
-fn face_hit(ray: Ray, s: Solid, number: u32) -> FaceHit {
-    let origin = in_solid(s, ray.origin - s.center);
-    let direction = in_solid(s, ray.direction);
-    let first = s.first;
-    let face = solid_face(first + 2u + solids[first + 1u].z + 4u * number);
+fn face_hit(origin: vec3f, direction: vec3f, face: SolidFace) -> FaceHit {
     let along_b = face.b - face.a;
     let along_c = face.c - face.a;
     let across = cross(direction, along_c);
@@ -118,15 +132,55 @@ fn face_hit(ray: Ray, s: Solid, number: u32) -> FaceHit {
     return FaceHit(is_met, slope * f32(face.turn) > 0.0, dot(along_c, around) / slope);
 }
 
-// First and last crossing of a ray with the surface, each face asked; `around` is how often it goes around the eye. What lies behind
+// Boxes are this part of their distance from where the line begins wider: by more than roundings move it.
+const ON_LINE: f32 = 1.0 / 131072.0;
+
+// Whether a line meets a box: seen along each axis of the box, and so across all.
+fn line_meets_box(origin: vec3f, direction: vec3f, low: vec3f, high: vec3f) -> bool {
+    let to = 0.5 * (low + high) - origin;
+    let half = 0.5 * (high - low);
+    let wide = half + ON_LINE * (length(to) + length(half));
+    let along = abs(direction);
+    return all(abs(cross(to, direction)) <= wide.yzx * along.zxy + wide.zxy * along.yzx);
+}
+
+// Of a solid, from one of its nodes on: the next leaf that a line meets, own coordinates. Where to go on, its first face and how many it
+// has; none: that was all.
+struct MetLeaf {
+    next: u32,
+    first: u32,
+    count: u32,
+}
+
+fn next_leaf(s: Solid, from_node: u32, origin: vec3f, direction: vec3f) -> MetLeaf {
+    let sizes = solids[s.first + 2u];
+    for (var at = from_node; at < sizes.y;) {
+        let node = solid_node(s.first + sizes.x + 2u * at);
+        if !line_meets_box(origin, direction, node.low, node.high) {
+            at = node.next;
+        } else if node.count > 0u {
+            return MetLeaf(node.next, s.first + sizes.z + 4u * node.first, node.count);
+        } else {
+            at++;
+        }
+    }
+    return MetLeaf(sizes.y, 0u, 0u);
+}
+
+// First and last crossing of a ray with the surface; `around` is how often it goes around the eye. What lies behind
 // the eye is not seen.
 fn span_of_solid(ray: Ray, s: Solid, starts_at_eye: bool) -> Span {
-    let sizes = solids[s.first + 1u];
+    let origin = in_solid(s, ray.origin - s.center);
+    let direction = in_solid(s, ray.direction);
     var span = Span(FAR_AWAY, -FAR_AWAY);
-    for (var i = 0u; i < sizes.w; i++) {
-        let hit = face_hit(ray, s, i);
-        let is_seen = hit.is_met && (!starts_at_eye || hit.t > 0.0);
-        span = Span(select(span.enter, min(span.enter, hit.t), is_seen), select(span.exit, max(span.exit, hit.t), is_seen));
+    var leaf = next_leaf(s, 0u, origin, direction);
+    while leaf.count > 0u {
+        for (var i = 0u; i < leaf.count; i++) {
+            let hit = face_hit(origin, direction, solid_face(leaf.first + 4u * i));
+            let is_seen = hit.is_met && (!starts_at_eye || hit.t > 0.0);
+            span = Span(select(span.enter, min(span.enter, hit.t), is_seen), select(span.exit, max(span.exit, hit.t), is_seen));
+        }
+        leaf = next_leaf(s, leaf.next, origin, direction);
     }
     if span.exit > -FAR_AWAY && starts_at_eye && abs(s.around) > 0.5 {
         span.enter = 0.0;

@@ -7,10 +7,10 @@ use crate::{
     geom::{
         Aabb, Solid, Volume,
         combination::{Operation, Tree},
-        shape::{Motion, Sphere, solid},
+        shape::{Motion, Sphere},
     },
     lens::{
-        Border, BorderUnit, Class, Lens, LensBody, LensSprite, OwnRegion, Region,
+        BorderUnit, Class, Lens, LensBody, LensSprite, OwnRegion, Region,
         chosen::members,
         solids::{Place, RegionError, ShownCity, Solids},
     },
@@ -312,8 +312,8 @@ impl LensVolumes {
     /// Gives every solid its place in the table of all of them, which is made anew where `before` does not hold just these.
     pub fn place_solids(&mut self, before: &Arc<SolidTable>) -> Result<Arc<SolidTable>, String> {
         let solids = || {
-            let leaves = self.volumes.iter().flat_map(|v| v.region.leaves().map(move |leaf| (v, &leaf.leaf)));
-            leaves.filter_map(|(volume, leaf)| solid_of(leaf).map(|solid| (solid, asked_for(volume, solid))))
+            let leaves = self.volumes.iter().flat_map(|v| v.region.leaves());
+            leaves.filter_map(|leaf| solid_of(&leaf.leaf))
         };
         let table = match before.holds(solids()) {
             true => before.clone(),
@@ -328,22 +328,6 @@ impl LensVolumes {
         }
         Ok(table)
     }
-}
-
-/// How far from a solid its distance is asked for, metres: by a border, or where its surface looks to.
-fn asked_for(volume: &LensVolume, solid: &Solid) -> f64 {
-    let widest = solid::widest_reach(&solid.bounds());
-    let border = match volume.border {
-        None | Some(Border { unit: BorderUnit::Ray, .. }) => 0.0,
-        Some(Border { unit: BorderUnit::Metres, width, .. }) => 0.5 * width,
-        Some(_) => widest,
-    };
-    let body = match volume.drawn {
-        LensBody::None | LensBody::Outline => 0.0,
-        LensBody::Shell => 0.05 * widest,
-        LensBody::Halo => widest,
-    };
-    solid::rounded_reach(border.max(body))
 }
 
 /// Whether a body asks how far away it is.

@@ -408,7 +408,7 @@ impl PlacedLeaf {
                     view_from_world: view.basis.view_from_world(),
                     is_orthographic: view.is_orthographic(),
                     near_m: view.camera.near_m,
-                    stored: [self.place.first, self.place.near],
+                    stored: self.place.first,
                 };
                 volume.rows(&eye, planes)
             }

@@ -178,7 +178,7 @@ impl Forms {
                 Form::Members | Form::FadingMembers => {
                     format!("select(FAR_AWAY, -FAR_AWAY, {})", is_member(form))
                 }
-                _ => "distance_to_solid(solid_of(leaf.region), sight)".to_owned(),
+                _ => "distance_to_solid(solid_of(leaf.region), sight, border)".to_owned(),
             });
         }
         text

@@ -125,12 +125,21 @@ pub(super) fn interest(plan: &Plan, lens: u32, border: &str) -> String {
 
 /// How far a place is from one lens of a plan.
 pub(super) fn distance_of(plan: &Plan, lens: u32, border: &str) -> String {
+    match plan.border_of(lens).is_some_and(|border| border.by_ray) {
+        true => least(plan, lens, along_ray),
+        false => distance_in_space(plan, lens, border),
+    }
+}
+
+/// The same where its border is not asked for: never along a ray.
+pub(super) fn distance_in_space(plan: &Plan, lens: u32, border: &str) -> String {
+    least(plan, lens, |test, volume| distance(test, volume, border))
+}
+
+/// The least distance of all volumes of one lens of a plan.
+fn least(plan: &Plan, lens: u32, of: impl Fn(LensTest, &str) -> String) -> String {
     let (first, tests) = plan.volumes_of(lens);
-    let by_ray = plan.border_of(lens).is_some_and(|border| border.by_ray);
-    let distances = (first..).zip(tests).map(|(volume, test)| match by_ray {
-        true => along_ray(*test, &volume.to_string()),
-        false => distance(*test, &volume.to_string(), border),
-    });
+    let distances = (first..).zip(tests).map(|(volume, test)| of(*test, &volume.to_string()));
     distances.reduce(|all, one| format!("min({all}, {one})")).unwrap_or_else(|| "FAR_AWAY".to_owned())
 }
 
@@ -188,7 +197,7 @@ fn distance(test: LensTest, volume: &str, border: &str) -> String {
             format!("select(FAR_AWAY, -FAR_AWAY, is_inside({inside}))")
         }
         Some(Form::Combined) => format!("distance_to_combined({}, sight, {border})", loaded(test, &region)),
-        Some(form) if form.is_solid() => format!("distance_to_solid({}, sight)", loaded(test, &region)),
+        Some(form) if form.is_solid() => format!("distance_to_solid({}, sight, {border})", loaded(test, &region)),
         Some(form) => format!("distance_to_form({region}, {}, sight, {border})", form.constant()),
     }
 }

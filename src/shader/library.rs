@@ -74,6 +74,7 @@ files! {
     CLASS = "lib/class.wgsl";
     DITHER = "lib/dither.wgsl";
     BORDER = "lib/border.wgsl";
+    BORDER_WIDTH = "lib/border-width.wgsl";
     SOLID_DISTANCE = "lib/solid-distance.wgsl";
     COMBINED_DISTANCE = "lib/combined-distance.wgsl";
     SIGHT = "lib/sight.wgsl";

@@ -10,7 +10,7 @@
 mod columns;
 mod form;
 mod mend;
-mod near;
+mod tree;
 
 use std::sync::Arc;
 
@@ -24,13 +24,15 @@ use crate::geom::{
         error::ShapeError,
         limits::MAX_FACES,
         mesh::Mesh,
-        solid::columns::{Columns, upward},
+        solid::{
+            columns::Columns,
+            tree::{Tree, upward},
+        },
     },
     triangle::nearest_to_origin,
 };
 
 pub use form::{Bitmap, prism, stacked};
-pub use near::{Near, rounded_reach, widest_reach};
 
 /// A solid in its own coordinates, metres, rounded to f32: to 2⁻²⁴ of its extent. What every adapter computes with, to the bit.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,9 +108,21 @@ impl Solid {
         self.bounds
     }
 
-    /// Columns and faces as `shape/solid.wgsl` reads them, in fours of words.
+    /// What `shape/solid.wgsl` reads, in fours of words: the columns, the boxes around its faces, and the faces.
     pub fn words(&self) -> Vec<[u32; 4]> {
-        self.columns.words(&self.faces)
+        let tree = Tree::new(&self.faces);
+        let [grid, starts, numbers] = self.columns.words(&tree.places());
+        let nodes = tree.node_words();
+        let mut words = grid;
+        let numbers_at = words.len() + 1 + starts.len();
+        let nodes_at = numbers_at + numbers.len();
+        let faces_at = nodes_at + nodes.len();
+        words[1][2] = numbers_at as u32;
+        words.push([nodes_at as u32, nodes.len() as u32 / 2, faces_at as u32, 0]);
+        for part in [starts, numbers, nodes, tree.face_words(self)] {
+            words.extend(part);
+        }
+        words
     }
 
     /// The winding number of the surface about a place, own coordinates. A place on a face that looks up or down is inside of

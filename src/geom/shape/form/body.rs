@@ -101,8 +101,8 @@ pub struct RowsEye {
     pub is_orthographic: bool,
     /// Its near plane, metres.
     pub near_m: f64,
-    /// First entry of a solid, and the first of the table of its distances.
-    pub stored: [u32; 2],
+    /// First entry of a solid.
+    pub stored: u32,
 }
 
 impl RowsEye {

@@ -67,11 +67,10 @@ impl Body for PlacedSolid {
 
     fn rows(&self, eye: &RowsEye, _: &mut Vec<[f32; 4]>) -> Rows {
         let axes = DMat3::from_quat(self.rotation);
-        let [first, near] = eye.stored.map(f64::from);
         let mut rows = Rows {
             a: eye.place(self.at),
-            b: eye.row(axes.x_axis, first),
-            c: eye.row(axes.y_axis, near),
+            b: eye.row(axes.x_axis, f64::from(eye.stored)),
+            c: eye.row(axes.y_axis, 0.0),
             d: eye.row(axes.z_axis, 0.0),
         };
         if !eye.is_orthographic {

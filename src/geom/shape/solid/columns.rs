@@ -85,38 +85,17 @@ impl Columns {
         &self.faces[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// As `shape/solid.wgsl` reads it: the grid, where each column's faces begin, the faces of all columns.
-    pub fn words(&self, faces: &[[DVec3; 3]]) -> Vec<[u32; 4]> {
+    /// As `shape/solid.wgsl` reads it: the grid; where the faces of each column begin; their numbers, which are `places` there.
+    pub fn words(&self, places: &[u32]) -> [Vec<[u32; 4]>; 3] {
         let bits = |v: f64| (v as f32).to_bits();
-        let mut words = vec![
+        let fours = |list: &[u32]| -> Vec<[u32; 4]> {
+            list.chunks(4).map(|some| std::array::from_fn(|i| some.get(i).copied().unwrap_or(0))).collect()
+        };
+        let grid = vec![
             [bits(self.low.x), bits(self.low.y), bits(self.per_metre.x), bits(self.per_metre.y)],
-            [self.count[0], self.count[1], self.starts.len().div_ceil(4) as u32, self.faces.len() as u32],
+            [self.count[0], self.count[1], 0, 0],
         ];
-        words.extend(self.starts.chunks(4).map(|some| std::array::from_fn(|i| some.get(i).copied().unwrap_or(0))));
-        for &face in &self.faces {
-            let corners = &faces[face as usize];
-            // By x, so that every edge runs to the right; `turn` says whether that is their order.
-            let mut order = [0, 1, 2];
-            order.sort_by(|a, b| corners[*a].x.total_cmp(&corners[*b].x));
-            let is_even = matches!(order, [0, 1, 2] | [1, 2, 0] | [2, 0, 1]);
-            let [a, b, c] = order.map(|i| corners[i]);
-            let (normal, rise) = upward(&[a, b, c]);
-            let turn: i32 = if is_even { 1 } else { -1 };
-            words.push([bits(a.x), bits(a.y), bits(a.z), turn.cast_unsigned()]);
-            words.push([bits(b.x), bits(b.y), bits(b.z), 0]);
-            words.push([bits(c.x), bits(c.y), bits(c.z), 0]);
-            words.push([bits(normal.x), bits(normal.y), bits(normal.z), bits(rise)]);
-        }
-        words
-    }
-}
-
-/// The normal of a face that looks up, its length 1; for an upright one straight up, and how much higher than its first corner
-/// the level is at which it counts as above.
-pub(super) fn upward(corners: &[DVec3; 3]) -> (DVec3, f64) {
-    let [a, b, c] = *corners;
-    match (b - a).cross(c - a).try_normalize() {
-        Some(n) if n.z.abs() > 1e-12 => (if n.z < 0.0 { -n } else { n }, 0.0),
-        _ => (DVec3::Z, (a.z + b.z + c.z) / 3.0 - a.z),
+        let numbers: Vec<u32> = self.faces.iter().map(|face| places[*face as usize]).collect();
+        [grid, fours(&self.starts), fours(&numbers)]
     }
 }

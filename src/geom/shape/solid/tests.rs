@@ -1,4 +1,4 @@
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use proptest::prelude::*;
 
 use super::*;
@@ -391,15 +391,94 @@ proptest! {
     }
 
     #[test]
-    fn the_faces_of_a_cell_have_the_nearest_one(p in prop::array::uniform3(-1300.0..1300.0f64), reach in 1.0..400.0f64) {
+    fn the_words_tell_the_nearest_face_within_a_reach(p in prop::array::uniform3(-1300.0..1300.0f64), reach in 1.0..400.0f64) {
         let solid = Solid::new(&[mesh(&torus(20, 10, [700.0, 200.0]))], DVec3::ZERO).unwrap();
-        let near = Near::new(&solid, reach);
         let p = DVec3::from(p).with_z(p[2] * 0.5);
-        let listed = near.at(p).iter().map(|f| solid.faces()[*f as usize]);
-        let nearest = listed.map(|[a, b, c]| nearest_to_origin(a - p, b - p, c - p).length()).fold(f64::INFINITY, f64::min);
+        let (found, asked) = Words(solid.words()).distance(p, reach);
         let wanted = solid.distance(p);
-        // Further away none has to be listed.
-        prop_assert!(nearest == wanted || (wanted > reach && nearest > wanted), "{} for {}", nearest, wanted);
+        if wanted < reach {
+            prop_assert!((found - wanted).abs() < 1e-3, "{} for {}", found, wanted);
+        } else {
+            prop_assert!(found >= reach && found <= wanted + 1e-3, "{} for {}, no less than {}", found, wanted, reach);
+        }
+        prop_assert!(asked <= solid.faces().len() / 4, "{} of {} faces are asked", asked, solid.faces().len());
+    }
+
+    #[test]
+    fn the_words_tell_all_faces_that_a_line_meets(p in prop::array::uniform3(-1300.0..1300.0f64), d in prop::array::uniform3(-1.0..1.0f64)) {
+        let solid = Solid::new(&[mesh(&torus(20, 10, [700.0, 200.0]))], DVec3::ZERO).unwrap();
+        let ray = Ray { origin: DVec3::from(p), direction: DVec3::from(d) };
+        let mut wanted: Vec<f64> = solid.crossings(&ray).iter().map(|c| c.t).collect();
+        let faces = Words(solid.words()).faces_met(&ray);
+        prop_assert!(faces.len() <= solid.faces().len() / 4, "{} of {} faces are asked", faces.len(), solid.faces().len());
+        let bounds = solid.bounds();
+        let some = Solid { columns: Columns::new(&faces, &bounds), bounds, faces, mended: 0 };
+        let mut found: Vec<f64> = some.crossings(&ray).iter().map(|c| c.t).collect();
+        wanted.sort_by(f64::total_cmp);
+        found.sort_by(f64::total_cmp);
+        prop_assert_eq!(found.len(), wanted.len());
+        prop_assert!(found.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 1e-9 * b.abs().max(1.0)), "{:?} for {:?}", found, wanted);
+    }
+}
+
+/// The words of a solid, read as `shape/solid.wgsl` and `lib/solid-distance.wgsl` read them.
+struct Words(Vec<[u32; 4]>);
+
+impl Words {
+    fn vec(&self, at: usize) -> DVec3 {
+        let [x, y, z, _] = self.0[at].map(f32::from_bits);
+        DVec3::new(x.into(), y.into(), z.into())
+    }
+
+    /// The faces of all leaves that are entered: of each, whether it is at the border.
+    fn walk(&self, mut enters: impl FnMut(&Aabb) -> bool, mut visit: impl FnMut([DVec3; 3], bool)) {
+        let [nodes, count, faces, _] = self.0[2].map(|w| w as usize);
+        let mut at = 0;
+        while at < count {
+            let bounds = Aabb { min: self.vec(nodes + 2 * at), max: self.vec(nodes + 2 * at + 1) };
+            let (next, listed) = (self.0[nodes + 2 * at][3], self.0[nodes + 2 * at + 1][3]);
+            let is_entered = enters(&bounds);
+            if is_entered {
+                for face in listed >> 3..(listed >> 3) + (listed & 7) {
+                    let face = faces + 4 * face as usize;
+                    visit([0, 1, 2].map(|i| self.vec(face + i)), self.0[face + 1][3] == 1);
+                }
+            }
+            at = if is_entered && listed & 7 == 0 { at + 1 } else { next as usize };
+        }
+    }
+
+    /// How far the surface is, no less than `reach` where it is farther; and how many faces were asked.
+    fn distance(&self, p: DVec3, reach: f64) -> (f64, usize) {
+        let (least, beyond) = (std::cell::Cell::new(reach), std::cell::Cell::new(f64::INFINITY));
+        let mut asked = 0;
+        let enters = |bounds: &Aabb| {
+            let free = bounds.distance_to(p);
+            if free >= least.get() {
+                beyond.set(beyond.get().min(free));
+            }
+            free < least.get()
+        };
+        self.walk(enters, |[a, b, c], is_border| {
+            asked += 1;
+            if is_border {
+                let distance = nearest_to_origin(a - p, b - p, c - p).length();
+                least.set(least.get().min(distance));
+                beyond.set(beyond.get().min(distance));
+            }
+        });
+        (if least.get() < reach { least.get() } else { beyond.get() }, asked)
+    }
+
+    fn faces_met(&self, ray: &Ray) -> Vec<[DVec3; 3]> {
+        let mut faces = Vec::new();
+        let meets = |bounds: &Aabb| {
+            let (to, half) = (bounds.center() - ray.origin, 0.5 * bounds.size());
+            let along = ray.direction.abs();
+            to.cross(ray.direction).abs().cmple(half.yzx() * along.zxy() + half.zxy() * along.yzx()).all()
+        };
+        self.walk(meets, |[a, b, c], _| faces.push([a, b, c]));
+        faces
     }
 }
 
@@ -411,9 +490,6 @@ fn where_bodies_touch_there_is_no_border() {
         mesh(&triangles(&quads.map(|q| q.map(p))))
     };
     let solid = Solid::new(&[cube(0), cube(10)], DVec3::ZERO).unwrap();
-    let near = Near::new(&solid, 6.0);
-    let p = DVec3::new(9.0, 5.0, 5.0);
-    let listed = near.at(p).iter().map(|f| solid.faces()[*f as usize]);
-    let nearest = listed.map(|[a, b, c]| nearest_to_origin(a - p, b - p, c - p).length()).fold(f64::INFINITY, f64::min);
-    assert_eq!(nearest, 5.0, "the wall between is 1 m away");
+    let (found, _) = Words(solid.words()).distance(DVec3::new(9.0, 5.0, 5.0), 6.0);
+    assert_eq!(found, 5.0, "the wall between is 1 m away");
 }
