@@ -1,5 +1,6 @@
 // A glow around the silhouette of a lens: how close its ray comes to it, in pixels, found by going along the ray by what is
-// free around each place (Hart 1996).
+// free around each place (Hart 1996). What is told of that is no more than twice the width of the glow where more is free: such steps are
+// cheap, and many.
 
 fn halo(lens: u32, paint: vec4f, pixel: vec2i, color: vec4f, width: f32) -> vec4f {
     if lens_covers(lens, pixel) {
@@ -11,7 +12,7 @@ fn halo(lens: u32, paint: vec4f, pixel: vec2i, color: vec4f, width: f32) -> vec4
     let per_distance = abs(view.across_from_pixel.y);
     var closest = 1e9;
     var t = view.near;
-    for (var i = 0; i < 32; i++) {
+    for (var i = 0; i < 128; i++) {
         let position = as_is(ray.origin + t * ray.direction);
         let metres_per_pixel = per_distance * select(t, 1.0, is_parallel);
         let sight = Sight(pixel, 0.0, ray, t, position, is_parallel, NO_OBJECT, 0.0);

@@ -1,5 +1,5 @@
 // How far a place is from a solid: exact where that is less than half the width of a border, else no more than it is and no less than
-// that half. Twin: `veduta::geom::shape::Solid`.
+// that half. Twin: `veduta::geom::shape::Solid`. Each loop goes on even where it reads zeros (`shape/solid.wgsl`).
 
 fn distance_to_face(p: vec3f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
     let ab = b - a;
@@ -25,18 +25,20 @@ fn squared_distance_to_box(p: vec3f, low: vec3f, high: vec3f) -> f32 {
     return dot(away, away);
 }
 
-// The least distance of the faces of a leaf, of those at the border.
+// Of one face of a solid, if it is at the border.
+fn distance_to_border(face: u32, p: vec3f) -> f32 {
+    let b = solids[face + 1u];
+    let a = bitcast<vec3f>(solids[face].xyz);
+    let c = bitcast<vec3f>(solids[face + 2u].xyz);
+    return select(FAR_AWAY, distance_to_face(p, a, bitcast<vec3f>(b.xyz), c), b.w == 1u);
+}
+
+// The least distance of the faces of a leaf, two at most. No loop: software adapters end loops after 65,535 rounds of all of them.
 fn distance_to_leaf_of_solid(s: Solid, node: SolidNode, p: vec3f) -> f32 {
-    let faces = s.first + solids[s.first + 2u].z;
-    var distance = FAR_AWAY;
-    for (var i = node.first; i < node.first + node.count; i++) {
-        let face = faces + 4u * i;
-        let b = solids[face + 1u];
-        if b.w == 1u {
-            let a = bitcast<vec3f>(solids[face].xyz);
-            let c = bitcast<vec3f>(solids[face + 2u].xyz);
-            distance = min(distance, distance_to_face(p, a, bitcast<vec3f>(b.xyz), c));
-        }
+    let first = s.first + solids[s.first + 2u].z + 4u * node.first;
+    var distance = distance_to_border(first, p);
+    if node.count > 1u {
+        distance = min(distance, distance_to_border(first + 4u, p));
     }
     return distance;
 }
@@ -45,39 +47,20 @@ fn distance_to_leaf_of_solid(s: Solid, node: SolidNode, p: vec3f) -> f32 {
 fn distance_to_surface(s: Solid, p: vec3f, reach: f32) -> f32 {
     let sizes = solids[s.first + 2u];
     let nodes = s.first + sizes.x;
-    var node = solid_node(nodes);
-    let outside = sqrt(squared_distance_to_box(p, node.low, node.high));
-    if outside >= reach {
-        return outside;
-    }
-    // Down to a leaf that is near first: what is farther than that is not gone into.
-    var at = 0u;
-    while node.count == 0u {
-        let left = solid_node(nodes + 2u * (at + 1u));
-        let right = solid_node(nodes + 2u * left.next);
-        let is_right = squared_distance_to_box(p, right.low, right.high) < squared_distance_to_box(p, left.low, left.high);
-        at = select(at + 1u, left.next, is_right);
-        node = left;
-        if is_right {
-            node = right;
-        }
-    }
-    var beyond = distance_to_leaf_of_solid(s, node, p);
-    var least = min(beyond, reach);
+    var beyond = FAR_AWAY;
+    var least = reach;
     for (var i = 0u; i < sizes.y;) {
         let own = solid_node(nodes + 2u * i);
         let free = sqrt(squared_distance_to_box(p, own.low, own.high));
-        if free >= least {
-            beyond = min(beyond, free);
-            i = own.next;
-        } else if own.count > 0u {
+        let is_entered = free < least;
+        if is_entered && own.count > 0u {
             let distance = distance_to_leaf_of_solid(s, own, p);
             beyond = min(beyond, distance);
             least = min(least, distance);
-            i = own.next;
-        } else {
-            i++;
+        } else if !is_entered {
+            beyond = min(beyond, free);
         }
+        i = select(own.next, i + 1u, is_entered && own.count == 0u && own.next != NO_SOLID_NODE);
     }
     return select(beyond, least, least < reach);
 }

@@ -18,6 +18,8 @@ struct Solid {
 // where bodies touch (1 or 0); upward normal, and how much higher than its first corner an upright face counts as above.
 @group(1) @binding(2) var<storage, read> solids: array<vec4u>;
 
+const NO_SOLID_NODE: u32 = 0xffffffffu;
+
 struct SolidNode {
     low: vec3f,
     high: vec3f,
@@ -42,7 +44,9 @@ fn in_solid(s: Solid, v: vec3f) -> vec3f {
 fn solid_node(at: u32) -> SolidNode {
     let low = solids[at];
     let high = solids[at + 1u];
-    return SolidNode(bitcast<vec3f>(low.xyz), bitcast<vec3f>(high.xyz), low.w, high.w >> 3u, high.w & 7u);
+    // Lanes of a software adapter that no pixel belongs to read zeros, and its loops wait for them too: they end at once.
+    let next = select(low.w, NO_SOLID_NODE, low.w == 0u);
+    return SolidNode(bitcast<vec3f>(low.xyz), bitcast<vec3f>(high.xyz), next, high.w >> 3u, high.w & 7u);
 }
 
 fn solid_face(at: u32) -> SolidFace {
@@ -161,7 +165,7 @@ fn next_leaf(s: Solid, from_node: u32, origin: vec3f, direction: vec3f) -> MetLe
         } else if node.count > 0u {
             return MetLeaf(node.next, s.first + sizes.z + 4u * node.first, node.count);
         } else {
-            at++;
+            at = select(at + 1u, NO_SOLID_NODE, node.next == NO_SOLID_NODE);
         }
     }
     return MetLeaf(sizes.y, 0u, 0u);

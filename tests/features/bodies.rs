@@ -3,6 +3,7 @@
 use crate::studio::*;
 use glam::{DVec2, DVec3};
 use veduta::{
+    figure::scene_file::{Options, parse},
     geom::{Aabb, Shape, combination::Operation},
     lens::{Lens, LensBody, Region, chosen::Choice},
     render::{
@@ -121,6 +122,55 @@ fn a_glow_fades_away_from_the_silhouette() {
         let mean = |list: &[f64]| list.iter().sum::<f64>() / list.len().max(1) as f64;
         let [near, halfway, beyond] = [mean(&by_distance[1]), mean(&by_distance[9]), mean(&by_distance[20..].concat())];
         assert!(near > 3.0 * halfway && halfway > 1.0 && beyond < 0.5, "shape {i}: {near} {halfway} {beyond}");
+    }
+}
+
+/// How close a ray from the origin comes to a segment at least, as the sine of an angle; `direction` is unit.
+fn least_sine(direction: DVec3, [a, b]: [DVec3; 2]) -> f64 {
+    let e = b - a;
+    let (ad, ed, aa, ae, ee) = (a.dot(direction), e.dot(direction), a.dot(a), a.dot(e), e.dot(e));
+    let between = ((ed * aa - ad * ae) / (ad * ee - ed * ae)).clamp(0.0, 1.0);
+    let places = [a, b, a + if between.is_finite() { between } else { 0.0 } * e];
+    let ahead = places.into_iter().filter(|p| p.dot(direction) > 0.0);
+    ahead.map(|p| p.cross(direction).length() / p.length()).fold(1.0, f64::min)
+}
+
+/// Where the sky is seen, its glow is known by thought: a building may come close to a ray anywhere along it, behind many others.
+#[test]
+fn a_glow_is_as_strong_as_rays_come_close_to_any_of_many_buildings() {
+    let text = "veduta = 1\n[city]\nfiles = [\"builtin:town\"]\n[camera]\neye = [86, -58, 60]\ntarget = [-5, 5, 6]\nfov_deg = 45\n\
+                [sun]\nshadows = false\n[[lens]]\nname = \"a\"\nkind = \"color\"\nbody = \"halo\"\n\
+                shape = { kind = \"objects\", types = [\"Building\"] }\n";
+    let scene = parse(text, "glow.toml", &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    let mut studio = of_scene(&scene);
+    let view = view_of(scene.camera.expect("a camera"));
+    let is_building =
+        |object: u32| studio.model.strings.get(studio.model.objects[object as usize].kind).starts_with("Building");
+    let edges: Vec<[DVec3; 2]> = triangles(&studio)
+        .iter()
+        .filter(|t| is_building(t.object))
+        .flat_map(|t| [[0, 1], [1, 2], [2, 0]].map(|pair| pair.map(|k| t.corners[k] - view.camera.eye)))
+        .collect();
+    for backend in BACKENDS {
+        let request = Request { size: SIZE, samples: 1, transparent: true, aovs: ALL, statistics: false, backend };
+        let drawn = studio.render(&scene, &request).expect("a picture");
+        let depth = drawn.depth.as_ref().expect("depth");
+        let (mut glowing, mut errors) = (0, Vec::new());
+        for (k, x, y) in pixels().filter(|(k, ..)| !depth[*k].is_finite()) {
+            let ray = view.pixel_ray(x, y);
+            let direction = ray.direction.normalize_or(DVec3::X);
+            let sine = edges.iter().map(|edge| least_sine(direction, *edge)).fold(1.0, f64::min);
+            // The glow is 18 pixels on the axis wide, and of 0.92 at most.
+            let closest = sine / direction.dot(view.basis.forward) / view.pixel_m(1.0);
+            let wanted = 0.92 * (1.0 - closest / 18.0).max(0.0).powi(2);
+            glowing += usize::from(wanted > 0.02);
+            errors.push((f64::from(drawn.rgba[k][3]) / 255.0 - wanted).abs());
+        }
+        assert!(glowing > 1000, "{glowing} pixels glow");
+        let worst = errors.iter().copied().fold(0.0, f64::max);
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        // Places along a ray are as far from each other as there is room: the closest one may lie between two.
+        assert!(worst < 0.1 && mean < 0.01, "{backend:?}: {worst} at worst, {mean} in the mean");
     }
 }
 

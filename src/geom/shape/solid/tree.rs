@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::geom::{aabb::Aabb, shape::solid::Solid};
 
 /// Faces of a leaf, at most: their number takes three bits.
-const MOST_OF_LEAF: usize = 4;
+const MOST_OF_LEAF: usize = 2;
 
 /// A box that holds faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
