@@ -18,7 +18,9 @@ fn layer_point(at: vec2f, depth: f32, code: u32, normal: u32, color: u32) -> Poi
     var point = point_of(vec2i(at), ray_of_pixel(at), depth, vec2u(code, normal));
     point.base = point.natural;
     if TEXTURED {
-        point.base = unpacked(color);
+        let texel = unpacked_texel(color);
+        point.base = texel.rgb;
+        point.opacity *= texel.a;
     }
     if CLAY {
         point.base = CLAY_COLOR;

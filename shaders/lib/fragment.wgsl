@@ -14,6 +14,7 @@ struct Fragment {
     city: u32,                  // which of the cities that are drawn: 0 the scene's own, else a content of lenses
     threshold: f32,             // what a share must be above to be there, 0..1; of what only the sun sees the half
     off: f32,                   // how far the place may be beside its face, metres
+    opacity: f32,               // of its material and texture, 0..1
 }
 
 fn sight_of(fragment: Fragment) -> Sight {
@@ -31,5 +32,5 @@ fn fragment_at(at: vec2f, depth: f32, code: u32) -> Fragment {
     let surface = surface_at(code - 1u);
     return Fragment(vec2i(at), depth, position, height, code - 1u, surface.object, part_of(surface),
                     decode_normal(surface.normal), ray, view.orthographic == 1u, city_number(),
-                    dither(vec2i(at), view.sample_index), off_face(distance));
+                    dither(vec2i(at), view.sample_index), off_face(distance), texel_opacity * opacity_of(surface));
 }

@@ -25,6 +25,7 @@ struct Point {
     arriving: vec3f,            // light on a white surface, linear
     shade: f32,                 // its luminance, 0..1
     highlight: vec3f,           // light that does not come out of its colour, linear
+    opacity: f32,               // of its material and texture, 0..1
 }
 
 const NO_SURFACE: u32 = 0xffffffffu;
@@ -97,12 +98,13 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u) -> Point {
     point.sun = sun_share(point.relative, point.normal);
     point.arriving = irradiance(point.normal, point.sun);
     point.shade = luminance(point.arriving);
+    point.opacity = opacity_of(surface);
     return point;
 }
 
 fn nowhere(pixel: vec2i) -> Point {
     return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, PART_OTHER, 0u, 0u, false,
-                 vec3f(0.0), vec3f(0.0), false, 1.0, vec3f(1.0), 1.0, vec3f(0.0));
+                 vec3f(0.0), vec3f(0.0), false, 1.0, vec3f(1.0), 1.0, vec3f(0.0), 1.0);
 }
 
 // The surface shown beside a point, `offset` pixels away; at the picture's edge, what is at the edge.

@@ -13,6 +13,7 @@ const PART_SECTION: u32 = 4u;   // the inside of a closed shell, where it is lai
 const SURFACE_CLOSED: u32 = 8u;     // its object is a closed shell
 const SURFACE_INWARD: u32 = 16u;    // whose faces look inwards
 const SURFACE_LIT_AS_BEFORE: u32 = 32u;     // by a normal that it does not have where it lies
+const SURFACE_CLEAR_SHIFT: u32 = 6u;        // above it: how much light its material lets through, in 1023rds
 // Numbers in the geometry target that are none of a surface: sections, and the bits that say of which object.
 const SECTION: u32 = 0x80000000u;
 const SECTION_OBJECT: u32 = 0x03ffffffu;    // all: of several
@@ -27,6 +28,9 @@ struct Surface {
 
 @group(1) @binding(0) var surfaces: texture_2d<u32>;
 
+// Opacity of the texel that is drawn, 0..1; 1 where there is no texture, or its opacity does not count.
+var<private> texel_opacity: f32 = 1.0;
+
 fn surface_at(number: u32) -> Surface {
     let texel = textureLoad(surfaces, vec2u(number % SURFACES_PER_ROW, number / SURFACES_PER_ROW), 0);
     let color = vec3f(unpack2x16float(texel.z), unpack2x16float(texel.w & 0xffffu).x);
@@ -35,6 +39,11 @@ fn surface_at(number: u32) -> Surface {
 
 fn part_of(surface: Surface) -> u32 {
     return (surface.flags & SURFACE_PART) >> SURFACE_PART_SHIFT;
+}
+
+// Opacity of its material, 0..1.
+fn opacity_of(surface: Surface) -> f32 {
+    return 1.0 - f32(surface.flags >> SURFACE_CLEAR_SHIFT) * (1.0 / 1023.0);
 }
 
 // Octahedral, 2 x snorm16: the inverse of the host's `encode_normal`. Multiplied where the built-in functions divide:

@@ -216,7 +216,9 @@ fn composite(in: Corner) -> Composite {
             var point = point_of(pixel, ray, depth, vec2u(code, normal));
             point.base = point.natural;
             if TEXTURED {
-                point.base = unpacked(node.w);
+                let texel = unpacked_texel(node.w);
+                point.base = texel.rgb;
+                point.opacity *= texel.a;
             }
             if CLAY {
                 point.base = CLAY_COLOR;

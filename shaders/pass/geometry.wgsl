@@ -99,6 +99,7 @@ fn smooth_full(in: SmoothVarying) -> Full {
 @group(3) @binding(0) var image: texture_2d<f32>;
 @group(3) @binding(1) var image_sampler: sampler;
 override ALPHA_CUTOFF: f32 = 0.0;
+override TRANSLUCENT: bool = false; // whether texels let through what is behind, by their opacity
 
 struct TexturedVarying {
     @builtin(position) @invariant clip: vec4f,
@@ -119,6 +120,7 @@ fn textured(in: TexturedVarying) -> Full {
     if texel.a < ALPHA_CUTOFF {
         discard;
     }
+    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
     cut(in.clip.xy, in.clip.z, in.code);
     let code = vec2u(in.code, select(0u, encode_normal(in.normal), SMOOTH));
     return Full(code, vec4f(texel.rgb * surface_at(in.code - 1u).color, 1.0), in.clip.z/*@region*/);

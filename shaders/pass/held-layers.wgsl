@@ -28,5 +28,6 @@ fn note_held_textured(in: HeldVarying) {
     if texel.a < ALPHA_CUTOFF {
         return;
     }
-    add_held(in, packed(texel.rgb * surface_at((in.code & NODE_CODE) - 1u).color));
+    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
+    add_held(in, packed_texel(texel.rgb * surface_at((in.code & NODE_CODE) - 1u).color));
 }

@@ -108,5 +108,6 @@ fn held_textured(in: HeldVarying) -> CoplanarFull {
     if texel.a < ALPHA_CUTOFF {
         discard;
     }
+    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
     return held(in, texel.rgb * surface_at(in.code - 1u).color);
 }

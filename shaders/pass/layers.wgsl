@@ -7,7 +7,7 @@
 // room for spills into the rest: processors that draw different tiles neither count with the same counter nor write
 // side by side. Nodes that find no room are counted all the same: the host sees it, and draws what did not fit in narrower bands.
 
-override TEXTURED: bool = false;    // whether the picture has textures
+override TEXTURED: bool = false;    // whether nodes have a colour of a texture
 override ALL: bool = false;         // whether all that is drawn is translucent
 
 // The first words of `heads`; those of the pixels follow.
@@ -70,7 +70,7 @@ fn add_node(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u3
 
 fn natural_color(code: u32) -> u32 {
     if TEXTURED {
-        return packed(surface_at(code - 1u).color);
+        return packed_texel(surface_at(code - 1u).color);
     }
     return 0u;
 }
@@ -94,8 +94,9 @@ fn note_textured(in: TexturedVarying) {
     if texel.a < ALPHA_CUTOFF {
         return;
     }
+    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
     let normal = select(0u, encode_normal(in.normal), SMOOTH);
-    add_node(in.clip.xy, in.clip.z, in.code, ALONE, normal, packed(texel.rgb * surface_at(in.code - 1u).color));
+    add_node(in.clip.xy, in.clip.z, in.code, ALONE, normal, packed_texel(texel.rgb * surface_at(in.code - 1u).color));
 }
 
 // The instance is the layer of the face in its plane: of equal depths the upper one is nearer. It is told with the number.

@@ -57,7 +57,7 @@ fn fragment(in: Line) -> Pixel {
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + point.relative.z;
     let fragment = Fragment(pixel, depth, position, height, in.surfaces.x, surface.object, part_of(surface), point.normal, ray,
                             view.orthographic == 1u, city_number(), dither(pixel, view.sample_index),
-                            off_face(distance_of_depth(depth)));
+                            off_face(distance_of_depth(depth)), opacity_of(surface));
     // The same place, on the other face: a line stays as long as one of its faces does.
     let beyond = surface_at(in.surfaces.y);
     var other = fragment;

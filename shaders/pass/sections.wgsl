@@ -155,7 +155,7 @@ fn inside_of(surface: Surface, number: u32, ray: Ray, pixel: vec2i, distance: f3
     let part = select(PART_SECTION, PART_TERRAIN, part_of(surface) == PART_TERRAIN);
     return Fragment(pixel, depth_of_distance(distance), position, height, number, surface.object, part,
                     -normalize(ray.direction) * view.view_from_world, ray, view.orthographic == 1u, city_number(),
-                    dither(pixel, view.sample_index), 0.0);
+                    dither(pixel, view.sample_index), 0.0, 1.0);
 }
 
 @fragment

@@ -11,19 +11,21 @@ struct Varying {
     @location(3) @interpolate(flat, either) flags: u32,     // bit 0: the main view's rays are parallel; above: the city's number
 }
 
-@vertex
-fn vertex(@location(0) origin: vec3i, @location(1) surface: u32, @location(2) position: vec3f) -> Varying {
+fn seen_by_sun(origin: vec3i, surface: u32, position: vec3f) -> Varying {
     let relative = relative_to_main_eye(origin, position);
     let clip = clip_from_relative(city_relative(origin, position));
     let height = f32(eye.eye_whole.z) + eye.eye_fraction.z + relative.z;
     return Varying(clip, city_surface(surface), eye.view_from_world * relative, height, eye.orthographic | (city_number() << 1u));
 }
 
+@vertex
+fn vertex(@location(0) origin: vec3i, @location(1) surface: u32, @location(2) position: vec3f) -> Varying {
+    return seen_by_sun(origin, surface, position);
+}
+
 //@handlers
 
-@fragment
-fn fragment(in: Varying) {
-    let surface = surface_at(in.surface);
+fn is_seen(in: Varying, surface: Surface) -> bool {
     let is_parallel = (in.flags & 1u) == 1u;
     // Behind the eye there is none, and none is asked for.
     let distance = max(-in.position.z, 1e-30);
@@ -34,8 +36,44 @@ fn fragment(in: Varying) {
     }
     let fragment = Fragment(vec2i(in.clip.xy), in.clip.z, in.position, in.height, in.surface, surface.object,
                             part_of(surface), decode_normal(surface.normal), ray, is_parallel, in.flags >> 1u,
-                            0.5, 0.0);
-    if !visible(fragment) {
+                            0.5, 0.0, 1.0);
+    return visible(fragment);
+}
+
+@fragment
+fn fragment(in: Varying) {
+    if !is_seen(in, surface_at(in.surface)) {
+        discard;
+    }
+}
+
+// ---- textures with holes
+
+struct Textured {
+    @builtin(position) @invariant clip: vec4f,
+    @location(0) @interpolate(flat, either) surface: u32,
+    @location(1) position: vec3f,
+    @location(2) height: f32,
+    @location(3) @interpolate(flat, either) flags: u32,
+    @location(4) texcoord: vec2f,
+}
+
+@vertex
+fn vertex_textured(
+    @location(0) origin: vec3i,
+    @location(1) surface: u32,
+    @location(2) position: vec3f,
+    @location(4) texcoord: vec2f,
+) -> Textured {
+    let seen = seen_by_sun(origin, surface, position);
+    return Textured(seen.clip, seen.surface, seen.position, seen.height, seen.flags, texcoord);
+}
+
+@fragment
+fn textured(in: Textured) {
+    let surface = surface_at(in.surface);
+    let is_away = is_hole(surface, in.texcoord);
+    if is_away || !is_seen(Varying(in.clip, in.surface, in.position, in.height, in.flags), surface) {
         discard;
     }
 }

@@ -14,7 +14,7 @@ const KEPT_ALONE: u32 = 0xf8000000u;    // in its plane: as the lowest
 
 fn own_color(code: u32) -> u32 {
     if TEXTURED {
-        return packed(surface_at(code - 1u).color);
+        return packed_texel(surface_at(code - 1u).color);
     }
     return 0u;
 }
@@ -38,8 +38,9 @@ fn lay_textured(in: TexturedVarying) -> Laid {
     if texel.a < ALPHA_CUTOFF {
         discard;
     }
+    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
     let normal = select(0u, encode_normal(in.normal), SMOOTH);
-    return lay(in.clip.xy, in.clip.z, in.code, KEPT_ALONE, normal, packed(texel.rgb * surface_at(in.code - 1u).color));
+    return lay(in.clip.xy, in.clip.z, in.code, KEPT_ALONE, normal, packed_texel(texel.rgb * surface_at(in.code - 1u).color));
 }
 
 // The instance is the layer of the face in its plane: of equal depths the upper one is nearer.

@@ -372,8 +372,8 @@ pub struct Material {
     pub roughness: f32,
     /// Whether light must not act on it (glTF `KHR_materials_unlit`).
     pub unlit: bool,
-    /// Texels below this opacity are holes; 0 = none.
-    pub alpha_cutoff: f32,
+    /// What the opacity of texels of its texture does.
+    pub texels: TexelOpacity,
     /// Index into [`CityModel::textures`] for the base colour, or [`NONE`].
     pub texture: u32,
 }
@@ -386,10 +386,22 @@ impl Default for Material {
             emissive: [0.0; 3],
             roughness: 0.9,
             unlit: false,
-            alpha_cutoff: 0.0,
+            texels: TexelOpacity::Ignored,
             texture: NONE,
         }
     }
+}
+
+/// What the opacity of texels does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum TexelOpacity {
+    /// Nothing: all are opaque.
+    #[default]
+    Ignored,
+    /// Texels below this opacity are holes, the others opaque.
+    Holes(f32),
+    /// They let through what is behind.
+    Translucent,
 }
 
 /// A texture image: where it is and how it continues outside 0..1.
@@ -399,6 +411,20 @@ pub struct Texture {
     pub image: TextureImage,
     /// The rule outside 0..1.
     pub wrap: [Wrap; 2],
+    /// Where the opacity of its texels is.
+    pub opacity: TextureOpacity,
+}
+
+/// Where the opacity of the texels of a texture is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum TextureOpacity {
+    /// In the image.
+    #[default]
+    Own,
+    /// In another image, stretched over the first: its opacity, or how light it is where it has none.
+    Of(TextureImage),
+    /// In the image, read in that way, which has no colours: they are white.
+    Alone,
 }
 
 /// Where a texture's pixels are. Decoded by [`crate::city::texture`] when needed.

@@ -11,12 +11,14 @@ use std::{
     sync::{Arc, LazyLock},
 };
 
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
+use image::{
+    DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Luma, Rgba, RgbaImage,
+};
 use rayon::prelude::*;
 
 use crate::city::{
     load::options::{LFS_POINTER, is_lfs_pointer},
-    model::{CityModel, NONE, Texture, TextureImage},
+    model::{CityModel, NONE, Texture, TextureImage, TextureOpacity},
     warning::WarningCode,
 };
 
@@ -49,6 +51,11 @@ impl Pixels {
     /// Width and height of level `n`.
     pub fn size(&self, n: usize) -> [u32; 2] {
         [self.width, self.height].map(|side| (side >> n.min(31)).max(1))
+    }
+
+    /// Whether some texel is not opaque.
+    pub fn is_translucent(&self) -> bool {
+        self.levels[0].chunks_exact(4).any(|texel| texel[3] < u8::MAX)
     }
 
     /// Bytes of all levels.
@@ -165,21 +172,45 @@ fn decoded(Opened { name, reader }: Opened) -> Result<RgbaImage, String> {
 /// Decodes an image and makes its mip levels; the error says what is wrong, for
 /// [`crate::city::warning::WarningCode::MissingTexture`].
 pub fn decode(texture: &Texture) -> Result<Pixels, String> {
-    let image = decoded(open(&texture.image)?)?;
+    let mut image = decoded(open(&texture.image)?)?;
+    match &texture.opacity {
+        TextureOpacity::Own => {}
+        TextureOpacity::Of(other) => {
+            let opacity = opacity_of(&decoded(open(other)?)?);
+            let [width, height] = [image.width(), image.height()];
+            let opacity = image::imageops::resize(&opacity, width, height, image::imageops::FilterType::Triangle);
+            image.pixels_mut().zip(opacity.pixels()).for_each(|(texel, opacity)| texel[3] = opacity[0]);
+        }
+        TextureOpacity::Alone => {
+            let opacity = opacity_of(&image);
+            let texels = image.pixels_mut().zip(opacity.pixels());
+            texels.for_each(|(texel, opacity)| *texel = Rgba([255, 255, 255, opacity[0]]));
+        }
+    }
     Ok(with_levels([image.width(), image.height()], image.into_raw()))
+}
+
+/// The opacity that an image tells: its own, or where it has none how light it is.
+fn opacity_of(image: &RgbaImage) -> GrayImage {
+    match image.pixels().any(|texel| texel[3] < u8::MAX) {
+        true => GrayImage::from_fn(image.width(), image.height(), |x, y| Luma([image.get_pixel(x, y)[3]])),
+        false => DynamicImage::from(image.clone()).into_luma8(),
+    }
 }
 
 /// Marks the images that cannot be read as missing, and warns of all that are, with the first object that has each.
 pub fn settle(model: &mut CityModel) {
-    let troubles: Vec<Option<String>> = model
-        .textures
-        .par_iter()
-        .map(|texture| match &texture.image {
-            TextureImage::Missing(why) => Some(why.clone()),
-            image => check(image).err(),
-        })
-        .collect();
-    if troubles.iter().all(Option::is_none) {
+    let trouble_of = |image: &TextureImage| match image {
+        TextureImage::Missing(why) => Some(why.clone()),
+        image => check(image).err(),
+    };
+    // Of the image, and of the one that has its opacity.
+    let trouble = |texture: &Texture| {
+        let other = if let TextureOpacity::Of(image) = &texture.opacity { trouble_of(image) } else { None };
+        [trouble_of(&texture.image), other]
+    };
+    let troubles: Vec<[Option<String>; 2]> = model.textures.par_iter().map(trouble).collect();
+    if troubles.as_flattened().iter().all(Option::is_none) {
         return;
     }
     let mut objects = vec![None; troubles.len()];
@@ -189,15 +220,21 @@ pub fn settle(model: &mut CityModel) {
             *object = Some(surface.object);
         }
     }
-    for ((texture, trouble), object) in model.textures.iter_mut().zip(troubles).zip(objects) {
-        let Some(trouble) = trouble else { continue };
-        texture.image = TextureImage::Missing(String::new());
-        // What lies outside of the folders has been told by that name.
-        if !trouble.is_empty() {
-            let object = object.and_then(|object| model.objects.get(object as usize)).map_or("", |object| &object.id);
-            model
-                .warnings
-                .add(WarningCode::MissingTexture, object, || format!("{trouble}; the material's colour is used"));
+    for ((texture, [trouble, of_opacity]), object) in model.textures.iter_mut().zip(troubles).zip(objects) {
+        let object = object.and_then(|object| model.objects.get(object as usize)).map_or("", |object| &object.id);
+        let mut tell = |trouble: String, what: &str| {
+            // What lies outside of the folders has been told by that name.
+            if !trouble.is_empty() {
+                model.warnings.add(WarningCode::MissingTexture, object, || format!("{trouble}; {what}"));
+            }
+        };
+        if let Some(trouble) = of_opacity {
+            texture.opacity = TextureOpacity::Own;
+            tell(trouble, "the texture is opaque");
+        }
+        if let Some(trouble) = trouble {
+            texture.image = TextureImage::Missing(String::new());
+            tell(trouble, "the material's colour is used");
         }
     }
 }
@@ -317,7 +354,7 @@ mod tests {
         let mut writer = encoder.write_header().unwrap();
         writer.write_image_data(pixels).unwrap();
         writer.finish().unwrap();
-        Texture { image: TextureImage::Bytes(Arc::from(bytes)), wrap: [Wrap::Repeat; 2] }
+        Texture { image: TextureImage::Bytes(Arc::from(bytes)), wrap: [Wrap::Repeat; 2], opacity: TextureOpacity::Own }
     }
 
     #[test]
@@ -379,7 +416,11 @@ mod tests {
 
     #[test]
     fn what_is_no_image_is_an_error_in_words() {
-        let bytes = |b: &[u8]| Texture { image: TextureImage::Bytes(Arc::from(b)), wrap: [Wrap::Repeat; 2] };
+        let bytes = |b: &[u8]| Texture {
+            image: TextureImage::Bytes(Arc::from(b)),
+            wrap: [Wrap::Repeat; 2],
+            opacity: TextureOpacity::Own,
+        };
         for (content, said) in [
             (&b""[..], "no image of a kind that is read; PNG, JPEG, TIFF"),
             (b"<html></html>", "no image of a kind that is read"),
@@ -399,7 +440,11 @@ mod tests {
         }
         assert!(decode(&huge).is_err());
         assert!(check(&huge.image).is_err());
-        let file = |path: &str| Texture { image: TextureImage::File(path.into()), wrap: [Wrap::Repeat; 2] };
+        let file = |path: &str| Texture {
+            image: TextureImage::File(path.into()),
+            wrap: [Wrap::Repeat; 2],
+            opacity: TextureOpacity::Own,
+        };
         assert!(decode(&file("no/such.png")).unwrap_err().contains("no/such.png cannot be read"));
     }
 
@@ -416,7 +461,7 @@ mod tests {
             // With something behind it, it is whole.
             assert_eq!(check(&of(&[&whole[..], &[0; 9000]].concat())), Ok(()), "{format:?}");
             let part = of(&whole[..whole.len() / 2]);
-            let texture = Texture { image: part.clone(), wrap: [Wrap::Repeat; 2] };
+            let texture = Texture { image: part.clone(), wrap: [Wrap::Repeat; 2], opacity: TextureOpacity::Own };
             assert_eq!(check(&part).is_ok(), decode(&texture).is_ok(), "{format:?}");
             assert!(format == ImageFormat::Jpeg || check(&part).is_err(), "{format:?}");
         }

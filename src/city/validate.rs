@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::{
-    city::model::{Attribute, CityModel, Geometry, NONE, StringId, Surface, Tile, Value},
+    city::model::{Attribute, CityModel, Geometry, NONE, StringId, Surface, TexelOpacity, Tile, Value},
     geom::Aabb,
 };
 
@@ -87,8 +87,9 @@ impl CityModel {
             ensure(right, || format!("surface detail {i}: {detail:?}"))?;
         }
         for (i, material) in self.materials.iter().enumerate() {
+            let least = if let TexelOpacity::Holes(least) = &material.texels { least } else { &0.0 };
             let numbers = material.base_color.iter().chain(&material.emissive);
-            let mut numbers = numbers.chain([&material.roughness, &material.alpha_cutoff]);
+            let mut numbers = numbers.chain([&material.roughness, least]);
             let right = numbers.all(|n| n.is_finite() && *n >= 0.0) && optional(material.texture, self.textures.len());
             ensure(right, || format!("material {i}: {material:?}"))?;
         }

@@ -12,7 +12,7 @@ use crate::{
     city::{
         CityModel, Geometry,
         load::{self, LoadOptions},
-        model::{Texture, TextureImage},
+        model::{Texture, TextureImage, TextureOpacity},
         shown::shown_geometries,
         spatial::SpatialIndex,
         texture,
@@ -390,7 +390,8 @@ fn middle(bodies: &[Mesh]) -> DVec3 {
 
 /// An image as a mask: where it is opaque and at least as light as mid grey.
 fn bitmap(path: &Path) -> Result<Bitmap, String> {
-    let texture = Texture { image: TextureImage::File(path.to_owned()), wrap: Default::default() };
+    let texture =
+        Texture { image: TextureImage::File(path.to_owned()), wrap: Default::default(), opacity: TextureOpacity::Own };
     let pixels = texture::decode(&texture)?;
     if let Some([w, h]) = pixels.reduced_from {
         return Err(format!("{} has {w}x{h} pixels; a mask takes {} per side", path.display(), texture::MAX_SIDE));

@@ -6,7 +6,7 @@ use crate::{
     geom::Aabb,
     render::{
         cells::Details,
-        city::{Chunk, Section, SectionKind},
+        city::{Chunk, Section},
         city_facts::{CityFacts, ContentFacts, SectionFacts},
         city_on_gpu::CityOnGpu,
         contents::{Contents, PlacedCity},
@@ -186,13 +186,9 @@ impl<'a> Drawn<'a> {
     fn sections(&self) -> Vec<DrawnSection<'a>> {
         let Self { city, chunks, content, offset, has_shadow, details } = *self;
         let sections = city.buffers.sections.iter().zip(&city.images).enumerate();
-        // Sections of coplanar faces follow each other from the lowest layer of a city up.
-        let mut layers = 0;
         let drawn = sections.map(|(i, (section, image))| {
-            let is_coplanar = section.kind == SectionKind::Coplanar;
-            let layer = if is_coplanar { layers } else { 0 };
-            layers += u32::from(is_coplanar);
             let chunks = chunks.get(i).unwrap_or(&section.chunks);
+            let (layer, has_shadow) = (section.layer, has_shadow && section.has_shadow);
             DrawnSection { city, section, image: image.as_ref(), chunks, content, offset, has_shadow, layer, details }
         });
         drawn.collect()

@@ -43,6 +43,8 @@ pub struct Chunk {
     pub cell: u32,
     /// Bits of the details of that cell that it is drawn in.
     pub details: u8,
+    /// Which of its fragments are translucent, whatever lenses do.
+    pub translucency: Translucency,
 }
 
 impl Chunk {
@@ -50,6 +52,29 @@ impl Chunk {
     pub fn has_terrain(&self) -> bool {
         self.cell == NO_CELL
     }
+}
+
+/// Which fragments are translucent by material and texture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Translucency {
+    /// None.
+    #[default]
+    None,
+    /// Some, by the opacity of a texture.
+    Some,
+    /// All.
+    All,
+}
+
+/// What the opacity of a texture does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Texels {
+    /// Nothing.
+    Opaque,
+    /// Texels below an opacity are holes: the bits of its f32.
+    Holes(u32),
+    /// Texels let through what is behind by their opacity.
+    Translucent,
 }
 
 /// One draw: part of a section.
@@ -68,6 +93,10 @@ pub struct Section {
     pub extra: Option<wgpu::Buffer>,
     /// In drawing order.
     pub chunks: Vec<Chunk>,
+    /// Which layer of their planes its faces are in, where they overlap others; the lowest is 0.
+    pub layer: u32,
+    /// Whether it throws shadows: what lets more than half of the light through does not.
+    pub has_shadow: bool,
 }
 
 impl Section {
@@ -82,12 +111,12 @@ impl Section {
 pub enum SectionKind {
     /// Ordinary opaque triangles.
     Plain,
-    /// Triangles with a texture: index of it, and the opacity below which texels are holes.
+    /// Triangles with a texture.
     Textured {
         /// Its number in the model.
         texture: u32,
-        /// Opacity below which texels are holes; 0 = none.
-        alpha_cutoff: f32,
+        /// What its opacity does.
+        texels: Texels,
     },
     /// Overlapping triangles of shared planes, one layer of them.
     Coplanar,
@@ -143,6 +172,29 @@ struct Gathered {
     /// One per vertex, where the section has a texture; its vertices are not shared then.
     texcoords: Vec<[f32; 2]>,
     runs: Vec<Run>,
+    group: Group,
+}
+
+/// What triangles of a section have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct Group {
+    /// Number of their texture, and what its opacity does.
+    pub texture: Option<(u32, Texels)>,
+    /// Which of their fragments are translucent.
+    pub translucency: Translucency,
+    /// Whether they throw shadows.
+    pub has_shadow: bool,
+}
+
+impl Group {
+    /// Opaque ones without a texture.
+    pub const PLAIN: Self = Self { texture: None, translucency: Translucency::None, has_shadow: true };
+    /// All without a texture.
+    const UNTEXTURED: [Self; 3] = [
+        Self::PLAIN,
+        Self { translucency: Translucency::All, ..Self::PLAIN },
+        Self { translucency: Translucency::All, has_shadow: false, ..Self::PLAIN },
+    ];
 }
 
 /// What one tile has among the indices.
@@ -164,8 +216,8 @@ struct WeldKind {
 }
 
 impl Gathered {
-    fn new(kind: WeldKind) -> Self {
-        Self { weld: Weld::new(kind.smooth, kind.provoking), texcoords: Vec::new(), runs: Vec::new() }
+    fn new(kind: WeldKind, group: Group) -> Self {
+        Self { weld: Weld::new(kind.smooth, kind.provoking), texcoords: Vec::new(), runs: Vec::new(), group }
     }
 
     fn close_run(&mut self, bounds: Aabb, cell: u32, details: u8) {
@@ -187,6 +239,7 @@ impl Gathered {
             bounds,
             cell,
             details,
+            translucency: self.group.translucency,
         };
         let mut chunks: Vec<Chunk> = Vec::new();
         let (mut start, mut bounds, mut done, mut of) = (0, Aabb::EMPTY, 0, (NO_CELL, 0));
@@ -247,22 +300,21 @@ impl CityBuffers {
         let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
         let smooth = is_smooth(shown, &apart);
         let kind = WeldKind { smooth, provoking: provoking_corner(gpu) };
-        let mut plain = Gathered::new(kind);
-        let mut textured: FxHashMap<(u32, u32), Gathered> = FxHashMap::default();
+        let mut plain = Group::UNTEXTURED.map(|group| Gathered::new(kind, group));
+        let mut textured: FxHashMap<Group, Gathered> = FxHashMap::default();
         for &(t, cell) in tiles {
             let tile = &shown.model.tiles[t as usize];
             let details = details_of(cell, Detail::Full);
             table.begin_tile();
             gather_tile(shown.model, tile, &apart, &mut table, &mut plain, &mut textured);
-            plain.close_run(tile.bounds, cell, details);
-            for gathered in textured.values_mut() {
+            for gathered in plain.iter_mut().chain(textured.values_mut()) {
                 gathered.close_run(tile.bounds, cell, details);
             }
         }
         let mut sections = Vec::new();
         let mut bounds = extent;
         if let Some(ground) = shown.ground {
-            bounds = bounds.union(gather_ground(ground, &mut table, &mut plain));
+            bounds = bounds.union(gather_ground(ground, &mut table, &mut plain[0]));
         }
         let (mut triangles, mut vertices) = (0, 0);
         let mut push = |section: Option<(Section, usize, usize)>| {
@@ -275,15 +327,21 @@ impl CityBuffers {
         let layers = gather_layers(shown, tiles, &mut table, kind);
         let mut entries = table.entries;
         let blocks = blocks.map(|model| gather_blocks(model, &cells, &mut entries, extent.center(), kind));
-        push(upload(gpu, SectionKind::Plain, &plain, Extra::NONE)?);
+        for gathered in &plain {
+            push(upload(gpu, SectionKind::Plain, gathered, Extra::NONE)?);
+        }
         let mut by_texture: Vec<_> = textured.into_iter().collect();
-        by_texture.sort_unstable_by_key(|(key, _)| *key);
-        for ((texture, cutoff), gathered) in &by_texture {
-            let kind = SectionKind::Textured { texture: *texture, alpha_cutoff: f32::from_bits(*cutoff) };
+        by_texture.sort_unstable_by_key(|(group, _)| *group);
+        for (group, gathered) in &by_texture {
+            let Some((texture, texels)) = group.texture else { continue };
+            let kind = SectionKind::Textured { texture, texels };
             push(upload(gpu, kind, gathered, Extra { name: "texture coordinates", each: &gathered.texcoords })?);
         }
-        for layer in &layers {
-            push(upload(gpu, SectionKind::Coplanar, &layer.gathered, Extra { name: "planes", each: &layer.planes })?);
+        for (number, layer) in (0..).zip(&layers) {
+            for Layer { gathered, planes, .. } in layer {
+                let section = upload(gpu, SectionKind::Coplanar, gathered, Extra { name: "planes", each: planes })?;
+                push(section.map(|(section, t, v)| (Section { layer: number, ..section }, t, v)));
+            }
         }
         if let Some(blocks) = &blocks {
             push(upload(gpu, SectionKind::Plain, blocks, Extra::NONE)?);
@@ -396,23 +454,24 @@ fn gather_tile(
     tile: &Tile,
     apart: &FxHashSet<u32>,
     table: &mut SurfaceTable,
-    plain: &mut Gathered,
-    textured: &mut FxHashMap<(u32, u32), Gathered>,
+    plain: &mut [Gathered],
+    textured: &mut FxHashMap<Group, Gathered>,
 ) {
-    plain.weld.begin_tile(tile.origin);
+    plain.iter_mut().for_each(|gathered| gathered.weld.begin_tile(tile.origin));
     for triangle in tile.indices.start / 3..tile.indices.end / 3 {
         if apart.contains(&triangle) {
             continue;
         }
         let corners = corners_of(model, tile, triangle);
         let [first, ..] = corners;
-        let texture = if tile.texcoords == NONE { None } else { table.texture(first.surface) };
-        let Some(key) = texture else {
+        let group = table.group(first.surface, tile.texcoords != NONE);
+        if let Some(gathered) = plain.iter_mut().find(|gathered| gathered.group == group) {
             let number = table.number(first.surface, first.normal);
-            plain.weld.triangle(number, corners.map(|v| Corner { position: v.position, normal: v.normal }));
+            gathered.weld.triangle(number, corners.map(|v| Corner { position: v.position, normal: v.normal }));
             continue;
-        };
-        let target = textured.entry(key).or_insert_with(|| Gathered::new(WeldKind { smooth: false, provoking: 0 }));
+        }
+        let kind = WeldKind { smooth: false, provoking: 0 };
+        let target = textured.entry(group).or_insert_with(|| Gathered::new(kind, group));
         let at = triangle as usize * 3;
         for (vertex, &corner) in corners.into_iter().zip(&model.indices[at..at + 3]) {
             let surface = table.number(first.surface, vertex.normal);
@@ -421,7 +480,7 @@ fn gather_tile(
             target.texcoords.push(model.texcoords[(tile.texcoords + corner) as usize]);
         }
     }
-    plain.weld.end_tile();
+    plain.iter_mut().for_each(|gathered| gathered.weld.end_tile());
 }
 
 fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered) -> Aabb {
@@ -459,8 +518,10 @@ fn gather_blocks(
     let shells = closed_shells(&shown, tiles.iter().map(|(_, tile)| *tile), middle);
     let textures = Textures::none();
     let mut table = SurfaceTable::new(model, &textures, &shells);
+    // Seen from afar, nothing is seen through.
+    table.is_opaque = true;
     table.entries = std::mem::take(entries);
-    let mut gathered = Gathered::new(kind);
+    let mut gathered = Gathered::new(kind, Group::PLAIN);
     for of_cell in tiles.chunk_by(|a, b| a.0 == b.0) {
         for is_roof in [true, false] {
             let details = Detail::Blocks.bit() | if is_roof { Detail::Roofs.bit() } else { 0 };
@@ -503,8 +564,8 @@ struct Layer {
 }
 
 impl Layer {
-    fn new(kind: WeldKind) -> Self {
-        let gathered = Gathered::new(kind);
+    fn new(kind: WeldKind, group: Group) -> Self {
+        let gathered = Gathered::new(kind, group);
         Self { gathered, planes: Vec::new(), owners: Vec::new(), numbers: FxHashMap::default() }
     }
 
@@ -535,30 +596,40 @@ impl Layer {
     }
 }
 
-/// The overlapping triangles of all shared planes, lowest layer first.
-fn gather_layers(shown: &Shown, tiles: &[(u32, u32)], table: &mut SurfaceTable, kind: WeldKind) -> Vec<Layer> {
+/// The overlapping triangles of all shared planes, lowest layer first; of each layer, one per untextured group.
+fn gather_layers(
+    shown: &Shown,
+    tiles: &[(u32, u32)],
+    table: &mut SurfaceTable,
+    kind: WeldKind,
+) -> Vec<[Layer; Group::UNTEXTURED.len()]> {
     let model = shown.model;
     let mut of_tile: FxHashMap<u32, Vec<&CoplanarTriangle>> = FxHashMap::default();
     for c in shown.coplanar {
         of_tile.entry(c.tile).or_default().push(c);
     }
     let count = shown.coplanar.iter().map(|c| c.layer + 1).max().unwrap_or(0);
-    let mut layers: Vec<Layer> = (0..count).map(|_| Layer::new(kind)).collect();
+    let layer = |_| Group::UNTEXTURED.map(|group| Layer::new(kind, group));
+    let mut layers: Vec<_> = (0..count).map(layer).collect();
     // All faces of a plane take their depth from the same numbers.
     let mut planes: FxHashMap<u32, layout::Plane> = FxHashMap::default();
     for (t, cell, triangles) in tiles.iter().filter_map(|(t, cell)| Some((*t, *cell, of_tile.get(t)?))) {
         let tile = &model.tiles[t as usize];
         table.begin_tile();
-        layers.iter_mut().for_each(|layer| layer.begin_tile(tile.origin));
+        layers.as_flattened_mut().iter_mut().for_each(|layer| layer.begin_tile(tile.origin));
         for c in triangles {
             let corners = corners_of(model, tile, c.triangle);
             let equation = &model.plane_equations[c.group as usize - 1];
             let plane = *planes.entry(c.group).or_insert_with(|| plane_of(equation, tile.origin));
-            let number = table.number(corners[0].surface, corners[0].normal);
+            let corners_surface = corners[0].surface;
+            let number = table.number(corners_surface, corners[0].normal);
             let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
-            layers[c.layer as usize].triangle(number, c.group, plane, corners);
+            let group = table.group(corners_surface, false);
+            if let Some(layer) = layers[c.layer as usize].iter_mut().find(|layer| layer.gathered.group == group) {
+                layer.triangle(number, c.group, plane, corners);
+            }
         }
-        layers.iter_mut().for_each(|layer| layer.end_tile(tile.bounds, cell));
+        layers.as_flattened_mut().iter_mut().for_each(|layer| layer.end_tile(tile.bounds, cell));
     }
     layers
 }
@@ -610,6 +681,8 @@ fn upload<T: bytemuck::NoUninit>(
             each => Some(gpu.buffer(extra.name, U::VERTEX | usage, each)?),
         },
         chunks: gathered.chunks(),
+        layer: 0,
+        has_shadow: gathered.group.has_shadow,
     };
     Ok(Some((section, indices.len() / 3, vertices.len())))
 }

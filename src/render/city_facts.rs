@@ -4,7 +4,7 @@ use crate::{
     geom::Aabb,
     render::{
         cells::{CellFigures, Detail, Details, triangles_in},
-        city::{Chunk, Section, SectionKind},
+        city::{Chunk, Section, SectionKind, Texels, Translucency},
         frame::FrameInput,
         hiding::reaches_of,
         light,
@@ -63,6 +63,27 @@ impl CityFacts<'_> {
     /// Whether some section has a texture.
     pub fn is_textured(&self) -> bool {
         self.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { .. }))
+    }
+
+    /// Whether the material of something is translucent, in view or not.
+    pub fn has_clear_materials(&self) -> bool {
+        let own = self.chunks.iter().copied().flatten();
+        let placed = self.contents.iter().flat_map(|content| &content.chunks).copied().flatten();
+        own.chain(placed).any(|chunk| chunk.translucency != Translucency::None)
+    }
+
+    /// Whether some texture is.
+    pub fn has_clear_textures(&self) -> bool {
+        self.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { texels: Texels::Translucent, .. }))
+    }
+
+    /// Whether the material of something in a view may be. What is moved may be anywhere.
+    pub fn shows_clear_materials(&self, view: &View) -> bool {
+        let frustum = view.frustum(1.0);
+        let own = self.chunks.iter().copied().flatten();
+        let placed = self.contents.iter().flat_map(|content| &content.chunks).copied().flatten();
+        let is_seen = |chunk: &Chunk| frustum.meets(&chunk.bounds) || !self.moved.is_empty();
+        own.chain(placed).any(|chunk| chunk.translucency != Translucency::None && is_seen(chunk))
     }
 
     /// The detail of each cell in a frame. What draws lines needs edges, which only the model itself has.

@@ -114,6 +114,7 @@ impl Cuts {
             let plan = plan.map(Plan::without_borders);
             of(hiding, plan)
         });
-        Self { picture: of(hiding(&is_seen), picture), sun }
+        let by_material = picture.as_ref().is_some_and(|plan| plan.clear_materials);
+        Self { picture: of(hiding(&is_seen).with_materials(by_material), picture), sun }
     }
 }

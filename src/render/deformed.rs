@@ -91,7 +91,7 @@ pub(super) struct Met {
     /// What each section of the city still draws.
     left: Arc<Vec<Vec<Chunk>>>,
     /// Sections that are met, and which of the chunks are theirs.
-    sections: Vec<(SectionKind, Range<usize>)>,
+    sections: Vec<MetSection>,
     /// Whose triangles are met; without bounds of what they become.
     chunks: Vec<Chunk>,
     rest: Rest,
@@ -317,7 +317,7 @@ impl Deformed {
             },
         };
         let bounds = made.chunks.iter().fold(Aabb::EMPTY, |all, (_, bounds)| all.union(*bounds));
-        let images = met.sections.iter().map(|(kind, _)| image_of(gpu, pipelines, &city.buffers, *kind)).collect();
+        let images = met.sections.iter().map(|met| image_of(gpu, pipelines, &city.buffers, met.kind)).collect();
         let buffers = CityBuffers::of_sections(sections_of(met, &made), city.buffers.surfaces.clone(), bounds);
         let view = of.view;
         let pixels_per_m = move |place: DVec3| pixels_per_m(&view, place);
@@ -340,9 +340,18 @@ impl Deformed {
     }
 }
 
+/// The chunks of a section that are met.
+#[derive(Debug)]
+struct MetSection {
+    kind: SectionKind,
+    has_shadow: bool,
+    /// Among those of all sections.
+    chunks: Range<usize>,
+}
+
 /// The sections that are moved, each of the chunks of one that is met.
 fn sections_of(met: &Met, made: &Made) -> Vec<Section> {
-    let section = |(kind, chunks): &(SectionKind, Range<usize>)| Section {
+    let section = |MetSection { kind, has_shadow, chunks }: &MetSection| Section {
         // What is bent is in no plane.
         kind: if *kind == SectionKind::Coplanar { SectionKind::Plain } else { *kind },
         vertices: made.vertices.clone(),
@@ -357,6 +366,8 @@ fn sections_of(met: &Met, made: &Made) -> Vec<Section> {
                 ..chunk.clone()
             })
             .collect(),
+        layer: 0,
+        has_shadow: *has_shadow,
     };
     met.sections.iter().map(section).collect()
 }
@@ -427,12 +438,9 @@ impl Met {
         let has_textures = sections().any(|(section, _)| matches!(section.kind, SectionKind::Textured { .. }));
         let (mut left, mut met, mut chunks) = (Vec::new(), Vec::new(), Vec::new());
         let mut all = MetPart::default();
-        let (mut firsts, mut layer) = (vec![0], 0);
+        let mut firsts = vec![0];
         for (section, source) in sections().filter(|_| is_met) {
-            let is_coplanar = section.kind == SectionKind::Coplanar;
-            let own_layer = if is_coplanar { layer } else { 0 };
-            layer += u32::from(is_coplanar);
-            let kind = MetKind { layer: own_layer, has_textures };
+            let kind = MetKind { layer: section.layer, has_textures };
             // In parts that keep their order.
             let parts: Vec<MetPart> = section
                 .chunks
@@ -453,11 +461,15 @@ impl Met {
             }
             left.push(own_left);
             if chunks.len() > first {
-                met.push((section.kind, first..chunks.len()));
+                met.push(MetSection {
+                    kind: section.kind,
+                    has_shadow: section.has_shadow,
+                    chunks: first..chunks.len(),
+                });
             }
         }
         let reach = bounds.union(of.moved.bounds(&bounds));
-        let is_textured = met.iter().any(|(kind, _)| matches!(kind, SectionKind::Textured { .. }));
+        let is_textured = met.iter().any(|met| matches!(met.kind, SectionKind::Textured { .. }));
         let texcoords = is_textured.then_some(&all.texcoords[..]);
         let triangles = RestTriangles { corners: &all.corners, bits: &all.bits, texcoords, firsts };
         let rest = Rest::new(gpu, triangles, &of.moved.deformers, &reach)?;

@@ -9,7 +9,7 @@ use crate::{
     geom::{Aabb, Volume, shape::Sphere},
     lens::Class,
     render::{
-        city::Chunk,
+        city::{Chunk, Translucency},
         operations::{Operations, Translucent},
         volume::{LensVolume, projected_box},
     },
@@ -150,6 +150,8 @@ pub struct Hiding {
     translucent: Vec<(Reach, bool)>,
     /// Where all is.
     clear: Vec<Clear>,
+    /// Whether what is translucent by its material counts: for whoever sees through it.
+    by_material: bool,
     /// The lenses that hide something or show something else, ascending.
     pub lenses: Vec<u32>,
 }
@@ -184,6 +186,11 @@ impl Hiding {
         hiding
     }
 
+    /// With what is translucent by its material, whatever lenses do.
+    pub fn with_materials(self, by_material: bool) -> Self {
+        Self { by_material, ..self }
+    }
+
     /// Whether a content of lenses, by its number, may show something in a box.
     pub fn shows(&self, city: u32, bounds: &Aabb, view: &View) -> bool {
         self.contents.iter().any(|(number, reach)| *number == city && reach.touches(bounds, view))
@@ -191,7 +198,8 @@ impl Hiding {
 
     /// Whether all fragments of a chunk are surely translucent, or taken away: none of them is left to those that are opaque.
     pub fn clears(&self, chunk: &Chunk, view: &View) -> bool {
-        self.clear.iter().any(|clear| clear.holds(chunk, view))
+        (self.by_material && chunk.translucency == Translucency::All)
+            || self.clear.iter().any(|clear| clear.holds(chunk, view))
     }
 
     /// Whether all of a chunk, of the scene's own city, is surely there and translucent.
@@ -203,7 +211,7 @@ impl Hiding {
     pub fn may_clear(&self, chunk: &Chunk, view: &View) -> bool {
         let may =
             |(reach, terrain): &(Reach, bool)| (*terrain || !chunk.has_terrain()) && reach.meets(&chunk.bounds, view);
-        self.translucent.iter().any(may)
+        (self.by_material && chunk.translucency != Translucency::None) || self.translucent.iter().any(may)
     }
 
     /// Whether some fragment of a chunk may be hidden, or translucent.
@@ -283,7 +291,7 @@ mod tests {
             let hiding = hiding(&shape, terrain, &view);
             let bounds = Aabb { min: low, max: low + size.abs() };
             let cell = if has_terrain { NO_CELL } else { 0 };
-            let chunk = Chunk { range: 0..3, bounds, cell, details: 1 };
+            let chunk = Chunk { range: 0..3, bounds, cell, details: 1, translucency: Translucency::None };
             let volume = shape.volume().expect("a volume");
             let acts = terrain || !has_terrain;
             let corners = bounds.corners().into_iter();

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use crate::{
     city::{
-        Texture, TextureImage, Wrap,
+        Texture, TextureImage, TextureOpacity, Wrap,
         texture::{Pixels, decode},
     },
     gpu::Gpu,
@@ -111,7 +111,11 @@ impl Images {
         if self.of(number) == Some(&of) {
             return Ok(false);
         }
-        let pixels = decode(&Texture { image: TextureImage::File(file.to_owned()), wrap: [Wrap::Repeat; 2] })?;
+        let pixels = decode(&Texture {
+            image: TextureImage::File(file.to_owned()),
+            wrap: [Wrap::Repeat; 2],
+            opacity: TextureOpacity::Own,
+        })?;
         let (size_made, texels) = match size {
             None => ([pixels.width, pixels.height], pixels.levels.into_iter().next().unwrap_or_default()),
             Some(size) => (size, filling(&pixels, size)),

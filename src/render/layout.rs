@@ -64,6 +64,12 @@ impl Surface {
         Self { object, normal, color_rg: r | g << 16, color_b_flags: b | flags << 16 }
     }
 
+    /// The same, whatever its material lets through.
+    pub fn opaque(self) -> Self {
+        let clear = MOST_CLEAR << (16 + SURFACE_CLEAR_SHIFT);
+        Self { color_b_flags: self.color_b_flags & !clear, ..self }
+    }
+
     /// Whether its normal is never turned to the eye: it is lit by one that it does not have where it lies.
     pub fn is_lit_as_before(&self) -> bool {
         (self.color_b_flags >> 16) & SURFACE_LIT_AS_BEFORE != 0
@@ -82,6 +88,21 @@ pub const SURFACE_CLOSED: u32 = 8;
 pub const SURFACE_INWARD: u32 = 16;
 /// A face is lit by a normal that it does not have where it lies.
 pub const SURFACE_LIT_AS_BEFORE: u32 = 32;
+/// `lib/surface.wgsl`: how much light its material lets through stands above this bit of the flags, in 1/1023.
+pub const SURFACE_CLEAR_SHIFT: u32 = 6;
+/// All of it.
+const MOST_CLEAR: u32 = 1023;
+
+/// The flags of a surface of this opacity, 0..1, to the nearest of 1024 steps.
+pub fn clear_bits(opacity: f32) -> u32 {
+    (((1.0 - opacity.clamp(0.0, 1.0)) * MOST_CLEAR as f32).round() as u32) << SURFACE_CLEAR_SHIFT
+}
+
+/// An opacity as the shaders have it.
+pub fn opacity_shown(opacity: f32) -> f32 {
+    1.0 - (clear_bits(opacity) >> SURFACE_CLEAR_SHIFT) as f32 / MOST_CLEAR as f32
+}
+
 /// `lib/surface.wgsl`: of a number in the geometry target, that it is a section, and the bits that hold whose.
 pub const SECTION: u32 = 1 << 31;
 /// `lib/surface.wgsl`: the object of a section; all of these bits: of several.

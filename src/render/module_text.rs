@@ -21,14 +21,16 @@ impl Renderer {
     pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
         let bounds = self.cities().map_or(Aabb::EMPTY, |cities| cities.bounds());
         let seen = seen_volumes(input, &bounds, SpriteRoom::default(), &[]).volumes;
-        let plans = Plans::new(input, &seen, &[]);
+        let facts = self.cities().map(|cities| cities.facts());
+        let clear_materials = facts.as_ref().is_some_and(|facts| facts.has_clear_materials());
+        let plans = Plans::new(input, &seen, &[], clear_materials);
         let names: Vec<&str> = plans.seen.iter().map(|&n| lenses[n as usize].name.as_str()).collect();
         let is_written_out = input.backend == Backend::Specialised && !plans.is_long();
         let (plan, operations) = (if seen.is_empty() { plans.context } else { plans.lenses }, input.operations);
         let (haze, masks) = (plan.haze, plan.masks);
         let shade = match is_written_out {
             true => Program::Specialised(plan),
-            false => Program::Uber(operations.uber(plan.haze, plan.masks)),
+            false => Program::Uber(operations.uber(plan.haze, plan.masks, clear_materials)),
         };
         let of = |plan: Option<Plan>, uber: Option<Uber>| match is_written_out {
             true => plan.map(Program::Specialised),
@@ -48,12 +50,16 @@ impl Renderer {
         }
         let layering = match is_written_out {
             true => plans.layering.map(Program::Specialised),
-            false => operations.uber_layering(haze, masks).filter(|_| plans.layering.is_some()).map(Program::Uber),
+            false => {
+                let uber = operations.uber_layering(haze, masks, clear_materials);
+                uber.filter(|_| plans.layering.is_some()).map(Program::Uber)
+            }
         };
-        let [picture, sun] = operations.uber_hiding();
+        let [picture, sun] = operations.uber_hiding(clear_materials);
         let by_shapes = |mut plan: Plan| {
             let shapes = seen.iter().map(|v| input.volumes[v.index].test_from_sun());
             plan.lenses.iter_mut().flat_map(|l| &mut l.volumes).zip(shapes).for_each(|(test, shape)| *test = shape);
+            plan.clear_materials = false;
             plan.without_borders()
         };
         let module = match part {

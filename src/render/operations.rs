@@ -211,8 +211,8 @@ impl Operations {
     }
 
     /// The uber back end's module for a frame of the scene.
-    pub fn uber(&self, haze: bool, masks: bool) -> Uber {
-        Uber { haze, masks, ..self.uber.clone() }.shading(shader::handlers())
+    pub fn uber(&self, haze: bool, masks: bool, clear_materials: bool) -> Uber {
+        Uber { haze, masks, clear_materials, ..self.uber.clone() }.shading(shader::handlers())
     }
 
     /// The uber back end's module of lines, where some may be drawn.
@@ -221,8 +221,8 @@ impl Operations {
     }
 
     /// The uber back end's module of translucent layers, where there may be some.
-    pub fn uber_layering(&self, haze: bool, masks: bool) -> Option<Uber> {
-        Uber { haze, masks, ..self.uber.clone() }.layering(shader::handlers())
+    pub fn uber_layering(&self, haze: bool, masks: bool, clear_materials: bool) -> Option<Uber> {
+        Uber { haze, masks, clear_materials, ..self.uber.clone() }.layering(shader::handlers())
     }
 
     /// Whether a lens of the scene has own content, in whatever frame.
@@ -236,10 +236,10 @@ impl Operations {
     }
 
     /// The uber back end's part of the modules of geometry and shadow, where something may be hidden.
-    pub fn uber_hiding(&self) -> [Option<Uber>; 2] {
-        let picture = self.uber.hiding(shader::handlers());
-        let sun =
-            picture.clone().map(|uber| Uber { tests: self.shape_tests.clone(), borders: false, by_ray: false, ..uber });
+    pub fn uber_hiding(&self, clear_materials: bool) -> [Option<Uber>; 2] {
+        let picture = Uber { clear_materials, ..self.uber.clone() }.hiding(shader::handlers());
+        let sun = self.uber.hiding(shader::handlers());
+        let sun = sun.map(|uber| Uber { tests: self.shape_tests.clone(), borders: false, by_ray: false, ..uber });
         [picture, sun]
     }
 

@@ -18,7 +18,7 @@ use crate::{
         own_sprites::OwnSprites,
         picture_parts::PictureParts,
         plans::Plans,
-        programs::Programs,
+        programs::{Made, Programs},
         section_rounds,
         seen::{Seen, seen_volumes},
         settings::Settings,
@@ -62,6 +62,9 @@ pub(super) struct FramePlan<'a> {
     /// Whether some of what is shown has a base colour, and a normal per vertex.
     pub colored: bool,
     pub smooth: bool,
+    /// Whether materials of it are translucent, in view or not; and whether textures are.
+    pub clear_materials: bool,
+    pub blended: bool,
     /// Whether the edges of the city are there.
     pub has_edges: bool,
     /// Sections of all cities, and of the scene's own.
@@ -115,7 +118,7 @@ impl<'a> FramePlan<'a> {
         let seen = seen_volumes(input, &facts.all, own_sprites.room(), &idle_lenses(&empty, input));
         let of_contents = |frustum: &Frustum| facts.content_bounds(input, frustum);
         let sun = facts.sun_eye(&input.view, &input.sun, settings.shadow_size, of_contents);
-        let plans = Plans::new(input, &seen.volumes, &empty);
+        let plans = Plans::new(input, &seen.volumes, &empty, facts.shows_clear_materials(&input.view));
         let is_seen = |lens| seen.volumes.iter().any(|v| v.lens == lens);
         let cuts = Cuts::new(input, is_seen, &empty, sun.as_ref().map(SunEye::widest), plans.hiding.clone());
         let sprite_bytes = 4 * seen.words;
@@ -142,6 +145,8 @@ impl<'a> FramePlan<'a> {
             colored: has_sections || facts.is_textured(),
             // Sections have normals of their own.
             smooth: has_sections || facts.has_smooth,
+            clear_materials: facts.has_clear_materials(),
+            blended: facts.has_clear_textures(),
             has_edges: facts.has_edges,
             sections: facts.sections.clone(),
             own_sections: facts.own_sections.clone(),
@@ -193,8 +198,9 @@ impl<'a> FramePlan<'a> {
 
     /// The programs of the back end. `are_ready`: whether the pipelines of these programs are there, which the adaptive one asks.
     pub fn programs(&self, are_ready: impl FnOnce(&Programs) -> bool) -> Programs {
+        let made = Made { has_shadows: self.sun.is_some(), clear_materials: self.clear_materials };
         let specialised = || Programs::specialised(&self.plans, &self.cuts);
-        let uber = || Programs::uber(self.input, &self.plans, &self.cuts, self.sun.is_some());
+        let uber = || Programs::uber(self.input, &self.plans, &self.cuts, made);
         match self.input.backend {
             // Those kept for reference are written out.
             _ if self.input.technique != Technique::Accumulate => specialised(),

@@ -42,8 +42,9 @@ pub(super) struct Plans {
 }
 
 impl Plans {
-    /// `seen`: the volumes in view; `empty`: the lenses, ascending, in which nothing is.
-    pub fn new(input: &FrameInput, seen: &[SeenVolume], empty: &[u32]) -> Self {
+    /// `seen`: the volumes in view; `empty`: the lenses, ascending, in which nothing is; `clear_materials`: whether something in view
+    /// is translucent by its material.
+    pub fn new(input: &FrameInput, seen: &[SeenVolume], empty: &[u32], clear_materials: bool) -> Self {
         let haze = input.haze_per_radius() > 0.0;
         let lenses: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         let filters = input.operations.filters(&lenses, empty, haze);
@@ -52,7 +53,8 @@ impl Plans {
             true => Plan::default(),
             false => input.operations.lens_plan(&volumes, empty, haze, input.wants_masks()),
         };
-        let context = input.operations.context_plan(haze);
+        let lenses = Plan { clear_materials: clear_materials && !seen.is_empty(), ..lenses };
+        let context = Plan { clear_materials, ..input.operations.context_plan(haze) };
         let whole = if seen.is_empty() { &context } else { &lenses };
         let (hiding, lining) = (whole.hiding(handlers()), whole.lining(handlers()));
         let layering = whole.layering(handlers());

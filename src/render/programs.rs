@@ -25,6 +25,14 @@ pub(super) struct Programs {
     pub is_uber: bool,
 }
 
+/// What the city has, in view or not, that modules of the uber back end are made for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Made {
+    pub has_shadows: bool,
+    /// Whether some materials are translucent.
+    pub clear_materials: bool,
+}
+
 impl Programs {
     /// Written out.
     pub fn specialised(plans: &Plans, cuts: &Cuts) -> Self {
@@ -45,11 +53,13 @@ impl Programs {
     }
 
     /// From the invoker table.
-    pub fn uber(input: &FrameInput, plans: &Plans, cuts: &Cuts, has_shadows: bool) -> Self {
+    pub fn uber(input: &FrameInput, plans: &Plans, cuts: &Cuts, made: Made) -> Self {
+        let Made { has_shadows, clear_materials } = made;
         let (haze, masks) = (input.haze_per_radius() > 0.0, input.wants_masks());
-        let shading = Program::Uber(input.operations.uber(haze, masks));
-        let [picture, sun] = input.operations.uber_hiding().map(|uber| uber.map(Program::Uber));
-        let layering = input.operations.uber_layering(haze, masks).filter(|_| plans.layering.is_some());
+        let shading = Program::Uber(input.operations.uber(haze, masks, clear_materials));
+        let [picture, sun] = input.operations.uber_hiding(clear_materials).map(|uber| uber.map(Program::Uber));
+        let layering = input.operations.uber_layering(haze, masks, clear_materials);
+        let layering = layering.filter(|_| plans.layering.is_some());
         Self {
             context: shading.clone(),
             lenses: shading,

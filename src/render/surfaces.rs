@@ -6,10 +6,18 @@
 use rustc_hash::FxHashMap;
 
 use crate::{
-    city::{CityModel, NONE, ObjectClass, StringId, Surface, decode_normal},
+    city::{CityModel, NONE, ObjectClass, StringId, Surface, TexelOpacity, decode_normal},
     gpu::{Gpu, GpuError},
-    render::{layout, palette, shells::Shells, textures::Textures},
+    render::{
+        city::{Group, Texels, Translucency},
+        layout, palette,
+        shells::Shells,
+        textures::Textures,
+    },
 };
+
+/// Opacity from which on something throws its shadow, all of it.
+pub const LEAST_SHADOW: f32 = 0.5;
 
 /// Surfaces per row: `lib/surface.wgsl` knows it too.
 pub const ROW: u32 = 4096;
@@ -19,6 +27,8 @@ pub struct SurfaceTable<'a> {
     model: &'a CityModel,
     textures: &'a Textures,
     shells: &'a Shells,
+    /// Whether opacity of materials does not count.
+    pub is_opaque: bool,
     /// The entries, by number.
     pub entries: Vec<layout::Surface>,
     numbers: FxHashMap<(u32, u32), u32>,
@@ -27,7 +37,7 @@ pub struct SurfaceTable<'a> {
 impl<'a> SurfaceTable<'a> {
     /// An empty table.
     pub fn new(model: &'a CityModel, textures: &'a Textures, shells: &'a Shells) -> Self {
-        Self { model, textures, shells, entries: Vec::new(), numbers: FxHashMap::default() }
+        Self { model, textures, shells, is_opaque: false, entries: Vec::new(), numbers: FxHashMap::default() }
     }
 
     /// Numbers given so far are not given again: surfaces of another tile are others.
@@ -37,17 +47,36 @@ impl<'a> SurfaceTable<'a> {
 
     /// The number of a model surface (`NONE`: the plain ground) that faces a packed normal.
     pub fn number(&mut self, surface: u32, normal: u32) -> u32 {
-        let Self { model, textures, shells, entries, numbers } = self;
+        let Self { model, textures, shells, is_opaque, entries, numbers } = self;
         *numbers.entry((surface, normal)).or_insert_with(|| {
-            entries.push(entry(model, textures, shells, surface, normal));
+            let found = entry(model, textures, shells, surface, normal);
+            entries.push(if *is_opaque { found.opaque() } else { found });
             (entries.len() - 1) as u32
         })
     }
 
-    /// Number of the texture and bits of the alpha cutoff of a model surface, where its texture was found.
-    pub fn texture(&self, surface: u32) -> Option<(u32, u32)> {
-        let material = self.model.materials.get(self.model.surfaces.get(surface as usize)?.material as usize)?;
-        self.textures.has(material.texture).then(|| (material.texture, material.alpha_cutoff.to_bits()))
+    /// What its triangles have in common with others; `has_texcoords`: whether they can show a texture.
+    pub fn group(&self, surface: u32, has_texcoords: bool) -> Group {
+        let found = self.model.surfaces.get(surface as usize);
+        let Some(material) = found.and_then(|s| self.model.materials.get(s.material as usize)) else {
+            return Group::PLAIN;
+        };
+        let texture = (has_texcoords && self.textures.has(material.texture)).then(|| {
+            let texels = match material.texels {
+                TexelOpacity::Ignored => Texels::Opaque,
+                TexelOpacity::Holes(least) => Texels::Holes(least.to_bits()),
+                TexelOpacity::Translucent if self.textures.is_translucent(material.texture) => Texels::Translucent,
+                TexelOpacity::Translucent => Texels::Opaque,
+            };
+            (material.texture, texels)
+        });
+        let opacity = layout::opacity_shown(material.base_color[3]);
+        let translucency = match texture {
+            _ if opacity < 1.0 => Translucency::All,
+            Some((_, Texels::Translucent)) => Translucency::Some,
+            _ => Translucency::None,
+        };
+        Group { texture, translucency, has_shadow: material.base_color[3] >= LEAST_SHADOW }
     }
 }
 
@@ -90,7 +119,8 @@ pub(super) fn entry(
     let unlit = if material.is_some_and(|m| m.unlit) { layout::SURFACE_UNLIT } else { 0 };
     let part = part_of(model, found, normal) << layout::SURFACE_PART_SHIFT;
     let shell = shells.get(&found.object).copied().unwrap_or_default();
-    layout::Surface::new(found.object, normal, color, unlit | part | shell)
+    let opacity = material.map_or(1.0, |m| m.base_color[3]);
+    layout::Surface::new(found.object, normal, color, unlit | part | shell | layout::clear_bits(opacity))
 }
 
 /// What a surface is part of: by its semantics; where a building has none, by which way it faces.

@@ -15,13 +15,15 @@ const BUDGET: u64 = 2 << 30;
 #[derive(Debug, Default)]
 pub struct Textures {
     entries: Vec<Option<(wgpu::TextureView, wgpu::Sampler)>>,
+    /// Which of them have texels that are not opaque.
+    translucent: Vec<bool>,
     bytes: u64,
 }
 
 impl Textures {
     /// No textures.
     pub fn none() -> Self {
-        Self { entries: Vec::new(), bytes: 0 }
+        Self { entries: Vec::new(), translucent: Vec::new(), bytes: 0 }
     }
 
     /// Decodes and uploads what the shown surfaces use; what cannot be read stays absent.
@@ -47,6 +49,7 @@ impl Textures {
         let before = gpu.allocated_bytes();
         let mut entries: Vec<Option<(wgpu::TextureView, wgpu::Sampler)>> = Vec::new();
         entries.resize_with(used.len(), || None);
+        let mut translucent = vec![false; used.len()];
         let wanted: Vec<usize> = (0..used.len()).filter(|&i| used[i]).collect();
         // A few at a time, so that decoded images do not pile up.
         for group in wanted.chunks(16) {
@@ -56,19 +59,27 @@ impl Textures {
                     Ok(_) if gpu.allocated_bytes() - before > BUDGET => {
                         log::warn!("textures beyond {} MiB are drawn in plain colours", BUDGET >> 20);
                     }
-                    Ok(pixels) => entries[i] = Some(upload(gpu, &pixels, &model.textures[i])),
+                    Ok(pixels) => {
+                        translucent[i] = pixels.is_translucent();
+                        entries[i] = Some(upload(gpu, &pixels, &model.textures[i]));
+                    }
                     // Whoever loaded the city has said this, for all of them at once.
                     Err(_) if model.textures[i].image.is_missing() => {}
                     Err(message) => log::warn!("texture {i}: {message}"),
                 }
             }
         }
-        Ok(Self { entries, bytes: gpu.allocated_bytes() - before })
+        Ok(Self { entries, translucent, bytes: gpu.allocated_bytes() - before })
     }
 
     /// Whether a texture is there.
     pub fn has(&self, number: u32) -> bool {
         self.get(number).is_some()
+    }
+
+    /// Whether a texture has texels that are not opaque.
+    pub fn is_translucent(&self, number: u32) -> bool {
+        self.translucent.get(number as usize) == Some(&true)
     }
 
     /// A texture and how it is sampled.

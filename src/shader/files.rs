@@ -7,7 +7,7 @@ use crate::shader::{
         COMBINED_SPRITE, DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FORM, FRAGMENT, File,
         GLASS, LENS, LENS_SPRITE, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, OBJECTS, ONE_CITY, OUTLINE,
         OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT, SOLID_DISTANCE, SOLID_SPRITE,
-        STORED_SPRITE, SURFACE, TRANSPARENCY, VIEW, VIEW_UNIFORM,
+        STORED_SPRITE, SURFACE, TEXEL, TRANSPARENCY, VIEW, VIEW_UNIFORM,
     },
     plan::program::Program,
 };
@@ -21,8 +21,8 @@ pub(super) fn of_city(program: &Program, behind: &[File]) -> Vec<File> {
 /// The same of translucent fragments, which keep colours.
 pub(super) fn of_translucent_city(program: &Program, behind: &[File]) -> Vec<File> {
     let lenses = of_lenses(program);
-    [&[VIEW, VIEW_UNIFORM, SURFACE, PACKED, SIGHT], &lenses[..], &[OBJECTS, FRAGMENT, vertices(program)], behind]
-        .concat()
+    let first = [VIEW, VIEW_UNIFORM, SURFACE, PACKED, TEXEL, SIGHT];
+    [&first, &lenses[..], &[OBJECTS, FRAGMENT, vertices(program)], behind].concat()
 }
 
 /// The pass that draws lines, and what it calls.

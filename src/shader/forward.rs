@@ -8,7 +8,7 @@ use crate::shader::{
     files,
     geometry::{self, Drawn, NOTHING_CUT},
     hiding::{self, Eye},
-    library::{CHANCE, DITHER, FORWARD, FRAGMENT, FRAGMENT_NODES, GEOMETRY, SHADE, TAIL, TRANSLUCENT},
+    library::{CHANCE, DITHER, FORWARD, FRAGMENT, FRAGMENT_NODES, GEOMETRY, SHADE, TAIL, TEXEL, TRANSLUCENT},
     names,
     plan::program::Program,
     rays,
@@ -68,7 +68,7 @@ impl Forward {
             .fill("snapping", adapter.snapping())
             .fill("carried", own.members)
             .fill("handlers", own.functions + &opacity)
-            .then(Template::of_files(&[FORWARD]));
+            .then(Template::of_files(&[TEXEL, FORWARD]));
         match self.kind {
             ForwardKind::Tail => text.then(Template::of_files(&[FRAGMENT_NODES, TAIL])),
             ForwardKind::Chance(is_of_plane) => {

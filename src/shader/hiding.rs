@@ -134,9 +134,14 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
         text.push_str(&contents::specialised(plan, "fragment: Fragment", classes, interest));
     }
     text.push_str(&head(!plan.contents.is_empty(), is_layers));
+    // Behind all that hides: what is not there is not translucent.
+    let mut material = if plan.clear_materials { clear_material(is_layers) } else { String::new() };
     for (step, handler) in steps() {
         let first = format!("{}u", step.parameters);
         let is_rule = handler.kind == EffectKind::Opacity;
+        if is_rule {
+            text.push_str(&std::mem::take(&mut material));
+        }
         let acts = if is_rule { handler.acts_on("fragment", &first) } else { Some(call(handler, &first)) };
         let scope = match step.scope {
             Scope::Everywhere => None,
@@ -162,7 +167,12 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
             }
         }
     }
-    let _ = writeln!(text, "    return {};\n}}", !is_layers);
+    let _ = writeln!(text, "{material}    return {};\n}}", !is_layers);
+}
+
+/// Where the material lets something through.
+fn clear_material(is_layers: bool) -> String {
+    format!("    if fragment.opacity < 1.0 {{\n        return {is_layers};\n    }}\n")
 }
 
 fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition], is_layers: bool) {
@@ -192,7 +202,17 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition], is
         text.push_str(&contents::uber("fragment: Fragment", "runs(by, fragment)"));
     }
     text.push_str(&head(uber.contents, is_layers));
-    text.push_str(if is_layers { IS_LAYER } else { VISIBLE });
+    let is_clear = if uber.clear_materials { "fragment.opacity < 1.0" } else { "false" };
+    match is_layers {
+        true => {
+            let _ = writeln!(text, "    var is_translucent = {is_clear};");
+            text.push_str(IS_LAYER);
+        }
+        false => {
+            text.push_str(&if uber.clear_materials { clear_material(false) } else { String::new() });
+            text.push_str(VISIBLE);
+        }
+    }
 }
 
 const VISIBLE: &str = "    let range = table.ranges.xy;
@@ -212,7 +232,6 @@ const VISIBLE: &str = "    let range = table.ranges.xy;
 /// `by.kind` is 2 for opacity rules. Nothing is returned out of the loop: what that leaves behind, Mesa 22.3 gets wrong.
 const IS_LAYER: &str = "    let range = table.ranges.xy;
     var is_hidden = false;
-    var is_translucent = false;
     for (var i = range.x; i < range.y; i++) {
         let by = invoker(i);
         let acts = runs(by, fragment) && hides(fragment, by);

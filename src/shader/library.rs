@@ -66,6 +66,7 @@ files! {
     SURFACE = "lib/surface.wgsl";
     COLOR = "lib/color.wgsl";
     PACKED = "lib/packed.wgsl";
+    TEXEL = "lib/texel.wgsl";
     REGION = "lib/region.wgsl";
     FORM = "lib/form.wgsl";
     LIGHT = "lib/light.wgsl";
@@ -117,6 +118,7 @@ files! {
     HALO = "lib/halo.wgsl";
     FILTERED = "lib/filter.wgsl";
     GEOMETRY = "pass/geometry.wgsl";
+    HOLE = "lib/hole.wgsl";
     SHADOW = "pass/shadow.wgsl";
     SHADOW_CUT = "pass/shadow-cut.wgsl";
     SPRITE = "pass/sprite.wgsl";

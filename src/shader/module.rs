@@ -14,10 +14,10 @@ use crate::{
         hiding::{self, Eye},
         library::{
             BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM, DEPTH_CODE, FILTER,
-            FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS, LAYERS, LINK_SLOTS,
-            NARROW, OBJECTS, ONE_CITY, PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT, SHOWN,
-            SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE,
-            TRANSLUCENT, VIEW, VIEW_UNIFORM,
+            FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS, HOLE, LAYERS,
+            LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT,
+            SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE,
+            TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
         lining,
         plan::{Plan, form::Form, lens_test::LensTest, program::Program},
@@ -183,8 +183,8 @@ impl Module {
         let of: &[File] = match self {
             Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, GEOMETRY],
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, GEOMETRY]),
-            Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SHADOW],
-            Self::Shadow(Some(program)) => return files::of_city(program, &[SHADOW_CUT]),
+            Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SURFACE, HOLE, SHADOW],
+            Self::Shadow(Some(program)) => return files::of_city(program, &[HOLE, SHADOW_CUT]),
             Self::Sprite => &[VIEW, VIEW_UNIFORM, REGION, SPRITE],
             Self::StoredForm(form) => {
                 let form = Forms { tests: vec![LensTest::volume(*form)], ..Forms::default() }.files();
@@ -207,7 +207,7 @@ impl Module {
             }
             Self::Shade(program) => return [files::of_shading(program, handlers), vec![SHADE]].concat(),
             Self::Composite(program) => {
-                return [files::of_shading(program, handlers), vec![SHADE, FRAGMENT_NODES, COMPOSITE]].concat();
+                return [files::of_shading(program, handlers), vec![SHADE, TEXEL, FRAGMENT_NODES, COMPOSITE]].concat();
             }
             Self::Lines(program) => return files::of_lines(program),
             Self::Regions(plan) => {

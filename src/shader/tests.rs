@@ -101,6 +101,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         haze: seed.is_multiple_of(5),
         masks: seed.is_multiple_of(7),
         contents: contents_of(seed),
+        clear_materials: seed.is_multiple_of(4),
         ..Plan::default()
     };
     let uber = Uber {
@@ -121,6 +122,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         masks: plan.masks,
         lines: plan.lines,
         transparency: false,
+        clear_materials: plan.clear_materials,
         contents: !plan.contents.is_empty(),
     };
     let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();

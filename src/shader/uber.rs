@@ -15,6 +15,7 @@ use crate::shader::{
     plan::{lens::BodyKind, program::Program, uber::Uber},
     shading::Shading,
     table::{self, MOST_SLOTS},
+    writer::opacity_end,
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`.
@@ -71,11 +72,15 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition], shading: &Shadi
 
 /// `opacity_at`, for `pass/composite.wgsl`.
 pub(super) fn opacity(uber: &Uber, handlers: &[EffectDefinition]) -> String {
-    let mut text = invoke(uber, "opacity", &[EffectKind::Opacity], handlers);
-    text.push_str("fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n");
+    let head = "fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n";
+    // Of materials alone there are no rules.
+    if !used(uber, handlers).any(|(_, h)| h.kind == EffectKind::Opacity) {
+        return head.to_owned() + opacity_end(uber.clear_materials);
+    }
+    let mut text = invoke(uber, "opacity", &[EffectKind::Opacity], handlers) + head;
     let share = share_argument(uber);
     text.push_str(&each(uber, "OPACITIES", &format!("opacity = invoke_opacity(opacity, point, by{share});\n")));
-    text + "    return opacity;\n}\n"
+    text + opacity_end(uber.clear_materials)
 }
 
 /// Which classes a place has, and which invokers run there.

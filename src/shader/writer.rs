@@ -224,7 +224,7 @@ impl Writer<'_> {
                 false => writeln!(text, "    if {} {{\n        opacity = {value};\n    }}", conditions.join(" && ")),
             };
         }
-        text.push_str("    return opacity;\n}\n");
+        text.push_str(opacity_end(self.plan.clear_materials));
         text
     }
 
@@ -239,6 +239,11 @@ impl Writer<'_> {
             false => format!("{head}    var color = as_is(start);\n{lines}    return color;\n}}\n\n"),
         }
     }
+}
+
+/// The end of `opacity_at`: of what is translucent itself, a lens shows that share.
+pub(super) fn opacity_end(has_clear_materials: bool) -> &'static str {
+    if has_clear_materials { "    return opacity * point.opacity;\n}\n" } else { "    return opacity;\n}\n" }
 }
 
 /// What keeps compilers from putting the answer of a handler of this kind together with what follows (`lib/point.wgsl`).

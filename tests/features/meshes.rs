@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 use veduta::{
     city::{
-        CityModel, Material, NONE, TextureImage, Value, WarningCode, Wrap,
+        CityModel, Material, NONE, TexelOpacity, TextureImage, Value, WarningCode, Wrap,
         load::{LoadOptions, Quiet, load},
         texture,
     },
@@ -148,7 +148,8 @@ fn gltf_materials_keep_what_can_be_drawn() {
     assert!(unlit.unlit && unlit.roughness == 0.25);
     assert_eq!(unlit.base_color, [0.2, 0.4, 0.6, 1.0], "OPAQUE has no opacity");
     let mask = one("mask");
-    assert!((mask.alpha_cutoff - 0.5).abs() < 1e-6, "0.4 after a factor of 0.8 is 0.5 of the texel");
+    let TexelOpacity::Holes(least) = mask.texels else { panic!("{:?}", mask.texels) };
+    assert!((least - 0.5).abs() < 1e-6, "0.4 after a factor of 0.8 is 0.5 of the texel");
     assert_eq!((mask.base_color[3], mask.texture), (1.0, 0));
     assert_eq!(one("blend").base_color, [0.1, 0.2, 0.3, 0.5]);
     assert_eq!(one("lamp").emissive, [4.0, 2.0, 1.0]);

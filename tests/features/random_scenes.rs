@@ -133,3 +133,40 @@ fn a_content_that_is_not_in_the_picture_changes_nothing() {
         assert_eq!(same_by_both(&mut studio, &scene(&lens)), Ok(Some(true)), "{effect}");
     }
 }
+
+/// The square, some of whose materials let light through.
+fn glazed_square(name: &str) -> std::path::PathBuf {
+    let text = std::fs::read_to_string(citydata("square.city.json")).expect("the square");
+    let mut city: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let materials = city["appearance"]["materials"].as_array_mut().expect("materials");
+    for (material, clear) in materials.iter_mut().zip([0.3, 0.75, 0.0].iter().cycle()) {
+        material["transparency"] = (*clear).into();
+    }
+    let path = std::env::temp_dir().join(format!("veduta-glazed-{name}-{}.city.json", std::process::id()));
+    std::fs::write(&path, city.to_string()).expect("a temporary file");
+    path
+}
+
+/// Lenses of all kinds over materials that are translucent: hidden, deformed, shown as contents, cut open.
+#[test]
+fn both_back_ends_draw_random_scenes_of_glass_the_same() {
+    let path = glazed_square("random");
+    let mut studio = studio(std::slice::from_ref(&path));
+    let (mut count, mut wrong) = (0, Vec::new());
+    let seeds = match (is_thorough(), std::env::var_os("VEDUTA_SEEDS").is_some()) {
+        (true, true) => seeds(),
+        (true, false) => (0..400).collect(),
+        _ => (0..4).map(|family| 3 * FAMILY + family * FAMILY).collect(),
+    };
+    for seed in seeds {
+        let text = scene(seed, "glass.city.json", Wanted { lenses: [2, 4], deformations: true });
+        match same_by_both(&mut studio, &text) {
+            Ok(drawn) => count += usize::from(drawn.is_some()),
+            Err(difference) => wrong.push(format!("seed {seed}: {difference}")),
+        }
+    }
+    std::fs::remove_file(path).expect("the temporary file");
+    println!("{count} scenes of glass drawn");
+    assert!(wrong.is_empty(), "{} scenes:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(count > 0);
+}

@@ -22,7 +22,7 @@ use glam::DVec3;
 use random::Random;
 use veduta::{
     city::{
-        Texture, TextureImage, Wrap,
+        Texture, TextureImage, TextureOpacity, Wrap,
         build::ModelBuilder,
         coplanar, facts, ground,
         load::{LoadOptions, input, read_input},
@@ -124,7 +124,7 @@ fn read_sprite(bytes: &[u8]) -> Result<(), String> {
 fn read(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
     if name.ends_with(".png") || name.ends_with(".jpg") {
         let image = TextureImage::Bytes(Arc::from(bytes));
-        return match texture::decode(&Texture { image, wrap: [Wrap::Repeat; 2] }) {
+        return match texture::decode(&Texture { image, wrap: [Wrap::Repeat; 2], opacity: TextureOpacity::Own }) {
             Ok(pixels) if pixels.levels[0].len() != pixels.width as usize * pixels.height as usize * 4 => {
                 Err("a picture of the wrong size".into())
             }

@@ -12,7 +12,7 @@ use crate::city::{
     },
     load::options::{LoadOptions, Sibling},
     memory::give_back,
-    model::{Material, NONE, Texture, TextureImage, Wrap},
+    model::{Material, NONE, TexelOpacity, Texture, TextureImage, TextureOpacity, Wrap},
     warning::WarningCode,
 };
 
@@ -85,14 +85,14 @@ pub struct SharedAppearance {
     textured: FxHashMap<(u32, u32), u32>,
 }
 
-/// Everything in a material: its name, and the bits of the rest.
-type MaterialKey = (String, [u32; 11]);
+/// Everything in a material that differs here: its name, and the bits of the rest.
+type MaterialKey = (String, [u32; 10]);
 
 fn key_of(material: &Material) -> MaterialKey {
-    let Material { name, base_color: [r, g, b, a], emissive, roughness, unlit, alpha_cutoff, texture } = material;
-    let [r, g, b, a, roughness, alpha_cutoff] = [r, g, b, a, roughness, alpha_cutoff].map(|x| x.to_bits());
+    let Material { name, base_color: [r, g, b, a], emissive, roughness, unlit, texels: _, texture } = material;
+    let [r, g, b, a, roughness] = [r, g, b, a, roughness].map(|x| x.to_bits());
     let [er, eg, eb] = emissive.map(f32::to_bits);
-    (name.clone(), [r, g, b, a, er, eg, eb, roughness, u32::from(*unlit), alpha_cutoff, *texture])
+    (name.clone(), [r, g, b, a, er, eg, eb, roughness, u32::from(*unlit), *texture])
 }
 
 /// The appearance of one document, in the model's indices.
@@ -149,7 +149,7 @@ impl SharedAppearance {
             let key = (image, wrap.map(|w| w as u8));
             let index = self.known_textures.get(&key).copied().unwrap_or_else(|| {
                 let image = resolve(&key.0, builder, file, options);
-                builder.model.textures.push(Texture { image, wrap });
+                builder.model.textures.push(Texture { image, wrap, opacity: TextureOpacity::Own });
                 (builder.model.textures.len() - 1) as u32
             });
             if self.is_shared {
@@ -168,7 +168,7 @@ impl SharedAppearance {
         *self.textured.entry((material, texture)).or_insert_with(|| {
             let base = materials.get(material as usize).cloned();
             let bare = base.unwrap_or(Material { base_color: [1.0; 4], ..Material::default() });
-            materials.push(Material { texture, ..bare });
+            materials.push(Material { texture, texels: TexelOpacity::Translucent, ..bare });
             (materials.len() - 1) as u32
         })
     }

@@ -12,7 +12,7 @@ use super::{
     document::Document,
 };
 use crate::city::{
-    model::{CityModel, Material, NONE, Texture, Wrap},
+    model::{CityModel, Material, NONE, TexelOpacity, Texture, TextureOpacity, Wrap},
     warning::WarningCode,
 };
 
@@ -112,13 +112,15 @@ impl Materials {
             *channel *= (f64::from(tint) / TINT_STEPS) as f32;
         }
         match json.map(|j| j.alpha_mode) {
-            Some(Checked::Valid(AlphaMode::Blend)) => {}
+            Some(Checked::Valid(AlphaMode::Blend)) => material.texels = TexelOpacity::Translucent,
             Some(Checked::Valid(AlphaMode::Mask)) => {
                 // The texel's share of the test `texel × factor < cutoff`; nothing is left where the factor is 0.
                 let cutoff = json.and_then(|j| j.alpha_cutoff).map_or(0.5, |c| c.0);
                 let alpha = material.base_color[3];
-                material.alpha_cutoff = if alpha > 0.0 { (cutoff / alpha).max(0.0) } else { f32::MAX };
-                material.base_color[3] = 1.0;
+                let least = if alpha > 0.0 { (cutoff / alpha).max(0.0) } else { f32::MAX };
+                material.texels = TexelOpacity::Holes(least);
+                let is_hole = material.texture == NONE && alpha < cutoff;
+                material.base_color[3] = if is_hole { 0.0 } else { 1.0 };
             }
             _ => material.base_color[3] = 1.0,
         }
@@ -141,7 +143,7 @@ impl Materials {
                 let wrap = sampler.map_or([Wrap::Repeat; 2], |s| [s.wrap_s, s.wrap_t].map(wrap));
                 let budget = &mut self.image_budget;
                 let image = buffers::image(at, image, document, from.buffers, from.around, budget, &mut city.warnings);
-                city.textures.push(Texture { image, wrap });
+                city.textures.push(Texture { image, wrap, opacity: TextureOpacity::Own });
                 (city.textures.len() - 1) as u32
             }
             Err(what) => {
@@ -206,7 +208,7 @@ fn colors(json: &Json, from: Palette<'_>, city: &mut CityModel) -> Material {
         emissive,
         roughness: sane(roughness, 1.0),
         unlit: json.extensions.as_ref().is_some_and(|e| e.unlit.is_some()),
-        alpha_cutoff: 0.0,
+        texels: TexelOpacity::Ignored,
         texture: NONE,
     }
 }

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use super::lines::{Lines, number, statement, text, words};
 use crate::city::{
     load::options::{LoadOptions, Sibling},
-    model::{CityModel, Material, NONE, Texture, TextureImage, Wrap},
+    model::{CityModel, Material, NONE, TexelOpacity, Texture, TextureImage, TextureOpacity, Wrap},
     warning::{WarningCode, Warnings},
 };
 
@@ -133,27 +133,65 @@ fn add(city: &mut CityModel, mtl: &tobj::Material, path: &Path, options: &LoadOp
         roughness: mtl.shininess.map_or(0.9, |ns| (2.0 / (ns.max(0.0) + 2.0)).sqrt() as f32),
         ..Material::default()
     };
-    if mtl.dissolve_texture.is_some() {
-        city.warnings.add(WarningCode::Unsupported, "", || {
-            format!("{}, material {:?}: opacity textures (map_d) are not drawn", path.display(), mtl.name)
-        });
-    }
-    let texture = mtl.diffuse_texture.as_deref().map(|t| texture(city, &mtl.name, t, path, options));
+    let maps = Maps { color: mtl.diffuse_texture.as_deref(), opacity: mtl.dissolve_texture.as_deref() };
+    let texture = texture(city, &mtl.name, maps, path, options);
     city.materials.push(plain.clone());
     let untextured = (city.materials.len() - 1) as u32;
     let Some(texture) = texture else { return Look { textured: untextured, plain: untextured } };
     // Kd multiplies the texture (MTL specification), but exporters that mean "as it is" write 0.
-    let shade = if kd == [0.0; 3] { [1.0; 3] } else { kd };
-    city.materials.push(Material { base_color: [shade[0], shade[1], shade[2], opacity], texture, ..plain });
+    let shade = if kd == [0.0; 3] && mtl.diffuse_texture.is_some() { [1.0; 3] } else { kd };
+    let texels = TexelOpacity::Translucent;
+    city.materials.push(Material { base_color: [shade[0], shade[1], shade[2], opacity], texture, texels, ..plain });
     Look { textured: untextured + 1, plain: untextured }
 }
 
-/// Adds the texture of a `map_Kd` statement: options, then a file name that may hold spaces.
-fn texture(city: &mut CityModel, material: &str, statement: &str, path: &Path, options: &LoadOptions) -> u32 {
-    let (name, wrap, moved) = map_options(statement);
+/// The `map_Kd` and `map_d` statements of a material: options, then a file name that may hold spaces.
+#[derive(Clone, Copy)]
+struct Maps<'a> {
+    color: Option<&'a str>,
+    opacity: Option<&'a str>,
+}
+
+/// Adds the texture of these, if there is one.
+fn texture(city: &mut CityModel, material: &str, maps: Maps, path: &Path, options: &LoadOptions) -> Option<u32> {
+    let mut found = |keyword, arguments| {
+        let statement = MapStatement { material, keyword, arguments };
+        map(&mut city.warnings, statement, path, options)
+    };
+    let (color, opacity) = (maps.color.map(|s| found("map_Kd", s)), maps.opacity.map(|s| found("map_d", s)));
+    let texture = match (color, opacity) {
+        (None, None) => return None,
+        // Exporters name one image twice: its opacity is its own.
+        (Some((image, wrap)), Some((other, _))) if image != other => {
+            Texture { image, wrap: [wrap; 2], opacity: TextureOpacity::Of(other) }
+        }
+        (Some((image, wrap)), _) => Texture { image, wrap: [wrap; 2], opacity: TextureOpacity::Own },
+        (None, Some((image, wrap))) => Texture { image, wrap: [wrap; 2], opacity: TextureOpacity::Alone },
+    };
+    let known = city.textures.iter().rposition(|t| *t == texture);
+    Some(match known.filter(|_| !texture.image.is_missing()) {
+        Some(known) => known as u32,
+        None => {
+            city.textures.push(texture);
+            u32::try_from(city.textures.len() - 1).unwrap_or(NONE)
+        }
+    })
+}
+
+/// A statement that names an image.
+struct MapStatement<'a> {
+    material: &'a str,
+    keyword: &'a str,
+    arguments: &'a str,
+}
+
+/// The image that a statement of a material names, and how it goes on.
+fn map(warnings: &mut Warnings, statement: MapStatement, path: &Path, options: &LoadOptions) -> (TextureImage, Wrap) {
+    let MapStatement { material, keyword, arguments } = statement;
+    let (name, wrap, moved) = map_options(arguments);
     if moved {
-        city.warnings.add(WarningCode::Unsupported, "", || {
-            format!("{}, material {material:?}: -o, -s and -t of map_Kd are not applied", path.display())
+        warnings.add(WarningCode::Unsupported, "", || {
+            format!("{}, material {material:?}: -o, -s and -t of {keyword} are not applied", path.display())
         });
     }
     let image = match options.sibling(path, name) {
@@ -163,21 +201,14 @@ fn texture(city: &mut CityModel, material: &str, statement: &str, path: &Path, o
             TextureImage::Missing(format!("{path}, material {material:?}: {file} does not exist"))
         }
         Sibling::Outside(file) => {
-            city.warnings.add(WarningCode::OutsidePath, "", || {
+            warnings.add(WarningCode::OutsidePath, "", || {
                 let file = file.display();
                 format!("{}: {file} is outside the folders you named; --allow-outside reads it", path.display())
             });
             TextureImage::Missing(String::new())
         }
     };
-    let known = city.textures.iter().rposition(|t| t.image == image && t.wrap == [wrap; 2]);
-    match known.filter(|_| !image.is_missing()) {
-        Some(known) => known as u32,
-        None => {
-            city.textures.push(Texture { image, wrap: [wrap; 2] });
-            u32::try_from(city.textures.len() - 1).unwrap_or(NONE)
-        }
-    }
+    (image, wrap)
 }
 
 /// File name, addressing, and whether the picture is moved or scaled.

@@ -8,7 +8,7 @@ use crate::{
         eye::PictureTile,
         pass::{
             context::FrameContext,
-            layering::{Layering, common},
+            layering::{self, Layering, common},
         },
         plan::FramePlan,
         resource::{
@@ -48,8 +48,10 @@ const SMALLER: &str = "a smaller picture would be right";
 pub struct CompositeKey {
     /// What the context and the lenses do.
     pub program: Program,
-    /// Base colours come from textures.
+    /// Base colours come with the lists.
     pub textured: bool,
+    /// With them the opacity of texels.
+    pub blended: bool,
     /// One clay colour.
     pub clay: bool,
     /// There is a shadow map.
@@ -73,7 +75,8 @@ impl CompositeKey {
     pub fn new(plan: &FramePlan, program: &Program) -> Self {
         Self {
             program: program.clone(),
-            textured: plan.is_textured(),
+            textured: layering::has_colors(plan),
+            blended: plan.blended,
             clay: plan.is_clay(),
             shadows: plan.sun.is_some(),
             smooth: plan.smooth,
@@ -95,6 +98,7 @@ impl PipelineKey for CompositeKey {
             (self.tail, "and a tail"),
             (self.sorted && self.record == 0 && !self.tail, "sorted"),
             (self.textured, "textured"),
+            (self.blended, "blended"),
             (self.clay, "clay"),
             (self.shadows, "shadows"),
             (self.smooth, "smooth"),
@@ -114,6 +118,7 @@ impl PipelineKey for CompositeKey {
                 ("TAIL", flag(self.tail)),
                 ("PICKS", flag(self.picks)),
                 ("TEXTURED", flag(self.textured)),
+                ("BLENDED", flag(self.blended)),
                 ("CLAY", flag(self.clay)),
                 ("SHADOWS", flag(self.shadows)),
                 ("SMOOTH", flag(self.smooth)),

@@ -96,7 +96,12 @@ pub fn shows_layers(plan: &FramePlan) -> bool {
 
 /// Words of a fragment node.
 pub fn words(plan: &FramePlan) -> u32 {
-    3 + u32::from(plan.smooth) + u32::from(plan.is_textured())
+    3 + u32::from(plan.smooth) + u32::from(has_colors(plan))
+}
+
+/// Whether nodes have a colour, and with it the opacity of a texel where textures have some: in clay too.
+pub fn has_colors(plan: &FramePlan) -> bool {
+    plan.is_textured() || plan.blended
 }
 
 /// Whether some opacity rule asks how many layers the picture has.

@@ -55,8 +55,10 @@ const PICKED: u64 = 3;
 struct ListKey {
     section: GeometryKind,
     normals: Normals,
-    /// Whether the picture has textures.
+    /// Whether nodes have colours.
     textured: bool,
+    /// Whether these have the opacity of texels.
+    blended: bool,
     /// What is translucent.
     program: Program,
     /// All is.
@@ -97,6 +99,7 @@ impl PipelineKey for ListKey {
         let flags = words(&[
             (self.all, "of all"),
             (self.textured, "textured"),
+            (self.blended, "blended"),
             (smooth, "smooth"),
             (flat, "flat"),
             (self.holds_depth, "held"),
@@ -109,6 +112,7 @@ impl PipelineKey for ListKey {
             ("SMOOTH", flag(self.normals.smooth)),
             ("FLAT_CITY", flag(self.normals.flat)),
             ("TEXTURED", flag(self.textured)),
+            ("BLENDED", flag(self.blended)),
             ("ALL", flag(self.all)),
         ];
         let compare = match self.is_interpolated() {
@@ -276,7 +280,8 @@ fn list_key(plan: &FramePlan, program: &Program, section: &SectionFacts, all: bo
     ListKey {
         section: section.kind.into(),
         normals: Normals::new(plan.smooth, section.is_smooth),
-        textured: plan.is_textured(),
+        textured: layering::has_colors(plan),
+        blended: plan.blended,
         program: program.clone(),
         all,
         early: plan.adapter.tests_depth_early,

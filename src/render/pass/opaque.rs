@@ -3,7 +3,7 @@
 use crate::{
     render::{
         cities::DrawnSection,
-        city::{Chunk, CityBuffers, Draw as Run, Section, draws_of},
+        city::{Chunk, CityBuffers, Draw as Run, Section, Texels, draws_of},
         city_facts::SectionFacts,
         cut::Cut,
         pass::{
@@ -90,8 +90,9 @@ impl PipelineKey for GeometryKey {
     fn name(&self) -> String {
         let kind = match self.section {
             GeometryKind::Plain => "",
-            GeometryKind::Textured(0) => " textured",
-            GeometryKind::Textured(_) => " textured with holes",
+            GeometryKind::Textured(Texels::Opaque) => " textured",
+            GeometryKind::Textured(Texels::Holes(_)) => " textured with holes",
+            GeometryKind::Textured(Texels::Translucent) => " of translucent textures",
             GeometryKind::Coplanar => " coplanar",
         };
         let Normals { smooth, flat } = self.normals;

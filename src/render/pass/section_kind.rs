@@ -1,10 +1,11 @@
 //! Kinds of sections of a city, as far as pipelines differ.
 
 use crate::render::{
-    city::SectionKind,
+    city::{SectionKind, Texels},
     layout,
     resource::{
         bindings::GroupLayout,
+        key::flag,
         layouts::IMAGE,
         vertices::{self, per_vertex},
     },
@@ -15,8 +16,8 @@ use crate::render::{
 pub enum GeometryKind {
     /// Ordinary.
     Plain,
-    /// Textured, with the bits of the alpha cutoff.
-    Textured(u32),
+    /// Textured, and what the opacity of texels does.
+    Textured(Texels),
     /// Depth from the shared plane.
     Coplanar,
 }
@@ -25,11 +26,14 @@ impl From<SectionKind> for GeometryKind {
     fn from(kind: SectionKind) -> Self {
         match kind {
             SectionKind::Plain => Self::Plain,
-            SectionKind::Textured { alpha_cutoff, .. } => Self::Textured(alpha_cutoff.to_bits()),
+            SectionKind::Textured { texels, .. } => Self::Textured(texels),
             SectionKind::Coplanar => Self::Coplanar,
         }
     }
 }
+
+/// Opacity below which a texel is not there: half of the least that is not 0.
+const LEAST_SEEN: f64 = 0.5 / 255.0;
 
 const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x2];
 const PLANE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x3, 5 => Sint32x3, 6 => Float32];
@@ -53,23 +57,32 @@ impl GeometryKind {
         matches!(self, Self::Textured(_)).then_some(&IMAGE)
     }
 
-    /// The opacity below which texels are holes, as pipelines read it; where triangles hold their depth, how many words corners have besides.
+    /// What the opacity of texels does, as pipelines read it; where triangles hold their depth, how many words corners have besides.
     pub fn constants(self, holds_depth: bool) -> Vec<(&'static str, f64)> {
-        let (cutoff, words) = match self {
+        let (texels, words) = match self {
             Self::Plain => (None, 0),
-            Self::Textured(cutoff) => (Some(cutoff), 2),
+            Self::Textured(texels) => (Some(texels), 2),
             Self::Coplanar => (None, size_of::<layout::Plane>() / 4),
         };
-        let cutoff = cutoff.map(|cutoff| ("ALPHA_CUTOFF", f64::from(f32::from_bits(cutoff))));
-        cutoff.into_iter().chain(holds_depth.then_some(("WORDS_BESIDES", words as f64))).collect()
+        let least = |texels| match texels {
+            Texels::Opaque => 0.0,
+            Texels::Holes(least) => f64::from(f32::from_bits(least)),
+            Texels::Translucent => LEAST_SEEN,
+        };
+        let of_texels = texels
+            .map(|t| [("ALPHA_CUTOFF", least(t)), ("TRANSLUCENT", flag(t == Texels::Translucent))])
+            .into_iter()
+            .flatten();
+        of_texels.chain(holds_depth.then_some(("WORDS_BESIDES", words as f64))).collect()
     }
 
     /// What names of pipelines of layers say of it.
     pub fn layer_words(self) -> &'static str {
         match self {
             Self::Plain => "",
-            Self::Textured(0) => " of textures",
-            Self::Textured(_) => " of textures with holes",
+            Self::Textured(Texels::Opaque) => " of textures",
+            Self::Textured(Texels::Holes(_)) => " of textures with holes",
+            Self::Textured(Texels::Translucent) => " of translucent textures",
             Self::Coplanar => " coplanar",
         }
     }

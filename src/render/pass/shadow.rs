@@ -7,26 +7,27 @@ use crate::{
     render::{
         cells::Details,
         cities::DrawnSection,
-        city::{Chunk, CityBuffers, draws_of},
+        city::{Chunk, CityBuffers, SectionKind, Texels, draws_of},
         cut::{Cut, Shapes},
         invokers::{InvokerPlans, Invokers},
         layout,
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
             opaque::{CutBy, draw_runs},
+            section_kind::GeometryKind,
         },
         plan::FramePlan,
         programs::Programs,
         resource::{
             bindings::{GroupLayout, KeptGroup, STORAGE, UNIFORM, group, one_of, whole},
             key::{Draw, Parts, PipelineKey, Stage, depth_test},
-            layouts::{CITY, CUT_CITY, VIEW},
+            layouts::{CITY, CUT_CITY, IMAGE, VIEW},
             recording::{Counted, DrawnPass, Recording, Shaded, cleared_depth},
             synced::Synced,
             targets::Needs,
-            vertices,
         },
         sun_eye::SunEye,
+        surfaces::LEAST_SHADOW,
     },
     shader::{Module, Plan, Program, handlers},
     view::View,
@@ -46,28 +47,52 @@ static SHAPES: GroupLayout = GroupLayout {
     ],
 };
 
-/// Depth from the sun, and what is hidden from it.
+/// Depth from the sun.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-struct ShadowKey(Option<Program>);
+struct ShadowKey {
+    /// What is hidden from it.
+    hidden: Option<Program>,
+    /// Of a texture with holes, the bits of the opacity below which there is one.
+    holes: Option<u32>,
+}
+
+impl ShadowKey {
+    /// Those of a section, where something may be hidden.
+    fn new(kind: SectionKind, hidden: Option<Program>) -> Self {
+        let holes = match kind {
+            SectionKind::Textured { texels: Texels::Holes(least), .. } => Some(least),
+            SectionKind::Textured { texels: Texels::Translucent, .. } => Some(LEAST_SHADOW.to_bits()),
+            _ => None,
+        };
+        Self { hidden, holes }
+    }
+}
 
 impl PipelineKey for ShadowKey {
     fn name(&self) -> String {
-        Module::Shadow(self.0.clone()).name()
+        let holes = if self.holes.is_some() { " with holes" } else { "" };
+        format!("{}{holes}", Module::Shadow(self.hidden.clone()).name())
     }
 
     fn parts(&self, _: wgpu::TextureFormat) -> Parts {
-        let (groups, fragment) = match self.0 {
+        let image = self.holes.map(|_| &IMAGE);
+        let (mut groups, mut fragment) = match self.hidden {
             Some(_) => (vec![Some(&VIEW), Some(&CUT_CITY), Some(&SHAPES)], Some("fragment")),
-            None => (vec![Some(&VIEW), Some(&CITY)], None),
+            None => (vec![Some(&VIEW), Some(&CITY), None], None),
         };
+        groups.push(image);
+        let (mut vertex, mut section) = ("vertex", GeometryKind::Plain);
+        if self.holes.is_some() {
+            (vertex, fragment, section) = ("vertex_textured", Some("textured"), GeometryKind::Textured(Texels::Opaque));
+        }
         Parts {
-            module: Module::Shadow(self.0.clone()),
+            module: Module::Shadow(self.hidden.clone()),
             groups,
-            constants: Vec::new(),
+            constants: self.holes.map(|least| ("LEAST", f64::from(f32::from_bits(least)))).into_iter().collect(),
             stage: Stage::Draw(Draw {
-                buffers: vec![vertices::city()],
+                buffers: section.vertex_buffers(false),
                 depth: Some(depth_test(wgpu::CompareFunction::Greater, true)),
-                ..Draw::new("vertex", fragment)
+                ..Draw::new(vertex, fragment)
             }),
         }
     }
@@ -171,6 +196,13 @@ impl ShadowMap {
         let seen = CityBuffers::visible(shown, &sun.frustum(1.0), sun.camera.eye);
         let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).collect();
         pass.set_vertex_buffer(0, drawn.section.vertices.slice(..));
+        let key = |hidden| ShadowKey::new(drawn.section.kind, hidden);
+        if let Some((image, texcoords)) =
+            drawn.image.zip(drawn.section.extra.as_ref()).filter(|_| key(None).holes.is_some())
+        {
+            pass.set_vertex_buffer(1, texcoords.slice(..));
+            pass.set_bind_group(3, image, &[]);
+        }
         let mut counted = Counted::NONE;
         for (part, is_cut) in Cut::parts(cut, view, &chunks, drawn.content.is_some()) {
             let (runs, triangles) = draws_of(part.into_iter());
@@ -182,7 +214,7 @@ impl ShadowMap {
                 }
                 false => pass.set_bind_group(1, &drawn.city.group, &[]),
             }
-            pass.set_pipeline(frame.pipelines.get(&ShadowKey(program)));
+            pass.set_pipeline(frame.pipelines.get(&key(program)));
             draw_runs(pass, &drawn.section.indices, &runs);
             counted += Counted { draws: runs.len() as u32, triangles };
         }
@@ -222,9 +254,13 @@ impl Pass for ShadowMap {
         needs.shadow = sun.size;
     }
 
-    fn add_keys(&self, input: Option<&&SunEye>, _: &FramePlan, programs: &Programs, keys: &mut Keys) {
-        keys.add(10, input.map(|_| ShadowKey(None)));
-        keys.add_programs(25, programs.made_for_sun.iter().map(|program| ShadowKey(Some(program.clone()))));
+    fn add_keys(&self, input: Option<&&SunEye>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
+        let sections = || plan.sections.iter().filter(|_| input.is_some());
+        keys.add(10, sections().map(|section| ShadowKey::new(section.kind, None)));
+        let hidden = |program: &Program| {
+            plan.sections.iter().map(move |s| ShadowKey::new(s.kind, Some(program.clone()))).collect::<Vec<_>>()
+        };
+        keys.add_programs(25, programs.made_for_sun.iter().flat_map(hidden));
     }
 
     fn prepare(&mut self, sun: &&SunEye, stage: &mut Preparing) -> Result<(), GpuError> {

@@ -9,7 +9,7 @@ use crate::{
     geom::{Aabb, Shape},
     lens::{Class, EffectUse, Lens, LensKind, LensSprite},
     render::{
-        city::{Chunk, SectionKind},
+        city::{Chunk, SectionKind, Translucency},
         city_facts::{CityFacts, SectionFacts},
         eye::PictureTile,
         frame::{Backend, FrameInput},
@@ -133,7 +133,7 @@ impl Asked {
             furniture: &self.furniture,
             most_triangles: None,
         };
-        let chunks = [Chunk { range: 0..36, bounds, cell: 0, details: 1 }];
+        let chunks = [Chunk { range: 0..36, bounds, cell: 0, details: 1, translucency: Translucency::None }];
         let sections = vec![SectionFacts { kind: SectionKind::Plain, is_smooth: false, is_read: false }];
         let facts = CityFacts {
             bounds,

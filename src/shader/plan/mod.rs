@@ -40,6 +40,8 @@ pub struct Plan {
     pub lines: bool,
     /// Whether something is seen through: what shading lays over its picture.
     pub transparency: bool,
+    /// Whether some materials let through what is behind them, whatever lenses do.
+    pub clear_materials: bool,
     /// The contents of its lenses, bottom lens first.
     pub contents: Vec<PlanContent>,
     /// How places are told apart, for the techniques that are kept for reference; `None`: by accumulation.
@@ -140,7 +142,7 @@ impl Plan {
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let decides = |step: &&Step| handlers[step.effect as usize].kind.decides_visibility();
         let steps: Vec<Step> = self.steps.iter().filter(decides).cloned().collect();
-        if steps.is_empty() && self.contents.is_empty() {
+        if steps.is_empty() && self.contents.is_empty() && !self.clear_materials {
             return None;
         }
         let (mut lenses, contents) = (self.plain_lenses(), self.contents.clone());
@@ -150,7 +152,7 @@ impl Plan {
             rules.any(|(step, _)| matches!(step.scope, Scope::Lens(l, _) if l == lens))
         };
         (0..).zip(&mut lenses).for_each(|(i, lens)| lens.border = lens.border.filter(|b| b.dithers || fades(i)));
-        Some(Self { lenses, steps, contents, ..Self::default() })
+        Some(Self { lenses, steps, contents, clear_materials: self.clear_materials, ..Self::default() })
     }
 
     /// The part that lines go through; `None` where no effect draws lines.
@@ -174,24 +176,27 @@ impl Plan {
     /// The part that decides how surfaces look.
     pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
         self.transparency = self.is_seen_through(handlers);
+        self.clear_materials = false;
         self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
         self.contents.clear();
         self
     }
 
-    /// The part that decides how much of each translucent layer is seen, and how that looks; `None` without opacity rules.
+    /// The part that decides how much of each translucent layer is seen, and how that looks; `None` where nothing is seen
+    /// through.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let is_of_layers =
             |step: &&Step| !matches!(handlers[step.effect as usize].kind, EffectKind::Hide | EffectKind::Filter);
         let steps = self.steps.iter().filter(is_of_layers).cloned().collect();
         let mut lenses = self.lenses.clone();
         lenses.iter_mut().for_each(|lens| lens.body = None);
-        let all = Self { lenses, steps, haze: self.haze, masks: self.masks, ..Self::default() };
+        let Self { haze, masks, clear_materials, .. } = *self;
+        let all = Self { lenses, steps, haze, masks, clear_materials, ..Self::default() };
         self.is_seen_through(handlers).then_some(all)
     }
 
     fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
-        self.steps_of(EffectKind::Opacity, handlers).next().is_some()
+        self.clear_materials || self.steps_of(EffectKind::Opacity, handlers).next().is_some()
     }
 
     /// How many `vec4f` of the parameters it reads.

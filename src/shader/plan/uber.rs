@@ -34,6 +34,8 @@ pub struct Uber {
     pub lines: bool,
     /// Whether something may be seen through.
     pub transparency: bool,
+    /// Whether some materials let through what is behind them, whatever lenses do.
+    pub clear_materials: bool,
     /// Whether some lenses have own content.
     pub contents: bool,
 }
@@ -42,7 +44,7 @@ impl Uber {
     /// The part that decides which fragments are there; `None` where nothing may be hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::decides_visibility);
-        (!effects.is_empty() || self.contents).then(|| Self {
+        (!effects.is_empty() || self.contents || self.clear_materials).then(|| Self {
             effects,
             tests: self.tests.clone(),
             leaves: self.leaves.clone(),
@@ -50,6 +52,7 @@ impl Uber {
             sides: self.sides,
             borders: self.dithers || (self.borders && self.is_seen_through(handlers)),
             by_ray: self.by_ray,
+            clear_materials: self.clear_materials,
             ..Self::default()
         })
     }
@@ -71,10 +74,12 @@ impl Uber {
     /// The part that decides how surfaces look.
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
         let transparency = self.is_seen_through(handlers);
-        Self { effects: self.of(handlers, |kind| !kind.decides_visibility()), transparency, contents: false, ..self }
+        let effects = self.of(handlers, |kind| !kind.decides_visibility());
+        Self { effects, transparency, contents: false, clear_materials: false, ..self }
     }
 
-    /// The part that decides how much of each translucent layer is seen, and how that looks; `None` without opacity rules.
+    /// The part that decides how much of each translucent layer is seen, and how that looks; `None` where nothing is seen
+    /// through.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
         let all =
@@ -83,7 +88,7 @@ impl Uber {
     }
 
     fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
-        self.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Opacity)
+        self.clear_materials || self.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Opacity)
     }
 
     fn of(&self, handlers: &[EffectDefinition], is_wanted: impl Fn(EffectKind) -> bool) -> Vec<u32> {

@@ -169,8 +169,10 @@ impl Shading {
 pub struct FragmentKey {
     section: GeometryKind,
     normals: Normals,
-    /// Whether the picture has textures.
+    /// Whether nodes have colours.
     textured: bool,
+    /// Whether these have the opacity of texels.
+    blended: bool,
     /// What is translucent.
     program: Program,
     /// Whether the depth test can come first.
@@ -197,7 +199,8 @@ impl FragmentKey {
         Self {
             section,
             normals: Normals::new(plan.smooth, is_smooth_city),
-            textured: plan.is_textured(),
+            textured: layering::has_colors(plan),
+            blended: plan.blended,
             program: programs.noting.clone(),
             early: tests_early && !pass.is_forward(),
             pass,
@@ -221,6 +224,7 @@ impl FragmentKey {
             ("SMOOTH", flag(self.normals.smooth)),
             ("FLAT_CITY", flag(self.normals.flat)),
             ("TEXTURED", flag(self.textured)),
+            ("BLENDED", flag(self.blended)),
         ];
         let stage = match self.pass {
             FragmentPass::Depths => Some(0.0),
@@ -293,7 +297,8 @@ impl PipelineKey for FragmentKey {
             FragmentPass::Tail | FragmentPass::Chance => "",
         };
         let Normals { smooth, flat } = self.normals;
-        let flags = words(&[(self.textured, "textured"), (smooth, "smooth"), (flat, "flat")]);
+        let flags =
+            words(&[(self.textured, "textured"), (self.blended, "blended"), (smooth, "smooth"), (flat, "flat")]);
         format!("{}{pass}{}{flags}", self.module().name(), self.section.layer_words())
     }
 
