@@ -26,12 +26,20 @@ use crate::{
 const LEVELS: usize = 4;
 /// More than one level are drawn where the widest texel of one would be more than so many times as wide in the picture.
 const WORTH: f64 = 1.5;
-/// Nearer than such a part of the farthest distance there is seldom anything to see, whatever boxes say.
+/// Nearer than such a part of the farthest distance there is seldom anything to see, whatever boxes say: only where more than [`MUCH`] of
+/// the boxes' share of the picture is.
 const NEAREST: f64 = 1.0 / 64.0;
+const MUCH: f64 = 0.25;
+/// Shadows that are nowhere so many pixels long are not drawn.
+const LEAST_PX: f64 = 0.5;
 /// How much wider each level may be than the one before.
-const RATIOS: [f64; 3] = [2.0, 4.0, 8.0];
+const RATIOS: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 /// What filters, and the push off a surface, reach beyond a place: texels.
 const FILTER_TEXELS: f64 = 6.0;
+/// Half of how wide the room is that is between the sun and a square, of its side.
+const WIDER: f64 = 0.51;
+/// Before the first that throws a shadow, and behind the last that takes one, metres.
+const ROOM_M: f64 = 10.0;
 /// The smallest side of a level, metres.
 const LEAST_SIDE_M: f64 = 1e-3;
 /// The eye's place in a level is a whole number of these parts of its side.
@@ -113,19 +121,51 @@ fn depths(view: &View, boxes: &[Aabb]) -> [f64; 2] {
     [near, far].map(|depth| depth.max(view.camera.near_m))
 }
 
+/// From which depth on no shadow of these casters is as long as it must be, metres; ∞ for parallel rays.
+fn farthest(view: &View, casters: &Aabb, to_sun: DVec3) -> f64 {
+    if view.is_orthographic() {
+        return f64::INFINITY;
+    }
+    let per_height = (to_sun.truncate().length() / to_sun.z.max(1e-6)).max(1.0);
+    casters.size().z * per_height / (LEAST_PX * view.pixel_m(1.0))
+}
+
+/// How near a good part of a picture is: nearer than this there is less than [`MUCH`] of what boxes cover of it, metres, rounded down to a
+/// power of two.
+fn near_part(view: &View, boxes: &[Aabb]) -> f64 {
+    const LEAST: i32 = -8;
+    let (mut areas, width) = ([0.0; 40], 2.0 * view.half_extent().max_element());
+    for bounds in boxes {
+        let distance = bounds.distance_to(view.camera.eye).max(view.camera.near_m);
+        let octave = (distance.log2().floor() as i32 - LEAST).clamp(0, areas.len() as i32 - 1);
+        areas[octave as usize] += (bounds.size().length() / (distance * width)).powi(2).min(1.0);
+    }
+    let wanted = MUCH * areas.iter().sum::<f64>();
+    let mut before = 0.0;
+    let reached = areas.iter().position(|area| {
+        before += area;
+        before > wanted
+    });
+    f64::from(reached.unwrap_or(0) as i32 + LEAST).exp2()
+}
+
 /// The least depth of what a box has inside all half spaces n·p ≤ d; ∞ where that is nothing.
 fn nearest_in(bounds: &Aabb, sides: &[(DVec3, f64)], view: &View) -> f64 {
-    // Corners by number: x, y and z in bits 0, 1 and 2.
-    const FACES: [[usize; 4]; 6] = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
     let eye = view.camera.eye;
     if bounds.distance_to(eye) <= view.camera.near_m {
         return view.camera.near_m;
     }
     // In the eye's place, where national coordinates lose no digits.
-    let corners = bounds.corners().map(|corner| corner - eye);
     let own: Vec<(DVec3, f64)> = sides.iter().map(|(normal, offset)| (*normal, offset - normal.dot(eye))).collect();
-    let parts = FACES.iter().flat_map(|face| clipped(&face.map(|k| corners[k]), own.iter().copied()));
-    parts.map(|p| p.dot(view.basis.forward)).fold(f64::INFINITY, f64::min)
+    faces_in(bounds, eye, &own).into_iter().map(|p| p.dot(view.basis.forward)).fold(f64::INFINITY, f64::min)
+}
+
+/// Corners, from `origin`, of what the faces of a box have inside all half spaces n·p ≤ d, which are counted from there too.
+fn faces_in(bounds: &Aabb, origin: DVec3, sides: &[(DVec3, f64)]) -> Vec<DVec3> {
+    // Corners by number: x, y and z in bits 0, 1 and 2.
+    const FACES: [[usize; 4]; 6] = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
+    let corners = bounds.corners().map(|corner| corner - origin);
+    FACES.iter().flat_map(|face| clipped(&face.map(|k| corners[k]), sides.iter().copied())).collect()
 }
 
 /// The corners of the picture at a depth.
@@ -151,20 +191,27 @@ struct Shown<'a> {
     across: Across,
     view: &'a View,
     boxes: &'a [Aabb],
-    /// The nearest and the farthest of it, metres along the view axis.
+    /// The nearest and the farthest of it that may show shadows, metres along the view axis.
     depths: [f64; 2],
+    /// From where on texels are to be as small as pixels.
+    near_part: f64,
 }
 
 impl<'a> Shown<'a> {
-    fn new(view: &'a View, boxes: &'a [Aabb], direction: DVec3) -> Self {
+    fn new(view: &'a View, boxes: &'a [Aabb], casters: &Aabb, direction: DVec3) -> Self {
         let across = Across { origin: view.camera.eye, basis: Basis::looking_along(-direction, DVec3::Z) };
-        Self { across, view, boxes, depths: depths(view, boxes) }
+        let [near, far] = depths(view, boxes);
+        let far = far.min(farthest(view, casters, direction).max(4.0 * near));
+        // Where something is near, but next to nothing of the picture, it need not be told how much is.
+        let least = NEAREST * far;
+        let near_part = if near < least { least.min(near_part(view, boxes)) } else { least };
+        Self { across, view, boxes, depths: [near, far], near_part }
     }
 
     /// How many pixels a length is wide from a depth on.
     fn pixels(&self, length: f64, depth: f64) -> f64 {
         let [near, far] = self.depths;
-        length / self.view.pixel_m(depth.clamp(near.max(NEAREST * far), far))
+        length / self.view.pixel_m(depth.clamp(near.max(self.near_part).min(far), far))
     }
 
     /// Squares for a map of so many texels each way.
@@ -234,7 +281,7 @@ impl Fit {
 
 impl SunEye {
     /// The sun's eye on what `view` shows of the boxes `seen`, beyond all of `casters`; a map of `size` × `size` texels.
-    /// `None` where nothing is to be seen.
+    /// `None` where nothing is to be seen. What is so far that no shadow is as long as half a pixel there may be beyond it.
     pub fn new(view: &View, sun: &Sun, seen: &[Aabb], casters: &Aabb, size: u32) -> Option<Self> {
         // Two levels side by side have as many texels each.
         let size = size.max(LEAST_SHADOW_SIZE) & !1;
@@ -242,15 +289,21 @@ impl SunEye {
             return None;
         }
         let direction = to_sun(sun);
-        let shown = Shown::new(view, seen, direction);
+        let shown = Shown::new(view, seen, casters, direction);
         let (fit, across) = (shown.fit(size), shown.across);
         let texels = if fit.sides.len() == 1 { size } else { size / 2 };
         // On the grid, counted from the world's own origin.
         let step = fit.sides[0] / f64::from(texels) * fit.grid(texels.into());
         let from_world = across.turned(across.origin);
         let anchor = across.place(((from_world + fit.anchor) / step).round() * step - from_world);
-        let beyond = casters.corners().into_iter().map(|c| (c - anchor).dot(direction)).fold(0.0, f64::max) + 10.0;
         let all = seen.iter().fold(*casters, |all, bounds| all.union(*bounds));
+        // What is not between the sun and the widest square neither throws nor takes shadows there: depth is counted in what is.
+        let widest = fit.sides.iter().copied().fold(0.0, f64::max);
+        let middle = across.place(across.of(anchor) + (0.5 - fit.shift) * widest);
+        let sides = [across.basis.right, across.basis.up].map(|axis| [axis, -axis].map(|axis| (axis, WIDER * widest)));
+        let along = faces_in(&all, middle, sides.as_flattened()).into_iter().map(|p| p.dot(direction));
+        let [low, beyond] = along.fold([0.0_f64; 2], |[low, high], p| [low.min(p), high.max(p + ROOM_M)]);
+        let beyond = beyond.max(ROOM_M);
         let level = |side: &f64| {
             let middle = (0.5 - fit.shift) * *side;
             let target = anchor + middle.x * across.basis.right - middle.y * across.basis.up;
@@ -261,7 +314,8 @@ impl SunEye {
                 projection: Projection::Orthographic { height_m: *side },
                 near_m: 1.0,
             };
-            View::new(camera, [texels; 2], &all).ok()
+            let view = View::new(camera, [texels; 2], &all).ok()?;
+            Some(View { far_m: beyond - low + ROOM_M, ..view })
         };
         let levels = fit.sides.iter().map(level).collect::<Option<Vec<View>>>()?;
         Some(Self { levels, size, ratio: fit.ratio, anchor, shift: fit.shift })
@@ -407,7 +461,10 @@ mod tests {
         let [near, far] = depths(&view, &seen);
         let along = (0..=6).flat_map(|i| corners_at(&view, near * (far / near).powf(f64::from(i) / 6.0)));
         let places = seen.iter().flat_map(|bounds| bounds.corners()).chain(seen.iter().map(Aabb::center)).chain(along);
-        let is_there = |p: &DVec3| frustum.contains(*p) && seen.iter().any(|bounds| bounds.distance_to(*p) == 0.0);
+        let last = farthest(&view, &casters, to_sun(sun)).max(4.0 * near);
+        let is_there = |p: &DVec3| {
+            frustum.contains(*p) && view.depth(*p) <= last && seen.iter().any(|bounds| bounds.distance_to(*p) == 0.0)
+        };
         let mut count = 0;
         for place in places.filter(is_there) {
             let levels = held(&eye, place, camera.eye);
@@ -421,7 +478,7 @@ mod tests {
                 let [x, y, z, w] = uniform.projection.map(f64::from);
                 let ndc = across * DVec2::new(x, y) + DVec2::new(z, w);
                 let drawn = DVec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y);
-                // The scale and the shift of a small level are rounded to f32 beside a widest one 512 times as wide.
+                // The scale and the shift of a small level are rounded to f32 beside a widest one 4096 times as wide.
                 let texels = (drawn - local).abs().max_element() * f64::from(eye.levels[level].size[0]);
                 if texels > 0.1 || !(0.0..=1.0).contains(&depth) {
                     return Err(format!("{place}, level {level}: {drawn} and {local}, depth {depth}"));
@@ -429,9 +486,12 @@ mod tests {
             }
             count += 1;
         }
-        let depth_of = |p: DVec3| eye.across_from_relative(camera.eye).transform_point3(p - camera.eye).z;
-        match casters.corners().into_iter().find(|corner| !(0.0..=1.0).contains(&depth_of(*corner))) {
-            Some(corner) => Err(format!("{corner} is cut off: {}", depth_of(corner))),
+        // Whatever throws a shadow onto the widest square has a depth there.
+        let step = casters.size() / 8.0;
+        let of = |i: i32| DVec3::new(f64::from(i % 9), f64::from(i / 9 % 9), f64::from(i / 81));
+        let casting = (0..729).map(|i| casters.min + step * of(i)).flat_map(|place| held(&eye, place, camera.eye));
+        match casting.map(|(_, _, depth)| depth).find(|depth| !(0.0..=1.0).contains(depth)) {
+            Some(depth) => Err(format!("a caster is cut off: {depth}")),
             None => Ok(count),
         }
     }
@@ -486,6 +546,28 @@ mod tests {
             let overview = View::new(eyes()[0], [640, 400], &casters).unwrap();
             let eye = SunEye::new(&overview, &sun, &boxes, &casters, SIZE).unwrap();
             assert_eq!((eye.levels.len(), eye.levels[0].size), (1, [SIZE; 2]));
+        }
+    }
+
+    /// A house whose coordinates are lost, far away in the picture, costs what is near nothing that one sees.
+    #[test]
+    fn what_strays_leaves_what_is_near_its_texels() {
+        let house = |x: f64| Aabb { min: DVec3::new(x, 0.0, 0.0), max: DVec3::new(x + 12.0, 12.0, 15.0) };
+        let ground = |x: f64| Aabb { min: DVec3::new(-500.0, -500.0, 0.0), max: DVec3::new(x + 500.0, 500.0, 0.0) };
+        let camera = Camera::looking(DVec3::new(-40.0, 10.0, 20.0), DVec3::new(18.0, 6.0, 5.0), 0.8);
+        let texel = |far: f64| {
+            let seen = [house(0.0), house(25.0), house(far), ground(far)];
+            let casters = seen.iter().fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
+            let view = View::new(camera, [1280, 720], &casters).unwrap();
+            let sun = Sun { azimuth: 2.2, elevation: 0.7, shadows: true };
+            let eye = SunEye::new(&view, &sun, &seen, &casters, SIZE).unwrap();
+            // The nearest house is 40 m away.
+            let held = held(&eye, DVec3::new(0.0, 0.0, 7.0), camera.eye);
+            eye.levels[held[0].0].pixel_m(1.0) / view.pixel_m(40.0)
+        };
+        let near = texel(50.0);
+        for far in [2e3, 2e4, 2e5, 2e6, 2e7] {
+            assert!(texel(far) < 4.0, "{far}: {} pixels, {near} where nothing strays", texel(far));
         }
     }
 

@@ -171,3 +171,29 @@ fn the_sky_goes_from_the_horizon_up() {
     }
     assert!(count > 20_000, "{count} pixels show sky");
 }
+
+/// A house whose coordinates are lost leaves the shadows of the others as they are, however far it is.
+#[test]
+fn shadows_of_what_is_near_do_not_depend_on_how_large_the_city_is() {
+    let houses = [([0, 0, 0], [12, 12, 15]), ([25, 0, 0], [12, 12, 10])];
+    let camera = Camera::looking(DVec3::new(55.0, -45.0, 30.0), DVec3::new(18.0, 6.0, 5.0), 0.7);
+    let size = [320, 200];
+    let drawn = |far: Option<i64>| {
+        let stray = far.map(|x| ([x, 0, 0], [12, 12, 10]));
+        let all: Vec<_> = houses.into_iter().chain(stray).collect();
+        let mut studio = with_full_shadows(boxes("stray", &all, false, true));
+        picture(&mut studio, &scene(camera, vec![]), size).rgba
+    };
+    let alone = drawn(None);
+    // Below the horizon of the small one.
+    let from = 80 * size[0] as usize;
+    let shaded = alone[from..].iter().filter(|rgba| rgba[0] < 150).count();
+    assert!(shaded > 1500, "{shaded} pixels are in the shade");
+    for far in [2_000, 20_000, 200_000, 2_000_000] {
+        let other = drawn(Some(far));
+        let is_other = |(a, b): (&[u8; 4], &[u8; 4])| (0..3).any(|k| a[k].abs_diff(b[k]) > 8);
+        let differ = alone[from..].iter().zip(&other[from..]).filter(|pair| is_other(*pair)).count();
+        // Borders of shadows are where texels are.
+        assert!(differ < shaded / 20, "{far} m: {differ} of {shaded} pixels in the shade differ");
+    }
+}
