@@ -122,7 +122,9 @@ pub fn boxes(name: &str, boxes: &[([i64; 3], [i64; 3])], has_slope: bool, ground
         r#"{{"type": "CityJSON", "version": "2.0", "transform": {{"scale": [1, 1, 1], "translate": [0, 0, 0]}}, "CityObjects": {{{}}}, "vertices": {vertices:?}}}"#,
         objects.join(", ")
     );
-    let path = std::env::temp_dir().join(format!("veduta-{name}-{}.city.json", std::process::id()));
+    static MADE: AtomicU32 = AtomicU32::new(0);
+    let number = MADE.fetch_add(1, Relaxed);
+    let path = std::env::temp_dir().join(format!("veduta-{name}-{}-{number}.city.json", std::process::id()));
     std::fs::write(&path, text).expect("a temporary file");
     let scene =
         Scene { city: CitySpec { files: vec![path.clone()], ground, ..Default::default() }, ..Scene::default() };
