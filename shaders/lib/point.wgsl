@@ -3,6 +3,7 @@
 override SMOOTH: bool = false;      // whether normals are in the target, not with the surfaces
 override TEXTURED: bool = false;    // whether base colours are in a target of their own
 override CLAY: bool = false;        // one colour for everything
+override EMITS: bool = false;       // whether some surfaces have light of their own
 override SECTIONS: bool = false;    // whether some of what is shown are sections; their colours are in the target
 
 // The shown surface at a pixel; `surface` is NO_SURFACE where there is none (D infinite).
@@ -26,6 +27,7 @@ struct Point {
     shade: f32,                 // its luminance, 0..1
     highlight: vec3f,           // light that does not come out of its colour, linear
     opacity: f32,               // of its material and texture, 0..1
+    emission: vec3f,            // light of its own, linear
 }
 
 const NO_SURFACE: u32 = 0xffffffffu;
@@ -99,12 +101,15 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u) -> Point {
     point.arriving = irradiance(point.normal, point.sun);
     point.shade = luminance(point.arriving);
     point.opacity = opacity_of(surface);
+    if EMITS && !CLAY && (surface.flags & SURFACE_EMITS) != 0u {
+        point.emission = surface_at(point.surface + 1u).color;
+    }
     return point;
 }
 
 fn nowhere(pixel: vec2i) -> Point {
     return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, PART_OTHER, 0u, 0u, false,
-                 vec3f(0.0), vec3f(0.0), false, 1.0, vec3f(1.0), 1.0, vec3f(0.0), 1.0);
+                 vec3f(0.0), vec3f(0.0), false, 1.0, vec3f(1.0), 1.0, vec3f(0.0), 1.0, vec3f(0.0));
 }
 
 // The surface shown beside a point, `offset` pixels away; at the picture's edge, what is at the edge.

@@ -13,7 +13,8 @@ const PART_SECTION: u32 = 4u;   // the inside of a closed shell, where it is lai
 const SURFACE_CLOSED: u32 = 8u;     // its object is a closed shell
 const SURFACE_INWARD: u32 = 16u;    // whose faces look inwards
 const SURFACE_LIT_AS_BEFORE: u32 = 32u;     // by a normal that it does not have where it lies
-const SURFACE_CLEAR_SHIFT: u32 = 6u;        // above it: how much light its material lets through, in 1023rds
+const SURFACE_CLEAR_SHIFT: u32 = 6u;        // above it: how much light its material lets through, in 511ths
+const SURFACE_EMITS: u32 = 0x8000u; // light of its own: the colour of what follows in the table
 // Numbers in the geometry target that are none of a surface: sections, and the bits that say of which object.
 const SECTION: u32 = 0x80000000u;
 const SECTION_OBJECT: u32 = 0x03ffffffu;    // all: of several
@@ -43,7 +44,7 @@ fn part_of(surface: Surface) -> u32 {
 
 // Opacity of its material, 0..1.
 fn opacity_of(surface: Surface) -> f32 {
-    return 1.0 - f32(surface.flags >> SURFACE_CLEAR_SHIFT) * (1.0 / 1023.0);
+    return 1.0 - f32((surface.flags >> SURFACE_CLEAR_SHIFT) & 511u) * (1.0 / 511.0);
 }
 
 // Octahedral, 2 x snorm16: the inverse of the host's `encode_normal`. Multiplied where the built-in functions divide:

@@ -141,6 +141,8 @@ pub struct CityBuffers {
     pub has_blocks: bool,
     /// Whether some faces have smooth normals.
     pub smooth: bool,
+    /// Whether some have light of their own.
+    pub emits: bool,
     /// Drawn triangles, the plain ground included.
     pub triangles: u64,
     /// Drawn vertices, the plain ground included.
@@ -348,6 +350,7 @@ impl CityBuffers {
         }
         let surfaces = surfaces::upload(gpu, &entries)?;
         let surface_table = entries;
+        let emits = surface_table.iter().any(layout::Surface::emits);
         let figures = CellFigures::of_all(cells.count, sections.iter().flat_map(|section| &section.chunks));
         let bytes = gpu.allocated_bytes() - bytes_before + textures.bytes();
         Ok(Self {
@@ -359,6 +362,7 @@ impl CityBuffers {
             cells: figures,
             has_blocks: blocks.is_some(),
             smooth,
+            emits,
             triangles,
             vertices,
             bytes,
@@ -377,6 +381,7 @@ impl CityBuffers {
             cells: Vec::new(),
             has_blocks: false,
             smooth: true,
+            emits: false,
             triangles: 0,
             vertices: 0,
             bytes: 0,

@@ -53,6 +53,8 @@ pub(super) struct CityFacts<'a> {
     pub has_edges: bool,
     /// Whether some city has normals per vertex.
     pub has_smooth: bool,
+    /// Whether something has light of its own.
+    pub emits: bool,
     /// Sections of all of them, and those of the scene's own and of what is moved of it.
     pub sections: Vec<SectionFacts>,
     pub own_sections: Vec<SectionFacts>,

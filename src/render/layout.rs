@@ -70,6 +70,11 @@ impl Surface {
         Self { color_b_flags: self.color_b_flags & !clear, ..self }
     }
 
+    /// Whether it has light of its own.
+    pub fn emits(&self) -> bool {
+        (self.color_b_flags >> 16) & SURFACE_EMITS != 0
+    }
+
     /// Whether its normal is never turned to the eye: it is lit by one that it does not have where it lies.
     pub fn is_lit_as_before(&self) -> bool {
         (self.color_b_flags >> 16) & SURFACE_LIT_AS_BEFORE != 0
@@ -88,12 +93,14 @@ pub const SURFACE_CLOSED: u32 = 8;
 pub const SURFACE_INWARD: u32 = 16;
 /// A face is lit by a normal that it does not have where it lies.
 pub const SURFACE_LIT_AS_BEFORE: u32 = 32;
-/// `lib/surface.wgsl`: how much light its material lets through stands above this bit of the flags, in 1/1023.
+/// `lib/surface.wgsl`: how much light its material lets through stands above this bit of the flags, in 1/511.
 pub const SURFACE_CLEAR_SHIFT: u32 = 6;
 /// All of it.
-const MOST_CLEAR: u32 = 1023;
+const MOST_CLEAR: u32 = 511;
+/// `lib/surface.wgsl`: it has light of its own, the colour of the next entry.
+pub const SURFACE_EMITS: u32 = 1 << 15;
 
-/// The flags of a surface of this opacity, 0..1, to the nearest of 1024 steps.
+/// The flags of a surface of this opacity, 0..1, to the nearest of 512 steps.
 pub fn clear_bits(opacity: f32) -> u32 {
     (((1.0 - opacity.clamp(0.0, 1.0)) * MOST_CLEAR as f32).round() as u32) << SURFACE_CLEAR_SHIFT
 }

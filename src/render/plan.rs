@@ -65,6 +65,8 @@ pub(super) struct FramePlan<'a> {
     /// Whether materials of it are translucent, in view or not; and whether textures are.
     pub clear_materials: bool,
     pub blended: bool,
+    /// Whether something has light of its own.
+    pub emits: bool,
     /// Whether the edges of the city are there.
     pub has_edges: bool,
     /// Sections of all cities, and of the scene's own.
@@ -147,6 +149,7 @@ impl<'a> FramePlan<'a> {
             smooth: has_sections || facts.has_smooth,
             clear_materials: facts.has_clear_materials(),
             blended: facts.has_clear_textures(),
+            emits: facts.emits,
             has_edges: facts.has_edges,
             sections: facts.sections.clone(),
             own_sections: facts.own_sections.clone(),

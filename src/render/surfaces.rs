@@ -50,8 +50,10 @@ impl<'a> SurfaceTable<'a> {
         let Self { model, textures, shells, is_opaque, entries, numbers } = self;
         *numbers.entry((surface, normal)).or_insert_with(|| {
             let found = entry(model, textures, shells, surface, normal);
+            let number = entries.len() as u32;
             entries.push(if *is_opaque { found.opaque() } else { found });
-            (entries.len() - 1) as u32
+            entries.extend(emission(model, surface).map(|light| layout::Surface::new(layout::NO_OBJECT, 0, light, 0)));
+            number
         })
     }
 
@@ -78,6 +80,12 @@ impl<'a> SurfaceTable<'a> {
         };
         Group { texture, translucency, has_shadow: material.base_color[3] >= LEAST_SHADOW }
     }
+}
+
+/// Light of its own that a model surface has, linear.
+fn emission(model: &CityModel, surface: u32) -> Option<[f32; 3]> {
+    let material = model.materials.get(model.surfaces.get(surface as usize)?.material as usize)?;
+    Some(material.emissive).filter(|light| *light != [0.0; 3])
 }
 
 /// Puts a table on the GPU.
@@ -120,7 +128,8 @@ pub(super) fn entry(
     let part = part_of(model, found, normal) << layout::SURFACE_PART_SHIFT;
     let shell = shells.get(&found.object).copied().unwrap_or_default();
     let opacity = material.map_or(1.0, |m| m.base_color[3]);
-    layout::Surface::new(found.object, normal, color, unlit | part | shell | layout::clear_bits(opacity))
+    let emits = if emission(model, surface).is_some() { layout::SURFACE_EMITS } else { 0 };
+    layout::Surface::new(found.object, normal, color, unlit | part | shell | emits | layout::clear_bits(opacity))
 }
 
 /// What a surface is part of: by its semantics; where a building has none, by which way it faces.

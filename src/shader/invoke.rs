@@ -153,10 +153,10 @@ pub(super) fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let share = share_argument(uber);
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
     if has(EffectKind::Material) {
-        text.push_str("    var material = Material(as_is((*point).base), vec3f(0.0), vec3f(0.0), 32.0);\n");
+        text.push_str("    var material = Material(as_is((*point).base), (*point).emission, vec3f(0.0), 32.0);\n");
         let call = format!("material = invoke_material(material, *point, by{share});\n");
         text.push_str(&each(uber, "MATERIALS", &call));
-        text.push_str("    (*point).base = material.base;\n");
+        text.push_str("    (*point).base = material.base;\n    (*point).emission = vec3f(0.0);\n");
     }
     if has(EffectKind::Light) {
         text.push_str("    (*point).arriving = as_is((*point).arriving);\n");

@@ -175,9 +175,9 @@ impl Writer<'_> {
     pub(super) fn shade(&self, suffix: &str) -> String {
         let mut text = format!("fn shade{suffix}(point: ptr<function, Point>, classes: Classes) -> vec3f {{\n");
         if self.has(EffectKind::Material) {
-            text.push_str("    var material = Material(as_is((*point).base), vec3f(0.0), vec3f(0.0), 32.0);\n");
+            text.push_str("    var material = Material(as_is((*point).base), (*point).emission, vec3f(0.0), 32.0);\n");
             text.push_str(&self.statements(EffectKind::Material));
-            text.push_str("    (*point).base = material.base;\n");
+            text.push_str("    (*point).base = material.base;\n    (*point).emission = vec3f(0.0);\n");
         }
         if self.has(EffectKind::Light) {
             text.push_str("    (*point).arriving = as_is((*point).arriving);\n");

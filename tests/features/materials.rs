@@ -24,9 +24,9 @@ const BOTH: [Backend; 2] = [Backend::Specialised, Backend::Uber];
 /// Of the materials of panes, how much they let through; the second is opaque.
 const CLEAR: [f64; 4] = [0.5, 0.0, 0.25, 0.875];
 
-/// An opacity as it is kept: to the nearest 1023rd.
+/// An opacity as it is kept: to the nearest 511th.
 fn kept(opacity: f64) -> f64 {
-    1.0 - ((1.0 - opacity) * 1023.0).round() / 1023.0
+    1.0 - ((1.0 - opacity) * 511.0).round() / 511.0
 }
 
 /// The panes in their materials, of which some let something through.
@@ -237,7 +237,7 @@ fn mtl_says_it_in_four_ways() {
             [("left", -2.5, 5.0, left), ("right", 2.5, 5.0, right), ("corner", -4.7, 0.3, corner)]
         {
             let found = f64::from(at(&picture, x, z)[3]) / 255.0;
-            // A texture's opacity has 255 steps, a material's 1023, the picture 255.
+            // A texture's opacity has 255 steps, a material's 511, the picture 255.
             assert!((found - wanted).abs() < 1.6 / 255.0, "{mtl:?}, {what}: {found}, not {wanted}");
         }
         let is_blue = mtl.contains("Kd 0 0 1");
@@ -352,4 +352,48 @@ fn the_sun_shines_through_holes_and_what_lets_more_than_half_through() {
             }
         }
     }
+}
+
+/// Linear light of a byte of a picture (IEC 61966-2-1).
+fn linear(byte: u8) -> f64 {
+    let c = f64::from(byte) / 255.0;
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+#[test]
+fn light_of_their_own_is_added_to_what_falls_on_surfaces() {
+    let folder = Folder::new("emission");
+    let wall = folder.write("wall.obj", WALL);
+    let of = |mtl: &str, more: &str| {
+        folder.write("m.mtl", format!("newmtl a\n{mtl}\n"));
+        at(&drawn(&of_file(&wall, more)), 1.0, 5.0).map(linear)
+    };
+    let dark = of("Kd 0.5 0.5 0.5", "");
+    let glowing = of("Kd 0.5 0.5 0.5\nKe 0 0.6 0.3", "");
+    // Numbers of MTL are those of a screen.
+    let own = [0.0, 0.6, 0.3].map(|c: f64| if c == 0.0 { 0.0 } else { ((c + 0.055) / 1.055).powf(2.4) });
+    for k in 0..3 {
+        // A byte of a picture is 0.008 of light at most.
+        assert!((glowing[k] - dark[k] - own[k]).abs() < 0.008, "{k}: {} and {}, {}", glowing[k], dark[k], own[k]);
+    }
+    // In a transparent picture the colour of what lets half through is its own.
+    let half = of("Kd 0.5 0.5 0.5\nKe 0 0.6 0.3\nd 0.5", "");
+    (0..3).for_each(|k| assert!((half[k] - glowing[k]).abs() < 0.008, "{k}: {half:?}, {glowing:?}"));
+    // None in clay; the same in brick and where a lens draws it as it is; none where a lens draws it in one colour.
+    let clay = "[style]\nbase = \"clay\"\n";
+    assert_eq!(of("Kd 0.5 0.5 0.5\nKe 0 0.6 0.3", clay), of("Kd 0.5 0.5 0.5", clay));
+    let through = |effect: &str| {
+        format!(
+            "[[lens]]\nname = \"a\"\nkind = \"color\"\nbody = \"none\"\neffects = [{effect:?}]\n\
+                 shape = {{ kind = \"sphere\", center = [0, 0, 5], radius = 4 }}\n"
+        )
+    };
+    let [bricks, glowing_bricks] =
+        ["", "\nKe 0 0.6 0.3"].map(|ke| of(&format!("Kd 0.5 0.5 0.5{ke}"), &through("brick")));
+    for k in 0..3 {
+        assert!((glowing_bricks[k] - bricks[k] - own[k]).abs() < 0.008, "{k}: {glowing_bricks:?}, {bricks:?}");
+    }
+    let [flat, flat_too] = ["", "\nKe 0 0.6 0.3"].map(|ke| of(&format!("Kd 0.5 0.5 0.5{ke}"), &through("flat")));
+    assert_eq!(flat, flat_too);
+    assert_eq!(of("Kd 0.5 0.5 0.5\nKe 0 0.6 0.3", &through("lambert")), glowing);
 }

@@ -194,13 +194,19 @@ fn colors(json: &Json, from: Palette<'_>, city: &mut CityModel) -> Material {
     }
     let strength = extension("KHR_materials_emissive_strength").and_then(|e| e.get("emissiveStrength")?.as_f64());
     let mut emissive = json.emissive_factor.0.map(|c| sane(c * strength.unwrap_or(1.0) as f32, f32::MAX));
+    let mut not_drawn = |what: &str| {
+        city.warnings.add(WarningCode::Unsupported, "", || {
+            let name = json.name.as_deref().unwrap_or("unnamed");
+            format!("{}, material {name:?}: {what} textures are not drawn", from.around.path.display())
+        });
+    };
     if json.emissive_texture.is_some() && emissive != [0.0; 3] {
         // Without its picture the light would flood the whole surface.
         emissive = [0.0; 3];
-        city.warnings.add(WarningCode::Unsupported, "", || {
-            let name = json.name.as_deref().unwrap_or("unnamed");
-            format!("{}, material {name:?}: emissive textures are not drawn", from.around.path.display())
-        });
+        not_drawn("emissive");
+    }
+    if json.normal_texture.is_some() {
+        not_drawn("normal");
     }
     Material {
         name: json.name.clone().unwrap_or_default(),

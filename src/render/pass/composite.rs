@@ -52,6 +52,8 @@ pub struct CompositeKey {
     pub textured: bool,
     /// With them the opacity of texels.
     pub blended: bool,
+    /// Something has light of its own.
+    pub emits: bool,
     /// One clay colour.
     pub clay: bool,
     /// There is a shadow map.
@@ -77,6 +79,7 @@ impl CompositeKey {
             program: program.clone(),
             textured: layering::has_colors(plan),
             blended: plan.blended,
+            emits: plan.emits,
             clay: plan.is_clay(),
             shadows: plan.sun.is_some(),
             smooth: plan.smooth,
@@ -99,6 +102,7 @@ impl PipelineKey for CompositeKey {
             (self.sorted && self.record == 0 && !self.tail, "sorted"),
             (self.textured, "textured"),
             (self.blended, "blended"),
+            (self.emits, "emission"),
             (self.clay, "clay"),
             (self.shadows, "shadows"),
             (self.smooth, "smooth"),
@@ -119,6 +123,7 @@ impl PipelineKey for CompositeKey {
                 ("PICKS", flag(self.picks)),
                 ("TEXTURED", flag(self.textured)),
                 ("BLENDED", flag(self.blended)),
+                ("EMITS", flag(self.emits)),
                 ("CLAY", flag(self.clay)),
                 ("SHADOWS", flag(self.shadows)),
                 ("SMOOTH", flag(self.smooth)),

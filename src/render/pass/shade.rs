@@ -79,6 +79,8 @@ pub struct ShadeKey {
     shadows: bool,
     /// Normals are in the target.
     smooth: bool,
+    /// Something has light of its own.
+    emits: bool,
     /// Some of what is shown are sections.
     sections: bool,
     /// What is behind the city.
@@ -96,6 +98,7 @@ impl ShadeKey {
             clay: plan.is_clay(),
             shadows: plan.sun.is_some(),
             smooth: plan.smooth,
+            emits: plan.emits,
             sections: plan.has_sections,
             behind: plan.input.behind(),
         }
@@ -127,6 +130,7 @@ impl PipelineKey for ShadeKey {
             (self.target == ShadeTarget::Sums, "summed"),
             (self.target == ShadeTarget::Unfiltered, "unfiltered"),
             (self.shadows, "shadows"),
+            (self.emits, "emission"),
             (self.sections, "sections"),
         ];
         format!("{}{}", Module::Shade(self.program.clone()).name(), words(&list))
@@ -154,6 +158,7 @@ impl PipelineKey for ShadeKey {
                 ("SUMMED", flag(self.target == ShadeTarget::Sums)),
                 ("SHADOWS", flag(self.shadows)),
                 ("SMOOTH", flag(self.smooth)),
+                ("EMITS", flag(self.emits)),
                 ("SECTIONS", flag(self.sections)),
                 ("BACKGROUND", f64::from(self.behind as u32)),
             ],

@@ -144,6 +144,7 @@ impl Asked {
             has_blocks: false,
             has_edges: true,
             has_smooth: false,
+            emits: false,
             own_sections: sections.clone(),
             sections,
             contents: Vec::new(),

@@ -138,6 +138,8 @@ impl Slots {
 struct Shading {
     /// What the context and the lenses do.
     program: Program,
+    /// Something has light of its own.
+    emits: bool,
     /// One clay colour.
     clay: bool,
     /// There is a shadow map.
@@ -154,6 +156,7 @@ impl Shading {
     fn of(plan: &FramePlan, program: &Program) -> Self {
         Self {
             program: program.clone(),
+            emits: plan.emits,
             clay: plan.is_clay(),
             // Mesa 22.3 crashes where fragments of the city sample the shadow map.
             shadows: plan.sun.is_some() && !plan.adapter.is_software,
@@ -237,7 +240,12 @@ impl FragmentKey {
             list.push(("SLOTS", f64::from(self.slots.slots)));
         }
         if let Some(own) = &self.shading {
-            list.extend([("CLAY", flag(own.clay)), ("SHADOWS", flag(own.shadows)), ("PART", f64::from(own.part))]);
+            list.extend([
+                ("EMITS", flag(own.emits)),
+                ("CLAY", flag(own.clay)),
+                ("SHADOWS", flag(own.shadows)),
+                ("PART", f64::from(own.part)),
+            ]);
         }
         list.extend(self.section.constants(false));
         list
