@@ -240,6 +240,10 @@ fn mtl_says_it_in_four_ways() {
             // A texture's opacity has 255 steps, a material's 511, the picture 255.
             assert!((found - wanted).abs() < 1.6 / 255.0, "{mtl:?}, {what}: {found}, not {wanted}");
         }
+        // In clay as much.
+        let clay = drawn(&of_file(&wall, "[style]\nbase = \"clay\"\n"));
+        let opacities = |picture: &Picture| picture.rgba.iter().map(|rgba| rgba[3]).collect::<Vec<_>>();
+        assert_eq!(opacities(&clay), opacities(&picture), "{mtl:?}");
         let is_blue = mtl.contains("Kd 0 0 1");
         let [r, g, b, _] = at(&picture, 2.5, 5.0);
         assert!(!is_blue || (b > 60 && r < 10 && g < 10), "{mtl:?}: the colour is that of Kd, not {r} {g} {b}");
