@@ -3,6 +3,8 @@
 use clap::Args;
 use std::path::PathBuf;
 
+use crate::cli::memory;
+
 /// Options that every command takes.
 #[derive(Args, Clone, Debug, Default)]
 pub struct GlobalArguments {
@@ -18,4 +20,7 @@ pub struct GlobalArguments {
     /// Add the effects in this folder (*.wgsl, docs/effects.md); repeatable
     #[arg(long, global = true, value_name = "DIR", display_order = 100)]
     pub effects: Vec<PathBuf>,
+    /// End with a message where more memory than this is taken (4G, 800M); else three quarters of what is free
+    #[arg(long, global = true, value_name = "SIZE", value_parser = memory::parse, display_order = 100)]
+    pub memory: Option<u64>,
 }

@@ -11,6 +11,7 @@ pub mod gallery;
 pub mod info;
 pub mod load;
 pub mod measure;
+mod memory;
 pub mod output;
 pub mod render;
 pub mod report;
@@ -114,7 +115,12 @@ pub fn main() -> ExitCode {
         }
     };
     terminal::start_log(&cli.global);
+    terminal::tell_faults_in_a_line();
     ends_cleanly();
+    // A window has work in it that nobody saved: there loading and drawing are bounded, and nothing else.
+    if !matches!(cli.command, None | Some(Command::View(_) | Command::Other(_))) || cli.global.memory.is_some() {
+        memory::watch(cli.global.memory);
+    }
     match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),

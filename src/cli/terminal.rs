@@ -156,6 +156,18 @@ pub fn start_log(global: &GlobalArguments) {
     }
 }
 
+/// A fault of the program itself is told in a line, unless `RUST_BACKTRACE` asks for all that led to it.
+pub fn tell_faults_in_a_line() {
+    if std::env::var_os("RUST_BACKTRACE").is_some_and(|value| value != "0") {
+        return;
+    }
+    std::panic::set_hook(Box::new(|fault| {
+        let place = fault.location().map(|at| format!(" ({}:{})", at.file(), at.line())).unwrap_or_default();
+        let what = fault.payload_as_str().unwrap_or("unknown").lines().next().unwrap_or_default();
+        log::error!("a fault of veduta{place}: {what}; RUST_BACKTRACE=1 tells more, for a report");
+    }));
+}
+
 // --- progress ---------------------------------------------------------------------------------
 
 /// The progress of long work; shown on a terminal only, and gone when done.

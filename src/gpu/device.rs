@@ -3,7 +3,10 @@
 //! Every allocation and upload goes through [`Gpu`], so that "nothing is allocated or uploaded while
 //! nothing changes" is a number one can read and not a promise.
 
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{
+    Arc, Mutex, PoisonError,
+    atomic::{AtomicU64, Ordering::Relaxed},
+};
 
 use wgpu::util::DeviceExt;
 
@@ -12,7 +15,7 @@ use super::snapping;
 /// What can go wrong between here and the GPU.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
-    /// No adapter at all, or none of the wanted name.
+    /// No adapter at all, none of the wanted name, or none that will do.
     #[error("{0}")]
     NoAdapter(String),
     /// The device was refused.
@@ -65,6 +68,8 @@ pub struct Gpu {
     allocations: AtomicU64,
     uploads: AtomicU64,
     allocated_bytes: AtomicU64,
+    /// What the driver complained about first while nobody was on guard.
+    trouble: Arc<Mutex<Option<String>>>,
 }
 
 /// No buffer is smaller: any one structure of the shaders fits, so an empty list can be bound too.
@@ -104,33 +109,28 @@ impl Gpu {
             }
         }
         adapters.sort_by_key(|a| rank(&a.get_info()));
-        let mut refusal = GpuError::NoAdapter(
-            "no graphics adapter found; on Debian and Ubuntu the package mesa-vulkan-drivers gives a software one"
-                .to_owned(),
-        );
+        let mut refusals: Vec<String> = Vec::new();
         for adapter in adapters {
             match Self::on(&adapter).await {
-                Ok(gpu) => return Ok(gpu),
-                Err(error) => refusal = error,
+                Ok(gpu) => {
+                    refusals.iter().for_each(|refusal| log::warn!("passed over: {refusal}"));
+                    return Ok(gpu);
+                }
+                Err(error) => refusals.push(error.to_string()),
             }
         }
-        Err(refusal)
+        let found = if refusals.is_empty() { "no graphics adapter found".to_owned() } else { refusals.join("; ") };
+        Err(GpuError::NoAdapter(format!("{found}; {PACKAGE}")))
     }
 
     async fn on(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let limits = adapter.limits();
-        let is_too_small = limits.max_storage_buffers_per_shader_stage < 8
-            || limits.max_compute_workgroups_per_dimension == 0
-            || limits.max_color_attachment_bytes_per_sample < 64;
-        if is_too_small {
-            return Err(GpuError::NoDevice {
-                adapter: describe(&info),
-                message:
-                    "it has too few storage buffers, too small render targets or no compute shaders; on Debian and \
-                          Ubuntu the package mesa-vulkan-drivers gives a software Vulkan adapter that has them"
-                        .to_owned(),
-            });
+        let flags = adapter.get_downlevel_capabilities().flags;
+        let lacks = lacking(&limits, flags);
+        if !lacks.is_empty() {
+            let message = format!("it lacks {}", lacks.join(", "));
+            return Err(GpuError::NoDevice { adapter: describe(&info), message });
         }
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("veduta"),
@@ -143,7 +143,13 @@ impl Gpu {
         let (device, queue) = adapter
             .request_device(&descriptor)
             .await
-            .map_err(|error| GpuError::NoDevice { adapter: describe(&info), message: error.to_string() })?;
+            .map_err(|error| GpuError::NoDevice { adapter: describe(&info), message: one_line(&error.to_string()) })?;
+        let trouble = Arc::new(Mutex::new(None));
+        let first = trouble.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            log::debug!("{error}");
+            first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(|| one_line(&error.to_string()));
+        }));
         let mut gpu = Self {
             device,
             queue,
@@ -153,6 +159,7 @@ impl Gpu {
             allocations: AtomicU64::new(0),
             uploads: AtomicU64::new(0),
             allocated_bytes: AtomicU64::new(0),
+            trouble,
         };
         (gpu.snapping, gpu.strays) = snapping::measured(&gpu)?;
         if gpu.is_software() {
@@ -342,6 +349,17 @@ impl Gpu {
         }
     }
 
+    /// What the driver has complained about since this was asked last, where [`Self::guarded`] did not hear it.
+    ///
+    /// # Errors
+    /// The first of it.
+    pub fn check(&self) -> Result<(), GpuError> {
+        match self.trouble.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            Some(message) => Err(GpuError::Failed { adapter: self.name(), message }),
+            None => Ok(()),
+        }
+    }
+
     /// Runs `work` and turns what the driver complains about meanwhile into an error.
     pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -349,9 +367,39 @@ impl Gpu {
         let result = work();
         let failures = [pollster::block_on(validation.pop()), pollster::block_on(memory.pop())];
         match failures.into_iter().flatten().next() {
-            Some(error) => Err(GpuError::Failed { adapter: self.name(), message: error.to_string() }),
+            Some(error) => Err(GpuError::Failed { adapter: self.name(), message: one_line(&error.to_string()) }),
             None => result,
         }
+    }
+}
+
+/// Where one is to be had that will do.
+const PACKAGE: &str = "on Debian and Ubuntu the package mesa-vulkan-drivers gives a software one";
+
+/// What an adapter lacks of what is needed.
+fn lacking(limits: &wgpu::Limits, flags: wgpu::DownlevelFlags) -> Vec<&'static str> {
+    use wgpu::DownlevelFlags as F;
+    let needed = [
+        (limits.max_storage_buffers_per_shader_stage >= 8, "eight storage buffers"),
+        (limits.max_color_attachment_bytes_per_sample >= 64, "wide render targets"),
+        (limits.max_compute_workgroups_per_dimension > 0 && flags.contains(F::COMPUTE_SHADERS), "compute shaders"),
+        (flags.contains(F::FRAGMENT_WRITABLE_STORAGE), "storage that fragments write"),
+        (flags.contains(F::VERTEX_STORAGE), "storage that vertices read"),
+        (flags.contains(F::DEPTH_TEXTURE_AND_BUFFER_COPIES), "depth that can be read back"),
+        (flags.contains(F::COMPARISON_SAMPLERS), "comparison samplers"),
+        (flags.contains(F::INDEPENDENT_BLEND), "independent blending"),
+        (flags.contains(F::BASE_VERTEX), "base vertices"),
+    ];
+    needed.into_iter().filter(|(has, _)| !has).map(|(_, what)| what).collect()
+}
+
+/// A driver's complaint, which may be long and of many lines, in one.
+fn one_line(text: &str) -> String {
+    const MOST: usize = 300;
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    match words.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{} …", &words[..end]),
+        None => words,
     }
 }
 
@@ -380,4 +428,34 @@ fn rank(info: &wgpu::AdapterInfo) -> (u8, u8) {
 
 fn mebibytes(bytes: u64) -> String {
     format!("{:.0} MiB", bytes as f64 / f64::from(1 << 20))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_an_adapter_lacks_is_said() {
+        let (limits, all) = (wgpu::Limits::default(), wgpu::DownlevelFlags::all());
+        assert_eq!(
+            lacking(&wgpu::Limits { max_color_attachment_bytes_per_sample: 64, ..limits.clone() }, all),
+            [""; 0]
+        );
+        let few = wgpu::Limits {
+            max_storage_buffers_per_shader_stage: 4,
+            max_color_attachment_bytes_per_sample: 64,
+            ..limits
+        };
+        let flags = all - wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES;
+        assert_eq!(lacking(&few, flags), ["eight storage buffers", "depth that can be read back"]);
+    }
+
+    #[test]
+    fn complaints_are_one_line() {
+        assert_eq!(
+            one_line("Validation Error\n\nCaused by:\n  In a CommandEncoder\n"),
+            "Validation Error Caused by: In a CommandEncoder"
+        );
+        assert_eq!(one_line(&"é".repeat(400)).chars().count(), 302);
+    }
 }

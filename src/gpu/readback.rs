@@ -70,6 +70,7 @@ impl Gpu {
             Ok(())
         })?;
         self.wait()?;
+        self.check()?;
         let failure = || GpuError::Failed { adapter: self.name(), message: "a read-back was refused".to_owned() };
         if failed.load(Relaxed) {
             return Err(failure());

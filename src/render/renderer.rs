@@ -175,7 +175,7 @@ impl Renderer {
 
     /// Draws one sample into the targets; the picture stands in `targets.picture` after the last one.
     pub fn draw(&mut self, input: &FrameInput, timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {
-        let drawn = self.draw_frame(input, timer);
+        let drawn = self.draw_frame(input, timer).and_then(|drawn| self.gpu.check().map(|()| drawn));
         if drawn.is_err() {
             // What was to be made may not be there.
             self.view.own_sprites.forget();

@@ -563,7 +563,11 @@ mod tests {
             let eye = SunEye::new(&view, &sun, &seen, &casters, SIZE).unwrap();
             // The nearest house is 40 m away.
             let held = held(&eye, DVec3::new(0.0, 0.0, 7.0), camera.eye);
-            eye.levels[held[0].0].pixel_m(1.0) / view.pixel_m(40.0)
+            let texel = eye.levels[held[0].0].pixel_m(1.0);
+            // Steps of depths between a half and 1, beside what a surface is pushed off itself (`lib/light.wgsl`).
+            let step = eye.depth_step_m() * 2_f64.powi(-24);
+            assert!(step < 0.35 * texel, "{far}: steps of {step} m, texels of {texel} m");
+            texel / view.pixel_m(40.0)
         };
         let near = texel(50.0);
         for far in [2e3, 2e4, 2e5, 2e6, 2e7] {

@@ -499,3 +499,62 @@ fn every_scene_ships_and_reads() {
         assert!(scene.is_ok(), "{}", scene.unwrap_err());
     }
 }
+
+/// What a machine may lack is said in one line, whatever the command; what needs it not goes on.
+#[test]
+fn a_poor_machine_gets_one_line() {
+    let folder = Folder::new("poor");
+    let house = folder.file("house.city.json", CITY);
+    let [picture, animation] = ["house.png", "frames"].map(|name| folder.path(name));
+    let no_driver = |arguments: &[&str]| {
+        let mut command = veduta(arguments);
+        for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+            command.env(name, "/nonexistent/driver.json");
+        }
+        // A fault of the program would be told at length otherwise.
+        command.env_remove("RUST_BACKTRACE").env_remove("VEDUTA_ADAPTER").output().unwrap()
+    };
+    let scene =
+        folder.file("scene.toml", "veduta = 1\n[city]\nfiles = [\"house.city.json\"]\n[animation]\nframes = 2\n");
+    for arguments in [
+        &["render", &house, "-o", &picture][..],
+        &["animate", &scene, "-o", &animation],
+        &["measure", "handlers", "-o", &animation],
+    ] {
+        let output = no_driver(arguments);
+        let said = err(&output);
+        let errors: Vec<&str> = said.lines().filter(|line| !line.starts_with("note:")).collect();
+        assert_eq!((code(&output), errors.len()), (1, 1), "{arguments:?}: {said}");
+        let is_told = errors[0].starts_with("error: ") && errors[0].contains("mesa-vulkan-drivers");
+        assert!(is_told && !said.contains("panicked"), "{arguments:?}: {said}");
+        assert!(!Path::new(&picture).exists(), "{arguments:?}");
+    }
+    assert_eq!(code(&no_driver(&["info", &house])), 0, "what draws nothing needs none");
+    // No home, or one that is not there.
+    for (name, value) in [("HOME", None), ("HOME", Some("/nonexistent")), ("XDG_CONFIG_HOME", Some("/nonexistent"))] {
+        let mut command = veduta(&["render", &house, "-o", &picture, "--size", "40x30", "-q"]);
+        match value {
+            Some(value) => command.env(name, value),
+            None => command.env_remove(name),
+        };
+        let output = command.output().unwrap();
+        assert_eq!((code(&output), err(&output).as_str()), (0, ""), "{name}: {value:?}");
+    }
+}
+
+#[test]
+fn too_much_memory_ends_with_a_line() {
+    let folder = Folder::new("memory");
+    let city = folder.path("many.city.json");
+    assert_eq!(code(&run(&["synth", "--buildings", "30000", "--seed", "1", "-o", &city, "-q"])), 0);
+    let picture = folder.path("many.png");
+    let output = run(&["render", &city, "-o", &picture, "--size", "64x40", "--memory", "130M", "-q"]);
+    let said = err(&output);
+    assert_eq!((code(&output), said.lines().count()), (1, 1), "{said}");
+    assert!(said.starts_with("error: ") && said.contains("--memory allows, 130 MiB"), "{said}");
+    assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 1, "nothing half-written stays");
+    assert_eq!(code(&run(&["info", &city, "--memory", "4G", "-q"])), 0);
+    let output = run(&["info", &city, "--memory", "much"]);
+    assert_eq!(code(&output), 2);
+    assert!(err(&output).contains("4G"), "{}", err(&output));
+}

@@ -256,17 +256,34 @@ fn mtl_says_it_in_four_ways() {
     assert_eq!(told, [("missing-texture", 1)]);
 }
 
-#[test]
-fn gltf_says_which_opacity_counts() {
-    let folder = Folder::new("gltf");
-    folder.leaf("leaf.png", [20, 160, 40, 153]);
-    let positions: Vec<u8> = [-5.0_f32, 0.0, 0.0, 5.0, 0.0, 0.0, 5.0, 10.0, 0.0, -5.0, 10.0, 0.0]
+/// Corners, texture coordinates and indices of a wall 10 m high and wide, as glTF has them.
+fn wall_bytes() -> Vec<u8> {
+    [-5.0_f32, 0.0, 0.0, 5.0, 0.0, 0.0, 5.0, 10.0, 0.0, -5.0, 10.0, 0.0]
         .iter()
         .chain(&[0.0_f32, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
         .flat_map(|number| number.to_le_bytes())
         .chain([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|index| index.to_le_bytes()))
-        .collect();
-    folder.write("wall.bin", positions);
+        .collect()
+}
+
+/// That wall in a node, of a material.
+fn wall_gltf(node: &str, material: &str) -> String {
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{node}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"TEXCOORD_0":1}},"indices":2,"material":0}}]}}],
+"materials":[{material}],
+"textures":[{{"source":0}}],"images":[{{"uri":"leaf.png"}}],"buffers":[{{"byteLength":92,"uri":"wall.bin"}}],
+"bufferViews":[{{"buffer":0,"byteLength":48}},{{"buffer":0,"byteOffset":48,"byteLength":32}},{{"buffer":0,"byteOffset":80,"byteLength":12}}],
+"accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-5,0,0],"max":[5,10,0]}},
+{{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"}},{{"bufferView":2,"componentType":5123,"count":6,"type":"SCALAR"}}]}}"#
+    )
+}
+
+#[test]
+fn gltf_says_which_opacity_counts() {
+    let folder = Folder::new("gltf");
+    folder.leaf("leaf.png", [20, 160, 40, 153]);
+    folder.write("wall.bin", wall_bytes());
     for (material, middle, corner) in [
         (r#""alphaMode":"OPAQUE""#, 1.0, 1.0),
         (r#""alphaMode":"BLEND""#, 0.6, 0.0),
@@ -280,15 +297,10 @@ fn gltf_says_which_opacity_counts() {
             let factor = if material.contains("factor") { 0.5 } else { 1.0 };
             let material = material.replace(",\"factor\":0.5", "");
             let texture = if is_textured { r#","baseColorTexture":{"index":0}"# } else { "" };
-            let text = format!(
-                r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
-"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"TEXCOORD_0":1}},"indices":2,"material":0}}]}}],
-"materials":[{{{material},"doubleSided":true,"pbrMetallicRoughness":{{"baseColorFactor":[1,1,1,{factor}]{texture}}}}}],
-"textures":[{{"source":0}}],"images":[{{"uri":"leaf.png"}}],"buffers":[{{"byteLength":92,"uri":"wall.bin"}}],
-"bufferViews":[{{"buffer":0,"byteLength":48}},{{"buffer":0,"byteOffset":48,"byteLength":32}},{{"buffer":0,"byteOffset":80,"byteLength":12}}],
-"accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-5,0,0],"max":[5,10,0]}},
-{{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"}},{{"bufferView":2,"componentType":5123,"count":6,"type":"SCALAR"}}]}}"#
+            let material = format!(
+                r#"{{{material},"doubleSided":true,"pbrMetallicRoughness":{{"baseColorFactor":[1,1,1,{factor}]{texture}}}}}"#
             );
+            let text = wall_gltf(r#"{"mesh":0}"#, &material);
             let picture = drawn(&of_file(&folder.write("wall.gltf", text), ""));
             let plain = match (material.contains("BLEND"), material.contains("MASK")) {
                 (true, _) => factor,
@@ -315,22 +327,40 @@ fn the_sun_shines_through_holes_and_what_lets_more_than_half_through() {
     let roof = "mtllib m.mtl\nv -5 -5 6\nv 5 -5 6\nv 5 5 6\nv -5 5 6\nv -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\n\
                 vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\nusemtl floor\nf 5 6 7 8\n";
     let model = folder.write("roof.obj", roof);
+    let floor = "mtllib m.mtl\nv -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\nusemtl floor\nf 1 2 3 4\n";
+    let floor = folder.write("floor.obj", floor);
+    folder.write("wall.bin", wall_bytes());
+    let node = r#"{"mesh":0,"rotation":[-0.70710678,0,0,0.70710678],"translation":[0,6,5]}"#;
+    let of_gltf = |mode: &str| {
+        let material = format!(
+            r#"{{"alphaMode":"{mode}","doubleSided":true,"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}}}}"#
+        );
+        folder.write(&format!("{mode}.gltf"), wall_gltf(node, &material))
+    };
+    let (mask, blend, opaque) = (of_gltf("MASK"), of_gltf("BLEND"), of_gltf("OPAQUE"));
     // Whether there is shadow under the middle of the pane, and under its corner.
-    for (mtl, middle, corner) in [
-        ("Kd 1 0 0", true, true),
-        ("Kd 1 0 0\nd 0.5", true, true),
-        ("Kd 1 0 0\nd 0.4", false, false),
-        ("map_Kd leaf.png", true, false),
-        ("map_Kd thick.png", true, false),
-        ("map_Kd thin.png", false, false),
-        ("map_Kd thick.png\nd 0.7", false, false),
-        ("map_Kd leaf.png\nd 0.7", true, false),
+    for (mtl, gltf, middle, corner) in [
+        ("Kd 1 0 0", None, true, true),
+        ("Kd 1 0 0\nd 0.5", None, true, true),
+        ("Kd 1 0 0\nd 0.4", None, false, false),
+        ("map_Kd leaf.png", None, true, false),
+        ("map_Kd thick.png", None, true, false),
+        ("map_Kd thin.png", None, false, false),
+        ("map_Kd thick.png\nd 0.7", None, false, false),
+        ("map_Kd leaf.png\nd 0.7", None, true, false),
+        ("", Some(&mask), true, false),
+        ("", Some(&blend), true, false),
+        ("", Some(&opaque), true, true),
     ] {
         folder.write("m.mtl", format!("newmtl a\n{mtl}\nnewmtl floor\nKd 0.8 0.8 0.8\n"));
+        let files = match gltf {
+            Some(gltf) => vec![gltf, &floor],
+            None => vec![&model],
+        };
+        let files: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
         let text = format!(
-            "veduta = 1\n[city]\nfiles = [{:?}]\nground = false\n[camera]\neye = [0, -40, 3]\ntarget = [0, 0, 0]\n\
-             projection = \"orthographic\"\nheight_m = 24\n[sun]\nazimuth_deg = 180\nelevation_deg = 89\n",
-            model.display().to_string()
+            "veduta = 1\n[city]\nfiles = {files:?}\nground = false\n[camera]\neye = [0, -40, 3]\ntarget = [0, 0, 0]\n\
+             projection = \"orthographic\"\nheight_m = 24\n[sun]\nazimuth_deg = 180\nelevation_deg = 89\n"
         );
         let scene = parse(&text, "scene.toml", &Options { allow_outside: true, ..Options::default() })
             .unwrap_or_else(|error| panic!("{error}"));
@@ -352,7 +382,7 @@ fn the_sun_shines_through_holes_and_what_lets_more_than_half_through() {
                 [("middle", DVec3::new(0.5, 0.5, 0.0), middle), ("corner", DVec3::new(-4.5, -4.5, 0.0), corner)]
             {
                 let found = light(place) < 0.9 * outside;
-                assert_eq!(found, wanted, "{mtl:?}, {backend:?}, {what}: {} of {outside}", light(place));
+                assert_eq!(found, wanted, "{mtl:?}, {gltf:?}, {backend:?}, {what}: {} of {outside}", light(place));
             }
         }
     }
