@@ -25,6 +25,8 @@ pub struct SceneProblem {
     pub key: String,
     /// What is wrong, and what is near it.
     pub message: String,
+    /// Whether no picture of it would show what the scene means: what it is about, or what it colours or chooses by, is not there.
+    pub is_error: bool,
 }
 
 /// Attributes and objects that the scene names and the loaded city does not have, and choices of objects that mean none.
@@ -48,6 +50,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
                     table: table.clone(),
                     key: format!("{list}.{i}.attribute"),
                     message: format!("no object of the city has the attribute \"{attribute}\"{hint}"),
+                    is_error: true,
                 });
             }
             let none = sentinels(model, attribute);
@@ -61,6 +64,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
                         "objects have numbers for \"{attribute}\" that stand for no value, and are drawn as such: {}",
                         told.join(", ")
                     ),
+                    is_error: false,
                 });
             }
         }
@@ -77,6 +81,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
             table: format!("lens.{i}"),
             key: key.into(),
             message: format!("the lens acts nowhere: {problem}"),
+            is_error: false,
         });
     }
     for (i, lens) in scene.lenses.iter().enumerate() {
@@ -96,6 +101,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
             let types = types.into_iter().map(|(at, message)| (format!("types.{at}"), message));
             problems.extend(named.chain(types).map(|(at, message)| SceneProblem {
                 table: format!("lens.{i}"),
+                is_error: at.ends_with("attribute"),
                 key: format!("{key}.{at}"),
                 message,
             }));
@@ -109,6 +115,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
                 table: format!("poi.{i}"),
                 key: "object".into(),
                 message: format!("the city has no object \"{id}\"{hint}"),
+                is_error: true,
             });
         }
     }
@@ -133,8 +140,10 @@ fn effects_of(render: &Rendering) -> impl Iterator<Item = (String, &Vec<EffectUs
 
 /// The names of an occlusion lens.
 fn check_occluders(of: &Occluders, table: &str, scene: &Scene, model: &CityModel, problems: &mut Vec<SceneProblem>) {
-    let mut problem =
-        |key: String, message: String| problems.push(SceneProblem { table: table.to_owned(), key, message });
+    let mut problem = |key: String, message: String| {
+        let is_error = key.ends_with(".attribute");
+        problems.push(SceneProblem { table: table.to_owned(), key, message, is_error });
+    };
     for (i, name) in of.pois.iter().enumerate() {
         let placement = Placement::Poi(name.clone());
         match anchor(&placement, scene, model) {
@@ -163,6 +172,7 @@ fn check_focus(focus: &Region, table: &str, at: &str, model: &CityModel, problem
         Region::Objects(choice) | Region::Thematic(choice) => {
             problems.extend(absent(model, choice).into_iter().map(|(key, message)| SceneProblem {
                 table: table.to_owned(),
+                is_error: key == "attribute",
                 key: format!("{at}.{key}"),
                 message: format!("chooses nothing: {message}"),
             }));
@@ -173,6 +183,7 @@ fn check_focus(focus: &Region, table: &str, at: &str, model: &CityModel, problem
                     table: table.to_owned(),
                     key: format!("{at}.types.{i}"),
                     message,
+                    is_error: false,
                 }));
             }
             for (i, part) in parts.iter().enumerate() {
@@ -274,5 +285,8 @@ mod tests {
                 "[poi.1] object: the city has no object \"townhall\"; did you mean \"town-hall\"?",
             ]
         );
+        let errors: Vec<usize> =
+            (0..).zip(check_against(&scene, &model)).filter(|(_, p)| p.is_error).map(|(i, _)| i).collect();
+        assert_eq!(errors, [0, 5, 9]);
     }
 }

@@ -205,7 +205,7 @@ pub const DEEPEST: usize = 3;
 pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
     let mut problems = Vec::new();
     let mut note = |table: String, key: &str, message: String| {
-        problems.push(SceneProblem { table, key: key.to_owned(), message });
+        problems.push(SceneProblem { table, key: key.to_owned(), message, is_error: true });
     };
     let has_overlay = |lens: &&Lens| lens.kind.has_overlay();
     for (i, overlay) in scene.overlays.iter().enumerate() {

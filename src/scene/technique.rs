@@ -60,6 +60,7 @@ impl Technique {
             table: "style".to_owned(),
             key: "technique".to_owned(),
             message: format!("\"{}\" {why}; \"accumulate\" would be right", self.word()),
+            is_error: true,
         }
     }
 

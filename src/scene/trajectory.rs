@@ -145,6 +145,7 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
             table: format!("poi.{i}"),
             key: "trajectory".into(),
             message: format!("there is no trajectory \"{name}\"{hint}"),
+            is_error: true,
         }
     });
     problems.collect()

@@ -558,3 +558,35 @@ fn too_much_memory_ends_with_a_line() {
     assert_eq!(code(&output), 2);
     assert!(err(&output).contains("4G"), "{}", err(&output));
 }
+
+/// A point of interest or an attribute that is not there is no picture, in every command, and told once.
+#[test]
+fn what_a_scene_is_about_has_to_be_there() {
+    let folder = Folder::new("about");
+    folder.file("a.city.json", CITY);
+    let head = "veduta = 1\n[city]\nfiles = [\"a.city.json\"]\n[animation]\nframes = 2\n";
+    let poi = folder.file("poi.toml", &format!("{head}[[poi]]\nname = \"p\"\nobject = \"a2\"\n"));
+    let thematic = "[style]\neffects = [{ effect = \"thematic\", attribute = \"yaer\" }]\n";
+    let attribute = folder.file("attribute.toml", &format!("{head}{thematic}"));
+    let both = folder.file("both.toml", &format!("{head}{thematic}[[poi]]\nname = \"p\"\nobject = \"a2\"\n"));
+    let no_object = "scene: [poi.0] object: the city has no object \"a2\"; did you mean \"a\"?";
+    let no_attribute =
+        "scene: [style] effects.0.attribute: no object of the city has the attribute \"yaer\"; did you mean \"year\"?";
+    let [picture, frames] = ["a.png", "frames"].map(|name| folder.path(name));
+    for (scene, told) in [(&poi, &[no_object][..]), (&attribute, &[no_attribute]), (&both, &[no_attribute, no_object])]
+    {
+        let sheet =
+            folder.file("a.sheet.toml", &format!("veduta_sheet = 1\nscene = {scene:?}\n[[row]]\nname = \"r\"\n"));
+        for arguments in [
+            &["render", scene, "-o", &picture][..],
+            &["animate", scene, "-o", &frames],
+            &["shader", scene],
+            &["sheet", &sheet, "-o", &picture, "--allow-outside"],
+        ] {
+            let output = run(arguments);
+            let expected: String = told.iter().map(|message| format!("error: {message}\n")).collect();
+            assert_eq!((code(&output), err(&output)), (1, expected), "{arguments:?}");
+        }
+    }
+    assert!(!Path::new(&picture).exists() && !Path::new(&frames).join("0000.png").exists());
+}

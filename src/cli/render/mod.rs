@@ -29,7 +29,7 @@ use crate::{
         picture::{Aovs, Picture, RenderError, Request, Studio},
         stats,
     },
-    scene::{Command, History, Scene, check_against},
+    scene::{Command, History, Scene, SceneProblem, check_against},
     view::Camera,
 };
 
@@ -197,8 +197,7 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
     if missing > 0 {
         log::warn!("{missing} of {} textures cannot be read; their materials' colours are used", model.textures.len());
     }
-    for problem in check_against(scene, &model) {
-        log::warn!("scene: {problem}");
+    for problem in told(check_against(scene, &model), "scene")? {
         let message = problem.to_string();
         warnings.push(serde_json::json!({"code": "scene", "count": 1, "objects": [], "message": message}));
     }
@@ -219,6 +218,20 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
         peak_bytes: stats::peak_memory(),
     };
     Ok((studio, warnings))
+}
+
+/// Tells what a scene names and its city does not have, after `whose`; those that can be lived with.
+///
+/// # Errors
+/// The last of those that cannot; the others are told as errors, too.
+pub fn told(problems: Vec<SceneProblem>, whose: &str) -> Outcome<Vec<SceneProblem>> {
+    let (mut errors, others): (Vec<_>, Vec<_>) = problems.into_iter().partition(|problem| problem.is_error);
+    if let Some(last) = errors.pop() {
+        errors.iter().for_each(|problem| log::error!("{whose}: {problem}"));
+        return Err(Failure::failed(format!("{whose}: {last}")));
+    }
+    others.iter().for_each(|problem| log::warn!("{whose}: {problem}"));
+    Ok(others)
 }
 
 fn write_aov(aov: &AovRequest, picture: &Picture, lens_count: usize, notes: &Notes) -> Outcome {

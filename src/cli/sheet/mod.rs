@@ -25,7 +25,7 @@ use crate::{
         },
     },
     render::picture::{Request, Studio},
-    scene::{CitySpec, Scene, TextSize, check_against},
+    scene::{CitySpec, Scene, SceneProblem, TextSize, check_against},
 };
 use figures::Figures;
 
@@ -174,19 +174,16 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by_key(|&i| (cells.iter().position(|cell| cell.scene.city == cells[i].scene.city), i));
     let mut legends: Vec<Legend> = Vec::new();
-    let mut reported: Vec<String> = Vec::new();
+    let mut reported: Vec<SceneProblem> = Vec::new();
     for &i in &order {
         let cell = &mut cells[i];
         let was_open = kept.as_ref().is_some_and(|(city, _)| *city == cell.scene.city);
         let studio = studio_of(kept, &cell.scene, options, global)?;
-        let problems = check_against(&cell.scene, &studio.model).into_iter().map(|problem| problem.to_string());
-        for problem in problems.filter(|problem| !reported.contains(problem)).collect::<Vec<_>>() {
-            // Opening tells those of its scene.
-            if was_open {
-                log::warn!("cell {}: scene: {problem}", cell.name);
-            }
-            reported.push(problem);
-        }
+        let mut problems = check_against(&cell.scene, &studio.model);
+        problems.retain(|problem| !reported.contains(problem));
+        // Opening tells those of its scene.
+        let new = if was_open { render::told(problems, &format!("cell {}: scene", cell.name))? } else { problems };
+        reported.extend(new);
         if sheet.legend {
             let seen = studio.lenses_in_view(&cell.scene, size);
             let seen = seen.map_err(|error| failed(format!("cell {}: {error}", cell.name)))?;

@@ -339,7 +339,7 @@ pub fn check<'n>(reader: &mut Reader, scene: &Scene, lists: &dyn Fn(&str) -> &'n
     // Of a way that is wrong it is told already.
     let is_whole = lists("trajectory").len() <= scene.trajectories.len();
     let of_ways = if is_whole { scene::trajectory::problems(scene) } else { Vec::new() };
-    for SceneProblem { table, key, message } in scene::overlay::problems(scene).into_iter().chain(of_ways) {
+    for SceneProblem { table, key, message, .. } in scene::overlay::problems(scene).into_iter().chain(of_ways) {
         let (name, index) = table.split_once('.').unwrap_or_default();
         let node = index.parse().ok().and_then(|i: usize| lists(name).get(i));
         let line = node.and_then(|node| node.entry(&key).or(Some(node))).map_or(1, |node| node.line);
