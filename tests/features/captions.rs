@@ -70,6 +70,14 @@ impl Stage {
         pixels
     }
 
+    /// Of some pixels those in which the plain picture is not cut at white, nearly all: lamps are brighter.
+    fn not_cut(&self, pixels: &[usize]) -> impl Iterator<Item = usize> {
+        let is_whole = |i: &usize| !self.plain.rgba[*i][..3].contains(&255);
+        let whole: Vec<usize> = pixels.iter().copied().filter(is_whole).collect();
+        assert!(whole.len() * 500 > pixels.len() * 499, "{} of {}", whole.len(), pixels.len());
+        whole.into_iter()
+    }
+
     /// Whether these pixels are as without any lens.
     fn assert_unchanged(&self, picture: &Picture, place: Place) {
         let changed = self.pixels(place).into_iter().filter(|&i| picture.rgba[i] != self.plain.rgba[i]).count();
@@ -231,7 +239,7 @@ fn trapp_3_5_2_a_the_context_is_darkened_and_the_focus_unchanged() {
     let factor = total(&shown) / total(&stage.plain);
     assert!((0.05..0.4).contains(&factor), "{factor}");
     let same = |i: usize| apart(shown.rgba[i], bytes(linear(stage.plain.rgba[i]).map(|c| factor * c)));
-    let worst = around.iter().map(|&i| same(i)).fold(0.0, f64::max);
+    let worst = stage.not_cut(&around).map(same).fold(0.0, f64::max);
     assert!(worst <= 1.5, "{worst}");
     println!("3.5.2 A: the context has {factor} of its light");
 }
@@ -254,7 +262,8 @@ fn trapp_3_5_2_b_the_colours_of_the_context_are_discarded() {
     assert_only_the_focus_has_color(&stage, &shown);
     // Nothing but colour is discarded: luminance stays.
     let wanted = |i: usize| bytes([luminance(linear(stage.plain.rgba[i])); 3]);
-    let worst = stage.pixels(Place::Around).iter().map(|&i| apart(shown.rgba[i], wanted(i))).fold(0.0, f64::max);
+    let around = stage.pixels(Place::Around);
+    let worst = stage.not_cut(&around).map(|i| apart(shown.rgba[i], wanted(i))).fold(0.0, f64::max);
     assert!(worst <= 1.5, "{worst}");
 }
 
@@ -265,7 +274,8 @@ fn trapp_3_5_2_c_the_context_without_colours_is_inverted() {
     assert_only_the_focus_has_color(&stage, &shown);
     // First discarded, then inverted.
     let wanted = |i: usize| bytes([luminance(linear(stage.plain.rgba[i])); 3]).map(|c| 255.0 - c);
-    let worst = stage.pixels(Place::Around).iter().map(|&i| apart(shown.rgba[i], wanted(i))).fold(0.0, f64::max);
+    let around = stage.pixels(Place::Around);
+    let worst = stage.not_cut(&around).map(|i| apart(shown.rgba[i], wanted(i))).fold(0.0, f64::max);
     assert!(worst <= 1.5, "{worst}");
     // What was lighter is darker now: the sky against the roofs.
     let around = stage.pixels(Place::Around);
@@ -349,7 +359,7 @@ fn trapp_3_5_3_b_a_colour_is_laid_over_the_lit_picture() {
         bytes([0, 1, 2].map(|c| below[c] + opacity * (paint[c] - below[c])))
     };
     let inside = stage.pixels(Place::Inside);
-    let worst = inside.iter().map(|&i| apart(shown.rgba[i], wanted(i))).fold(0.0, f64::max);
+    let worst = stage.not_cut(&inside).map(|i| apart(shown.rgba[i], wanted(i))).fold(0.0, f64::max);
     assert!(worst <= 1.5, "{worst}");
     // It is a post style: light and shadow still show through.
     let spread = |picture: &Picture| {
