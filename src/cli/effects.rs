@@ -13,7 +13,10 @@ use crate::{
         report::wrap,
         terminal::{self, Paint},
     },
-    shader::effect::{self, EffectDefinition, ParameterDefinition},
+    shader::{
+        effect::{self, EffectDefinition, ParameterDefinition},
+        effect_file::{checked, redefined},
+    },
 };
 
 const EXAMPLES: &str = "\
@@ -54,15 +57,22 @@ pub fn add_folders(folders: &[PathBuf], global: &GlobalArguments) -> Outcome {
         for file in files {
             let name = file.display().to_string();
             let text = text_of_file(&file)?;
-            if let Err(error) = effect::add(&name, &text)
-                && !global.quiet
-            {
-                let paint = Paint::for_stderr();
-                terminal::say(&format!("{} {error}; this effect is left out", paint.warning("warning:")));
+            match effect::add(&name, &text) {
+                _ if global.quiet => {}
+                Ok(_) => tell_redefined(&name, &text),
+                Err(error) => {
+                    let paint = Paint::for_stderr();
+                    terminal::say(&format!("{} {error}; this effect is left out", paint.warning("warning:")));
+                }
             }
         }
     }
     Ok(())
+}
+
+/// Tells which names of a file are those of what effects are given.
+fn tell_redefined(name: &str, text: &str) {
+    redefined(name, text).iter().for_each(|note| terminal::say(&format!("note: {note}")));
 }
 
 fn text_of_file(file: &Path) -> Outcome<String> {
@@ -76,10 +86,14 @@ fn check(files: &[PathBuf]) -> Outcome {
     let mut broken = Vec::new();
     for file in files {
         let name = file.display().to_string();
-        match crate::shader::effect_file::checked(&name, &text_of_file(file)?) {
+        let text = text_of_file(file)?;
+        match checked(&name, &text) {
             Ok(effect) if effect::handlers().iter().any(|h| h.name == effect.name) => broken
                 .push(format!("{name}:1:1: there is an effect \"{}\" already; expected another name", effect.name)),
-            Ok(effect) => output::print(&format!("{name}: \"{}\" is right\n", effect.name))?,
+            Ok(effect) => {
+                output::print(&format!("{name}: \"{}\" is right\n", effect.name))?;
+                tell_redefined(&name, &text);
+            }
             Err(error) => broken.push(error.to_string()),
         }
     }

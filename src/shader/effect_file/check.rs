@@ -14,6 +14,7 @@ use crate::shader::{
         error::{File, FileError},
         flow::check_control_flow,
         read::{body_of, read_with_names, signature},
+        redefined::check_types,
     },
     host::HostProgram,
     module::Module,
@@ -42,6 +43,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         let message = "objects, and parameters of type shares and colors, are for effects of the program";
         return Err(file.error(0, message));
     }
+    check_types(&effect, &file)?;
     check_bounds(&file)?;
     check_control_flow(&file)?;
     check_cost(&file)?;
@@ -97,7 +99,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
 }
 
 /// A module in which a handler alone does something.
-fn module_of(effect: &EffectDefinition) -> String {
+pub(super) fn module_of(effect: &EffectDefinition) -> String {
     let steps = vec![Step { effect: 0, scope: Scope::Everywhere, parameters: 0, blend: None }];
     let plan = Plan { steps, ..Plan::default() };
     let handlers = std::slice::from_ref(effect);

@@ -30,10 +30,12 @@ pub(super) mod flow;
 pub(super) mod header;
 pub(super) mod parameters;
 pub(super) mod read;
+pub(super) mod redefined;
 
 pub use check::checked;
 pub use error::FileError;
 pub use header::{MOST_LINE_WIDTH, MOST_REACH, RESERVED};
+pub use redefined::redefined;
 
 #[cfg(test)]
 mod tests;

@@ -162,3 +162,24 @@ fn names_that_clash_with_ours_do_no_harm() {
     );
     assert!(checked("my.wgsl", &text).is_ok());
 }
+
+#[test]
+fn names_that_effects_are_given_are_told_and_their_types_refused() {
+    let file = |own: &str| {
+        format!(
+            "//! name = \"mine\"\n//! kind = \"post\"\n//! spec = \"mine\"\n//! doc = \"Mine.\"\n\n{own}\n\nfn effect(color: vec3f, point: Point) -> vec3f {{\n    return color;\n}}\n"
+        )
+    };
+    let told = |own: &str| redefined("a.wgsl", &file(own)).iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(told("const MINE = 3.0;\nfn own_light(c: vec3f) -> f32 { return 0.5; }"), [""; 0]);
+    let given = "is what effects are given, too; in this file it is the effect's own";
+    assert_eq!(
+        told("const FAR_AWAY = 3.0;\nfn luminance(c: vec3f) -> f32 { return 0.5; }"),
+        [format!("a.wgsl:6:7: `FAR_AWAY` {given}"), format!("a.wgsl:7:4: `luminance` {given}")]
+    );
+    checked("a.wgsl", &file("const FAR_AWAY = 3.0;")).expect("a name of its own");
+    for own in ["struct Point { a: f32 }", "alias Point = f32;"] {
+        let error = checked("a.wgsl", &file(own)).expect_err("the type is given").to_string();
+        assert!(error.starts_with("a.wgsl:6:") && error.contains("`Point` is what effects are called with"), "{error}");
+    }
+}
