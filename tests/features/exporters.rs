@@ -2,9 +2,10 @@
 
 use std::{
     io::{Cursor, Write as _},
-    path::{Path, PathBuf},
+    path::Path,
 };
 
+use crate::studio::Folder;
 use glam::DVec3;
 use veduta::{
     city::{
@@ -14,32 +15,9 @@ use veduta::{
     geom::Aabb,
 };
 
-/// A folder of one test, removed at its end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("veduta-exporters-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.join(name);
-        std::fs::write(&path, bytes).expect("a file");
-        path
-    }
-
-    /// Writes a file and loads it.
-    fn load(&self, name: &str, bytes: impl AsRef<[u8]>) -> CityModel {
-        loaded(&self.write(name, bytes))
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+/// Writes a file and loads it.
+fn load_text(folder: &Folder, name: &str, bytes: impl AsRef<[u8]>) -> CityModel {
+    loaded(&folder.write(name, bytes))
 }
 
 fn loaded(path: &Path) -> CityModel {
@@ -90,7 +68,7 @@ fn two_walls(values: &str) -> String {
 
 #[test]
 fn a_texture_value_that_does_not_match_costs_its_own_face() {
-    let folder = Folder::new("textures");
+    let folder = Folder::new("exporters-textures");
     folder.write("t.png", encoded(image::ImageFormat::Png));
     for (values, has, count) in [
         // Nothing for the whole face: once for all of its rings, for each, or for the face.
@@ -108,7 +86,7 @@ fn a_texture_value_that_does_not_match_costs_its_own_face() {
         ("[[[0,0,1,2,3],[0,0,3,2,1]]]", [true, false], 1),
         ("[[[null]],[[0,0,1,2,3]],[[0,0,1,2,3]]]", [false, true], 1),
     ] {
-        let model = folder.load("walls.city.json", two_walls(values));
+        let model = load_text(&folder, "walls.city.json", two_walls(values));
         assert_eq!(textured(&model), has, "{values}");
         assert_eq!(model.warnings.count(WarningCode::AppearanceIndex), count, "{values}: {:?}", warnings(&model));
         assert_eq!(model.warnings.iter().count() as u64, count, "{values}: {:?}", warnings(&model));
@@ -148,7 +126,7 @@ fn triangle(more: &str, changes: &[(&str, &str)]) -> String {
 
 #[test]
 fn gltf_that_the_format_allows_is_read() {
-    let folder = Folder::new("gltf");
+    let folder = Folder::new("exporters-gltf");
     let channel = |target: &str| {
         format!(
             r#","animations":[{{"samplers":[{{"input":0,"output":0}}],"channels":[{{"sampler":0,"target":{target}}}]}}]"#
@@ -198,7 +176,7 @@ fn gltf_that_the_format_allows_is_read() {
             vec![],
         ),
     ] {
-        let model = folder.load("t.gltf", triangle(&more, &changes));
+        let model = load_text(&folder, "t.gltf", triangle(&more, &changes));
         assert_eq!(model.indices.len(), 3, "{name}");
         assert_eq!(warnings(&model), [] as [String; 0], "{name}");
         assert!(is_near(model.extent(), [0.0, 0.0, 0.0], [10.0, 0.0, 10.0]), "{name}");
@@ -209,7 +187,7 @@ fn gltf_that_the_format_allows_is_read() {
 
 #[test]
 fn what_is_wrong_with_a_part_of_gltf_costs_that_part() {
-    let folder = Folder::new("gltf-parts");
+    let folder = Folder::new("exporters-gltf-parts");
     let two = |second: &str, mesh: &str| {
         let nodes = format!(r#""nodes":[{{"mesh":0,"name":"wall"}},{second}]"#);
         let meshes = format!(r#""material":0}}]}}{mesh}],"#);
@@ -227,14 +205,14 @@ fn what_is_wrong_with_a_part_of_gltf_costs_that_part() {
         (r#"{"mesh":1,"name":"b"}"#, r#",{"primitives":7}"#, WarningCode::BadGeometry, "meshes[1]"),
         (r#"{"mesh":4,"name":"b"}"#, "", WarningCode::BadGeometry, "meshes[4] does not exist; the file has 1"),
     ] {
-        let model = folder.load("t.gltf", two(second, mesh));
+        let model = load_text(&folder, "t.gltf", two(second, mesh));
         assert_eq!(model.indices.len(), 3, "{second}");
         assert_eq!(model.warnings.count(code), 1, "{second}: {:?}", warnings(&model));
         assert!(warnings(&model)[0].contains(said), "{:?}", warnings(&model));
     }
     // What is hidden is not shown, nor what hangs on it.
     let hidden = two(r#"{"extensions":{"KHR_node_visibility":{"visible":false}},"mesh":0,"children":[]}"#, "");
-    assert_eq!(folder.load("t.gltf", hidden).indices.len(), 3);
+    assert_eq!(load_text(&folder, "t.gltf", hidden).indices.len(), 3);
 }
 
 /// A triangle of OBJ with texture coordinates, after this head.
@@ -244,7 +222,7 @@ fn obj(head: &str, material: &str) -> String {
 
 #[test]
 fn names_of_files_are_found_as_exporters_spell_them() {
-    let folder = Folder::new("names");
+    let folder = Folder::new("exporters-names");
     folder.write("my mat.mtl", "newmtl Red Paint\nKd 1 0 0\n");
     std::fs::create_dir_all(folder.0.join("Maps")).expect("a folder");
     folder.write("Maps/Wall Tile.PNG", encoded(image::ImageFormat::Png));
@@ -258,7 +236,7 @@ fn names_of_files_are_found_as_exporters_spell_them() {
         "./my mat.mtl",
     ] {
         for material in ["Red Paint", "red paint"] {
-            let model = folder.load("t.obj", obj(&format!("mtllib {library}"), material));
+            let model = load_text(&folder, "t.obj", obj(&format!("mtllib {library}"), material));
             let found = &model.materials[model.surfaces[0].material as usize];
             assert_eq!((&*found.name, found.base_color), ("Red Paint", [1.0, 0.0, 0.0, 1.0]), "{library}, {material}");
             assert_eq!(warnings(&model), [] as [String; 0], "{library}, {material}");
@@ -272,7 +250,7 @@ fn names_of_files_are_found_as_exporters_spell_them() {
         "Maps/Wall\\ Tile.PNG",
     ] {
         folder.write("t.mtl", format!("newmtl m\nKd 1 1 1\nmap_Kd {map}\n"));
-        let model = folder.load("t.obj", obj("mtllib t.mtl", "m"));
+        let model = load_text(&folder, "t.obj", obj("mtllib t.mtl", "m"));
         assert_eq!(textured(&model), [true], "{map}: {:?}", warnings(&model));
         assert!(matches!(model.textures[0].image, TextureImage::File(_)), "{map}");
         assert_eq!(warnings(&model), [] as [String; 0], "{map}");
@@ -287,7 +265,7 @@ fn names_of_files_are_found_as_exporters_spell_them() {
 #[test]
 fn found_textures_can_be_read_and_others_are_told_with_their_object() {
     use image::ImageFormat as F;
-    let folder = Folder::new("images");
+    let folder = Folder::new("exporters-images");
     let png = encoded(F::Png);
     let jpeg = encoded(F::Jpeg);
     let pointer = [LFS_POINTER, b"v1\noid sha256:4d7a\nsize 12345\n"].concat();
@@ -314,7 +292,7 @@ fn found_textures_can_be_read_and_others_are_told_with_their_object() {
             ("t.obj", obj("mtllib t.mtl", "m")),
             ("t.city.json", two_walls("[[[null]],[[0,0,1,2,3]]]").replace("t.png", name)),
         ] {
-            let model = folder.load(file, text);
+            let model = load_text(&folder, file, text);
             let textures = facts::facts(&model, false).textures;
             assert_eq!((textures.declared, textures.found), (1, u64::from(said.is_none())), "{name} of {file}");
             assert_eq!(
@@ -333,7 +311,7 @@ fn found_textures_can_be_read_and_others_are_told_with_their_object() {
 
 #[test]
 fn y_is_up_where_the_scene_says_so() {
-    let folder = Folder::new("up");
+    let folder = Folder::new("exporters-up");
     let text = "v 0 0 0\nv 10 0 0\nv 10 0 -20\nv 0 50 0\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1 2 4\n";
     let path = folder.write("t.obj", text);
     let options = LoadOptions { up: Up::Y, ..LoadOptions::default() };
@@ -363,54 +341,54 @@ fn cube(translate: [f64; 3], scale: [f64; 3], crs: Option<&str>) -> String {
 
 #[test]
 fn earth_centred_coordinates_stand_upright() {
-    let folder = Folder::new("earth");
+    let folder = Folder::new("exporters-earth");
     // On the equator at Greenwich up is x, north is z, east is y.
     let at = [6_378_137.0, 0.0, 0.0];
-    let model = folder.load("t.city.json", cube(at, [1.0, 2.0, 3.0], Some("EPSG/0/4978")));
+    let model = load_text(&folder, "t.city.json", cube(at, [1.0, 2.0, 3.0], Some("EPSG/0/4978")));
     assert!(is_near(model.extent(), [0.0, 0.0, 0.0], [20.0, 30.0, 10.0]), "{:?}", model.extent());
     assert_eq!(warnings(&model), [] as [String; 0]);
     // At 50° north, 4° east it is far from all axes, and as large as it is.
     let at = [3_900_000.0, 300_000.0, 5_000_000.0];
-    let model = folder.load("t.city.json", cube(at, [1.0; 3], Some("EPSG/0/4978")));
+    let model = load_text(&folder, "t.city.json", cube(at, [1.0; 3], Some("EPSG/0/4978")));
     assert_eq!((model.indices.len(), warnings(&model)), (36, vec![]));
     let longest = 10.0 * 3.0_f64.sqrt();
     assert!(model.extent().size().max_element() < longest + 1e-3 && model.extent().size().min_element() > 9.0);
     assert!(model.extent().min.truncate().abs().max_element() < longest);
     // What says to be earth-centred and is not.
-    let model = folder.load("t.city.json", cube([85_000.0, 447_000.0, 0.0], [1.0; 3], Some("EPSG/0/4978")));
+    let model = load_text(&folder, "t.city.json", cube([85_000.0, 447_000.0, 0.0], [1.0; 3], Some("EPSG/0/4978")));
     assert!(is_near(model.extent(), [85_000.0, 447_000.0, 0.0], [85_010.0, 447_010.0, 10.0]));
     assert_eq!(model.warnings.count(WarningCode::UnknownCrs), 1);
     // glTF is y up, and says nothing of where it is; OBJ neither.
     let moved = r#"{"mesh":0,"name":"wall","translation":[0,6378137,30000]}"#;
-    let model = folder.load("t.gltf", triangle("", &[(r#"{"mesh":0,"name":"wall"}"#, moved)]));
+    let model = load_text(&folder, "t.gltf", triangle("", &[(r#"{"mesh":0,"name":"wall"}"#, moved)]));
     assert_eq!((model.indices.len(), model.warnings.count(WarningCode::UnknownCrs)), (3, 1), "{:?}", warnings(&model));
     assert!(model.extent().min.truncate().abs().max_element() < 20.0, "{:?}", model.extent());
     let text = "v 0 0 6356752\nv 10 0 6356752\nv 10 0 6356762\nvn 1 0 0\nf 1//1 2//1 3//1\n";
-    let model = folder.load("t.obj", text);
+    let model = load_text(&folder, "t.obj", text);
     assert!(is_near(model.extent(), [-0.0, -0.0, -0.314], [0.0, 10.0, 9.686]) || model.extent().size().z > 9.9);
     assert_eq!(model.warnings.count(WarningCode::UnknownCrs), 1, "{:?}", warnings(&model));
     // National coordinates are not earth-centred, however large.
     let text = "v 2500000 5700000 90\nv 2500010 5700000 90\nv 2500010 5700010 95\nf 1 2 3\n";
-    assert!(folder.load("t.obj", text).extent().min.x > 2_499_999.0);
+    assert!(load_text(&folder, "t.obj", text).extent().min.x > 2_499_999.0);
 }
 
 #[test]
 fn degrees_without_a_reference_system_are_told() {
-    let folder = Folder::new("degrees");
+    let folder = Folder::new("exporters-degrees");
     let degrees = cube([4.35, 52.01, 0.0], [1e-6, 1e-6, 1.0], None);
-    let model = folder.load("t.city.json", &degrees);
+    let model = load_text(&folder, "t.city.json", &degrees);
     assert_eq!(model.warnings.count(WarningCode::UnknownCrs), 1, "{:?}", warnings(&model));
     assert!(warnings(&model)[0].contains("look like degrees"));
     let known = cube([4.35, 52.01, 0.0], [1e-6, 1e-6, 1.0], Some("OGC/1.3/CRS84h"));
-    assert_eq!(folder.load("t.city.json", known).warnings.count(WarningCode::UnknownCrs), 0);
+    assert_eq!(load_text(&folder, "t.city.json", known).warnings.count(WarningCode::UnknownCrs), 0);
     // A mast is no city in degrees.
-    let mast = folder.load("t.city.json", cube([4.0, 52.0, 0.0], [0.01, 0.01, 5.0], None));
+    let mast = load_text(&folder, "t.city.json", cube([4.0, 52.0, 0.0], [0.01, 0.01, 5.0], None));
     assert_eq!(warnings(&mast), [] as [String; 0]);
 }
 
 #[test]
 fn pointers_of_git_lfs_are_called_that() {
-    let folder = Folder::new("lfs");
+    let folder = Folder::new("exporters-lfs");
     let pointer = [LFS_POINTER, b"v1\noid sha256:4d7a\nsize 12345\n"].concat();
     for name in ["t.city.json", "t.city.jsonl", "t.glb", "t.gltf", "t.obj"] {
         assert!(refusal(&folder.write(name, &pointer)).contains("Git LFS pointer"), "{name}");
@@ -428,7 +406,7 @@ fn gzipped(bytes: &[u8]) -> Vec<u8> {
 
 #[test]
 fn what_stands_behind_compressed_content_is_passed_over() {
-    let folder = Folder::new("gzip");
+    let folder = Folder::new("exporters-gzip");
     let text = cube([0.0; 3], [1.0; 3], None);
     let whole = gzipped(text.as_bytes());
     let (half, rest) = text.as_bytes().split_at(100);
@@ -438,7 +416,7 @@ fn what_stands_behind_compressed_content_is_passed_over() {
         ("padding", [&whole[..], &[0; 512]].concat(), 0),
         ("something behind", [&whole[..], b"\r\n--boundary--"].concat(), 1),
     ] {
-        let model = folder.load("t.city.json.gz", bytes);
+        let model = load_text(&folder, "t.city.json.gz", bytes);
         assert_eq!(model.indices.len(), 36, "{name}");
         assert_eq!(model.warnings.count(WarningCode::Malformed), count, "{name}: {:?}", warnings(&model));
     }
@@ -446,7 +424,7 @@ fn what_stands_behind_compressed_content_is_passed_over() {
 
 #[test]
 fn features_that_span_lines_are_read() {
-    let folder = Folder::new("spanning");
+    let folder = Folder::new("exporters-spanning");
     let header = "{\n \"type\": \"CityJSON\", \"version\": \"2.0\",\n \"transform\": {\"scale\": [1,1,1], \"translate\": [0,0,0]},\n \"CityObjects\": {}, \"vertices\": []\n}\n";
     let feature = |id: &str| {
         format!(
@@ -461,20 +439,20 @@ fn features_that_span_lines_are_read() {
         ("none", header.to_owned() + &one_line(feature("a")) + &one_line(feature("b")), 0),
         ("on one line", header.to_owned() + feature("a").trim_end() + &feature("b"), 2),
     ] {
-        let model = folder.load("t.city.jsonl", &text);
+        let model = load_text(&folder, "t.city.jsonl", &text);
         assert_eq!(ids(&model), ["a", "b"], "{name}: {:?}", warnings(&model));
         assert_eq!((model.indices.len(), model.warnings.count(WarningCode::Malformed)), (6, count), "{name}");
     }
     // A feature without an end costs what it cannot be told from, not what is whole before it.
     let cut = header.to_owned() + &feature("a") + &feature("b")[..60] + "\n" + &one_line(feature("c"));
-    let model = folder.load("t.city.jsonl", &cut);
+    let model = load_text(&folder, "t.city.jsonl", &cut);
     assert!(ids(&model).starts_with(&["a".to_owned()]), "{:?}", ids(&model));
     assert!(model.warnings.count(WarningCode::Malformed) > 1);
 }
 
 #[test]
 fn a_template_that_is_moved_by_its_last_row_stands_where_it_was_meant() {
-    let folder = Folder::new("template");
+    let folder = Folder::new("exporters-template");
     let tree = |matrix: &str| {
         format!(
             r#"{{"type":"CityJSON","version":"2.0","transform":{{"scale":[1,1,1],"translate":[0,0,0]}},
@@ -484,8 +462,8 @@ fn a_template_that_is_moved_by_its_last_row_stands_where_it_was_meant() {
 "vertices-templates":[[0,0,0],[10,0,0],[10,0,10]]}}}}"#
         )
     };
-    let by_rows = folder.load("t.city.json", tree("2,0,0,100, 0,2,0,200, 0,0,2,300, 0,0,0,1"));
-    let by_columns = folder.load("t.city.json", tree("2,0,0,0, 0,2,0,0, 0,0,2,0, 100,200,300,1"));
+    let by_rows = load_text(&folder, "t.city.json", tree("2,0,0,100, 0,2,0,200, 0,0,2,300, 0,0,0,1"));
+    let by_columns = load_text(&folder, "t.city.json", tree("2,0,0,0, 0,2,0,0, 0,0,2,0, 100,200,300,1"));
     assert!(is_near(by_rows.extent(), [105.0, 205.0, 300.0], [125.0, 205.0, 320.0]), "{:?}", by_rows.extent());
     assert_eq!(by_rows.extent(), by_columns.extent());
     assert_eq!((warnings(&by_rows).len(), by_columns.warnings.count(WarningCode::Malformed)), (0, 1));
@@ -493,7 +471,7 @@ fn a_template_that_is_moved_by_its_last_row_stands_where_it_was_meant() {
 
 #[test]
 fn a_city_of_which_nothing_is_drawn_says_why() {
-    let folder = Folder::new("nothing");
+    let folder = Folder::new("exporters-nothing");
     let of = |objects: &str| {
         format!(
             r#"{{"type":"CityJSON","version":"2.0","transform":{{"scale":[1,1,1],"translate":[0,0,0]}},"CityObjects":{{{objects}}},"vertices":[[0,0,0],[9,0,0],[0,0,9]]}}"#
@@ -513,7 +491,7 @@ fn a_city_of_which_nothing_is_drawn_says_why() {
         ),
         (building(r#"[{"type":"MultiSurface","lod":"2.2","boundaries":[[[0,1,2]]]}]"#), None, ""),
     ] {
-        let model = folder.load("t.city.json", &text);
+        let model = load_text(&folder, "t.city.json", &text);
         let cap = lod.and_then(veduta::city::Lod::parse);
         let shown = veduta::city::shown::shown_geometries(&model, cap);
         let why = facts::nothing_drawn(&model, &shown);

@@ -147,34 +147,11 @@ fn what_is_picked_is_the_layer_at_which_half_is_opaque() {
     }
 }
 
-/// A folder of one test, removed at its end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("veduta-materials-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a folder");
-        Self(path)
-    }
-
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.join(name);
-        std::fs::write(&path, bytes).expect("a file");
-        path
-    }
-
-    /// A picture of a disc, of a colour and an opacity, and nothing around it.
-    fn leaf(&self, name: &str, color: [u8; 4]) {
-        let is_in = |x: u32, y: u32| (f64::from(x) - 31.5).hypot(f64::from(y) - 31.5) < 24.0;
-        let texel = |x, y| image::Rgba(if is_in(x, y) { color } else { [200, 0, 0, 0] });
-        image::RgbaImage::from_fn(64, 64, texel).save(self.0.join(name)).expect("an image");
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+/// A picture of a disc, of a colour and an opacity, and nothing around it.
+fn leaf(folder: &Folder, name: &str, color: [u8; 4]) {
+    let is_in = |x: u32, y: u32| (f64::from(x) - 31.5).hypot(f64::from(y) - 31.5) < 24.0;
+    let texel = |x, y| image::Rgba(if is_in(x, y) { color } else { [200, 0, 0, 0] });
+    image::RgbaImage::from_fn(64, 64, texel).save(folder.0.join(name)).expect("an image");
 }
 
 /// A scene of one file, seen from the south along the y axis, 12 m high, with nothing behind.
@@ -211,9 +188,9 @@ const WALL: &str = "mtllib m.mtl\nv -5 0 0\nv 5 0 0\nv 5 0 10\nv -5 0 10\nvt 0 0
 
 #[test]
 fn mtl_says_it_in_four_ways() {
-    let folder = Folder::new("mtl");
-    folder.leaf("leaf.png", [20, 160, 40, 255]);
-    folder.leaf("thin.png", [20, 160, 40, 102]);
+    let folder = Folder::new("materials-mtl");
+    leaf(&folder, "leaf.png", [20, 160, 40, 255]);
+    leaf(&folder, "thin.png", [20, 160, 40, 102]);
     // Light where there is something, without opacity.
     let mask = image::GrayImage::from_fn(32, 32, |x, _| image::Luma([if x < 16 { 0 } else { 51 }]));
     mask.save(folder.0.join("mask.png")).expect("an image");
@@ -281,8 +258,8 @@ fn wall_gltf(node: &str, material: &str) -> String {
 
 #[test]
 fn gltf_says_which_opacity_counts() {
-    let folder = Folder::new("gltf");
-    folder.leaf("leaf.png", [20, 160, 40, 153]);
+    let folder = Folder::new("materials-gltf");
+    leaf(&folder, "leaf.png", [20, 160, 40, 153]);
     folder.write("wall.bin", wall_bytes());
     for (material, middle, corner) in [
         (r#""alphaMode":"OPAQUE""#, 1.0, 1.0),
@@ -320,10 +297,10 @@ fn gltf_says_which_opacity_counts() {
 /// A level pane 10 m wide and long, 6 m over a floor that is opaque; the sun is straight above.
 #[test]
 fn the_sun_shines_through_holes_and_what_lets_more_than_half_through() {
-    let folder = Folder::new("shadows");
-    folder.leaf("leaf.png", [20, 160, 40, 255]);
-    folder.leaf("thin.png", [20, 160, 40, 102]);
-    folder.leaf("thick.png", [20, 160, 40, 153]);
+    let folder = Folder::new("materials-shadows");
+    leaf(&folder, "leaf.png", [20, 160, 40, 255]);
+    leaf(&folder, "thin.png", [20, 160, 40, 102]);
+    leaf(&folder, "thick.png", [20, 160, 40, 153]);
     let roof = "mtllib m.mtl\nv -5 -5 6\nv 5 -5 6\nv 5 5 6\nv -5 5 6\nv -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\n\
                 vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\nusemtl floor\nf 5 6 7 8\n";
     let model = folder.write("roof.obj", roof);
@@ -396,7 +373,7 @@ fn linear(byte: u8) -> f64 {
 
 #[test]
 fn light_of_their_own_is_added_to_what_falls_on_surfaces() {
-    let folder = Folder::new("emission");
+    let folder = Folder::new("materials-emission");
     let wall = folder.write("wall.obj", WALL);
     let of = |mtl: &str, more: &str| {
         folder.write("m.mtl", format!("newmtl a\n{mtl}\n"));
