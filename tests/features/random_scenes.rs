@@ -100,7 +100,10 @@ fn both_back_ends_draw_random_scenes_the_same() {
                 count += usize::from(drawn.is_some());
                 between += usize::from(drawn == Some(false));
             }
-            Err(difference) => wrong.push(format!("seed {seed}: {difference}")),
+            Err(difference) => {
+                println!("seed {seed}: {difference}");
+                wrong.push(format!("seed {seed}: {difference}"));
+            }
         }
         println!("seed {seed}: {:.1} s\n{text}", started.elapsed().as_secs_f64());
     }
