@@ -28,6 +28,7 @@ pub mod overlay;
 pub mod render;
 pub mod scene;
 pub mod shader;
+pub mod text;
 pub mod view;
 pub mod visibility;
 

@@ -12,22 +12,27 @@ use std::{
 };
 
 use image::{
-    DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Luma, Rgba, RgbaImage,
+    ColorType, DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Luma, Rgba,
+    RgbaImage,
 };
 use rayon::prelude::*;
 
-use crate::city::{
-    load::options::{LFS_POINTER, is_lfs_pointer},
-    model::{CityModel, NONE, Texture, TextureImage, TextureOpacity},
-    warning::WarningCode,
+use crate::{
+    city::{
+        load::options::{LFS_POINTER, is_lfs_pointer},
+        model::{CityModel, NONE, Texture, TextureImage, TextureOpacity},
+        warning::WarningCode,
+    },
+    text::one_line,
 };
 
 /// The longest side that is kept; larger images are halved until they fit.
 pub const MAX_SIDE: u32 = 8192;
 /// The longest side that is decoded at all.
 const MAX_DECODED_SIDE: u32 = 32_768;
-/// The memory that decoding may allocate, and that the pixels of an image may take.
-const MAX_DECODED_BYTES: u64 = 1 << 30;
+/// The memory that decoding an image and making its levels may take: so many bytes, and so many times its file.
+const MOST_BYTES: u64 = 512 << 20;
+const MOST_TIMES: u64 = 4;
 /// What is read, as messages say it.
 const FORMATS: &str = "PNG, JPEG, TIFF, WebP, BMP, GIF and TGA";
 /// The end of a file, in which a whole PNG or JPEG says that it ends there.
@@ -72,32 +77,38 @@ impl<T: BufRead + Seek> Source for T {}
 /// An image that has been opened: what messages call it, and what reads it.
 struct Opened {
     name: String,
+    /// The memory that it may take, bytes.
+    most: u64,
     reader: ImageReader<Box<dyn Source>>,
 }
 
 /// Opens an image, which says by its first bytes what it is, or else by its name.
 fn open(image: &TextureImage) -> Result<Opened, String> {
-    let (name, source, by_name): (_, Box<dyn Source>, _) = match image {
+    let (name, length, source, by_name): (_, _, Box<dyn Source>, _) = match image {
         TextureImage::Missing(_) => return Err("the image was not found".to_owned()),
-        TextureImage::Bytes(bytes) => ("the embedded image".to_owned(), Box::new(Cursor::new(Arc::clone(bytes))), None),
+        TextureImage::Bytes(bytes) => {
+            ("the embedded image".to_owned(), bytes.len() as u64, Box::new(Cursor::new(Arc::clone(bytes))), None)
+        }
         TextureImage::File(path) => {
             let name = path.display().to_string();
             let file = File::open(path).map_err(|e| format!("{name} cannot be read: {e}"))?;
-            (name, Box::new(BufReader::new(file)), ImageFormat::from_path(path).ok())
+            let length = file.metadata().map_or(0, |of_file| of_file.len());
+            (name, length, Box::new(BufReader::new(file)), ImageFormat::from_path(path).ok())
         }
     };
     let mut reader = ImageReader::new(source);
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_DECODED_SIDE);
     limits.max_image_height = Some(MAX_DECODED_SIDE);
-    limits.max_alloc = Some(MAX_DECODED_BYTES);
+    let most = MOST_TIMES.saturating_mul(length).saturating_add(MOST_BYTES);
+    limits.max_alloc = Some(most);
     reader.limits(limits);
     if let Some(format) = by_name.filter(|format| *format == ImageFormat::Tga) {
         reader.set_format(format);
     }
     let reader = reader.with_guessed_format().map_err(|e| format!("{name} cannot be read: {e}"))?;
     match reader.format() {
-        Some(format) if format.reading_enabled() => Ok(Opened { name, reader }),
+        Some(format) if format.reading_enabled() => Ok(Opened { name, most, reader }),
         Some(format) => Err(format!("{name} is {format:?}, which is not read; {FORMATS} are")),
         None if begins_as_pointer(image) => {
             Err(format!("{name} is a Git LFS pointer; `git lfs pull` brings the image"))
@@ -118,10 +129,17 @@ fn begins_as_pointer(image: &TextureImage) -> bool {
     }
 }
 
-fn too_large(name: &str, [width, height]: [u32; 2]) -> Option<String> {
-    let bytes = 4 * u64::from(width) * u64::from(height);
-    let most = MAX_DECODED_BYTES >> 20;
-    (bytes > MAX_DECODED_BYTES).then(|| format!("{name} has {width} × {height} pixels, more than {most} MiB of them"))
+/// Memory that decoding an image of this size takes, bytes.
+fn needed([width, height]: [u32; 2], color: ColorType, is_gif: bool) -> u64 {
+    let pixels = u64::from(width) * u64::from(height);
+    let (rgba, decoded) = (4 * pixels, u64::from(color.bytes_per_pixel()) * pixels);
+    // As it is in the file, and as RGBA8; then that with its levels. A GIF is put together of frames beside it.
+    let while_decoded = match (color, is_gif) {
+        (ColorType::Rgba8, false) => decoded,
+        (ColorType::Rgba8, true) => 2 * decoded,
+        _ => decoded + rgba,
+    };
+    while_decoded.max(rgba / 2 * 3)
 }
 
 /// Whether an image can be read, without reading all of it: its size, and that its end is there; where that is in doubt it is decoded.
@@ -129,16 +147,18 @@ fn too_large(name: &str, [width, height]: [u32; 2]) -> Option<String> {
 /// # Errors
 /// What is wrong, as [`decode`] says it.
 pub fn check(image: &TextureImage) -> Result<(), String> {
-    let Opened { name, reader } = open(image)?;
-    let end: &[u8] = match reader.format() {
+    checked(image).map_err(|message| one_line(&message))
+}
+
+fn checked(image: &TextureImage) -> Result<(), String> {
+    let opened = open(image)?;
+    let end: &[u8] = match opened.reader.format() {
         Some(ImageFormat::Png) => b"IEND",
         Some(ImageFormat::Jpeg) => &[0xff, 0xd9],
-        _ => return decoded(Opened { name, reader }).map(drop),
+        _ => return decoded(opened).map(drop),
     };
-    let size = reader.into_dimensions().map_err(|e| format!("{name} cannot be decoded: {e}"))?;
-    if let Some(what) = too_large(&name, size.into()) {
-        return Err(what);
-    }
+    let name = opened.name.clone();
+    bounded(opened)?;
     let last = match image {
         TextureImage::Bytes(bytes) => bytes[bytes.len().saturating_sub(END_BYTES)..].to_vec(),
         TextureImage::File(path) => last_bytes(path).map_err(|e| format!("{name} cannot be read: {e}"))?,
@@ -156,13 +176,35 @@ fn last_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn decoded(Opened { name, reader }: Opened) -> Result<RgbaImage, String> {
-    let failed = |e: ImageError| format!("{name} cannot be decoded: {e}");
-    let decoder = reader.into_decoder().map_err(failed)?;
-    if let Some(what) = too_large(&name, decoder.dimensions().into()) {
-        return Err(what);
+/// What decodes an image that is not too large.
+fn bounded(opened: Opened) -> Result<impl ImageDecoder, String> {
+    let Opened { name, most, reader } = opened;
+    let is_gif = reader.format() == Some(ImageFormat::Gif);
+    let decoder = reader.into_decoder().map_err(|e: ImageError| format!("{name} cannot be decoded: {e}"))?;
+    let (width, height) = decoder.dimensions();
+    let bytes = needed([width, height], decoder.color_type(), is_gif);
+    if bytes <= most {
+        return Ok(decoder);
     }
-    let image = DynamicImage::from_decoder(decoder).map_err(failed)?.into_rgba8();
+    let (bytes, most) = (bytes >> 20, most >> 20);
+    Err(format!(
+        "{name} has {width} × {height} pixels, which take {bytes} MiB; {most} MiB, 512 and four times the file, would be right"
+    ))
+}
+
+/// Width and height of an image, pixels, without decoding it.
+///
+/// # Errors
+/// As of [`decode`].
+pub fn size(image: &TextureImage) -> Result<[u32; 2], String> {
+    let size = open(image).and_then(bounded).map(|decoder| decoder.dimensions().into());
+    size.map_err(|message| one_line(&message))
+}
+
+fn decoded(opened: Opened) -> Result<RgbaImage, String> {
+    let name = opened.name.clone();
+    let failed = |e: ImageError| format!("{name} cannot be decoded: {e}");
+    let image = DynamicImage::from_decoder(bounded(opened)?).map_err(failed)?.into_rgba8();
     if [image.width(), image.height()].contains(&0) {
         return Err(format!("{name} has no pixels"));
     }
@@ -172,6 +214,29 @@ fn decoded(Opened { name, reader }: Opened) -> Result<RgbaImage, String> {
 /// Decodes an image and makes its mip levels; the error says what is wrong, for
 /// [`crate::city::warning::WarningCode::MissingTexture`].
 pub fn decode(texture: &Texture) -> Result<Pixels, String> {
+    decode_within(texture, MAX_SIDE)
+}
+
+/// The same, halved until no side is longer than `side` pixels, which is at most [`MAX_SIDE`].
+///
+/// # Errors
+/// As of [`decode`].
+pub fn decode_within(texture: &Texture, side: u32) -> Result<Pixels, String> {
+    let image = with_opacity(texture).map_err(|message| one_line(&message))?;
+    Ok(with_levels([image.width(), image.height()], image.into_raw(), side))
+}
+
+/// Bytes of an image of this size with its levels where no side is longer than `side`, and of decoding it.
+pub fn bytes_within(size: [u32; 2], side: u32) -> [u64; 2] {
+    let bytes = |[width, height]: [u32; 2]| 4 * u64::from(width) * u64::from(height);
+    let mut kept = size;
+    while kept.iter().any(|own| *own > side) {
+        kept = smaller(kept);
+    }
+    [bytes(kept) / 3 * 4 + 4, bytes(size) / 2 * 3]
+}
+
+fn with_opacity(texture: &Texture) -> Result<RgbaImage, String> {
     let mut image = decoded(open(&texture.image)?)?;
     match &texture.opacity {
         TextureOpacity::Own => {}
@@ -187,7 +252,7 @@ pub fn decode(texture: &Texture) -> Result<Pixels, String> {
             texels.for_each(|(texel, opacity)| *texel = Rgba([255, 255, 255, opacity[0]]));
         }
     }
-    Ok(with_levels([image.width(), image.height()], image.into_raw()))
+    Ok(image)
 }
 
 /// The opacity that an image tells: its own, or where it has none how light it is.
@@ -240,9 +305,9 @@ pub fn settle(model: &mut CityModel) {
 }
 
 /// Makes the mip levels of an RGBA8 image.
-fn with_levels(original: [u32; 2], mut pixels: Vec<u8>) -> Pixels {
+fn with_levels(original: [u32; 2], mut pixels: Vec<u8>, most_side: u32) -> Pixels {
     let mut size = original;
-    while size.iter().any(|side| *side > MAX_SIDE) {
+    while size.iter().any(|side| *side > most_side) {
         (size, pixels) = half(size, &pixels);
     }
     let [width, height] = size;
@@ -275,9 +340,14 @@ fn taps(i: u32, side: u32, smaller: u32) -> Taps {
     Taps { first: first as u32, weights }
 }
 
-/// The next level: each side halved, rounded down, but not below 1.
+/// The size of the next level: each side halved, rounded down, but not below 1.
+fn smaller(size: [u32; 2]) -> [u32; 2] {
+    size.map(|side| (side / 2).max(1))
+}
+
+/// The next level.
 fn half([width, height]: [u32; 2], pixels: &[u8]) -> ([u32; 2], Vec<u8>) {
-    let smaller = [(width / 2).max(1), (height / 2).max(1)];
+    let smaller = smaller([width, height]);
     let columns: Vec<Taps> = (0..smaller[0]).map(|x| taps(x, width, smaller[0])).collect();
     let row_bytes = width as usize * 4;
     let mut out = vec![0; smaller[0] as usize * smaller[1] as usize * 4];
@@ -409,7 +479,7 @@ mod tests {
 
     #[test]
     fn large_images_are_halved_until_they_fit() {
-        let pixels = with_levels([MAX_SIDE * 2, 2], [9, 9, 9, 255].repeat(MAX_SIDE as usize * 4));
+        let pixels = with_levels([MAX_SIDE * 2, 2], [9, 9, 9, 255].repeat(MAX_SIDE as usize * 4), MAX_SIDE);
         assert_eq!((pixels.width, pixels.height), (MAX_SIDE, 1));
         assert_eq!(pixels.reduced_from, Some([MAX_SIDE * 2, 2]));
     }
@@ -469,7 +539,14 @@ mod tests {
 
     #[test]
     fn pixels_are_bounded_before_they_are_made() {
-        assert_eq!(too_large("x", [16_384, 16_384]), None);
-        assert!(too_large("x", [32_768, 16_384]).expect("too large").contains("32768 × 16384"));
+        for (size, color, is_gif, mib) in [
+            ([8192, 8192], ColorType::Rgba8, false, 384),
+            ([8192, 8192], ColorType::Rgb8, false, 448),
+            ([8192, 8192], ColorType::Rgba16, false, 768),
+            ([8192, 8192], ColorType::Rgba8, true, 512),
+            ([32_768, 32_768], ColorType::L8, false, 6144),
+        ] {
+            assert_eq!(needed(size, color, is_gif), mib << 20, "{size:?} {color:?}");
+        }
     }
 }

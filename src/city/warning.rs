@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::text::one_line;
+
 macro_rules! warning_codes {
     ($($(#[doc = $doc:literal])+ $name:ident = $code:literal,)*) => {
         /// The closed table of warning codes (`info --json`, `warnings[].code`).
@@ -79,21 +81,6 @@ warning_codes! {
 /// The number of objects that a warning names.
 const NAMED_OBJECTS: usize = 8;
 
-/// The longest message: ids and texts of a file may be of any length.
-const MESSAGE_CHARS: usize = 600;
-
-/// A message as people can read it: one line, not endless, whatever text of the file stands in it.
-pub(crate) fn one_line(message: String) -> String {
-    if message.len() <= MESSAGE_CHARS && !message.contains(char::is_control) {
-        return message;
-    }
-    let mut line: String = message.chars().take(MESSAGE_CHARS).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if line.len() < message.len() {
-        line.push('…');
-    }
-    line
-}
-
 /// All occurrences of one code.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warning {
@@ -116,7 +103,7 @@ impl Warnings {
     pub fn add(&mut self, code: WarningCode, object: &str, message: impl FnOnce() -> String) {
         let entry = self.entries.entry(code).or_default();
         if entry.count == 0 {
-            entry.message = one_line(message());
+            entry.message = one_line(&message());
         }
         entry.count += 1;
         if !object.is_empty() && entry.objects.len() < NAMED_OBJECTS && !entry.objects.iter().any(|o| o == object) {

@@ -2,7 +2,10 @@
 
 use std::{fmt::Display, process::ExitCode};
 
-use crate::cli::terminal::{self, Paint};
+use crate::{
+    cli::terminal::{self, Paint},
+    text,
+};
 
 /// Why a command did not do what it was asked.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +47,7 @@ impl Failure {
             Kind::Usage => 2,
         };
         let paint = Paint::for_stderr();
-        terminal::say(&format!("{} {}", paint.error("error:"), terminal::shown(&self.message)));
+        terminal::say(&format!("{} {}", paint.error("error:"), text::shown(&self.message)));
         ExitCode::from(code)
     }
 }

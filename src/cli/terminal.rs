@@ -7,46 +7,7 @@ use std::{
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::cli::arguments::GlobalArguments;
-
-/// Characters of a quoted name that messages show.
-const NAME: usize = 200;
-
-/// A message as a terminal may have it: of names from files neither what steers it, nor what turns the order of letters round, nor more than
-/// 200 characters in quotes.
-pub fn shown(message: &str) -> String {
-    let mut shown = String::with_capacity(message.len());
-    // How long the name in quotes is, in one.
-    let mut quoted: Option<usize> = None;
-    for c in message.chars() {
-        if c == '"' || c == '\n' {
-            quoted = if quoted.is_none() && c == '"' { Some(0) } else { None };
-            shown.push(c);
-            continue;
-        }
-        if let Some(length) = &mut quoted {
-            *length += 1;
-            if *length > NAME {
-                if *length == NAME + 1 {
-                    shown.push('…');
-                }
-                continue;
-            }
-        }
-        if steers(c) && c != '\t' {
-            shown.extend(c.escape_unicode());
-        } else {
-            shown.push(c);
-        }
-    }
-    shown
-}
-
-/// Whether a character does something to a terminal, or to what stands around it.
-pub fn steers(c: char) -> bool {
-    let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    turns || c.is_control()
-}
+use crate::{cli::arguments::GlobalArguments, text};
 
 /// Writes one line to stderr; a stderr that is gone is no reason to stop.
 pub fn say(line: &str) {
@@ -135,7 +96,7 @@ impl log::Log for StderrLog {
                 log::Level::Debug => paint.faint("debug:"),
                 log::Level::Trace => paint.faint("trace:"),
             };
-            say(&format!("{level} {}", shown(&record.args().to_string())));
+            say(&format!("{level} {}", text::shown(&record.args().to_string())));
         }
     }
 
@@ -221,20 +182,5 @@ fn target(global: &GlobalArguments) -> ProgressDrawTarget {
         ProgressDrawTarget::stderr_with_hz(8)
     } else {
         ProgressDrawTarget::hidden()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_do_nothing_to_a_terminal() {
-        assert_eq!(shown("a\tb, \"é 東\" – fine\nnext"), "a\tb, \"é 東\" – fine\nnext");
-        assert_eq!(shown("\u{1b}[2J\r\u{7}\u{9b}x\u{202e}"), "\\u{1b}[2J\\u{d}\\u{7}\\u{9b}x\\u{202e}");
-        let long = "n".repeat(5000);
-        assert_eq!(shown(&format!("no \"{long}\" here")), format!("no \"{}…\" here", &long[..200]));
-        // A quote that is not closed ends with its line.
-        assert_eq!(shown(&format!("5\" wide\n{long}")).len(), long.len() + 8);
     }
 }

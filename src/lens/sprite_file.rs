@@ -13,6 +13,7 @@ use crate::{
         sprite::{DepthCode, Format, MOST_LAYERS, Mapping},
         sprite_volume::{SpriteSpace, SpriteVolume},
     },
+    text::one_line,
     view::{Basis, MAX_SIZE},
 };
 
@@ -250,6 +251,10 @@ fn described(header: &Header) -> Result<SpriteVolume, String> {
 
 /// Reads the bytes of a file; the message goes on after its name.
 pub fn read_bytes(bytes: &[u8]) -> Result<SpriteVolume, String> {
+    parsed(bytes).map_err(|message| one_line(&message))
+}
+
+fn parsed(bytes: &[u8]) -> Result<SpriteVolume, String> {
     let no_exr = |error: exr::error::Error| format!("is no OpenEXR file that can be read ({error}); {RIGHT}");
     // Its head first: what it asks for must be bounded before it is made room for.
     let head = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(no_exr)?;

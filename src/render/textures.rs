@@ -8,8 +8,12 @@ use crate::{
     render::city::Shown,
 };
 
-/// Bytes of textures a city may put on the GPU before the rest is drawn in plain colours.
+/// Bytes that the textures of a city take on the GPU at most: where they would take more, the largest are halved.
 const BUDGET: u64 = 2 << 30;
+/// Bytes of images that are decoded at a time.
+const AT_A_TIME: u64 = 512 << 20;
+/// What is not halved any more, pixels.
+const LEAST_SIDE: u32 = 16;
 
 /// Textures by their number in the model.
 #[derive(Debug, Default)]
@@ -50,21 +54,32 @@ impl Textures {
         let mut entries: Vec<Option<(wgpu::TextureView, wgpu::Sampler)>> = Vec::new();
         entries.resize_with(used.len(), || None);
         let mut translucent = vec![false; used.len()];
-        let wanted: Vec<usize> = (0..used.len()).filter(|&i| used[i]).collect();
-        // A few at a time, so that decoded images do not pile up.
-        for group in wanted.chunks(16) {
-            let decoded: Vec<_> = group.par_iter().map(|&i| texture::decode(&model.textures[i])).collect();
-            for (&i, result) in group.iter().zip(decoded) {
+        let mut wanted: Vec<(usize, [u32; 2])> = Vec::new();
+        for i in (0..used.len()).filter(|&i| used[i]) {
+            match texture::size(&model.textures[i].image) {
+                Ok(size) => wanted.push((i, size)),
+                // Whoever loaded the city has said this, for all of them at once.
+                Err(_) if model.textures[i].image.is_missing() => {}
+                Err(message) => log::warn!("texture {i}: {message}"),
+            }
+        }
+        let sizes: Vec<[u32; 2]> = wanted.iter().map(|(_, size)| *size).collect();
+        let side = side_within(&sizes, texture::MAX_SIDE, BUDGET);
+        if side < texture::MAX_SIDE {
+            let (all, most) = (bytes_of(&sizes, texture::MAX_SIDE) >> 20, BUDGET >> 20);
+            log::warn!(
+                "the textures of the city would take {all} MiB, more than {most}: those of more than {side} pixels a side are halved until they have no more"
+            );
+        }
+        for group in groups(&wanted, side) {
+            let decoded: Vec<_> =
+                group.par_iter().map(|&(i, _)| texture::decode_within(&model.textures[i], side)).collect();
+            for (&(i, _), result) in group.iter().zip(decoded) {
                 match result {
-                    Ok(_) if gpu.allocated_bytes() - before > BUDGET => {
-                        log::warn!("textures beyond {} MiB are drawn in plain colours", BUDGET >> 20);
-                    }
                     Ok(pixels) => {
                         translucent[i] = pixels.is_translucent();
                         entries[i] = Some(upload(gpu, &pixels, &model.textures[i]));
                     }
-                    // Whoever loaded the city has said this, for all of them at once.
-                    Err(_) if model.textures[i].image.is_missing() => {}
                     Err(message) => log::warn!("texture {i}: {message}"),
                 }
             }
@@ -93,6 +108,35 @@ impl Textures {
     }
 }
 
+/// Bytes of images of these sizes with their levels, where no side is longer than `side`.
+fn bytes_of(sizes: &[[u32; 2]], side: u32) -> u64 {
+    sizes.iter().map(|size| texture::bytes_within(*size, side)[0]).sum()
+}
+
+/// The longest side, of `most` halved again and again, with which images of these sizes take no more than `budget` bytes; at least
+/// [`LEAST_SIDE`].
+fn side_within(sizes: &[[u32; 2]], most: u32, budget: u64) -> u32 {
+    let mut side = most;
+    while side > LEAST_SIDE && bytes_of(sizes, side) > budget {
+        side /= 2;
+    }
+    side
+}
+
+/// What is decoded at a time, so that decoded images do not pile up: as many as take [`AT_A_TIME`] together, or one.
+fn groups(wanted: &[(usize, [u32; 2])], side: u32) -> impl Iterator<Item = &[(usize, [u32; 2])]> {
+    let mut bytes = 0;
+    wanted.chunk_by(move |before, next| {
+        let of = |one: &(usize, [u32; 2])| texture::bytes_within(one.1, side).into_iter().max().unwrap_or_default();
+        bytes = if bytes == 0 { of(before) } else { bytes } + of(next);
+        let is_within = bytes <= AT_A_TIME;
+        if !is_within {
+            bytes = 0;
+        }
+        is_within
+    })
+}
+
 fn upload(gpu: &Gpu, pixels: &texture::Pixels, declared: &Texture) -> (wgpu::TextureView, wgpu::Sampler) {
     let size = [pixels.width, pixels.height, 1];
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
@@ -117,4 +161,30 @@ fn upload(gpu: &Gpu, pixels: &texture::Pixels, declared: &Texture) -> (wgpu::Tex
         ..Default::default()
     });
     (texture.create_view(&wgpu::TextureViewDescriptor::default()), sampler)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_share_the_budget() {
+        let mib = |n: u64| n << 20;
+        assert_eq!(side_within(&[[1024, 1024]; 4], 8192, mib(2048)), 8192);
+        // A thousand of 16 MiB with their levels: 5 MiB each would be within 8 GiB, a fourth of that within 2.
+        assert_eq!(side_within(&[[2048, 2048]; 1000], 8192, mib(8 << 10)), 1024);
+        assert_eq!(side_within(&[[2048, 2048]; 1000], 8192, mib(2 << 10)), 512);
+        // Small ones keep what they have.
+        let small: u64 = [[256, 256], [256, 4]].map(|size| texture::bytes_within(size, 8192)[0]).iter().sum();
+        assert_eq!(bytes_of(&[[256, 256], [4096, 64]], 256), small);
+        assert_eq!(side_within(&[[8192, 8192]; 1_000_000], 8192, 1), LEAST_SIDE);
+    }
+
+    #[test]
+    fn a_few_are_decoded_at_a_time() {
+        let wanted: Vec<(usize, [u32; 2])> = [4096, 8192, 64, 64, 8192, 8192, 16].map(|side| (0, [side; 2])).into();
+        let counts: Vec<usize> = groups(&wanted, 8192).map(<[_]>::len).collect();
+        // 96, 384, 384 and 384 MiB of the large ones: two fit.
+        assert_eq!(counts, [4, 1, 2]);
+    }
 }

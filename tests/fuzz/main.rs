@@ -1,11 +1,14 @@
-//! Fuzzing: every hand-made file, made wrong in many ways, through all loaders; no panic, no hang, bounded memory,
-//! and a model that is sound ([`veduta::city::CityModel::validate`]).
+//! Fuzzing: files of every kind that Veduta reads, made wrong in many ways, read, written and drawn; no panic, no hang, bounded memory,
+//! messages that can be read, and a result that is sound.
 //!
 //! `cargo test` runs a short and always equal part. `./dev fuzz SECONDS` (`VEDUTA_FUZZ_SECONDS`) goes on with other
-//! numbers each time; `VEDUTA_FUZZ_SEED` repeats a run. An input that fails is left in `target/fuzz/`.
+//! numbers each time, as long with one kind as with another; `VEDUTA_FUZZ_SEED` repeats its numbers, `VEDUTA_FUZZ_KINDS` (words that are in the
+//! names of kinds) chooses some. An input that fails is left in `target/fuzz/`.
 
+mod kinds;
 mod mutate;
-mod random;
+#[path = "../studio/mod.rs"]
+mod studio;
 mod watch;
 
 use std::{
@@ -18,171 +21,44 @@ use std::{
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 
-use glam::DVec3;
-use random::Random;
-use veduta::{
-    city::{
-        Texture, TextureImage, TextureOpacity, Wrap,
-        build::ModelBuilder,
-        coplanar, facts, ground,
-        load::{LoadOptions, input, read_input},
-        shown, spatial, texture,
-    },
-    geom::{
-        Aabb, Volume,
-        shape::{Motion, Sphere},
-    },
-    lens::{
-        PlacedSprite, SpriteSpace, SpriteVolume,
-        sprite::{DepthCode, Format, Mapping},
-        sprite_file,
-    },
-    view::{Camera, View},
-};
+use kinds::{Kind, Read, Seed, kinds};
+use mutate::Pool;
+use studio::random_scene::Random;
 
 #[global_allocator]
 static MEMORY: watch::Counting = watch::Counting;
 
-/// Mutations in `cargo test`.
-const SMOKE_MUTATIONS: u64 = 900;
-/// What any of these small files may make live: mostly what a glTF file may unfold to by instancing.
-const MAX_BYTES: usize = 700 << 20;
-/// A file that takes longer hangs: the slowest takes well under a second on an idle machine.
-const HANG_S: u64 = 120;
+/// What a file may make live: so many times its size, and so many bytes.
+const MOST_TIMES: usize = 4;
+const MOST_BYTES: usize = 512 << 20;
+/// What takes longer never ends. A run of `cargo test` is timed for nothing else.
+const HANG_S: u64 = 300;
+/// Wrong files that are not worth reading, one after the other, at most.
+const MOST_TRIES: usize = 100;
 /// After so many failures the rest would tell nothing new.
 const MAX_FAILURES: usize = 10;
-
-/// A file to be made wrong.
-struct Seed {
-    name: String,
-    bytes: Vec<u8>,
-}
-
-/// Every file of `citydata/`, and a JPEG, which it has none of.
-fn seeds() -> Vec<Seed> {
-    let mut seeds: Vec<Seed> = std::fs::read_dir("citydata")
-        .expect("citydata/ is here")
-        .map(|entry| entry.expect("citydata/ can be listed"))
-        .filter(|entry| entry.file_name() != "README.md")
-        .map(|entry| Seed {
-            name: entry.file_name().to_string_lossy().into_owned(),
-            bytes: std::fs::read(entry.path()).expect("a file of citydata/ can be read"),
-        })
-        .collect();
-    seeds.sort_by(|a, b| a.name.cmp(&b.name));
-    let mut jpeg = Vec::new();
-    let picture = image::RgbImage::from_fn(9, 7, |x, y| image::Rgb([(x * 28) as u8, (y * 36) as u8, 99]));
-    picture.write_to(&mut std::io::Cursor::new(&mut jpeg), image::ImageFormat::Jpeg).expect("a JPEG can be made");
-    seeds.push(Seed { name: "picture.jpg".into(), bytes: jpeg });
-    seeds.push(Seed { name: "sprite.exr".into(), bytes: sprite() });
-    seeds
-}
-
-/// The file of a small depth sprite.
-fn sprite() -> Vec<u8> {
-    let camera = Camera::looking(DVec3::new(3.0, -9.0, 4.0), DVec3::ZERO, 0.7);
-    let view = View::new(camera, [24, 16], &Aabb::EMPTY).expect("a view");
-    let ball = Volume::Sphere(Sphere { center: DVec3::ZERO, radius: 2.0 });
-    let texels = (0..16).flat_map(|y| (0..24).map(move |x| (x, y)));
-    let ends = texels.flat_map(|(x, y)| {
-        let both = ball.entry_exit(&view.pixel_ray(x, y)).map_or([0.0; 2], |(enter, exit)| [enter as f32, exit as f32]);
-        [both, [0.0; 2]]
-    });
-    let sprite = SpriteVolume {
-        ends: ends.collect(),
-        space: SpriteSpace::of(&view),
-        origin: [0, 0],
-        kept: [24, 16],
-        layers: 2,
-        code: DepthCode { mapping: Mapping::W, near_m: 0.5, far_m: 50.0, format: Format::Unorm16 },
-        crs: Some("EPSG:7415".into()),
-    };
-    sprite_file::bytes(&sprite).expect("a sprite can be written")
-}
-
-/// What a lens makes of a file.
-fn read_sprite(bytes: &[u8]) -> Result<(), String> {
-    match sprite_file::read_bytes(bytes) {
-        Err(message) if message.is_empty() || message.contains('\n') || message.len() > 2000 => {
-            Err(format!("an unreadable message: {message}"))
-        }
-        Err(_) => Ok(()),
-        Ok(sprite) => {
-            let intervals = sprite.kept[0] as usize * sprite.kept[1] as usize * sprite.layers as usize;
-            if sprite.ends.len() != intervals || sprite.ends.iter().flatten().any(|d| d.is_nan()) {
-                return Err("a sprite that is not sound".into());
-            }
-            let placed = PlacedSprite::new(Arc::new(sprite), &Motion::NONE);
-            let corners = [DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 1.0)];
-            std::hint::black_box(placed.meets_triangle(&corners));
-            Ok(())
-        }
-    }
-}
-
-/// Reads one wrong file in every way that `info` and the renderer do; the error is why the result is not sound.
-fn read(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
-    if name.ends_with(".png") || name.ends_with(".jpg") {
-        let image = TextureImage::Bytes(Arc::from(bytes));
-        return match texture::decode(&Texture { image, wrap: [Wrap::Repeat; 2], opacity: TextureOpacity::Own }) {
-            Ok(pixels) if pixels.levels[0].len() != pixels.width as usize * pixels.height as usize * 4 => {
-                Err("a picture of the wrong size".into())
-            }
-            _ => Ok(()),
-        };
-    }
-    if name.ends_with(".exr") {
-        return read_sprite(bytes);
-    }
-    let options = LoadOptions { roots: vec![folder.to_owned()], ..LoadOptions::default() };
-    // Libraries of materials are reached through a model; the mutated one lies in `folder`.
-    let (name, bytes) = match name.ends_with(".mtl") {
-        true => ("textured.obj", std::fs::read("citydata/textured.obj").map_err(|e| e.to_string())?),
-        false => (name, bytes.to_vec()),
-    };
-    let Ok(input) = input::from_bytes(&folder.join(name), bytes) else { return Ok(()) };
-    let mut builder = ModelBuilder::default();
-    match read_input(&mut builder, input, &options) {
-        Ok(()) => {}
-        Err(e) if e.message.is_empty() || e.to_string().contains('\n') || e.to_string().len() > 2000 => {
-            return Err(format!("an unreadable message: {e}"));
-        }
-        Err(_) => return Ok(()),
-    }
-    let model = builder.finish();
-    model.validate()?;
-    if let Some((_, w)) = model.warnings.iter().find(|(_, w)| w.message.is_empty() || w.message.contains('\n')) {
-        return Err(format!("an unreadable warning: {:?}", w.message));
-    }
-    let shown = shown::shown_geometries(&model, None);
-    let index = spatial::SpatialIndex::build(&model, &shown);
-    let ground = ground::plain_ground(&model, &shown).is_some();
-    let coplanar = coplanar::coplanar_triangles(&model, &shown).len();
-    std::hint::black_box((index, ground, coplanar));
-    let facts = serde_json::to_string(&facts::facts(&model, true)).map_err(|e| format!("facts: {e}"))?;
-    serde_json::from_str::<serde_json::Value>(&facts).map_err(|e| format!("facts are no JSON: {e}"))?;
-    model.textures.iter().for_each(|t| drop(texture::decode(t)));
-    Ok(())
-}
 
 /// Where the last panic was, for the report.
 static PANIC: Mutex<String> = Mutex::new(String::new());
 
-/// [`read`], with panics and memory judged.
-fn judge(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
-    let before = watch::start();
+/// Reads a file, with panics, memory and time judged.
+fn judge(read: &mut Read, folder: &Path, name: &str, bytes: &[u8], most_s: Option<f64>) -> Result<bool, String> {
+    let (before, started) = (watch::start(), Instant::now());
     let outcome = catch_unwind(AssertUnwindSafe(|| read(folder, name, bytes)));
-    let peak = watch::peak_over(before);
+    let (peak, took) = (watch::peak_over(before), started.elapsed().as_secs_f64());
     match outcome {
         Err(_) => Err(format!("panic: {}", PANIC.lock().unwrap_or_else(PoisonError::into_inner))),
         Ok(Err(unsound)) => Err(unsound),
-        Ok(Ok(())) if peak > MAX_BYTES => Err(format!("{} MiB for {} bytes", peak >> 20, bytes.len())),
-        Ok(Ok(())) => Ok(()),
+        Ok(Ok(_)) if peak > MOST_TIMES * bytes.len() + MOST_BYTES => {
+            Err(format!("{} MiB for {} bytes", peak >> 20, bytes.len()))
+        }
+        Ok(Ok(_)) if most_s.is_some_and(|most| took > most) => Err(format!("{took:.1} s")),
+        Ok(Ok(is_taken)) => Ok(is_taken),
     }
 }
 
-/// Ends the process when one file takes too long; the file is in `target/fuzz/now/`.
-fn watch_for_hangs(finished: Arc<AtomicU64>) {
+/// Ends the process when one file takes too long; the file is in the folder.
+fn watch_for_hangs(finished: Arc<AtomicU64>, folder: PathBuf) {
     std::thread::spawn(move || {
         let mut last = (u64::MAX, Instant::now());
         loop {
@@ -191,7 +67,7 @@ fn watch_for_hangs(finished: Arc<AtomicU64>) {
             if now != last.0 {
                 last = (now, Instant::now());
             } else if last.1.elapsed().as_secs() > HANG_S {
-                std::fs::write("target/fuzz/now/HANGS", format!("mutation {now}")).ok();
+                std::fs::write(folder.join("HANGS"), format!("file {now}")).ok();
                 std::process::abort();
             }
         }
@@ -202,46 +78,93 @@ fn number_from(variable: &str) -> Option<u64> {
     std::env::var(variable).ok()?.parse().ok()
 }
 
+/// A kind under way.
+struct Run {
+    kind: Kind,
+    pool: Pool,
+    /// Files made wrong so far, how many were taken nevertheless, and seconds that all took.
+    number: u64,
+    taken: u64,
+    seconds: f64,
+}
+
+impl Run {
+    /// Makes the next file wrong and reads it; why it does harm.
+    fn next(&mut self, seed: u64, folder: &Path, is_timed: bool) -> Result<(), String> {
+        let started = Instant::now();
+        let most_s = is_timed.then_some(self.kind.most_s);
+        let Seed { name, bytes } = &self.kind.files[(self.number % self.kind.files.len() as u64) as usize];
+        let numbers = &mut Random::new(seed, self.number);
+        let mut wrong = mutate::mutated(bytes, name, &self.pool, numbers);
+        for _ in 0..MOST_TRIES {
+            if (self.kind.is_worth)(name, &wrong) {
+                break;
+            }
+            wrong = mutate::mutated(bytes, name, &self.pool, numbers);
+        }
+        std::fs::write(folder.join(name), &wrong).expect("target/fuzz/ can be written");
+        let judged = judge(&mut self.kind.read, folder, name, &wrong, most_s).map_err(|why| {
+            let kept = format!("target/fuzz/{seed}-{}-{name}", self.number);
+            std::fs::write(&kept, &wrong).expect("target/fuzz/ can be written");
+            format!("{kept}: {why}")
+        });
+        std::fs::write(folder.join(name), bytes).expect("target/fuzz/ can be written");
+        self.number += 1;
+        self.seconds += started.elapsed().as_secs_f64();
+        judged.map(|is_taken| self.taken += u64::from(is_taken))
+    }
+}
+
 #[test]
 fn wrong_files_do_no_harm() {
     let seconds = number_from("VEDUTA_FUZZ_SECONDS");
     let clock = SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |d| d.as_secs());
     let seed = number_from("VEDUTA_FUZZ_SEED").unwrap_or(if seconds.is_some() { clock } else { 1 });
-    let folder = PathBuf::from("target/fuzz/now");
-    std::fs::remove_dir_all(&folder).ok();
+    let wanted = std::env::var("VEDUTA_FUZZ_KINDS").unwrap_or_default();
+    let folder = PathBuf::from(format!("target/fuzz/now-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("target/fuzz/ can be made");
-    let seeds = seeds();
-    // What models point to lies beside them.
-    for seed in &seeds {
-        std::fs::write(folder.join(&seed.name), &seed.bytes).expect("target/fuzz/ can be written");
+    let is_wanted = |kind: &Kind| wanted.is_empty() || wanted.split(',').any(|word| kind.name.contains(word));
+    let mut runs: Vec<Run> = kinds()
+        .into_iter()
+        .filter(is_wanted)
+        .map(|kind| {
+            let mut pool = Pool::default();
+            kind.files.iter().for_each(|file| pool.add(&file.name, &file.bytes));
+            Run { kind, pool, number: 0, taken: 0, seconds: 0.0 }
+        })
+        .collect();
+    // What files point to lies beside them.
+    for file in runs.iter().flat_map(|run| &run.kind.files) {
+        std::fs::write(folder.join(&file.name), &file.bytes).expect("target/fuzz/ can be written");
     }
-    for seed in &seeds {
-        judge(&folder, &seed.name, &seed.bytes).unwrap_or_else(|e| panic!("{} as it is: {e}", seed.name));
+    for Run { kind, .. } in &mut runs {
+        for Seed { name, bytes } in kind.files.iter().take(kind.sample as usize) {
+            judge(&mut kind.read, &folder, name, bytes, None).unwrap_or_else(|e| panic!("{name} as it is: {e}"));
+        }
     }
     std::panic::set_hook(Box::new(|info| {
         *PANIC.lock().unwrap_or_else(PoisonError::into_inner) = info.to_string().replace('\n', " ");
     }));
     let finished = Arc::new(AtomicU64::new(0));
-    watch_for_hangs(finished.clone());
+    watch_for_hangs(finished.clone(), folder.clone());
     let start = Instant::now();
     let mut failures: Vec<String> = Vec::new();
-    let mut number = 0;
-    while failures.len() < MAX_FAILURES
-        && seconds.map_or(number < SMOKE_MUTATIONS, |s| start.elapsed() < Duration::from_secs(s))
-    {
-        let Seed { name, bytes } = &seeds[(number % seeds.len() as u64) as usize];
-        let wrong = mutate::mutated(bytes, name, &mut Random::new(seed, number));
-        std::fs::write(folder.join(name), &wrong).expect("target/fuzz/ can be written");
-        if let Err(why) = judge(&folder, name, &wrong) {
-            let kept = format!("target/fuzz/{seed}-{number}-{name}");
-            std::fs::write(&kept, &wrong).expect("target/fuzz/ can be written");
-            failures.push(format!("{kept}: {why}"));
-        }
-        std::fs::write(folder.join(name), bytes).expect("target/fuzz/ can be written");
-        number += 1;
-        finished.store(number, Relaxed);
+    while failures.len() < MAX_FAILURES {
+        let next = match seconds {
+            Some(s) if start.elapsed() >= Duration::from_secs(s) => None,
+            Some(_) => runs.iter_mut().min_by(|a, b| a.seconds.total_cmp(&b.seconds)),
+            None => runs.iter_mut().find(|run| run.number < run.kind.sample),
+        };
+        let Some(run) = next else { break };
+        failures.extend(run.next(seed, &folder, seconds.is_some()).err());
+        finished.fetch_add(1, Relaxed);
     }
     drop(std::panic::take_hook());
+    std::fs::remove_dir_all(&folder).ok();
+    let number: u64 = runs.iter().map(|run| run.number).sum();
     println!("seed {seed}: {number} files in {:.0} s", start.elapsed().as_secs_f64());
+    for run in &runs {
+        println!("  {} {}, {} of them taken: {:.0} s", run.number, run.kind.name, run.taken, run.seconds);
+    }
     assert!(failures.is_empty(), "seed {seed}, {number} files:\n{}", failures.join("\n"));
 }

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use veduta::shader::{EffectDefinition, EffectKind, PerObject, effects};
 
-#[path = "../fuzz/random.rs"]
+#[path = "random.rs"]
 mod random;
 
 pub use random::Random;

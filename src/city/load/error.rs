@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::city::warning::one_line;
+use crate::text::one_line;
 
 /// Why a file could not be loaded: file, place in it, what would be right.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -19,11 +19,11 @@ pub struct LoadError {
 impl LoadError {
     /// An error about a file as a whole.
     pub fn new(file: &Path, message: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), place: String::new(), message: one_line(message.into()) }
+        Self { file: file.to_owned(), place: String::new(), message: one_line(&message.into()) }
     }
 
     /// An error at a place in a file.
     pub fn at(file: &Path, place: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), place: one_line(place.into()), message: one_line(message.into()) }
+        Self { file: file.to_owned(), place: one_line(&place.into()), message: one_line(&message.into()) }
     }
 }

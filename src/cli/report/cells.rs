@@ -1,6 +1,6 @@
 //! Text in columns: how wide, how cut, how numbers are written for people.
 
-use crate::cli::terminal::{Paint, steers};
+use crate::{cli::terminal::Paint, text::steers};
 
 /// Where a cell's text stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

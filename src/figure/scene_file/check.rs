@@ -13,6 +13,7 @@ use crate::{
     },
     lens::{Rendering, effect::problem_with, nearest::did_you_mean},
     shader::effect::ParameterKind,
+    text::one_line,
 };
 
 /// One thing that is wrong: `[lens.0] shape.radius: must be ...`.
@@ -30,12 +31,14 @@ pub struct Problem {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.table.is_empty(), self.key.is_empty()) {
-            (true, true) => write!(f, "{}", self.message),
-            (true, false) => write!(f, "{}: {}", self.key, self.message),
-            (false, true) => write!(f, "[{}] {}", self.table, self.message),
-            (false, false) => write!(f, "[{}] {}: {}", self.table, self.key, self.message),
-        }
+        let text = match (self.table.is_empty(), self.key.is_empty()) {
+            (true, true) => self.message.clone(),
+            (true, false) => format!("{}: {}", self.key, self.message),
+            (false, true) => format!("[{}] {}", self.table, self.message),
+            (false, false) => format!("[{}] {}: {}", self.table, self.key, self.message),
+        };
+        // Names of the file are in it: a problem is one line all the same.
+        f.write_str(&one_line(&text))
     }
 }
 
@@ -80,10 +83,10 @@ impl Checker {
         self.problems.push(Problem { line, table: place.table.clone(), key, message: message.into() });
     }
 
-    /// Of what was noted after the first `count` problems, keeps what is said of this key.
+    /// Of what was noted after the first `count` problems, keeps what is said of this key, and of all of the table.
     pub fn keep_after(&mut self, count: usize, key: &str) {
         let later = self.problems.split_off(count);
-        self.problems.extend(later.into_iter().filter(|problem| problem.key == key));
+        self.problems.extend(later.into_iter().filter(|problem| problem.key == key || problem.key.is_empty()));
     }
 
     /// Checks all keys of a table; `later` are keys of later versions.

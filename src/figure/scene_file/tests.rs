@@ -493,6 +493,11 @@ fn of_a_lens_of_a_wrong_kind_only_that_is_told() {
         let message = read_text(&lens_text(&format!("{rest}\nkind = \"{kind}\""))).unwrap_err();
         assert_eq!(message, format!("s.toml:9: [lens.0] kind: {expected}"));
     }
+    // What is no table has no kind.
+    for (lens, quoted) in [("3", "3"), ("[1, 2]", "[1, 2]"), ("\"color\"", "\"color\"")] {
+        let message = read_text(&format!("veduta = 1\nlens = [{lens}]")).unwrap_err();
+        assert_eq!(message, format!("s.toml:2: [lens.0] must be a table, is {quoted}"));
+    }
     // Other lenses keep theirs.
     let two = format!("[[lens]]\nkind = \"colour\"\n[[lens]]\n{BALL}effects = [\"sepai\"]\n[sun]\nshadows = 1");
     let message = read_text(&format!("veduta = 1\n{two}")).unwrap_err();

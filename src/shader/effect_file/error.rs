@@ -1,6 +1,6 @@
 //! Mistakes in effect files, with their places.
 
-use crate::shader::wgsl::token::line_and_column;
+use crate::{shader::wgsl::token::line_and_column, text::one_line};
 
 /// A mistake in an effect file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -27,7 +27,7 @@ pub(super) struct File<'a> {
 impl File<'_> {
     pub(super) fn error(&self, at: usize, message: impl Into<String>) -> FileError {
         let (line, column) = line_and_column(self.text, at);
-        FileError { path: self.path.to_owned(), line, column, message: message.into() }
+        FileError { path: self.path.to_owned(), line, column, message: one_line(&message.into()) }
     }
 
     /// The TOML of the header, and where each of its lines begins: in itself and in the file.
