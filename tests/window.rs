@@ -6,7 +6,7 @@
 
 use std::{
     fs,
-    io::Read,
+    io::{Read, Write as _},
     path::{Path, PathBuf},
     process::{Child, Command, ExitCode, Stdio},
     thread::sleep,
@@ -24,14 +24,26 @@ const UNHEARD: u32 = 30;
 const TRIES: usize = 3;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::from_args();
+    let mut arguments = Arguments::from_args();
+    // One pair of hands.
+    arguments.test_threads = Some(1);
     let missing = ["Xvfb", "xdotool"].into_iter().find(|tool| !is_there(tool));
     if let Some(tool) = missing {
         eprintln!("ignored: {tool} is not there");
     }
-    let trial = Trial::test("a_figure_is_made_by_mouse_and_keys", figure).with_ignored_flag(missing.is_some());
-    libtest_mimic::run(&arguments, vec![trial]).exit_code()
+    let all: [(&str, Hands); 5] = [
+        ("a_figure_is_made_by_mouse_and_keys", figure),
+        ("edits_come_back_after_a_kill", killed),
+        ("whoever_closes_is_asked_about_edits", asked),
+        ("a_window_closes_while_it_loads", closed_while_loading),
+        ("what_a_scene_names_and_is_not_there_is_told", not_there),
+    ];
+    let trials = all.map(|(name, trial)| Trial::test(name, trial).with_ignored_flag(missing.is_some()));
+    libtest_mimic::run(&arguments, trials.into()).exit_code()
 }
+
+/// What is done with a window.
+type Hands = fn() -> Result<(), Failed>;
 
 fn is_there(tool: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
@@ -173,6 +185,19 @@ impl Desk {
         self.does(&["mouseup", "1"])
     }
 
+    /// Waits until the program has ended as it should.
+    fn ends(&mut self) -> Result<(), Failed> {
+        let started = Instant::now();
+        loop {
+            match self.app.0.try_wait()? {
+                Some(status) if status.success() => return Ok(()),
+                Some(status) => return Err(format!("it ended with {status}").into()),
+                None if started.elapsed() > PATIENCE => return Err("it did not end".into()),
+                None => sleep(self.beat),
+            }
+        }
+    }
+
     fn clicks(&self, at: [i32; 2]) -> Result<(), Failed> {
         let [x, y] = at.map(|c| c.to_string());
         self.does(&["mousemove", &x, &y])?;
@@ -281,13 +306,141 @@ fn figure() -> Result<(), Failed> {
         return Err(format!("remembered is {remembered}").into());
     }
     desk.does(&["key", "ctrl+q"])?;
+    desk.ends()
+}
+
+/// A folder of a test with a scene, `mine.toml`, of the built-in city, and where edits are kept.
+fn with_a_scene(name: &str) -> Result<(Folder, PathBuf), Failed> {
+    let folder = Folder(std::env::temp_dir().join(format!("veduta-window-{name}-{}", std::process::id())));
+    fs::create_dir_all(&folder.0)?;
+    fs::write(folder.0.join("mine.toml"), MINE)?;
+    let unsaved = folder.0.join("config/veduta/unsaved");
+    Ok((folder, unsaved))
+}
+
+const MINE: &str = "veduta = 1\n\n[city]\nfiles = [\"builtin:square\"]\n";
+/// What is asked when edits would be lost, and when some come back: the title of the window meanwhile.
+const LOSE: &str = "The scene has edits that are not saved — Veduta";
+const COME_BACK: &str = "Edits that were not saved are still there — Veduta";
+
+/// A window on that scene, with a lens that is not saved.
+fn with_an_edit(folder: &Folder) -> Result<Desk, Failed> {
+    let desk = Desk::open(&folder.0, &["mine.toml"])?;
+    desk.until_title("mine.toml — Veduta")?;
+    let [x, y] = MIDDLE.map(|c| c.to_string());
+    desk.does(&["mousemove", &x, &y])?;
+    desk.key("l", "• mine.toml — Veduta")?;
+    Ok(desk)
+}
+
+fn scene(folder: &Folder) -> Result<String, Failed> {
+    Ok(fs::read_to_string(folder.0.join("mine.toml"))?)
+}
+
+fn files_in(folder: &Path) -> Vec<PathBuf> {
+    fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect()
+}
+
+/// Once edits are kept, the window is killed; the next one offers them, and has them.
+fn killed() -> Result<(), Failed> {
+    let (folder, unsaved) = with_a_scene("killed")?;
+    let desk = with_an_edit(&folder)?;
+    let is_kept = || files_in(&unsaved).iter().any(|file| file.extension().is_some_and(|ending| ending == "toml"));
     let started = Instant::now();
-    loop {
-        match desk.app.0.try_wait()? {
-            Some(status) if status.success() => return Ok(()),
-            Some(status) => return Err(format!("it ended with {status}").into()),
-            None if started.elapsed() > PATIENCE => return Err("it did not end".into()),
-            None => sleep(desk.beat),
+    while !is_kept() {
+        if started.elapsed() > PATIENCE {
+            return Err("the edits are not kept".into());
         }
+        sleep(desk.beat);
     }
+    // SIGKILL.
+    drop(desk);
+    let mut desk = Desk::open(&folder.0, &[])?;
+    desk.until_title(COME_BACK)?;
+    desk.key("Return", "• mine.toml — Veduta")?;
+    if scene(&folder)? != MINE {
+        return Err("the scene was written before it was saved".into());
+    }
+    desk.key("ctrl+s", "mine.toml — Veduta")?;
+    if !scene(&folder)?.contains("[[lens]]") {
+        return Err(format!("the lens did not come back: {}", scene(&folder)?).into());
+    }
+    desk.does(&["key", "ctrl+q"])?;
+    desk.ends()?;
+    match &files_in(&unsaved)[..] {
+        [] => Ok(()),
+        left => Err(format!("left behind: {left:?}").into()),
+    }
+}
+
+/// A window with edits stays open until it is said what becomes of them.
+fn asked() -> Result<(), Failed> {
+    let (folder, unsaved) = with_a_scene("asked")?;
+    let mut desk = with_an_edit(&folder)?;
+    desk.key("ctrl+q", LOSE)?;
+    desk.key("Escape", "• mine.toml — Veduta")?;
+    desk.key("ctrl+q", LOSE)?;
+    desk.does(&["key", "Tab"])?;
+    desk.does(&["key", "Return"])?;
+    desk.ends()?;
+    if scene(&folder)? != MINE || !files_in(&unsaved).is_empty() {
+        return Err(format!("lost edits are kept: {}, {:?}", scene(&folder)?, files_in(&unsaved)).into());
+    }
+    drop(desk);
+    let mut desk = with_an_edit(&folder)?;
+    desk.key("ctrl+q", LOSE)?;
+    desk.does(&["key", "Return"])?;
+    desk.ends()?;
+    match scene(&folder)?.contains("[[lens]]") {
+        true => Ok(()),
+        false => Err("the edits are not saved".into()),
+    }
+}
+
+/// A city that is never read to its end does not hold the window.
+fn closed_while_loading() -> Result<(), Failed> {
+    let (folder, _) = with_a_scene("loading")?;
+    let city = folder.0.join("endless.city.json");
+    if !Command::new("mkfifo").arg(&city).status()?.success() {
+        return Err("no pipe can be made".into());
+    }
+    // Who writes into it says little, and does not end.
+    let mut writer = fs::File::options().read(true).write(true).open(&city)?;
+    writer.write_all(b"{\"type\": \"CityJSON\", ")?;
+    let mut desk = Desk::open(&folder.0, &["endless.city.json"])?;
+    desk.until_title("Untitled — Veduta")?;
+    sleep(desk.beat);
+    desk.does(&["windowfocus", &desk.window.clone()])?;
+    desk.does(&["key", "ctrl+q"])?;
+    desk.ends()
+}
+
+/// An object and an attribute of another city: one is a lens that holds nothing, the other no picture at all.
+fn not_there() -> Result<(), Failed> {
+    let (folder, _) = with_a_scene("not-there")?;
+    let lens = "[[lens]]\nname = \"l\"\nkind = \"color\"\n";
+    for (rest, message) in [
+        (
+            "shape = { kind = \"thematic\", ids = [\"curch\"] }\neffects = [\"sepia\"]\n",
+            "[lens.0] shape.ids.0: chooses nothing: the city has no object \"curch\"; did you mean \"church\"?",
+        ),
+        (
+            "effects = [{ effect = \"thematic\", attribute = \"heigth\" }]\nshape = { kind = \"sphere\", center = [0, 0, 0], radius = 20 }\n",
+            "Cannot be drawn: no object has the attribute \"heigth\"; did you mean \"height\"?",
+        ),
+    ] {
+        fs::write(folder.0.join("mine.toml"), format!("{MINE}{lens}{rest}"))?;
+        let mut desk = Desk::open(&folder.0, &["mine.toml"])?;
+        let started = Instant::now();
+        let told = || fs::read_to_string(folder.0.join("log.txt")).unwrap_or_default();
+        while !told().contains(message) {
+            if started.elapsed() > PATIENCE {
+                return Err(format!("it is not told: {}", told()).into());
+            }
+            sleep(desk.beat);
+        }
+        desk.does(&["key", "ctrl+q"])?;
+        desk.ends()?;
+    }
+    Ok(())
 }

@@ -22,7 +22,7 @@ pub fn show(window: &mut Window, context: &Context) {
         let note = figure_note(window, &dialog);
         let response = Modal::new(egui::Id::unique("files")).show(context, |ui| body(&mut dialog, note.as_deref(), ui));
         match (response.should_close(), response.inner) {
-            (true, _) | (_, End::Cancelled) => {}
+            (true, _) | (_, End::Cancelled) => window.after_saving = None,
             (_, End::Goes) => window.dialog = Some(dialog),
             (_, End::Done(files)) => match dialog.wanted {
                 Wanted::Read => window.guarded(Purpose::OpenThese(files)),
@@ -199,21 +199,26 @@ fn ask(window: &mut Window, context: &Context) {
     let Some(asking) = window.asking.clone() else { return };
     let response = Modal::new(egui::Id::unique("question")).show(context, |ui| {
         ui.set_width(380.0);
+        ui.heading(asking.title());
         match &asking {
             Asking::Lose(_) => {
-                ui.heading("The scene has edits that are not saved");
                 ui.label(
                     "They are lost unless the scene is saved first. The city's own files are not changed by any edit.",
                 );
             }
             Asking::Replace(file, _) => {
-                ui.heading("The file is there already");
                 ui.label(format!("{} would be written over.", file.display()));
             }
             Asking::Outside(_, what) => {
-                ui.heading("The scene reads files outside its folder");
                 ui.label(what);
                 ui.label("Allow it where you know who made the scene.");
+            }
+            Asking::ComeBack(left) => {
+                ui.label(format!(
+                    "Veduta ended before these were saved: edits of {}, kept {}.",
+                    left.name(),
+                    left.age()
+                ));
             }
         }
         ui.add_space(8.0);
@@ -223,6 +228,7 @@ fn ask(window: &mut Window, context: &Context) {
                 Asking::Lose(_) => &["Save", "Lose them", "Cancel"],
                 Asking::Replace(..) => &["Replace", "Cancel"],
                 Asking::Outside(..) => &["Allow", "Cancel"],
+                Asking::ComeBack(_) => &["Open them", "Throw them away", "Later"],
             };
             for (i, name) in names.iter().enumerate() {
                 let button = ui.button(*name);
@@ -249,9 +255,15 @@ fn ask(window: &mut Window, context: &Context) {
                     window.go_on(purpose);
                 }
             }
-            None => window.dialog = Some(FileDialog::save(std::env::current_dir().unwrap_or_default())),
+            None => {
+                window.dialog = Some(FileDialog::save(std::env::current_dir().unwrap_or_default()));
+                window.after_saving = Some(purpose);
+            }
         },
         (Asking::Replace(file, what), "Replace") => write(window, &file, what),
+        (Asking::Replace(..), _) => window.after_saving = None,
+        (Asking::ComeBack(left), "Open them") => window.bring_back(left),
+        (Asking::ComeBack(left), "Throw them away") => left.remove(),
         (Asking::Outside(files, _), "Allow") => window.open_allowing(&files, true),
         _ => {}
     }

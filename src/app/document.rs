@@ -53,6 +53,16 @@ impl Document {
         }
     }
 
+    /// A scene that has edits beyond what its file has; without one, beyond its city.
+    pub fn with_edits(scene: Scene, file: Option<PathBuf>) -> Self {
+        let options = |file: &PathBuf| Options { allow_outside: true, ..Options::for_file(file) };
+        let saved = file.as_ref().and_then(|file| scene_file::read(file, &options(file)).ok());
+        let saved = saved.unwrap_or_else(|| Scene { city: scene.city.clone(), ..Scene::default() });
+        let mut document = Self::new(saved, file);
+        document.edit("edits that were not saved", |before| *before = scene);
+        document
+    }
+
     /// The scene as it is shown.
     pub fn scene(&self) -> &Scene {
         self.live.as_ref().map_or_else(|| self.history.scene(), |(_, scene)| scene)

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::unsaved::LeftBehind;
+
 /// The action that waits until edits may be lost.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Purpose {
@@ -20,6 +22,20 @@ pub enum Asking {
     Replace(PathBuf, Writing),
     /// A scene among these files reads what is outside its folder: what was said of it.
     Outside(Vec<PathBuf>, String),
+    /// A window before this one left edits behind.
+    ComeBack(LeftBehind),
+}
+
+impl Asking {
+    /// What is asked about, in a few words: the title of the window meanwhile.
+    pub fn title(&self) -> &'static str {
+        match self {
+            Self::Lose(_) => "The scene has edits that are not saved",
+            Self::Replace(..) => "The file is there already",
+            Self::Outside(..) => "The scene reads files outside its folder",
+            Self::ComeBack(_) => "Edits that were not saved are still there",
+        }
+    }
 }
 
 /// The file that is written.

@@ -8,12 +8,13 @@ use crate::{
         canvas_state::Canvas,
         document::Document,
         drawn::Drawing,
-        file_dialog::{Asking, FileDialog},
+        file_dialog::{Asking, FileDialog, Purpose},
         finder::Finder,
         properties::edits::Drafts,
         render_thread::{Draw, Frame, Opened, RenderThread},
+        unsaved::{LeftBehind, Unsaved},
     },
-    scene::CitySpec,
+    scene::{CitySpec, Scene},
 };
 
 /// The choice of a person.
@@ -87,6 +88,15 @@ pub struct Window {
     pub(super) asked: Option<Draw>,
     pub(super) title: String,
     pub(super) quits: bool,
+    /// Keeps edits that are not saved.
+    pub(super) unsaved: Option<Unsaved>,
+    /// What windows before left behind and nobody has been asked about yet; and what comes back now, once its city is there.
+    pub(super) left_behind: Vec<LeftBehind>,
+    pub(super) coming_back: Option<LeftBehind>,
+    /// The scene that was last held against the city: what it names and the city does not have has been told.
+    pub(super) held_against: Option<Arc<Scene>>,
+    /// What is done once the scene is saved.
+    pub(super) after_saving: Option<Purpose>,
     pub(super) allow_outside: bool,
     /// Whether what is shown may.
     pub(super) allows_outside: bool,

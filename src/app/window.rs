@@ -21,11 +21,13 @@ use crate::{
         lens_list, objects, properties,
         render_thread::{Draw, Frame, Notify, RenderThread, Reply},
         state::{Chosen, Message, Window},
-        theme, user_effects,
+        theme,
+        unsaved::Unsaved,
+        user_effects,
     },
     city::load::LoadOptions,
     figure::scene_file::{self, Options},
-    scene::{CitySpec, Scene},
+    scene::{CitySpec, Scene, check_against},
     view::Camera,
 };
 
@@ -70,6 +72,8 @@ impl Window {
         theme::set(context);
         let own = context.clone();
         let notify: Notify = Arc::new(move || own.request_repaint());
+        let unsaved = start.memory.as_ref().and_then(|file| Unsaved::new(file.with_file_name("unsaved")));
+        let left_behind = unsaved.as_ref().map(Unsaved::left_behind).unwrap_or_default();
         let mut window = Self {
             render_thread: RenderThread::new(notify)?,
             document: Document::default(),
@@ -105,6 +109,11 @@ impl Window {
             asked: None,
             title: String::new(),
             quits: false,
+            unsaved,
+            left_behind,
+            coming_back: None,
+            after_saving: None,
+            held_against: None,
             fov_y: 45.0_f64.to_radians(),
             allow_outside: start.allow_outside,
             allows_outside: start.allow_outside,
@@ -176,7 +185,7 @@ impl Window {
         self.remember();
         self.allows_outside = allow_outside;
         self.load(&document);
-        self.waiting = Some(document);
+        (self.waiting, self.coming_back) = (Some(document), None);
     }
 
     /// Files but for effects, which are added.
@@ -292,6 +301,7 @@ impl Window {
                     }
                     self.shown_spec = self.spec.clone();
                     (self.chosen, self.frame, self.asked) = (Chosen::default(), None, None);
+                    self.held_against = None;
                     self.canvas.forget();
                     self.finder.forget();
                 }
@@ -302,7 +312,8 @@ impl Window {
                     }
                     self.loading = None;
                     self.spec = self.shown_spec.clone();
-                    self.fail(error);
+                    let stays = self.stays_behind();
+                    self.fail(error + &stays);
                 }
                 // Of the scene before, asked for before the city came.
                 Reply::Frame(frame) if frame.scene.city != self.document.scene().city => {}
@@ -332,6 +343,7 @@ impl Window {
                     if self.message.as_ref().is_some_and(|message| message.text.starts_with(NOT_DRAWN)) {
                         self.message = None;
                     }
+                    self.tell_what_is_not_there(&frame.scene);
                     self.frame = Some(frame);
                 }
                 Reply::NotDrawn(error) => self.fail(format!("{NOT_DRAWN}{error}")),
@@ -357,6 +369,26 @@ impl Window {
                 }
                 Reply::NotEffect(error) => self.fail(format!("{error}; the effect stays as it was")),
             }
+        }
+    }
+
+    /// Says what a scene names and its city does not have, once.
+    fn tell_what_is_not_there(&mut self, scene: &Arc<Scene>) {
+        let is_same = |before: &Arc<Scene>| {
+            before.lenses == scene.lenses && before.pois == scene.pois && before.style == scene.style
+        };
+        if self.document.is_live() || self.held_against.as_ref().is_some_and(is_same) {
+            return;
+        }
+        let Some(city) = &self.city else { return };
+        let problems: Vec<String> = check_against(scene, &city.model).iter().map(ToString::to_string).collect();
+        self.held_against = Some(Arc::clone(scene));
+        if let [first, others @ ..] = &problems[..] {
+            let more =
+                if others.is_empty() { String::new() } else { format!("; and {} more (point here)", others.len()) };
+            let (text, details) = (format!("{first}{more}"), problems.join("\n"));
+            log::warn!("{}", problems.join("; "));
+            self.message = Some(Message { text, details, is_error: true });
         }
     }
 
@@ -406,12 +438,14 @@ impl Window {
         if self.document.is_live() && !context.input(|input| input.pointer.any_down()) {
             self.document.settle();
         }
+        self.keep_edits(&context);
         dialogs::show(self, &context);
         self.shortcuts(&context);
         let star = if self.document.is_changed() { "• " } else { "" };
-        let title = match &self.dialog {
-            Some(dialog) => format!("{} — Veduta", dialog.title()),
-            None => format!("{star}{} — Veduta", self.document.title()),
+        let title = match (&self.dialog, &self.asking) {
+            (Some(dialog), _) => format!("{} — Veduta", dialog.title()),
+            (None, Some(asking)) => format!("{} — Veduta", asking.title()),
+            (None, None) => format!("{star}{} — Veduta", self.document.title()),
         };
         // Whatever is sent is followed by a frame.
         if self.title != title {
@@ -419,6 +453,8 @@ impl Window {
             self.title = title;
         }
         if self.quits {
+            // As it was agreed, before this frame or in it.
+            self.keep_edits(&context);
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
     }
@@ -503,7 +539,8 @@ impl Window {
                     }
                     self.loading = None;
                     self.spec = self.shown_spec.clone();
-                    self.say("Loading was cancelled.");
+                    let stays = self.stays_behind();
+                    self.say(format!("Loading was cancelled.{stays}"));
                 }
             } else if let Some(Message { text, details, is_error }) = &self.message {
                 let text = RichText::new(text);

@@ -16,6 +16,7 @@ use crate::{
         objects,
         render_thread::Export,
         state::{Chosen, Window},
+        unsaved::LeftBehind,
         user_effects::is_effect,
         window::{BUILTIN, shown_path},
     },
@@ -205,8 +206,52 @@ impl Window {
                 file.display()
             )),
             Ok(()) => self.say(format!("{} is saved.", file.display())),
+            Err(error) => return self.fail(error),
+        }
+        if let Some(purpose) = self.after_saving.take() {
+            self.go_on(purpose);
+        }
+    }
+
+    /// Opens edits that a window before left behind.
+    pub(in crate::app) fn bring_back(&mut self, left: LeftBehind) {
+        match left.read() {
+            Ok(document) => {
+                // Whoever edited them had them open.
+                self.allows_outside = true;
+                self.load(&document);
+                (self.waiting, self.coming_back) = (Some(document), Some(left));
+            }
             Err(error) => self.fail(error),
         }
+    }
+
+    /// Keeps edits that are not saved, asks about those that were left behind, and forgets those that came back.
+    pub(super) fn keep_edits(&mut self, context: &Context) {
+        let Some(unsaved) = &mut self.unsaved else { return };
+        if self.quits {
+            unsaved.forget();
+            return;
+        }
+        if let Some(pause) = unsaved.follow(&self.document) {
+            context.request_repaint_after(pause);
+        }
+        if self.waiting.is_none()
+            && let Some(left) = self.coming_back.take_if(|_| unsaved.has(&self.document))
+        {
+            left.remove();
+        }
+        let is_free = self.asking.is_none() && self.dialog.is_none() && self.loading.is_none();
+        if is_free && !self.left_behind.is_empty() {
+            self.asking = Some(Asking::ComeBack(self.left_behind.remove(0)));
+            context.request_repaint();
+        }
+    }
+
+    /// What was to come back does not: where it stays.
+    pub(super) fn stays_behind(&mut self) -> String {
+        let left = self.coming_back.take();
+        left.map_or_else(String::new, |left| format!(" The edits stay in {}.", left.file.display()))
     }
 
     /// Writes the figure.
