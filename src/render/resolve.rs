@@ -165,7 +165,14 @@ impl Surroundings<'_> {
             city: self.city,
             occlusion: &mut known.occlusion,
         };
-        known.deformations.of_scene(&mut stage).map_err(ResolveError::Scene)
+        let found = known.deformations.of_scene(&mut stage).map_err(ResolveError::Scene)?;
+        let count = found.moved.deformers.0.len();
+        match count <= MOST_DEFORMERS {
+            true => Ok(found),
+            false => Err(ResolveError::Scene(format!(
+                "{count} deformation lenses move the city; one picture takes {MOST_DEFORMERS}, as each is a part of its program"
+            ))),
+        }
     }
 
     /// What lenses show in themselves, in a picture of this size.
@@ -250,6 +257,10 @@ fn add_members(operations: &mut Operations, volumes: &mut [LensVolume], models: 
 }
 
 /// Refuses what is too much for one picture.
+/// Deformation lenses of a picture: what they do is written into its program, one after the other, and made by the driver. With so many the
+/// software adapter of two cores makes it in some 20 s.
+const MOST_DEFORMERS: usize = 64;
+
 fn check_counts(operations: &Operations, volumes: &[LensVolume]) -> Result<(), ResolveError> {
     let all: Vec<u32> = volumes.iter().map(|v| v.lens).collect();
     let counts = [

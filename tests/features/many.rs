@@ -3,6 +3,7 @@
 use crate::studio::*;
 use glam::DVec3;
 use veduta::{
+    figure::scene_file::{Options, parse},
     geom::{Aabb, Shape},
     lens::{Border, BorderUnit, Class, Discrete, EffectUse, Lens, LensBody, color},
     render::{
@@ -184,5 +185,61 @@ fn what_a_tile_does_not_show_changes_no_byte() {
         assert!(narrowed.statistics.passes.iter().any(|p| p.name == "narrow lists"));
         assert!(all.statistics.passes.iter().all(|p| p.name != "narrow lists"));
         assert!(all.rgba == narrowed.rgba);
+    }
+}
+
+#[test]
+fn more_deformations_than_a_program_holds_are_refused_at_once() {
+    let scene = |count: usize| {
+        let lens = |i: usize| {
+            format!(
+                "[[lens]]\nname = \"d{i}\"\nkind = \"deformation\"\nshape = {{ kind = \"sphere\", center = [{}, 0, 5], radius = 6 }}\n\
+                 deform = [{{ kind = \"translate\", by = [0, 0, 2] }}]\n",
+                i % 50
+            )
+        };
+        let lenses: String = (0..count).map(lens).collect();
+        let text = format!("veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n{lenses}");
+        parse(&text, "many.toml", &Options::default()).expect("a scene")
+    };
+    let mut studio = of_scene(&scene(0));
+    let request = Request::plain([60, 40]);
+    let error = studio.render(&scene(1000), &request).expect_err("too many").to_string();
+    assert!(error.starts_with("1000 deformation lenses move the city; one picture takes 64"), "{error}");
+    // Those that are off count for nothing.
+    let mut some = scene(1000);
+    some.lenses.iter_mut().skip(2).for_each(|lens| lens.enabled = false);
+    studio.render(&some, &request).expect("a picture");
+}
+
+/// The lens of a thousand and the images of a thousand layers.
+#[test]
+fn a_thousand_masks_are_drawn() {
+    let mask = |i: usize| {
+        let (x, y) = (i % 40 * 3, i / 40 * 4);
+        let corners = format!("[[{x}, {y}], [{}, {y}], [{}, {}]]", x + 6, x + 6, y + 6);
+        format!(
+            "[[lens]]\nname = \"m{i}\"\nkind = \"color\"\nshape = {{ kind = \"mask\", points = {corners}, base = 0, height = 20 }}\n\
+             effects = [\"sepia\"]\n"
+        )
+    };
+    let masks: String = (0..1000).map(mask).collect();
+    let folder = Folder::new("layers");
+    let image = folder.0.join("layer.png");
+    image::GrayImage::from_fn(16, 16, |x, y| image::Luma([if (x + y) % 3 == 0 { 0 } else { 255 }]))
+        .save(&image)
+        .expect("an image");
+    let images = vec![format!("{:?}", image.display().to_string()); 1000].join(", ");
+    let layers = format!(
+        "[[lens]]\nname = \"layers\"\nkind = \"color\"\nshape = {{ kind = \"mask3d\", images = [{images}], corner = [-50, -50, 0], \
+         size = [100, 100, 40] }}\neffects = [\"sepia\"]\n"
+    );
+    for lenses in [masks, layers] {
+        let text = format!("veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n{lenses}");
+        let options = Options { allow_outside: true, ..Options::default() };
+        let scene = parse(&text, "masks.toml", &options).expect("a scene");
+        let drawn = draw(&mut of_scene(&scene), &scene, Backend::Specialised);
+        let pixels = &drawn.statistics.lenses.iter().map(|lens| lens.covered).sum::<u64>();
+        assert!(*pixels > 100, "{pixels} pixels");
     }
 }
