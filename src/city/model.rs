@@ -69,6 +69,8 @@ pub const NONE: u32 = u32::MAX;
 pub struct CityModel {
     /// The files, in the order given.
     pub sources: Vec<Source>,
+    /// Files that were read because those name them: buffers, libraries of materials.
+    pub read_beside: Vec<PathBuf>,
     /// Canonical name of the reference system (`EPSG:7415`, `EPSG:25832+5783`), if understood.
     pub crs: Option<String>,
     /// The reference system as the file spells it.
@@ -468,13 +470,13 @@ impl CityModel {
         self.geometries.iter().fold(Aabb::EMPTY, |all, g| all.union(g.bounds))
     }
 
-    /// The files of its textures.
-    pub fn texture_files(&self) -> Vec<PathBuf> {
+    /// The files that it is made of beside those that were given: buffers, libraries of materials, textures.
+    pub fn files_beside(&self) -> Vec<PathBuf> {
         let file = |texture: &Texture| match &texture.image {
             TextureImage::File(path) => Some(path.clone()),
             TextureImage::Bytes(_) | TextureImage::Missing(_) => None,
         };
-        self.textures.iter().filter_map(file).collect()
+        self.read_beside.iter().cloned().chain(self.textures.iter().filter_map(file)).collect()
     }
 
     /// Whether its file does not say what it is.

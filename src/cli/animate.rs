@@ -121,7 +121,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let options = render::options_of(Some(file), global);
     let scene = figure::scene_file::read(file, &options).map_err(Failure::failed)?;
     let mut scene = render::changed(scene, &arguments.settings)?;
-    output::check(&arguments.stats, &figure::scene_file::files_of(&scene))?;
+    output::keep(&arguments.stats, &figure::scene_file::files_of(&scene))?;
     if let Some(size) = arguments.size {
         scene.figure.size = size.0;
     }
@@ -140,7 +140,10 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let begin = if has_history { 0 } else { first };
     (begin..=last).try_for_each(|frame| film.scene(frame).map(|_| ())).map_err(failed)?;
     let folder = Folder::new(&arguments.output, film.frames())?;
-    let (mut studio, warnings) = render::open(&first_scene, &options, global)?;
+    let mut written: Vec<PathBuf> = (first..=last).map(|frame| folder.file(frame)).collect();
+    written.extend(arguments.stats.clone());
+    output::keep(&written, [file])?;
+    let (mut studio, warnings) = render::open(&first_scene, &options, &written, global)?;
     let count = u64::from(last - first) + 1;
     log::info!("{count} frames, {} per second", film.fps());
     let progress = terminal::Progress::counting(count, "drawing", "frames", global);

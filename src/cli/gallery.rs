@@ -191,11 +191,16 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     }
     // Scenes of one city follow each other: it is loaded once.
     scenes.sort_by(|(_, a, _), (_, b, _)| a.city.files.cmp(&b.city.files));
+    let names = SCENES.iter().chain(SHEETS).map(|(name, _)| name).filter(|name| is_asked(name));
+    let written: Vec<PathBuf> = names.map(|name| folder.join(format!("{name}.png"))).collect();
+    for (_, scene, _) in &scenes {
+        output::keep(&written, &scene_file::files_of(scene))?;
+    }
     let mut last: Option<(CitySpec, Studio)> = None;
     for (name, scene, options) in scenes {
         let mut studio = match last.take() {
             Some((city, studio)) if city == scene.city => studio,
-            _ => render::open(&scene, &options, global)?.0,
+            _ => render::open(&scene, &options, &written, global)?.0,
         };
         let request = Request {
             size: scene.figure.size,
@@ -216,7 +221,8 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         last = Some((scene.city, studio));
     }
     for (name, text) in SHEETS.iter().filter(|(name, _)| is_asked(name)) {
-        let Some(task) = task_of(name, text, &images)? else { continue };
+        let Some(mut task) = task_of(name, text, &images)? else { continue };
+        task.written.clone_from(&written);
         let file = folder.join(format!("{name}.png"));
         sheet::save(&file, &sheet::draw(&task, &mut last, global)?)?;
         output::print(&format!("{}\n", file.display()))?;
@@ -246,5 +252,5 @@ fn task_of(name: &str, text: &str, images: &ImageFolder) -> Outcome<Option<sheet
     };
     let options = Options::for_file(&images.folder.join(known));
     let scene = parsed(name, known, text, &options)?;
-    Ok(scene.map(|scene| sheet::Task { name: file, sheet, scene, options }))
+    Ok(scene.map(|scene| sheet::Task { name: file, sheet, scene, options, written: Vec::new() }))
 }

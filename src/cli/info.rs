@@ -85,7 +85,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let best_views = arguments.best_views.as_ref().map(|id| best_views(&city, id)).transpose()?;
     let landmarks = arguments.landmarks.map(|n| landmarks(&city, n));
     if let Some(file) = &arguments.scene {
-        output::check([file], &arguments.files)?;
+        output::check([file], arguments.files.iter().chain(&city.files_beside()))?;
         let text = sights::scene(&arguments.files, landmarks.iter().flatten(), file);
         output::write(file, |out| out.write_all(text.as_bytes()))?;
     }

@@ -117,10 +117,12 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         return Err(Failure::usage(format!("measure {name}: where to? -o DIR would be right")));
     };
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
+    let written = ["json", "svg", "png", "md"].map(|extension| folder.join(format!("{name}.{extension}")));
+    output::check(&written, [])?;
     let mut scene = Scene::default();
     scene.city.files = if arguments.city.is_empty() { vec![TOWN.into()] } else { arguments.city.clone() };
     let options = Options { allow_outside: global.allow_outside, ..Options::for_command_line() };
-    let (mut studio, _) = render::open(&scene, &options, global)?;
+    let (mut studio, _) = render::open(&scene, &options, &written, global)?;
     let mut setup =
         Setup { studio: &mut studio, city: &scene.city, size: arguments.size(), pairs: arguments.pairs() as usize };
     let measured = watched(topic, &mut setup, global)?;

@@ -34,6 +34,16 @@ pub fn check<'a, 'b>(
             return Err(Failure::usage(format!("{}: two results cannot go to one file{also}", file.display())));
         }
     }
+    keep(files, inputs)
+}
+
+/// Refuses results in place of what is read: `inputs`, and of folders what is in them.
+pub fn keep<'a, 'b>(
+    files: impl IntoIterator<Item = &'a PathBuf>,
+    inputs: impl IntoIterator<Item = &'b PathBuf>,
+) -> Outcome {
+    let identity = |file: &'a PathBuf| Some((file, Identity::of(&written_file(file)?)));
+    let written: Vec<(&PathBuf, Identity)> = files.into_iter().filter_map(identity).collect();
     let in_folder = |path: &PathBuf| -> Vec<PathBuf> {
         std::fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path()).collect()
     };

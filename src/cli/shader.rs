@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if let Some(size) = arguments.size {
         scene.figure.size = size.0;
     }
-    let (studio, _) = render::open(&scene, &options, global)?;
+    let (studio, _) = render::open(&scene, &options, &[], global)?;
     let scene = render::with_camera(scene, &of_camera, &studio)?;
     let text = studio
         .shader(&scene, scene.figure.size, arguments.shaders.into(), arguments.module.into())

@@ -12,6 +12,7 @@ struct Folder(PathBuf);
 
 const CITY: &str = r#"{"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},"CityObjects":{"a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}]}},"vertices":[[0,0,0],[9,0,0],[0,0,9]]}"#;
 const SCENE: &str = "veduta = 1\n[city]\nfiles = [\"city.city.json\"]\n";
+const GLTF: &str = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"face.bin","byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0}"#;
 const OBJ: &str = "mtllib wall.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nv 0 0 0\nv 10 0 0\nv 10 0 10\nusemtl m\nf 1/1 2/2 3/3\n";
 
 impl Folder {
@@ -27,7 +28,15 @@ impl Folder {
             ("sheet.toml", b"veduta_sheet = 1\nscene = \"scene.toml\"\n[[row]]\nname = \"a\"\n[[column]]\nname = \"b\"\nset = [\"sun.azimuth_deg=10\"]\n"),
             ("wall.obj", OBJ.as_bytes()),
             ("wall.mtl", b"newmtl m\nKd 1 1 1\nmap_Kd wall.png\n"),
-            ("wall.png", &texture.into_inner()[..]),
+            ("wall.toml", b"veduta = 1\n[city]\nfiles = [\"wall.obj\"]\n"),
+            ("wall.sheet.toml", b"veduta_sheet = 1\nscene = \"wall.toml\"\n[[column]]\nname = \"wall\"\n"),
+            ("0001.obj", OBJ.replace("wall.mtl", "0001.mtl").as_bytes()),
+            ("0001.mtl", b"newmtl m\nKd 1 1 1\nmap_Kd 0001.png\n"),
+            ("film.toml", b"veduta = 1\n[city]\nfiles = [\"0001.obj\"]\n[animation]\nfps = 2\ncamera = [{ at = 0, eye = [0, 0, 9], target = [4, 9, 0] }, { at = 1, eye = [8, 0, 9], target = [4, 9, 0] }]\n"),
+            ("0001.png", texture.get_ref()),
+            ("face.gltf", GLTF.as_bytes()),
+            ("face.bin", &[0; 36]),
+            ("wall.png", texture.get_ref()),
         ] {
             fs::write(folder.0.join(name), bytes).expect("a file");
         }
@@ -42,8 +51,10 @@ impl Folder {
 
     /// All files and what is in them.
     fn content(&self) -> Vec<(PathBuf, Vec<u8>)> {
-        let mut all: Vec<(PathBuf, Vec<u8>)> = fs::read_dir(&self.0)
-            .expect("the folder")
+        let folders = [self.0.clone(), self.0.join("scenes")];
+        let mut all: Vec<(PathBuf, Vec<u8>)> = folders
+            .iter()
+            .flat_map(|folder| fs::read_dir(folder).into_iter().flatten())
             .map(|entry| entry.expect("an entry").path())
             .filter(|path| path.is_file())
             .map(|path| (path.clone(), fs::read(path).expect("a file")))
@@ -74,6 +85,13 @@ fn no_result_replaces_what_is_read() {
     std::os::unix::fs::symlink("city.city.json", folder.0.join("linked.json")).expect("a link");
     std::os::unix::fs::symlink("wall.png", folder.0.join("linked.png")).expect("a link");
     fs::hard_link(folder.0.join("city.city.json"), folder.0.join("same.json")).expect("a link");
+    fs::copy(folder.0.join("city.city.json"), folder.0.join("samples.json")).expect("a copy");
+    // The images of the gallery, where the program was cloned.
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    fs::create_dir(folder.0.join("scenes")).expect("a folder");
+    for image in ["trapp-3-6-3-b.png", "trapp-5-3-3-a.png", "trapp-5-3-3-b.png"] {
+        fs::copy(scenes.join(image), folder.0.join("scenes").join(image)).expect("a copy");
+    }
     let before = folder.content();
     for arguments in [
         // The city, the scene, by other spellings and links.
@@ -88,6 +106,17 @@ fn no_result_replaces_what_is_read() {
         &["render", "wall.obj", "-o", "wall.png"],
         &["render", "wall.obj", "-o", "linked.png"],
         &["render", "wall.obj", "-o", "a.png", "--aov", "normal=wall.png"],
+        // What it names beside.
+        &["render", "wall.obj", "-o", "a.png", "--stats", "wall.mtl"],
+        &["render", "face.gltf", "-o", "a.png", "--stats", "face.bin"],
+        &["info", "wall.obj", "--landmarks", "1", "--scene", "wall.mtl"],
+        &["sheet", "wall.sheet.toml", "-o", "wall.png"],
+        &["sheet", "wall.sheet.toml", "-o", "a.png", "--cells", "."],
+        &["sheet", "wall.sheet.toml", "-o", "a.png", "--figures", "wall.mtl"],
+        &["animate", "film.toml", "-o", "."],
+        &["animate", "film.toml", "-o", "frames", "--stats", "0001.mtl"],
+        &["measure", "samples", "-o", ".", "--city", "samples.json"],
+        &["gallery", "trapp-3-6-3-b", "-o", "scenes"],
         // Two results for one file.
         &["render", "scene.toml", "-o", "a.png", "--aov", "normal=./a.png"],
         &["render", "scene.toml", "-o", "a.png", "--aov", "normal=b.png", "--aov", "object-id=b.png"],

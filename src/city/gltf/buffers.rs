@@ -13,7 +13,7 @@ use rustc_hash::FxHashMap;
 use super::document::Document;
 use crate::city::{
     load::options::{LoadOptions, Sibling, is_lfs_pointer},
-    model::TextureImage,
+    model::{CityModel, TextureImage},
     warning::{WarningCode, Warnings},
 };
 
@@ -48,7 +48,7 @@ impl<'a> Buffers<'a> {
         document: &Document,
         binary: Option<&'a [u8]>,
         around: Surroundings<'_>,
-        warnings: &mut Warnings,
+        CityModel { warnings, read_beside, .. }: &mut CityModel,
     ) -> Self {
         let mut files: FxHashMap<String, Result<Bytes<'a>, String>> = FxHashMap::default();
         let mut total = binary.map_or(0, |b| b.len() as u64);
@@ -64,7 +64,7 @@ impl<'a> Buffers<'a> {
                 Ok((buffer, Some(uri))) => files
                     .entry(uri.clone())
                     .or_insert_with(|| {
-                        let read = follow(uri, buffer.byte_length.0, around, warnings).map(Bytes::Owned);
+                        let read = follow(uri, buffer.byte_length.0, around, warnings, read_beside).map(Bytes::Owned);
                         total += read.as_ref().map_or(0, |b| b.slice().len() as u64);
                         read
                     })
@@ -108,11 +108,18 @@ impl Bytes<'_> {
 }
 
 /// Reads what a URI names, at most `wanted` bytes of a file.
-fn follow(uri: &str, wanted: u64, around: Surroundings<'_>, warnings: &mut Warnings) -> Result<Arc<[u8]>, String> {
+fn follow(
+    uri: &str,
+    wanted: u64,
+    around: Surroundings<'_>,
+    warnings: &mut Warnings,
+    read_beside: &mut Vec<PathBuf>,
+) -> Result<Arc<[u8]>, String> {
     if uri.starts_with("data:") {
         return data_uri(uri).map(Arc::from);
     }
     let path = sibling(uri, around, warnings)?;
+    read_beside.push(path.clone());
     let mut bytes = Vec::new();
     let read = File::open(&path).and_then(|f| f.take(wanted.min(MAX_BYTES)).read_to_end(&mut bytes));
     match read {

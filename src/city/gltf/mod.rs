@@ -42,7 +42,7 @@ pub fn read(builder: &mut ModelBuilder, input: &Input, options: &LoadOptions) ->
     let container = container::open(input, &mut builder.model.warnings)?;
     let document = &container.document;
     let around = Surroundings { path: &input.path, options };
-    let buffers = Buffers::read(document, container.binary, around, &mut builder.model.warnings);
+    let buffers = Buffers::read(document, container.binary, around, &mut builder.model);
     let from = Palette { document, buffers: &buffers, around };
     builder.begin_file(Source { path: input.path.clone(), format: "glTF", version: container.version.clone() });
     let bytes = input.bytes.len() as u64 + buffers.total;

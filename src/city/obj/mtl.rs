@@ -67,6 +67,7 @@ pub(super) fn read(
     if size > MAX_BYTES {
         return Err(failed(format!("{size} bytes are too many for a list of materials")));
     }
+    city.read_beside.push(path.clone());
     let bytes = std::fs::read(&path).map_err(|e| failed(e.to_string()))?;
     let clean = cleaned(&bytes, &path, &mut city.warnings);
     let (materials, _) = tobj::load_mtl_buf(&mut clean.as_bytes()).map_err(|e| failed(e.to_string()))?;

@@ -47,13 +47,13 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if let Some(samples) = arguments.samples {
         scene.figure.samples = samples;
     }
-    output::check(arguments.outputs(), &scene_file::files_of(&scene))?;
+    let written: Vec<PathBuf> = arguments.outputs().cloned().collect();
+    output::keep(&written, &scene_file::files_of(&scene))?;
     check_masks(&arguments.aovs, &scene)?;
     for sprite in &arguments.sprites {
         sprite.lens(&scene)?;
     }
-    let (mut studio, warnings) = open(&scene, &options, global)?;
-    output::check(arguments.outputs(), &studio.model.texture_files())?;
+    let (mut studio, warnings) = open(&scene, &options, &written, global)?;
     let mut scene = with_camera(scene, &of_camera, &studio)?;
     if let Some(name) = &arguments.through {
         let from = studio.camera(&scene, scene.figure.size);
@@ -178,8 +178,15 @@ fn check_masks(aovs: &[AovRequest], scene: &Scene) -> Outcome {
     }
 }
 
-/// Loads the scene's city and puts it on the GPU; with what is to be warned of.
-pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outcome<(Studio, Vec<serde_json::Value>)> {
+/// Loads the scene's city and puts it on the GPU; with what is to be warned of. `outputs`: all files that will be written; one that is read by
+/// the scene, or by a file that it reads, is refused before anything is drawn.
+pub fn open(
+    scene: &Scene,
+    options: &Options,
+    outputs: &[PathBuf],
+    global: &GlobalArguments,
+) -> Outcome<(Studio, Vec<serde_json::Value>)> {
+    output::keep(outputs, &scene_file::files_of(scene))?;
     if scene.city.files.is_empty() {
         return Err(Failure::failed("the scene names no city; [city] files = [\"FILE\"] would be right"));
     }
@@ -188,6 +195,7 @@ pub fn open(scene: &Scene, options: &Options, global: &GlobalArguments) -> Outco
     let reading =
         LoadOptions { allow_outside: global.allow_outside, roots, up: scene.city.up, ..LoadOptions::default() };
     let (model, load) = load::load_with(&scene.city.files, &reading, global)?;
+    output::keep(outputs, &model.files_beside())?;
     let mut warnings: Vec<serde_json::Value> =
         facts::warning_facts(&model).iter().filter_map(|warning| serde_json::to_value(warning).ok()).collect();
     if !warnings.is_empty() {

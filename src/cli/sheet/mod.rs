@@ -69,6 +69,8 @@ pub struct Task {
     pub scene: Scene,
     /// The rules by which paths in the scene are read.
     pub options: Options,
+    /// All files that will be written.
+    pub written: Vec<PathBuf>,
 }
 
 /// A sheet drawn.
@@ -101,9 +103,11 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let scene =
         scene_file::read(&file, &options).map_err(|error| Failure::failed(format!("{name}: scene: {error}")))?;
     let scene = render::changed(scene, &arguments.settings)?;
-    output::check(outputs(), scene_file::files_of(&scene).iter().chain([&file]))?;
-    let drawn = draw(&Task { name, sheet, scene, options: options.clone() }, &mut None, global)?;
-    let cells = cell_files(arguments, &drawn)?;
+    let mut task = Task { name, sheet, scene, options: options.clone(), written: Vec::new() };
+    let cells = cell_files(arguments, &cells_of(&task)?)?;
+    task.written = outputs().chain(&cells).cloned().collect();
+    output::keep(&task.written, scene_file::files_of(&task.scene).iter().chain([&file, &arguments.sheet]))?;
+    let drawn = draw(&task, &mut None, global)?;
     if let Some(folder) = &arguments.cells {
         std::fs::create_dir_all(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
     }
@@ -128,7 +132,7 @@ pub fn save(file: &Path, drawn: &Drawn) -> Outcome {
 }
 
 /// Where the cells go: no two to one file, and none to the sheet's.
-fn cell_files(arguments: &Arguments, drawn: &Drawn) -> Outcome<Vec<PathBuf>> {
+fn cell_files(arguments: &Arguments, cells: &[Cell]) -> Outcome<Vec<PathBuf>> {
     let output = &arguments.output;
     let stem = output.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let file = |cell: &Cell| match &arguments.cells {
@@ -136,7 +140,7 @@ fn cell_files(arguments: &Arguments, drawn: &Drawn) -> Outcome<Vec<PathBuf>> {
         None if output.as_os_str() == "-" => None,
         None => Some(output.with_file_name(format!("{stem}-{}.png", cell.name))),
     };
-    let files: Vec<PathBuf> = drawn.cells.iter().filter_map(|(cell, _)| file(cell)).collect();
+    let files: Vec<PathBuf> = cells.iter().filter_map(file).collect();
     match files.iter().find(|file| *file == output || Some(*file) == arguments.figures.as_ref()) {
         Some(twice) => Err(Failure::usage(format!("{}: two results cannot go to one file", twice.display()))),
         None => Ok(files),
@@ -149,9 +153,8 @@ fn json(drawn: &Drawn) -> serde_json::Value {
     serde_json::json!({ "cell_size": drawn.layout.cell_size, "cells": cells.map(cell).collect::<Vec<_>>() })
 }
 
-/// Draws a sheet. `kept` is a studio that may have its city, and gets the last one used.
-pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalArguments) -> Outcome<Drawn> {
-    let Task { name, sheet, scene, options } = task;
+/// The cells of a sheet.
+fn cells_of(Task { name, sheet, scene, options, .. }: &Task) -> Outcome<Vec<Cell>> {
     // Folders of files that the command line put into the scene are named by that.
     let folder = |file: &PathBuf| {
         let folder = file.parent().filter(|_| !file.to_string_lossy().starts_with(builtin::PREFIX))?;
@@ -160,7 +163,13 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
     let named = scene.city.files.iter().filter_map(folder);
     let roots = options.roots.iter().cloned().chain(named).collect();
     let of_sheet = Options { roots, ..options.clone() };
-    let mut cells = sheet::cells(sheet, scene, name, &of_sheet).map_err(Failure::failed)?;
+    sheet::cells(sheet, scene, name, &of_sheet).map_err(Failure::failed)
+}
+
+/// Draws a sheet. `kept` is a studio that may have its city, and gets the last one used.
+pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalArguments) -> Outcome<Drawn> {
+    let Task { name, sheet, scene, .. } = task;
+    let mut cells = cells_of(task)?;
     let failed = |message: String| Failure::failed(format!("{name}: {message}"));
     let count = cells.len();
     let size = scene.figure.size;
@@ -178,7 +187,7 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
     for &i in &order {
         let cell = &mut cells[i];
         let was_open = kept.as_ref().is_some_and(|(city, _)| *city == cell.scene.city);
-        let studio = studio_of(kept, &cell.scene, options, global)?;
+        let studio = studio_of(kept, &cell.scene, task, global)?;
         let mut problems = check_against(&cell.scene, &studio.model);
         problems.retain(|problem| !reported.contains(problem));
         // Opening tells those of its scene.
@@ -199,7 +208,7 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
         let cell = &mut cells[i];
         cell.scene.figure.size = cell_size;
         progress.says(format!("drawing {}", cell.name));
-        let studio = studio_of(kept, &cell.scene, options, global)?;
+        let studio = studio_of(kept, &cell.scene, task, global)?;
         let in_cell = |error: &dyn std::fmt::Display| failed(format!("cell {}: {error}", cell.name));
         pictures[i] =
             figure::draw_untitled(studio, &cell.scene, &request(&cell.scene)).map_err(|error| in_cell(&error))?.rgba;
@@ -230,13 +239,13 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
 fn studio_of<'k>(
     kept: &'k mut Option<(CitySpec, Studio)>,
     scene: &Scene,
-    options: &Options,
+    task: &Task,
     global: &GlobalArguments,
 ) -> Outcome<&'k mut Studio> {
     if kept.as_ref().is_none_or(|(city, _)| *city != scene.city) {
         // The old one goes first: two cities may be more than the GPU holds.
         *kept = None;
-        *kept = Some((scene.city.clone(), render::open(scene, options, global)?.0));
+        *kept = Some((scene.city.clone(), render::open(scene, &task.options, &task.written, global)?.0));
     }
     let (_, studio) = kept.as_mut().ok_or_else(|| Failure::failed("no city"))?;
     Ok(studio)
