@@ -8,6 +8,7 @@ use crate::{
     geom::{
         Aabb, Volume,
         combination::{self, Operation},
+        common_part::TOUCH_M,
         shape::{OrientedBox, Rows, RowsEye, flat::ENDLESS_M},
     },
     lens::{OwnRegion, PlacedSprite},
@@ -94,6 +95,43 @@ pub fn too_large(program: &[(PlacedLeaf, Vec<Operation>)]) -> Option<(&'static s
 
 /// Triangles are told from combinations down to parts of this size, metres.
 const FINEST_M: f64 = 1e-3;
+
+/// Parts that a triangle is cut into at most. Those of which it is open then are nearer to the border than they are wide.
+const MOST_PARTS: usize = 1 << 16;
+
+/// The distance, or the side, of a combination of two.
+fn join(operation: Operation, a: f64, b: f64) -> f64 {
+    match operation {
+        Operation::Union => a.min(b),
+        Operation::Intersection => a.max(b),
+        Operation::Difference => a.max(-b),
+    }
+}
+
+impl PlacedLeaf {
+    /// How far a place of an object is from it, metres, never overrated; below 0 inside.
+    fn distance(&self, place: DVec3, object: u32) -> f64 {
+        match &self.leaf {
+            Leaf::Volume(volume) => volume.signed_distance(place),
+            Leaf::Own(own) => own.distance(place),
+            Leaf::Members(members) if members.has(object) => f64::NEG_INFINITY,
+            // Saved depth sprites are no parts of combinations.
+            Leaf::Members(_) | Leaf::Sprite(_) => f64::INFINITY,
+        }
+    }
+
+    /// 1: a triangle with its corners within `radius` of its middle, which is `distance` away, is out of it; -1: it is in it; 0: neither is
+    /// known.
+    fn side_of(&self, corners: &[DVec3; 3], distance: f64, radius: f64) -> f64 {
+        match &self.leaf {
+            _ if distance > radius => 1.0,
+            _ if distance < -radius => -1.0,
+            Leaf::Volume(volume) if !volume.meets_triangle(corners) => 1.0,
+            Leaf::Volume(volume) if volume.is_convex() && corners.iter().all(|p| volume.contains(*p)) => -1.0,
+            _ => 0.0,
+        }
+    }
+}
 
 impl PlacedRegion {
     /// Its leaves.
@@ -264,30 +302,28 @@ impl PlacedRegion {
     }
 
     /// By the distance of a triangle's middle from the border, which a combination of distances never overrates: what is further
-    /// away than the corners is decided, the rest is cut in two.
+    /// away than the corners is decided. So is what lies wholly in or out of each body that it depends on; a face along a border, be it a
+    /// millimetre beside it, would be cut up without end otherwise. The rest is cut in two.
     fn meets_part(&self, program: &[(PlacedLeaf, Vec<Operation>)], corners: &[DVec3; 3], object: u32) -> bool {
         let mut parts = vec![*corners];
-        while let Some([a, b, c]) = parts.pop() {
+        let mut count = 0;
+        while let Some(part @ [a, b, c]) = parts.pop() {
             let middle = (a + b + c) / 3.0;
-            let distance = |leaf: &PlacedLeaf| match &leaf.leaf {
-                Leaf::Volume(volume) => volume.signed_distance(middle),
-                Leaf::Own(own) => own.distance(middle),
-                Leaf::Members(members) if members.has(object) => f64::NEG_INFINITY,
-                // Saved depth sprites are no parts of combinations.
-                Leaf::Members(_) | Leaf::Sprite(_) => f64::INFINITY,
-            };
-            let join = |operation, a: f64, b: f64| match operation {
-                Operation::Union => a.min(b),
-                Operation::Intersection => a.max(b),
-                Operation::Difference => a.max(-b),
-            };
+            let radius = part.iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
+            let distance = |leaf: &PlacedLeaf| leaf.distance(middle, object);
             let distance = combination::fold(program, distance, join).unwrap_or(f64::INFINITY);
-            let radius = [a, b, c].iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
-            if distance <= 0.0 {
+            if distance <= TOUCH_M {
                 return true;
             }
-            if distance > radius || radius < FINEST_M {
+            count += 1;
+            if distance > radius || radius < FINEST_M || count > MOST_PARTS {
                 continue;
+            }
+            let side = |leaf: &PlacedLeaf| leaf.side_of(&part, leaf.distance(middle, object), radius);
+            match combination::fold(program, side, join) {
+                Some(side) if side < 0.0 => return true,
+                Some(side) if side > 0.0 => continue,
+                _ => {}
             }
             // Across the longest edge.
             let edges = [(a, b, c), (b, c, a), (c, a, b)];
@@ -432,5 +468,76 @@ fn own_rows(own: &OwnRegion, view: &View, planes: &mut Vec<[f32; 4]>, test: u32)
         b: row(axes.x_axis, first),
         c: row(axes.y_axis, 0.0),
         d: row(axes.z_axis, 0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::Shape;
+
+    fn leaf(shape: &Shape) -> PlacedLeaf {
+        let volume = shape.volumes().expect("a shape").remove(0);
+        PlacedLeaf { leaf: Leaf::Volume(volume), place: SolidPlace::default() }
+    }
+
+    /// A cylinder of 15 m around (0, 0), from 0 to 10 m, but for a box of 10 m from (0, -5, 2) to (10, 5, 12).
+    fn cut_cylinder() -> PlacedRegion {
+        let cylinder =
+            Shape::Cylinder { center: DVec3::new(0.0, 0.0, 5.0), radius: 15.0, height: 10.0, axis: DVec3::Z };
+        let cuboid =
+            Shape::Box { center: DVec3::new(5.0, 0.0, 7.0), size: DVec3::splat(10.0), rotation: glam::DQuat::IDENTITY };
+        PlacedRegion::Combined(vec![(leaf(&cylinder), vec![]), (leaf(&cuboid), vec![Operation::Difference])])
+    }
+
+    /// A face along a border would be ten thousand million parts of a millimetre.
+    #[test]
+    fn faces_along_a_border_are_decided_at_once() {
+        let region = cut_cylinder();
+        let level = |z: f64, half: f64| {
+            [[-half, -half], [3.0 * half, -half], [-half, 3.0 * half]].map(|[x, y]| DVec3::new(x, y, z))
+        };
+        let upright = |x: f64| [[-4.0, 3.0], [4.0, 3.0], [0.0, 9.0]].map(|[y, z]| DVec3::new(x, y, z));
+        for (what, triangle, meets) in [
+            ("ground at the foot", level(0.0, 200.0), true),
+            ("ground a tenth of a millimetre below it", level(-1e-4, 200.0), false),
+            ("ground two millimetres below it", level(-2e-3, 200.0), false),
+            ("a roof a tenth of a millimetre above it", level(10.0001, 200.0), false),
+            ("a wall on the face of the box", upright(0.0), true),
+            ("a wall a tenth of a millimetre inside the box", upright(1e-4), false),
+            ("a wall a tenth of a millimetre outside the box", upright(-1e-4), true),
+        ] {
+            assert_eq!(region.meets(&triangle, 0), meets, "{what}");
+        }
+    }
+
+    /// Against places of triangles, many of each.
+    #[test]
+    fn triangles_meet_what_one_of_their_places_is_in() {
+        let region = cut_cylinder();
+        let PlacedRegion::Combined(program) = &region else { unreachable!("a combination") };
+        let distance = |p: DVec3| combination::fold(program, |leaf| leaf.distance(p, 0), join).expect("leaves");
+        let mut state = 9_u64;
+        let mut number = |low: f64, high: f64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut met, steps) = (0, 60);
+        for _ in 0..400 {
+            let middle = DVec3::new(number(-18.0, 18.0), number(-18.0, 18.0), number(-3.0, 13.0));
+            let size = number(0.5, 12.0);
+            let corners =
+                [0; 3].map(|_| middle + size * DVec3::new(number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)));
+            let [a, b, c] = corners;
+            let places =
+                (0..=steps).flat_map(|i| (0..=steps - i).map(move |j| [i, j].map(|k| f64::from(k) / f64::from(steps))));
+            let nearest = places.map(|[u, v]| distance(a + u * (b - a) + v * (c - a))).fold(f64::INFINITY, f64::min);
+            let meets = region.meets(&corners, 0);
+            met += usize::from(meets);
+            // No place of it is further from one of these than a step.
+            let step = size * 4.0 / f64::from(steps);
+            assert!(if meets { nearest <= step } else { nearest > 0.0 }, "{corners:?}: {nearest}");
+        }
+        assert!((100..300).contains(&met), "{met} of 400");
     }
 }

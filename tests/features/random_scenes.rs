@@ -95,6 +95,7 @@ fn both_back_ends_draw_random_scenes_the_same() {
         let which = (seed / FAMILY % 2) as usize;
         let text = scene(seed, cities[which], wanted);
         let started = Instant::now();
+        println!("seed {seed}:\n{text}");
         match same_by_both(&mut studios[which], &text) {
             Ok(drawn) => {
                 count += usize::from(drawn.is_some());
@@ -105,7 +106,7 @@ fn both_back_ends_draw_random_scenes_the_same() {
                 wrong.push(format!("seed {seed}: {difference}"));
             }
         }
-        println!("seed {seed}: {:.1} s\n{text}", started.elapsed().as_secs_f64());
+        println!("seed {seed}: {:.1} s", started.elapsed().as_secs_f64());
     }
     println!("{count} of {total} scenes drawn, {between} of them with colours between two steps");
     assert!(wrong.is_empty(), "{} of {total} scenes:\n{}", wrong.len(), wrong.join("\n"));
