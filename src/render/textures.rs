@@ -140,8 +140,9 @@ fn groups(wanted: &[(usize, [u32; 2])], side: u32) -> impl Iterator<Item = &[(us
 fn upload(gpu: &Gpu, pixels: &texture::Pixels, declared: &Texture) -> (wgpu::TextureView, wgpu::Sampler) {
     let size = [pixels.width, pixels.height, 1];
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    // Kept as sRGB bytes: the geometry target holds sRGB too, so no precision is lost on the way.
-    let texture = gpu.texture("city texture", size, pixels.levels.len() as u32, wgpu::TextureFormat::Rgba8Unorm, usage);
+    // Bytes are of a screen, what is sampled is linear light. The geometry target holds bytes of a screen too, so no precision is lost on the way.
+    let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+    let texture = gpu.texture("city texture", size, pixels.levels.len() as u32, format, usage);
     for (level, rgba) in pixels.levels.iter().enumerate() {
         gpu.write_texture_level(&texture, level as u32, rgba);
     }

@@ -407,3 +407,34 @@ fn light_of_their_own_is_added_to_what_falls_on_surfaces() {
     let [flat, flat_too] = ["", "\nKe 0 0.6 0.3"].map(|ke| of(&format!("Kd 0.5 0.5 0.5{ke}"), &through("flat")));
     assert_eq!(flat, flat_too);
 }
+
+/// A wall in a texture of one colour, and in a material of that: light, layers and textures agree about what a colour is.
+#[test]
+fn a_texture_of_one_colour_is_that_colour() {
+    let folder = Folder::new("one-colour");
+    let wall = "mtllib m.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nv -5 0 0\nv 5 0 0\nv 5 0 10\nv -5 0 10\nusemtl m\nf 1/1 2/2 3/3 4/4\n";
+    let obj = folder.write("wall.obj", wall);
+    let camera = veduta::view::Camera::looking(DVec3::new(3.0, -30.0, 5.0), DVec3::new(0.0, 0.0, 5.0), 0.7);
+    for rgb in [[32_u8, 32, 32], [64, 64, 64], [128, 128, 128], [200, 40, 90]] {
+        let [r, g, b] = rgb.map(|byte| f64::from(byte) / 255.0);
+        image::RgbImage::from_pixel(4, 4, image::Rgb(rgb)).save(folder.0.join("one.png")).expect("an image");
+        for opacity in ["", "d 0.5\n"] {
+            for backend in BOTH {
+                let drawn = [format!("Kd {r} {g} {b}\n"), "Kd 1 1 1\nmap_Kd one.png\n".to_owned()].map(|material| {
+                    folder.write("m.mtl", format!("newmtl m\n{opacity}{material}"));
+                    let mut studio = studio(std::slice::from_ref(&obj));
+                    let scene = Scene { camera: Some(camera), ..Scene::default() };
+                    let request = Request { backend, ..Request::plain([60, 40]) };
+                    studio.render(&scene, &request).expect("a picture").rgba
+                });
+                let [material, texture] = &drawn;
+                let worst = material.iter().zip(texture).flat_map(|(a, b)| (0..3).map(|i| a[i].abs_diff(b[i]))).max();
+                // What is seen through is kept with 8 bits a channel, as a square root.
+                let most = if opacity.is_empty() { 1 } else { 2 };
+                assert!(worst <= Some(most), "{rgb:?} {opacity:?} {backend:?}: {worst:?}");
+                let middle = material[60 * 20 + 30];
+                assert!(material.contains(&middle) && middle != material[0], "{rgb:?}: the wall is there");
+            }
+        }
+    }
+}
