@@ -138,6 +138,22 @@ fn a_content_that_is_not_in_the_picture_changes_nothing() {
     }
 }
 
+/// A lens at rest that a deformation moves is a solid of many faces where it is shown, and software adapters end all loops of a shader after
+/// 65,535 rounds: a glow around it must not take those that write the masks.
+#[test]
+fn a_glow_around_a_solid_of_many_faces_leaves_the_masks() {
+    let text = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [-155.41, 18.99, 99.61]\ntarget = [-10.84, 8.88, 8]\n\
+        fov_deg = 55\n[sun]\nshadows = false\n[[lens]]\nname = \"l0\"\nkind = \"deformation\"\n\
+        shape = { kind = \"box\", center = [-27.15, -42.71, 13.54], size = [57.05, 49.95, 63.37] }\n\
+        deform = [{ kind = \"taper\", factor = 0.92 }]\nbody = \"none\"\n[[lens]]\nname = \"l1\"\nkind = \"color\"\n\
+        shape = { kind = \"ellipsoid\", center = [15.24, 10.81, 4.60], radii = [31.63, 25.83, 30.74], rotation_deg = [335, 54, -58] }\n\
+        effects = [{ effect = \"sepia\", class = \"front\" }]\nspace = \"rest\"\nbody = \"halo\"\n[[lens]]\nname = \"l2\"\n\
+        kind = \"content\"\nshape = { kind = \"sphere\", center = [5.60, 19.91, 4.43], radius = 46.21 }\n\
+        content = { derive = \"box\", class = \"behind\" }\neffects = [\"glow\"]\nbody = \"outline\"\n";
+    let mut studio = of_scene(&parse_city("builtin:square"));
+    assert_eq!(same_by_both(&mut studio, text), Ok(Some(true)));
+}
+
 /// The square, some of whose materials let light through.
 fn glazed_square(name: &str) -> std::path::PathBuf {
     let text = std::fs::read_to_string(citydata("square.city.json")).expect("the square");
