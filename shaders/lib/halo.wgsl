@@ -6,7 +6,6 @@ fn halo(lens: u32, paint: vec4f, pixel: vec2i, color: vec4f, width: f32) -> vec4
     if lens_covers(lens, pixel) {
         return paint;
     }
-    // It meets none of the lens, then: of no place on it is to be found out whether a solid holds it.
     let ray = ray_of_pixel(vec2f(pixel) + 0.5);
     let speed = length(ray.direction);
     let is_parallel = view.orthographic == 1u;
@@ -20,7 +19,7 @@ fn halo(lens: u32, paint: vec4f, pixel: vec2i, color: vec4f, width: f32) -> vec4
         let metres_per_pixel = per_distance * select(t, 1.0, is_parallel);
         let sight = Sight(pixel, 0.0, ray, t, position, is_parallel, NO_OBJECT, 0.0);
         let reach = min(2.0 * width * metres_per_pixel, most);
-        let free = number_as_is(lens_distance(lens, sight, reach, 2.0));
+        let free = number_as_is(lens_distance(lens, sight, reach));
         most = select(1e9, 2.01 * max(free, 1e-4 * t), free < reach);
         closest = min(closest, free / metres_per_pixel);
         if free <= 0.0 || free > 1e9 {

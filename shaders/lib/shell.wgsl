@@ -7,7 +7,7 @@ fn lens_normal(lens: u32, pixel: vec2i, ray: Ray, t: f32) -> vec3f {
     for (var i = 0u; i < 4u; i++) {
         let aside = select(vec3f(-0.57735), vec3f(0.57735), vec3<bool>((i & 1u) == 1u, (i & 2u) == 2u, i == 0u || i == 3u));
         let position = as_is(ray.origin + t * ray.direction + step * aside);
-        normal += aside * clamp(number_as_is(lens_distance(lens, sight_near(pixel, position), 4.0 * step, 0.0)), -1e3 * step, 1e3 * step);
+        normal += aside * clamp(number_as_is(lens_distance(lens, sight_near(pixel, position), 4.0 * step)), -1e3 * step, 1e3 * step);
     }
     // It grows by 4/3 of the step; by nothing but roundings where a sprite alone tells the surface.
     let growth = length(normal);

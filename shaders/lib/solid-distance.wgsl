@@ -71,8 +71,5 @@ fn distance_to_solid(s: Solid, sight: Sight, border: vec4f) -> f32 {
     }
     let o = in_solid(s, sight.position - s.center);
     let distance = distance_to_surface(s, o, 0.5 * border_width(border, sight));
-    if border.z > 1.5 {
-        return distance;
-    }
     return select(distance, -distance, solid_holds(s, sight.position, sight.distance, sight.off));
 }

@@ -71,8 +71,8 @@ fn body_functions(plan: &Plan, i: usize, kind: BodyKind) -> String {
         text.push_str(&own(&SILHOUETTE, &["lens_covers", "lens_is_clear", "silhouette"]));
     }
     if kind != BodyKind::Outline {
-        let distance = lens_test::distance_in_space(plan, lens, "vec4f(2.0 * reach, 0.0, is_out, 0.0)");
-        text.push_str(&answer("distance(sight: Sight, reach: f32, is_out: f32) -> f32", &distance));
+        let distance = lens_test::distance_in_space(plan, lens, "vec4f(2.0 * reach, 0.0, 0.0, 0.0)");
+        text.push_str(&answer("distance(sight: Sight, reach: f32) -> f32", &distance));
     }
     if kind == BodyKind::Shell {
         text.push_str(&answer("ends(pixel: vec2i, ray: Ray) -> Span", &lens_test::ends_of(plan, lens)));
