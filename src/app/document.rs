@@ -82,8 +82,27 @@ impl Document {
 
     /// Whether something would be lost: looking around is nothing that is.
     pub fn is_changed(&self) -> bool {
-        let still = |scene: &Scene| Scene { camera: None, ..scene.clone() };
-        still(self.scene()) != still(&self.saved)
+        // Asked in every frame of the window: nothing is copied.
+        let Scene {
+            city,
+            camera: _,
+            sun,
+            time_s,
+            style,
+            trajectories,
+            pois,
+            lenses,
+            overlays,
+            layout,
+            figure,
+            animation,
+        } = self.scene();
+        let saved = &self.saved;
+        let is_set_alike = (city, sun, time_s, style, layout, figure, animation)
+            == (&saved.city, &saved.sun, &saved.time_s, &saved.style, &saved.layout, &saved.figure, &saved.animation);
+        let has_alike = (trajectories, pois, lenses, overlays)
+            == (&saved.trajectories, &saved.pois, &saved.lenses, &saved.overlays);
+        !(is_set_alike && has_alike)
     }
 
     /// The rules by which its paths are read and written: relative to its file, and free to lead anywhere, as the person who edits it says where.
