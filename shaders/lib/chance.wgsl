@@ -5,6 +5,7 @@ struct Laid {
     @location(0) code: vec2u,
     @location(1) color: vec4f,
     @location(2) own_depth: f32,
+    @location(4) light: vec4f,
 //@depth
 }
 
@@ -24,12 +25,12 @@ fn scrambled(value: u32) -> u32 {
     return (word >> 22u) ^ word;
 }
 
-fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) -> Laid {
+fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32, light_share: u32) -> Laid {
     take(corner_of(vec2f(0.0), PART));
     if !is_layer(fragment_at(at, depth, code)) {
         discard;
     }
-    let point = layer_point(at, depth, code, normal, color);
+    let point = layer_point(at, depth, code, normal, color, light_share);
     let opacity = opacity_at(point, layer_classes(point));
     if opacity <= chance(vec2u(at), code, depth) {
         discard;
@@ -38,6 +39,7 @@ fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) ->
     laid.code = vec2u(code, normal);
     laid.color = vec4f(point.base, 1.0);
     laid.own_depth = depth;
+    laid.light = vec4f(unpacked(light_share), 1.0);
     //@set
     return laid;
 }

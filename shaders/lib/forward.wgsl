@@ -14,8 +14,8 @@ fn contained_opacity(opacity: f32) -> f32 {
     return select(0.0, min(opacity, 1.0), opacity > 0.0);
 }
 
-fn layer_point(at: vec2f, depth: f32, code: u32, normal: u32, color: u32) -> Point {
-    var point = point_of(vec2i(at), ray_of_pixel(at), depth, vec2u(code, normal));
+fn layer_point(at: vec2f, depth: f32, code: u32, normal: u32, color: u32, light_share: u32) -> Point {
+    var point = point_of(vec2i(at), ray_of_pixel(at), depth, vec2u(code, normal), unpacked(light_share));
     point.base = point.natural;
     if TEXTURED {
         let texel = unpacked_texel(color);

@@ -36,6 +36,7 @@ const CLAY_COLOR = vec3f(0.62, 0.585, 0.54);
 @group(1) @binding(6) var codes: texture_2d<u32>;
 @group(1) @binding(7) var scene_depth: texture_depth_2d;
 @group(1) @binding(8) var colors: texture_2d<f32>;
+@group(1) @binding(9) var emissions: texture_2d<f32>;
 
 fn is_section(number: u32) -> bool {
     return SECTIONS && (number & SECTION) != 0u;
@@ -64,7 +65,11 @@ fn base_color(point: Point, pixel: vec2i) -> vec3f {
 }
 
 fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
-    var point = point_of(pixel, ray, depth, textureLoad(codes, pixel, 0).xy);
+    var share = vec3f(1.0);
+    if TEXELS_EMIT {
+        share = textureLoad(emissions, pixel, 0).rgb;
+    }
+    var point = point_of(pixel, ray, depth, textureLoad(codes, pixel, 0).xy, share);
     point.base = base_color(point, pixel);
     if is_section(point.surface) {
         point.natural = point.base;
@@ -79,8 +84,9 @@ fn sight_of_point(point: Point, ray: Ray) -> Sight {
     return sight;
 }
 
-// That of a number, and where it has one a normal, in the geometry target; it has no base colour yet.
-fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u) -> Point {
+// That of a number, and where it has one a normal, in the geometry target; it has no base colour yet. `share`: of light of its own,
+// where texels say it.
+fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u, share: vec3f) -> Point {
     var point: Point;
     point.pixel = pixel;
     point.depth = depth;
@@ -102,7 +108,8 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u) -> Point {
     point.shade = luminance(point.arriving);
     point.opacity = opacity_of(surface);
     if EMITS && !CLAY && (surface.flags & SURFACE_EMITS) != 0u {
-        point.emission = surface_at(point.surface + 1u).color;
+        let own = surface_at(point.surface + 1u);
+        point.emission = select(own.color, own.color * share, TEXELS_EMIT && (own.flags & LIGHT_OF_TEXELS) != 0u);
     }
     return point;
 }

@@ -3,7 +3,7 @@
 //
 //   depths   each fragment goes down the slots of its pixel; a slot keeps the nearest depth that came by, the other goes on
 //   codes    those whose depth was kept give their numbers; of equal depths, in the order of their numbers
-//   rest     normals and colours of textures, where the picture has them
+//   rest     normals, and colours and shares of light of textures, where the picture has them
 //
 // `pass/link-slots.wgsl` makes lists of them as `pass/layers.wgsl` does, in order. Peeling does this again and again, with what
 // is behind all that was laid before. A slot is a node as `lib/fragment-nodes.wgsl` has them; while slots are filled the bits of the number
@@ -40,10 +40,6 @@ struct Laid {
     @location(0) nothing: vec4f,
 }
 
-fn slot_words() -> u32 {
-    return 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
-}
-
 fn record_of(pixel: vec2u) -> u32 {
     let size = vec2u(view.size);
     return FIRST_RECORD + size.x * size.y + (pixel.y * size.x + pixel.x) * RECORD;
@@ -61,10 +57,10 @@ fn is_behind_laid(record: u32, depth: u32, code: u32) -> bool {
     return is_behind && !is_done;
 }
 
-fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) -> Laid {
+fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32, light: u32) -> Laid {
     let pixel = vec2u(at);
     let inside = pixel - band.origin;
-    let room = arrayLength(&slots) / slot_words();
+    let room = arrayLength(&slots) / words_of_node();
     let first = (inside.y * band.size.x + inside.x) * SLOTS;
     let record = record_of(pixel);
     let bits = bitcast<u32>(depth);
@@ -103,10 +99,13 @@ fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) ->
                 key = min(before, key);
             } else if kept == bits && atomicLoad(&slots[place + 1u]) == key {
                 if SMOOTH {
-                    atomicStore(&slots[normal_place(room, first + i)], normal);
+                    atomicStore(&slots[rest_place(room, first + i, normal_word())], normal);
                 }
                 if TEXTURED {
-                    atomicStore(&slots[color_place(room, first + i, slot_words())], color);
+                    atomicStore(&slots[rest_place(room, first + i, color_word())], color);
+                }
+                if TEXELS_EMIT {
+                    atomicStore(&slots[rest_place(room, first + i, light_word())], light);
                 }
             }
             if kept < bits || key == 0u || i + 1u == SLOTS {

@@ -15,6 +15,7 @@ const SURFACE_INWARD: u32 = 16u;    // whose faces look inwards
 const SURFACE_LIT_AS_BEFORE: u32 = 32u;     // by a normal that it does not have where it lies
 const SURFACE_CLEAR_SHIFT: u32 = 6u;        // above it: how much light its material lets through, in 511ths
 const SURFACE_EMITS: u32 = 0x8000u; // light of its own: the colour of what follows in the table
+const LIGHT_OF_TEXELS: u32 = 1u;    // of what follows: texels say how much of it there is
 // Numbers in the geometry target that are none of a surface: sections, and the bits that say of which object.
 const SECTION: u32 = 0x80000000u;
 const SECTION_OBJECT: u32 = 0x03ffffffu;    // all: of several
@@ -28,6 +29,8 @@ struct Surface {
 }
 
 @group(1) @binding(0) var surfaces: texture_2d<u32>;
+
+override TEXELS_EMIT: bool = false; // whether texels of the picture say how much light of their own surfaces have
 
 // Opacity of the texel that is drawn, 0..1; 1 where there is no texture, or its opacity does not count.
 var<private> texel_opacity: f32 = 1.0;

@@ -35,12 +35,12 @@ fn has_slot(pixel: vec2u, depth: f32, code: u32) -> bool {
     return kept == 0u || bits > kept || (bits == kept && code <= slots[last + 1u]);
 }
 
-fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) -> Laid {
+fn lay(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32, light_share: u32) -> Laid {
     take(corner_of(vec2f(0.0), PART));
     if has_slot(vec2u(at), depth, code | plane) || !is_layer(fragment_at(at, depth, code)) {
         discard;
     }
-    var point = layer_point(at, depth, code, normal, color);
+    var point = layer_point(at, depth, code, normal, color, light_share);
     let classes = layer_classes(point);
     let opacity = opacity_at(point, classes);
     let paint = shade(&point, classes);

@@ -3,6 +3,23 @@
 
 override BLENDED: bool = false;     // whether some do
 
+// Words of a fragment node, and which of them are its normal, its colour and its share of light, where it has these.
+fn words_of_node() -> u32 {
+    return light_word() + select(0u, 1u, TEXELS_EMIT);
+}
+
+fn normal_word() -> u32 {
+    return 3u;
+}
+
+fn color_word() -> u32 {
+    return 3u + select(0u, 1u, SMOOTH);
+}
+
+fn light_word() -> u32 {
+    return color_word() + select(0u, 1u, TEXTURED);
+}
+
 fn packed_texel(color: vec3f) -> u32 {
     if BLENDED {
         return pack4x8unorm(vec4f(sqrt(clamp(color, vec3f(0.0), vec3f(1.0))), texel_opacity));

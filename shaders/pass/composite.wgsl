@@ -37,13 +37,9 @@ const MOST_LAYERS: u32 = 1u;    // the word of `heads` that has the largest numb
 const NOTHING_SEEN: f32 = 5.9604645e-8;     // 2^-24
 
 //@kept
-const NO_NODE = FragmentNode(0u);
+const NO_NODE = FragmentNode(vec4u(0u), 0u);
 // Where lists begin: before all nodes, and no node.
-const BEFORE_ALL = FragmentNode(0xffffffffu, 0u, 0u, 0u);
-
-fn node_words() -> u32 {
-    return 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
-}
+const BEFORE_ALL = FragmentNode(vec4u(0xffffffffu, 0u, 0u, 0u), 0u);
 
 // How many layers the pixel of the picture has that has most.
 fn most_layers() -> u32 {
@@ -58,23 +54,37 @@ fn contained_opacity(opacity: f32) -> f32 {
 //@opacity
 
 // Whether a node comes before another: it is nearer, or stands in the plane of the other and is put before it.
-fn precedes(a: FragmentNode, b: FragmentNode) -> bool {
+fn precedes(first: FragmentNode, second: FragmentNode) -> bool {
+    let a = first.key;
+    let b = second.key;
     var is_before = a.x > b.x || (a.x == b.x && a.y < b.y);
     if SMOOTH || TEXTURED {
         let is_alike = all(a.xy == b.xy);
         is_before = is_before || (is_alike && (a.z < b.z || (a.z == b.z && a.w < b.w)));
     }
+    if TEXELS_EMIT {
+        is_before = is_before || (all(a == b) && first.light < second.light);
+    }
     return is_before;
 }
 
+fn are_alike(a: FragmentNode, b: FragmentNode) -> bool {
+    return all(a.key == b.key) && a.light == b.light;
+}
+
 // What a node of this picture has.
-fn node_of(key: vec2u, normal: u32, color: u32) -> FragmentNode {
-    return FragmentNode(key, select(0u, normal, SMOOTH), select(0u, color, TEXTURED));
+fn node_of(node: FragmentNode) -> FragmentNode {
+    let rest = select(vec2u(0u), node.key.zw, vec2<bool>(SMOOTH, TEXTURED));
+    return FragmentNode(vec4u(node.key.xy, rest), select(0u, node.light, TEXELS_EMIT));
+}
+
+fn chosen(a: FragmentNode, b: FragmentNode, is_second: bool) -> FragmentNode {
+    return FragmentNode(select(a.key, b.key, is_second), select(a.light, b.light, is_second));
 }
 
 // How many nodes there is room for.
 fn room() -> u32 {
-    return 2u * arrayLength(&nodes) / node_words();
+    return 2u * arrayLength(&nodes) / words_of_node();
 }
 
 fn word_at(place: u32) -> u32 {
@@ -88,25 +98,29 @@ fn link_of(number: u32) -> u32 {
 fn node_at(number: u32) -> FragmentNode {
     var normal = 0u;
     var color = 0u;
+    var light = 0u;
     if SMOOTH {
-        normal = word_at(normal_place(room(), number - 1u));
+        normal = word_at(rest_place(room(), number - 1u, normal_word()));
     }
     if TEXTURED {
-        color = word_at(color_place(room(), number - 1u, node_words()));
+        color = word_at(rest_place(room(), number - 1u, color_word()));
     }
-    return node_of(nodes[number - 1u], normal, color);
+    if TEXELS_EMIT {
+        light = word_at(rest_place(room(), number - 1u, light_word()));
+    }
+    return FragmentNode(vec4u(nodes[number - 1u], normal, color), light);
 }
 
 // Puts the nearer one first.
 fn order(first: ptr<function, FragmentNode>, second: ptr<function, FragmentNode>) {
     let is_wrong = precedes(*second, *first);
-    let nearer = select(*first, *second, is_wrong);
-    *second = select(*second, *first, is_wrong);
+    let nearer = chosen(*first, *second, is_wrong);
+    *second = chosen(*second, *first, is_wrong);
     *first = nearer;
 }
 
 fn nearer_of(a: FragmentNode, b: FragmentNode) -> FragmentNode {
-    return select(a, b, precedes(b, a));
+    return chosen(a, b, precedes(b, a));
 }
 
 // A walk through a list.
@@ -122,11 +136,11 @@ fn take_node(walk: ptr<function, Walk>, last: FragmentNode, laid: u32) -> Fragme
     // A software adapter goes through both sides of a branch: the end of a list reads the first of all nodes.
     let number = max((*walk).next, 1u);
     let node = node_at(number);
-    let is_twin = is_there && all(node == last);
+    let is_twin = is_there && are_alike(node, last);
     (*walk).twins += select(0u, 1u, is_twin);
     (*walk).count += select(0u, 1u, is_there);
     (*walk).next = select(0u, link_of(number), is_there);
-    return select(NO_NODE, node, is_there && (precedes(last, node) || (is_twin && (*walk).twins > laid)));
+    return chosen(NO_NODE, node, is_there && (precedes(last, node) || (is_twin && (*walk).twins > laid)));
 }
 
 struct Composite {
@@ -187,7 +201,7 @@ fn composite(in: Corner) -> Composite {
         shown = vec2u(atomicLoad(&heads[record + RECORD_SHOWN]), atomicLoad(&heads[record + RECORD_SHOWN + 1u]));
         shown_depth = recorded(record + RECORD_SHOWN_DEPTH);
         // The nodes in the list come after it.
-        last.x = atomicLoad(&heads[record + RECORD_BEFORE]);
+        last.key.x = atomicLoad(&heads[record + RECORD_BEFORE]);
     }
     while is_left {
         var walk = Walk(select(head, 0u, SORTED), 0u, 0u);
@@ -207,16 +221,16 @@ fn composite(in: Corner) -> Composite {
         rounds += count;
         let most = select(min(KEPT, count - laid), 1u, SORTED);
         var place = 0u;
-        var is_kept = kept_0.x != 0u;
+        var is_kept = kept_0.key.x != 0u;
         while is_kept {
             //@pick
-            let depth = bitcast<f32>(node.x);
-            let normal = node.z;
-            let code = node.y & NODE_CODE;
-            var point = point_of(pixel, ray, depth, vec2u(code, normal));
+            let depth = bitcast<f32>(node.key.x);
+            let normal = node.key.z;
+            let code = node.key.y & NODE_CODE;
+            var point = point_of(pixel, ray, depth, vec2u(code, normal), unpacked(node.light));
             point.base = point.natural;
             if TEXTURED {
-                let texel = unpacked_texel(node.w);
+                let texel = unpacked_texel(node.key.w);
                 point.base = texel.rgb;
                 point.opacity *= texel.a;
             }
@@ -225,7 +239,7 @@ fn composite(in: Corner) -> Composite {
             }
             point.layer = laid;
             point.last_layer = count - 1u;
-            point.is_covered = node.x == last.x;
+            point.is_covered = node.key.x == last.key.x;
             let classes = classes_at(sight_at(pixel, ray, depth, point.object), in.part.x);
             let opacity = opacity_at(point, classes);
             let paint = shade(&point, classes);
@@ -240,7 +254,7 @@ fn composite(in: Corner) -> Composite {
                 write_classes(pixel, point, classes);
             }
             laid += 1u;
-            twins = select(1u, twins + 1u, all(node == last));
+            twins = select(1u, twins + 1u, are_alike(node, last));
             last = node;
             place += 1u;
             is_kept = place < most && through >= least_seen;
@@ -282,7 +296,7 @@ fn composite(in: Corner) -> Composite {
         atomicStore(&heads[record + RECORD_SHOWN], shown.x);
         atomicStore(&heads[record + RECORD_SHOWN + 1u], shown.y);
         atomicStore(&heads[record + RECORD_SHOWN_DEPTH], bitcast<u32>(shown_depth));
-        atomicStore(&heads[record + RECORD_BEFORE], last.x);
+        atomicStore(&heads[record + RECORD_BEFORE], last.key.x);
     }
     return Composite(select(vec4f(color, through), picked, PICKS), shown, shown_depth);
 }

@@ -2,6 +2,7 @@
 //
 // target 0  r32uint     surface + 1 (0 = nothing); rg32uint where normals are smooth: y = octahedral normal
 // target 1  rgba8unorm-srgb  base colour; only in cities that have textures
+// target 4  rgba8unorm-srgb  share of its own light; only in cities whose textures say it
 // target 2  r32float    interpolated depth; only where the depth AOV is asked for. A face that shares its
 //                       plane takes its tested depth from the plane; its AOV must not depend on what else
 //                       the city holds, so it is always the face's own.
@@ -101,29 +102,97 @@ fn smooth_full(in: SmoothVarying) -> Full {
 override ALPHA_CUTOFF: f32 = 0.0;
 override TRANSLUCENT: bool = false; // whether texels let through what is behind, by their opacity
 
+@group(3) @binding(2) var light_image: texture_2d<f32>;
+@group(3) @binding(3) var light_sampler: sampler;
+override IMAGE_EMITS: bool = false; // whether it says how much light of their own faces have
+@group(3) @binding(4) var normal_image: texture_2d<f32>;
+@group(3) @binding(5) var normal_sampler: sampler;
+override NORMAL_SCALE: f32 = 0.0;   // what the x and y of its normals are multiplied with; 0: there is none
+
+// The least cosine of the angle between a normal of an image and the way to the eye that its face looks at.
+const LEAST_FACING: f32 = 0.02;
+
 struct TexturedVarying {
     @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) code: u32,
     @location(1) normal: vec3f,
     @location(2) texcoord: vec2f,
+    @location(3) relative: vec3f,   // to the eye, world axes, metres
+}
+
+// What images show of a face.
+struct Look {
+    color: vec3f,               // linear, that of the material in it
+    opacity: f32,               // of the texel of colours
+    light: vec3f,               // share of its own light
+    normal: u32,                // octahedral; 0 where the picture has none
+}
+
+fn look_at(texcoord: vec2f, normal: vec3f, relative: vec3f, code: u32) -> Look {
+    let texel = textureSample(image, image_sampler, texcoord);
+    var light = vec3f(1.0);
+    if IMAGE_EMITS {
+        light = textureSample(light_image, light_sampler, texcoord).rgb;
+    }
+    var seen = normal;
+    if NORMAL_SCALE != 0.0 {
+        seen = normal_of_image(texcoord, normal, relative);
+    }
+    return Look(texel.rgb * surface_at(code - 1u).color, texel.a, light, select(0u, encode_normal(seen), SMOOTH));
+}
+
+// The normal that an image says, in the space that the texture coordinates span on the face (glTF 2.0, section 3.9.3): x along
+// u, y against v, z along the face's own. Neighbours in the picture tell how coordinates grow (Schueler, ShaderX 5, 2006).
+fn normal_of_image(texcoord: vec2f, normal: vec3f, relative: vec3f) -> vec3f {
+    let texel = textureSample(normal_image, normal_sampler, texcoord).xyz;
+    let own = (2.0 * texel - 1.0) * vec3f(NORMAL_SCALE, NORMAL_SCALE, 1.0);
+    let up = normalize(normal);
+    let place_x = dpdx(relative);
+    let place_y = dpdy(relative);
+    let coordinate_x = dpdx(texcoord);
+    let coordinate_y = dpdy(texcoord);
+    let turn = sign(coordinate_x.x * coordinate_y.y - coordinate_x.y * coordinate_y.x);
+    let along_u = turn * (place_x * coordinate_y.y - place_y * coordinate_x.y);
+    let along_v = turn * (place_y * coordinate_x.x - place_x * coordinate_y.x);
+    let tangent = along_u - dot(along_u, up) * up;
+    let size = length(tangent);
+    let x = tangent / size;
+    let y = cross(up, x) * select(1.0, -1.0, dot(cross(up, x), along_v) > 0.0);
+    let mapped = normalize(own.x * x + own.y * y + own.z * up);
+    // What it says is seen from the side that the face is seen from.
+    let back = vec3f(0.0, 0.0, 1.0) * view.view_from_world;
+    let to_eye = select(-normalize(relative), back, view.orthographic == 1u);
+    let side = select(-1.0, 1.0, dot(up, to_eye) >= 0.0) * to_eye;
+    let facing = mapped + max(LEAST_FACING - dot(mapped, side), 0.0) * side;
+    // Where coordinates do not grow there is no such space.
+    return select(normal, facing, size > 0.0 && own.z > 0.0);
 }
 
 @vertex
 fn vertex_textured(in: Vertex, @location(4) texcoord: vec2f) -> TexturedVarying {
     let face = placed(in);
-    return TexturedVarying(face.clip, face.code, city_direction(decode_normal(in.normal)), texcoord);
+    let relative = city_relative(in.origin, in.position);
+    return TexturedVarying(face.clip, face.code, city_direction(decode_normal(in.normal)), texcoord, relative);
+}
+
+struct TexturedFull {
+    @location(0) code: vec2u,
+    @location(1) color: vec4f,
+    @location(2) own_depth: f32,
+    //@region-member
+    @location(4) light: vec4f,
 }
 
 @fragment
-fn textured(in: TexturedVarying) -> Full {
-    let texel = textureSample(image, image_sampler, in.texcoord);
-    if texel.a < ALPHA_CUTOFF {
+fn textured(in: TexturedVarying) -> TexturedFull {
+    let look = look_at(in.texcoord, in.normal, in.relative, in.code);
+    if look.opacity < ALPHA_CUTOFF {
         discard;
     }
-    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
+    texel_opacity = select(1.0, look.opacity, TRANSLUCENT);
     cut(in.clip.xy, in.clip.z, in.code);
-    let code = vec2u(in.code, select(0u, encode_normal(in.normal), SMOOTH));
-    return Full(code, vec4f(texel.rgb * surface_at(in.code - 1u).color, 1.0), in.clip.z/*@region*/);
+    let code = vec2u(in.code, look.normal);
+    return TexturedFull(code, vec4f(look.color, 1.0), in.clip.z/*@region*/, vec4f(look.light, 1.0));
 }
 
 // ---- faces of exactly one plane that overlap (hard case 3)

@@ -8,26 +8,27 @@ fn vertex_held_layer(@builtin(vertex_index) index: u32, @builtin(instance_index)
     return face;
 }
 
-fn add_held(in: HeldVarying, color: u32) {
+fn add_held(in: HeldVarying, normal: u32, color: u32, light: u32) {
     let depth = held_depths(in).y;
     if textureLoad(opaque_depth, vec2i(in.clip.xy), 0) > depth - room_before_opaque(depth, vec2f(0.0)) {
         return;
     }
     let code = in.code & NODE_CODE;
-    add_node(in.clip.xy, depth, code, in.code & ~NODE_CODE, held_normal(in, code), color);
+    add_node(in.clip.xy, depth, code, in.code & ~NODE_CODE, normal, color, light);
 }
 
 @fragment
 fn note_held(in: HeldVarying) {
-    add_held(in, natural_color(in.code & NODE_CODE));
+    let code = in.code & NODE_CODE;
+    add_held(in, held_normal(in, code), natural_color(code), 0u);
 }
 
 @fragment
 fn note_held_textured(in: HeldVarying) {
-    let texel = textureSample(image, image_sampler, in.texcoord);
-    if texel.a < ALPHA_CUTOFF {
+    let look = look_at(in.texcoord, in.normal, in.relative, in.code & NODE_CODE);
+    if look.opacity < ALPHA_CUTOFF {
         return;
     }
-    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
-    add_held(in, packed_texel(texel.rgb * surface_at((in.code & NODE_CODE) - 1u).color));
+    texel_opacity = select(1.0, look.opacity, TRANSLUCENT);
+    add_held(in, look.normal, packed_texel(look.color), packed(look.light));
 }

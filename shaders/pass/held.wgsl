@@ -29,6 +29,7 @@ struct HeldVarying {
     @location(2) texcoord: vec2f,
     @location(3) @interpolate(flat, either) plane: vec3f,
     @location(4) @interpolate(flat, either) range: vec2f,    // depths: the farthest, the nearest
+    @location(5) relative: vec3f,   // to the eye, world axes, metres
 }
 
 fn corner_at(index: u32) -> Vertex {
@@ -64,7 +65,8 @@ fn held_corner(index: u32) -> HeldVarying {
         let origin = bitcast<vec3i>(vec3u(word_besides(index, 3u), word_besides(index, 4u), word_besides(index, 5u)));
         plane = coplanar(in, Plane(normal, origin, number_besides(index, 6u))).plane;
     }
-    return HeldVarying(face.clip, face.code, city_direction(decode_normal(in.normal)), texcoord, plane, range);
+    let relative = city_relative(in.origin, in.position);
+    return HeldVarying(face.clip, face.code, city_direction(decode_normal(in.normal)), texcoord, plane, range, relative);
 }
 
 @vertex
@@ -85,29 +87,35 @@ fn held_normal(in: HeldVarying, code: u32) -> u32 {
     if !SMOOTH {
         return 0u;
     }
-    if WORDS_BESIDES == WORDS_OF_TEXTURE {
-        return encode_normal(in.normal);
-    }
     return normal_code(in.normal, code);
-}
-
-fn held(in: HeldVarying, color: vec3f) -> CoplanarFull {
-    let depths = held_depths(in);
-    cut(in.clip.xy, depths.y, in.code);
-    return CoplanarFull(vec2u(in.code, held_normal(in, in.code)), vec4f(color, 1.0), depths.x/*@region*/, depths.y);
 }
 
 @fragment
 fn held_full(in: HeldVarying) -> CoplanarFull {
-    return held(in, surface_at(in.code - 1u).color);
+    let depths = held_depths(in);
+    cut(in.clip.xy, depths.y, in.code);
+    let color = vec4f(surface_at(in.code - 1u).color, 1.0);
+    return CoplanarFull(vec2u(in.code, held_normal(in, in.code)), color, depths.x/*@region*/, depths.y);
+}
+
+struct HeldTextured {
+    @location(0) code: vec2u,
+    @location(1) color: vec4f,
+    @location(2) own_depth: f32,
+    //@region-member
+    @location(4) light: vec4f,
+    @builtin(frag_depth) depth: f32,
 }
 
 @fragment
-fn held_textured(in: HeldVarying) -> CoplanarFull {
-    let texel = textureSample(image, image_sampler, in.texcoord);
-    if texel.a < ALPHA_CUTOFF {
+fn held_textured(in: HeldVarying) -> HeldTextured {
+    let look = look_at(in.texcoord, in.normal, in.relative, in.code);
+    if look.opacity < ALPHA_CUTOFF {
         discard;
     }
-    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
-    return held(in, texel.rgb * surface_at(in.code - 1u).color);
+    texel_opacity = select(1.0, look.opacity, TRANSLUCENT);
+    let depths = held_depths(in);
+    cut(in.clip.xy, depths.y, in.code);
+    let code = vec2u(in.code, look.normal);
+    return HeldTextured(code, vec4f(look.color, 1.0), depths.x/*@region*/, vec4f(look.light, 1.0), depths.y);
 }

@@ -1,7 +1,7 @@
 // Translucent layers: every fragment that is seen through is noted in a list of its pixel. `pass/composite.wgsl` sorts them.
 //
 // A list begins at `heads` and goes on from node to node. A node has three words and, where the picture has them, a normal per
-// vertex and a colour of a texture, in places that `lib/fragment-nodes.wgsl` tells.
+// vertex, a colour and a share of light of textures, in places that `lib/fragment-nodes.wgsl` tells.
 //
 // Where there is much room, it is shared out between pools, one for each tile of the picture in turn, and what a pool has no
 // room for spills into the rest: processors that draw different tiles neither count with the same counter nor write
@@ -29,22 +29,18 @@ const ALONE: u32 = 0xf8000000u;     // in its plane: as the lowest
 @group(0) @binding(2) var<storage, read_write> nodes: array<vec2u>;
 @group(0) @binding(3) var opaque_depth: texture_depth_2d;
 
-fn node_words() -> u32 {
-    return 3u + select(0u, 1u, SMOOTH) + select(0u, 1u, TEXTURED);
-}
-
 fn write_word(place: u32, word: u32) {
     nodes[place >> 1u][place & 1u] = word;
 }
 
 // `plane`: what is noted with the number, of its layer in a plane.
-fn add_node(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32) {
+fn add_node(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u32, light: u32) {
     if !ALL && !is_layer(fragment_at(at, depth, code)) {
         return;
     }
     let pixel = vec2u(at);
     let tile = pixel >> vec2u(TILE_SHIFT);
-    let room = 2u * arrayLength(&nodes) / node_words();
+    let room = 2u * arrayLength(&nodes) / words_of_node();
     let has_pools = room >= MANY;
     let pool = select(0u, (tile.x + 5u * tile.y) % POOLS, has_pools);
     let each = select(room, room / 64u * 3u, has_pools);
@@ -61,10 +57,13 @@ fn add_node(at: vec2f, depth: f32, code: u32, plane: u32, normal: u32, color: u3
     let before = atomicExchange(&heads[FIRST_HEAD + pixel.y * u32(view.size.x) + pixel.x], number + 1u);
     write_word(link_place(room, number), before);
     if SMOOTH {
-        write_word(normal_place(room, number), normal);
+        write_word(rest_place(room, number, normal_word()), normal);
     }
     if TEXTURED {
-        write_word(color_place(room, number, node_words()), color);
+        write_word(rest_place(room, number, color_word()), color);
+    }
+    if TEXELS_EMIT {
+        write_word(rest_place(room, number, light_word()), light);
     }
 }
 
@@ -78,25 +77,24 @@ fn natural_color(code: u32) -> u32 {
 @fragment //@early
 fn note_plain(in: Varying) {
     //@behind
-    add_node(in.clip.xy, in.clip.z, in.code, ALONE, 0u, natural_color(in.code));
+    add_node(in.clip.xy, in.clip.z, in.code, ALONE, 0u, natural_color(in.code), 0u);
 }
 
 @fragment //@early
 fn note_smooth(in: SmoothVarying) {
     //@behind
-    add_node(in.clip.xy, in.clip.z, in.code, ALONE, normal_code(in.normal, in.code), natural_color(in.code));
+    add_node(in.clip.xy, in.clip.z, in.code, ALONE, normal_code(in.normal, in.code), natural_color(in.code), 0u);
 }
 
 @fragment //@early
 fn note_textured(in: TexturedVarying) {
-    let texel = textureSample(image, image_sampler, in.texcoord);
+    let look = look_at(in.texcoord, in.normal, in.relative, in.code);
     //@behind
-    if texel.a < ALPHA_CUTOFF {
+    if look.opacity < ALPHA_CUTOFF {
         return;
     }
-    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
-    let normal = select(0u, encode_normal(in.normal), SMOOTH);
-    add_node(in.clip.xy, in.clip.z, in.code, ALONE, normal, packed_texel(texel.rgb * surface_at(in.code - 1u).color));
+    texel_opacity = select(1.0, look.opacity, TRANSLUCENT);
+    add_node(in.clip.xy, in.clip.z, in.code, ALONE, look.normal, packed_texel(look.color), packed(look.light));
 }
 
 // The instance is the layer of the face in its plane: of equal depths the upper one is nearer. It is told with the number.
@@ -120,5 +118,5 @@ fn note_coplanar(in: CoplanarVarying) {
     }
     let code = in.code & NODE_CODE;
     let normal = select(0u, normal_code(in.normal, code), SMOOTH);
-    add_node(in.clip.xy, depth, code, in.code & ~NODE_CODE, normal, natural_color(code));
+    add_node(in.clip.xy, depth, code, in.code & ~NODE_CODE, normal, natural_color(code), 0u);
 }

@@ -22,25 +22,25 @@ fn own_color(code: u32) -> u32 {
 @fragment //@early
 fn lay_plain(in: Varying) -> Laid {
     //@behind
-    return lay(in.clip.xy, in.clip.z, in.code, KEPT_ALONE, 0u, own_color(in.code));
+    return lay(in.clip.xy, in.clip.z, in.code, KEPT_ALONE, 0u, own_color(in.code), 0u);
 }
 
 @fragment //@early
 fn lay_smooth(in: SmoothVarying) -> Laid {
     //@behind
-    return lay(in.clip.xy, in.clip.z, in.code, KEPT_ALONE, normal_code(in.normal, in.code), own_color(in.code));
+    return lay(in.clip.xy, in.clip.z, in.code, KEPT_ALONE, normal_code(in.normal, in.code), own_color(in.code), 0u);
 }
 
 @fragment //@early
 fn lay_textured(in: TexturedVarying) -> Laid {
-    let texel = textureSample(image, image_sampler, in.texcoord);
+    let look = look_at(in.texcoord, in.normal, in.relative, in.code);
     //@behind
-    if texel.a < ALPHA_CUTOFF {
+    if look.opacity < ALPHA_CUTOFF {
         discard;
     }
-    texel_opacity = select(1.0, texel.a, TRANSLUCENT);
-    let normal = select(0u, encode_normal(in.normal), SMOOTH);
-    return lay(in.clip.xy, in.clip.z, in.code, KEPT_ALONE, normal, packed_texel(texel.rgb * surface_at(in.code - 1u).color));
+    texel_opacity = select(1.0, look.opacity, TRANSLUCENT);
+    let color = packed_texel(look.color);
+    return lay(in.clip.xy, in.clip.z, in.code, KEPT_ALONE, look.normal, color, packed(look.light));
 }
 
 // The instance is the layer of the face in its plane: of equal depths the upper one is nearer.
@@ -58,5 +58,5 @@ fn lay_coplanar(in: CoplanarVarying) -> Laid {
     //@behind-plane
     let code = in.code & KEPT_CODE;
     let normal = select(0u, normal_code(in.normal, code), SMOOTH);
-    return lay(in.clip.xy, depth, code, in.code & ~KEPT_CODE, normal, own_color(code));
+    return lay(in.clip.xy, depth, code, in.code & ~KEPT_CODE, normal, own_color(code), 0u);
 }

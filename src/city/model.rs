@@ -378,6 +378,19 @@ pub struct Material {
     pub texels: TexelOpacity,
     /// Index into [`CityModel::textures`] for the base colour, or [`NONE`].
     pub texture: u32,
+    /// That of the picture whose colours `emissive` is multiplied with, or [`NONE`]; at the texture coordinates of `texture`.
+    pub emissive_texture: u32,
+    /// That of the picture of normals in tangent space (glTF 2.0, section 3.9.3), or [`NONE`]; at the same coordinates.
+    pub normal_texture: u32,
+    /// What the x and y of these normals are multiplied with.
+    pub normal_scale: f32,
+}
+
+impl Material {
+    /// Its textures, [`NONE`] where it has none.
+    pub fn textures(&self) -> [u32; 3] {
+        [self.texture, self.emissive_texture, self.normal_texture]
+    }
 }
 
 impl Default for Material {
@@ -390,6 +403,9 @@ impl Default for Material {
             unlit: false,
             texels: TexelOpacity::Ignored,
             texture: NONE,
+            emissive_texture: NONE,
+            normal_texture: NONE,
+            normal_scale: 1.0,
         }
     }
 }
@@ -407,7 +423,7 @@ pub enum TexelOpacity {
 }
 
 /// A texture image: where it is and how it continues outside 0..1.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Texture {
     /// Where the pixels are.
     pub image: TextureImage,
@@ -418,7 +434,7 @@ pub struct Texture {
 }
 
 /// Where the opacity of the texels of a texture is.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TextureOpacity {
     /// In the image.
     #[default]
@@ -430,7 +446,7 @@ pub enum TextureOpacity {
 }
 
 /// Where a texture's pixels are. Decoded by [`crate::city::texture`] when needed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum TextureImage {
     /// A file that exists and stays inside the folders the user named.
     File(PathBuf),
@@ -448,7 +464,7 @@ impl TextureImage {
 }
 
 /// Texture addressing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// Repeats.
     #[default]

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use crate::{
     city::{
         load::options::{LFS_POINTER, is_lfs_pointer},
-        model::{CityModel, NONE, Texture, TextureImage, TextureOpacity},
+        model::{CityModel, Material, NONE, Texture, TextureImage, TextureOpacity},
         warning::WarningCode,
     },
     text::one_line,
@@ -223,7 +223,17 @@ pub fn decode(texture: &Texture) -> Result<Pixels, String> {
 /// As of [`decode`].
 pub fn decode_within(texture: &Texture, side: u32) -> Result<Pixels, String> {
     let image = with_opacity(texture).map_err(|message| one_line(&message))?;
-    Ok(with_levels([image.width(), image.height()], image.into_raw(), side))
+    Ok(with_levels([image.width(), image.height()], image.into_raw(), side, Sum::of_colors))
+}
+
+/// The same of a texture of normals (glTF 2.0, section 3.9.3): levels have the means of its bytes, which are numbers and no light.
+///
+/// # Errors
+/// As of [`decode`].
+pub fn decode_normals_within(texture: &Texture, side: u32) -> Result<Pixels, String> {
+    let mut image = decoded(open(&texture.image).map_err(|message| one_line(&message))?)?;
+    image.pixels_mut().for_each(|texel| texel[3] = u8::MAX);
+    Ok(with_levels([image.width(), image.height()], image.into_raw(), side, Sum::of_numbers))
 }
 
 /// Bytes of an image of this size with its levels where no side is longer than `side`, and of decoding it.
@@ -280,12 +290,27 @@ pub fn settle(model: &mut CityModel) {
     }
     let mut objects = vec![None; troubles.len()];
     for surface in model.surfaces.iter().rev() {
-        let texture = model.materials.get(surface.material as usize).map_or(NONE, |material| material.texture);
-        if let Some(object) = objects.get_mut(texture as usize) {
-            *object = Some(surface.object);
+        let textures = model.materials.get(surface.material as usize).map_or([NONE; 3], Material::textures);
+        for texture in textures {
+            if let Some(object) = objects.get_mut(texture as usize) {
+                *object = Some(surface.object);
+            }
         }
     }
-    for ((texture, [trouble, of_opacity]), object) in model.textures.iter_mut().zip(troubles).zip(objects) {
+    // What is shown in place of each.
+    const INSTEAD: [&str; 3] =
+        ["the material's colour is used", "the material has no light of its own", "its normals are those of the faces"];
+    let mut instead = vec![INSTEAD[0]; troubles.len()];
+    for role in [2, 1, 0] {
+        for material in &model.materials {
+            if let Some(of_texture) = instead.get_mut(material.textures()[role] as usize) {
+                *of_texture = INSTEAD[role];
+            }
+        }
+    }
+    for (((texture, [trouble, of_opacity]), object), instead) in
+        model.textures.iter_mut().zip(troubles).zip(objects).zip(instead)
+    {
         let object = object.and_then(|object| model.objects.get(object as usize)).map_or("", |object| &object.id);
         let mut tell = |trouble: String, what: &str| {
             // What lies outside of the folders has been told by that name.
@@ -299,21 +324,21 @@ pub fn settle(model: &mut CityModel) {
         }
         if let Some(trouble) = trouble {
             texture.image = TextureImage::Missing(String::new());
-            tell(trouble, "the material's colour is used");
+            tell(trouble, instead);
         }
     }
 }
 
 /// Makes the mip levels of an RGBA8 image.
-fn with_levels(original: [u32; 2], mut pixels: Vec<u8>, most_side: u32) -> Pixels {
+fn with_levels(original: [u32; 2], mut pixels: Vec<u8>, most_side: u32, sum: fn() -> Sum) -> Pixels {
     let mut size = original;
     while size.iter().any(|side| *side > most_side) {
-        (size, pixels) = half(size, &pixels);
+        (size, pixels) = half(size, &pixels, sum);
     }
     let [width, height] = size;
     let mut levels = vec![pixels];
     while size != [1, 1] {
-        let (smaller, level) = half(size, &levels[levels.len() - 1]);
+        let (smaller, level) = half(size, &levels[levels.len() - 1], sum);
         size = smaller;
         levels.push(level);
     }
@@ -346,7 +371,7 @@ fn smaller(size: [u32; 2]) -> [u32; 2] {
 }
 
 /// The next level.
-fn half([width, height]: [u32; 2], pixels: &[u8]) -> ([u32; 2], Vec<u8>) {
+fn half([width, height]: [u32; 2], pixels: &[u8], sum: fn() -> Sum) -> ([u32; 2], Vec<u8>) {
     let smaller = smaller([width, height]);
     let columns: Vec<Taps> = (0..smaller[0]).map(|x| taps(x, width, smaller[0])).collect();
     let row_bytes = width as usize * 4;
@@ -354,7 +379,7 @@ fn half([width, height]: [u32; 2], pixels: &[u8]) -> ([u32; 2], Vec<u8>) {
     out.par_chunks_mut(smaller[0] as usize * 4).enumerate().for_each(|(y, row)| {
         let rows = taps(y as u32, height, smaller[1]);
         for (texel, column) in row.chunks_exact_mut(4).zip(&columns) {
-            let mut sum = Sum::default();
+            let mut sum = sum();
             for (j, wy) in rows.weights.into_iter().enumerate().filter(|(_, w)| *w > 0.0) {
                 let start = (rows.first as usize + j) * row_bytes;
                 for (i, wx) in column.weights.into_iter().enumerate().filter(|(_, w)| *w > 0.0) {
@@ -368,9 +393,11 @@ fn half([width, height]: [u32; 2], pixels: &[u8]) -> ([u32; 2], Vec<u8>) {
     (smaller, out)
 }
 
-/// A weighted sum of texels in linear light.
+/// A weighted sum of texels, of colours in linear light.
 #[derive(Default)]
 struct Sum {
+    /// Whether bytes are numbers, not sRGB.
+    is_of_numbers: bool,
     /// Colours times opacity.
     color: [f32; 3],
     /// Colours alone: what a wholly transparent texel keeps.
@@ -379,11 +406,19 @@ struct Sum {
 }
 
 impl Sum {
+    fn of_colors() -> Self {
+        Self::default()
+    }
+
+    fn of_numbers() -> Self {
+        Self { is_of_numbers: true, ..Self::default() }
+    }
+
     fn add(&mut self, texel: &[u8], weight: f32) {
         let alpha = f32::from(texel[3]) / 255.0 * weight;
         self.alpha += alpha;
         for c in 0..3 {
-            let light = LINEAR[usize::from(texel[c])];
+            let light = if self.is_of_numbers { f32::from(texel[c]) / 255.0 } else { LINEAR[usize::from(texel[c])] };
             self.color[c] += light * alpha;
             self.bare[c] += light * weight;
         }
@@ -392,7 +427,8 @@ impl Sum {
     fn texel(&self) -> [u8; 4] {
         let opaque = self.alpha > 0.0;
         let light = |c: usize| if opaque { self.color[c] / self.alpha } else { self.bare[c] };
-        [srgb(light(0)), srgb(light(1)), srgb(light(2)), (self.alpha * 255.0).round() as u8]
+        let byte = |c| if self.is_of_numbers { (light(c) * 255.0).round() as u8 } else { srgb(light(c)) };
+        [byte(0), byte(1), byte(2), (self.alpha * 255.0).round() as u8]
     }
 }
 
@@ -479,7 +515,8 @@ mod tests {
 
     #[test]
     fn large_images_are_halved_until_they_fit() {
-        let pixels = with_levels([MAX_SIDE * 2, 2], [9, 9, 9, 255].repeat(MAX_SIDE as usize * 4), MAX_SIDE);
+        let pixels =
+            with_levels([MAX_SIDE * 2, 2], [9, 9, 9, 255].repeat(MAX_SIDE as usize * 4), MAX_SIDE, Sum::of_colors);
         assert_eq!((pixels.width, pixels.height), (MAX_SIDE, 1));
         assert_eq!(pixels.reduced_from, Some([MAX_SIDE * 2, 2]));
     }

@@ -90,8 +90,9 @@ impl CityModel {
             let least = if let TexelOpacity::Holes(least) = &material.texels { least } else { &0.0 };
             let numbers = material.base_color.iter().chain(&material.emissive);
             let mut numbers = numbers.chain([&material.roughness, least]);
-            let right = numbers.all(|n| n.is_finite() && *n >= 0.0) && optional(material.texture, self.textures.len());
-            ensure(right, || format!("material {i}: {material:?}"))?;
+            let are_textures = material.textures().iter().all(|texture| optional(*texture, self.textures.len()));
+            let right = numbers.all(|n| n.is_finite() && *n >= 0.0) && material.normal_scale.is_finite();
+            ensure(right && are_textures, || format!("material {i}: {material:?}"))?;
         }
         Ok(())
     }

@@ -127,6 +127,7 @@ impl<'a> Cities<'a> {
             has_blocks: own.has_blocks,
             has_edges: self.own.edges.is_some(),
             emits: self.all().any(|city| city.buffers.emits),
+            texels_emit: self.all().any(|city| city.buffers.texels_emit),
             has_smooth: self.all().any(|city| city.buffers.smooth),
             sections: self.all().flat_map(sections_of).collect(),
             own_sections: self.own_ones().flat_map(sections_of).collect(),

@@ -77,6 +77,21 @@ pub enum Texels {
     Translucent,
 }
 
+/// Images of triangles: numbers of textures, [`NONE`] where there is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Images {
+    /// Of colours.
+    pub color: u32,
+    /// Of shares of their own light.
+    pub emission: u32,
+    /// Of normals in tangent space.
+    pub normals: u32,
+    /// What the x and y of these are multiplied with: the bits of its f32; 0 where there are none.
+    pub normal_scale: u32,
+    /// What the opacity of the first does.
+    pub texels: Texels,
+}
+
 /// One draw: part of a section.
 pub type Draw = Range<u32>;
 
@@ -111,13 +126,8 @@ impl Section {
 pub enum SectionKind {
     /// Ordinary opaque triangles.
     Plain,
-    /// Triangles with a texture.
-    Textured {
-        /// Its number in the model.
-        texture: u32,
-        /// What its opacity does.
-        texels: Texels,
-    },
+    /// Triangles with images.
+    Textured(Images),
     /// Overlapping triangles of shared planes, one layer of them.
     Coplanar,
 }
@@ -143,6 +153,8 @@ pub struct CityBuffers {
     pub smooth: bool,
     /// Whether some have light of their own.
     pub emits: bool,
+    /// Whether texels of some say how much of it.
+    pub texels_emit: bool,
     /// Drawn triangles, the plain ground included.
     pub triangles: u64,
     /// Drawn vertices, the plain ground included.
@@ -180,8 +192,8 @@ struct Gathered {
 /// What triangles of a section have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Group {
-    /// Number of their texture, and what its opacity does.
-    pub texture: Option<(u32, Texels)>,
+    /// Their images.
+    pub images: Option<Images>,
     /// Which of their fragments are translucent.
     pub translucency: Translucency,
     /// Whether they throw shadows.
@@ -190,7 +202,7 @@ pub(super) struct Group {
 
 impl Group {
     /// Opaque ones without a texture.
-    pub const PLAIN: Self = Self { texture: None, translucency: Translucency::None, has_shadow: true };
+    pub const PLAIN: Self = Self { images: None, translucency: Translucency::None, has_shadow: true };
     /// All without a texture.
     const UNTEXTURED: [Self; 3] = [
         Self::PLAIN,
@@ -300,7 +312,7 @@ impl CityBuffers {
         }
         let mut table = SurfaceTable::new(shown.model, &textures, &shells);
         let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
-        let smooth = is_smooth(shown, &apart);
+        let smooth = is_smooth(shown, &apart) || has_normals(shown, &textures);
         let kind = WeldKind { smooth, provoking: provoking_corner(gpu) };
         let mut plain = Group::UNTEXTURED.map(|group| Gathered::new(kind, group));
         let mut textured: FxHashMap<Group, Gathered> = FxHashMap::default();
@@ -335,8 +347,8 @@ impl CityBuffers {
         let mut by_texture: Vec<_> = textured.into_iter().collect();
         by_texture.sort_unstable_by_key(|(group, _)| *group);
         for (group, gathered) in &by_texture {
-            let Some((texture, texels)) = group.texture else { continue };
-            let kind = SectionKind::Textured { texture, texels };
+            let Some(images) = group.images else { continue };
+            let kind = SectionKind::Textured(images);
             push(upload(gpu, kind, gathered, Extra { name: "texture coordinates", each: &gathered.texcoords })?);
         }
         for (number, layer) in (0..).zip(&layers) {
@@ -351,6 +363,9 @@ impl CityBuffers {
         let surfaces = surfaces::upload(gpu, &entries)?;
         let surface_table = entries;
         let emits = surface_table.iter().any(layout::Surface::emits);
+        let emitting =
+            |section: &Section| matches!(section.kind, SectionKind::Textured(images) if images.emission != NONE);
+        let texels_emit = sections.iter().any(emitting);
         let figures = CellFigures::of_all(cells.count, sections.iter().flat_map(|section| &section.chunks));
         let bytes = gpu.allocated_bytes() - bytes_before + textures.bytes();
         Ok(Self {
@@ -363,6 +378,7 @@ impl CityBuffers {
             has_blocks: blocks.is_some(),
             smooth,
             emits,
+            texels_emit,
             triangles,
             vertices,
             bytes,
@@ -382,6 +398,7 @@ impl CityBuffers {
             has_blocks: false,
             smooth: true,
             emits: false,
+            texels_emit: false,
             triangles: 0,
             vertices: 0,
             bytes: 0,
@@ -454,6 +471,11 @@ fn is_smooth(shown: &Shown, apart: &FxHashSet<u32>) -> bool {
     })
 }
 
+/// Whether some texture has normals.
+fn has_normals(shown: &Shown, textures: &Textures) -> bool {
+    shown.model.materials.iter().any(|material| textures.has(material.normal_texture))
+}
+
 fn gather_tile(
     model: &CityModel,
     tile: &Tile,
@@ -471,7 +493,7 @@ fn gather_tile(
         let [first, ..] = corners;
         let group = table.group(first.surface, tile.texcoords != NONE);
         if let Some(gathered) = plain.iter_mut().find(|gathered| gathered.group == group) {
-            let number = table.number(first.surface, first.normal);
+            let number = table.number(first.surface, first.normal, false);
             gathered.weld.triangle(number, corners.map(|v| Corner { position: v.position, normal: v.normal }));
             continue;
         }
@@ -479,7 +501,7 @@ fn gather_tile(
         let target = textured.entry(group).or_insert_with(|| Gathered::new(kind, group));
         let at = triangle as usize * 3;
         for (vertex, &corner) in corners.into_iter().zip(&model.indices[at..at + 3]) {
-            let surface = table.number(first.surface, vertex.normal);
+            let surface = table.number(first.surface, vertex.normal, true);
             target.weld.indices.push(target.weld.vertices.len() as u32);
             target.weld.vertices.push(CityVertex::new(tile.origin, surface, vertex.position, vertex.normal));
             target.texcoords.push(model.texcoords[(tile.texcoords + corner) as usize]);
@@ -498,7 +520,7 @@ fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered
         for corners in ground.indices[tile.indices.start as usize..tile.indices.end as usize].chunks_exact(3) {
             let corners = [0, 1, 2].map(|k| vertices[corners[k] as usize].position);
             // Made up between footprints: shown as level, or its grid of triangles would catch the light.
-            plain.weld.triangle(table.number(NONE, up), corners.map(|position| Corner { position, normal: up }));
+            plain.weld.triangle(table.number(NONE, up, false), corners.map(|position| Corner { position, normal: up }));
         }
         plain.weld.end_tile();
         plain.close_run(tile.bounds, NO_CELL, details_of(NO_CELL, Detail::Full));
@@ -539,7 +561,7 @@ fn gather_blocks(
                     let [first, ..] = corners;
                     let [a, b, c] = corners.map(|v| Vec3::from(v.position));
                     if ((b - a).cross(c - a).z > 0.0) == is_roof {
-                        let number = table.number(first.surface, first.normal);
+                        let number = table.number(first.surface, first.normal, false);
                         let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
                         gathered.weld.triangle(number, corners);
                     }
@@ -627,7 +649,7 @@ fn gather_layers(
             let equation = &model.plane_equations[c.group as usize - 1];
             let plane = *planes.entry(c.group).or_insert_with(|| plane_of(equation, tile.origin));
             let corners_surface = corners[0].surface;
-            let number = table.number(corners_surface, corners[0].normal);
+            let number = table.number(corners_surface, corners[0].normal, false);
             let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
             let group = table.group(corners_surface, false);
             if let Some(layer) = layers[c.layer as usize].iter_mut().find(|layer| layer.gathered.group == group) {

@@ -4,7 +4,7 @@ use crate::{
     geom::Aabb,
     render::{
         cells::{CellFigures, Detail, Details, triangles_in},
-        city::{Chunk, Section, SectionKind, Texels, Translucency},
+        city::{Chunk, Images, Section, SectionKind, Texels, Translucency},
         frame::FrameInput,
         hiding::reaches_of,
         light,
@@ -53,8 +53,9 @@ pub(super) struct CityFacts<'a> {
     pub has_edges: bool,
     /// Whether some city has normals per vertex.
     pub has_smooth: bool,
-    /// Whether something has light of its own.
+    /// Whether something has light of its own, and whether texels say how much of it.
     pub emits: bool,
+    pub texels_emit: bool,
     /// Sections of all of them, and those of the scene's own and of what is moved of it.
     pub sections: Vec<SectionFacts>,
     pub own_sections: Vec<SectionFacts>,
@@ -64,7 +65,7 @@ pub(super) struct CityFacts<'a> {
 impl CityFacts<'_> {
     /// Whether some section has a texture.
     pub fn is_textured(&self) -> bool {
-        self.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { .. }))
+        self.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured(_)))
     }
 
     /// Whether the material of something is translucent, in view or not.
@@ -76,7 +77,9 @@ impl CityFacts<'_> {
 
     /// Whether some texture is.
     pub fn has_clear_textures(&self) -> bool {
-        self.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured { texels: Texels::Translucent, .. }))
+        self.sections
+            .iter()
+            .any(|s| matches!(s.kind, SectionKind::Textured(Images { texels: Texels::Translucent, .. })))
     }
 
     /// Whether the material of something in a view may be. What is moved may be anywhere.

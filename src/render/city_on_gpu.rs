@@ -9,7 +9,7 @@ use crate::{
         edges::{Edge, EdgeBuffers},
         resource::{
             bindings::group,
-            layouts::{CITY, IMAGE},
+            layouts::{CITY, IMAGES},
             pipelines::Pipelines,
         },
     },
@@ -22,7 +22,7 @@ pub(super) struct CityOnGpu {
     pub group: wgpu::BindGroup,
     /// Its edges, once something drew lines.
     pub edges: Option<EdgeBuffers>,
-    /// One per section: its texture's group.
+    /// One per section: its textures' group.
     pub images: Vec<Option<wgpu::BindGroup>>,
     /// One per section: its corners on the host, once something deformed it.
     pub sources: Option<Vec<Source>>,
@@ -54,15 +54,19 @@ impl CityOnGpu {
     }
 }
 
-/// What binds the texture of a section.
+/// What binds the textures of a section.
 pub(super) fn image_of(
     gpu: &Gpu,
     pipelines: &Pipelines,
     buffers: &CityBuffers,
     kind: SectionKind,
 ) -> Option<wgpu::BindGroup> {
-    let SectionKind::Textured { texture, .. } = kind else { return None };
-    let (view, sampler) = buffers.textures.get(texture)?;
-    let entries = [(0, wgpu::BindingResource::TextureView(view)), (1, wgpu::BindingResource::Sampler(sampler))];
-    Some(group(gpu, "image", &pipelines.layout(&IMAGE), &entries))
+    let SectionKind::Textured(images) = kind else { return None };
+    let mut entries = Vec::new();
+    for (binding, number) in (0..).step_by(2).zip([images.color, images.emission, images.normals]) {
+        let (view, sampler) = buffers.textures.get_or_white(number)?;
+        entries.push((binding, wgpu::BindingResource::TextureView(view)));
+        entries.push((binding + 1, wgpu::BindingResource::Sampler(sampler)));
+    }
+    Some(group(gpu, "images", &pipelines.layout(&IMAGES), &entries))
 }

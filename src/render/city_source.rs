@@ -25,7 +25,7 @@ impl Source {
     pub fn read(gpu: &Gpu, section: &Section) -> Result<Self, GpuError> {
         let of = |buffer: &wgpu::Buffer| gpu.read_buffer(buffer);
         let texcoords = match (section.kind, &section.extra) {
-            (SectionKind::Textured { .. }, Some(extra)) => bytemuck::pod_collect_to_vec(&of(extra)?),
+            (SectionKind::Textured(_), Some(extra)) => bytemuck::pod_collect_to_vec(&of(extra)?),
             _ => Vec::new(),
         };
         let vertices = bytemuck::pod_collect_to_vec(&of(&section.vertices)?);

@@ -356,7 +356,7 @@ fn sections_of(met: &Met, made: &Made) -> Vec<Section> {
         kind: if *kind == SectionKind::Coplanar { SectionKind::Plain } else { *kind },
         vertices: made.vertices.clone(),
         indices: made.indices.clone(),
-        extra: made.texcoords.clone().filter(|_| matches!(kind, SectionKind::Textured { .. })),
+        extra: made.texcoords.clone().filter(|_| matches!(kind, SectionKind::Textured(_))),
         chunks: met.chunks[chunks.clone()]
             .iter()
             .zip(&made.chunks[chunks.clone()])
@@ -435,7 +435,7 @@ impl Met {
         let mut all_chunks = city.buffers.sections.iter().flat_map(|section| &section.chunks);
         let is_met = reach.placement.is_none()
             || all_chunks.any(|chunk| reach.may_raise(&chunk.bounds) || !reach.near(&chunk.bounds).is_empty());
-        let has_textures = sections().any(|(section, _)| matches!(section.kind, SectionKind::Textured { .. }));
+        let has_textures = sections().any(|(section, _)| matches!(section.kind, SectionKind::Textured(_)));
         let (mut left, mut met, mut chunks) = (Vec::new(), Vec::new(), Vec::new());
         let mut all = MetPart::default();
         let mut firsts = vec![0];
@@ -469,7 +469,7 @@ impl Met {
             }
         }
         let reach = bounds.union(of.moved.bounds(&bounds));
-        let is_textured = met.iter().any(|met| matches!(met.kind, SectionKind::Textured { .. }));
+        let is_textured = met.iter().any(|met| matches!(met.kind, SectionKind::Textured(_)));
         let texcoords = is_textured.then_some(&all.texcoords[..]);
         let triangles = RestTriangles { corners: &all.corners, bits: &all.bits, texcoords, firsts };
         let rest = Rest::new(gpu, triangles, &of.moved.deformers, &reach)?;

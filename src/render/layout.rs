@@ -100,6 +100,9 @@ const MOST_CLEAR: u32 = 511;
 /// `lib/surface.wgsl`: it has light of its own, the colour of the next entry.
 pub const SURFACE_EMITS: u32 = 1 << 15;
 
+/// `lib/surface.wgsl`: of such an entry, that texels say how much of the light there is.
+pub const LIGHT_OF_TEXELS: u32 = 1;
+
 /// The flags of a surface of this opacity, 0..1, to the nearest of 512 steps.
 pub fn clear_bits(opacity: f32) -> u32 {
     (((1.0 - opacity.clamp(0.0, 1.0)) * MOST_CLEAR as f32).round() as u32) << SURFACE_CLEAR_SHIFT

@@ -67,6 +67,8 @@ pub(super) struct FramePlan<'a> {
     pub blended: bool,
     /// Whether something has light of its own.
     pub emits: bool,
+    /// Whether texels say how much of it.
+    pub texels_emit: bool,
     /// Whether the edges of the city are there.
     pub has_edges: bool,
     /// Sections of all cities, and of the scene's own.
@@ -150,6 +152,7 @@ impl<'a> FramePlan<'a> {
             clear_materials: facts.has_clear_materials(),
             blended: facts.has_clear_textures(),
             emits: facts.emits,
+            texels_emit: facts.texels_emit,
             has_edges: facts.has_edges,
             sections: facts.sections.clone(),
             own_sections: facts.own_sections.clone(),

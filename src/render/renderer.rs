@@ -298,6 +298,7 @@ fn needs_of(plan: &FramePlan, inputs: &Inputs) -> Needs {
     let mut needs = Needs {
         size: plan.input.tile.size,
         colors: plan.colored,
+        emissions: plan.texels_emit,
         smooth: plan.smooth,
         own_depth: plan.input.measured,
         ..Needs::default()

@@ -233,7 +233,7 @@ impl Shared {
         cities: &Cities<'a>,
         targets: &'a Targets,
         read: ShadedTargets<'a>,
-    ) -> [(u32, wgpu::BindingResource<'a>); 9] {
+    ) -> [(u32, wgpu::BindingResource<'a>); 10] {
         [
             (0, wgpu::BindingResource::TextureView(cities.surfaces())),
             (1, whole(self.planes.buffer())),
@@ -244,6 +244,7 @@ impl Shared {
             (6, wgpu::BindingResource::TextureView(read.codes)),
             (7, wgpu::BindingResource::TextureView(read.depth)),
             (8, wgpu::BindingResource::TextureView(read.colors)),
+            (9, wgpu::BindingResource::TextureView(read.emissions)),
         ]
     }
 }
@@ -254,11 +255,13 @@ pub(super) struct ShadedTargets<'a> {
     pub codes: &'a wgpu::TextureView,
     pub depth: &'a wgpu::TextureView,
     pub colors: &'a wgpu::TextureView,
+    pub emissions: &'a wgpu::TextureView,
 }
 
 impl<'a> ShadedTargets<'a> {
     fn of(targets: &'a Targets) -> Self {
-        Self { codes: &targets.codes.view, depth: &targets.depth.view, colors: &targets.colors.view }
+        let Targets { codes, depth, colors, emissions, .. } = targets;
+        Self { codes: &codes.view, depth: &depth.view, colors: &colors.view, emissions: &emissions.view }
     }
 }
 

@@ -6,10 +6,10 @@
 use rustc_hash::FxHashMap;
 
 use crate::{
-    city::{CityModel, NONE, ObjectClass, StringId, Surface, TexelOpacity, decode_normal},
+    city::{CityModel, Material, NONE, ObjectClass, StringId, Surface, TexelOpacity, decode_normal},
     gpu::{Gpu, GpuError},
     render::{
-        city::{Group, Texels, Translucency},
+        city::{Group, Images, Texels, Translucency},
         layout, palette,
         shells::Shells,
         textures::Textures,
@@ -31,7 +31,7 @@ pub struct SurfaceTable<'a> {
     pub is_opaque: bool,
     /// The entries, by number.
     pub entries: Vec<layout::Surface>,
-    numbers: FxHashMap<(u32, u32), u32>,
+    numbers: FxHashMap<(u32, u32, bool), u32>,
 }
 
 impl<'a> SurfaceTable<'a> {
@@ -45,14 +45,15 @@ impl<'a> SurfaceTable<'a> {
         self.numbers.clear();
     }
 
-    /// The number of a model surface (`NONE`: the plain ground) that faces a packed normal.
-    pub fn number(&mut self, surface: u32, normal: u32) -> u32 {
+    /// The number of a model surface (`NONE`: the plain ground) that faces a packed normal; `has_texcoords`: whether it can show a
+    /// texture.
+    pub fn number(&mut self, surface: u32, normal: u32, has_texcoords: bool) -> u32 {
         let Self { model, textures, shells, is_opaque, entries, numbers } = self;
-        *numbers.entry((surface, normal)).or_insert_with(|| {
+        *numbers.entry((surface, normal, has_texcoords)).or_insert_with(|| {
             let found = entry(model, textures, shells, surface, normal);
             let number = entries.len() as u32;
             entries.push(if *is_opaque { found.opaque() } else { found });
-            entries.extend(emission(model, surface).map(|light| layout::Surface::new(layout::NO_OBJECT, 0, light, 0)));
+            entries.extend(emission(model, textures, surface).map(|light| light.entry(has_texcoords)));
             number
         })
     }
@@ -63,29 +64,56 @@ impl<'a> SurfaceTable<'a> {
         let Some(material) = found.and_then(|s| self.model.materials.get(s.material as usize)) else {
             return Group::PLAIN;
         };
-        let texture = (has_texcoords && self.textures.has(material.texture)).then(|| {
-            let texels = match material.texels {
-                TexelOpacity::Ignored => Texels::Opaque,
-                TexelOpacity::Holes(least) => Texels::Holes(least.to_bits()),
-                TexelOpacity::Translucent if self.textures.is_translucent(material.texture) => Texels::Translucent,
-                TexelOpacity::Translucent => Texels::Opaque,
-            };
-            (material.texture, texels)
-        });
+        let images = if has_texcoords { self.images(material) } else { None };
         let opacity = layout::opacity_shown(material.base_color[3]);
-        let translucency = match texture {
+        let translucency = match images {
             _ if opacity < 1.0 => Translucency::All,
-            Some((_, Texels::Translucent)) => Translucency::Some,
+            Some(Images { texels: Texels::Translucent, .. }) => Translucency::Some,
             _ => Translucency::None,
         };
-        Group { texture, translucency, has_shadow: material.base_color[3] >= LEAST_SHADOW }
+        Group { images, translucency, has_shadow: material.base_color[3] >= LEAST_SHADOW }
+    }
+
+    /// Those of its textures that are there; `None`: none is.
+    fn images(&self, material: &Material) -> Option<Images> {
+        let there = |texture: u32| if self.textures.has(texture) { texture } else { NONE };
+        let [color, emission, normals] = material.textures().map(there);
+        let texels = match material.texels {
+            _ if color == NONE => Texels::Opaque,
+            TexelOpacity::Ignored => Texels::Opaque,
+            TexelOpacity::Holes(least) => Texels::Holes(least.to_bits()),
+            TexelOpacity::Translucent if self.textures.is_translucent(color) => Texels::Translucent,
+            TexelOpacity::Translucent => Texels::Opaque,
+        };
+        let normal_scale = if normals == NONE { 0.0_f32 } else { material.normal_scale };
+        let images = Images { color, emission, normals, normal_scale: normal_scale.to_bits(), texels };
+        ([color, emission] != [NONE; 2] || normal_scale != 0.0).then_some(images)
     }
 }
 
-/// Light of its own that a model surface has, linear.
-fn emission(model: &CityModel, surface: u32) -> Option<[f32; 3]> {
+/// Light of its own that a model surface has.
+struct Emission {
+    /// Linear.
+    light: [f32; 3],
+    /// Whether a picture says where.
+    is_of_texels: bool,
+}
+
+impl Emission {
+    /// What the table says of it where there are texture coordinates or not.
+    fn entry(&self, has_texcoords: bool) -> layout::Surface {
+        let Self { light, is_of_texels } = *self;
+        // Without the picture it would flood the whole surface.
+        let light = if is_of_texels && !has_texcoords { [0.0; 3] } else { light };
+        layout::Surface::new(layout::NO_OBJECT, 0, light, if is_of_texels { layout::LIGHT_OF_TEXELS } else { 0 })
+    }
+}
+
+fn emission(model: &CityModel, textures: &Textures, surface: u32) -> Option<Emission> {
     let material = model.materials.get(model.surfaces.get(surface as usize)?.material as usize)?;
-    Some(material.emissive).filter(|light| *light != [0.0; 3])
+    let is_of_texels = material.emissive_texture != NONE;
+    let is_dark = material.emissive == [0.0; 3] || (is_of_texels && !textures.has(material.emissive_texture));
+    (!is_dark).then_some(Emission { light: material.emissive, is_of_texels })
 }
 
 /// Puts a table on the GPU.
@@ -128,7 +156,7 @@ pub(super) fn entry(
     let part = part_of(model, found, normal) << layout::SURFACE_PART_SHIFT;
     let shell = shells.get(&found.object).copied().unwrap_or_default();
     let opacity = material.map_or(1.0, |m| m.base_color[3]);
-    let emits = if emission(model, surface).is_some() { layout::SURFACE_EMITS } else { 0 };
+    let emits = if emission(model, textures, surface).is_some() { layout::SURFACE_EMITS } else { 0 };
     layout::Surface::new(found.object, normal, color, unlit | part | shell | emits | layout::clear_bits(opacity))
 }
 

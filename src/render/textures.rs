@@ -21,19 +21,22 @@ pub struct Textures {
     entries: Vec<Option<(wgpu::TextureView, wgpu::Sampler)>>,
     /// Which of them have texels that are not opaque.
     translucent: Vec<bool>,
+    /// One white texel, where there is some texture.
+    white: Option<(wgpu::TextureView, wgpu::Sampler)>,
     bytes: u64,
 }
 
 impl Textures {
     /// No textures.
     pub fn none() -> Self {
-        Self { entries: Vec::new(), translucent: Vec::new(), bytes: 0 }
+        Self { entries: Vec::new(), translucent: Vec::new(), white: None, bytes: 0 }
     }
 
     /// Decodes and uploads what the shown surfaces use; what cannot be read stays absent.
     pub fn new(gpu: &Gpu, shown: &Shown) -> Result<Self, GpuError> {
         let model = shown.model;
         let mut used = vec![false; model.textures.len()];
+        let mut has_normals = vec![false; model.textures.len()];
         for &g in shown.geometries {
             for tile in &model.tiles
                 [model.geometries[g as usize].tiles.start as usize..model.geometries[g as usize].tiles.end as usize]
@@ -43,8 +46,15 @@ impl Textures {
                 }
                 for vertex in &model.vertices[tile.vertices.start as usize..tile.vertices.end as usize] {
                     let surface = model.surfaces.get(vertex.surface as usize);
-                    let material = surface.and_then(|s| model.materials.get(s.material as usize));
-                    if let Some(flag) = material.and_then(|m| used.get_mut(m.texture as usize)) {
+                    let Some(material) = surface.and_then(|s| model.materials.get(s.material as usize)) else {
+                        continue;
+                    };
+                    for texture in material.textures() {
+                        if let Some(flag) = used.get_mut(texture as usize) {
+                            *flag = true;
+                        }
+                    }
+                    if let Some(flag) = has_normals.get_mut(material.normal_texture as usize) {
                         *flag = true;
                     }
                 }
@@ -72,19 +82,29 @@ impl Textures {
             );
         }
         for group in groups(&wanted, side) {
-            let decoded: Vec<_> =
-                group.par_iter().map(|&(i, _)| texture::decode_within(&model.textures[i], side)).collect();
+            let decode = |i: usize| match has_normals[i] {
+                true => texture::decode_normals_within(&model.textures[i], side),
+                false => texture::decode_within(&model.textures[i], side),
+            };
+            let decoded: Vec<_> = group.par_iter().map(|&(i, _)| decode(i)).collect();
             for (&(i, _), result) in group.iter().zip(decoded) {
                 match result {
                     Ok(pixels) => {
                         translucent[i] = pixels.is_translucent();
-                        entries[i] = Some(upload(gpu, &pixels, &model.textures[i]));
+                        // Bytes of colours are of a screen, what is sampled is linear light. The geometry target holds bytes of
+                        // a screen too, so no precision is lost on the way.
+                        let format = match has_normals[i] {
+                            true => wgpu::TextureFormat::Rgba8Unorm,
+                            false => wgpu::TextureFormat::Rgba8UnormSrgb,
+                        };
+                        entries[i] = Some(upload(gpu, &pixels, &model.textures[i], format));
                     }
                     Err(message) => log::warn!("texture {i}: {message}"),
                 }
             }
         }
-        Ok(Self { entries, translucent, bytes: gpu.allocated_bytes() - before })
+        let white = wanted.first().map(|_| white(gpu));
+        Ok(Self { entries, translucent, white, bytes: gpu.allocated_bytes() - before })
     }
 
     /// Whether a texture is there.
@@ -100,6 +120,11 @@ impl Textures {
     /// A texture and how it is sampled.
     pub fn get(&self, number: u32) -> Option<&(wgpu::TextureView, wgpu::Sampler)> {
         self.entries.get(number as usize)?.as_ref()
+    }
+
+    /// The same; of what is not there one white texel, where there is some other texture.
+    pub fn get_or_white(&self, number: u32) -> Option<&(wgpu::TextureView, wgpu::Sampler)> {
+        self.get(number).or(self.white.as_ref())
     }
 
     /// Bytes on the GPU.
@@ -137,11 +162,22 @@ fn groups(wanted: &[(usize, [u32; 2])], side: u32) -> impl Iterator<Item = &[(us
     })
 }
 
-fn upload(gpu: &Gpu, pixels: &texture::Pixels, declared: &Texture) -> (wgpu::TextureView, wgpu::Sampler) {
+fn white(gpu: &Gpu) -> (wgpu::TextureView, wgpu::Sampler) {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let texture = gpu.texture("no texture", [1, 1, 1], 1, wgpu::TextureFormat::Rgba8Unorm, usage);
+    gpu.write_texture_level(&texture, 0, &[u8::MAX; 4]);
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    (view, gpu.device.create_sampler(&wgpu::SamplerDescriptor { label: Some("no texture"), ..Default::default() }))
+}
+
+fn upload(
+    gpu: &Gpu,
+    pixels: &texture::Pixels,
+    declared: &Texture,
+    format: wgpu::TextureFormat,
+) -> (wgpu::TextureView, wgpu::Sampler) {
     let size = [pixels.width, pixels.height, 1];
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    // Bytes are of a screen, what is sampled is linear light. The geometry target holds bytes of a screen too, so no precision is lost on the way.
-    let format = wgpu::TextureFormat::Rgba8UnormSrgb;
     let texture = gpu.texture("city texture", size, pixels.levels.len() as u32, format, usage);
     for (level, rgba) in pixels.levels.iter().enumerate() {
         gpu.write_texture_level(&texture, level as u32, rgba);

@@ -56,7 +56,7 @@ fn more(indent: &str) -> String {
         let _ = writeln!(text, "{indent}order(&kept_{a}, &kept_{b});");
     }
     for i in 0..KEPT {
-        let _ = writeln!(text, "{indent}kept_{i} = node_of(kept_{i}.xy, kept_{i}.z, kept_{i}.w);");
+        let _ = writeln!(text, "{indent}kept_{i} = node_of(kept_{i});");
     }
     text
 }
@@ -69,7 +69,7 @@ fn pick(indent: &str) -> String {
         let _ = writeln!(text, "{indent}let is_odd_{bit} = (place & {}u) != 0u;", 1 << bit);
         for i in 0..names.len() / 2 {
             let [even, odd] = [&names[2 * i], &names[2 * i + 1]];
-            let _ = writeln!(text, "{indent}let pick_{bit}_{i} = select({even}, {odd}, is_odd_{bit});");
+            let _ = writeln!(text, "{indent}let pick_{bit}_{i} = chosen({even}, {odd}, is_odd_{bit});");
             names[i] = format!("pick_{bit}_{i}");
         }
         names.truncate(names.len() / 2);
@@ -125,10 +125,10 @@ mod tests {
         for i in 0..KEPT {
             let mut values: std::collections::HashMap<String, usize> =
                 (0..KEPT).map(|k| (format!("kept_{k}"), k)).collect();
-            for line in text.lines().filter(|line| line.contains("select")) {
+            for line in text.lines().filter(|line| line.contains("chosen")) {
                 let words: Vec<&str> =
                     line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|w| !w.is_empty()).collect();
-                let ["let", name, "select", even, odd, bit] = words[..] else { panic!("{line}") };
+                let ["let", name, "chosen", even, odd, bit] = words[..] else { panic!("{line}") };
                 let is_odd = i >> bit.trim_start_matches("is_odd_").parse::<u32>().expect("a bit") & 1 == 1;
                 values.insert(name.to_owned(), values[if is_odd { odd } else { even }]);
             }

@@ -31,6 +31,7 @@ mod layouts;
 mod light;
 mod lines;
 mod many;
+mod maps;
 mod materials;
 mod measure;
 mod members;

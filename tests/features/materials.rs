@@ -19,7 +19,7 @@ use veduta::{
 
 /// Of pictures with shadows.
 const SHADOWED: [u32; 2] = [160, 120];
-const BOTH: [Backend; 2] = [Backend::Specialised, Backend::Uber];
+pub const BOTH: [Backend; 2] = [Backend::Specialised, Backend::Uber];
 
 /// Of the materials of panes, how much they let through; the second is opaque.
 const CLEAR: [f64; 4] = [0.5, 0.0, 0.25, 0.875];
@@ -155,7 +155,7 @@ fn leaf(folder: &Folder, name: &str, color: [u8; 4]) {
 }
 
 /// A scene of one file, seen from the south along the y axis, 12 m high, with nothing behind.
-fn of_file(file: &Path, more: &str) -> Scene {
+pub fn of_file(file: &Path, more: &str) -> Scene {
     let text = format!(
         "veduta = 1\n[city]\nfiles = [{:?}]\nground = false\n[camera]\neye = [0, -30, 5]\ntarget = [0, 0, 5]\n\
          projection = \"orthographic\"\nheight_m = 12\n{more}",
@@ -166,7 +166,7 @@ fn of_file(file: &Path, more: &str) -> Scene {
 }
 
 /// The same by both back ends, transparent where there is nothing.
-fn drawn(scene: &Scene) -> Picture {
+pub fn drawn(scene: &Scene) -> Picture {
     let mut studio = of_scene(scene);
     let mut of = |backend| {
         let request = Request { size: [60, 60], samples: 1, transparent: true, aovs: ALL, statistics: false, backend };
@@ -178,7 +178,7 @@ fn drawn(scene: &Scene) -> Picture {
 }
 
 /// The pixel at a place of the picture plane, metres from the z axis and from the ground.
-fn at(picture: &Picture, x: f64, z: f64) -> [u8; 4] {
+pub fn at(picture: &Picture, x: f64, z: f64) -> [u8; 4] {
     let (column, row) = ((x + 6.0) * 5.0, (11.0 - z) * 5.0);
     picture.rgba[row as usize * 60 + column as usize]
 }
@@ -234,7 +234,7 @@ fn mtl_says_it_in_four_ways() {
 }
 
 /// Corners, texture coordinates and indices of a wall 10 m high and wide, as glTF has them.
-fn wall_bytes() -> Vec<u8> {
+pub fn wall_bytes() -> Vec<u8> {
     [-5.0_f32, 0.0, 0.0, 5.0, 0.0, 0.0, 5.0, 10.0, 0.0, -5.0, 10.0, 0.0]
         .iter()
         .chain(&[0.0_f32, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
@@ -244,7 +244,7 @@ fn wall_bytes() -> Vec<u8> {
 }
 
 /// That wall in a node, of a material.
-fn wall_gltf(node: &str, material: &str) -> String {
+pub fn wall_gltf(node: &str, material: &str) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{node}],
 "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"TEXCOORD_0":1}},"indices":2,"material":0}}]}}],
@@ -366,7 +366,7 @@ fn the_sun_shines_through_holes_and_what_lets_more_than_half_through() {
 }
 
 /// Linear light of a byte of a picture (IEC 61966-2-1).
-fn linear(byte: u8) -> f64 {
+pub fn linear(byte: u8) -> f64 {
     let c = f64::from(byte) / 255.0;
     if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }

@@ -89,7 +89,8 @@ pub struct SharedAppearance {
 type MaterialKey = (String, [u32; 10]);
 
 fn key_of(material: &Material) -> MaterialKey {
-    let Material { name, base_color: [r, g, b, a], emissive, roughness, unlit, texels: _, texture } = material;
+    // What no CityJSON has is left out.
+    let Material { name, base_color: [r, g, b, a], emissive, roughness, unlit, texture, .. } = material;
     let [r, g, b, a, roughness] = [r, g, b, a, roughness].map(|x| x.to_bits());
     let [er, eg, eb] = emissive.map(f32::to_bits);
     (name.clone(), [r, g, b, a, er, eg, eb, roughness, u32::from(*unlit), *texture])

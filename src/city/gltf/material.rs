@@ -1,6 +1,7 @@
 //! glTF materials as [`Material`]s: made when first used, once per (material, textured, vertex colour).
 
 use gltf::json::{
+    extensions::texture::TextureTransform,
     material::{AlphaMode, Material as Json},
     texture::{Info, WrappingMode},
     validation::Checked,
@@ -56,7 +57,8 @@ pub(super) struct Mapping {
 #[derive(Debug)]
 pub(super) struct Materials {
     made: FxHashMap<Key, u32>,
-    textures: FxHashMap<usize, u32>,
+    /// By their index in the file, and whether they hold normals.
+    textures: FxHashMap<(usize, bool), u32>,
     /// Vertex colours seen.
     pub tints: usize,
     /// Bytes that embedded images may still take.
@@ -101,9 +103,9 @@ impl Materials {
     fn make(&mut self, key: Key, from: Palette<'_>, city: &mut CityModel) -> Material {
         let json = key.material.and_then(|m| from.document.materials.get(m).ok());
         // glTF 2.0, 5.19: the default material is white; a city in pure white hides its edges, so ours is used.
-        let mut material = json.map_or_else(Material::default, |json| colors(json, from, city));
-        if let (Some(info), true) = (json.and_then(color_texture), key.textured) {
-            material.texture = self.texture(info.index.value(), from, city);
+        let mut material = json.map_or_else(Material::default, colors);
+        if let Some(json) = json {
+            self.add_textures(&mut material, json, key.textured, from, city);
         }
         if key.tint != UNTINTED && json.is_none() {
             material.base_color = [1.0; 4];
@@ -127,9 +129,53 @@ impl Materials {
         material
     }
 
+    /// Adds what a material has at its texture coordinates, where there are some.
+    fn add_textures(
+        &mut self,
+        material: &mut Material,
+        json: &Json,
+        textured: bool,
+        from: Palette<'_>,
+        city: &mut CityModel,
+    ) {
+        let [color, emissive, normal] = maps(json);
+        let mapping = first_mapping(json);
+        // A vertex has one pair of coordinates: that of the first.
+        let mut is_drawn = |map: &Option<Map>, what: &str| {
+            let Some(map) = map else { return None };
+            let trouble = match (textured, mapping) {
+                (false, _) => "where there are no texture coordinates for them",
+                (_, Some(first)) if first != map.mapping => "at other texture coordinates than the material's first",
+                _ => return Some(map.texture),
+            };
+            city.warnings.add(WarningCode::Unsupported, "", || {
+                let name = json.name.as_deref().unwrap_or("unnamed");
+                format!("{}, material {name:?}: {what} textures are not drawn {trouble}", from.around.path.display())
+            });
+            None
+        };
+        let color = color.filter(|_| textured).map(|map| map.texture);
+        let is_dark = material.emissive == [0.0; 3];
+        let is_lit_by = emissive.is_some();
+        let emissive = if is_dark { None } else { is_drawn(&emissive, "emissive") };
+        let normal = is_drawn(&normal, "normal");
+        let mut number = |index: Option<usize>, has_normals| {
+            index.map_or(NONE, |index| self.texture(index, has_normals, from, city))
+        };
+        material.texture = number(color, false);
+        material.emissive_texture = number(emissive, false);
+        if is_lit_by && material.emissive_texture == NONE {
+            // Without its picture the light would flood the whole surface.
+            material.emissive = [0.0; 3];
+        }
+        material.normal_texture = number(normal, true);
+        let scale = json.normal_texture.as_ref().map_or(1.0, |map| map.scale);
+        material.normal_scale = if scale.is_finite() { scale } else { 1.0 };
+    }
+
     /// The city's index of texture `index`, or [`NONE`].
-    fn texture(&mut self, index: usize, from: Palette<'_>, city: &mut CityModel) -> u32 {
-        if let Some(made) = self.textures.get(&index) {
+    fn texture(&mut self, index: usize, has_normals: bool, from: Palette<'_>, city: &mut CityModel) -> u32 {
+        if let Some(made) = self.textures.get(&(index, has_normals)) {
             return *made;
         }
         let document = from.document;
@@ -148,29 +194,62 @@ impl Materials {
             }
             Err(what) => {
                 city.warnings.add(WarningCode::AppearanceIndex, "", || {
-                    format!("{}, {what}; the material's colour is used", from.around.path.display())
+                    format!("{}, {what}; the material is shown without it", from.around.path.display())
                 });
                 NONE
             }
         };
-        self.textures.insert(index, made);
+        self.textures.insert((index, has_normals), made);
         made
     }
 }
 
-/// The mapping of the base colour texture of a material, if it has one.
+/// A texture of a material, and where it is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Map {
+    texture: usize,
+    mapping: Mapping,
+}
+
+impl Map {
+    fn new(texture: usize, set: u32, transform: Option<&TextureTransform>) -> Self {
+        let Some(t) = transform else {
+            return Self { texture, mapping: Mapping { set, rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] } };
+        };
+        // KHR_texture_transform: translation × rotation × scale.
+        let (sin, cos) = f64::from(t.rotation.0).sin_cos();
+        let [sx, sy] = t.scale.0.map(f64::from);
+        let [ox, oy] = t.offset.0.map(f64::from);
+        let rows = [[cos * sx, sin * sy, ox], [-sin * sx, cos * sy, oy]];
+        Self { texture, mapping: Mapping { set: t.tex_coord.unwrap_or(set), rows } }
+    }
+
+    fn of(info: &Info) -> Self {
+        let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
+        Self::new(info.index.value(), info.tex_coord, transform)
+    }
+}
+
+/// The textures of a material that are drawn: of its colour, of its light, of its normals.
+fn maps(json: &Json) -> [Option<Map>; 3] {
+    let normal = json.normal_texture.as_ref().map(|info| {
+        let others = info.extensions.as_ref().map(|e| &e.others);
+        let transform: Option<TextureTransform> = others
+            .and_then(|others| others.get("KHR_texture_transform"))
+            .and_then(|transform| serde_json::from_value(transform.clone()).ok());
+        Map::new(info.index.value(), info.tex_coord, transform.as_ref())
+    });
+    [color_texture(json).as_ref().map(Map::of), json.emissive_texture.as_ref().map(Map::of), normal]
+}
+
+/// Where the first of them is read.
+fn first_mapping(json: &Json) -> Option<Mapping> {
+    maps(json).into_iter().flatten().next().map(|map| map.mapping)
+}
+
+/// Where the textures of a material are read, if it has some.
 pub(super) fn mapping(document: &Document, material: Option<usize>) -> Option<Mapping> {
-    let info = color_texture(document.materials.get(material?).ok()?)?;
-    let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
-    let Some(t) = transform else {
-        return Some(Mapping { set: info.tex_coord, rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] });
-    };
-    // KHR_texture_transform: translation × rotation × scale.
-    let (sin, cos) = f64::from(t.rotation.0).sin_cos();
-    let [sx, sy] = t.scale.0.map(f64::from);
-    let [ox, oy] = t.offset.0.map(f64::from);
-    let rows = [[cos * sx, sin * sy, ox], [-sin * sx, cos * sy, oy]];
-    Some(Mapping { set: t.tex_coord.unwrap_or(info.tex_coord), rows })
+    first_mapping(document.materials.get(material?).ok()?)
 }
 
 /// The texture that colours the material, of either workflow.
@@ -181,8 +260,8 @@ fn color_texture(json: &Json) -> Option<Info> {
     })
 }
 
-/// Everything of a material but its texture.
-fn colors(json: &Json, from: Palette<'_>, city: &mut CityModel) -> Material {
+/// Everything of a material but its textures.
+fn colors(json: &Json) -> Material {
     let pbr = &json.pbr_metallic_roughness;
     let extension = |name: &str| json.extensions.as_ref().and_then(|e| e.others.get(name));
     let mut base_color = pbr.base_color_factor.0;
@@ -193,29 +272,14 @@ fn colors(json: &Json, from: Palette<'_>, city: &mut CityModel) -> Material {
         roughness = 1.0 - glossy.get("glossinessFactor").and_then(serde_json::Value::as_f64).unwrap_or(1.0) as f32;
     }
     let strength = extension("KHR_materials_emissive_strength").and_then(|e| e.get("emissiveStrength")?.as_f64());
-    let mut emissive = json.emissive_factor.0.map(|c| sane(c * strength.unwrap_or(1.0) as f32, f32::MAX));
-    let mut not_drawn = |what: &str| {
-        city.warnings.add(WarningCode::Unsupported, "", || {
-            let name = json.name.as_deref().unwrap_or("unnamed");
-            format!("{}, material {name:?}: {what} textures are not drawn", from.around.path.display())
-        });
-    };
-    if json.emissive_texture.is_some() && emissive != [0.0; 3] {
-        // Without its picture the light would flood the whole surface.
-        emissive = [0.0; 3];
-        not_drawn("emissive");
-    }
-    if json.normal_texture.is_some() {
-        not_drawn("normal");
-    }
+    let emissive = json.emissive_factor.0.map(|c| sane(c * strength.unwrap_or(1.0) as f32, f32::MAX));
     Material {
         name: json.name.clone().unwrap_or_default(),
         base_color: base_color.map(|c| sane(c, 1.0)),
         emissive,
         roughness: sane(roughness, 1.0),
         unlit: json.extensions.as_ref().is_some_and(|e| e.unlit.is_some()),
-        texels: TexelOpacity::Ignored,
-        texture: NONE,
+        ..Material::default()
     }
 }
 

@@ -71,8 +71,9 @@ pub(super) fn read(
     let bytes = std::fs::read(&path).map_err(|e| failed(e.to_string()))?;
     let clean = cleaned(&bytes, &path, &mut city.warnings);
     let (materials, _) = tobj::load_mtl_buf(&mut clean.as_bytes()).map_err(|e| failed(e.to_string()))?;
+    let mut known = known(city);
     for material in materials {
-        let look = add(city, &material, &path, options);
+        let look = add(city, &mut known, &material, &path, options);
         looks.insert(material.name, look);
     }
     Ok(())
@@ -100,9 +101,11 @@ fn cleaned(bytes: &[u8], path: &Path, warnings: &mut Warnings) -> String {
                 halo.filter(|n| n.is_finite()).map(|n| format!("d {n}"))
             }
             b"Tr" => numbers.first().map(|n| format!("d {}", 1.0 - n)),
-            b"map_Kd" | b"map_d" if !arguments.is_empty() => Some(format!("{} {}", text(keyword), text(arguments))),
+            b"map_Kd" | b"map_d" | b"map_Ke" | b"norm" if !arguments.is_empty() => {
+                Some(format!("{} {}", text(keyword), text(arguments)))
+            }
             // The rest changes nothing that is drawn here.
-            b"newmtl" | b"map_Kd" | b"map_d" => None,
+            b"newmtl" | b"map_Kd" | b"map_d" | b"map_Ke" | b"norm" => None,
             _ => continue,
         };
         named |= keyword == b"newmtl" && statement.is_some();
@@ -121,62 +124,113 @@ fn cleaned(bytes: &[u8], path: &Path, warnings: &mut Warnings) -> String {
     clean
 }
 
+/// Textures that are there, by what they are and whether they hold normals: a texture is read as colours or as normals.
+type Known = FxHashMap<(Texture, bool), u32>;
+
+fn known(city: &CityModel) -> Known {
+    let of = |material: &Material| {
+        let Material { texture, emissive_texture, normal_texture, .. } = *material;
+        [(texture, false), (emissive_texture, false), (normal_texture, true)]
+    };
+    let all = city.materials.iter().flat_map(of);
+    let there = all.filter_map(|(number, has_normals)| {
+        let texture = city.textures.get(number as usize).filter(|texture| !texture.image.is_missing())?;
+        Some(((texture.clone(), has_normals), number))
+    });
+    there.collect()
+}
+
 /// Adds a material, and its untextured twin where it has a texture.
-fn add(city: &mut CityModel, mtl: &tobj::Material, path: &Path, options: &LoadOptions) -> Look {
+fn add(city: &mut CityModel, known: &mut Known, mtl: &tobj::Material, path: &Path, options: &LoadOptions) -> Look {
     let linear = |c: f64| srgb_to_linear(c.clamp(0.0, 1.0)) as f32;
     let kd = mtl.diffuse.unwrap_or([0.8; 3]).map(linear);
     let opacity = mtl.dissolve.unwrap_or(1.0).clamp(0.0, 1.0) as f32;
+    let other = |keyword: &str| mtl.unknown_param.get(keyword).map(String::as_str);
+    let maps = Maps {
+        color: mtl.diffuse_texture.as_deref(),
+        opacity: mtl.dissolve_texture.as_deref(),
+        light: other("map_Ke"),
+        normals: other("norm"),
+    };
+    let ke = mtl.emissive.unwrap_or_default().map(linear);
     let plain = Material {
         name: mtl.name.clone(),
         base_color: [kd[0], kd[1], kd[2], opacity],
-        emissive: mtl.emissive.unwrap_or_default().map(linear),
+        // Without its picture the light would flood the whole surface.
+        emissive: if maps.light.is_some() { [0.0; 3] } else { ke },
         // Blinn-Phong exponent to roughness, so that both highlights are as wide.
         roughness: mtl.shininess.map_or(0.9, |ns| (2.0 / (ns.max(0.0) + 2.0)).sqrt() as f32),
         ..Material::default()
     };
-    let maps = Maps { color: mtl.diffuse_texture.as_deref(), opacity: mtl.dissolve_texture.as_deref() };
-    let texture = texture(city, &mtl.name, maps, path, options);
+    let [texture, emissive_texture, normal_texture] =
+        textures(city, &mtl.name, maps, path, options).map(|texture| number_of(city, known, texture));
     city.materials.push(plain.clone());
     let untextured = (city.materials.len() - 1) as u32;
-    let Some(texture) = texture else { return Look { textured: untextured, plain: untextured } };
-    // Kd multiplies the texture (MTL specification), but exporters that mean "as it is" write 0.
-    let shade = if kd == [0.0; 3] && mtl.diffuse_texture.is_some() { [1.0; 3] } else { kd };
-    let texels = TexelOpacity::Translucent;
-    city.materials.push(Material { base_color: [shade[0], shade[1], shade[2], opacity], texture, texels, ..plain });
+    if [texture, emissive_texture, normal_texture] == [NONE; 3] {
+        return Look { textured: untextured, plain: untextured };
+    }
+    // Kd and Ke multiply their textures (MTL specification), but exporters that mean "as it is" write 0.
+    let shade = |own: [f32; 3], map: Option<&str>| if own == [0.0; 3] && map.is_some() { [1.0; 3] } else { own };
+    let [r, g, b] = shade(kd, maps.color);
+    city.materials.push(Material {
+        base_color: [r, g, b, opacity],
+        emissive: shade(ke, maps.light),
+        texels: TexelOpacity::Translucent,
+        texture,
+        emissive_texture,
+        normal_texture,
+        ..plain
+    });
     Look { textured: untextured + 1, plain: untextured }
 }
 
-/// The `map_Kd` and `map_d` statements of a material: options, then a file name that may hold spaces.
+/// The statements of a material that name images: options, then a file name that may hold spaces.
 #[derive(Clone, Copy)]
 struct Maps<'a> {
     color: Option<&'a str>,
     opacity: Option<&'a str>,
+    light: Option<&'a str>,
+    normals: Option<&'a str>,
 }
 
-/// Adds the texture of these, if there is one.
-fn texture(city: &mut CityModel, material: &str, maps: Maps, path: &Path, options: &LoadOptions) -> Option<u32> {
+/// Their textures, and whether they hold normals: of the colour and its opacity, of the light, of the normals.
+fn textures(
+    city: &mut CityModel,
+    material: &str,
+    maps: Maps,
+    path: &Path,
+    options: &LoadOptions,
+) -> [Option<(Texture, bool)>; 3] {
     let mut found = |keyword, arguments| {
         let statement = MapStatement { material, keyword, arguments };
         map(&mut city.warnings, statement, path, options)
     };
     let (color, opacity) = (maps.color.map(|s| found("map_Kd", s)), maps.opacity.map(|s| found("map_d", s)));
-    let texture = match (color, opacity) {
-        (None, None) => return None,
+    let (light, normals) = (maps.light.map(|s| found("map_Ke", s)), maps.normals.map(|s| found("norm", s)));
+    let texture = |(image, wrap), opacity| Texture { image, wrap: [wrap; 2], opacity };
+    let color = match (color, opacity) {
+        (None, None) => None,
         // Exporters name one image twice: its opacity is its own.
-        (Some((image, wrap)), Some((other, _))) if image != other => {
-            Texture { image, wrap: [wrap; 2], opacity: TextureOpacity::Of(other) }
-        }
-        (Some((image, wrap)), _) => Texture { image, wrap: [wrap; 2], opacity: TextureOpacity::Own },
-        (None, Some((image, wrap))) => Texture { image, wrap: [wrap; 2], opacity: TextureOpacity::Alone },
+        (Some(color), Some((other, _))) if color.0 != other => Some(texture(color, TextureOpacity::Of(other))),
+        (Some(color), _) => Some(texture(color, TextureOpacity::Own)),
+        (None, Some(opacity)) => Some(texture(opacity, TextureOpacity::Alone)),
     };
-    let known = city.textures.iter().rposition(|t| *t == texture);
-    Some(match known.filter(|_| !texture.image.is_missing()) {
-        Some(known) => known as u32,
-        None => {
-            city.textures.push(texture);
-            u32::try_from(city.textures.len() - 1).unwrap_or(NONE)
-        }
-    })
+    let [light, normals] = [light, normals].map(|found| found.map(|found| texture(found, TextureOpacity::Own)));
+    [color.map(|of| (of, false)), light.map(|of| (of, false)), normals.map(|of| (of, true))]
+}
+
+/// The number of a texture in the city: that of the same one, or a new one; [`NONE`] where there is none.
+fn number_of(city: &mut CityModel, known: &mut Known, texture: Option<(Texture, bool)>) -> u32 {
+    let Some(key) = texture else { return NONE };
+    if let Some(number) = known.get(&key) {
+        return *number;
+    }
+    let Ok(number) = u32::try_from(city.textures.len()) else { return NONE };
+    city.textures.push(key.0.clone());
+    if !key.0.image.is_missing() {
+        known.insert(key, number);
+    }
+    number
 }
 
 /// A statement that names an image.

@@ -54,6 +54,8 @@ pub struct CompositeKey {
     pub blended: bool,
     /// Something has light of its own.
     pub emits: bool,
+    /// Whether texels say how much of it.
+    pub texels_emit: bool,
     /// One clay colour.
     pub clay: bool,
     /// There is a shadow map.
@@ -80,6 +82,7 @@ impl CompositeKey {
             textured: layering::has_colors(plan),
             blended: plan.blended,
             emits: plan.emits,
+            texels_emit: plan.texels_emit,
             clay: plan.is_clay(),
             shadows: plan.sun.is_some(),
             smooth: plan.smooth,
@@ -103,6 +106,7 @@ impl PipelineKey for CompositeKey {
             (self.textured, "textured"),
             (self.blended, "blended"),
             (self.emits, "emission"),
+            (self.texels_emit, "of texels"),
             (self.clay, "clay"),
             (self.shadows, "shadows"),
             (self.smooth, "smooth"),
@@ -124,6 +128,7 @@ impl PipelineKey for CompositeKey {
                 ("TEXTURED", flag(self.textured)),
                 ("BLENDED", flag(self.blended)),
                 ("EMITS", flag(self.emits)),
+                ("TEXELS_EMIT", flag(self.texels_emit)),
                 ("CLAY", flag(self.clay)),
                 ("SHADOWS", flag(self.shadows)),
                 ("SMOOTH", flag(self.smooth)),

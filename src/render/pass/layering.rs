@@ -96,7 +96,7 @@ pub fn shows_layers(plan: &FramePlan) -> bool {
 
 /// Words of a fragment node.
 pub fn words(plan: &FramePlan) -> u32 {
-    3 + u32::from(plan.smooth) + u32::from(has_colors(plan))
+    3 + u32::from(plan.smooth) + u32::from(has_colors(plan)) + u32::from(plan.texels_emit)
 }
 
 /// Whether nodes have a colour, and with it the opacity of a texel where textures have some: in clay too.

@@ -59,6 +59,8 @@ struct ListKey {
     textured: bool,
     /// Whether these have the opacity of texels.
     blended: bool,
+    /// Whether nodes have shares of own light.
+    texels_emit: bool,
     /// What is translucent.
     program: Program,
     /// All is.
@@ -100,11 +102,12 @@ impl PipelineKey for ListKey {
             (self.all, "of all"),
             (self.textured, "textured"),
             (self.blended, "blended"),
+            (self.texels_emit, "of light"),
             (smooth, "smooth"),
             (flat, "flat"),
             (self.holds_depth, "held"),
         ]);
-        format!("{}{}{flags}", self.module().name(), self.section.layer_words())
+        format!("{}{}{flags}", self.module().name(), self.section.words())
     }
 
     fn parts(&self, _: wgpu::TextureFormat) -> Parts {
@@ -113,6 +116,7 @@ impl PipelineKey for ListKey {
             ("FLAT_CITY", flag(self.normals.flat)),
             ("TEXTURED", flag(self.textured)),
             ("BLENDED", flag(self.blended)),
+            ("TEXELS_EMIT", flag(self.texels_emit)),
             ("ALL", flag(self.all)),
         ];
         let compare = match self.is_interpolated() {
@@ -126,7 +130,7 @@ impl PipelineKey for ListKey {
                 Some(&LAYERS),
                 Some(&CUT_CITY),
                 Some(&LENSES),
-                self.section.image(),
+                self.section.images(),
                 self.holds_depth.then_some(&CORNERS),
             ],
             constants: constants.into_iter().chain(self.section.constants(self.holds_depth)).collect(),
@@ -282,6 +286,7 @@ fn list_key(plan: &FramePlan, program: &Program, section: &SectionFacts, all: bo
         normals: Normals::new(plan.smooth, section.is_smooth),
         textured: layering::has_colors(plan),
         blended: plan.blended,
+        texels_emit: plan.texels_emit,
         program: program.clone(),
         all,
         early: plan.adapter.tests_depth_early,

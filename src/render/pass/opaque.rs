@@ -3,7 +3,7 @@
 use crate::{
     render::{
         cities::DrawnSection,
-        city::{Chunk, CityBuffers, Draw as Run, Section, Texels, draws_of},
+        city::{Chunk, CityBuffers, Draw as Run, Section, draws_of},
         city_facts::SectionFacts,
         cut::Cut,
         pass::{
@@ -36,6 +36,8 @@ pub struct GeometryKey {
     pub normals: Normals,
     /// Whether interpolated depth is written, for the AOV.
     pub measured: bool,
+    /// Whether the picture has shares of own light.
+    pub texels_emit: bool,
     /// What is hidden; of a program that tells regions apart, what is not in the one that is drawn.
     pub cut: Option<Program>,
     /// Whether triangles hold their depth where they are seen edge on.
@@ -50,6 +52,7 @@ impl GeometryKey {
             colored: plan.colored,
             normals: Normals::new(plan.smooth, section.is_smooth),
             measured: plan.input.measured,
+            texels_emit: plan.texels_emit,
             cut,
             holds_depth: plan.holds_depth(section),
         }
@@ -74,27 +77,19 @@ impl GeometryKey {
     }
 
     fn targets(&self) -> Vec<Option<wgpu::ColorTargetState>> {
-        let mut targets = vec![Some(codes(self.normals.smooth).into()), self.colored.then(|| COLORS.into())];
-        targets.extend(self.measured.then(|| Some(OWN_DEPTH.into())));
-        // Without the colour target the list ends where it may.
-        targets.truncate(if self.measured { 3 } else { 1 + usize::from(self.colored) });
-        if self.is_of_region() {
-            targets.resize(3, None);
-            targets.push(Some(REGIONS.into()));
-        }
-        targets
+        in_order([
+            Some(codes(self.normals.smooth).into()),
+            self.colored.then(|| COLORS.into()),
+            self.measured.then(|| OWN_DEPTH.into()),
+            self.is_of_region().then(|| REGIONS.into()),
+            self.texels_emit.then(|| self.section.emissions()),
+        ])
     }
 }
 
 impl PipelineKey for GeometryKey {
     fn name(&self) -> String {
-        let kind = match self.section {
-            GeometryKind::Plain => "",
-            GeometryKind::Textured(Texels::Opaque) => " textured",
-            GeometryKind::Textured(Texels::Holes(_)) => " textured with holes",
-            GeometryKind::Textured(Texels::Translucent) => " of translucent textures",
-            GeometryKind::Coplanar => " coplanar",
-        };
+        let kind = self.section.words();
         let Normals { smooth, flat } = self.normals;
         let flags = words(&[
             (self.colored, "colored"),
@@ -120,7 +115,7 @@ impl PipelineKey for GeometryKey {
                 Some(if self.is_of_region() { &REGION } else { &VIEW }),
                 Some(if is_cut { &CUT_CITY } else { &CITY }),
                 is_cut.then_some(&LENSES),
-                self.section.image(),
+                self.section.images(),
                 self.holds_depth.then_some(&CORNERS),
             ],
             constants: constants.into_iter().chain(self.section.constants(self.holds_depth)).collect(),
@@ -132,6 +127,13 @@ impl PipelineKey for GeometryKey {
             }),
         }
     }
+}
+
+/// What geometry is drawn into beside depth, as passes and pipelines list it: codes, colours, interpolated depth, regions, shares of own
+/// light. The list ends where it may.
+pub fn in_order<T>(targets: [Option<T>; 5]) -> Vec<Option<T>> {
+    let count = targets.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+    targets.into_iter().take(count).collect()
 }
 
 /// What a pass draws of a section.
@@ -208,18 +210,22 @@ pub fn draw_opaque(
 ) {
     let FrameContext { targets, groups, plan, .. } = *frame;
     let input = plan.input;
+    let shown = in_order([
+        Some(&targets.codes),
+        plan.colored.then_some(&targets.colors),
+        input.measured.then_some(&targets.own_depth),
+        None,
+        plan.texels_emit.then_some(&targets.emissions),
+    ]);
     let attachment = |view| if is_first { cleared(view, wgpu::Color::TRANSPARENT) } else { kept(view) };
-    let colors =
-        [Some(&targets.codes), plan.colored.then_some(&targets.colors), input.measured.then_some(&targets.own_depth)]
-            .map(|target| target.map(|target| attachment(&target.view)));
-    let count = if input.measured { 3 } else { 1 + usize::from(plan.colored) };
+    let colors: Vec<_> = shown.into_iter().map(|target| target.map(|target| attachment(&target.view))).collect();
     let depth = &targets.depth.view;
     let pass = DrawnPass {
         name,
         view: "main",
         lenses: cut.map_or(&[][..], |by| &by.cut.hiding.lenses),
         shaded: Shaded::Counted,
-        colors: &colors[..count],
+        colors: &colors,
         depth: Some(if is_first { cleared_depth(depth, 0.0) } else { kept_depth(depth) }),
     };
     recording.draw(pass, |pass| {

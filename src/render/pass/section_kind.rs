@@ -1,13 +1,17 @@
 //! Kinds of sections of a city, as far as pipelines differ.
 
-use crate::render::{
-    city::{SectionKind, Texels},
-    layout,
-    resource::{
-        bindings::GroupLayout,
-        key::flag,
-        layouts::IMAGE,
-        vertices::{self, per_vertex},
+use crate::{
+    city::NONE,
+    render::{
+        city::{Images, SectionKind, Texels},
+        layout,
+        resource::{
+            bindings::GroupLayout,
+            formats::EMISSIONS,
+            key::{flag, words},
+            layouts::IMAGES,
+            vertices::{self, per_vertex},
+        },
     },
 };
 
@@ -16,17 +20,35 @@ use crate::render::{
 pub enum GeometryKind {
     /// Ordinary.
     Plain,
-    /// Textured, and what the opacity of texels does.
-    Textured(Texels),
+    /// Textured, and what its images do.
+    Textured(Look),
     /// Depth from the shared plane.
     Coplanar,
+}
+
+/// What images do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Look {
+    /// The opacity of that of colours.
+    pub texels: Texels,
+    /// Whether one says how much of its own light there is.
+    pub emits: bool,
+    /// What the x and y of that of normals are multiplied with: the bits of its f32; 0 where there is none.
+    pub normal_scale: u32,
+}
+
+impl Look {
+    /// An opaque image of colours.
+    pub const PLAIN: Self = Self { texels: Texels::Opaque, emits: false, normal_scale: 0 };
 }
 
 impl From<SectionKind> for GeometryKind {
     fn from(kind: SectionKind) -> Self {
         match kind {
             SectionKind::Plain => Self::Plain,
-            SectionKind::Textured { texels, .. } => Self::Textured(texels),
+            SectionKind::Textured(Images { emission, normal_scale, texels, .. }) => {
+                Self::Textured(Look { texels, emits: emission != NONE, normal_scale })
+            }
             SectionKind::Coplanar => Self::Coplanar,
         }
     }
@@ -52,16 +74,23 @@ impl GeometryKind {
         std::iter::once(vertices::city()).chain(extra.map(Some)).collect()
     }
 
-    /// Group 3: a texture.
-    pub fn image(self) -> Option<&'static GroupLayout> {
-        matches!(self, Self::Textured(_)).then_some(&IMAGE)
+    /// Group 3: textures.
+    pub fn images(self) -> Option<&'static GroupLayout> {
+        matches!(self, Self::Textured(_)).then_some(&IMAGES)
     }
 
-    /// What the opacity of texels does, as pipelines read it; where triangles hold their depth, how many words corners have besides.
+    /// The target of shares of own light: others than these leave it alone.
+    pub fn emissions(self) -> wgpu::ColorTargetState {
+        let is_written = matches!(self, Self::Textured(Look { emits: true, .. }));
+        let write_mask = if is_written { wgpu::ColorWrites::ALL } else { wgpu::ColorWrites::empty() };
+        wgpu::ColorTargetState { format: EMISSIONS, blend: None, write_mask }
+    }
+
+    /// What images do, as pipelines read it; where triangles hold their depth, how many words corners have besides.
     pub fn constants(self, holds_depth: bool) -> Vec<(&'static str, f64)> {
-        let (texels, words) = match self {
+        let (look, words) = match self {
             Self::Plain => (None, 0),
-            Self::Textured(texels) => (Some(texels), 2),
+            Self::Textured(look) => (Some(look), 2),
             Self::Coplanar => (None, size_of::<layout::Plane>() / 4),
         };
         let least = |texels| match texels {
@@ -69,22 +98,30 @@ impl GeometryKind {
             Texels::Holes(least) => f64::from(f32::from_bits(least)),
             Texels::Translucent => LEAST_SEEN,
         };
-        let of_texels = texels
-            .map(|t| [("ALPHA_CUTOFF", least(t)), ("TRANSLUCENT", flag(t == Texels::Translucent))])
-            .into_iter()
-            .flatten();
-        of_texels.chain(holds_depth.then_some(("WORDS_BESIDES", words as f64))).collect()
+        let of_images = look.map(|Look { texels, emits, normal_scale }| {
+            [
+                ("ALPHA_CUTOFF", least(texels)),
+                ("TRANSLUCENT", flag(texels == Texels::Translucent)),
+                ("IMAGE_EMITS", flag(emits)),
+                ("NORMAL_SCALE", f64::from(f32::from_bits(normal_scale))),
+            ]
+        });
+        of_images.into_iter().flatten().chain(holds_depth.then_some(("WORDS_BESIDES", words as f64))).collect()
     }
 
-    /// What names of pipelines of layers say of it.
-    pub fn layer_words(self) -> &'static str {
-        match self {
-            Self::Plain => "",
-            Self::Textured(Texels::Opaque) => " of textures",
-            Self::Textured(Texels::Holes(_)) => " of textures with holes",
-            Self::Textured(Texels::Translucent) => " of translucent textures",
-            Self::Coplanar => " coplanar",
-        }
+    /// What names of pipelines say of it.
+    pub fn words(self) -> String {
+        let look = match self {
+            Self::Plain => return String::new(),
+            Self::Coplanar => return " coplanar".to_owned(),
+            Self::Textured(look) => look,
+        };
+        let texels = match look.texels {
+            Texels::Opaque => " of textures",
+            Texels::Holes(_) => " of textures with holes",
+            Texels::Translucent => " of translucent textures",
+        };
+        format!("{texels}{}", words(&[(look.emits, "of light"), (look.normal_scale != 0, "of normals")]))
     }
 }
 

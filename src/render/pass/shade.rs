@@ -81,6 +81,8 @@ pub struct ShadeKey {
     smooth: bool,
     /// Something has light of its own.
     emits: bool,
+    /// Texels say how much of it.
+    texels_emit: bool,
     /// Some of what is shown are sections.
     sections: bool,
     /// What is behind the city.
@@ -99,6 +101,7 @@ impl ShadeKey {
             shadows: plan.sun.is_some(),
             smooth: plan.smooth,
             emits: plan.emits,
+            texels_emit: plan.texels_emit,
             sections: plan.has_sections,
             behind: plan.input.behind(),
         }
@@ -131,6 +134,7 @@ impl PipelineKey for ShadeKey {
             (self.target == ShadeTarget::Unfiltered, "unfiltered"),
             (self.shadows, "shadows"),
             (self.emits, "emission"),
+            (self.texels_emit, "of texels"),
             (self.sections, "sections"),
         ];
         format!("{}{}", Module::Shade(self.program.clone()).name(), words(&list))
@@ -159,6 +163,7 @@ impl PipelineKey for ShadeKey {
                 ("SHADOWS", flag(self.shadows)),
                 ("SMOOTH", flag(self.smooth)),
                 ("EMITS", flag(self.emits)),
+                ("TEXELS_EMIT", flag(self.texels_emit)),
                 ("SECTIONS", flag(self.sections)),
                 ("BACKGROUND", f64::from(self.behind as u32)),
             ],

@@ -7,21 +7,21 @@ use crate::{
     render::{
         cells::Details,
         cities::DrawnSection,
-        city::{Chunk, CityBuffers, SectionKind, Texels, draws_of},
+        city::{Chunk, CityBuffers, Images, SectionKind, Texels, draws_of},
         cut::{Cut, Shapes},
         invokers::{InvokerPlans, Invokers},
         layout,
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
             opaque::{CutBy, draw_runs},
-            section_kind::GeometryKind,
+            section_kind::{GeometryKind, Look},
         },
         plan::FramePlan,
         programs::Programs,
         resource::{
             bindings::{GroupLayout, KeptGroup, STORAGE, UNIFORM, group, one_of, whole},
             key::{Draw, Parts, PipelineKey, Stage, depth_test},
-            layouts::{CITY, CUT_CITY, IMAGE, VIEW},
+            layouts::{CITY, CUT_CITY, IMAGES, VIEW},
             recording::{Counted, DrawnPass, Recording, Shaded, cleared_depth},
             synced::Synced,
             targets::Needs,
@@ -60,8 +60,8 @@ impl ShadowKey {
     /// Those of a section, where something may be hidden.
     fn new(kind: SectionKind, hidden: Option<Program>) -> Self {
         let holes = match kind {
-            SectionKind::Textured { texels: Texels::Holes(least), .. } => Some(least),
-            SectionKind::Textured { texels: Texels::Translucent, .. } => Some(LEAST_SHADOW.to_bits()),
+            SectionKind::Textured(Images { texels: Texels::Holes(least), .. }) => Some(least),
+            SectionKind::Textured(Images { texels: Texels::Translucent, .. }) => Some(LEAST_SHADOW.to_bits()),
             _ => None,
         };
         Self { hidden, holes }
@@ -75,15 +75,15 @@ impl PipelineKey for ShadowKey {
     }
 
     fn parts(&self, _: wgpu::TextureFormat) -> Parts {
-        let image = self.holes.map(|_| &IMAGE);
+        let images = self.holes.map(|_| &IMAGES);
         let (mut groups, mut fragment) = match self.hidden {
             Some(_) => (vec![Some(&VIEW), Some(&CUT_CITY), Some(&SHAPES)], Some("fragment")),
             None => (vec![Some(&VIEW), Some(&CITY), None], None),
         };
-        groups.push(image);
+        groups.push(images);
         let (mut vertex, mut section) = ("vertex", GeometryKind::Plain);
         if self.holes.is_some() {
-            (vertex, fragment, section) = ("vertex_textured", Some("textured"), GeometryKind::Textured(Texels::Opaque));
+            (vertex, fragment, section) = ("vertex_textured", Some("textured"), GeometryKind::Textured(Look::PLAIN));
         }
         Parts {
             module: Module::Shadow(self.hidden.clone()),

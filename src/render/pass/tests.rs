@@ -145,6 +145,7 @@ impl Asked {
             has_edges: true,
             has_smooth: false,
             emits: false,
+            texels_emit: false,
             own_sections: sections.clone(),
             sections,
             contents: Vec::new(),

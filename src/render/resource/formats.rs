@@ -8,6 +8,8 @@ pub const CODES: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 pub const SMOOTH_CODES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// sRGB base colours, only in cities with textures.
 pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// sRGB shares of own light, only where texels say them.
+pub const EMISSIONS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Interpolated depth, only where the depth AOV is asked for.
 pub const OWN_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// Numbers of regions, only where a technique tells them apart by passes.

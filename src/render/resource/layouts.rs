@@ -17,9 +17,18 @@ use crate::{
 pub static VIEW: GroupLayout = GroupLayout { label: "view", entries: &[(0, DRAWN, UNIFORM)] };
 /// Geometry and shadow, group 1: surfaces.
 pub static CITY: GroupLayout = GroupLayout { label: "city", entries: &[(0, S::FRAGMENT, NUMBERS)] };
-/// Geometry, group 3: a texture.
-pub static IMAGE: GroupLayout =
-    GroupLayout { label: "image", entries: &[(0, S::FRAGMENT, SAMPLED), (1, S::FRAGMENT, SAMPLER)] };
+/// Geometry, group 3: textures of colours, of shares of own light, of normals, each with how it is sampled.
+pub static IMAGES: GroupLayout = GroupLayout {
+    label: "images",
+    entries: &[
+        (0, S::FRAGMENT, SAMPLED),
+        (1, S::FRAGMENT, SAMPLER),
+        (2, S::FRAGMENT, SAMPLED),
+        (3, S::FRAGMENT, SAMPLER),
+        (4, S::FRAGMENT, SAMPLED),
+        (5, S::FRAGMENT, SAMPLER),
+    ],
+};
 /// Geometry of triangles that hold their depth, group 4: indices, vertices, what each has besides.
 pub static CORNERS: GroupLayout = GroupLayout {
     label: "corners",
@@ -41,6 +50,7 @@ pub static SHADE: GroupLayout = GroupLayout {
         (6, S::FRAGMENT, NUMBERS),
         (7, S::FRAGMENT, DEPTHS),
         (8, S::FRAGMENT, FLOATS),
+        (9, S::FRAGMENT, FLOATS),
     ],
 };
 /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks, invokers, filtered

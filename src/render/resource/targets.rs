@@ -3,7 +3,8 @@
 use crate::{
     gpu::Gpu,
     render::resource::formats::{
-        COLORS, DEPTH, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, TRANSPARENCY, codes, through,
+        COLORS, DEPTH, EMISSIONS, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, TRANSPARENCY,
+        codes, through,
     },
 };
 
@@ -14,6 +15,8 @@ pub struct Needs {
     pub size: [u32; 2],
     /// Base colours, in cities with textures.
     pub colors: bool,
+    /// Shares of own light, where texels say them.
+    pub emissions: bool,
     /// Normals beside the surface numbers, in cities with smooth faces.
     pub smooth: bool,
     /// Interpolated depth, for the AOV.
@@ -53,6 +56,7 @@ impl Needs {
             size: self.size,
             smooth: self.smooth,
             colors: self.colors || before.colors,
+            emissions: self.emissions || before.emissions,
             own_depth: self.own_depth || before.own_depth,
             sums: self.sums || before.sums,
             mask_layers: self.mask_layers.max(before.mask_layers),
@@ -101,6 +105,8 @@ pub struct Targets {
     pub depth: Target,
     /// sRGB base colours (1×1 where not needed).
     pub colors: Target,
+    /// sRGB shares of own light (1×1 where not needed).
+    pub emissions: Target,
     /// Interpolated depth of the seen face (1×1 where not needed).
     pub own_depth: Target,
     /// The picture, sRGB, straight alpha.
@@ -155,6 +161,7 @@ impl Targets {
             sprites,
             unfiltered,
             half_filtered,
+            self.emissions,
             self.filtered,
             self.lines,
             self.transparency,
@@ -205,6 +212,7 @@ impl Targets {
             codes: make_any("codes", [w, h, 1], codes(needs.smooth), drawn, false),
             depth: make_any("depth", [w, h, 1], DEPTH, drawn, false),
             colors: make_any("colors", full(needs.colors), COLORS, drawn, false),
+            emissions: make_any("shares of own light", full(needs.emissions), EMISSIONS, drawn, false),
             own_depth: make_any("own depth", full(needs.own_depth), OWN_DEPTH, drawn, false),
             picture: make_any("picture", [w, h, 1], PICTURE, drawn, false),
             sums: make_any("sums", full(needs.sums), sums, drawn, false),

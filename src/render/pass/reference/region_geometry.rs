@@ -8,8 +8,8 @@ use crate::{
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
             opaque::{
-                GeometryKey, REGION, SectionPart, add_cut_keys, add_whole_keys, draw_corners, draw_opaque, set_section,
-                visible,
+                GeometryKey, REGION, SectionPart, add_cut_keys, add_whole_keys, draw_corners, draw_opaque, in_order,
+                set_section, visible,
             },
         },
         plan::FramePlan,
@@ -78,12 +78,13 @@ impl RegionDraw<'_> {
             view: "main",
             lenses: &region.lenses,
             shaded: Shaded::Counted,
-            colors: &[
+            colors: &in_order([
                 Some(kept(&targets.codes.view)),
                 plan.colored.then(|| kept(&targets.colors.view)),
                 plan.input.measured.then(|| kept(&targets.own_depth.view)),
                 Some(map),
-            ],
+                plan.texels_emit.then(|| kept(&targets.emissions.view)),
+            ]),
             depth: Some(kept_depth(&targets.depth.view)),
         };
         recording.draw(pass, |pass| {

@@ -7,6 +7,7 @@ use crate::{
     render::{
         pass::{
             layering::{self, LayerPrograms},
+            opaque::in_order,
             section_kind::{GeometryKind, Normals},
         },
         plan::FramePlan,
@@ -176,6 +177,8 @@ pub struct FragmentKey {
     textured: bool,
     /// Whether these have the opacity of texels.
     blended: bool,
+    /// Whether nodes have shares of own light.
+    texels_emit: bool,
     /// What is translucent.
     program: Program,
     /// Whether the depth test can come first.
@@ -204,6 +207,7 @@ impl FragmentKey {
             normals: Normals::new(plan.smooth, is_smooth_city),
             textured: layering::has_colors(plan),
             blended: plan.blended,
+            texels_emit: plan.texels_emit,
             program: programs.noting.clone(),
             early: tests_early && !pass.is_forward(),
             pass,
@@ -228,6 +232,7 @@ impl FragmentKey {
             ("FLAT_CITY", flag(self.normals.flat)),
             ("TEXTURED", flag(self.textured)),
             ("BLENDED", flag(self.blended)),
+            ("TEXELS_EMIT", flag(self.texels_emit)),
         ];
         let stage = match self.pass {
             FragmentPass::Depths => Some(0.0),
@@ -261,7 +266,7 @@ impl FragmentKey {
     }
 
     fn groups(&self) -> Vec<Option<&'static GroupLayout>> {
-        let image = self.section.image();
+        let image = self.section.images();
         match self.shading {
             None => vec![Some(&SLOTS), Some(&CUT_CITY), Some(&LENSES), image],
             Some(_) => vec![Some(&FORWARD), Some(&SHADE), Some(&LENSES), image],
@@ -275,13 +280,13 @@ impl FragmentKey {
                 let multiply = blended(wgpu::BlendFactor::Zero, wgpu::BlendFactor::Src);
                 vec![target(sums, Some(add)), target(through(sums), Some(multiply))]
             }
-            (FragmentPass::Chance, Some(own)) => {
-                let mut targets = vec![target(codes(self.normals.smooth), None), None, None];
-                targets[1] = if own.colored { target(COLORS, None) } else { None };
-                targets[2] = if own.measured { target(OWN_DEPTH, None) } else { None };
-                targets.truncate(if own.measured { 3 } else { 1 + usize::from(own.colored) });
-                targets
-            }
+            (FragmentPass::Chance, Some(own)) => in_order([
+                target(codes(self.normals.smooth), None),
+                if own.colored { target(COLORS, None) } else { None },
+                if own.measured { target(OWN_DEPTH, None) } else { None },
+                None,
+                self.texels_emit.then(|| self.section.emissions()),
+            ]),
             _ => Vec::new(),
         }
     }
@@ -305,9 +310,14 @@ impl PipelineKey for FragmentKey {
             FragmentPass::Tail | FragmentPass::Chance => "",
         };
         let Normals { smooth, flat } = self.normals;
-        let flags =
-            words(&[(self.textured, "textured"), (self.blended, "blended"), (smooth, "smooth"), (flat, "flat")]);
-        format!("{}{pass}{}{flags}", self.module().name(), self.section.layer_words())
+        let flags = words(&[
+            (self.textured, "textured"),
+            (self.blended, "blended"),
+            (self.texels_emit, "of light"),
+            (smooth, "smooth"),
+            (flat, "flat"),
+        ]);
+        format!("{}{pass}{}{flags}", self.module().name(), self.section.words())
     }
 
     fn parts(&self, sums: wgpu::TextureFormat) -> Parts {

@@ -8,6 +8,7 @@ use crate::{
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass},
             layering::{LayerPrograms, Layering},
+            opaque::in_order,
             translucent::draw_translucent,
             transparency::fragments::{FORWARD, FragmentKey, FragmentPass, Slots},
         },
@@ -46,8 +47,8 @@ impl StochasticLayers {
             (5, one_of::<layout::City>(&shared.cities)),
         ];
         let view = group(gpu, "fragments", &pipelines.layout(&FORWARD), &entries);
-        let read =
-            ShadedTargets { codes: cities.surfaces(), depth: &targets.shadow.view, colors: &targets.transparency.view };
+        let colors = &targets.transparency.view;
+        let read = ShadedTargets { codes: cities.surfaces(), depth: &targets.shadow.view, colors, emissions: colors };
         let shading = shared.shading(&cities, targets, read);
         [view, group(gpu, "shade without targets", &pipelines.layout(&SHADE), &shading)]
     }
@@ -96,18 +97,19 @@ impl Pass for StochasticLayers {
         }
         let FrameContext { targets, groups, plan, .. } = *frame;
         let [view, shade] = Self::groups(frame);
-        let (colored, measured) = (plan.colored, plan.input.measured);
-        let colors = [
+        let colors = in_order([
             Some(kept(&targets.codes.view)),
-            colored.then(|| kept(&targets.colors.view)),
-            measured.then(|| kept(&targets.own_depth.view)),
-        ];
+            plan.colored.then(|| kept(&targets.colors.view)),
+            plan.input.measured.then(|| kept(&targets.own_depth.view)),
+            None,
+            plan.texels_emit.then(|| kept(&targets.emissions.view)),
+        ]);
         let pass = DrawnPass {
             name: FragmentPass::Chance.name(),
             view: "main",
             lenses: &layering.cut.hiding.lenses,
             shaded: Shaded::Counted,
-            colors: &colors[..if measured { 3 } else { 1 + usize::from(colored) }],
+            colors: &colors,
             depth: Some(kept_depth(&targets.depth.view)),
         };
         recording.draw(pass, |pass| {
