@@ -205,6 +205,8 @@ struct CoplanarVarying {
     @location(0) @interpolate(flat, either) code: u32,
     @location(1) normal: vec3f,
     @location(2) @interpolate(flat, either) plane: vec3f,   // dot(plane, (pixel, 1)) = depth
+    @location(3) texcoord: vec2f,   // where it has images
+    @location(4) relative: vec3f,   // to the eye, world axes, metres
 }
 
 struct Plane {
@@ -243,7 +245,14 @@ fn coplanar(in: Vertex, plane: Plane) -> CoplanarVarying {
     if SMOOTH {
         normal = city_direction(decode_normal(in.normal));
     }
-    return CoplanarVarying(face.clip, face.code, normal, seen);
+    return CoplanarVarying(face.clip, face.code, normal, seen, vec2f(0.0), city_relative(in.origin, in.position));
+}
+
+@vertex
+fn vertex_coplanar_textured(in: Vertex, plane: Plane, @location(7) texcoord: vec2f) -> CoplanarVarying {
+    var face = coplanar(in, plane);
+    face.texcoord = texcoord;
+    return face;
 }
 
 // Where the plane is seen edge on, its depth leaves 0..1 or is no number: the interpolated one will do.
@@ -287,4 +296,27 @@ fn coplanar_full(in: CoplanarVarying) -> CoplanarFull {
     // Where corners are drawn elsewhere, the interpolated depth is off, and not what lenses are asked by.
     let own_depth = select(depth, in.clip.z, SNAPPING == 0.0);
     return CoplanarFull(coplanar_code(in), color, own_depth/*@region*/, depth);
+}
+
+struct CoplanarTextured {
+    @location(0) code: vec2u,
+    @location(1) color: vec4f,
+    @location(2) own_depth: f32,
+    //@region-member
+    @location(4) light: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn coplanar_textured(in: CoplanarVarying) -> CoplanarTextured {
+    let look = look_at(in.texcoord, in.normal, in.relative, in.code);
+    if look.opacity < ALPHA_CUTOFF {
+        discard;
+    }
+    texel_opacity = select(1.0, look.opacity, TRANSLUCENT);
+    let depth = depth_on_plane(in.plane, in.clip);
+    cut(in.clip.xy, depth, in.code);
+    let own_depth = select(depth, in.clip.z, SNAPPING == 0.0);
+    let code = vec2u(in.code, look.normal);
+    return CoplanarTextured(code, vec4f(look.color, 1.0), own_depth/*@region*/, vec4f(look.light, 1.0), depth);
 }

@@ -4,7 +4,7 @@
 @vertex
 fn vertex_held_layer(@builtin(vertex_index) index: u32, @builtin(instance_index) layer: u32) -> HeldVarying {
     var face = held_corner(index);
-    face.code = select(face.code | ALONE, code_in_plane(face.code, layer), WORDS_BESIDES == WORDS_OF_PLANE);
+    face.code = select(face.code | ALONE, code_in_plane(face.code, layer), is_of_plane());
     return face;
 }
 

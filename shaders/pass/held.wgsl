@@ -15,10 +15,11 @@ struct Corner {
 @group(4) @binding(1) var<storage, read> corners: array<Corner>;
 @group(4) @binding(2) var<storage, read> corner_words: array<u32>; // what each has besides
 
-// Words that each has besides: none, a texture coordinate, a plane.
+// Words that each has besides: none, a texture coordinate, a plane, a plane and a texture coordinate.
 override WORDS_BESIDES: u32 = 0u;
 const WORDS_OF_TEXTURE: u32 = 2u;
 const WORDS_OF_PLANE: u32 = 7u;
+const WORDS_OF_BOTH: u32 = 9u;
 // Faces of a plane take their depths from it, alike to the last bit: they are not held that closely.
 const PLANE_ROOM: f32 = 1e-6;
 
@@ -45,6 +46,10 @@ fn number_besides(index: u32, word: u32) -> f32 {
     return bitcast<f32>(word_besides(index, word));
 }
 
+fn is_of_plane() -> bool {
+    return WORDS_BESIDES >= WORDS_OF_PLANE;
+}
+
 fn held_corner(index: u32) -> HeldVarying {
     let in = corner_at(index);
     let face = placed(in);
@@ -56,11 +61,11 @@ fn held_corner(index: u32) -> HeldVarying {
         range = vec2f(min(range.x, depth), max(range.y, depth));
     }
     var texcoord = vec2f(0.0);
-    if WORDS_BESIDES == WORDS_OF_TEXTURE {
-        texcoord = vec2f(number_besides(index, 0u), number_besides(index, 1u));
+    if WORDS_BESIDES == WORDS_OF_TEXTURE || WORDS_BESIDES == WORDS_OF_BOTH {
+        texcoord = vec2f(number_besides(index, WORDS_BESIDES - 2u), number_besides(index, WORDS_BESIDES - 1u));
     }
     var plane = vec3f(0.0);
-    if WORDS_BESIDES == WORDS_OF_PLANE {
+    if is_of_plane() {
         let normal = vec3f(number_besides(index, 0u), number_besides(index, 1u), number_besides(index, 2u));
         let origin = bitcast<vec3i>(vec3u(word_besides(index, 3u), word_besides(index, 4u), word_besides(index, 5u)));
         plane = coplanar(in, Plane(normal, origin, number_besides(index, 6u))).plane;
@@ -77,7 +82,7 @@ fn vertex_held(@builtin(vertex_index) index: u32) -> HeldVarying {
 // Of the triangle's own plane, and of the plane that it shares.
 fn held_depths(in: HeldVarying) -> vec2f {
     let own = clamp(in.clip.z, in.range.x, in.range.y);
-    if WORDS_BESIDES == WORDS_OF_PLANE {
+    if is_of_plane() {
         return vec2f(own, clamp(depth_on_plane(in.plane, in.clip), in.range.x - PLANE_ROOM, in.range.y + PLANE_ROOM));
     }
     return vec2f(own);
@@ -98,17 +103,8 @@ fn held_full(in: HeldVarying) -> CoplanarFull {
     return CoplanarFull(vec2u(in.code, held_normal(in, in.code)), color, depths.x/*@region*/, depths.y);
 }
 
-struct HeldTextured {
-    @location(0) code: vec2u,
-    @location(1) color: vec4f,
-    @location(2) own_depth: f32,
-    //@region-member
-    @location(4) light: vec4f,
-    @builtin(frag_depth) depth: f32,
-}
-
 @fragment
-fn held_textured(in: HeldVarying) -> HeldTextured {
+fn held_textured(in: HeldVarying) -> CoplanarTextured {
     let look = look_at(in.texcoord, in.normal, in.relative, in.code);
     if look.opacity < ALPHA_CUTOFF {
         discard;
@@ -117,5 +113,5 @@ fn held_textured(in: HeldVarying) -> HeldTextured {
     let depths = held_depths(in);
     cut(in.clip.xy, depths.y, in.code);
     let code = vec2u(in.code, look.normal);
-    return HeldTextured(code, vec4f(look.color, 1.0), depths.x/*@region*/, vec4f(look.light, 1.0), depths.y);
+    return CoplanarTextured(code, vec4f(look.color, 1.0), depths.x/*@region*/, vec4f(look.light, 1.0), depths.y);
 }

@@ -120,3 +120,29 @@ fn note_coplanar(in: CoplanarVarying) {
     let normal = select(0u, normal_code(in.normal, code), SMOOTH);
     add_node(in.clip.xy, depth, code, in.code & ~NODE_CODE, normal, natural_color(code), 0u);
 }
+
+@vertex
+fn vertex_textured_layer(
+    in: Vertex,
+    plane: Plane,
+    @location(7) texcoord: vec2f,
+    @builtin(instance_index) layer: u32,
+) -> CoplanarVarying {
+    var face = coplanar(in, plane);
+    face.code = code_in_plane(face.code, layer);
+    face.texcoord = texcoord;
+    return face;
+}
+
+@fragment
+fn note_textured_coplanar(in: CoplanarVarying) {
+    let code = in.code & NODE_CODE;
+    let look = look_at(in.texcoord, in.normal, in.relative, code);
+    let depth = depth_on_plane(in.plane, in.clip);
+    let is_behind = textureLoad(opaque_depth, vec2i(in.clip.xy), 0) > depth - room_before_opaque(depth, in.plane.xy);
+    if is_behind || look.opacity < ALPHA_CUTOFF {
+        return;
+    }
+    texel_opacity = select(1.0, look.opacity, TRANSLUCENT);
+    add_node(in.clip.xy, depth, code, in.code & ~NODE_CODE, look.normal, packed_texel(look.color), packed(look.light));
+}

@@ -60,3 +60,30 @@ fn lay_coplanar(in: CoplanarVarying) -> Laid {
     let normal = select(0u, normal_code(in.normal, code), SMOOTH);
     return lay(in.clip.xy, depth, code, in.code & ~KEPT_CODE, normal, own_color(code), 0u);
 }
+
+@vertex
+fn vertex_textured_in_plane(
+    in: Vertex,
+    plane: Plane,
+    @location(7) texcoord: vec2f,
+    @builtin(instance_index) layer: u32,
+) -> CoplanarVarying {
+    var face = coplanar(in, plane);
+    face.code = (face.code & KEPT_CODE) | ((MOST_KEPT_IN_PLANE - min(layer, MOST_KEPT_IN_PLANE)) << KEPT_PLANE_SHIFT);
+    face.texcoord = texcoord;
+    return face;
+}
+
+@fragment
+fn lay_textured_coplanar(in: CoplanarVarying) -> Laid {
+    let code = in.code & KEPT_CODE;
+    let look = look_at(in.texcoord, in.normal, in.relative, code);
+    let depth = depth_on_plane(in.plane, in.clip);
+    //@behind-plane
+    if look.opacity < ALPHA_CUTOFF {
+        discard;
+    }
+    texel_opacity = select(1.0, look.opacity, TRANSLUCENT);
+    let color = packed_texel(look.color);
+    return lay(in.clip.xy, depth, code, in.code & ~KEPT_CODE, look.normal, color, packed(look.light));
+}

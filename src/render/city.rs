@@ -4,7 +4,7 @@
 //! view draws the chunks its frustum meets, near ones first. Block models, once small views ask for them, are chunks beside the others. Textured faces stand apart by texture, and those that
 //! overlap in exactly one plane by layer: one layer is drawn after the other.
 
-use std::ops::Range;
+use std::{collections::BTreeMap, ops::Range};
 
 use bytemuck::Zeroable;
 use glam::{DVec3, IVec3, Vec3};
@@ -104,7 +104,7 @@ pub struct Section {
     pub vertices: wgpu::Buffer,
     /// Three per triangle.
     pub indices: wgpu::Buffer,
-    /// Texture coordinates or planes, one per vertex.
+    /// Texture coordinates or planes or both, one per vertex.
     pub extra: Option<wgpu::Buffer>,
     /// In drawing order.
     pub chunks: Vec<Chunk>,
@@ -128,8 +128,28 @@ pub enum SectionKind {
     Plain,
     /// Triangles with images.
     Textured(Images),
-    /// Overlapping triangles of shared planes, one layer of them.
-    Coplanar,
+    /// Overlapping triangles of shared planes, one layer of them, with images or without.
+    Coplanar(Option<Images>),
+}
+
+impl SectionKind {
+    /// Its images.
+    pub fn images(self) -> Option<Images> {
+        match self {
+            Self::Plain | Self::Coplanar(None) => None,
+            Self::Textured(images) | Self::Coplanar(Some(images)) => Some(images),
+        }
+    }
+
+    /// Whether it is a layer of shared planes.
+    pub fn is_layer(self) -> bool {
+        matches!(self, Self::Coplanar(_))
+    }
+
+    /// What it is where it stands in no plane any more.
+    pub fn out_of_plane(self) -> Self {
+        self.images().map_or(Self::Plain, Self::Textured)
+    }
 }
 
 /// The city's buffers.
@@ -232,6 +252,13 @@ struct WeldKind {
 impl Gathered {
     fn new(kind: WeldKind, group: Group) -> Self {
         Self { weld: Weld::new(kind.smooth, kind.provoking), texcoords: Vec::new(), runs: Vec::new(), group }
+    }
+
+    /// Adds a corner that no other triangle has.
+    fn push(&mut self, vertex: CityVertex, texcoord: [f32; 2]) {
+        self.weld.indices.push(self.weld.vertices.len() as u32);
+        self.weld.vertices.push(vertex);
+        self.texcoords.push(texcoord);
     }
 
     fn close_run(&mut self, bounds: Aabb, cell: u32, details: u8) {
@@ -353,7 +380,16 @@ impl CityBuffers {
         }
         for (number, layer) in (0..).zip(&layers) {
             for Layer { gathered, planes, .. } in layer {
-                let section = upload(gpu, SectionKind::Coplanar, gathered, Extra { name: "planes", each: planes })?;
+                let kind = SectionKind::Coplanar(gathered.group.images);
+                let section = match kind.images() {
+                    None => upload(gpu, kind, gathered, Extra { name: "planes", each: planes })?,
+                    Some(_) => {
+                        let both = planes.iter().zip(&gathered.texcoords);
+                        let both = both.map(|(&plane, &texcoord)| layout::TexturedPlane { plane, texcoord });
+                        let each: Vec<layout::TexturedPlane> = both.collect();
+                        upload(gpu, kind, gathered, Extra { name: "planes and texture coordinates", each: &each })?
+                    }
+                };
                 push(section.map(|(section, t, v)| (Section { layer: number, ..section }, t, v)));
             }
         }
@@ -363,9 +399,8 @@ impl CityBuffers {
         let surfaces = surfaces::upload(gpu, &entries)?;
         let surface_table = entries;
         let emits = surface_table.iter().any(layout::Surface::emits);
-        let emitting =
-            |section: &Section| matches!(section.kind, SectionKind::Textured(images) if images.emission != NONE);
-        let texels_emit = sections.iter().any(emitting);
+        let texels_emit =
+            sections.iter().filter_map(|section| section.kind.images()).any(|images| images.emission != NONE);
         let figures = CellFigures::of_all(cells.count, sections.iter().flat_map(|section| &section.chunks));
         let bytes = gpu.allocated_bytes() - bytes_before + textures.bytes();
         Ok(Self {
@@ -499,15 +534,26 @@ fn gather_tile(
         }
         let kind = WeldKind { smooth: false, provoking: 0 };
         let target = textured.entry(group).or_insert_with(|| Gathered::new(kind, group));
-        let at = triangle as usize * 3;
-        for (vertex, &corner) in corners.into_iter().zip(&model.indices[at..at + 3]) {
-            let surface = table.number(first.surface, vertex.normal, true);
-            target.weld.indices.push(target.weld.vertices.len() as u32);
-            target.weld.vertices.push(CityVertex::new(tile.origin, surface, vertex.position, vertex.normal));
-            target.texcoords.push(model.texcoords[(tile.texcoords + corner) as usize]);
-        }
+        let corners = textured_corners(model, tile, triangle, table);
+        corners.into_iter().for_each(|(vertex, texcoord)| target.push(vertex, texcoord));
     }
     plain.iter_mut().for_each(|gathered| gathered.weld.end_tile());
+}
+
+/// The corners of a model triangle that has texture coordinates; `triangle` counts from the model's first.
+fn textured_corners(
+    model: &CityModel,
+    tile: &Tile,
+    triangle: u32,
+    table: &mut SurfaceTable,
+) -> [(CityVertex, [f32; 2]); 3] {
+    let corners = corners_of(model, tile, triangle);
+    [0, 1, 2].map(|k| {
+        let vertex = corners[k];
+        let surface = table.number(corners[0].surface, vertex.normal, true);
+        let texcoord = model.texcoords[(tile.texcoords + model.indices[triangle as usize * 3 + k]) as usize];
+        (CityVertex::new(tile.origin, surface, vertex.position, vertex.normal), texcoord)
+    })
 }
 
 fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered) -> Aabb {
@@ -611,54 +657,66 @@ impl Layer {
         self.gathered.weld.triangle(owner, corners);
     }
 
+    /// Adds one that has images: no vertex of it is shared.
+    fn textured(&mut self, plane: layout::Plane, corners: [(CityVertex, [f32; 2]); 3]) {
+        for (vertex, texcoord) in corners {
+            self.gathered.push(vertex, texcoord);
+            self.planes.push(plane);
+        }
+    }
+
     fn end_tile(&mut self, bounds: Aabb, cell: u32) {
         let Self { gathered, planes, owners, .. } = self;
         gathered.weld.end_tile();
-        gathered.weld.rename_tile(|vertex| {
-            let (surface, plane) = owners.get(vertex.surface as usize).copied().unwrap_or((NONE, Zeroable::zeroed()));
-            vertex.surface = surface;
-            planes.push(plane);
-        });
+        if gathered.group.images.is_none() {
+            gathered.weld.rename_tile(|vertex| {
+                let (surface, plane) =
+                    owners.get(vertex.surface as usize).copied().unwrap_or((NONE, Zeroable::zeroed()));
+                vertex.surface = surface;
+                planes.push(plane);
+            });
+        }
         gathered.close_run(bounds, cell, details_of(cell, Detail::Full));
     }
 }
 
-/// The overlapping triangles of all shared planes, lowest layer first; of each layer, one per untextured group.
-fn gather_layers(
-    shown: &Shown,
-    tiles: &[(u32, u32)],
-    table: &mut SurfaceTable,
-    kind: WeldKind,
-) -> Vec<[Layer; Group::UNTEXTURED.len()]> {
+/// The overlapping triangles of all shared planes, lowest layer first; of each layer, one per group.
+fn gather_layers(shown: &Shown, tiles: &[(u32, u32)], table: &mut SurfaceTable, kind: WeldKind) -> Vec<Vec<Layer>> {
     let model = shown.model;
     let mut of_tile: FxHashMap<u32, Vec<&CoplanarTriangle>> = FxHashMap::default();
     for c in shown.coplanar {
         of_tile.entry(c.tile).or_default().push(c);
     }
     let count = shown.coplanar.iter().map(|c| c.layer + 1).max().unwrap_or(0);
-    let layer = |_| Group::UNTEXTURED.map(|group| Layer::new(kind, group));
-    let mut layers: Vec<_> = (0..count).map(layer).collect();
+    let mut layers: Vec<BTreeMap<Group, Layer>> = (0..count).map(|_| BTreeMap::new()).collect();
     // All faces of a plane take their depth from the same numbers.
     let mut planes: FxHashMap<u32, layout::Plane> = FxHashMap::default();
     for (t, cell, triangles) in tiles.iter().filter_map(|(t, cell)| Some((*t, *cell, of_tile.get(t)?))) {
         let tile = &model.tiles[t as usize];
         table.begin_tile();
-        layers.as_flattened_mut().iter_mut().for_each(|layer| layer.begin_tile(tile.origin));
+        layers.iter_mut().flat_map(BTreeMap::values_mut).for_each(|layer| layer.begin_tile(tile.origin));
         for c in triangles {
             let corners = corners_of(model, tile, c.triangle);
             let equation = &model.plane_equations[c.group as usize - 1];
             let plane = *planes.entry(c.group).or_insert_with(|| plane_of(equation, tile.origin));
-            let corners_surface = corners[0].surface;
-            let number = table.number(corners_surface, corners[0].normal, false);
-            let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
-            let group = table.group(corners_surface, false);
-            if let Some(layer) = layers[c.layer as usize].iter_mut().find(|layer| layer.gathered.group == group) {
+            let surface = corners[0].surface;
+            let group = table.group(surface, tile.texcoords != NONE);
+            let layer = layers[c.layer as usize].entry(group).or_insert_with(|| {
+                let mut layer = Layer::new(kind, group);
+                layer.begin_tile(tile.origin);
+                layer
+            });
+            if group.images.is_some() {
+                layer.textured(plane, textured_corners(model, tile, c.triangle, table));
+            } else {
+                let number = table.number(surface, corners[0].normal, false);
+                let corners = corners.map(|v| Corner { position: v.position, normal: v.normal });
                 layer.triangle(number, c.group, plane, corners);
             }
         }
-        layers.as_flattened_mut().iter_mut().for_each(|layer| layer.end_tile(tile.bounds, cell));
+        layers.iter_mut().flat_map(BTreeMap::values_mut).for_each(|layer| layer.end_tile(tile.bounds, cell));
     }
-    layers
+    layers.into_iter().map(|layer| layer.into_values().collect()).collect()
 }
 
 /// A group's plane, relative to a whole-metre origin near it.

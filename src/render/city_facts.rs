@@ -4,7 +4,7 @@ use crate::{
     geom::Aabb,
     render::{
         cells::{CellFigures, Detail, Details, triangles_in},
-        city::{Chunk, Images, Section, SectionKind, Texels, Translucency},
+        city::{Chunk, Section, SectionKind, Texels, Translucency},
         frame::FrameInput,
         hiding::reaches_of,
         light,
@@ -65,7 +65,7 @@ pub(super) struct CityFacts<'a> {
 impl CityFacts<'_> {
     /// Whether some section has a texture.
     pub fn is_textured(&self) -> bool {
-        self.sections.iter().any(|s| matches!(s.kind, SectionKind::Textured(_)))
+        self.sections.iter().any(|s| s.kind.images().is_some())
     }
 
     /// Whether the material of something is translucent, in view or not.
@@ -77,9 +77,8 @@ impl CityFacts<'_> {
 
     /// Whether some texture is.
     pub fn has_clear_textures(&self) -> bool {
-        self.sections
-            .iter()
-            .any(|s| matches!(s.kind, SectionKind::Textured(Images { texels: Texels::Translucent, .. })))
+        let mut images = self.sections.iter().filter_map(|s| s.kind.images());
+        images.any(|images| images.texels == Texels::Translucent)
     }
 
     /// Whether the material of something in a view may be. What is moved may be anywhere.

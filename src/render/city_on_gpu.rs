@@ -61,7 +61,7 @@ pub(super) fn image_of(
     buffers: &CityBuffers,
     kind: SectionKind,
 ) -> Option<wgpu::BindGroup> {
-    let SectionKind::Textured(images) = kind else { return None };
+    let images = kind.images()?;
     let mut entries = Vec::new();
     for (binding, number) in (0..).step_by(2).zip([images.color, images.emission, images.normals]) {
         let (view, sampler) = buffers.textures.get_or_white(number)?;

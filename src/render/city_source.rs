@@ -6,7 +6,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         city::{Section, SectionKind, provoking_corner},
-        layout::CityVertex,
+        layout::{CityVertex, TexturedPlane},
     },
 };
 
@@ -26,6 +26,10 @@ impl Source {
         let of = |buffer: &wgpu::Buffer| gpu.read_buffer(buffer);
         let texcoords = match (section.kind, &section.extra) {
             (SectionKind::Textured(_), Some(extra)) => bytemuck::pod_collect_to_vec(&of(extra)?),
+            (SectionKind::Coplanar(Some(_)), Some(extra)) => {
+                let each: Vec<TexturedPlane> = bytemuck::pod_collect_to_vec(&of(extra)?);
+                each.iter().map(|corner| corner.texcoord).collect()
+            }
             _ => Vec::new(),
         };
         let vertices = bytemuck::pod_collect_to_vec(&of(&section.vertices)?);

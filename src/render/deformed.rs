@@ -353,10 +353,10 @@ struct MetSection {
 fn sections_of(met: &Met, made: &Made) -> Vec<Section> {
     let section = |MetSection { kind, has_shadow, chunks }: &MetSection| Section {
         // What is bent is in no plane.
-        kind: if *kind == SectionKind::Coplanar { SectionKind::Plain } else { *kind },
+        kind: kind.out_of_plane(),
         vertices: made.vertices.clone(),
         indices: made.indices.clone(),
-        extra: made.texcoords.clone().filter(|_| matches!(kind, SectionKind::Textured(_))),
+        extra: made.texcoords.clone().filter(|_| kind.images().is_some()),
         chunks: met.chunks[chunks.clone()]
             .iter()
             .zip(&made.chunks[chunks.clone()])
@@ -435,7 +435,7 @@ impl Met {
         let mut all_chunks = city.buffers.sections.iter().flat_map(|section| &section.chunks);
         let is_met = reach.placement.is_none()
             || all_chunks.any(|chunk| reach.may_raise(&chunk.bounds) || !reach.near(&chunk.bounds).is_empty());
-        let has_textures = sections().any(|(section, _)| matches!(section.kind, SectionKind::Textured(_)));
+        let has_textures = sections().any(|(section, _)| section.kind.images().is_some());
         let (mut left, mut met, mut chunks) = (Vec::new(), Vec::new(), Vec::new());
         let mut all = MetPart::default();
         let mut firsts = vec![0];
@@ -469,7 +469,7 @@ impl Met {
             }
         }
         let reach = bounds.union(of.moved.bounds(&bounds));
-        let is_textured = met.iter().any(|met| matches!(met.kind, SectionKind::Textured(_)));
+        let is_textured = met.iter().any(|met| met.kind.images().is_some());
         let texcoords = is_textured.then_some(&all.texcoords[..]);
         let triangles = RestTriangles { corners: &all.corners, bits: &all.bits, texcoords, firsts };
         let rest = Rest::new(gpu, triangles, &of.moved.deformers, &reach)?;

@@ -135,6 +135,14 @@ pub struct Plane {
     pub offset: f32,
 }
 
+/// The same of a face that has images.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct TexturedPlane {
+    pub plane: Plane,
+    pub texcoord: [f32; 2],
+}
+
 /// `pass/refine.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

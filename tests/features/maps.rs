@@ -269,3 +269,72 @@ fn a_picture_of_normals_turns_faces() {
     });
     assert_ne!(flat, bumped);
 }
+
+/// Two walls that overlap in one plane, each in its image: what is over the other shows its image, and through its holes the other's.
+#[test]
+fn faces_that_overlap_in_one_plane_show_their_images() {
+    let folder = Folder::new("maps-plane");
+    let save = |name: &str, texel: &dyn Fn(u32, u32) -> [u8; 4]| {
+        let image = image::RgbaImage::from_fn(32, 32, |x, y| image::Rgba(texel(x, y)));
+        image.save(folder.0.join(name)).expect("an image");
+    };
+    save("large.png", &|x, _| if x < 16 { [180, 60, 40, 255] } else { [60, 160, 40, 255] });
+    save("small.png", &|x, y| if x.abs_diff(16) < 6 && y.abs_diff(16) < 6 { [0; 4] } else { [40, 60, 180, 255] });
+    folder.write("m.mtl", "newmtl large\nKd 1 1 1\nmap_Kd large.png\nnewmtl small\nKd 1 1 1\nmap_Kd small.png\n");
+    let head = "mtllib m.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+    let large = "v -5 0 0\nv 5 0 0\nv 5 0 10\nv -5 0 10\ng z\nusemtl large\nf -4/1 -3/2 -2/3 -1/4\n";
+    let small = "v -3 0 2\nv 3 0 2\nv 3 0 8\nv -3 0 8\ng small\nusemtl small\nf -4/1 -3/2 -2/3 -1/4\n";
+    // Of faces that nothing else tells apart, the one of the first name is over the other.
+    let both = folder.write("both.obj", format!("{head}{large}{small}"));
+    let turned = folder.write("turned.obj", format!("{head}{}{small}", large.replace("g z", "g a")));
+    let alone = [large, small].map(|of| folder.write(&format!("{}.obj", of.len()), format!("{head}{of}")));
+    let sphere = "shape = { kind = \"sphere\", center = [0, 0, 5], radius = 9 }\nbody = \"none\"\n";
+    let lens = |more: &str| format!("[[lens]]\nname = \"a\"\n{sphere}{more}\n");
+    let see_through = lens("kind = \"color\"\neffects = [{ effect = \"transparent\", opacity = 0.5 }]");
+    let moved = lens("kind = \"deformation\"\ndeform = [{ kind = \"translate\", by = [0.0, 0.0, 0.05] }]");
+    let perspective = "[camera]\neye = [0, -30, 5]\ntarget = [0, 0, 5]\nfov_deg = 22.62\n";
+    // Haze is by the size of what there is.
+    let steep = "[camera]\neye = [-20, -4, 9]\ntarget = [0, 0, 5]\nprojection = \"orthographic\"\nheight_m = 12\n";
+    for (both, camera, more, opacity) in [
+        (&both, CAMERA, String::new(), 1.0),
+        (&turned, CAMERA, String::new(), 1.0),
+        (&both, perspective, String::new(), 1.0),
+        (&both, steep, String::new(), 1.0),
+        (&both, CAMERA, moved, 1.0),
+        (&both, CAMERA, see_through.clone(), 0.5),
+        (&turned, steep, see_through.clone(), 0.5),
+        (&both, perspective, format!("[style]\ntransparency = \"k-buffer\"\n{see_through}"), 0.5),
+    ] {
+        let over = usize::from(both == &turned);
+        let of = |file: &PathBuf| drawn(&of_text(file, &format!("{camera}{more}"))).rgba;
+        let (shown, [large, small]) = (of(both), alone.each_ref().map(of));
+        let mut seen = [0; 2];
+        for (k, rgba) in shown.iter().enumerate() {
+            let opacities = [large[k], small[k]].map(|texel| f64::from(texel[3]) / 255.0);
+            // Borders of the walls and of the hole are drawn in other pixels than those of one alone.
+            let is_border = opacities.iter().any(|o| (o - opacity).abs() > 0.01 && *o > 0.01);
+            if is_border || opacities[0] == 0.0 {
+                continue;
+            }
+            // Straight alpha, so that what is opaque over what is opaque is as what lets a half through over such.
+            let laid = |above: [u8; 4], below: [u8; 4]| -> [f64; 3] {
+                let through = 1.0 - opacity;
+                let all = opacity + through * opacity;
+                std::array::from_fn(|c| opacity * (linear(above[c]) + through * linear(below[c])) / all)
+            };
+            let is_there = opacities[1] > 0.01;
+            let wanted = match (is_there, over) {
+                (false, _) => laid(large[k], large[k]),
+                (true, 0) => laid(small[k], large[k]),
+                (true, _) => laid(large[k], small[k]),
+            };
+            let is_near = (0..3).all(|c| (linear(rgba[c]) - wanted[c]).abs() < 0.012);
+            // Haze is by the size of what there is: of the small one alone it is another.
+            let is_right = is_near || (camera == perspective && is_there && rgba[2] > rgba[0]);
+            let place = (k % 60, k / 60);
+            assert!(is_right, "{camera}{more} {place:?}: {rgba:?}, {:?}, {:?}", large[k], small[k]);
+            seen[usize::from(is_there)] += 1;
+        }
+        assert!(seen[0] > 100 && seen[1] > 100, "{camera}{more}: {seen:?}");
+    }
+}

@@ -4,7 +4,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         cities::DrawnSection,
-        city::{SectionKind, SeenChunk},
+        city::SeenChunk,
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass},
             culling_depth::{self, CullingDepth},
@@ -67,7 +67,7 @@ impl Pass for Geometry {
             zipped.map(|(drawn, seen)| SectionPart { drawn: *drawn, chunks: chunks_of(drawn, seen, keep) }).collect()
         };
         // Layers of coplanar faces stay together and last: the later one wins where depths are equal.
-        let hangs = |drawn: &DrawnSection| drawn.section.kind != SectionKind::Coplanar;
+        let hangs = |drawn: &DrawnSection| !drawn.section.kind.is_layer();
         let hanging = || sections.iter().zip(&seen).filter(|(drawn, _)| hangs(drawn)).flat_map(|(_, seen)| seen);
         let reach = if plan.settings.culls_hidden { culling_depth::reach(view, hanging()) } else { None };
         let Some(reach) = reach else {

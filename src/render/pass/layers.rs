@@ -78,19 +78,20 @@ impl ListKey {
 
     /// Whether depths are those that the rasteriser makes.
     fn is_interpolated(&self) -> bool {
-        self.section != GeometryKind::Coplanar && !self.holds_depth
+        !self.section.is_layer() && !self.holds_depth
     }
 
     fn entry_points(&self) -> (&'static str, &'static str) {
         if self.holds_depth {
-            let is_textured = matches!(self.section, GeometryKind::Textured(_));
+            let is_textured = self.section.look().is_some();
             return ("vertex_held_layer", if is_textured { "note_held_textured" } else { "note_held" });
         }
         match (self.section, self.normals.smooth) {
             (GeometryKind::Plain, false) => ("vertex", "note_plain"),
             (GeometryKind::Plain, true) => ("vertex_smooth", "note_smooth"),
             (GeometryKind::Textured(_), _) => ("vertex_textured", "note_textured"),
-            (GeometryKind::Coplanar, _) => ("vertex_coplanar_layer", "note_coplanar"),
+            (GeometryKind::Coplanar(None), _) => ("vertex_coplanar_layer", "note_coplanar"),
+            (GeometryKind::Coplanar(Some(_)), _) => ("vertex_textured_layer", "note_textured_coplanar"),
         }
     }
 }

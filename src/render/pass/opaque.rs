@@ -64,7 +64,7 @@ impl GeometryKey {
 
     fn entry_points(&self) -> (&'static str, &'static str) {
         if self.holds_depth {
-            let is_textured = matches!(self.section, GeometryKind::Textured(_));
+            let is_textured = self.section.look().is_some();
             return ("vertex_held", if is_textured { "held_textured" } else { "held_full" });
         }
         let full = self.colored || self.measured || self.is_of_region();
@@ -72,7 +72,9 @@ impl GeometryKey {
             (GeometryKind::Plain, false) => ("vertex", if full { "full" } else { "plain" }),
             (GeometryKind::Plain, true) => ("vertex_smooth", if full { "smooth_full" } else { "smooth_plain" }),
             (GeometryKind::Textured(_), _) => ("vertex_textured", "textured"),
-            (GeometryKind::Coplanar, _) => ("vertex_coplanar", if full { "coplanar_full" } else { "coplanar_plain" }),
+            (GeometryKind::Coplanar(None), _) if !full => ("vertex_coplanar", "coplanar_plain"),
+            (GeometryKind::Coplanar(None), _) => ("vertex_coplanar", "coplanar_full"),
+            (GeometryKind::Coplanar(Some(_)), _) => ("vertex_coplanar_textured", "coplanar_textured"),
         }
     }
 
@@ -104,7 +106,7 @@ impl PipelineKey for GeometryKey {
     fn parts(&self, _: wgpu::TextureFormat) -> Parts {
         let is_cut = self.cut.is_some();
         let compare = match self.section {
-            GeometryKind::Coplanar => wgpu::CompareFunction::GreaterEqual,
+            GeometryKind::Coplanar(_) => wgpu::CompareFunction::GreaterEqual,
             _ => wgpu::CompareFunction::Greater,
         };
         let (vertex, fragment) = self.entry_points();

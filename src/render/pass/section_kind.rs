@@ -22,8 +22,8 @@ pub enum GeometryKind {
     Plain,
     /// Textured, and what its images do.
     Textured(Look),
-    /// Depth from the shared plane.
-    Coplanar,
+    /// Depth from the shared plane; what its images do, where it has some.
+    Coplanar(Option<Look>),
 }
 
 /// What images do.
@@ -38,18 +38,18 @@ pub struct Look {
 }
 
 impl Look {
-    /// An opaque image of colours.
-    pub const PLAIN: Self = Self { texels: Texels::Opaque, emits: false, normal_scale: 0 };
+    fn of(images: Images) -> Self {
+        let Images { emission, normal_scale, texels, .. } = images;
+        Self { texels, emits: emission != NONE, normal_scale }
+    }
 }
 
 impl From<SectionKind> for GeometryKind {
     fn from(kind: SectionKind) -> Self {
-        match kind {
-            SectionKind::Plain => Self::Plain,
-            SectionKind::Textured(Images { emission, normal_scale, texels, .. }) => {
-                Self::Textured(Look { texels, emits: emission != NONE, normal_scale })
-            }
-            SectionKind::Coplanar => Self::Coplanar,
+        match (kind, kind.images().map(Look::of)) {
+            (SectionKind::Coplanar(_), look) => Self::Coplanar(look),
+            (_, None) => Self::Plain,
+            (_, Some(look)) => Self::Textured(look),
         }
     }
 }
@@ -58,6 +58,14 @@ impl From<SectionKind> for GeometryKind {
 const LEAST_SEEN: f64 = 0.5 / 255.0;
 
 const TEXCOORD: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x2];
+const TEXTURED_PLANE: &[wgpu::VertexAttribute] =
+    &wgpu::vertex_attr_array![4 => Float32x3, 5 => Sint32x3, 6 => Float32, 7 => Float32x2];
+/// Of these, the texture coordinate alone, as where there is no plane.
+const TEXCOORD_OF_PLANE: &[wgpu::VertexAttribute] = &[wgpu::VertexAttribute {
+    offset: std::mem::offset_of!(layout::TexturedPlane, texcoord) as u64,
+    shader_location: 4,
+    format: wgpu::VertexFormat::Float32x2,
+}];
 const PLANE: &[wgpu::VertexAttribute] = &wgpu::vertex_attr_array![4 => Float32x3, 5 => Sint32x3, 6 => Float32];
 
 impl GeometryKind {
@@ -69,36 +77,60 @@ impl GeometryKind {
         let extra = match self {
             Self::Plain => None,
             Self::Textured(_) => per_vertex(8, TEXCOORD),
-            Self::Coplanar => per_vertex(size_of::<layout::Plane>() as u64, PLANE),
+            Self::Coplanar(None) => per_vertex(size_of::<layout::Plane>() as u64, PLANE),
+            Self::Coplanar(Some(_)) => per_vertex(size_of::<layout::TexturedPlane>() as u64, TEXTURED_PLANE),
         };
         std::iter::once(vertices::city()).chain(extra.map(Some)).collect()
     }
 
+    /// What its texture coordinates are read from where planes do not matter.
+    pub fn texcoord_buffers(self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
+        let texcoord = match self {
+            Self::Coplanar(_) => per_vertex(size_of::<layout::TexturedPlane>() as u64, TEXCOORD_OF_PLANE),
+            _ => per_vertex(size_of::<[f32; 2]>() as u64, TEXCOORD),
+        };
+        vec![vertices::city(), texcoord]
+    }
+
+    /// What its images do.
+    pub fn look(self) -> Option<Look> {
+        match self {
+            Self::Plain | Self::Coplanar(None) => None,
+            Self::Textured(look) | Self::Coplanar(Some(look)) => Some(look),
+        }
+    }
+
+    /// Whether its depth is that of shared planes.
+    pub fn is_layer(self) -> bool {
+        matches!(self, Self::Coplanar(_))
+    }
+
     /// Group 3: textures.
     pub fn images(self) -> Option<&'static GroupLayout> {
-        matches!(self, Self::Textured(_)).then_some(&IMAGES)
+        self.look().map(|_| &IMAGES)
     }
 
     /// The target of shares of own light: others than these leave it alone.
     pub fn emissions(self) -> wgpu::ColorTargetState {
-        let is_written = matches!(self, Self::Textured(Look { emits: true, .. }));
+        let is_written = self.look().is_some_and(|look| look.emits);
         let write_mask = if is_written { wgpu::ColorWrites::ALL } else { wgpu::ColorWrites::empty() };
         wgpu::ColorTargetState { format: EMISSIONS, blend: None, write_mask }
     }
 
     /// What images do, as pipelines read it; where triangles hold their depth, how many words corners have besides.
     pub fn constants(self, holds_depth: bool) -> Vec<(&'static str, f64)> {
-        let (look, words) = match self {
-            Self::Plain => (None, 0),
-            Self::Textured(look) => (Some(look), 2),
-            Self::Coplanar => (None, size_of::<layout::Plane>() / 4),
+        let bytes = match self {
+            Self::Plain => 0,
+            Self::Textured(_) => size_of::<[f32; 2]>(),
+            Self::Coplanar(None) => size_of::<layout::Plane>(),
+            Self::Coplanar(Some(_)) => size_of::<layout::TexturedPlane>(),
         };
         let least = |texels| match texels {
             Texels::Opaque => 0.0,
             Texels::Holes(least) => f64::from(f32::from_bits(least)),
             Texels::Translucent => LEAST_SEEN,
         };
-        let of_images = look.map(|Look { texels, emits, normal_scale }| {
+        let of_images = self.look().map(|Look { texels, emits, normal_scale }| {
             [
                 ("ALPHA_CUTOFF", least(texels)),
                 ("TRANSLUCENT", flag(texels == Texels::Translucent)),
@@ -106,22 +138,19 @@ impl GeometryKind {
                 ("NORMAL_SCALE", f64::from(f32::from_bits(normal_scale))),
             ]
         });
-        of_images.into_iter().flatten().chain(holds_depth.then_some(("WORDS_BESIDES", words as f64))).collect()
+        of_images.into_iter().flatten().chain(holds_depth.then_some(("WORDS_BESIDES", (bytes / 4) as f64))).collect()
     }
 
     /// What names of pipelines say of it.
     pub fn words(self) -> String {
-        let look = match self {
-            Self::Plain => return String::new(),
-            Self::Coplanar => return " coplanar".to_owned(),
-            Self::Textured(look) => look,
-        };
+        let plane = if self.is_layer() { " coplanar" } else { "" };
+        let Some(look) = self.look() else { return plane.to_owned() };
         let texels = match look.texels {
             Texels::Opaque => " of textures",
             Texels::Holes(_) => " of textures with holes",
             Texels::Translucent => " of translucent textures",
         };
-        format!("{texels}{}", words(&[(look.emits, "of light"), (look.normal_scale != 0, "of normals")]))
+        format!("{plane}{texels}{}", words(&[(look.emits, "of light"), (look.normal_scale != 0, "of normals")]))
     }
 }
 

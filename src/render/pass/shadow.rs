@@ -7,14 +7,14 @@ use crate::{
     render::{
         cells::Details,
         cities::DrawnSection,
-        city::{Chunk, CityBuffers, Images, SectionKind, Texels, draws_of},
+        city::{Chunk, CityBuffers, SectionKind, Texels, draws_of},
         cut::{Cut, Shapes},
         invokers::{InvokerPlans, Invokers},
         layout,
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
             opaque::{CutBy, draw_runs},
-            section_kind::{GeometryKind, Look},
+            section_kind::GeometryKind,
         },
         plan::FramePlan,
         programs::Programs,
@@ -25,6 +25,7 @@ use crate::{
             recording::{Counted, DrawnPass, Recording, Shaded, cleared_depth},
             synced::Synced,
             targets::Needs,
+            vertices,
         },
         sun_eye::SunEye,
         surfaces::LEAST_SHADOW,
@@ -52,18 +53,19 @@ static SHAPES: GroupLayout = GroupLayout {
 struct ShadowKey {
     /// What is hidden from it.
     hidden: Option<Program>,
-    /// Of a texture with holes, the bits of the opacity below which there is one.
-    holes: Option<u32>,
+    /// Of a texture with holes, the bits of the opacity below which there is one; and whether its faces lie in shared planes.
+    holes: Option<(u32, bool)>,
 }
 
 impl ShadowKey {
     /// Those of a section, where something may be hidden.
     fn new(kind: SectionKind, hidden: Option<Program>) -> Self {
-        let holes = match kind {
-            SectionKind::Textured(Images { texels: Texels::Holes(least), .. }) => Some(least),
-            SectionKind::Textured(Images { texels: Texels::Translucent, .. }) => Some(LEAST_SHADOW.to_bits()),
-            _ => None,
-        };
+        let least = kind.images().and_then(|images| match images.texels {
+            Texels::Opaque => None,
+            Texels::Holes(least) => Some(least),
+            Texels::Translucent => Some(LEAST_SHADOW.to_bits()),
+        });
+        let holes = least.map(|least| (least, kind.is_layer()));
         Self { hidden, holes }
     }
 }
@@ -81,16 +83,17 @@ impl PipelineKey for ShadowKey {
             None => (vec![Some(&VIEW), Some(&CITY), None], None),
         };
         groups.push(images);
-        let (mut vertex, mut section) = ("vertex", GeometryKind::Plain);
-        if self.holes.is_some() {
-            (vertex, fragment, section) = ("vertex_textured", Some("textured"), GeometryKind::Textured(Look::PLAIN));
+        let (mut vertex, mut buffers) = ("vertex", vec![vertices::city()]);
+        if let Some((_, is_layer)) = self.holes {
+            let section = if is_layer { GeometryKind::Coplanar(None) } else { GeometryKind::Plain };
+            (vertex, fragment, buffers) = ("vertex_textured", Some("textured"), section.texcoord_buffers());
         }
         Parts {
             module: Module::Shadow(self.hidden.clone()),
             groups,
-            constants: self.holes.map(|least| ("LEAST", f64::from(f32::from_bits(least)))).into_iter().collect(),
+            constants: self.holes.map(|(least, _)| ("LEAST", f64::from(f32::from_bits(least)))).into_iter().collect(),
             stage: Stage::Draw(Draw {
-                buffers: section.vertex_buffers(false),
+                buffers,
                 depth: Some(depth_test(wgpu::CompareFunction::Greater, true)),
                 ..Draw::new(vertex, fragment)
             }),

@@ -4,7 +4,7 @@
 use crate::{
     gpu::{Gpu, GpuError},
     render::{
-        city::{Chunk, SectionKind, draws_of},
+        city::{Chunk, draws_of},
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
             opaque::{
@@ -48,7 +48,7 @@ impl RegionGeometry {
         for drawn in frame.cities.drawn_sections(&frame.plan.details, None) {
             let seen = visible(&drawn, frame, None);
             // Layers of coplanar faces stay together: the later one wins where depths are equal.
-            let is_layer = drawn.section.kind == SectionKind::Coplanar;
+            let is_layer = drawn.section.kind.is_layer();
             let is_reached = |chunk: &&Chunk| is_layer || regions.is_reached(&chunk.bounds, input);
             let (own, others) = seen.iter().map(|s| s.chunk).partition(is_reached);
             reached.push(SectionPart { drawn, chunks: own });

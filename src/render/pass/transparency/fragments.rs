@@ -201,7 +201,7 @@ impl FragmentKey {
         section: GeometryKind,
         is_smooth_city: bool,
     ) -> Self {
-        let tests_early = plan.adapter.tests_depth_early && section != GeometryKind::Coplanar;
+        let tests_early = plan.adapter.tests_depth_early && !section.is_layer();
         Self {
             section,
             normals: Normals::new(plan.smooth, is_smooth_city),
@@ -219,7 +219,7 @@ impl FragmentKey {
     fn module(&self) -> Module {
         let kind = match self.pass {
             FragmentPass::Tail => ForwardKind::Tail,
-            FragmentPass::Chance => ForwardKind::Chance(self.section == GeometryKind::Coplanar),
+            FragmentPass::Chance => ForwardKind::Chance(self.section.is_layer()),
             _ => return Module::Slots(self.program.clone(), self.early),
         };
         let shading = self.shading.as_ref().map_or_else(|| self.program.clone(), |own| own.program.clone());
@@ -261,7 +261,8 @@ impl FragmentKey {
             (GeometryKind::Plain, false) => ("vertex", "lay_plain"),
             (GeometryKind::Plain, true) => ("vertex_smooth", "lay_smooth"),
             (GeometryKind::Textured(_), _) => ("vertex_textured", "lay_textured"),
-            (GeometryKind::Coplanar, _) => ("vertex_in_plane", "lay_coplanar"),
+            (GeometryKind::Coplanar(None), _) => ("vertex_in_plane", "lay_coplanar"),
+            (GeometryKind::Coplanar(Some(_)), _) => ("vertex_textured_in_plane", "lay_textured_coplanar"),
         }
     }
 
@@ -294,8 +295,8 @@ impl FragmentKey {
     /// A face of a plane has its own depth, not the interpolated one.
     fn depth_compare(&self) -> wgpu::CompareFunction {
         match (self.section, self.pass) {
-            (GeometryKind::Coplanar, FragmentPass::Chance) => wgpu::CompareFunction::GreaterEqual,
-            (GeometryKind::Coplanar, _) => wgpu::CompareFunction::Always,
+            (GeometryKind::Coplanar(_), FragmentPass::Chance) => wgpu::CompareFunction::GreaterEqual,
+            (GeometryKind::Coplanar(_), _) => wgpu::CompareFunction::Always,
             _ => wgpu::CompareFunction::Greater,
         }
     }
