@@ -183,3 +183,18 @@ fn part_of(model: &CityModel, surface: &Surface, normal: u32) -> u32 {
 
 /// Cosine of the slope from which on a face without semantics is a wall: 75°.
 const STEEPEST_ROOF: f64 = 0.259;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_of_a_picture_is_dark_where_there_are_no_texture_coordinates() {
+        let entry = |is_of_texels, has_texcoords| Emission { light: [1.0; 3], is_of_texels }.entry(has_texcoords);
+        let [light, dark] = [[1.0; 3], [0.0; 3]].map(|color| {
+            [0, layout::LIGHT_OF_TEXELS].map(|flags| layout::Surface::new(layout::NO_OBJECT, 0, color, flags))
+        });
+        assert_eq!([entry(false, false), entry(false, true)], [light[0]; 2]);
+        assert_eq!([entry(true, false), entry(true, true)], [dark[1], light[1]]);
+    }
+}
