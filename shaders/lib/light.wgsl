@@ -25,11 +25,11 @@ struct Light {
 // A software adapter runs both sides of every branch, so what is known before is a constant of the pipeline.
 override SHADOWS: bool = false;
 
-// Share of the sun that arrives, 0..1: four bilinear comparisons, pushed along the normal so that a
-// surface does not shade itself; the filter turns from sample to sample, which softens the border.
+// Share of the sun that arrives, 0..1: four bilinear comparisons, pushed along the face's own normal so that a
+// surface does not shade itself, farther where that or the normal it is shaded by is aslant; the filter turns from sample to sample, which softens the border.
 //
 // The map has one level, or four, two by two, each wider than the one before; the first that holds a place has its smallest texels.
-fn sun_share(relative: vec3f, normal: vec3f) -> f32 {
+fn sun_share(relative: vec3f, normal: vec3f, shaded: vec3f) -> f32 {
     if !SHADOWS {
         return 1.0;
     }
@@ -50,7 +50,7 @@ fn sun_share(relative: vec3f, normal: vec3f) -> f32 {
         level += select(0u, 1u, is_outside);
     }
     let metres = texel / scale;
-    let slant = 1.0 - max(dot(normal, light.to_sun), 0.0);
+    let slant = 1.0 - max(min(dot(normal, light.to_sun), dot(shaded, light.to_sun)), 0.0);
     let start = across + push * (metres * (0.6 + 1.8 * slant));
     let local = start.xy * scale + shift;
     if any(local < vec2f(0.0)) || any(local > vec2f(1.0)) {

@@ -338,3 +338,21 @@ fn faces_that_overlap_in_one_plane_show_their_images() {
         assert!(seen[0] > 100 && seen[1] > 100, "{camera}{more}: {seen:?}");
     }
 }
+
+/// The sun nearly along a wall whose picture of normals turns it to the sun: light is even, whatever the texels of the shadow map are.
+#[test]
+fn faces_that_images_turn_to_the_sun_do_not_shade_themselves() {
+    let folder = Folder::new("maps-shadows");
+    images(&folder, [0.8, 0.0, 0.6]);
+    let material =
+        r#"{"doubleSided":true,"normalTexture":{"index":2},"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}"#;
+    let file = wall(&folder, "wall.gltf", material, r#"{"mesh":0}"#);
+    for azimuth in [94, 98, 105, 120] {
+        let sun = format!("[sun]\nazimuth_deg = {azimuth}\nelevation_deg = 20\n");
+        let picture = drawn(&of_file(&file, &sun));
+        let inner = (-22..=22).flat_map(|x| (3..=47).map(move |z| (f64::from(x) * 0.2, f64::from(z) * 0.2)));
+        let greens: Vec<u8> = inner.map(|(x, z)| at(&picture, x, z)[1]).collect();
+        let (least, most) = (greens.iter().min(), greens.iter().max());
+        assert!(most.zip(least).is_some_and(|(most, least)| most - least <= 1), "{azimuth}: {least:?} to {most:?}");
+    }
+}
