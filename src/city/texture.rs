@@ -102,11 +102,16 @@ fn open(image: &TextureImage) -> Result<Opened, String> {
     limits.max_image_height = Some(MAX_DECODED_SIDE);
     let most = MOST_TIMES.saturating_mul(length).saturating_add(MOST_BYTES);
     limits.max_alloc = Some(most);
-    reader.limits(limits);
+    reader.limits(limits.clone());
     if let Some(format) = by_name.filter(|format| *format == ImageFormat::Tga) {
         reader.set_format(format);
     }
-    let reader = reader.with_guessed_format().map_err(|e| format!("{name} cannot be read: {e}"))?;
+    let mut reader = reader.with_guessed_format().map_err(|e| format!("{name} cannot be read: {e}"))?;
+    if reader.format() == Some(ImageFormat::Gif) {
+        // A frame is made room for beside the picture that it is put into.
+        limits.max_alloc = Some(most / 2);
+        reader.limits(limits);
+    }
     match reader.format() {
         Some(format) if format.reading_enabled() => Ok(Opened { name, most, reader }),
         Some(format) => Err(format!("{name} is {format:?}, which is not read; {FORMATS} are")),
@@ -585,5 +590,24 @@ mod tests {
         ] {
             assert_eq!(needed(size, color, is_gif), mib << 20, "{size:?} {color:?}");
         }
+    }
+
+    #[test]
+    fn a_frame_that_is_larger_than_its_gif_is_refused() {
+        let gif = |[width, height]: [u16; 2]| {
+            // 9 by 7 pixels of two colours, a frame, and in it one code.
+            let mut bytes = b"GIF89a\x09\0\x07\0\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0".to_vec();
+            bytes.extend([width, height].iter().flat_map(|side| side.to_le_bytes()));
+            bytes.extend(b"\0\x02\x02\x44\x01\0;");
+            Texture {
+                image: TextureImage::Bytes(Arc::from(bytes)),
+                wrap: [Wrap::Repeat; 2],
+                opacity: TextureOpacity::Own,
+            }
+        };
+        // 458 MiB of RGBA and as many pixels of indices.
+        let refused = decode(&gif([48_111, 2495])).unwrap_err();
+        assert!(refused.contains("imit"), "{refused}");
+        assert!(decode(&gif([1, 1])).is_ok());
     }
 }

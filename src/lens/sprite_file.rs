@@ -3,7 +3,11 @@
 use std::{io::Cursor, path::Path};
 
 use exr::{
-    meta::{MetaData, attribute::AttributeValue, header::Header},
+    meta::{
+        BlockDescription, MetaData,
+        attribute::{AttributeValue, TileDescription},
+        header::Header,
+    },
     prelude::{FlatSamples, IntegerBounds, Text, Vec2},
 };
 use glam::{DVec2, DVec3};
@@ -21,6 +25,8 @@ use crate::{
 const VERSION: i32 = 1;
 /// Intervals of a file, at most: texels times layers.
 const MOST_INTERVALS: u64 = 1 << 25;
+/// Intervals that a tile may have where the picture has fewer.
+const MOST_BEYOND: u64 = 1 << 20;
 /// Furthest that a coordinate may lie from the origin, metres, as in scene files.
 const FAR_M: f64 = 1e9;
 /// Axes are orthonormal to this.
@@ -228,6 +234,13 @@ fn described(header: &Header) -> Result<SpriteVolume, String> {
             "has {w}x{h} texels of {layers} layers; at most {MOST_INTERVALS} intervals in all would be right"
         ));
     }
+    if let BlockDescription::Tiles(TileDescription { tile_size: Vec2(w, h), .. }) = header.blocks {
+        // A tile is made room for as a whole, however little of it the picture has.
+        let tile = (w as u64).saturating_mul(h as u64).saturating_mul(layers.into());
+        if tile > intervals.max(MOST_BEYOND) {
+            return Err(format!("has tiles of {w}x{h} texels, more than it has itself; 64x64 would be right"));
+        }
+    }
     let position = header.own_attributes.layer_position;
     let place = [(position.0, frame.position.0), (position.1, frame.position.1)];
     let mut origin = [0; 2];
@@ -408,6 +421,11 @@ mod tests {
             assert!(found.contains(expected), "{found} is not {expected}");
         }
         assert!(read_bytes(b"no picture").unwrap_err().starts_with("is no OpenEXR file that can be read"));
+        let mut tiled = bytes(&sprite()).unwrap();
+        let at = tiled.windows(9).position(|name| name == b"tiledesc\0").expect("tiles") + 9 + 4;
+        tiled[at..at + 8].copy_from_slice(&[64, 0, 0, 0, 64, 0, 91, 0]);
+        let found = read_bytes(&tiled).unwrap_err();
+        assert!(found.starts_with("has tiles of 64x5963840 texels"), "{found}");
         let whole = bytes(&sprite()).unwrap();
         assert!(read_bytes(&whole[..whole.len() - 9]).unwrap_err().starts_with("is no OpenEXR file that can be read"));
     }
