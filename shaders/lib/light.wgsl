@@ -22,14 +22,17 @@ struct Light {
 @group(1) @binding(4) var shadow_map: texture_depth_2d;
 @group(1) @binding(5) var shadow_sampler: sampler_comparison;
 
+// The least cosine of the angle between a normal and its face's that a push makes up for: more would be seen at the feet of walls.
+const LEAST_ALONG: f32 = 0.7;
+
 // A software adapter runs both sides of every branch, so what is known before is a constant of the pipeline.
 override SHADOWS: bool = false;
 
-// Share of the sun that arrives, 0..1: four bilinear comparisons, pushed along the face's own normal so that a
-// surface does not shade itself, farther where that or the normal it is shaded by is aslant; the filter turns from sample to sample, which softens the border.
+// Share of the sun that arrives, 0..1: four bilinear comparisons, pushed along the normal so that a surface does not shade itself;
+// farther where it is aslant, or the face is that is shaded by another normal than its own; the filter turns from sample to sample, which softens the border.
 //
 // The map has one level, or four, two by two, each wider than the one before; the first that holds a place has its smallest texels.
-fn sun_share(relative: vec3f, normal: vec3f, shaded: vec3f) -> f32 {
+fn sun_share(relative: vec3f, normal: vec3f, face: vec3f) -> f32 {
     if !SHADOWS {
         return 1.0;
     }
@@ -50,8 +53,10 @@ fn sun_share(relative: vec3f, normal: vec3f, shaded: vec3f) -> f32 {
         level += select(0u, 1u, is_outside);
     }
     let metres = texel / scale;
-    let slant = 1.0 - max(min(dot(normal, light.to_sun), dot(shaded, light.to_sun)), 0.0);
-    let start = across + push * (metres * (0.6 + 1.8 * slant));
+    let slant = 1.0 - max(min(dot(normal, light.to_sun), dot(face, light.to_sun)), 0.0);
+    // What is pushed along another normal leaves the face by less.
+    let aside = select(1.0 / clamp(dot(normal, face), LEAST_ALONG, 1.0), 1.0, all(normal == face));
+    let start = across + push * (metres * aside * (0.6 + 1.8 * slant));
     let local = start.xy * scale + shift;
     if any(local < vec2f(0.0)) || any(local > vec2f(1.0)) {
         return 1.0;

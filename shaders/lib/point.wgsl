@@ -98,16 +98,17 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u, share: vec3f) -> Po
     let is_turned = (surface.flags & SURFACE_LIT_AS_BEFORE) == 0u;
     let away = ray.direction * view.view_from_world;
     point.normal *= select(1.0, -1.0, is_turned && dot(point.normal, away) > 0.0);
-    var own = point.normal;     // of the face, where others are shaded smoothly or by an image
-    if SMOOTH && !is_section(point.surface) {
-        own = decode_normal(surface.normal);
-        own *= select(1.0, -1.0, is_turned && dot(own, away) > 0.0);
+    // Of the face, where that is shaded smoothly or by an image: as it is at rest, so it says how much, and not which way.
+    var face = point.normal;
+    if SMOOTH && !is_section(point.surface) && code.y != surface.normal {
+        face = decode_normal(surface.normal);
+        face *= select(1.0, -1.0, dot(face, point.normal) < 0.0);
     }
     point.object = surface.object;
     point.part = part_of(surface);
     point.lit = CLAY || (surface.flags & SURFACE_UNLIT) == 0u;
     point.natural = surface.color;
-    point.sun = sun_share(point.relative, own, point.normal);
+    point.sun = sun_share(point.relative, point.normal, face);
     point.arriving = irradiance(point.normal, point.sun);
     point.shade = luminance(point.arriving);
     point.opacity = opacity_of(surface);

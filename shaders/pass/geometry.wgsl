@@ -2,10 +2,10 @@
 //
 // target 0  r32uint     surface + 1 (0 = nothing); rg32uint where normals are smooth: y = octahedral normal
 // target 1  rgba8unorm-srgb  base colour; only in cities that have textures
-// target 4  rgba8unorm-srgb  share of its own light; only in cities whose textures say it
 // target 2  r32float    interpolated depth; only where the depth AOV is asked for. A face that shares its
 //                       plane takes its tested depth from the plane; its AOV must not depend on what else
 //                       the city holds, so it is always the face's own.
+// target 4  rgba8unorm-srgb  share of its own light; only in cities whose textures say it (3: numbers of regions)
 //
 // Chunks that a hiding lens may reach have pipelines of their own, whose `cut` discards what is not there (by its own
 // depth, before visibility): a discard anywhere costs early depth tests everywhere (decision 3).

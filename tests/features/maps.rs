@@ -356,3 +356,33 @@ fn faces_that_images_turn_to_the_sun_do_not_shade_themselves() {
         assert!(most.zip(least).is_some_and(|(most, least)| most - least <= 1), "{azimuth}: {least:?} to {most:?}");
     }
 }
+
+/// The same light falls on a wall and on a turned copy of it, where the sun is turned as far: shadows begin before the face as it is shown,
+/// not as it is at rest.
+#[test]
+fn turned_copies_do_not_shade_themselves() {
+    let folder = Folder::new("maps-copies");
+    images(&folder, [0.48, 0.36, 0.8]);
+    let plain = r#"{"doubleSided":true}"#;
+    let bumped = r#"{"doubleSided":true,"normalTexture":{"index":2}}"#;
+    for material in [plain, bumped] {
+        let file = wall(&folder, "wall.gltf", material, r#"{"mesh":0}"#);
+        let greens = |camera: &str, azimuth: i32, lens: &str| {
+            let sun = format!("[sun]\nazimuth_deg = {azimuth}\nelevation_deg = 25\n");
+            let picture = drawn(&of_text(&file, &format!("{camera}{sun}{lens}")));
+            let inner = (-20..=20).flat_map(|x| (4..=46).map(move |z| (f64::from(x) * 0.2, f64::from(z) * 0.2)));
+            let greens: Vec<u8> = inner.map(|(x, z)| at(&picture, x, z)[1]).collect();
+            [greens.iter().min().copied(), greens.iter().max().copied()].map(Option::unwrap_or_default)
+        };
+        let east = CAMERA.replace("[0, -30, 5]", "[60, 0, 5]").replace("[0, 0, 5]", "[30, 0, 5]");
+        let copy = "[[lens]]\nname = \"a\"\nkind = \"content\"\nbody = \"none\"\ncontent = { from = [0, 0, 0], to = [30, 0, 0], rotation_deg = [90, 0, 0] }\n\
+                    shape = { kind = \"sphere\", center = [30, 0, 5], radius = 9 }\n";
+        for aside in [-60, -20, 20, 60] {
+            let here = greens(CAMERA, 180 + aside, "");
+            let there = greens(&east, 90 + aside, copy);
+            // Bytes of rounded normals, and of the picture.
+            let differs = [0, 1].into_iter().any(|end| here[end].abs_diff(there[end]) > 2);
+            assert!(!differs && here[1] - here[0] <= 2, "{material} {aside}: {here:?}, {there:?}");
+        }
+    }
+}
